@@ -1,0 +1,114 @@
+/// @file
+/// The front door: penetration depth of two convex bodies in R^3, with a proof.
+///
+/// P = B + (-A) is the Minkowski difference and pi(A, B) the length of the shortest t after which int(A + t) and B are
+/// disjoint: the distance from the origin to the boundary of P when the origin lies in int P, 0 otherwise. A moves, B stays.
+/// Every engine answers with the same type, so that engines are compared by running them.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "pd/numeric/vector.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd {
+
+class Scratch;
+class WarmCertificate;
+
+enum class ContactClass : std::uint8_t {
+  separated,    ///< the origin lies outside P
+  touching,     ///< on its boundary (or P is flat and holds it)
+  overlapping,  ///< in its interior
+};
+
+enum class Method : std::uint8_t {
+  automatic,      ///< exact for (rounded) polytopes, (1 + delta) for smooth bodies
+  expansion,      ///< signed certified best-first expansion (polytopes, rounded, smooth)
+  overlay,        ///< overlay of the two normal diagrams (polytopes, rounded)
+  decomposition,  ///< [A] section 2
+  shallow,        ///< [A] Shallow-Penetration
+  grid,           ///< [A] Approx-Separation
+};
+
+/// The protocol's words: "separated", "expansion", ...
+[[nodiscard]] std::string_view to_string(ContactClass contact);
+[[nodiscard]] std::string_view to_string(Method method);
+
+/// How tight the bracket of an exact answer is made.
+enum class Bracket : std::uint8_t {
+  certified,  ///< upper - lower <= 4e-15 L, the hot path's choice
+  tightest,   ///< lower and upper are the exact depth rounded down and up
+};
+
+struct DepthSettings {
+  Method method = Method::automatic;
+  Bracket bracket = Bracket::certified;
+  /// Relative error (upper <= (1 + delta) lower) where the answer is approximate; in (0, 1]. For polytopes, 0 = exact.
+  double delta = 0;
+};
+
+/// A face of one body: a vertex id, the two ids of an edge, or a facet.
+struct Feature {
+  enum class Kind : std::uint8_t { none, vertex, edge, facet };
+  Kind kind = Kind::none;
+  std::int32_t first = -1;   ///< vertex, first vertex of the edge, or facet index (ConvexPolytope's own numbering)
+  std::int32_t second = -1;  ///< second vertex of the edge
+};
+
+struct Statistics {
+  std::int64_t support_calls = 0;   ///< supports of P (one on each body)
+  std::int64_t facets_visited = 0;  ///< facets of P (or of polytopes inside it) whose plane was evaluated
+  std::int64_t exact_signs = 0;     ///< decisions that the floating-point filter left to exact arithmetic
+};
+
+/// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B share.
+/// L below is the largest |coordinate| of b - a over the posed vertices.
+struct PenetrationDepth {
+  ContactClass contact = ContactClass::separated;
+  Method method = Method::automatic;  ///< the engine that answered
+  bool warm = false;                  ///< the certificate of an earlier frame held
+
+  double depth = 0;  ///< |translation| up to rounding; 0 unless overlapping
+  double lower = 0;  ///< certified: lower <= pi(A, B) <= upper
+  double upper = 0;
+
+  double distance = 0;  ///< 0 unless separated
+  double distance_lower = 0;
+  double distance_upper = 0;
+
+  Vec3 translation = Vec3::Zero();  ///< separates A from B exactly as stored: it lies outside int P; |translation| <= upper
+  Vec3 normal = Vec3::UnitX();      ///< unit; translation / depth, or (witness_a - witness_b) / distance, or a way out
+  Vec3 witness_a = Vec3::Zero();    ///< point of A; translation = witness_b - witness_a up to 8 ulp of L
+  Vec3 witness_b = Vec3::Zero();
+
+  Feature feature_a;  ///< the features of the cores whose difference holds the nearest boundary point
+  Feature feature_b;
+
+  Statistics statistics;
+};
+
+/// Penetration depth, or distance when apart, of two posed convex bodies.
+///
+/// Class: exact for (rounded) polytopes on the stored numbers and poses; for smooth bodies `touching` covers
+/// |signed distance| <= 1e-12 L. Depth: exact for (rounded) polytopes (bracket as `settings.bracket` says), certified
+/// (1 + delta) for smooth bodies (`settings.delta`, 1e-6 when 0).
+///
+/// Deterministic: the same bits for every run, thread count, order of input vertices and instruction set. Swapping A and B
+/// negates translation and normal (except where both are the same point set, where the least direction is not unique).
+///
+/// @param scratch  buffers, one per thread; nothing is allocated once they have grown.
+/// @param warm     the memory of this pair, or nullptr: the next answer starts from the last surface.
+/// Requires a method that supports the two shapes (`supports`), delta in [0, 1].
+/// Time: measured near-linear at worst, logarithmic for shallow contacts (pd_core/README.md); never gives up.
+[[nodiscard]] PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scratch& scratch,
+                                                 const DepthSettings& settings = {}, WarmCertificate* warm = nullptr);
+
+/// Whether an engine answers for these two shapes (the table of methods in the documentation of the line protocol).
+[[nodiscard]] bool supports(Method method, const ConvexShape& a, const ConvexShape& b);
+
+}  // namespace pd

@@ -1,0 +1,44 @@
+/// @file
+/// The memory of one pair between frames: the last surface inside P as vertex-id pairs and triangles.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pd/numeric/vector.hpp"
+
+namespace pd {
+
+/// Opaque and movable. Holds for one pair of shapes; given to another pair it is refused and starts afresh (the answer is
+/// right in any case: a warm answer is certified from the present poses alone).
+class WarmCertificate {
+ public:
+  WarmCertificate() = default;
+  /// Forgets everything.
+  void clear();
+  /// Bytes held.
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+  struct CachedVertex {
+    std::int32_t a;
+    std::int32_t b;
+  };
+  struct CachedFace {
+    std::int16_t vertex[3];
+    std::int16_t neighbour[3];
+  };
+  /// For the engines.
+  struct State {
+    const void* shape_a = nullptr;
+    const void* shape_b = nullptr;
+    Vec3 direction = Vec3::Zero();  ///< last normal, or last separating direction
+    std::vector<CachedVertex> vertices;
+    std::vector<CachedFace> faces;
+  };
+  [[nodiscard]] State& state() { return state_; }
+
+ private:
+  State state_;
+};
+
+}  // namespace pd

@@ -1,0 +1,126 @@
+/// @file
+/// The convex hull of finitely many points, exact: a vertex, edge or facet is there exactly when it is one of the hull of
+/// the stored doubles.
+///
+/// Bodies of every affine dimension are bodies: a point (dimension 0), a segment (1), a polygon (2), a solid (3).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "pd/numeric/expected.hpp"
+#include "pd/numeric/vector.hpp"
+
+namespace pd {
+
+/// One direction of an edge. Facets lie to the left when seen from outside; `twin` runs the other way.
+struct HalfEdge {
+  std::int32_t origin;  ///< vertex
+  std::int32_t twin;    ///< half-edge
+  std::int32_t next;    ///< half-edge, counter-clockwise round `facet`
+  std::int32_t facet;   ///< -1 for the two half-edges of a segment
+};
+
+/// Immutable and cheap to copy (shared storage), in a frame of its own.
+///
+/// Vertices are stored in canonical order (lexicographic by x, y, z), so that every result is independent of the caller's
+/// order; `caller_id` leads back. A polygon in space is stored doubly covered: two facets with opposite normals. A segment
+/// has two vertices, one edge and no facet; a point has one vertex.
+class ConvexPolytope {
+ public:
+  /// Vertex coordinates are padded to a multiple of this (with copies of vertex 0) for vector kernels.
+  static constexpr int kPadding = 16;
+
+  /// Hull of the points; interior points, duplicates and points inside facets or edges are dropped.
+  /// @param points  [n x 3], n >= 1, finite, |coordinate| <= kMaxCoordinate.
+  /// @return ErrorCode::too_few_points, non_finite ("vertices[i]") or out_of_range ("vertices[i]").
+  /// Expected time O(n log n); decisions by exact predicates.
+  static Expected<ConvexPolytope> from_points(std::span<const Vec3> points);
+
+  /// A closed convex surface, checked and not trusted: face f is the loop
+  /// `face_vertices[face_offsets[f] .. face_offsets[f + 1])` of indices into `points`, counter-clockwise from outside.
+  /// Coplanar neighbours are merged.
+  /// @return as `from_points`, and bad_faces (index, repeated vertex, fewer than 3, orientation), not_closed, not_convex,
+  /// not_full_dimensional; `where` names the face ("faces[3]").
+  static Expected<ConvexPolytope> from_faces(std::span<const Vec3> points, std::span<const std::int32_t> face_offsets,
+                                             std::span<const std::int32_t> face_vertices);
+
+  /// The box [-hx, hx] x [-hy, hy] x [-hz, hz]; caller ids are the bits of (x, y, z) > 0, x lowest.
+  /// @return ErrorCode::non_finite, bad_value (not positive) or out_of_range, at "half_extents[i]".
+  static Expected<ConvexPolytope> box(const Vec3& half_extents);
+
+  [[nodiscard]] int affine_dimension() const { return data_->affine_dimension; }
+  [[nodiscard]] int num_vertices() const { return data_->num_vertices; }
+  [[nodiscard]] int num_edges() const { return data_->num_half_edges / 2; }
+  [[nodiscard]] int num_half_edges() const { return data_->num_half_edges; }
+  /// Facets with coplanar triangles merged; 2 for a polygon in space, 0 for a segment or a point.
+  [[nodiscard]] int num_facets() const { return data_->num_facets; }
+
+  [[nodiscard]] Vec3 vertex(int v) const { return {data_->x[v], data_->y[v], data_->z[v]}; }
+  /// Coordinates as arrays of `padded_size()` doubles, 64-byte aligned.
+  [[nodiscard]] const double* x() const { return data_->x; }
+  [[nodiscard]] const double* y() const { return data_->y; }
+  [[nodiscard]] const double* z() const { return data_->z; }
+  [[nodiscard]] int padded_size() const { return data_->padded_size; }
+  /// The caller's index of a vertex, the lowest of duplicates.
+  [[nodiscard]] int caller_id(int v) const { return data_->caller_ids[v]; }
+
+  /// Vertices joined to v by an edge, counter-clockwise from outside for solids.
+  [[nodiscard]] std::span<const std::int32_t> neighbours(int v) const {
+    return {data_->neighbours + data_->neighbour_offsets[v],
+            static_cast<std::size_t>(data_->neighbour_offsets[v + 1] - data_->neighbour_offsets[v])};
+  }
+  /// The half-edge from v to `neighbours(v)[k]` has index `first_half_edge(v) + k`: half-edges are stored by origin.
+  [[nodiscard]] int first_half_edge(int v) const { return data_->neighbour_offsets[v]; }
+  [[nodiscard]] const HalfEdge& half_edge(int h) const { return data_->half_edges[h]; }
+  [[nodiscard]] int target(int h) const { return data_->half_edges[data_->half_edges[h].twin].origin; }
+
+  /// Vertex loop of a facet, counter-clockwise from outside; no three are collinear, so the first three give the plane
+  /// exactly.
+  [[nodiscard]] std::span<const std::int32_t> facet_vertices(int f) const {
+    return {data_->facet_vertices + data_->facet_offsets[f],
+            static_cast<std::size_t>(data_->facet_offsets[f + 1] - data_->facet_offsets[f])};
+  }
+  /// Outward unit normal, rounded (relative error a few ulp; not for decisions).
+  [[nodiscard]] const Vec3& facet_normal(int f) const { return data_->facet_normals[f]; }
+  /// A half-edge of facet f, the one that leaves `facet_vertices(f)[0]`.
+  [[nodiscard]] int facet_half_edge(int f) const { return data_->facet_half_edges[f]; }
+
+  /// Largest |coordinate|.
+  [[nodiscard]] double max_abs_coordinate() const { return data_->max_abs_coordinate; }
+  /// Bytes held by the shared storage.
+  [[nodiscard]] std::size_t memory_bytes() const { return data_->memory_bytes; }
+  /// Same storage (not: same point set).
+  [[nodiscard]] bool same_storage(const ConvexPolytope& other) const { return data_ == other.data_; }
+
+  /// One block of memory; filled once by the hull builder (`src/shape/`).
+  struct Storage {
+    std::int32_t affine_dimension = 0;
+    std::int32_t num_vertices = 0;
+    std::int32_t num_half_edges = 0;
+    std::int32_t num_facets = 0;
+    std::int32_t padded_size = 0;
+    double max_abs_coordinate = 0;
+    std::size_t memory_bytes = 0;
+    const double* x = nullptr;
+    const double* y = nullptr;
+    const double* z = nullptr;
+    const std::int32_t* caller_ids = nullptr;
+    const std::int32_t* neighbour_offsets = nullptr;  ///< [num_vertices + 1]
+    const std::int32_t* neighbours = nullptr;         ///< [num_half_edges]
+    const HalfEdge* half_edges = nullptr;             ///< [num_half_edges]
+    const std::int32_t* facet_offsets = nullptr;      ///< [num_facets + 1]
+    const std::int32_t* facet_vertices = nullptr;
+    const std::int32_t* facet_half_edges = nullptr;  ///< [num_facets]
+    const Vec3* facet_normals = nullptr;             ///< [num_facets]
+  };
+
+  /// For the hull builder.
+  explicit ConvexPolytope(std::shared_ptr<const Storage> data) : data_(std::move(data)) {}
+
+ private:
+  std::shared_ptr<const Storage> data_;
+};
+
+}  // namespace pd

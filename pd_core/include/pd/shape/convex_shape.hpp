@@ -1,0 +1,75 @@
+/// @file
+/// Every convex body of the library: a core (polytope or smooth) swept by a ball.
+///
+/// A sphere is a point with a margin, a capsule a segment with a margin; they need no code of their own, and their depth is
+/// exact: the core's signed distance less the two margins (design of rounded bodies, [A] section 1 on Minkowski sums).
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "pd/numeric/expected.hpp"
+#include "pd/numeric/vector.hpp"
+#include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/pose.hpp"
+
+namespace pd {
+
+/// {x : sum (x_i / radii_i)^2 <= 1}.
+struct Ellipsoid {
+  Vec3 radii;
+};
+
+/// Radius about the axis (0, 1, 2 = x, y, z), from -half_height to +half_height along it.
+struct Cylinder {
+  double radius;
+  double half_height;
+  int axis;
+};
+
+/// Base of the radius at -half_height, apex at +half_height along the axis.
+struct Cone {
+  double radius;
+  double half_height;
+  int axis;
+};
+
+/// A convex core and a margin >= 0 (the body is the Minkowski sum of the posed core and a ball of that radius). Value type,
+/// cheap to copy.
+class ConvexShape {
+ public:
+  using Core = std::variant<ConvexPolytope, Ellipsoid, Cylinder, Cone>;
+
+  ConvexShape(ConvexPolytope polytope)  // NOLINT(google-explicit-constructor): a polytope is a shape
+      : core_(std::move(polytope)) {}
+
+  /// Factories refuse sizes that are not finite (`non_finite`), not positive (`bad_value`) or above kMaxCoordinate
+  /// (`out_of_range`); `where` names the parameter ("radius", "radii[1]", "half_height", "axis").
+  static Expected<ConvexShape> sphere(double radius);
+  static Expected<ConvexShape> ellipsoid(const Vec3& radii);
+  static Expected<ConvexShape> capsule(double radius, double half_height, int axis);
+  static Expected<ConvexShape> cylinder(double radius, double half_height, int axis);
+  static Expected<ConvexShape> cone(double radius, double half_height, int axis);
+
+  /// The same core with `margin` added to the present one; margin >= 0 ("margin").
+  [[nodiscard]] Expected<ConvexShape> with_margin(double margin) const;
+
+  [[nodiscard]] const Core& core() const { return core_; }
+  [[nodiscard]] double margin() const { return margin_; }
+  /// The polytope core, or nullptr where the core is smooth.
+  [[nodiscard]] const ConvexPolytope* polytope() const { return std::get_if<ConvexPolytope>(&core_); }
+
+ private:
+  explicit ConvexShape(Core core, double margin) : core_(std::move(core)), margin_(margin) {}
+
+  Core core_;
+  double margin_ = 0;
+};
+
+/// A shape and where it stands. Refers to the shape: it must outlive the query.
+struct PosedShape {
+  const ConvexShape* shape;
+  Pose pose;
+};
+
+}  // namespace pd

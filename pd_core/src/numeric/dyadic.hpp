@@ -1,0 +1,86 @@
+/// @file
+/// Exact numbers m * 2^e with an integer m of any length: the last stage of every decision.
+///
+/// Sums, differences and products of doubles are dyadic, whatever their exponents, so no decision can over- or underflow.
+/// About 1000 bits are kept in place; longer mantissas allocate.
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <compare>
+
+#include "pd/numeric/vector.hpp"
+
+namespace pd::detail {
+
+class Dyadic {
+ public:
+  using Integer = boost::multiprecision::number<
+      boost::multiprecision::cpp_int_backend<1024, 0, boost::multiprecision::signed_magnitude,
+                                             boost::multiprecision::unchecked>,
+      boost::multiprecision::et_off>;
+
+  Dyadic() = default;
+  /// Exact for every finite double.
+  Dyadic(double value) {  // NOLINT(google-explicit-constructor): doubles are dyadic
+    if (value == 0) return;
+    int exponent = 0;
+    const double fraction = std::frexp(value, &exponent);
+    mantissa_ = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+    exponent_ = exponent - 53;
+  }
+
+  [[nodiscard]] int sign() const { return mantissa_.sign(); }
+  [[nodiscard]] const Integer& mantissa() const { return mantissa_; }
+  [[nodiscard]] int exponent() const { return exponent_; }
+
+  friend Dyadic operator-(Dyadic a) {
+    a.mantissa_ = -a.mantissa_;
+    return a;
+  }
+  friend Dyadic operator+(const Dyadic& a, const Dyadic& b) { return sum(a, b, false); }
+  friend Dyadic operator-(const Dyadic& a, const Dyadic& b) { return sum(a, b, true); }
+  friend Dyadic operator*(const Dyadic& a, const Dyadic& b) {
+    Dyadic r;
+    r.mantissa_ = a.mantissa_ * b.mantissa_;
+    r.exponent_ = r.mantissa_.is_zero() ? 0 : a.exponent_ + b.exponent_;
+    return r;
+  }
+  friend bool operator==(const Dyadic& a, const Dyadic& b) { return (a - b).sign() == 0; }
+  friend std::strong_ordering operator<=>(const Dyadic& a, const Dyadic& b) { return (a - b).sign() <=> 0; }
+
+  /// Multiplication by 2^k.
+  [[nodiscard]] Dyadic scaled(int k) const {
+    Dyadic r = *this;
+    if (sign() != 0) r.exponent_ += k;
+    return r;
+  }
+
+  /// The largest double <= the value (infinities when out of range).
+  [[nodiscard]] double round_down() const;
+  /// The smallest double >= the value.
+  [[nodiscard]] double round_up() const;
+  /// Nearest or a neighbour of the nearest double.
+  [[nodiscard]] double to_double() const;
+
+ private:
+  static Dyadic sum(const Dyadic& a, const Dyadic& b, bool subtract);
+
+  Integer mantissa_ = 0;
+  int exponent_ = 0;
+};
+
+struct Dyadic3 {
+  Dyadic x, y, z;
+};
+inline Dyadic3 to_dyadic(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+inline Dyadic3 operator-(const Dyadic3& a, const Dyadic3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Dyadic3 operator+(const Dyadic3& a, const Dyadic3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Dyadic3 operator*(const Dyadic3& a, const Dyadic& s) { return {a.x * s, a.y * s, a.z * s}; }
+inline Dyadic dot(const Dyadic3& a, const Dyadic3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Dyadic3 cross(const Dyadic3& a, const Dyadic3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Dyadic determinant(const Dyadic3& a, const Dyadic3& b, const Dyadic3& c) { return dot(a, cross(b, c)); }
+
+}  // namespace pd::detail

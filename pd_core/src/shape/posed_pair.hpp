@@ -1,0 +1,107 @@
+/// @file
+/// Exact predicates on the vectors that two posed polytopes define: points of P = B + (-A), edges of A, edges of B, and
+/// differences of points of P.
+///
+/// Every such vector is R_B (b_to - b_from) - R_A (a_to - a_from), or for points of P with t_B - t_A added. Its stages:
+/// 1. doubles with an error bound, 2. double-double with an error bound, 3. dyadic numbers on the stored input (a quaternion's
+/// rotation is homogeneous: all vectors of a pair are multiplied by the same positive |q_A|^2 |q_B|^2).
+///
+/// Inside, lengths are scaled by a power of two so that the largest coordinate of P is about 1: no stage over- or
+/// underflows, and every decision obeys the law of powers of two. `scale_exponent` turns results back.
+#pragma once
+
+#include <cstdint>
+
+#include "numeric/double_double.hpp"
+#include "numeric/dyadic.hpp"
+#include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/pose.hpp"
+
+namespace pd::detail {
+
+/// R_B (b_to - b_from) - R_A (a_to - a_from); -1 means "not there" (the origin of the local frame); `translated` adds
+/// t_B - t_A.
+struct PairVector {
+  std::int32_t a_to = -1;
+  std::int32_t a_from = -1;
+  std::int32_t b_to = -1;
+  std::int32_t b_from = -1;
+  bool translated = false;
+
+  /// The point v_b - v_a of P.
+  static PairVector point(int a, int b) { return {a, -1, b, -1, true}; }
+  /// From the point (a_from, b_from) of P to (a_to, b_to).
+  static PairVector difference(int a_from, int b_from, int a_to, int b_to) { return {a_to, a_from, b_to, b_from, false}; }
+  /// R_A (v_to - v_from).
+  static PairVector edge_a(int from, int to) { return {from, to, -1, -1, false}; }
+  /// R_B (v_to - v_from).
+  static PairVector edge_b(int from, int to) { return {-1, -1, to, from, false}; }
+};
+
+class PosedPair {
+ public:
+  /// Refers to the polytopes: they must outlive it.
+  PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b);
+
+  [[nodiscard]] const ConvexPolytope& a() const { return *a_; }
+  [[nodiscard]] const ConvexPolytope& b() const { return *b_; }
+  [[nodiscard]] const Pose& pose_a() const { return *pose_a_; }
+  [[nodiscard]] const Pose& pose_b() const { return *pose_b_; }
+
+  /// Lengths inside = lengths outside * 2^-scale_exponent.
+  [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
+
+  /// The vector in doubles (scaled). |error| per coordinate <= vector_error().
+  [[nodiscard]] Vec3 approximate(const PairVector& v) const;
+  [[nodiscard]] double vector_error() const { return vector_error_; }
+
+  /// In double-double (scaled). |error| per coordinate <= vector_error_dd().
+  [[nodiscard]] Vec3DD approximate_dd(const PairVector& v) const;
+  [[nodiscard]] double vector_error_dd() const { return vector_error_dd_; }
+
+  /// The exact vector times homogeneous_factor() > 0, unscaled.
+  [[nodiscard]] Dyadic3 exact(const PairVector& v) const;
+  /// |q_A|^2 |q_B|^2, with 1 in the place of a pose given as a matrix.
+  [[nodiscard]] const Dyadic& homogeneous_factor() const { return homogeneous_factor_; }
+
+  /// Sign of det(u, v, w) = <u, v x w>, exact.
+  [[nodiscard]] int sign_determinant(const PairVector& u, const PairVector& v, const PairVector& w) const;
+  /// Sign of <u, v>, exact.
+  [[nodiscard]] int sign_dot(const PairVector& u, const PairVector& v) const;
+  /// True when u x v = 0 exactly.
+  [[nodiscard]] bool parallel(const PairVector& u, const PairVector& v) const;
+
+  /// Which of the three stages decided how often, since construction.
+  struct StageCounts {
+    std::int64_t filtered = 0;
+    std::int64_t double_double = 0;
+    std::int64_t exact = 0;
+  };
+  [[nodiscard]] const StageCounts& stages() const { return stages_; }
+
+ private:
+  struct Body {
+    double scaled_rotation[9];   ///< R * 2^-k, rounded from the exact rational when a quaternion
+    DoubleDouble rotation_dd[9];
+    Dyadic rotation_exact[9];    ///< numerators
+    Dyadic denominator;          ///< |q|^2 or 1
+    bool exact_ready = false;
+  };
+  void prepare_exact() const;
+
+  const ConvexPolytope* a_;
+  const ConvexPolytope* b_;
+  const Pose* pose_a_;
+  const Pose* pose_b_;
+  int scale_exponent_ = 0;
+  double vector_error_ = 0;
+  double vector_error_dd_ = 0;
+  Dyadic homogeneous_factor_;
+  mutable Body body_a_;
+  mutable Body body_b_;
+  Vec3 offset_;            ///< (t_B - t_A) scaled, rounded
+  Vec3DD offset_dd_;
+  mutable StageCounts stages_;
+};
+
+}  // namespace pd::detail
