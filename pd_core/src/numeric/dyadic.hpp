@@ -1,8 +1,8 @@
 /// @file
 /// Exact numbers m * 2^e with an integer m of any length: the last stage of every decision.
 ///
-/// Sums, differences and products of doubles are dyadic, whatever their exponents, so no decision can over- or underflow.
-/// About 1000 bits are kept in place; longer mantissas allocate.
+/// Sums, differences and products of doubles are dyadic, whatever their exponents, so no decision can over- or
+/// underflow. About 1000 bits are kept in place; longer mantissas allocate.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>

@@ -3,8 +3,8 @@
 /// differences of points of P.
 ///
 /// Every such vector is R_B (b_to - b_from) - R_A (a_to - a_from), or for points of P with t_B - t_A added. Its stages:
-/// 1. doubles with an error bound, 2. double-double with an error bound, 3. dyadic numbers on the stored input (a quaternion's
-/// rotation is homogeneous: all vectors of a pair are multiplied by the same positive |q_A|^2 |q_B|^2).
+/// 1. doubles with an error bound, 2. double-double with an error bound, 3. dyadic numbers on the stored input (a
+/// quaternion's rotation is homogeneous: all vectors of a pair are multiplied by the same positive |q_A|^2 |q_B|^2).
 ///
 /// Inside, lengths are scaled by a power of two so that the largest coordinate of P is about 1: no stage over- or
 /// underflows, and every decision obeys the law of powers of two. `scale_exponent` turns results back.
@@ -31,7 +31,9 @@ struct PairVector {
   /// The point v_b - v_a of P.
   static PairVector point(int a, int b) { return {a, -1, b, -1, true}; }
   /// From the point (a_from, b_from) of P to (a_to, b_to).
-  static PairVector difference(int a_from, int b_from, int a_to, int b_to) { return {a_to, a_from, b_to, b_from, false}; }
+  static PairVector difference(int a_from, int b_from, int a_to, int b_to) {
+    return {a_to, a_from, b_to, b_from, false};
+  }
   /// R_A (v_to - v_from).
   static PairVector edge_a(int from, int to) { return {from, to, -1, -1, false}; }
   /// R_B (v_to - v_from).
@@ -62,7 +64,7 @@ class PosedPair {
   /// The exact vector times homogeneous_factor() > 0, unscaled.
   [[nodiscard]] Dyadic3 exact(const PairVector& v) const;
   /// |q_A|^2 |q_B|^2, with 1 in the place of a pose given as a matrix.
-  [[nodiscard]] const Dyadic& homogeneous_factor() const { return homogeneous_factor_; }
+  [[nodiscard]] const Dyadic& homogeneous_factor() const;
 
   /// Sign of det(u, v, w) = <u, v x w>, exact.
   [[nodiscard]] int sign_determinant(const PairVector& u, const PairVector& v, const PairVector& w) const;
@@ -81,10 +83,10 @@ class PosedPair {
 
  private:
   struct Body {
-    double scaled_rotation[9];   ///< R * 2^-k, rounded from the exact rational when a quaternion
+    double rotation[9];  ///< R row by row, rounded from the exact rational when a quaternion
     DoubleDouble rotation_dd[9];
-    Dyadic rotation_exact[9];    ///< numerators
-    Dyadic denominator;          ///< |q|^2 or 1
+    Dyadic rotation_exact[9];  ///< numerators over the common denominator of the pair
+    Dyadic denominator;        ///< |q|^2 or 1
     bool exact_ready = false;
   };
   void prepare_exact() const;
@@ -96,11 +98,12 @@ class PosedPair {
   int scale_exponent_ = 0;
   double vector_error_ = 0;
   double vector_error_dd_ = 0;
-  Dyadic homogeneous_factor_;
+  mutable Dyadic homogeneous_factor_;
   mutable Body body_a_;
   mutable Body body_b_;
-  Vec3 offset_;            ///< (t_B - t_A) scaled, rounded
+  Vec3 offset_;  ///< (t_B - t_A) scaled, rounded
   Vec3DD offset_dd_;
+  mutable Dyadic3 offset_exact_;
   mutable StageCounts stages_;
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// The convex hull of finitely many points, exact: a vertex, edge or facet is there exactly when it is one of the hull of
-/// the stored doubles.
+/// The convex hull of finitely many points, exact: a vertex, edge or facet is there exactly when it is one of the hull
+/// of the stored doubles.
 ///
 /// Bodies of every affine dimension are bodies: a point (dimension 0), a segment (1), a polygon (2), a solid (3).
 #pragma once
@@ -24,9 +24,9 @@ struct HalfEdge {
 
 /// Immutable and cheap to copy (shared storage), in a frame of its own.
 ///
-/// Vertices are stored in canonical order (lexicographic by x, y, z), so that every result is independent of the caller's
-/// order; `caller_id` leads back. A polygon in space is stored doubly covered: two facets with opposite normals. A segment
-/// has two vertices, one edge and no facet; a point has one vertex.
+/// Vertices are stored in canonical order (lexicographic by x, y, z), so that every result is independent of the
+/// caller's order; `caller_id` leads back. A polygon in space is stored doubly covered: two facets with opposite
+/// normals. A segment has two vertices, one edge and no facet; a point has one vertex.
 class ConvexPolytope {
  public:
   /// Vertex coordinates are padded to a multiple of this (with copies of vertex 0) for vector kernels.
@@ -41,8 +41,8 @@ class ConvexPolytope {
   /// A closed convex surface, checked and not trusted: face f is the loop
   /// `face_vertices[face_offsets[f] .. face_offsets[f + 1])` of indices into `points`, counter-clockwise from outside.
   /// Coplanar neighbours are merged.
-  /// @return as `from_points`, and bad_faces (index, repeated vertex, fewer than 3, orientation), not_closed, not_convex,
-  /// not_full_dimensional; `where` names the face ("faces[3]").
+  /// @return as `from_points`, and bad_faces (index, repeated vertex, fewer than 3, orientation), not_closed,
+  /// not_convex, not_full_dimensional; `where` names the face ("faces[3]").
   static Expected<ConvexPolytope> from_faces(std::span<const Vec3> points, std::span<const std::int32_t> face_offsets,
                                              std::span<const std::int32_t> face_vertices);
 
@@ -89,6 +89,10 @@ class ConvexPolytope {
 
   /// Largest |coordinate|.
   [[nodiscard]] double max_abs_coordinate() const { return data_->max_abs_coordinate; }
+  /// Mean of the vertices, rounded: a point well inside, for choosing directions.
+  [[nodiscard]] const Vec3& centre() const { return data_->centre; }
+  /// Largest |vertex|, rounded up.
+  [[nodiscard]] double radius() const { return data_->radius; }
   /// Bytes held by the shared storage.
   [[nodiscard]] std::size_t memory_bytes() const { return data_->memory_bytes; }
   /// Same storage (not: same point set).
@@ -102,6 +106,8 @@ class ConvexPolytope {
     std::int32_t num_facets = 0;
     std::int32_t padded_size = 0;
     double max_abs_coordinate = 0;
+    double radius = 0;           ///< >= every |vertex|
+    Vec3 centre = Vec3::Zero();  ///< mean of the vertices
     std::size_t memory_bytes = 0;
     const double* x = nullptr;
     const double* y = nullptr;

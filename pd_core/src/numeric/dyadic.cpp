@@ -1,0 +1,59 @@
+#include "numeric/dyadic.hpp"
+
+#include <limits>
+
+namespace pd::detail {
+
+Dyadic Dyadic::sum(const Dyadic& a, const Dyadic& b, bool subtract) {
+  if (b.sign() == 0) return a;
+  if (a.sign() == 0) return subtract ? -b : b;
+  Dyadic r;
+  r.exponent_ = std::min(a.exponent_, b.exponent_);
+  const Integer& x = a.mantissa_;
+  const Integer& y = b.mantissa_;
+  if (a.exponent_ == r.exponent_) {
+    const Integer shifted = y << static_cast<unsigned>(b.exponent_ - r.exponent_);
+    r.mantissa_ = subtract ? Integer(x - shifted) : Integer(x + shifted);
+  } else {
+    const Integer shifted = x << static_cast<unsigned>(a.exponent_ - r.exponent_);
+    r.mantissa_ = subtract ? Integer(shifted - y) : Integer(shifted + y);
+  }
+  if (r.mantissa_.is_zero()) r.exponent_ = 0;
+  return r;
+}
+
+namespace {
+
+/// |mantissa| * 2^exponent rounded towards zero; `exact` tells whether nothing was lost.
+double truncate(const Dyadic::Integer& magnitude, int exponent, bool& exact) {
+  const int bits = static_cast<int>(boost::multiprecision::msb(magnitude)) + 1;
+  // A double near the value has its lowest bit at this weight (subnormals included).
+  const int lowest = std::max(bits - 53, -1074 - exponent);
+  exact = true;
+  if (lowest <= 0) return std::ldexp(static_cast<double>(static_cast<std::uint64_t>(magnitude)), exponent);
+  exact = static_cast<int>(boost::multiprecision::lsb(magnitude)) >= lowest;
+  if (lowest >= bits) return 0.0;
+  const Dyadic::Integer top = magnitude >> static_cast<unsigned>(lowest);
+  return std::ldexp(static_cast<double>(static_cast<std::uint64_t>(top)), exponent + lowest);
+}
+
+}  // namespace
+
+double Dyadic::round_down() const {
+  if (sign() == 0) return 0;
+  bool exact = true;
+  const double magnitude = truncate(boost::multiprecision::abs(mantissa_), exponent_, exact);
+  if (sign() > 0) return std::isinf(magnitude) ? std::numeric_limits<double>::max() : magnitude;
+  return exact ? -magnitude : std::nextafter(-magnitude, -std::numeric_limits<double>::infinity());
+}
+
+double Dyadic::round_up() const { return -(-*this).round_down(); }
+
+double Dyadic::to_double() const {
+  if (sign() == 0) return 0;
+  bool exact = true;
+  const double magnitude = truncate(boost::multiprecision::abs(mantissa_), exponent_, exact);
+  return sign() > 0 ? magnitude : -magnitude;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,264 @@
+#include "shape/posed_pair.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pd::detail {
+
+namespace {
+
+constexpr double kU = 0x1p-53;  ///< half an ulp of 1
+/// Loss by underflow inside a scaled double or double-double evaluation; far below every rounding term that matters.
+constexpr double kUnderflow = 0x1p-900;
+
+DoubleDouble dd(double x) { return {x, 0}; }
+
+/// The nine numerators of R(q) |q|^2, in any number type.
+template <class Number>
+std::array<Number, 9> homogeneous_rotation(const std::array<double, 4>& q) {
+  const Number w(q[0]), x(q[1]), y(q[2]), z(q[3]), two(2.0);
+  const Number ww = w * w, xx = x * x, yy = y * y, zz = z * z;
+  const Number xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
+  return {ww + xx - yy - zz, two * (xy - wz), two * (xz + wy), two * (xy + wz),  ww - xx + yy - zz,
+          two * (yz - wx),   two * (xz - wy), two * (yz + wx), ww - xx - yy + zz};
+}
+
+/// Double-double with the constructor that `homogeneous_rotation` expects.
+struct Number : DoubleDouble {
+  explicit Number(double x) : DoubleDouble{x, 0} {}
+  Number(const DoubleDouble& d) : DoubleDouble(d) {}  // NOLINT(google-explicit-constructor)
+};
+
+void rotation_in_double_double(const Pose& pose, DoubleDouble (&rotation)[9]) {
+  if (!pose.is_quaternion()) {
+    for (int i = 0; i < 9; ++i) rotation[i] = dd(pose.rotation()(i / 3, i % 3));
+    return;
+  }
+  const std::array<double, 4>& q = pose.quaternion_wxyz();
+  const std::array<Number, 9> numerators = homogeneous_rotation<Number>(q);
+  DoubleDouble norm{0, 0};
+  for (const double c : q) norm = norm + two_product(c, c);
+  for (int i = 0; i < 9; ++i) rotation[i] = numerators[static_cast<std::size_t>(i)] / norm;
+}
+
+/// Largest coordinate of |R| |v| over the vertices, bounded by the box of |v|.
+double reach(const ConvexPolytope& polytope, const DoubleDouble (&rotation)[9], double scale) {
+  const int n = polytope.num_vertices();
+  double box[3] = {0, 0, 0};
+  for (int v = 0; v < n; ++v) {
+    box[0] = std::max(box[0], std::abs(polytope.x()[v]));
+    box[1] = std::max(box[1], std::abs(polytope.y()[v]));
+    box[2] = std::max(box[2], std::abs(polytope.z()[v]));
+  }
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) {
+    double sum = 0;
+    for (int j = 0; j < 3; ++j) sum += std::abs(rotation[3 * i + j].hi) * (box[j] * scale);
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
+/// R (scale (to - from)) in doubles; an absent index stands for the local origin.
+Vec3 rotate(const ConvexPolytope& p, const double (&r)[9], double scale, int to, int from) {
+  double v[3] = {0, 0, 0};
+  if (to >= 0) {
+    v[0] = p.x()[to];
+    v[1] = p.y()[to];
+    v[2] = p.z()[to];
+  }
+  if (from >= 0) {
+    v[0] -= p.x()[from];
+    v[1] -= p.y()[from];
+    v[2] -= p.z()[from];
+  }
+  for (double& c : v) c *= scale;
+  return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[3] * v[0] + r[4] * v[1] + r[5] * v[2],
+          r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
+}
+
+Vec3DD rotate(const ConvexPolytope& p, const DoubleDouble (&r)[9], double scale, int to, int from) {
+  const double* const coordinates[3] = {p.x(), p.y(), p.z()};
+  DoubleDouble v[3];
+  for (int i = 0; i < 3; ++i) {
+    const double t = to >= 0 ? coordinates[i][to] * scale : 0;
+    const double f = from >= 0 ? coordinates[i][from] * scale : 0;
+    v[i] = two_sum(t, -f);
+  }
+  return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[3] * v[0] + r[4] * v[1] + r[5] * v[2],
+          r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
+}
+
+Dyadic3 rotate(const ConvexPolytope& p, const Dyadic (&r)[9], int to, int from) {
+  const Vec3 zero = Vec3::Zero();
+  const Dyadic3 v = to_dyadic(to >= 0 ? p.vertex(to) : zero) - to_dyadic(from >= 0 ? p.vertex(from) : zero);
+  return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+          r[6] * v.x + r[7] * v.y + r[8] * v.z};
+}
+
+}  // namespace
+
+PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b)
+    : a_(&a), b_(&b), pose_a_(&pose_a), pose_b_(&pose_b) {
+  const Vec3 offset = pose_b.translation() - pose_a.translation();
+  const double largest =
+      std::max({a.max_abs_coordinate(), b.max_abs_coordinate(), offset.cwiseAbs().maxCoeff(), 0x1p-1000});
+  // Rescale only where a product of three lengths could leave the range of doubles: within it scaling changes no bit.
+  scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
+  const double scale = std::ldexp(1.0, -scale_exponent_);
+
+  rotation_in_double_double(pose_a, body_a_.rotation_dd);
+  rotation_in_double_double(pose_b, body_b_.rotation_dd);
+  for (int i = 0; i < 9; ++i) {
+    body_a_.rotation[i] = to_double(body_a_.rotation_dd[i]);
+    body_b_.rotation[i] = to_double(body_b_.rotation_dd[i]);
+  }
+  double offset_size = 0;
+  double offset_scaled[3];
+  DoubleDouble offset_exact[3];
+  for (int i = 0; i < 3; ++i) {
+    offset_exact[i] = two_sum(pose_b.translation()[i] * scale, -(pose_a.translation()[i] * scale));
+    offset_scaled[i] = offset_exact[i].hi;
+    offset_size = std::max(offset_size, std::abs(offset_scaled[i]));
+  }
+  offset_ = Vec3(offset_scaled[0], offset_scaled[1], offset_scaled[2]);
+  offset_dd_ = {offset_exact[0], offset_exact[1], offset_exact[2]};
+
+  // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
+  // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
+  // 5u^2).
+  const double size = 2 * reach(a, body_a_.rotation_dd, scale) + 2 * reach(b, body_b_.rotation_dd, scale) + offset_size;
+  vector_error_ = 8 * kU * size + kUnderflow;
+  vector_error_dd_ = 32 * 0x1p-103 * size + kUnderflow;
+}
+
+Vec3 PosedPair::approximate(const PairVector& v) const {
+  const double scale = std::ldexp(1.0, -scale_exponent_);
+  Vec3 r =
+      rotate(*b_, body_b_.rotation, scale, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation, scale, v.a_to, v.a_from);
+  if (v.translated) r += offset_;
+  return r;
+}
+
+Vec3DD PosedPair::approximate_dd(const PairVector& v) const {
+  const double scale = std::ldexp(1.0, -scale_exponent_);
+  Vec3DD r = rotate(*b_, body_b_.rotation_dd, scale, v.b_to, v.b_from) -
+             rotate(*a_, body_a_.rotation_dd, scale, v.a_to, v.a_from);
+  if (v.translated) r = r + offset_dd_;
+  return r;
+}
+
+void PosedPair::prepare_exact() const {
+  if (body_a_.exact_ready) return;
+  for (const auto& [body, pose] : {std::pair{&body_a_, pose_a_}, std::pair{&body_b_, pose_b_}}) {
+    body->denominator = Dyadic(1.0);
+    if (pose->is_quaternion()) {
+      const std::array<Dyadic, 9> numerators = homogeneous_rotation<Dyadic>(pose->quaternion_wxyz());
+      std::copy(numerators.begin(), numerators.end(), body->rotation_exact);
+      body->denominator = Dyadic(0.0);
+      for (const double c : pose->quaternion_wxyz()) body->denominator = body->denominator + Dyadic(c) * Dyadic(c);
+    } else {
+      for (int i = 0; i < 9; ++i) body->rotation_exact[i] = Dyadic(pose->rotation()(i / 3, i % 3));
+    }
+    body->exact_ready = true;
+  }
+  homogeneous_factor_ = body_a_.denominator * body_b_.denominator;
+  // Bring both bodies to the common denominator once.
+  for (int i = 0; i < 9; ++i) {
+    body_a_.rotation_exact[i] = body_a_.rotation_exact[i] * body_b_.denominator;
+    body_b_.rotation_exact[i] = body_b_.rotation_exact[i] * body_a_.denominator;
+  }
+  offset_exact_ = (to_dyadic(pose_b_->translation()) - to_dyadic(pose_a_->translation())) * homogeneous_factor_;
+}
+
+const Dyadic& PosedPair::homogeneous_factor() const {
+  prepare_exact();
+  return homogeneous_factor_;
+}
+
+Dyadic3 PosedPair::exact(const PairVector& v) const {
+  prepare_exact();
+  Dyadic3 r =
+      rotate(*b_, body_b_.rotation_exact, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation_exact, v.a_to, v.a_from);
+  if (v.translated) r = r + offset_exact_;
+  return r;
+}
+
+namespace {
+
+/// Error of det(u, v, w) when each coordinate of the three errs by `e` and the evaluation by `relative` of the
+/// permanent, which is at most the product of the 1-norms. Multilinear, so telescoping over the three arguments bounds
+/// it.
+double determinant_error(double u, double v, double w, double e, double relative) {
+  u += 3 * e;
+  v += 3 * e;
+  w += 3 * e;
+  return (relative * u * v * w + e * (v * w + u * w + u * v)) * (1 + 16 * kU) + kUnderflow;
+}
+
+double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
+Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
+int sign(double x) { return (x > 0) - (x < 0); }
+
+}  // namespace
+
+int PosedPair::sign_determinant(const PairVector& u, const PairVector& v, const PairVector& w) const {
+  {
+    const Vec3 x = approximate(u), y = approximate(v), z = approximate(w);
+    const double value = x.dot(y.cross(z));
+    if (std::abs(value) > determinant_error(norm1(x), norm1(y), norm1(z), vector_error_, 8 * kU)) {
+      ++stages_.filtered;
+      return sign(value);
+    }
+  }
+  {
+    const Vec3DD x = approximate_dd(u), y = approximate_dd(v), z = approximate_dd(w);
+    const double value = dot(x, cross(y, z)).hi;
+    if (std::abs(value) >
+        determinant_error(norm1(high(x)), norm1(high(y)), norm1(high(z)), vector_error_dd_, 32 * 0x1p-104)) {
+      ++stages_.double_double;
+      return sign(value);
+    }
+  }
+  ++stages_.exact;
+  return determinant(exact(u), exact(v), exact(w)).sign();
+}
+
+int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {
+  {
+    const Vec3 x = approximate(u), y = approximate(v);
+    const double a = norm1(x) + 3 * vector_error_, b = norm1(y) + 3 * vector_error_;
+    const double value = x.dot(y);
+    if (std::abs(value) > (4 * kU * a * b + vector_error_ * (a + b)) * (1 + 16 * kU) + kUnderflow) {
+      ++stages_.filtered;
+      return sign(value);
+    }
+  }
+  {
+    const Vec3DD x = approximate_dd(u), y = approximate_dd(v);
+    const double a = norm1(high(x)) + 3 * vector_error_dd_, b = norm1(high(y)) + 3 * vector_error_dd_;
+    const double value = dot(x, y).hi;
+    if (std::abs(value) > (16 * 0x1p-104 * a * b + vector_error_dd_ * (a + b)) * (1 + 16 * kU) + kUnderflow) {
+      ++stages_.double_double;
+      return sign(value);
+    }
+  }
+  ++stages_.exact;
+  return dot(exact(u), exact(v)).sign();
+}
+
+bool PosedPair::parallel(const PairVector& u, const PairVector& v) const {
+  const Vec3 x = approximate(u), y = approximate(v);
+  const double a = norm1(x) + 3 * vector_error_, b = norm1(y) + 3 * vector_error_;
+  const Vec3 c = x.cross(y);
+  if (c.cwiseAbs().maxCoeff() > (4 * kU * a * b + vector_error_ * (a + b)) * (1 + 16 * kU) + kUnderflow) {
+    ++stages_.filtered;
+    return false;
+  }
+  ++stages_.exact;
+  const Dyadic3 e = cross(exact(u), exact(v));
+  return e.x.sign() == 0 && e.y.sign() == 0 && e.z.sign() == 0;
+}
+
+}  // namespace pd::detail
