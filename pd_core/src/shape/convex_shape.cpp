@@ -1,0 +1,78 @@
+#include "pd/shape/convex_shape.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "numeric/number_text.hpp"
+
+namespace pd {
+namespace {
+
+using detail::number_text;
+
+std::optional<Error> refuse_size(double value, const std::string& name, bool zero_allowed = false) {
+  if (!std::isfinite(value)) return Error{ErrorCode::non_finite, "a size must be finite", name};
+  if (value < 0 || (value == 0 && !zero_allowed)) {
+    return Error{ErrorCode::bad_value, number_text(value) + (zero_allowed ? " must be >= 0" : " must be > 0"), name};
+  }
+  if (value > kMaxCoordinate) {
+    return Error{ErrorCode::out_of_range,
+                 number_text(value) + " is above the largest size " + number_text(kMaxCoordinate), name};
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> refuse_axial(double radius, double half_height, int axis, bool zero_height_allowed) {
+  if (auto refused = refuse_size(radius, "radius")) return refused;
+  if (auto refused = refuse_size(half_height, "half_height", zero_height_allowed)) return refused;
+  if (axis < 0 || axis > 2) {
+    return Error{ErrorCode::bad_value, std::to_string(axis) + " names no axis, must be 0, 1 or 2 (x, y, z)", "axis"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Expected<ConvexShape> ConvexShape::sphere(double radius) {
+  if (auto refused = refuse_size(radius, "radius")) return *std::move(refused);
+  const Vec3 center = Vec3::Zero();
+  auto point = ConvexPolytope::from_points({&center, 1});
+  if (!point) return point.error();
+  return ConvexShape(Core(*std::move(point)), radius);
+}
+
+Expected<ConvexShape> ConvexShape::ellipsoid(const Vec3& radii) {
+  for (int i = 0; i < 3; ++i) {
+    if (auto refused = refuse_size(radii[i], detail::indexed("radii", i))) return *std::move(refused);
+  }
+  return ConvexShape(Core(Ellipsoid{radii}), 0);
+}
+
+Expected<ConvexShape> ConvexShape::capsule(double radius, double half_height, int axis) {
+  if (auto refused = refuse_axial(radius, half_height, axis, true)) return *std::move(refused);
+  Vec3 ends[2] = {Vec3::Zero(), Vec3::Zero()};
+  ends[0][axis] = -half_height;
+  ends[1][axis] = half_height;
+  auto segment = ConvexPolytope::from_points(ends);
+  if (!segment) return segment.error();
+  return ConvexShape(Core(*std::move(segment)), radius);
+}
+
+Expected<ConvexShape> ConvexShape::cylinder(double radius, double half_height, int axis) {
+  if (auto refused = refuse_axial(radius, half_height, axis, false)) return *std::move(refused);
+  return ConvexShape(Core(Cylinder{radius, half_height, axis}), 0);
+}
+
+Expected<ConvexShape> ConvexShape::cone(double radius, double half_height, int axis) {
+  if (auto refused = refuse_axial(radius, half_height, axis, false)) return *std::move(refused);
+  return ConvexShape(Core(Cone{radius, half_height, axis}), 0);
+}
+
+Expected<ConvexShape> ConvexShape::with_margin(double margin) const {
+  if (auto refused = refuse_size(margin, "margin", true)) return *std::move(refused);
+  if (auto refused = refuse_size(margin_ + margin, "margin", true)) return *std::move(refused);
+  return ConvexShape(core_, margin_ + margin);
+}
+
+}  // namespace pd
