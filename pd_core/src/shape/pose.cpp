@@ -25,10 +25,10 @@ std::optional<Error> refuse_translation(const Vec3& translation) {
       return Error{ErrorCode::non_finite, "a translation must be finite", indexed("translation", i)};
     }
     if (std::abs(translation[i]) > kMaxCoordinate) {
-      return Error{
-          ErrorCode::out_of_range,
-          "|" + number_text(translation[i]) + "| is above the largest coordinate " + number_text(kMaxCoordinate),
-          indexed("translation", i)};
+      return Error{ErrorCode::out_of_range,
+                   std::string("|") + number_text(translation[i]) + "| is above the largest coordinate " +
+                       number_text(kMaxCoordinate),
+                   indexed("translation", i)};
     }
   }
   return std::nullopt;

@@ -1,0 +1,42 @@
+/// @file
+/// Exact orientation tests on doubles: the sign of a determinant of the stored numbers, never that of a rounded one.
+///
+/// Three stages: 1. doubles with a running error bound, 2. expansions, exact while no product can over- or underflow,
+/// 3. dyadic numbers, exact always. [S] Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
+/// geometric predicates", 1997.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "pd/numeric/vector.hpp"
+
+namespace pd {
+
+/// Which stage decided how often; the caller owns the counters.
+struct PredicateStages {
+  std::int64_t filtered = 0;
+  std::int64_t expansion = 0;
+  std::int64_t dyadic = 0;
+};
+
+/// Sign of (b - a) x (c - a): 1 when a, b, c turn counter-clockwise, -1 clockwise, 0 when they are collinear.
+/// Requires finite numbers. `stages`, where given, counts the stage that decided.
+[[nodiscard]] int orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b,
+                           const std::array<double, 2>& c, PredicateStages* stages = nullptr);
+
+/// Sign of <(b - a) x (c - a), d - a>: 1 when d lies on the side from which a, b, c turn counter-clockwise (above an
+/// outward facet), -1 on the other, 0 when the four are coplanar. Requires finite numbers.
+[[nodiscard]] int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
+                           PredicateStages* stages = nullptr);
+
+/// True when the three points lie on one line (coincident points do).
+[[nodiscard]] bool collinear(const Vec3& a, const Vec3& b, const Vec3& c, PredicateStages* stages = nullptr);
+
+/// True when the four points lie in one plane.
+[[nodiscard]] inline bool coplanar(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
+                                   PredicateStages* stages = nullptr) {
+  return orient3d(a, b, c, d, stages) == 0;
+}
+
+}  // namespace pd
