@@ -1,0 +1,53 @@
+# Sourced by demos/run.sh and tests/run.sh: the Debian 12 packages that the project needs, by name, and how they come.
+
+pd_build_packages=(g++ cmake ninja-build pkgconf libeigen3-dev libboost-dev libbullet-dev libosmesa6-dev libgl-dev libegl-dev
+                   libpng-dev libpango1.0-dev libcli11-dev nlohmann-json3-dev libfmt-dev)
+# Loaded or run, not linked: the rasteriser, the fonts of the captions, the video encoder.
+pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)
+pd_test_packages=(libgtest-dev ccache)
+
+# Prints those of the named packages that are not installed.
+pd_missing_packages() {
+  local name
+  for name in "$@"; do
+    if [[ "$(dpkg-query -W -f='${db:Status-Status}\n' "${name}" 2>/dev/null | head -n 1)" != installed ]]; then
+      printf '%s\n' "${name}"
+    fi
+  done
+}
+
+# Installs what is missing of the named packages. Without root it says which and goes on where nothing is missing.
+pd_require_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    printf 'This is not a Debian system. Trying with what is here; on Debian 12 these packages are used:\n  %s\n' "$*"
+    return 0
+  fi
+  local missing
+  mapfile -t missing < <(pd_missing_packages "$@")
+  if ((${#missing[@]} == 0)); then
+    return 0
+  fi
+  if ((EUID != 0)); then
+    printf 'These Debian packages are missing:\n  %s\nInstall them as root, then run this again:\n' "${missing[*]}" >&2
+    printf '  apt-get update && apt-get install --no-install-recommends %s\n' "${missing[*]}" >&2
+    return 1
+  fi
+  printf 'Installing %d Debian packages: %s\n' "${#missing[@]}" "${missing[*]}"
+  local log
+  log=$(mktemp)
+  if ! { apt-get -q update && DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends \
+         "${missing[@]}"; } >"${log}" 2>&1 </dev/null; then
+    tail -n 20 "${log}" >&2
+    printf 'The packages could not be installed; the whole log: %s\n' "${log}" >&2
+    return 1
+  fi
+  rm -f "${log}"
+}
+
+# Sets pd_launcher to the options that let ccache serve unchanged sources, where it is installed.
+pd_use_ccache() {
+  pd_launcher=()
+  if command -v ccache >/dev/null; then
+    pd_launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+}

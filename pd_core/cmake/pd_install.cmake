@@ -1,0 +1,54 @@
+# Install rules: one component for each room (library, headers, exported target, pkg-config file) and the package
+# configuration that brings them together for find_package(pdepth 0.1 COMPONENTS ...).
+include(CMakePackageConfigHelpers)
+
+set(PD_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/pdepth)
+set(PD_CMAKE_SOURCE_DIR ${CMAKE_CURRENT_LIST_DIR})
+
+# pd_install_component(<target> PC_NAME <name> PC_REQUIRES <modules> DESCRIPTION <text> [PC_LIBS <flags>])
+#
+# The libraries are static, so what they need privately stands under Requires and Libs too: `pkg-config --libs` without
+# --static has to be enough.
+function(pd_install_component target)
+  cmake_parse_arguments(arg "" "PC_NAME;PC_REQUIRES;PC_LIBS;DESCRIPTION" "" ${ARGN})
+  get_target_property(component ${target} EXPORT_NAME)
+  if(NOT component)
+    set(component ${target})
+  endif()
+  get_target_property(library ${target} OUTPUT_NAME)
+
+  install(TARGETS ${target} EXPORT pdepth-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${component} FILES_MATCHING PATTERN "*.hpp")
+  install(EXPORT pdepth-${component} NAMESPACE pdepth:: FILE pdepth-${component}-targets.cmake
+          DESTINATION ${PD_INSTALL_CMAKEDIR} COMPONENT ${component})
+
+  # Relative to the file itself, so that an installed tree can be moved.
+  file(RELATIVE_PATH prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  cmake_path(IS_ABSOLUTE CMAKE_INSTALL_LIBDIR absolute_libdir)
+  if(absolute_libdir)
+    set(pc_prefix ${CMAKE_INSTALL_PREFIX})
+  else()
+    set(pc_prefix "\${pcfiledir}/${prefix_from_pc}")
+  endif()
+  set(pc_libdir "\${prefix}")
+  cmake_path(APPEND pc_libdir ${CMAKE_INSTALL_LIBDIR})
+  set(pc_includedir "\${prefix}")
+  cmake_path(APPEND pc_includedir ${CMAKE_INSTALL_INCLUDEDIR})
+  configure_file(${PD_CMAKE_SOURCE_DIR}/component.pc.in ${PROJECT_BINARY_DIR}/${arg_PC_NAME}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${arg_PC_NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+          COMPONENT ${component})
+endfunction()
+
+# The package configuration, its version file and what they include; the command pdepth where it is built.
+function(pd_install_package)
+  configure_package_config_file(${PD_CMAKE_SOURCE_DIR}/pdepth-config.cmake.in ${PROJECT_BINARY_DIR}/pdepth-config.cmake
+                                INSTALL_DESTINATION ${PD_INSTALL_CMAKEDIR} NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/pdepth-config-version.cmake VERSION ${PROJECT_VERSION}
+                                   COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/pdepth-config.cmake ${PROJECT_BINARY_DIR}/pdepth-config-version.cmake
+                ${PD_CMAKE_SOURCE_DIR}/pdepth_bullet.cmake DESTINATION ${PD_INSTALL_CMAKEDIR} COMPONENT pd_core)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT pd_core)
+  if(TARGET pdepth)
+    install(TARGETS pdepth RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT pdepth)
+  endif()
+endfunction()
