@@ -61,7 +61,7 @@ run_preset asan-ubsan --
 run_preset double-bullet --target test_engine_glue --
 
 if ((skipped > 0)); then
-  printf '%d skipped (the reason stands beside each above)\n' "${skipped}"
+  printf '%d skipped (listed above)\n' "${skipped}"
 fi
 printf '%d passed, %d failed\n' "${passed}" "${failed}"
 ((failed == 0))
