@@ -1,0 +1,61 @@
+# What may stand where, and how long a file may be.
+#
+#   cmake -DROOT=<source tree> -P file_rules.cmake
+# Rules:
+#   1. The top level holds the rooms, the files that tools expect there, dotfiles, and nothing else (what git ignores aside).
+#   2. No source, script or build file is longer than 500 lines.
+#   3. Every header says #pragma once and describes itself with @file.
+cmake_minimum_required(VERSION 3.25)
+
+set(rooms CMakeLists.txt engine_glue pd_core demos tests render README.md)
+set(tool_files CMakePresets.json LICENSE CHANGELOG.md)
+set(ignored_by_git build out compile_commands.json)
+set(max_lines 500)
+
+set(broken 0)
+macro(report)
+  math(EXPR broken "${broken} + 1")
+  message(${ARGN})
+endmacro()
+
+file(GLOB entries RELATIVE ${ROOT} ${ROOT}/*)
+foreach(entry ${entries})
+  if(NOT entry MATCHES "^\\." AND NOT entry IN_LIST rooms AND NOT entry IN_LIST tool_files AND NOT entry IN_LIST ignored_by_git)
+    report("${entry}: not an entry of the top level")
+  endif()
+endforeach()
+foreach(entry ${rooms} ${tool_files})
+  if(NOT entry IN_LIST entries)
+    report("${entry}: missing at the top level")
+  endif()
+endforeach()
+
+set(patterns "")
+foreach(room pd_core engine_glue render demos tests)
+  foreach(kind *.cpp *.hpp *.cmake *.in *.sh CMakeLists.txt)
+    list(APPEND patterns ${ROOT}/${room}/${kind})
+  endforeach()
+endforeach()
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${patterns})
+foreach(file ${files})
+  file(READ ${ROOT}/${file} text)
+  string(REGEX REPLACE "[^\n]+" "" newlines "${text}")
+  string(LENGTH "${newlines}" lines)
+  if(lines GREATER max_lines)
+    report("${file}: ${lines} lines, more than ${max_lines}; split it")
+  endif()
+  if(file MATCHES "\\.hpp$")
+    if(NOT text MATCHES "#pragma once")
+      report("${file}: no #pragma once")
+    endif()
+    if(NOT text MATCHES "/// @file")
+      report("${file}: no /// @file comment")
+    endif()
+  endif()
+endforeach()
+
+list(LENGTH files file_count)
+if(broken GREATER 0)
+  message(FATAL_ERROR "${broken} findings in ${file_count} files")
+endif()
+message("${file_count} files keep the rules")
