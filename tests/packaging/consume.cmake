@@ -29,11 +29,20 @@ set(expected_core "depth 0.25 in .(0.25|0.2499999999999999[0-9]*), (0.25|0.25000
 set(expected_engine_glue "depth 0.25, scalar of ${scalar_bytes} bytes")
 set(expected_render "picture 320 x 180, difference 0")
 
-set(common -G Ninja -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE}
-    -DCMAKE_CXX_FLAGS=${FLAGS})
+# A file, since a list does not survive a command line of CMake.
+file(WRITE ${WORK}/settings.cmake "
+set(COMPONENTS \"${COMPONENTS}\" CACHE STRING \"\")
+set(CMAKE_CXX_COMPILER \"${CXX}\" CACHE STRING \"\")
+set(CMAKE_CXX_COMPILER_LAUNCHER \"${LAUNCHER}\" CACHE STRING \"\")
+set(CMAKE_CXX_FLAGS \"${FLAGS}\" CACHE STRING \"\")
+set(CMAKE_BUILD_TYPE \"${BUILD_TYPE}\" CACHE STRING \"\")
+set(CMAKE_PREFIX_PATH \"${PREFIX}\" CACHE STRING \"\")
+set(PDEPTH_SOURCE \"${SOURCE}\" CACHE STRING \"\")
+set(PD_BULLET_DOUBLE ${BULLET_DOUBLE} CACHE BOOL \"\")
+")
+set(configure ${CMAKE_COMMAND} -G Ninja -C ${WORK}/settings.cmake)
 if(WAY STREQUAL "package")
-  list(JOIN COMPONENTS "\\;" components)
-  set(configure ${CMAKE_COMMAND} -S ${here}/package ${common} -DCMAKE_PREFIX_PATH=${PREFIX} "-DCOMPONENTS=${components}")
+  list(APPEND configure -S ${here}/package)
   run(${configure} -B ${WORK}/build -DWANTED_VERSION=0.1)
   run(${CMAKE_COMMAND} --build ${WORK}/build)
   # Another minor version is another interface; a component that nobody has is refused by name.
@@ -51,8 +60,8 @@ if(WAY STREQUAL "package")
   endif()
   if("engine_glue" IN_LIST COMPONENTS)
     # Bullet has to be found where there is no pkg-config, too.
-    run(${CMAKE_COMMAND} -S ${here}/package ${common} -DCMAKE_PREFIX_PATH=${PREFIX} -DCOMPONENTS=engine_glue
-        -DWANTED_VERSION=0.1 -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -B ${WORK}/without_pkg_config)
+    run(${configure} -B ${WORK}/without_pkg_config -DWANTED_VERSION=0.1 -DCOMPONENTS=engine_glue
+        -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON)
     run(${CMAKE_COMMAND} --build ${WORK}/without_pkg_config)
     run(${WORK}/without_pkg_config/stranger_engine_glue)
     if(NOT output MATCHES "${expected_engine_glue}")
@@ -60,9 +69,7 @@ if(WAY STREQUAL "package")
     endif()
   endif()
 elseif(WAY STREQUAL "subproject")
-  list(JOIN COMPONENTS "\\;" components)
-  run(${CMAKE_COMMAND} -S ${here}/subproject -B ${WORK}/build ${common} -DPDEPTH_SOURCE=${SOURCE}
-      "-DCOMPONENTS=${components}")
+  run(${configure} -S ${here}/subproject -B ${WORK}/build)
   run(${CMAKE_COMMAND} --build ${WORK}/build)
 elseif(WAY STREQUAL "pkg_config")
   file(MAKE_DIRECTORY ${WORK}/build)
