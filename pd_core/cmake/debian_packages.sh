@@ -1,7 +1,9 @@
 # Sourced by demos/run.sh and tests/run.sh: the Debian 12 packages that the project needs, by name, and how they come.
 
-pd_build_packages=(g++ cmake ninja-build pkgconf libeigen3-dev libboost-dev libbullet-dev libosmesa6-dev libgl-dev libegl-dev
-                   libpng-dev libpango1.0-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev)
+pd_build_packages=(
+  g++ cmake ninja-build pkgconf libeigen3-dev libboost-dev libbullet-dev libosmesa6-dev libgl-dev libegl-dev libpng-dev
+  libpango1.0-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+)
 # Loaded or run, not linked: the rasteriser, the fonts of the captions, the video encoder.
 pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)
 pd_test_packages=(libgtest-dev ccache)
