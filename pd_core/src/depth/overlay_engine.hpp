@@ -1,0 +1,45 @@
+/// @file
+/// The depth engine that looks at every facet of P = B + (-A): the least distance from the origin to the plane of a
+/// facet, over the overlay of the two normal diagrams ([A] section 2, steps 1 and 2, with every edge-edge facet
+/// enumerated).
+///
+/// pi(A, B) is attained at the plane of a facet when the origin lies inside P; the origin lies outside P exactly when
+/// it lies strictly outside the plane of some facet. Planes are compared in doubles with error bounds, then in
+/// double-double, then as exact rationals, so that the winner does not depend on rounding.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pd/depth/penetration_depth.hpp"
+#include "structure/face_sum.hpp"
+#include "structure/facet_of_difference.hpp"
+#include "structure/overlay_walk.hpp"
+
+namespace pd::detail {
+
+/// Grown on first use.
+struct OverlayDepthBuffers {
+  OverlayBuffers overlay;
+  std::vector<Vec3> posed_a;  ///< -(R_A a)
+  std::vector<Vec3> posed_b;  ///< R_B b + (t_B - t_A)
+  std::vector<DifferencePoint> loop;
+};
+
+struct OverlayDepth {
+  ContactClass contact = ContactClass::separated;  ///< exact
+  /// False where there is no such facet: P is a segment or a point, or it is flat and the origin lies outside.
+  bool has_facet = false;
+  /// Overlapping: a facet with the nearest plane; of several at exactly the same distance the first by (kind: facet of
+  /// A, facet of B, edges; ids of A; ids of B). Touching: the same, through the origin. Separated: a facet of P that
+  /// the origin lies strictly outside of, the first that was met.
+  FacetOfDifference facet;
+  /// Pieces of the overlay whose plane was evaluated.
+  std::int64_t facets_visited = 0;
+};
+
+/// Exact class and nearest facet. Time O(m + n + K deg), see `OverlayWalk`; allocates nothing once the buffers have
+/// grown, except in exact arithmetic.
+OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers);
+
+}  // namespace pd::detail
