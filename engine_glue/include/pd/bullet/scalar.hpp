@@ -1,0 +1,49 @@
+/// @file
+/// The seam between Bullet's scalar type (float or double, `BT_USE_DOUBLE_PRECISION`) and the doubles of pd_core. No
+/// other file of the project converts between the two.
+///
+/// Going in is exact: every float is a double. Coming out rounds to the nearest btScalar.
+#pragma once
+
+#include <LinearMath/btTransform.h>
+
+#include "pd/numeric/vector.hpp"
+#include "pd/shape/pose.hpp"
+
+namespace pd {
+
+[[nodiscard]] inline Vec3 to_pd(const btVector3& v) {
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+
+[[nodiscard]] inline Mat3 to_pd(const btMatrix3x3& m) {
+  Mat3 result;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      result(i, j) = static_cast<double>(m[i][j]);
+    }
+  }
+  return result;
+}
+
+/// Bullet's basis is a rotation only up to its own rounding; it is taken as it stands. Requires finite numbers.
+[[nodiscard]] inline Pose to_pd(const btTransform& transform) {
+  return Pose::from_trusted_matrix(to_pd(transform.getBasis()), to_pd(transform.getOrigin()));
+}
+
+[[nodiscard]] inline btVector3 to_bullet(const Vec3& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+
+/// Whether every number of the transform is finite.
+[[nodiscard]] inline bool is_finite(const btTransform& transform) {
+  // A sum of products with 0 is 0 exactly when all are finite: one test instead of twelve.
+  btScalar sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    sum += transform.getBasis()[i].x() * btScalar(0) + transform.getBasis()[i].y() * btScalar(0) +
+           transform.getBasis()[i].z() * btScalar(0) + transform.getOrigin()[i] * btScalar(0);
+  }
+  return sum == btScalar(0);
+}
+
+}  // namespace pd

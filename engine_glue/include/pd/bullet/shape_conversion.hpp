@@ -1,0 +1,46 @@
+/// @file
+/// What a Bullet shape means as a convex body: its core (Bullet's support without margin) swept by a ball of its
+/// margin.
+///
+/// Bullet's narrow phase sees `localGetSupportVertexNonVirtual(d) = core(d) + margin * d/|d|`, so the body is the
+/// Minkowski sum of the core and a ball, for every type; only what the core is differs:
+///
+/// | Bullet shape | core | margin |
+/// |---|---|---|
+/// | box, 2D box | box of the half extents less the margin (the margin lies inside, the corners are round) | inside |
+/// | convex hull, point cloud | hull of points * local scaling (the margin is not scaled) | outside |
+/// | tetrahedron (btBU_Simplex1to4), triangle, custom polyhedral | hull of its vertices | outside |
+/// | convex triangle mesh | hull of the mesh's scaled vertices | outside |
+/// | cylinder | cylinder of the half extents less the margin | inside |
+/// | cone | cone | outside |
+/// | sphere, capsule | point, segment | the radius |
+/// | multisphere, all radii equal, uniform scaling | hull of the centres | the scaled radius |
+/// | uniform scaling, 2D convex | the child's, scaled | the child's, scaled |
+/// | Minkowski sum (Bullet's is A - B) of polyhedral cores | hull of all vertex differences | sum of both |
+///
+/// Refused as `ErrorCode::unsupported`, with the reason in the message: a multisphere of unequal radii or non-uniform
+/// scaling, a Minkowski sum with a smooth core or more than 65,536 vertex pairs, a cylinder whose margin eats its whole
+/// half height, and convex types of the host's own that are not polyhedral.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+#include <cstdint>
+
+#include "pd/numeric/expected.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd {
+
+/// The body that Bullet means by `shape`, in the shape's frame, in the world's unit of length.
+/// @return as in the table above; `unsupported`, or the reason that the core's factories give (`too_few_points` for a
+/// hull without points, `non_finite`, ...); `where` names the Bullet type. Time: that of the hull of the shape's
+/// points.
+[[nodiscard]] Expected<ConvexShape> to_convex_shape(const btConvexShape& shape);
+
+/// A number of 64 bits that changes with everything that `to_convex_shape` reads: type, margin, scaling, sizes, every
+/// point. Two shapes of different content agree by chance with probability 2^-64.
+/// Time O(points): less than one of the dozens of support calls that Bullet's own solver makes on the same shape.
+[[nodiscard]] std::uint64_t shape_fingerprint(const btConvexShape& shape);
+
+}  // namespace pd

@@ -1,0 +1,348 @@
+#include "pd/bullet/shape_conversion.hpp"
+
+#include <BulletCollision/CollisionShapes/btBox2dShape.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConeShape.h>
+#include <BulletCollision/CollisionShapes/btConvex2dShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
+#include <BulletCollision/CollisionShapes/btConvexTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btMinkowskiSumShape.h>
+#include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
+#include <BulletCollision/CollisionShapes/btPolyhedralConvexShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+#include <BulletCollision/CollisionShapes/btUniformScalingShape.h>
+
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <vector>
+
+#include "pd/bullet/scalar.hpp"
+
+namespace pd {
+
+namespace {
+
+/// The sum of two polytopes has at most the product of their vertices; beyond this the hull of the products would cost
+/// more than a frame (about 0.1 s).
+constexpr std::size_t kMaxSumPairs = 65536;
+
+Error unsupported(const btConvexShape& shape, std::string message) {
+  return {ErrorCode::unsupported, std::move(message), shape.getName()};
+}
+
+/// Hands every triangle corner of a mesh to `visit`.
+template <class Visit>
+class CornerVisitor : public btInternalTriangleIndexCallback {
+ public:
+  explicit CornerVisitor(Visit& visit) : visit_(visit) {}
+  void internalProcessTriangleIndex(btVector3* triangle, int, int) override {
+    for (int i = 0; i < 3; ++i) {
+      visit_(triangle[i]);
+    }
+  }
+
+ private:
+  Visit& visit_;
+};
+
+/// Calls `visit` with the points whose hull is the core of a polyhedral shape, scaled as Bullet's support scales them.
+/// @return false where the type is not polyhedral.
+template <class Visit>
+bool for_each_point(const btConvexShape& shape, Visit&& visit) {
+  switch (shape.getShapeType()) {
+    case BOX_SHAPE_PROXYTYPE:
+    case BOX_2D_SHAPE_PROXYTYPE: {
+      const auto& dimensions = static_cast<const btConvexInternalShape&>(shape).getImplicitShapeDimensions();
+      // A margin larger than a half extent leaves no core on that axis; Bullet's support would then pick opposite
+      // corners.
+      const btVector3 h(std::max(dimensions.x(), btScalar(0)), std::max(dimensions.y(), btScalar(0)),
+                        std::max(dimensions.z(), btScalar(0)));
+      for (int i = 0; i < 8; ++i) {
+        visit(btVector3((i & 1) ? h.x() : -h.x(), (i & 2) ? h.y() : -h.y(), (i & 4) ? h.z() : -h.z()));
+      }
+      return true;
+    }
+    case CONVEX_HULL_SHAPE_PROXYTYPE: {
+      const auto& hull = static_cast<const btConvexHullShape&>(shape);
+      for (int i = 0; i < hull.getNumPoints(); ++i) {
+        visit(hull.getScaledPoint(i));
+      }
+      return true;
+    }
+    case CONVEX_POINT_CLOUD_SHAPE_PROXYTYPE: {
+      const auto& cloud = static_cast<const btConvexPointCloudShape&>(shape);
+      for (int i = 0; i < cloud.getNumPoints(); ++i) {
+        visit(cloud.getScaledPoint(i));
+      }
+      return true;
+    }
+    case TRIANGLE_SHAPE_PROXYTYPE: {
+      const auto& triangle = static_cast<const btTriangleShape&>(shape);
+      for (int i = 0; i < 3; ++i) {
+        visit(triangle.getVertexPtr(i));
+      }
+      return true;
+    }
+    case TETRAHEDRAL_SHAPE_PROXYTYPE:
+    case CUSTOM_POLYHEDRAL_SHAPE_TYPE: {
+      const auto& polyhedron = static_cast<const btPolyhedralConvexShape&>(shape);
+      for (int i = 0; i < polyhedron.getNumVertices(); ++i) {
+        btVector3 vertex;
+        polyhedron.getVertex(i, vertex);
+        visit(vertex);
+      }
+      return true;
+    }
+    case CONVEX_TRIANGLEMESH_SHAPE_PROXYTYPE: {
+      const auto* mesh = static_cast<const btConvexTriangleMeshShape&>(shape).getMeshInterface();
+      const btVector3 everything(btScalar(BT_LARGE_FLOAT), btScalar(BT_LARGE_FLOAT), btScalar(BT_LARGE_FLOAT));
+      CornerVisitor<std::remove_reference_t<Visit>> visitor(visit);
+      mesh->InternalProcessAllTriangles(&visitor, -everything, everything);
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+/// The margin with which Bullet's narrow phase sees the shape.
+double bullet_margin(const btConvexShape& shape) { return static_cast<double>(shape.getMarginNonVirtual()); }
+
+Expected<ConvexShape> swept_hull(const btConvexShape& shape, const std::vector<Vec3>& points, double margin) {
+  auto polytope = ConvexPolytope::from_points(points);
+  if (!polytope) {
+    return Error{polytope.error().code, polytope.error().message,
+                 std::string(shape.getName()) + "." + polytope.error().where};
+  }
+  return ConvexShape(std::move(polytope).value()).with_margin(margin);
+}
+
+Expected<ConvexShape> with_bullet_margin(Expected<ConvexShape> core, const btConvexShape& shape) {
+  return core ? core->with_margin(bullet_margin(shape)) : core;
+}
+
+Expected<ConvexShape> from_cylinder(const btCylinderShape& shape) {
+  const btVector3& h = shape.getImplicitShapeDimensions();
+  const int axis = shape.getUpAxis();
+  const double radius = static_cast<double>(h[axis == 0 ? 1 : 0]);
+  const double half_height = static_cast<double>(h[axis]);
+  if (half_height <= 0) {
+    return unsupported(
+        shape,
+        "the margin reaches the cylinder's half height, so that its core would be a disc: give it a smaller margin");
+  }
+  if (radius <= 0) {
+    Vec3 end = Vec3::Zero();
+    end[axis] = half_height;
+    return swept_hull(shape, {-end, end}, bullet_margin(shape));
+  }
+  return with_bullet_margin(ConvexShape::cylinder(radius, half_height, axis), shape);
+}
+
+Expected<ConvexShape> from_capsule(const btCapsuleShape& shape) {
+  Vec3 end = Vec3::Zero();
+  end[shape.getUpAxis()] = static_cast<double>(shape.getHalfHeight());
+  return swept_hull(shape, {-end, end}, bullet_margin(shape));
+}
+
+Expected<ConvexShape> from_multisphere(const btMultiSphereShape& shape) {
+  const btVector3& scaling = shape.getLocalScaling();
+  if (scaling.x() != scaling.y() || scaling.x() != scaling.z()) {
+    return unsupported(shape, "a multisphere scaled differently along its axes has no exact form: scale it uniformly");
+  }
+  std::vector<Vec3> centres;
+  for (int i = 0; i < shape.getSphereCount(); ++i) {
+    if (shape.getSphereRadius(i) != shape.getSphereRadius(0)) {
+      return unsupported(
+          shape,
+          "a multisphere whose radii differ is no polytope swept by one ball: use equal radii or parts of a compound");
+    }
+    centres.push_back(to_pd(shape.getSpherePosition(i) * scaling));
+  }
+  if (centres.empty()) {
+    return Error{ErrorCode::too_few_points, "a multisphere needs at least one sphere", shape.getName()};
+  }
+  return swept_hull(shape, centres, static_cast<double>(shape.getSphereRadius(0) * scaling.x()));
+}
+
+Expected<ConvexShape> from_uniform_scaling(const btUniformScalingShape& shape) {
+  const double factor = static_cast<double>(shape.getUniformScalingFactor());
+  const auto child = to_convex_shape(*shape.getChildShape());
+  if (!child) {
+    return child;
+  }
+  if (const ConvexPolytope* polytope = child->polytope()) {
+    std::vector<Vec3> points;
+    for (int v = 0; v < polytope->num_vertices(); ++v) {
+      points.push_back(factor * polytope->vertex(v));
+    }
+    return swept_hull(shape, points, factor * child->margin());
+  }
+  const auto scaled = [&]() -> Expected<ConvexShape> {
+    if (const auto* cylinder = std::get_if<Cylinder>(&child->core())) {
+      return ConvexShape::cylinder(factor * cylinder->radius, factor * cylinder->half_height, cylinder->axis);
+    }
+    if (const auto* cone = std::get_if<Cone>(&child->core())) {
+      return ConvexShape::cone(factor * cone->radius, factor * cone->half_height, cone->axis);
+    }
+    return unsupported(shape, "a uniform scaling shape of this child has no exact form");
+  }();
+  return scaled ? scaled->with_margin(factor * child->margin()) : scaled;
+}
+
+Expected<ConvexShape> from_minkowski_sum(const btMinkowskiSumShape& shape) {
+  const auto a = to_convex_shape(*shape.getShapeA());
+  if (!a) {
+    return a;
+  }
+  const auto b = to_convex_shape(*shape.getShapeB());
+  if (!b) {
+    return b;
+  }
+  if (a->polytope() == nullptr || b->polytope() == nullptr) {
+    return unsupported(
+        shape, "a Minkowski sum with a smooth core has no exact form: sum polyhedral shapes, spheres or capsules");
+  }
+  const std::size_t pairs =
+      static_cast<std::size_t>(a->polytope()->num_vertices()) * static_cast<std::size_t>(b->polytope()->num_vertices());
+  if (pairs > kMaxSumPairs) {
+    return unsupported(shape, "the Minkowski sum has more than 65,536 vertex pairs: use hulls of fewer vertices");
+  }
+  const Pose pose_a = to_pd(shape.getTransformA());
+  const Pose pose_b = to_pd(shape.GetTransformB());
+  std::vector<Vec3> points;
+  points.reserve(pairs);
+  for (int i = 0; i < a->polytope()->num_vertices(); ++i) {
+    for (int j = 0; j < b->polytope()->num_vertices(); ++j) {
+      points.push_back(pose_a.apply(a->polytope()->vertex(i)) - pose_b.apply(b->polytope()->vertex(j)));
+    }
+  }
+  return swept_hull(shape, points, a->margin() + b->margin());
+}
+
+/// A running hash over the bits of everything that the conversion reads.
+class Fingerprint {
+ public:
+  void add(std::uint64_t word) {
+    hash_ = (hash_ ^ word) * 0x9E3779B97F4A7C15ULL;
+    hash_ ^= hash_ >> 32;
+  }
+  void add(double x) { add(std::bit_cast<std::uint64_t>(x)); }
+  void add(const btVector3& v) {
+    add(static_cast<double>(v.x()));
+    add(static_cast<double>(v.y()));
+    add(static_cast<double>(v.z()));
+  }
+  void add(const btTransform& transform) {
+    for (int i = 0; i < 3; ++i) {
+      add(transform.getBasis()[i]);
+    }
+    add(transform.getOrigin());
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+};
+
+}  // namespace
+
+Expected<ConvexShape> to_convex_shape(const btConvexShape& shape) {
+  std::vector<Vec3> points;
+  if (for_each_point(shape, [&](const btVector3& point) { points.push_back(to_pd(point)); })) {
+    return swept_hull(shape, points, bullet_margin(shape));
+  }
+  switch (shape.getShapeType()) {
+    case SPHERE_SHAPE_PROXYTYPE:
+      return swept_hull(shape, {Vec3::Zero()}, bullet_margin(shape));
+    case CAPSULE_SHAPE_PROXYTYPE:
+      return from_capsule(static_cast<const btCapsuleShape&>(shape));
+    case CYLINDER_SHAPE_PROXYTYPE:
+      return from_cylinder(static_cast<const btCylinderShape&>(shape));
+    case CONE_SHAPE_PROXYTYPE: {
+      const auto& cone = static_cast<const btConeShape&>(shape);
+      return with_bullet_margin(ConvexShape::cone(static_cast<double>(cone.getRadius()),
+                                                  0.5 * static_cast<double>(cone.getHeight()), cone.getConeUpIndex()),
+                                shape);
+    }
+    case MULTI_SPHERE_SHAPE_PROXYTYPE:
+      return from_multisphere(static_cast<const btMultiSphereShape&>(shape));
+    case UNIFORM_SCALING_SHAPE_PROXYTYPE:
+      return from_uniform_scaling(static_cast<const btUniformScalingShape&>(shape));
+    case CONVEX_2D_SHAPE_PROXYTYPE:
+      return to_convex_shape(*static_cast<const btConvex2dShape&>(shape).getChildShape());
+    case MINKOWSKI_SUM_SHAPE_PROXYTYPE:
+      return from_minkowski_sum(static_cast<const btMinkowskiSumShape&>(shape));
+    default:
+      return unsupported(shape, "a convex type of the host's own that is not polyhedral has no exact form");
+  }
+}
+
+std::uint64_t shape_fingerprint(const btConvexShape& shape) {
+  Fingerprint hash;
+  const int type = shape.getShapeType();
+  hash.add(static_cast<std::uint64_t>(type));
+  hash.add(bullet_margin(shape));
+  if (for_each_point(shape, [&](const btVector3& point) { hash.add(point); })) {
+    return hash.value();
+  }
+  switch (type) {
+    case CAPSULE_SHAPE_PROXYTYPE: {
+      const auto& capsule = static_cast<const btCapsuleShape&>(shape);
+      hash.add(static_cast<double>(capsule.getHalfHeight()));
+      hash.add(static_cast<std::uint64_t>(capsule.getUpAxis()));
+      break;
+    }
+    case CYLINDER_SHAPE_PROXYTYPE: {
+      const auto& cylinder = static_cast<const btCylinderShape&>(shape);
+      hash.add(cylinder.getImplicitShapeDimensions());
+      hash.add(static_cast<std::uint64_t>(cylinder.getUpAxis()));
+      break;
+    }
+    case CONE_SHAPE_PROXYTYPE: {
+      const auto& cone = static_cast<const btConeShape&>(shape);
+      hash.add(static_cast<double>(cone.getRadius()));
+      hash.add(static_cast<double>(cone.getHeight()));
+      hash.add(static_cast<std::uint64_t>(cone.getConeUpIndex()));
+      break;
+    }
+    case MULTI_SPHERE_SHAPE_PROXYTYPE: {
+      const auto& spheres = static_cast<const btMultiSphereShape&>(shape);
+      hash.add(spheres.getLocalScaling());
+      for (int i = 0; i < spheres.getSphereCount(); ++i) {
+        hash.add(spheres.getSpherePosition(i));
+        hash.add(static_cast<double>(spheres.getSphereRadius(i)));
+      }
+      break;
+    }
+    case UNIFORM_SCALING_SHAPE_PROXYTYPE: {
+      const auto& scaled = static_cast<const btUniformScalingShape&>(shape);
+      hash.add(static_cast<double>(scaled.getUniformScalingFactor()));
+      hash.add(shape_fingerprint(*scaled.getChildShape()));
+      break;
+    }
+    case CONVEX_2D_SHAPE_PROXYTYPE:
+      hash.add(shape_fingerprint(*static_cast<const btConvex2dShape&>(shape).getChildShape()));
+      break;
+    case MINKOWSKI_SUM_SHAPE_PROXYTYPE: {
+      const auto& sum = static_cast<const btMinkowskiSumShape&>(shape);
+      hash.add(sum.getTransformA());
+      hash.add(sum.GetTransformB());
+      hash.add(shape_fingerprint(*sum.getShapeA()));
+      hash.add(shape_fingerprint(*sum.getShapeB()));
+      break;
+    }
+    default:
+      break;
+  }
+  return hash.value();
+}
+
+}  // namespace pd

@@ -1,0 +1,62 @@
+/// @file
+/// Where two bodies touch, as at most four pairs of points: the two faces that face each other, intersected.
+///
+/// With n the answer's normal (A leaves B along n), the face of A that looks along -n and the face of B that looks
+/// along n are projected on the plane across n and intersected there; each corner of the intersection is lifted back to
+/// both faces. The depth of a pair is measured along n, so it is never more than the penetration depth, and the deepest
+/// pair is that of the witnesses. Independent of engines and hosts.
+///
+/// Curved bodies offer a flat part where they have one (the disc of a cylinder or cone as 16 points of its rim, the
+/// side as a segment), else the witness point alone; the depth itself is never taken from those points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "pd/depth/penetration_depth.hpp"
+
+namespace pd {
+
+namespace detail {
+struct ManifoldBuffers;
+}
+
+struct ContactPoint {
+  Vec3 position_a = Vec3::Zero();  ///< on A's surface
+  Vec3 position_b = Vec3::Zero();  ///< on B's surface; position_b - position_a = depth * normal up to rounding
+  double depth = 0;                ///< > 0 inside, < 0 a gap
+  /// The same number while the same two features meet (vertex of A, vertex of B, or a crossing of two edges), so that a
+  /// host can carry impulses from frame to frame. Below 2^53; not ordered.
+  std::int64_t feature_id = 0;
+};
+
+struct ContactManifold {
+  Vec3 normal = Vec3::UnitX();  ///< unit, from B to A, as the translation of A
+  std::array<ContactPoint, 4> points;
+  int count = 0;
+};
+
+/// Buffers of `contact_manifold`: one per thread, grown on first use.
+class ManifoldScratch {
+ public:
+  ManifoldScratch();
+  ~ManifoldScratch();
+  ManifoldScratch(ManifoldScratch&&) noexcept;
+  ManifoldScratch& operator=(ManifoldScratch&&) noexcept;
+  [[nodiscard]] detail::ManifoldBuffers& buffers() { return *buffers_; }
+
+ private:
+  std::unique_ptr<detail::ManifoldBuffers> buffers_;
+};
+
+/// The contact points of a pair whose answer is known.
+///
+/// @param answer  of `penetration_depth(a, b)` for these two posed shapes.
+/// @param breaking_threshold  >= 0: pairs of points with a wider gap are left out; no points when the bodies are
+/// further apart than that. In the unit of the input. Four points of a larger intersection are kept: the deepest, the
+/// farthest from it, and those that span the largest area. Time O(k m) in the vertices of the two faces.
+[[nodiscard]] ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
+                                               double breaking_threshold, ManifoldScratch& scratch);
+
+}  // namespace pd
