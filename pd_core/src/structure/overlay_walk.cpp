@@ -139,7 +139,7 @@ int OverlayWalk::decide_exactly(bool edge_of_a, int half_edge, int facet, bool s
   for (const int s : {first.sign(), moved.y.sign(), moved.z.sign()}) {
     if (s != 0) return direction * s;
   }
-  assert(!"an edge and a normal both orthogonal and parallel");
+  assert(false && "an edge and a normal both orthogonal and parallel");
   return 0;
 }
 
