@@ -7,7 +7,7 @@
 #      the compiler's intrinsics. No file of the core knows threads.
 #   3. engine_glue and render stand on pd_core's public headers and do not see each other; neither knows demos or tests.
 #   4. Nothing outside pd_core includes pd_core/src, except tests.
-#   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes.
+#   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli the command.
 cmake_minimum_required(VERSION 3.25)
 
 set(core_floors numeric shape structure depth contact)
@@ -105,7 +105,8 @@ function(check_include file line path)
   if(room STREQUAL "demos" AND path MATCHES "^(oracle|bench)/")
     report(${file} "${line}" "demos do not include tests")
   endif()
-  if(room STREQUAL "tests" AND path MATCHES "^(demos|report)/|^demo_")
+  if(room STREQUAL "tests" AND (path MATCHES "^(demos|report)/|^demo_" OR
+                                (NOT file MATCHES "^tests/cli/" AND path MATCHES "^(cli|query|mesh)/")))
     report(${file} "${line}" "tests see of demos nothing but scenes")
   endif()
 endfunction()

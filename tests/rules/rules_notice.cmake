@@ -49,6 +49,8 @@ expect(include_rules render/src/a.cpp "#include \"scenes/roofs.hpp\"\n" "render 
 expect(include_rules demos/a.cpp "#include \"oracle/body.hpp\"\n" "demos do not include tests")
 expect(include_rules demos/scenes/a.cpp "#include \"cli/x.hpp\"\n" "shared by demos and tests")
 expect(include_rules tests/cli/a.cpp "#include \"demo_options.hpp\"\n" "nothing but scenes")
+expect(include_rules tests/cli/a.cpp "#include \"query/limits.hpp\"\n" "")
+expect(include_rules tests/depth/a.cpp "#include \"query/limits.hpp\"\n" "nothing but scenes")
 
 expect(file_rules tests/a.hpp "/// @file\n#pragma once\n" "")
 expect(file_rules tests/a.hpp "/// @file\n" "no #pragma once")
