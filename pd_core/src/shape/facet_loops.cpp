@@ -1,35 +1,9 @@
 #include "shape/facet_loops.hpp"
 
-#include <numeric>
+#include "shape/disjoint_sets.hpp"
 
 namespace pd::detail {
 namespace {
-
-/// Disjoint sets with path halving; the lowest member names the set.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t i) {
-    while (parent(i) != i) {
-      parent(i) = parent(parent(i));
-      i = parent(i);
-    }
-    return i;
-  }
-  void unite(std::int32_t i, std::int32_t j) {
-    i = find(i);
-    j = find(j);
-    if (i < j) {
-      parent(j) = i;
-    } else {
-      parent(i) = j;
-    }
-  }
-
- private:
-  std::int32_t& parent(std::int32_t i) { return parent_[static_cast<std::size_t>(i)]; }
-  std::vector<std::int32_t> parent_;
-};
 
 /// The edge of t that starts at vertex v.
 int edge_from(const HullTriangle& t, int v) {
@@ -45,7 +19,7 @@ FacetLoops merge_facets(const Quickhull& hull, int num_points) {
   const auto at = [&](std::int32_t t) -> const HullTriangle& { return triangles[static_cast<std::size_t>(t)]; };
   const auto count = static_cast<std::int32_t>(triangles.size());
 
-  DisjointSets facets(triangles.size());
+  DisjointSets facets(count);
   std::vector<std::uint8_t> ridges(triangles.size(), 0);  // bit i: edge i separates two facets
   std::vector<std::int32_t> degree(static_cast<std::size_t>(num_points), 0);
   for (std::int32_t t = 0; t < count; ++t) {

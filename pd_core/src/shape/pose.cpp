@@ -1,5 +1,6 @@
 #include "pd/shape/pose.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
