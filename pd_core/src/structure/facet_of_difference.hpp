@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "pd/depth/penetration_depth.hpp"
+#include "pd/shape/feature.hpp"
 #include "shape/posed_pair.hpp"
 
 namespace pd::detail {

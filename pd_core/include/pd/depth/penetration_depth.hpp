@@ -14,6 +14,7 @@
 
 #include "pd/numeric/vector.hpp"
 #include "pd/shape/convex_shape.hpp"
+#include "pd/shape/feature.hpp"
 
 namespace pd {
 
@@ -50,14 +51,6 @@ struct DepthSettings {
   Bracket bracket = Bracket::certified;
   /// Relative error (upper <= (1 + delta) lower) where the answer is approximate; in (0, 1]. For polytopes, 0 = exact.
   double delta = 0;
-};
-
-/// A face of one body: a vertex id, the two ids of an edge, or a facet.
-struct Feature {
-  enum class Kind : std::uint8_t { none, vertex, edge, facet };
-  Kind kind = Kind::none;
-  std::int32_t first = -1;   ///< vertex, first vertex of the edge, or facet index (ConvexPolytope's own numbering)
-  std::int32_t second = -1;  ///< second vertex of the edge
 };
 
 struct Statistics {
