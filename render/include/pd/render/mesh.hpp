@@ -33,18 +33,27 @@ struct Box {
   [[nodiscard]] double diagonal() const { return (upper - lower).norm(); }
 };
 
-/// Triangles (counter-clockwise from outside) with shading normals, and feature edges to ink. Local frame, single
-/// precision. Immutable once shared: the renderer keeps a copy on its device for as long as the mesh lives.
+/// Triangles (counter-clockwise from outside) with shading normals, and feature edges to ink. Positions are local and
+/// in units of `unit`, so that single precision serves bodies of any size. Immutable once shared: the renderer keeps a
+/// copy on its device for as long as the mesh lives.
 struct Mesh {
   struct Vertex {
     std::array<float, 3> position;
     std::array<float, 3> normal;
     std::array<float, 4> tint;  ///< colour and 1, or zeros: the body's colour
   };
+  /// A line to ink between two surfaces; it is drawn faintly where both face away. A boundary has opposite normals.
+  struct Edge {
+    std::array<float, 3> from;
+    std::array<float, 3> to;
+    std::array<float, 3> normal_left;
+    std::array<float, 3> normal_right;
+  };
+  double unit = 1;  ///< largest |coordinate|, in the unit of the input
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> triangles;             ///< three indices each
-  std::vector<std::array<float, 3>> feature_edges;  ///< two end points each
-  Box bounds;
+  std::vector<std::uint32_t> triangles;  ///< three indices each
+  std::vector<Edge> feature_edges;
+  Box bounds;  ///< in the unit of the input
 };
 using MeshRef = std::shared_ptr<const Mesh>;
 

@@ -25,8 +25,9 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// One opaque frame with shadows, ambient occlusion, ink, overlays and their labels. Requires sides in [16, 8192].
+  /// @return ErrorCode::unsupported where the device refuses (no memory for a new size, current on another thread).
   /// The same calls give the same bytes on the same device; devices differ by their rasteriser's tolerance.
-  [[nodiscard]] Image draw(const Scene& scene, const Camera& camera, Size size);
+  Expected<Image> draw(const Scene& scene, const Camera& camera, Size size);
 
  private:
   struct State;

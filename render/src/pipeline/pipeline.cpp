@@ -1,0 +1,472 @@
+#include "pipeline/pipeline.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/overlay_geometry.hpp"
+#include "pipeline/shaders.hpp"
+
+namespace pd::render::detail {
+namespace {
+
+/// Places in `programs_`.
+enum ProgramIndex : std::size_t {
+  kShadowProgram,
+  kSurfaceProgram,
+  kGroundSurfaceProgram,
+  kOcclusionProgram,
+  kSmoothProgram,
+  kBackdropProgram,
+  kGroundProgram,
+  kBodyProgram,
+  kTranslucentProgram,
+  kEdgeProgram,
+  kOverlayProgram,
+};
+
+/// Below this a body is a ghost: it casts no shadow and hides nothing.
+constexpr float kOpaque = 0.995f;
+
+/// Half the angle of the key light, as a tangent: soft enough to read as a studio lamp.
+constexpr float kLightTangent = 0.11f;
+
+/// Ink is pulled this share of the way to the eye, so that it wins over its own surface and over nothing else.
+constexpr float kInkPull = 0.0012f;
+
+Eigen::Vector3f to_vector(Colour colour) { return {colour.r, colour.g, colour.b}; }
+
+Eigen::Vector4f to_vector(Colour colour, float opacity) { return {colour.r, colour.g, colour.b, opacity}; }
+
+/// The same hue, more of it.
+Colour saturated(Colour colour) {
+  const float grey = 0.3f * colour.r + 0.59f * colour.g + 0.11f * colour.b;
+  const auto push = [grey](float value) { return std::clamp(grey + 1.45f * (value - grey), 0.0f, 1.0f); };
+  return {push(colour.r), push(colour.g), push(colour.b)};
+}
+
+/// 1 / (the scale that a model matrix applies), which turns its normals back to unit length.
+float normal_scale(const Eigen::Matrix4f& model) {
+  const float length = model.block<3, 1>(0, 0).norm();
+  return length > 0 ? 1 / length : 1;
+}
+
+Eigen::Matrix4f body_model(const FrameSetup& frame, const Body& body) {
+  return model_matrix(frame, body.pose, body.mesh->unit);
+}
+
+}  // namespace
+
+Expected<Pipeline> Pipeline::create(const GlFunctions& gl) {
+  const std::string backdrop = backdrop_fragment();
+  const std::string ground = ground_fragment();
+  const std::string body = body_fragment();
+  const std::string translucent = translucent_fragment();
+  const std::pair<std::string_view, std::string_view> sources[] = {
+      {kShadowVertex, kShadowFragment},
+      {kSurfaceVertex, kSurfaceFragment},
+      {kGroundVertex, kGroundSurfaceFragment},
+      {kFullScreenVertex, kOcclusionFragment},
+      {kFullScreenVertex, kSmoothFragment},
+      {kFullScreenVertex, backdrop},
+      {kGroundVertex, ground},
+      {kBodyVertex, body},
+      {kBodyVertex, translucent},
+      {kEdgeVertex, kEdgeFragment},
+      {kOverlayVertex, kOverlayFragment},
+  };
+  std::vector<Program> programs;
+  for (const auto& [vertex, fragment] : sources) {
+    auto program = Program::build(gl, vertex, fragment);
+    if (!program) {
+      return program.error();
+    }
+    programs.push_back(*std::move(program));
+  }
+  return Pipeline(gl, std::move(programs));
+}
+
+Pipeline::Pipeline(const GlFunctions& gl, std::vector<Program> programs)
+    : gl_(&gl), programs_(std::move(programs)), meshes_(gl), ball_(sphere_mesh(1)) {
+  gl.GenVertexArrays(1, &empty_array_);
+  gl.GenVertexArrays(1, &overlay_array_);
+  gl.GenBuffers(1, &overlay_buffer_);
+  gl.BindVertexArray(overlay_array_);
+  gl.BindBuffer(GL_ARRAY_BUFFER, overlay_buffer_);
+  const GLint counts[] = {3, 3, 4};
+  std::size_t offset = 0;
+  for (GLuint index = 0; index < 3; ++index) {
+    gl.EnableVertexAttribArray(index);
+    gl.VertexAttribPointer(index, counts[index], GL_FLOAT, GL_FALSE, sizeof(OverlayVertex),
+                           reinterpret_cast<const void*>(offset));
+    offset += sizeof(float) * static_cast<std::size_t>(counts[index]);
+  }
+  gl.BindVertexArray(0);
+}
+
+void Pipeline::bind_texture(int unit, GLuint texture) const {
+  gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  gl_->BindTexture(GL_TEXTURE_2D, texture);
+}
+
+void Pipeline::draw_shadow_map(const Scene& scene, const FrameSetup& frame) {
+  const GlFunctions& gl = *gl_;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->shadow.framebuffer);
+  gl.Viewport(0, 0, Targets::kShadowSide, Targets::kShadowSide);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  gl.Enable(GL_POLYGON_OFFSET_FILL);
+  gl.PolygonOffset(1.5f, 2);
+  gl.Disable(GL_CULL_FACE);
+  const Program& program = programs_[kShadowProgram];
+  program.use();
+  program.set("shadow", frame.shadow);
+  for (const Body& body : scene.bodies) {
+    if (body.opacity >= kOpaque) {
+      const DeviceMesh& mesh = meshes_.get(body.mesh);
+      program.set("model", body_model(frame, body));
+      gl.BindVertexArray(mesh.surface);
+      gl.DrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+    }
+  }
+  gl.Disable(GL_POLYGON_OFFSET_FILL);
+  gl.Enable(GL_CULL_FACE);
+}
+
+void Pipeline::draw_ground_plane(const Program& program, const FrameSetup& frame) const {
+  program.set("projection", frame.projection);
+  program.set("centre", frame.ground_centre);
+  program.set("axis_x", frame.ground_x);
+  program.set("axis_y", frame.ground_y);
+  program.set("eye", frame.eye);
+  program.set("axes", frame.axes);
+  program.set("reach", frame.ground_reach);
+  gl_->BindVertexArray(empty_array_);
+  gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void Pipeline::draw_surface(const Scene& scene, const FrameSetup& frame) {
+  const GlFunctions& gl = *gl_;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->surface.framebuffer);
+  gl.Viewport(0, 0, targets_->surface.size.width, targets_->surface.size.height);
+  gl.ClearColor(0, 0, 0, 0);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const Program& program = programs_[kSurfaceProgram];
+  program.use();
+  program.set("projection", frame.projection);
+  program.set("axes", frame.axes);
+  program.set("eye", frame.eye);
+  for (const Body& body : scene.bodies) {
+    if (body.opacity >= kOpaque) {
+      const DeviceMesh& mesh = meshes_.get(body.mesh);
+      const Eigen::Matrix4f model = body_model(frame, body);
+      program.set("model", model);
+      program.set("normal_scale", normal_scale(model));
+      gl.BindVertexArray(mesh.surface);
+      gl.DrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+    }
+  }
+  if (scene.ground.visible) {
+    const Program& ground = programs_[kGroundSurfaceProgram];
+    ground.use();
+    ground.set("view_normal", Eigen::Vector3f(frame.axes * frame.up));
+    draw_ground_plane(ground, frame);
+  }
+}
+
+void Pipeline::draw_occlusion(const FrameSetup& frame) {
+  const GlFunctions& gl = *gl_;
+  const Size half = targets_->surface.size;
+  gl.Disable(GL_DEPTH_TEST);
+  gl.Viewport(0, 0, half.width, half.height);
+  gl.BindVertexArray(empty_array_);
+
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->raw_occlusion.framebuffer);
+  const Program& program = programs_[kOcclusionProgram];
+  program.use();
+  bind_texture(0, targets_->surface.texture);
+  bind_texture(1, targets_->shadow.texture);
+  program.set("surface", 0);
+  program.set("shadow_map", 1);
+  program.set("tangents", frame.tangents);
+  program.set("texel", Eigen::Vector2f(1.0f / static_cast<float>(half.width), 1.0f / static_cast<float>(half.height)));
+  Eigen::Matrix4f from_view = Eigen::Matrix4f::Identity();
+  from_view.block<3, 3>(0, 0) = frame.axes.transpose();
+  from_view.block<3, 1>(0, 3) = frame.eye;
+  program.set("shadow_from_view", Eigen::Matrix4f(frame.shadow * from_view));
+  program.set("light_in_view", Eigen::Vector3f(frame.axes * frame.to_light));
+  program.set("shadow_texel", 1.0f / static_cast<float>(Targets::kShadowSide));
+  program.set("shadow_width", frame.shadow_width);
+  program.set("radius", frame.occlusion_radius);
+  program.set("light_tangent", kLightTangent);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->occlusion.framebuffer);
+  const Program& smooth = programs_[kSmoothProgram];
+  smooth.use();
+  bind_texture(0, targets_->raw_occlusion.texture);
+  smooth.set("raw", 0);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.Enable(GL_DEPTH_TEST);
+}
+
+void Pipeline::draw_bodies(const Scene& scene, const FrameSetup& frame) {
+  const Program& program = programs_[kBodyProgram];
+  program.use();
+  program.set("projection", frame.projection);
+  program.set("axes", frame.axes);
+  program.set("eye", frame.eye);
+  program.set("up", frame.up);
+  program.set("to_light", frame.to_light);
+  program.set("occlusion", 0);
+  for (const Body& body : scene.bodies) {
+    if (body.opacity >= kOpaque) {
+      const DeviceMesh& mesh = meshes_.get(body.mesh);
+      const Eigen::Matrix4f model = body_model(frame, body);
+      program.set("model", model);
+      program.set("normal_scale", normal_scale(model));
+      program.set("colour", to_vector(body.highlight ? saturated(body.colour) : body.colour, 1));
+      gl_->BindVertexArray(mesh.surface);
+      gl_->DrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+    }
+  }
+}
+
+void Pipeline::draw_ground_and_backdrop(const Scene& scene, const FrameSetup& frame) {
+  const Eigen::Vector2f picture(static_cast<float>(targets_->size().width),
+                                static_cast<float>(targets_->size().height));
+  if (scene.ground.visible) {
+    const Program& ground = programs_[kGroundProgram];
+    ground.use();
+    ground.set("occlusion", 0);
+    ground.set("backdrop_top", to_vector(palette::kBackdropTop));
+    ground.set("backdrop_bottom", to_vector(palette::kBackdropBottom));
+    ground.set("picture", picture);
+    ground.set("grid_step", frame.grid_step);
+    ground.set("grid_offset", frame.grid_offset);
+    ground.set("focus_radius", frame.focus_radius);
+    draw_ground_plane(ground, frame);
+  }
+  const Program& backdrop = programs_[kBackdropProgram];
+  backdrop.use();
+  backdrop.set("backdrop_top", to_vector(palette::kBackdropTop));
+  backdrop.set("backdrop_bottom", to_vector(palette::kBackdropBottom));
+  backdrop.set("picture", picture);
+  gl_->BindVertexArray(empty_array_);
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Pipeline::draw_edges(const DeviceMesh& mesh) const {
+  gl_->BindVertexArray(mesh.edges);
+  gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, mesh.edge_count);
+}
+
+void Pipeline::draw_body_edges(const Scene& scene, const FrameSetup& frame) {
+  const GlFunctions& gl = *gl_;
+  gl.Enable(GL_BLEND);
+  gl.DepthMask(GL_FALSE);
+  gl.Disable(GL_CULL_FACE);
+  const Program& program = programs_[kEdgeProgram];
+  program.use();
+  program.set("projection", frame.projection);
+  program.set("eye", frame.eye);
+  program.set("picture",
+              Eigen::Vector2f(static_cast<float>(targets_->size().width), static_cast<float>(targets_->size().height)));
+  program.set("towards_eye", kInkPull);
+  program.set("back_share", 0.0f);
+  for (const Body& body : scene.bodies) {
+    if (body.opacity >= kOpaque && body.edges) {
+      const Colour ink = body.highlight ? palette::mix(palette::kDepth, palette::kInk, 0.25f)
+                                        : palette::mix(body.colour, palette::kInk, 0.72f);
+      program.set("model", body_model(frame, body));
+      program.set("colour", to_vector(ink, body.highlight ? 0.95f : 0.8f));
+      program.set("width", std::max(1.0f, (body.highlight ? 2.2f : 1.4f) * frame.line_pixels));
+      draw_edges(meshes_.get(body.mesh));
+    }
+  }
+  gl.Enable(GL_CULL_FACE);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+}
+
+std::vector<Pipeline::Sheet> Pipeline::translucent_sheets(const Scene& scene, const FrameSetup& frame) {
+  std::vector<Sheet> sheets;
+  const auto add = [&](const MeshRef& mesh, const Pose& pose, double unit, const Eigen::Vector4f& colour, float hidden,
+                       bool edges) {
+    const Box box = posed_bounds(*mesh, pose);
+    if (box.empty()) {
+      return;
+    }
+    const Eigen::Matrix4f model = model_matrix(frame, pose, unit);
+    const double radius = 0.5 * mesh->bounds.diagonal() * (unit / mesh->unit) * frame.scale;
+    const double distance = (to_drawing(frame, box.centre()) - frame.eye).norm();
+    const DeviceMesh* device = &meshes_.get(mesh);
+    sheets.push_back({distance + radius, true, device, model, normal_scale(model), colour, hidden, edges});
+    sheets.push_back({distance - radius, false, device, model, normal_scale(model), colour, hidden, edges});
+  };
+  for (const Body& body : scene.bodies) {
+    if (body.opacity < kOpaque) {
+      add(body.mesh, body.pose, body.mesh->unit,
+          to_vector(body.highlight ? saturated(body.colour) : body.colour, body.opacity), 0, body.edges);
+    }
+  }
+  for (const Solid& solid : scene.solids) {
+    add(solid.mesh, solid.pose, solid.mesh->unit, to_vector(solid.colour, solid.opacity), solid.hidden_opacity,
+        solid.edges);
+  }
+  for (const Ball& ball : scene.balls) {
+    add(ball_, Pose::from_trusted_matrix(Mat3::Identity(), ball.centre), ball.radius,
+        to_vector(ball.colour, ball.opacity), 0.55f * ball.opacity, false);
+  }
+  // Far sides of far things first: an outer shell's back lies behind, and its front before, everything inside it.
+  std::stable_sort(sheets.begin(), sheets.end(),
+                   [](const Sheet& a, const Sheet& b) { return a.distance > b.distance; });
+  return sheets;
+}
+
+void Pipeline::draw_translucent(const Scene& scene, const FrameSetup& frame) {
+  const GlFunctions& gl = *gl_;
+  gl.Enable(GL_BLEND);
+  gl.DepthMask(GL_FALSE);
+  const Program& surface = programs_[kTranslucentProgram];
+  const Program& ink = programs_[kEdgeProgram];
+  surface.use();
+  surface.set("projection", frame.projection);
+  surface.set("axes", frame.axes);
+  surface.set("eye", frame.eye);
+  surface.set("up", frame.up);
+  surface.set("to_light", frame.to_light);
+  for (const Sheet& sheet : translucent_sheets(scene, frame)) {
+    surface.use();
+    surface.set("model", sheet.model);
+    surface.set("normal_scale", sheet.normal_scale);
+    gl.CullFace(sheet.back ? GL_FRONT : GL_BACK);
+    gl.BindVertexArray(sheet.mesh->surface);
+    // Back sides are fainter: the front is what has a shape.
+    const float share = sheet.back ? 0.55f : 1;
+    const auto draw = [&](GLenum test, float opacity) {
+      if (opacity > 0) {
+        gl.DepthFunc(test);
+        surface.set("colour", Eigen::Vector4f(sheet.colour.x(), sheet.colour.y(), sheet.colour.z(), opacity * share));
+        gl.DrawElements(GL_TRIANGLES, sheet.mesh->index_count, GL_UNSIGNED_INT, nullptr);
+      }
+    };
+    draw(GL_GREATER, sheet.hidden_opacity);
+    draw(GL_LEQUAL, sheet.colour.w());
+    if (!sheet.back && sheet.edges) {
+      ink.use();
+      ink.set("model", sheet.model);
+      const Colour line = palette::mix({sheet.colour.x(), sheet.colour.y(), sheet.colour.z()}, palette::kInk, 0.62f);
+      ink.set("width", std::max(1.0f, 1.3f * frame.line_pixels));
+      ink.set("back_share", 0.28f);
+      gl.Disable(GL_CULL_FACE);
+      if (sheet.hidden_opacity > 0) {
+        gl.DepthFunc(GL_GREATER);
+        ink.set("colour", to_vector(line, 0.55f));
+        draw_edges(*sheet.mesh);
+      }
+      gl.DepthFunc(GL_LEQUAL);
+      ink.set("colour", to_vector(line, 0.8f));
+      draw_edges(*sheet.mesh);
+      gl.Enable(GL_CULL_FACE);
+    }
+  }
+  gl.CullFace(GL_BACK);
+  gl.DepthFunc(GL_LEQUAL);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+}
+
+void Pipeline::draw_overlays(const Scene& scene, const FrameSetup& frame) {
+  const OverlayGeometry geometry = overlay_geometry(scene, frame);
+  if (geometry.ink.empty()) {
+    return;
+  }
+  const GlFunctions& gl = *gl_;
+  std::vector<OverlayVertex> vertices = geometry.halo;
+  vertices.insert(vertices.end(), geometry.ink.begin(), geometry.ink.end());
+  gl.BindVertexArray(overlay_array_);
+  gl.BindBuffer(GL_ARRAY_BUFFER, overlay_buffer_);
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(OverlayVertex)), vertices.data(),
+                GL_DYNAMIC_DRAW);
+  const auto halo = static_cast<GLsizei>(geometry.halo.size());
+  const auto ink = static_cast<GLsizei>(geometry.ink.size());
+  const Program& program = programs_[kOverlayProgram];
+  program.use();
+  program.set("projection", frame.projection);
+  program.set("to_light", frame.to_light);
+  gl.Enable(GL_BLEND);
+  gl.DepthMask(GL_FALSE);
+  const auto draw = [&](GLenum test, float opacity, float flatness, GLint first, GLsizei count) {
+    gl.DepthFunc(test);
+    program.set("opacity", opacity);
+    program.set("flatness", flatness);
+    gl.DrawArrays(GL_TRIANGLES, first, count);
+  };
+  draw(GL_GREATER, 0.5f, 1, 0, halo);
+  draw(GL_LEQUAL, 1, 1, 0, halo);
+  // Hidden parts show through occluders, held back; they are drawn before the visible parts write their depth.
+  draw(GL_GREATER, 0.72f, 0.4f, halo, ink);
+  gl.DepthMask(GL_TRUE);
+  draw(GL_LEQUAL, 1, 0.15f, halo, ink);
+  gl.Disable(GL_BLEND);
+}
+
+Image Pipeline::read_back() {
+  const GlFunctions& gl = *gl_;
+  const Size size = targets_->size();
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->frame);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_->resolved.framebuffer);
+  gl.BlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->resolved.framebuffer);
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  Image image(size);
+  gl.ReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, image.bytes().data());
+  gl.Finish();
+  // Blending leaves alpha below 1 in places; the picture is opaque.
+  for (std::size_t i = 3; i < image.bytes().size(); i += 4) {
+    image.bytes()[i] = 255;
+  }
+  return image;
+}
+
+Expected<Image> Pipeline::draw(const Scene& scene, const Camera& camera, Size size) {
+  const GlFunctions& gl = *gl_;
+  if (!targets_ || targets_->size() != size) {
+    if (targets_) {
+      targets_->destroy(gl);
+      targets_.reset();
+    }
+    auto targets = Targets::create(gl, size);
+    if (!targets) {
+      return targets.error();
+    }
+    targets_ = *targets;
+  }
+  meshes_.collect();
+  const FrameSetup frame = set_up_frame(scene, camera, size);
+
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_LEQUAL);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+  gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl.Enable(GL_CULL_FACE);
+  gl.CullFace(GL_BACK);
+  gl.FrontFace(GL_CW);  // the projection turns y round
+  draw_shadow_map(scene, frame);
+  draw_surface(scene, frame);
+  draw_occlusion(frame);
+
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->frame);
+  gl.Viewport(0, 0, size.width, size.height);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  bind_texture(0, targets_->occlusion.texture);
+  draw_bodies(scene, frame);
+  draw_ground_and_backdrop(scene, frame);
+  draw_body_edges(scene, frame);
+  draw_translucent(scene, frame);
+  draw_overlays(scene, frame);
+  return read_back();
+}
+
+}  // namespace pd::render::detail
