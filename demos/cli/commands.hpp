@@ -1,0 +1,24 @@
+/// @file
+/// The subcommands of `pdepth`. Each adds itself to the application and, once parsed, runs to an exit code.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace pd::cli {
+
+/// Exit codes of every subcommand. 130 is Ctrl-C.
+enum ExitCode : int {
+  kDone = 0,
+  kFailed = 1,    ///< the work could not be finished: no room on the disk, no GL context
+  kBadUsage = 2,  ///< an unknown option, or input that cannot be read
+};
+
+/// What to run after the arguments are parsed.
+using Action = std::function<int()>;
+
+void add_depth_command(CLI::App& app, Action& action);
+void add_query_command(CLI::App& app, Action& action);
+void add_demo_command(CLI::App& app, Action& action);
+
+}  // namespace pd::cli

@@ -1,0 +1,223 @@
+/// @file
+/// `pdepth depth A B`: two meshes, answered for people or, with --json, for programs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "query/pair_reader.hpp"
+#ifdef PDEPTH_WITH_DEMOS
+#include "difference.hpp"
+#endif
+
+namespace pd::cli {
+
+namespace {
+
+constexpr const char* kFooter = R"(Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
+x,y,z,r11,r12,r13,r21,...,r33 turns by a matrix. World point = R * point + (x,y,z).
+
+A mesh stands for the convex hull of its vertices. A moves by the translation, B stays.
+
+Examples:
+  pdepth depth cup.obj table.stl --pose-a 0,0,0.74
+  pdepth depth a.off b.off --pose-b=-1.5,0,0,0.7071067811865476,0,0,0.7071067811865476 --json)";
+
+struct DepthArguments {
+  std::string file_a;
+  std::string file_b;
+  std::string pose_a;
+  std::string pose_b;
+  std::string method = "auto";
+  std::string picture;
+  bool json = false;
+};
+
+/// Numbers between commas or blanks; a Refusal where a word is none.
+std::vector<double> parse_numbers(const std::string& text, const std::string& option) {
+  std::vector<double> numbers;
+  std::size_t at = 0;
+  while ((at = text.find_first_not_of(", \t", at)) != std::string::npos) {
+    const std::size_t end = std::min(text.find_first_of(", \t", at), text.size());
+    double value = 0;
+    const char* first = text.data() + at + (text[at] == '+' ? 1 : 0);
+    const auto result = std::from_chars(first, text.data() + end, value);
+    if (result.ec != std::errc() || result.ptr != text.data() + end) {
+      query::refuse("bad_value", option + ": \"" + text.substr(at, end - at) + "\" is no number", "");
+    }
+    numbers.push_back(value);
+    at = end;
+  }
+  return numbers;
+}
+
+Pose parse_pose(const std::string& text, const std::string& option) {
+  if (text.empty()) return {};
+  const std::vector<double> n = parse_numbers(text, option);
+  const auto pose = [&]() -> Expected<Pose> {
+    if (n.size() == 3) return Pose::from_matrix(Mat3::Identity(), {n[0], n[1], n[2]});
+    if (n.size() == 7) return Pose::from_quaternion({n[3], n[4], n[5], n[6]}, {n[0], n[1], n[2]});
+    if (n.size() == 12) {
+      Mat3 rotation;
+      for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = n[static_cast<std::size_t>(3 + i)];
+      return Pose::from_matrix(rotation, {n[0], n[1], n[2]});
+    }
+    query::refuse("bad_value", option + ": a pose is 3, 7 or 12 numbers, not " + std::to_string(n.size()), "");
+  }();
+  if (!pose) query::refuse(to_string(pose.error().code), option + ": " + pose.error().message, "");
+  return *pose;
+}
+
+Method parse_method(const std::string& word) {
+  if (word == "expansion") return Method::expansion;
+  if (word == "overlay") return Method::overlay;
+  return Method::automatic;
+}
+
+// ---- words for people --------------------------------------------------------------------------------------------
+
+std::string in_words(double value) { return fmt::format("{:.10g}", value + 0.0); }
+std::string in_full(double value) { return fmt::format("{}", value); }
+std::string in_words(const Vec3& v) {
+  return fmt::format("({:>14}, {:>14}, {:>14})", in_words(v.x()), in_words(v.y()), in_words(v.z()));
+}
+
+std::string feature_in_words(const Feature& feature, const query::NamedShape& shape) {
+  const std::vector<int> ids = query::feature_ids(feature, shape);
+  constexpr std::size_t kShown = 6;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(ids.size(), kShown); ++i) list += fmt::format("{}{}", i ? ", " : "", ids[i]);
+  if (ids.size() > kShown) list += fmt::format(", ... {} in all", ids.size());
+  switch (feature.kind) {
+    case Feature::Kind::vertex:
+      return "vertex " + list;
+    case Feature::Kind::edge:
+      return "edge " + list;
+    case Feature::Kind::facet:
+      return "facet " + list;
+    case Feature::Kind::none:
+      break;
+  }
+  return "none";
+}
+
+std::string duration_in_words(std::int64_t nanoseconds) {
+  const auto t = static_cast<double>(nanoseconds);
+  if (t < 1e3) return fmt::format("{} ns", nanoseconds);
+  if (t < 1e6) return fmt::format("{:.1f} us", t / 1e3);
+  if (t < 1e9) return fmt::format("{:.1f} ms", t / 1e6);
+  return fmt::format("{:.2f} s", t / 1e9);
+}
+
+void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }
+
+void print_body(std::string_view name, const std::string& file, const ConvexPolytope& hull) {
+  print_row(name, fmt::format("{}  (hull: {} vertices, {} edges, {} facets)", file, hull.num_vertices(),
+                              hull.num_edges(), hull.num_facets()));
+}
+
+void print_result(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result,
+                  std::int64_t nanoseconds) {
+  fmt::print("\n");
+  print_body("A", arguments.file_a, *pair.a.shape.polytope());
+  print_body("B", arguments.file_b, *pair.b.shape.polytope());
+  fmt::print("\n");
+  switch (result.contact) {
+    case ContactClass::overlapping:
+      fmt::print("A and B overlap.\n\n");
+      print_row("depth", in_full(result.depth));
+      print_row("bracket", fmt::format("[{}, {}]", in_full(result.lower), in_full(result.upper)));
+      print_row("translation", in_words(result.translation) + "  moves A clear of B");
+      print_row("direction", in_words(result.normal));
+      break;
+    case ContactClass::touching:
+      fmt::print("A and B touch: they share boundary points, but no inside.\n\n");
+      print_row("depth", "0, exactly");
+      print_row("direction", in_words(result.normal) + "  a way out for A");
+      break;
+    case ContactClass::separated:
+      fmt::print("A and B are apart.\n\n");
+      print_row("distance", in_full(result.distance));
+      print_row("bracket", fmt::format("[{}, {}]", in_full(result.distance_lower), in_full(result.distance_upper)));
+      print_row("direction", in_words(result.normal) + "  from B to A");
+      break;
+  }
+  print_row("point on A", in_words(result.witness_a));
+  print_row("point on B", in_words(result.witness_b));
+  if (!query::feature_kind(result).empty()) {
+    print_row("of A", feature_in_words(result.feature_a, pair.a));
+    print_row("of B", feature_in_words(result.feature_b, pair.b));
+  }
+  fmt::print("\n");
+  print_row("method", fmt::format("{}, {} support calls, {} facets, {} exact decisions, {}", to_string(result.method),
+                                  result.statistics.support_calls, result.statistics.facets_visited,
+                                  result.statistics.exact_signs, duration_in_words(nanoseconds)));
+  fmt::print("\n");
+}
+
+int draw_picture(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result) {
+#ifdef PDEPTH_WITH_DEMOS
+  return demo::write_difference_picture(
+      {&pair.a.shape, &pair.b.shape, pair.pose_a, pair.pose_b, arguments.file_a, arguments.file_b}, result,
+      arguments.picture);
+#else
+  (void)pair;
+  (void)result;
+  fmt::print(stderr, "pdepth: {}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)\n",
+             arguments.picture);
+  return kBadUsage;
+#endif
+}
+
+int run_depth(const DepthArguments& arguments) {
+  try {
+    const query::Limits limits{.max_vertices = 50'000'000};
+    const query::Pair pair{query::load_mesh_shape(arguments.file_a, limits),
+                           query::load_mesh_shape(arguments.file_b, limits), parse_pose(arguments.pose_a, "--pose-a"),
+                           parse_pose(arguments.pose_b, "--pose-b")};
+    Scratch scratch;
+    const query::Stopwatch watch;
+    const PenetrationDepth result =
+        penetration_depth(pair.posed_a(), pair.posed_b(), scratch,
+                          {.method = parse_method(arguments.method), .bracket = Bracket::tightest});
+    const std::int64_t nanoseconds = watch.nanoseconds();
+    if (arguments.json) {
+      std::string out;
+      query::JsonWriter writer(out);
+      writer.begin_object();
+      query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
+      writer.end_object();
+      fmt::print("{}\n", out);
+    } else {
+      print_result(arguments, pair, result, nanoseconds);
+    }
+    return arguments.picture.empty() ? kDone : draw_picture(arguments, pair, result);
+  } catch (const query::Refusal& refusal) {
+    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    return kBadUsage;
+  }
+}
+
+}  // namespace
+
+void add_depth_command(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<DepthArguments>();
+  CLI::App* command = app.add_subcommand("depth", "Penetration depth (or distance) of two meshes");
+  command->footer(kFooter);
+  command->add_option("A", arguments->file_a, "Mesh that moves: OBJ, STL, PLY, OFF or glTF")->required();
+  command->add_option("B", arguments->file_b, "Mesh that stays")->required();
+  command->add_option("--pose-a", arguments->pose_a, "Where A stands [the identity]");
+  command->add_option("--pose-b", arguments->pose_b, "Where B stands [the identity]");
+  command->add_option("--method", arguments->method, "Engine")
+      ->check(CLI::IsMember({"auto", "expansion", "overlay"}))
+      ->capture_default_str();
+  command->add_option("--picture", arguments->picture, "Draw the pair and its Minkowski difference as a PNG");
+  command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");
+  command->callback([arguments, &action] { action = [arguments] { return run_depth(*arguments); }; });
+}
+
+}  // namespace pd::cli

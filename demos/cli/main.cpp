@@ -1,0 +1,50 @@
+/// @file
+/// The command `pdepth`: arguments in, subcommand out.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "commands.hpp"
+
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  pdepth depth part.obj fixture.stl --pose-a 0,0,0.25
+  pdepth depth a.ply b.off --json
+  pdepth query lines.jsonl --threads 4 > answers.jsonl
+  echo '{"id":1,"query":"depth","a":{"type":"box","half_extents":[1,1,1]},
+         "b":{"type":"sphere","radius":1},"pose_b":{"translation":[1.5,0,0]}}' | tr -d '\n' | pdepth query
+  pdepth demo stacking --out frames
+
+Exit codes:
+  0    done; for `query`: every line has its answer (an error object is one)
+  1    the work could not be finished (output that cannot be written, no graphics)
+  2    bad usage, or input that cannot be read
+  130  stopped by Ctrl-C
+
+`pdepth SUBCOMMAND --help` says more.)";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Penetration depth of convex bodies, exact and certified.", "pdepth");
+  app.set_version_flag("--version", "pdepth " PDEPTH_VERSION);
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  pd::cli::Action action;
+  pd::cli::add_depth_command(app, action);
+  pd::cli::add_query_command(app, action);
+  pd::cli::add_demo_command(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? pd::cli::kDone : pd::cli::kBadUsage;
+  }
+  try {
+    return action();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "pdepth: {}\n", error.what());
+    return pd::cli::kFailed;
+  }
+}

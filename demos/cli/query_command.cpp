@@ -1,0 +1,83 @@
+/// @file
+/// `pdepth query`: the line protocol on a file or on standard input.
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "commands.hpp"
+#include "query/query_stream.hpp"
+
+namespace pd::cli {
+
+namespace {
+
+constexpr const char* kFooter = R"(One JSON object a line in, one out, in the same order:
+  {"id":1,"query":"depth","a":SHAPE,"pose_a":POSE,"b":SHAPE,"pose_b":POSE}
+  {"id":1,"class":"overlapping","depth":...,"lower":...,"upper":...,"translation":[...],...}
+A line that cannot be answered is answered by {"id":1,"error":{"code":...,"message":...,"where":...}}.
+
+For input from strangers: --no-files, and small --max-line and --max-vertices.)";
+
+struct QueryArguments {
+  std::string input = "-";
+  query::StreamSettings settings;
+  bool no_files = false;
+};
+
+int run_query(QueryArguments arguments) {
+  query::StreamSettings& settings = arguments.settings;
+  settings.limits.files = !arguments.no_files;
+  if (settings.threads == 0) settings.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int input = STDIN_FILENO;
+  if (arguments.input != "-") {
+    input = ::open(arguments.input.c_str(), O_RDONLY | O_CLOEXEC);
+    if (input < 0) {
+      fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(errno));
+      return kBadUsage;
+    }
+  }
+  const query::StreamEnd end = query::answer_stream(input, STDOUT_FILENO, settings);
+  const int reason = errno;
+  if (input != STDIN_FILENO) ::close(input);
+  switch (end) {
+    case query::StreamEnd::answered:
+      return kDone;
+    case query::StreamEnd::unreadable:
+      fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(reason));
+      return kBadUsage;
+    case query::StreamEnd::unwritable:
+      fmt::print(stderr, "pdepth: the answers cannot be written: {}\n", std::strerror(reason));
+      return kFailed;
+  }
+  return kFailed;
+}
+
+}  // namespace
+
+void add_query_command(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<QueryArguments>();
+  query::StreamSettings& settings = arguments->settings;
+  CLI::App* command = app.add_subcommand("query", "Answer queries of the line protocol, one JSON object a line");
+  command->footer(kFooter);
+  command->add_option("FILE", arguments->input, "Lines to answer; - is standard input")->capture_default_str();
+  command->add_option("--threads", settings.threads, "Threads that answer; 0 = one for each processor")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  command->add_flag("--no-files", arguments->no_files, "Refuse shapes that name a file");
+  command->add_option("--max-line", settings.limits.max_line, "Longest line in bytes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--max-vertices", settings.limits.max_vertices, "Most vertices of one shape")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{50'000'000}))
+      ->capture_default_str();
+  command->callback([arguments, &action] { action = [arguments] { return run_query(*arguments); }; });
+}
+
+}  // namespace pd::cli

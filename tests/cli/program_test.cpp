@@ -1,0 +1,140 @@
+/// @file
+/// The program from outside: exit codes, text for people, JSON for programs.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "protocol_lines.hpp"
+
+namespace pd::test {
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    char name[] = "/tmp/pd_program_XXXXXX";
+    ASSERT_NE(::mkdtemp(name), nullptr);
+    folder_ = name;
+    write("cube.obj",
+          "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
+          "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    write("spike.off", "OFF\n4 4 6\n0 0 0.5\n2 0 4\n-1 2 4\n-1 -2 4\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& content) {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  Outcome run(const std::string& arguments, const std::string& input = "") {
+    write("in", input);
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" PDEPTH_PROGRAM "' " + arguments + " < in > out 2> err";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Program, VersionAndHelp) {
+  const Outcome version = run("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_TRUE(version.out.starts_with("pdepth ")) << version.out;
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* words : {"depth", "query", "demo", "Examples:", "Exit codes:"}) {
+    EXPECT_NE(help.out.find(words), std::string::npos) << words;
+  }
+  for (const char* command : {"depth", "query", "demo"}) EXPECT_EQ(run(std::string(command) + " --help").status, 0);
+}
+
+TEST_F(Program, BadUsageIsTwo) {
+  for (const char* arguments :
+       {"", "dance", "depth", "depth cube.obj", "query --threads -1", "query --threads x", "query nowhere.jsonl",
+        "query /", "query --max-line 0", "query --max-vertices 0", "query --speed", "depth cube.obj nowhere.obj",
+        "depth cube.obj spike.off --pose-a 1,2", "depth cube.obj spike.off --pose-a 1,2,x",
+        "depth cube.obj spike.off --pose-a 0,0,0,2,0,0,0", "depth cube.obj spike.off --method magic",
+        "demo nothing-of-that-name"}) {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.status, 2) << arguments << "\n" << result.out << result.err;
+    EXPECT_FALSE(result.err.empty() && result.out.empty()) << arguments;
+  }
+}
+
+TEST_F(Program, QueryFromStandardInputAndFile) {
+  const std::string lines = depth_line(kUnitBox, kUnitBox, R"("pose_b":{"translation":[1.5,0,0]})") + "\nrubbish\n";
+  const Outcome piped = run("query", lines);
+  EXPECT_EQ(piped.status, 0) << "an error object is an answer";
+  write("lines.jsonl", lines);
+  const Outcome from_file = run("query lines.jsonl --threads 2");
+  EXPECT_EQ(from_file.status, 0);
+  std::istringstream answers(from_file.out);
+  std::string first;
+  std::string second;
+  ASSERT_TRUE(std::getline(answers, first) && std::getline(answers, second));
+  EXPECT_EQ(Json::parse(first).at("depth"), 0.5);
+  EXPECT_EQ(code_of(Json::parse(second)), "bad_json");
+  EXPECT_EQ(run("query -", lines).status, 0);
+}
+
+TEST_F(Program, QueryLimits) {
+  const std::string mesh = R"({"id":1,"query":"hull","a":{"type":"mesh","path":"cube.obj"}})";
+  EXPECT_EQ(code_of(Json::parse(run("query", mesh).out)), "");
+  EXPECT_EQ(code_of(Json::parse(run("query --no-files", mesh).out)), "unreadable_file");
+  EXPECT_EQ(code_of(Json::parse(run("query --max-vertices 7", mesh).out)), "limit_exceeded");
+  EXPECT_EQ(code_of(Json::parse(run("query --max-line 10", mesh).out)), "limit_exceeded");
+}
+
+TEST_F(Program, UnwritableOutputIsOne) {
+  write("lines.jsonl", depth_line(kUnitBox, kUnitBox));
+  const std::string command =
+      "'" PDEPTH_PROGRAM "' query '" + (folder_ / "lines.jsonl").string() + "' > /dev/full 2> /dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+}
+
+TEST_F(Program, DepthForPeople) {
+  const Outcome result = run("depth spike.off cube.obj");
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* words : {"overlap", "depth", "bracket", "translation", "direction", "vertex 0", "facet", "0.5"}) {
+    EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
+  }
+  EXPECT_NE(run("depth spike.off cube.obj --pose-a 0,0,2.5").out.find("apart"), std::string::npos);
+  EXPECT_NE(run("depth spike.off cube.obj --pose-a \"0 0 0.5\"").out.find("touch"), std::string::npos);
+  EXPECT_EQ(run("depth spike.off cube.obj --pose-a -0.25,0,0").status, 0) << "a pose may begin with a minus";
+}
+
+TEST_F(Program, DepthForPrograms) {
+  const Outcome result = run("depth spike.off cube.obj --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json answer = Json::parse(result.out);
+  EXPECT_EQ(answer.at("class"), "overlapping");
+  EXPECT_EQ(answer.at("depth"), 0.5);
+  EXPECT_EQ(answer.at("translation"), Json({0.0, 0.0, 0.5}));
+  EXPECT_EQ(answer.at("feature").at("a"), Json({0}));
+}
+
+TEST_F(Program, DepthTakesEveryKindOfPose) {
+  for (const char* pose : {"0,0,1", "0,0,1,1,0,0,0", "0,0,1,1,0,0,0,1,0,0,0,1"}) {
+    const Outcome result = run(std::string("depth cube.obj cube.obj --json --pose-b ") + pose);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(Json::parse(result.out).at("depth"), 1.0) << pose;
+  }
+}
+
+}  // namespace
+}  // namespace pd::test
