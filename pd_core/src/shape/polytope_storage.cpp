@@ -253,6 +253,11 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   s.num_facets = n.facets;
   s.padded_size = n.padded;
   s.max_abs_coordinate = max_abs;
+  for (int v = 0; v < n.vertices; ++v) {
+    const Vec3 point(out.x[v], out.y[v], out.z[v]);
+    s.centre += point / n.vertices;  // divided first: a sum could overflow
+    s.radius = std::max(s.radius, point.stableNorm() * (1 + 0x1p-48));
+  }
   s.memory_bytes = block.used();
   s.x = out.x;
   s.y = out.y;

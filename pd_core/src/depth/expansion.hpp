@@ -1,0 +1,240 @@
+/// @file
+/// Signed certified best-first expansion: the nearest facet of P by growing a surface inside P where it is nearest.
+///
+/// The faces of a surface of points of P are keyed by the signed distance of their planes from the origin. The least
+/// one, f, asks for the support s of P in its normal: <s, n> / |n| bounds the depth from above for any n; s is inserted
+/// unless it lies on f. At the end every face is at least as far as f, the surface encloses that ball (surface.hpp),
+/// and f's plane supports P: the depth. The origin may start outside the surface (negative keys), so no separate search
+/// for a first simplex round it is needed; h_P(n) < 0 shows the bodies apart.
+///
+/// Source: the expanding polytope algorithm of van den Bergen (2001), with signed distances in front of it and
+/// certificates behind it. Each step adds a vertex of P, so it ends; measured steps: 10-40 for most pairs, growing like
+/// log n for shallow ones and n^0.9 for two concentric balls.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "depth/surface.hpp"
+
+namespace pd::detail {
+
+enum class ExpansionStatus : std::uint8_t {
+  certified,   ///< 0 < lower <= depth <= upper, the bracket as narrow as asked
+  separated,   ///< h_P(normal) < 0 for certain
+  touching,    ///< |signed distance| <= goal.touching times the largest |coordinate| seen (smooth bodies)
+  undecided,   ///< doubles cannot tell (touching, flat, or bracket not reached): exact arithmetic must
+  over_budget  ///< too many nearly equal facets: the overlay is faster
+};
+
+struct ExpansionResult {
+  ExpansionStatus status = ExpansionStatus::undecided;
+  double lower = 0;  ///< -infinity when nothing is known
+  double upper = std::numeric_limits<double>::infinity();
+  Vec3 normal = Vec3::UnitX();  ///< unit, of `upper` (or of the separating plane)
+  int face = -1;                ///< nearest face of the surface, -1 when separated
+};
+
+struct ExpansionGoal {
+  double relative = 0;  ///< stop when upper <= (1 + relative) lower
+  double absolute = 0;  ///< or when upper - lower <= absolute times the largest |coordinate| seen
+  double touching = 0;  ///< see ExpansionStatus::touching
+  int budget = std::numeric_limits<int>::max();
+};
+
+/// The four directions of a regular tetrahedron whose first vertex is d (unit).
+inline void tetrahedral_directions(const Vec3& d, Vec3 (&out)[4]) {
+  const Vec3 u = d.unitOrthogonal();
+  const Vec3 w = d.cross(u);
+  constexpr double kThird = 1.0 / 3.0;
+  constexpr double kSide = 0.94280904158206336587;    // 2 sqrt(2) / 3
+  constexpr double kHalf = 0.47140452079103168293;    // sqrt(2) / 3
+  constexpr double kHeight = 0.81649658092772603273;  // sqrt(2 / 3)
+  out[0] = d;
+  out[1] = -kThird * d + kSide * u;
+  out[2] = -kThird * d - kHalf * u + kHeight * w;
+  out[3] = -kThird * d - kHalf * u - kHeight * w;
+}
+
+/// Expansion over any difference that offers `support`, `certified_support`, `centre`, `reach`, `point_error` and
+/// `support_error` (PolytopeDifference, SmoothDifference).
+template <class Difference>
+class Expansion {
+ public:
+  Expansion(const Difference& difference, Surface& surface, std::vector<std::int32_t>& stack)
+      : difference_(difference), surface_(surface), stack_(stack) {}
+
+  std::int64_t support_calls() const { return support_calls_; }
+  std::int64_t facets_visited() const { return facets_visited_; }
+
+  /// From scratch; `start` is a direction in which the depth is expected (zero: away from P's centre).
+  ExpansionResult run(const Vec3& start, const ExpansionGoal& goal) {
+    surface_.clear();
+    Vec3 direction = start;
+    if (!(direction.squaredNorm() > 0)) direction = -difference_.centre();
+    const double length = direction.norm();
+    // A direction lost in rounding is as good as any.
+    direction =
+        length > 0x1p-40 * difference_.reach() || start.squaredNorm() > 0 ? Vec3(direction / length) : Vec3::UnitX();
+    ExpansionResult result;
+    if (!first_simplex(direction, result)) return result;
+    return grow(goal, result);
+  }
+
+  /// From the surface as it is (its vertices just recomputed): the warm certificate.
+  ExpansionResult resume(const ExpansionGoal& goal) { return grow(goal, ExpansionResult{}); }
+
+ private:
+  /// Support with its plane's height as an upper bound of the depth. False when it shows the bodies apart.
+  bool probe(const Vec3& unit, const DifferenceVertex* near, DifferenceVertex& s, ExpansionResult& result) {
+    s = difference_.support(unit, near);
+    ++support_calls_;
+    if (s.x.dot(unit) < 0) {
+      s = difference_.certified_support(unit, s, stack_);
+      if (s.x.dot(unit) < -bound_error()) {
+        result.status = ExpansionStatus::separated;
+        result.upper = s.x.dot(unit) + bound_error();
+        result.normal = unit;
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool first_simplex(const Vec3& direction, ExpansionResult& result) {
+    Vec3 directions[4];
+    tetrahedral_directions(direction, directions);
+    for (const Vec3& d : directions) {
+      DifferenceVertex s;
+      if (!probe(d, surface_.vertices.empty() ? nullptr : &surface_.vertices.back(), s, result)) return false;
+      add_vertex(s);
+    }
+    const double flat = 64 * 0x1p-53 * cube(difference_.reach());
+    if (surface_.start_tetrahedron(flat)) return true;
+    // Repeated or nearly coplanar vertices: look along the normals that they leave open.
+    for (int attempt = 0; attempt < 6; ++attempt) {
+      DifferenceVertex s;
+      Vec3 open = Vec3::Zero();
+      open[attempt % 3] = attempt < 3 ? 1 : -1;
+      if (!probe(open, nullptr, s, result)) return false;
+      add_vertex(s);
+    }
+    if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+    result.status = ExpansionStatus::undecided;
+    return false;
+  }
+
+  /// Puts four of the vertices with a large volume in front: the two farthest apart, then greedily.
+  bool choose_simplex(double flat) {
+    std::vector<DifferenceVertex>& v = surface_.vertices;
+    const int n = static_cast<int>(v.size());
+    const auto bring = [&](int to, auto&& measure) {
+      int best = to;
+      for (int i = to + 1; i < n; ++i) {
+        if (measure(i) > measure(best)) best = i;
+      }
+      std::swap(v[to], v[best]);
+    };
+    bring(1, [&](int i) { return (v[i].x - v[0].x).squaredNorm(); });
+    bring(2, [&](int i) { return (v[i].x - v[0].x).cross(v[1].x - v[0].x).squaredNorm(); });
+    const Vec3 normal = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
+    bring(3, [&](int i) { return std::abs((v[i].x - v[0].x).dot(normal)); });
+    const bool solid = std::abs((v[3].x - v[0].x).dot(normal)) > flat;
+    v.resize(4);
+    return solid;
+  }
+
+  ExpansionResult grow(const ExpansionGoal& goal, ExpansionResult result) {
+    double largest = 0;
+    for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+    const double error = lower_error();
+    for (int step = 0; step < goal.budget; ++step) {
+      const int f = surface_.nearest();
+      ++facets_visited_;
+      const double key = surface_.keys[f];
+      const double distance = key >= 0 ? std::sqrt(key) : -std::sqrt(-key);
+      result.lower = distance - error;
+      result.face = f;
+      const Vec3 normal = surface_.faces[f].normal;
+      const double squared = normal.squaredNorm();
+      if (!(squared > 0)) return undecided(result);
+      const Vec3 unit = normal / std::sqrt(squared);
+
+      DifferenceVertex s = difference_.support(unit, best_hint(f, unit));
+      ++support_calls_;
+      double height = s.x.dot(unit);
+      if (height + bound_error() < result.upper) {
+        // A bound is worth proving when it may decide the matter.
+        if (height < 0 || reached(goal, result.lower, height + bound_error(), largest) ||
+            touches(goal, result.lower, height + bound_error(), largest)) {
+          s = difference_.certified_support(unit, s, stack_);
+          height = s.x.dot(unit);
+          if (height < -bound_error() - goal.touching * largest) {
+            result.status = ExpansionStatus::separated;
+            result.upper = height + bound_error();
+            result.normal = unit;
+            return result;
+          }
+          if (height + bound_error() < result.upper) {
+            result.upper = height + bound_error();
+            result.normal = unit;
+          }
+          if (touches(goal, result.lower, result.upper, largest)) {
+            result.status = ExpansionStatus::touching;
+            return result;
+          }
+          if (reached(goal, result.lower, result.upper, largest)) {
+            result.status = ExpansionStatus::certified;
+            return result;
+          }
+        }
+      }
+      if (height - distance <= 4 * error) return undecided(result);  // on the face, and yet not narrow enough
+      add_vertex(s);
+      largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
+      if (!surface_.insert(f, static_cast<int>(surface_.vertices.size()) - 1)) return undecided(result);
+    }
+    result.status = ExpansionStatus::over_budget;
+    return result;
+  }
+
+  static bool reached(const ExpansionGoal& goal, double lower, double upper, double largest) {
+    return lower > 0 && (upper - lower <= goal.absolute * largest || upper <= (1 + goal.relative) * lower);
+  }
+  static bool touches(const ExpansionGoal& goal, double lower, double upper, double largest) {
+    return upper <= goal.touching * largest && lower >= -goal.touching * largest;
+  }
+  static ExpansionResult undecided(ExpansionResult result) {
+    result.status = ExpansionStatus::undecided;
+    return result;
+  }
+
+  /// The vertex of face f that reaches farthest: where the climb towards the next support starts.
+  const DifferenceVertex* best_hint(int f, const Vec3& unit) const {
+    const SurfaceFace& face = surface_.faces[f];
+    const DifferenceVertex* best = &surface_.vertices[face.v[0]];
+    for (int i = 1; i < 3; ++i) {
+      const DifferenceVertex* other = &surface_.vertices[face.v[i]];
+      if (other->x.dot(unit) > best->x.dot(unit)) best = other;
+    }
+    return best;
+  }
+
+  void add_vertex(const DifferenceVertex& s) { surface_.vertices.push_back(s); }
+
+  /// A face's distance errs by that of its points, of a product of three terms, and of a root and a quotient.
+  double lower_error() const { return difference_.point_error() + 8 * 0x1p-53 * difference_.reach(); }
+  /// <s, unit> bounds h_P(unit) up to the errors of s, of the support, of the product and of |unit|.
+  double bound_error() const {
+    return difference_.point_error() + difference_.support_error() + 8 * 0x1p-53 * difference_.reach();
+  }
+  static double cube(double x) { return x * x * x; }
+
+  const Difference& difference_;
+  Surface& surface_;
+  std::vector<std::int32_t>& stack_;
+  std::int64_t support_calls_ = 0;
+  std::int64_t facets_visited_ = 0;
+};
+
+}  // namespace pd::detail

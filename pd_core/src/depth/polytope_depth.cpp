@@ -1,0 +1,348 @@
+#include "depth/polytope_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "depth/exact_expansion.hpp"
+#include "depth/expansion.hpp"
+#include "depth/nearest.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Width of the bracket that doubles are asked for, in units of L (`Bracket::certified`).
+constexpr double kCertifiedWidth = 2e-14;
+
+/// Sizes outside this range are left to the exact engines, which rescale.
+bool within_range(double reach) { return reach > 0x1p-100 && reach < 0x1p100; }
+
+class PolytopeQuery {
+ public:
+  PolytopeQuery(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers, WarmCertificate* warm,
+                PenetrationDepth& out)
+      : pair_(pair),
+        settings_(settings),
+        buffers_(buffers),
+        warm_(warm),
+        out_(out),
+        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b) {}
+
+  void solve() {
+    const bool exactly = settings_.bracket == Bracket::tightest && settings_.delta == 0;
+    if (settings_.method == Method::overlay) {
+      solve_by_overlay();
+      return;
+    }
+    out_.method = Method::expansion;
+    ExpansionResult result;
+    if (within_range(difference_.reach())) {
+      result = expand();
+      remember(result);
+    }
+    switch (result.status) {
+      case ExpansionStatus::certified:
+        if (exactly) {
+          solve_overlapping_exactly(result);
+        } else {
+          fill_overlapping(result);
+        }
+        return;
+      case ExpansionStatus::separated:
+        if (exactly || !fill_separated(result)) solve_exactly(result);
+        return;
+      case ExpansionStatus::over_budget:
+        if (result.lower > 0) {
+          solve_by_overlay();
+          return;
+        }
+        [[fallthrough]];
+      default:
+        solve_exactly(result);
+    }
+  }
+
+ private:
+  ExpansionGoal goal() const {
+    ExpansionGoal goal;
+    goal.absolute = kCertifiedWidth;
+    goal.relative = settings_.delta;
+    goal.budget = difference_.budget();
+    return goal;
+  }
+
+  ExpansionResult expand() {
+    Expansion<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
+    ExpansionResult result;
+    bool answered = false;
+    if (warm_ && restore()) {
+      result = expansion.resume(goal());
+      answered = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;
+      out_.warm = answered;
+    }
+    if (!answered) {
+      const Vec3 start = warm_ ? warm_->state().direction : Vec3(Vec3::Zero());
+      result = expansion.run(start, goal());
+    }
+    out_.statistics.support_calls += expansion.support_calls();
+    out_.statistics.facets_visited += expansion.facets_visited();
+    return result;
+  }
+
+  /// Puts the last surface at the present poses. False when there is none for this pair.
+  bool restore() {
+    WarmCertificate::State& state = warm_->state();
+    if (state.shape_a != pair_.a->x() || state.shape_b != pair_.b->x()) warm_->clear();
+    if (state.faces.empty()) return false;
+    Surface& surface = buffers_.surface;
+    surface.clear();
+    for (const auto& v : state.vertices) surface.vertices.push_back(difference_.vertex(v.a, v.b));
+    surface.restore(state.faces);
+    surface.refresh();
+    return true;
+  }
+
+  void remember(const ExpansionResult& result) {
+    if (!warm_) return;
+    WarmCertificate::State& state = warm_->state();
+    state.shape_a = pair_.a->x();
+    state.shape_b = pair_.b->x();
+    state.direction = result.normal;
+    state.vertices.clear();
+    state.faces.clear();
+    if (result.status != ExpansionStatus::certified || buffers_.surface.size() > kMaxCachedFaces) return;
+    buffers_.surface.save(state.vertices, state.faces);
+  }
+
+  // ---- answers from doubles -------------------------------------------------------------------------------------
+
+  void fill_overlapping(const ExpansionResult& result) {
+    const double margin = pair_.margins.a + pair_.margins.b;
+    out_.contact = ContactClass::overlapping;
+    // The sums round once; |translation| exceeds its length by the rounding of three products.
+    out_.lower = (result.lower + margin) * (1 - 0x1p-52);
+    out_.upper = (result.upper + margin) * (1 + 0x1p-50);
+    out_.depth = (result.upper + margin) * (1 + 0x1p-52);
+    out_.normal = result.normal;
+    out_.translation = out_.depth * result.normal;
+    const SurfaceFace& face = buffers_.surface.faces[face_below_origin(result.face, result.normal)];
+    DifferenceVertex corners[3];
+    double weights[3];
+    for (int i = 0; i < 3; ++i) corners[i] = buffers_.surface.vertices[face.v[i]];
+    project(face, result.normal, weights);
+    fill_witnesses(corners, weights, 3);
+    out_.witness_b = out_.witness_a + out_.translation;
+    out_.feature_a = feature(*pair_.a, corners, &DifferenceVertex::a);
+    out_.feature_b = feature(*pair_.b, corners, &DifferenceVertex::b);
+    pair_features();
+  }
+
+  /// Barycentric coordinates of the origin's projection on a face's plane.
+  void project(const SurfaceFace& face, const Vec3& normal, double (&weights)[3]) const {
+    const std::vector<DifferenceVertex>& v = buffers_.surface.vertices;
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      weights[i] = normal.dot(v[face.v[(i + 1) % 3]].x.cross(v[face.v[(i + 2) % 3]].x));
+      sum += weights[i];
+    }
+    for (double& w : weights) w /= sum;
+  }
+
+  /// Coplanar faces share a facet of P: steps from f across the edge that the projection lies beyond, while the
+  /// neighbour is as near, until the projection lies inside.
+  int face_below_origin(int f, const Vec3& normal) const {
+    const Surface& surface = buffers_.surface;
+    const double level = std::sqrt(std::max(0.0, surface.keys[f])) + 64 * 0x1p-53 * difference_.reach();
+    for (int step = 0; step < surface.size(); ++step) {
+      double weights[3];
+      project(surface.faces[f], normal, weights);
+      const int least = static_cast<int>(std::min_element(weights, weights + 3) - weights);
+      if (weights[least] >= 0) return f;
+      // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.
+      const int next = surface.faces[f].adj[(least + 1) % 3];
+      if (std::sqrt(std::max(0.0, surface.keys[next])) > level) return f;
+      f = next;
+    }
+    return f;
+  }
+
+  void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count) {
+    Vec3 a = Vec3::Zero();
+    Vec3 b = Vec3::Zero();
+    double total = 0;
+    for (int i = 0; i < count; ++i) {
+      const double w = std::max(0.0, weights[i]);
+      a += w * pair_.a->vertex(corners[i].a);
+      b += w * pair_.b->vertex(corners[i].b);
+      total += w;
+    }
+    out_.witness_a = pair_.pose_a->apply(a / total) - pair_.margins.a * out_.normal;
+    out_.witness_b = pair_.pose_b->apply(b / total) + pair_.margins.b * out_.normal;
+  }
+
+  /// The face of one body that a face of the surface uses: one, two or three of its vertices.
+  static Feature feature(const ConvexPolytope& body, const DifferenceVertex (&corners)[3],
+                         std::int32_t DifferenceVertex::*id) {
+    std::int32_t ids[3] = {corners[0].*id, corners[1].*id, corners[2].*id};
+    std::sort(ids, ids + 3);
+    const int distinct = static_cast<int>(std::unique(ids, ids + 3) - ids);
+    if (distinct == 1) return {Feature::Kind::vertex, ids[0], -1};
+    if (distinct == 2) return {Feature::Kind::edge, ids[0], ids[1]};
+    const int first = body.first_half_edge(ids[0]);
+    for (int h = first; h < first + static_cast<int>(body.neighbours(ids[0]).size()); ++h) {
+      const int f = body.half_edge(h).facet;
+      if (f < 0) break;
+      const auto loop = body.facet_vertices(f);
+      if (std::find(loop.begin(), loop.end(), ids[1]) != loop.end() &&
+          std::find(loop.begin(), loop.end(), ids[2]) != loop.end()) {
+        return {Feature::Kind::facet, f, -1};
+      }
+    }
+    return {Feature::Kind::vertex, ids[0], -1};
+  }
+
+  /// A facet's partner is a vertex, also where the two bodies' facets are parallel.
+  void pair_features() {
+    if (out_.feature_b.kind == Feature::Kind::facet && out_.feature_a.kind != Feature::Kind::vertex) {
+      out_.feature_a = {Feature::Kind::vertex, first_vertex(*pair_.a, out_.feature_a), -1};
+    } else if (out_.feature_a.kind == Feature::Kind::facet && out_.feature_b.kind != Feature::Kind::vertex) {
+      out_.feature_b = {Feature::Kind::vertex, first_vertex(*pair_.b, out_.feature_b), -1};
+    }
+  }
+  static std::int32_t first_vertex(const ConvexPolytope& body, const Feature& feature) {
+    return feature.kind == Feature::Kind::facet ? body.facet_vertices(feature.first)[0] : feature.first;
+  }
+
+  /// False when doubles do not narrow the bracket enough or cannot tell the class.
+  bool fill_separated(const ExpansionResult& result) {
+    const DifferenceVertex first = difference_.support(result.normal, nullptr);
+    const NearestResult nearest =
+        nearest_point(difference_, first, settings_.delta, kCertifiedWidth * difference_.reach() / 4, buffers_.stack,
+                      out_.statistics.support_calls);
+    for (int i = 0; i < nearest.count; ++i) start_[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
+    start_count_ = nearest.count;
+    if (!nearest.certified) return false;
+    const double margin = pair_.margins.a + pair_.margins.b;
+    out_.normal = -nearest.point.normalized();
+    const double round = 4 * 0x1p-53 * (nearest.upper + margin);
+    if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;
+    fill_witnesses(nearest.simplex, nearest.weights, nearest.count);
+    DifferenceVertex corners[3];
+    for (int i = 0; i < 3; ++i) corners[i] = nearest.simplex[std::min(i, nearest.count - 1)];
+    out_.feature_a = feature(*pair_.a, corners, &DifferenceVertex::a);
+    out_.feature_b = feature(*pair_.b, corners, &DifferenceVertex::b);
+    pair_features();
+    if (nearest.lower > margin) {
+      out_.contact = ContactClass::separated;
+      out_.distance_lower = nearest.lower - margin - round;
+      out_.distance_upper = nearest.upper - margin + round;
+      out_.distance = std::clamp((out_.witness_a - out_.witness_b).norm(), out_.distance_lower, out_.distance_upper);
+    } else {
+      out_.contact = ContactClass::overlapping;
+      out_.lower = margin - nearest.upper - round;
+      out_.depth = margin - nearest.lower + round;
+      out_.upper = out_.depth * (1 + 0x1p-50);
+      out_.translation = out_.depth * out_.normal;
+      out_.witness_b = out_.witness_a + out_.translation;
+    }
+    return true;
+  }
+
+  // ---- exact answers --------------------------------------------------------------------------------------------
+
+  void solve_exactly(const ExpansionResult& result) {
+    const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
+    if (start_count_ == 0) {
+      start_[0] = any_vertex(result);
+      start_count_ = 1;
+    }
+    const ExactNearest nearest = exact_nearest(posed, start_, start_count_);
+    if (nearest.apart) {
+      finish_apart(posed, nearest, pair_.margins, out_);
+    } else {
+      finish_from(posed, nearest.simplex.data(), nearest.count, &nearest);
+    }
+    count_stages(posed);
+  }
+
+  void solve_overlapping_exactly(const ExpansionResult& result) {
+    const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
+    PairId seed[3];
+    for (int i = 0; i < 3; ++i) {
+      const DifferenceVertex& v = buffers_.surface.vertices[buffers_.surface.faces[result.face].v[i]];
+      seed[i] = {v.a, v.b};
+    }
+    finish_from(posed, seed, 3, nullptr);
+    count_stages(posed);
+  }
+
+  /// The origin is known to lie in P.
+  void finish_from(const PosedPair& posed, const PairId* seed, int count, const ExactNearest* nearest) {
+    const ExactDepth exact = exact_expansion(posed, seed, count, 4 * difference_.budget());
+    out_.statistics.support_calls += exact.support_calls;
+    out_.statistics.facets_visited += exact.facets_visited;
+    if (!exact.complete) {
+      solve_by_overlay();
+    } else if (exact.contact == ContactClass::overlapping) {
+      finish_overlapping(posed, *exact.normal, pair_.margins, out_);
+    } else {
+      finish_touching(posed, *exact.normal, *nearest, pair_.margins, out_);
+    }
+  }
+
+  void solve_by_overlay() {
+    const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
+    out_.method = Method::overlay;
+    const OverlayDepth overlay = overlay_depth(posed, buffers_.overlay);
+    out_.statistics.facets_visited += overlay.facets_visited;
+    if (overlay.contact == ContactClass::overlapping) {
+      finish_overlapping(posed, normal_of(posed, overlay.facet), pair_.margins, out_);
+    } else {
+      const PairId any{0, 0};
+      const ExactNearest nearest = exact_nearest(posed, &any, 1);
+      if (nearest.apart) {
+        finish_apart(posed, nearest, pair_.margins, out_);
+      } else if (overlay.has_facet) {
+        finish_touching(posed, normal_of(posed, overlay.facet), nearest, pair_.margins, out_);
+      } else {
+        const ExactDepth flat = exact_expansion(posed, &any, 1, std::numeric_limits<int>::max());
+        finish_touching(posed, *flat.normal, nearest, pair_.margins, out_);
+      }
+    }
+    count_stages(posed);
+  }
+
+  static ExactDirection normal_of(const PosedPair& posed, const FacetOfDifference& facet) {
+    return ExactDirection(cross(posed.exact(facet.u), posed.exact(facet.v)));
+  }
+
+  PairId any_vertex(const ExpansionResult& result) const {
+    if (!within_range(difference_.reach())) return {0, 0};
+    const DifferenceVertex s = difference_.support(result.normal, nullptr);
+    return {s.a, s.b};
+  }
+
+  void count_stages(const PosedPair& posed) {
+    out_.statistics.exact_signs += posed.stages().double_double + posed.stages().exact;
+  }
+
+  static constexpr int kMaxCachedFaces = 128;
+
+  const PolytopePair& pair_;
+  const DepthSettings& settings_;
+  ScratchBuffers& buffers_;
+  WarmCertificate* warm_;
+  PenetrationDepth& out_;
+  PolytopeDifference difference_;
+  PairId start_[4];
+  int start_count_ = 0;
+};
+
+}  // namespace
+
+void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,
+                    WarmCertificate* warm, PenetrationDepth& out) {
+  PolytopeQuery(pair, settings, buffers, warm, out).solve();
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,20 @@
+/// @file
+/// What a Scratch holds.
+#pragma once
+
+#include <vector>
+
+#include "depth/overlay_engine.hpp"
+#include "depth/smooth_difference.hpp"
+#include "depth/surface.hpp"
+
+namespace pd::detail {
+
+struct ScratchBuffers {
+  Surface surface;
+  std::vector<std::int32_t> stack;
+  std::vector<PointPair> points;
+  OverlayDepthBuffers overlay;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,96 @@
+#include "numeric/root_sum.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace pd::detail {
+
+namespace {
+
+int top_bit(const Dyadic& x) { return x.exponent() + static_cast<int>(msb(boost::multiprecision::abs(x.mantissa()))); }
+
+/// The k-th double after x >= 0 (before it for negative k), not below 0.
+double step(double x, std::int64_t k) {
+  const std::int64_t bits = std::bit_cast<std::int64_t>(x) + k;
+  return std::bit_cast<double>(std::max<std::int64_t>(bits, 0));
+}
+
+}  // namespace
+
+RootSum::RootSum(Dyadic base, int sign, Dyadic numerator, Dyadic denominator)
+    : base_(std::move(base)), sign_(sign), numerator_(std::move(numerator)), denominator_(std::move(denominator)) {}
+
+int RootSum::compare(const Dyadic& x) const {
+  const Dyadic rest = base_ - x;  // value - x = rest + sign * root
+  const int root = numerator_.sign() == 0 ? 0 : sign_;
+  if (rest.sign() == 0) return root;
+  if (root == 0 || root == rest.sign()) return rest.sign();
+  const int larger = (rest * rest * denominator_ - numerator_).sign();  // |rest| against the root
+  return larger == 0 ? 0 : (larger > 0 ? rest.sign() : root);
+}
+
+DoubleDouble RootSum::approximate() const {
+  DoubleDouble root{0, 0};
+  if (numerator_.sign() != 0) {
+    // Even shifts, so that the root's shift is whole.
+    const int up = top_bit(numerator_) & ~1;
+    const int down = top_bit(denominator_) & ~1;
+    root = sqrt(to_double_double(numerator_.scaled(-up)) / to_double_double(denominator_.scaled(-down)));
+    const int shift = (up - down) / 2;
+    root = {std::ldexp(root.hi, shift), std::ldexp(root.lo, shift)};
+  }
+  return to_double_double(base_) + (sign_ > 0 ? root : -root);
+}
+
+double RootSum::round_down() const {
+  double low = std::max(0.0, to_double(approximate()));
+  std::int64_t stride = 1;
+  // The approximation is nearly always within an ulp; gallop where base and root cancel.
+  if (compare(Dyadic(low)) < 0) {
+    double high = low;
+    while (low > 0 && compare(Dyadic(low)) < 0) {
+      high = low;
+      low = step(low, -stride);
+      stride *= 2;
+    }
+    while (step(low, 1) < high) {
+      const double middle = step(low, (std::bit_cast<std::int64_t>(high) - std::bit_cast<std::int64_t>(low)) / 2);
+      (compare(Dyadic(middle)) < 0 ? high : low) = middle;
+    }
+    return low;
+  }
+  double high = step(low, 1);
+  while (compare(Dyadic(high)) >= 0) {
+    low = high;
+    high = step(high, stride);
+    stride *= 2;
+  }
+  while (step(low, 1) < high) {
+    const double middle = step(low, (std::bit_cast<std::int64_t>(high) - std::bit_cast<std::int64_t>(low)) / 2);
+    (compare(Dyadic(middle)) < 0 ? high : low) = middle;
+  }
+  return low;
+}
+
+double RootSum::round_up(double down) const { return compare(Dyadic(down)) == 0 ? down : step(down, 1); }
+
+DoubleDouble to_double_double(const Dyadic& value) {
+  const double high = value.to_double();
+  const double low = (value - Dyadic(high)).to_double();
+  return quick_two_sum(high, low);
+}
+
+Vec3DD unit_double_double(const Dyadic3& v) {
+  int largest = std::numeric_limits<int>::min();
+  for (const Dyadic* c : {&v.x, &v.y, &v.z}) {
+    if (c->sign() != 0) largest = std::max(largest, top_bit(*c));
+  }
+  const Vec3DD scaled{to_double_double(v.x.scaled(-largest)), to_double_double(v.y.scaled(-largest)),
+                      to_double_double(v.z.scaled(-largest))};
+  const DoubleDouble length = sqrt(dot(scaled, scaled));
+  return {scaled.x / length, scaled.y / length, scaled.z / length};
+}
+
+}  // namespace pd::detail
