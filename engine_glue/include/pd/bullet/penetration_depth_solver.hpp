@@ -1,0 +1,125 @@
+/// @file
+/// Penetration depth for Bullet: exact, certified, and safe to share between the threads of a dispatcher.
+///
+/// Bullet's convention is met here and nowhere else. pd_core's `normal` is the direction in which A leaves B, and so is
+/// Bullet's `normalOnBInWorld`; Bullet's distance is minus the depth.
+#pragma once
+
+#include <BulletCollision/NarrowPhaseCollision/btConvexPenetrationDepthSolver.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "pd/bullet/shape_cache.hpp"
+#include "pd/contact/manifold.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+
+class btCollisionAlgorithm;
+struct btCollisionAlgorithmCreateFunc;
+
+namespace pd {
+
+namespace detail {
+class PairRegistry;
+class ThreadBufferPool;
+}  // namespace detail
+
+struct BulletSolverSettings {
+  /// 0: exact for polyhedral, sphere, capsule and swept shapes, 1e-6 relative for cylinders and cones. Else the
+  /// relative error (1 + delta) for all, in (0, 1].
+  double delta = 0;
+  /// Asked for shapes that have no exact form (`to_convex_shape` refuses them), e.g. a btGjkEpaPenetrationDepthSolver;
+  /// must outlive the solver and be safe on the dispatcher's threads. nullptr: such pairs get no depth (Bullet keeps
+  /// the shallow contacts that its own distance query finds). Either way they are counted.
+  btConvexPenetrationDepthSolver* fallback = nullptr;
+  /// Entries of the shape cache.
+  std::size_t cache_capacity = 4096;
+};
+
+/// What a solver has done so far.
+struct BulletSolverStatistics {
+  std::int64_t calls = 0;        ///< pairs asked for, by Bullet's detector or by the contact algorithm
+  std::int64_t overlapping = 0;  ///< answers by class
+  std::int64_t touching = 0;
+  std::int64_t separated = 0;
+  std::int64_t warm = 0;           ///< answers that the certificate of an earlier frame gave
+  std::int64_t unsupported = 0;    ///< pairs with a shape that has no exact form
+  std::int64_t fallback = 0;       ///< of those, the ones that the fallback solver answered
+  std::int64_t refused_poses = 0;  ///< pairs with a transform that is not finite or out of range
+  std::int64_t support_calls = 0;  ///< supports of the Minkowski difference, over all answers
+  std::int64_t nanoseconds = 0;    ///< spent in depth queries, over all threads
+};
+
+/// One answer about two Bullet shapes, with the bodies that it was made for.
+struct BulletPairAnswer {
+  PenetrationDepth depth;
+  std::shared_ptr<const ConvexShape> shape_a;
+  std::shared_ptr<const ConvexShape> shape_b;
+  Pose pose_a;
+  Pose pose_b;
+};
+
+/// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: buffers come from a pool, counters are atomic, the shape
+/// cache is shared. Must outlive every world that it is installed in (`pd::install`).
+class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver {
+ public:
+  explicit BulletPenetrationDepthSolver(const BulletSolverSettings& settings = {});
+  ~BulletPenetrationDepthSolver() override;
+  BulletPenetrationDepthSolver(const BulletPenetrationDepthSolver&) = delete;
+  BulletPenetrationDepthSolver& operator=(const BulletPenetrationDepthSolver&) = delete;
+
+  /// Bullet's call, in its detector's frame and unit. Margins are part of the bodies.
+  /// - overlapping or touching: true; wA and wB the deepest points of A and B with wB - wA = depth * normal; v the unit
+  ///   normal, which Bullet takes where the two points coincide.
+  /// - separated: false; wA and wB the nearest points of the cores (Bullet adds the margins itself), v the unit normal
+  ///   in world axes.
+  /// - no answer (no exact form and no fallback, or a transform that is not finite): false and v = 0, which Bullet
+  /// reads
+  ///   as "nothing found".
+  bool calcPenDepth(btSimplexSolverInterface& simplex_solver, const btConvexShape* a, const btConvexShape* b,
+                    const btTransform& transform_a, const btTransform& transform_b, btVector3& v, btVector3& witness_a,
+                    btVector3& witness_b, btIDebugDraw* debug_draw) override;
+
+  /// The full answer for two posed Bullet shapes, in the frame of the transforms; empty where a shape has no exact form
+  /// or a transform is not finite. `warm`: the memory of this pair, or nullptr.
+  [[nodiscard]] std::optional<BulletPairAnswer> query(const btConvexShape& a, const btTransform& transform_a,
+                                                      const btConvexShape& b, const btTransform& transform_b,
+                                                      WarmCertificate* warm = nullptr);
+
+  /// Contact points for an answer of `query` (`contact_manifold`).
+  [[nodiscard]] ContactManifold manifold(const BulletPairAnswer& answer, double breaking_threshold);
+
+  [[nodiscard]] const BulletSolverSettings& settings() const { return settings_; }
+  [[nodiscard]] BulletShapeCache& cache() { return cache_; }
+
+  /// A consistent reading only while no thread is inside a call.
+  [[nodiscard]] BulletSolverStatistics statistics() const;
+  void reset_statistics();
+
+  /// The creator of contact algorithms that `install` registers; owned by the solver.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot_create_func();
+  /// Bullet's own convex-convex algorithm with this solver in it; owned by the solver.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent_create_func();
+
+  /// For the contact algorithm and for snapshots.
+  [[nodiscard]] detail::PairRegistry& pairs() { return *pairs_; }
+
+ private:
+  struct Counters;
+  struct CreateFuncs;
+
+  bool answer_by_fallback(btSimplexSolverInterface& simplex_solver, const btConvexShape* a, const btConvexShape* b,
+                          const btTransform& transform_a, const btTransform& transform_b, btVector3& v,
+                          btVector3& witness_a, btVector3& witness_b, btIDebugDraw* debug_draw);
+
+  BulletSolverSettings settings_;
+  BulletShapeCache cache_;
+  std::unique_ptr<Counters> counters_;
+  std::unique_ptr<detail::ThreadBufferPool> buffers_;
+  std::unique_ptr<detail::PairRegistry> pairs_;
+  std::unique_ptr<CreateFuncs> create_funcs_;
+};
+
+}  // namespace pd

@@ -1,0 +1,45 @@
+/// @file
+/// The state of a Bullet world between two steps, saved and restored so that a replay gives the same bits.
+///
+/// Transforms and velocities are not enough (replays were up to 0.115 m off): a step also reads last step's contact
+/// points with their impulses, push and turn velocities, interpolation state, forces, activation, and the constraint
+/// solver's random seed. The order of the manifolds matters too, since the solver works them in that order.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <memory>
+
+#include "pd/bullet/penetration_depth_solver.hpp"
+
+namespace pd {
+
+/// Holds for the world it was taken of, as long as no body, shape or joint is added or removed; body pointers are kept,
+/// not owned. May be restored any number of times.
+///
+/// Bit for bit means: the same calls of `stepSimulation(h, 0)` after `restore` give the same transforms, velocities and
+/// contact points. Where pairs come into being during the replay, their order is the same only with
+/// `world.getDispatchInfo().m_deterministicOverlappingPairs = true` (the broadphase's tree is not part of the state).
+/// Not saved: the remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their
+/// total, soft bodies, motion states (they follow at the next step). `m_userPersistentData` of contact points is
+/// restored as a pointer.
+class BulletSnapshot {
+ public:
+  /// @param solver  the one installed in the world: its pairs' warm starts are saved with their manifolds; nullptr
+  /// where
+  ///                none is installed.
+  BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver);
+  ~BulletSnapshot();
+  BulletSnapshot(BulletSnapshot&&) noexcept;
+  BulletSnapshot& operator=(BulletSnapshot&&) noexcept;
+
+  /// Brings the world back. Time: that of a broadphase update, plus one collision detection where pairs have to be made
+  /// again.
+  void restore() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pd

@@ -1,0 +1,215 @@
+#include "contact_algorithm.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+
+#include <algorithm>
+
+#include "moving_body.hpp"
+#include "pd/bullet/scalar.hpp"
+
+namespace pd::detail {
+
+// Bullet's pool gives out pieces of a fixed size and checks it by assertion only; this one is always large enough.
+static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConvexAlgorithm));
+
+namespace {
+
+const btConvexShape& convex_shape(const btCollisionObjectWrapper* wrapper) {
+  return *static_cast<const btConvexShape*>(wrapper->getCollisionShape());
+}
+
+/// New point for each old one: -1 where none.
+using Matching = std::array<int, 4>;
+
+/// Pairs last step's manifold points with this step's: first by feature, then by place within the breaking threshold,
+/// nearest first.
+Matching match_points(const btPersistentManifold& manifold, const PairMemory& memory, const ContactManifold& fresh,
+                      const std::array<btVector3, 4>& fresh_local_a) {
+  Matching matching{-1, -1, -1, -1};
+  std::array<bool, 4> taken{};
+  const int count = manifold.getNumContacts();
+  for (int i = 0; i < count; ++i) {
+    const btVector3& local = manifold.getContactPoint(i).m_localPointA;
+    for (int r = 0; r < memory.num_points; ++r) {
+      if (!(memory.points[r].local_a == local)) {
+        continue;
+      }
+      for (int k = 0; k < fresh.count; ++k) {
+        if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id) {
+          matching[i] = k;
+          taken[k] = true;
+          break;
+        }
+      }
+      break;
+    }
+  }
+  const btScalar reach = manifold.getContactBreakingThreshold() * manifold.getContactBreakingThreshold();
+  for (;;) {
+    int best_old = -1;
+    int best_new = -1;
+    btScalar best = reach;
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < fresh.count; ++k) {
+        const btScalar gap = (manifold.getContactPoint(i).m_localPointA - fresh_local_a[k]).length2();
+        if (matching[i] < 0 && !taken[k] && gap < best) {
+          best = gap;
+          best_old = i;
+          best_new = k;
+        }
+      }
+    }
+    if (best_old < 0) {
+      return matching;
+    }
+    matching[best_old] = best_new;
+    taken[best_new] = true;
+  }
+}
+
+}  // namespace
+
+ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                                   const btCollisionObjectWrapper* b, BulletPenetrationDepthSolver& solver)
+    : btActivatingCollisionAlgorithm(info, a, b), solver_(solver), manifold_(info.m_manifold) {}
+
+ContactAlgorithm::~ContactAlgorithm() {
+  if (owns_manifold_) {
+    solver_.pairs().remove(manifold_);
+    m_dispatcher->releaseManifold(manifold_);
+  }
+}
+
+void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+  if (owns_manifold_) {
+    manifolds.push_back(manifold_);
+  }
+}
+
+btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                             const btCollisionObjectWrapper* a,
+                                                                             const btCollisionObjectWrapper* b) {
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
+  return new (memory) ContactAlgorithm(info, a, b, solver);
+}
+
+void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                                        const btDispatcherInfo& info, btManifoldResult* result) {
+  if (manifold_ == nullptr) {
+    manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
+    owns_manifold_ = true;
+    memory_ = std::make_unique<PairMemory>();
+    solver_.pairs().add(manifold_, memory_.get());
+  }
+  result->setPersistentManifold(manifold_);
+
+  const btConvexShape& shape_a = convex_shape(a);
+  const btConvexShape& shape_b = convex_shape(b);
+  // As Bullet's own algorithm: a closest-point query reaches farther, by the margins too.
+  btScalar threshold = manifold_->getContactBreakingThreshold();
+  if (result->m_closestPointDistanceThreshold > 0) {
+    threshold += result->m_closestPointDistanceThreshold + shape_a.getMargin() + shape_b.getMargin();
+  }
+  const auto answer = solver_.query(shape_a, a->getWorldTransform(), shape_b, b->getWorldTransform(),
+                                    memory_ ? &memory_->warm : nullptr);
+  if (!answer) {
+    process_by_bullet(shape_a, a->getWorldTransform(), shape_b, b->getWorldTransform(), info, threshold, result);
+    return;
+  }
+  if (owns_manifold_) {
+    memory_->shape_a = answer->shape_a;
+    memory_->shape_b = answer->shape_b;
+    replace_points(*answer, static_cast<double>(threshold), a, result);
+  } else {
+    add_points(*answer, static_cast<double>(threshold), result);
+  }
+}
+
+void ContactAlgorithm::add_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result) {
+  const ContactManifold fresh = solver_.manifold(answer, threshold);
+  const btVector3 normal = to_bullet(fresh.normal);
+  for (int k = 0; k < fresh.count; ++k) {
+    result->addContactPoint(normal, to_bullet(fresh.points[k].position_b),
+                            static_cast<btScalar>(-fresh.points[k].depth));
+  }
+}
+
+void ContactAlgorithm::replace_points(const BulletPairAnswer& answer, double threshold,
+                                      const btCollisionObjectWrapper* a, btManifoldResult* result) {
+  const ContactManifold fresh = solver_.manifold(answer, threshold);
+  const btVector3 normal = to_bullet(fresh.normal);
+  const btTransform& body_a = a->getCollisionObject()->getWorldTransform();
+  std::array<btVector3, 4> local_a;
+  for (int k = 0; k < fresh.count; ++k) {
+    const auto distance = static_cast<btScalar>(-fresh.points[k].depth);
+    local_a[k] = body_a.invXform(to_bullet(fresh.points[k].position_b) + normal * distance);
+  }
+  const Matching matching = match_points(*manifold_, *memory_, fresh, local_a);
+  // Bullet's `addContactPoint` hands impulses, life time and user data to the new point that falls on an old one. So a
+  // matched old point is moved to its heir first; that keeps Bullet's contact callbacks right, which clearing would
+  // not.
+  for (int i = manifold_->getNumContacts() - 1; i >= 0; --i) {
+    if (matching[i] < 0) {
+      manifold_->removeContactPoint(i);  // moves the last point into the gap: those behind are dealt with already
+    } else {
+      manifold_->getContactPoint(i).m_localPointA = local_a[matching[i]];
+    }
+  }
+  for (int k = 0; k < fresh.count; ++k) {
+    result->addContactPoint(normal, to_bullet(fresh.points[k].position_b),
+                            static_cast<btScalar>(-fresh.points[k].depth));
+  }
+  memory_->num_points = 0;
+  for (int i = 0; i < manifold_->getNumContacts(); ++i) {
+    const btVector3& stored = manifold_->getContactPoint(i).m_localPointA;
+    int nearest = -1;
+    for (int k = 0; k < fresh.count; ++k) {
+      if (nearest < 0 || (stored - local_a[k]).length2() < (stored - local_a[nearest]).length2()) {
+        nearest = k;
+      }
+    }
+    if (nearest >= 0) {
+      memory_->points[memory_->num_points++] = {stored, fresh.points[nearest].feature_id};
+    }
+  }
+}
+
+void ContactAlgorithm::process_by_bullet(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
+                                         const btTransform& transform_b, const btDispatcherInfo& info,
+                                         btScalar threshold, btManifoldResult* result) {
+  if (is_finite(transform_a) && is_finite(transform_b)) {
+    btVoronoiSimplexSolver simplex;
+    btGjkPairDetector detector(&a, &b, &simplex, solver_.settings().fallback);
+    btGjkPairDetector::ClosestPointInput input;
+    const btScalar reach = a.getMargin() + b.getMargin() + threshold;
+    input.m_maximumDistanceSquared = reach * reach;
+    input.m_transformA = transform_a;
+    input.m_transformB = transform_b;
+    detector.getClosestPoints(input, *result, info.m_debugDraw);
+  }
+  if (owns_manifold_) {
+    result->refreshContactPoints();
+  }
+}
+
+btScalar ContactAlgorithm::calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo&,
+                                                 btManifoldResult*) {
+  if (!a->getCollisionShape()->isConvex() || !b->getCollisionShape()->isConvex()) {
+    return btScalar(1);
+  }
+  const auto shape_a = solver_.cache().find_or_convert(*static_cast<btConvexShape*>(a->getCollisionShape()));
+  const auto shape_b = solver_.cache().find_or_convert(*static_cast<btConvexShape*>(b->getCollisionShape()));
+  if (!shape_a || !shape_b) {
+    return btScalar(1);
+  }
+  Scratch scratch;
+  const auto impact = time_of_impact(
+      moving_shape(*shape_a, a->getWorldTransform(), a->getInterpolationWorldTransform(), 1),
+      moving_shape(*shape_b, b->getWorldTransform(), b->getInterpolationWorldTransform(), 1), 1, scratch);
+  return impact.hit ? static_cast<btScalar>(impact.time) : btScalar(1);
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,55 @@
+/// @file
+/// The contact algorithm of a convex pair: one exact answer a step, and the whole manifold from it at once.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include "pair_registry.hpp"
+#include "pd/bullet/penetration_depth_solver.hpp"
+
+namespace pd::detail {
+
+/// Bullet's own algorithm finds one point a step and needs several steps for a face; this one has up to four from the
+/// first step. Impulses go from last step's points to this step's by feature, else by place, so that the constraint
+/// solver starts warm. A manifold that Bullet shares between pairs (mesh triangles) is added to and never cleared.
+class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
+ public:
+  ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                   const btCollisionObjectWrapper* b, BulletPenetrationDepthSolver& solver);
+  ~ContactAlgorithm() override;
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult* result) override;
+  /// Exact first contact of the motion from each body's present to its interpolation transform, as a fraction of it;
+  /// 1 without contact. (No world of Bullet 3 calls it.)
+  btScalar calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo& info,
+                                 btManifoldResult* result) override;
+  void getAllContactManifolds(btManifoldArray& manifolds) override;
+
+  struct CreateFunc : public btCollisionAlgorithmCreateFunc {
+    explicit CreateFunc(BulletPenetrationDepthSolver& s) : solver(s) {}
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* a,
+                                                   const btCollisionObjectWrapper* b) override;
+    BulletPenetrationDepthSolver& solver;
+  };
+
+ private:
+  void replace_points(const BulletPairAnswer& answer, double threshold, const btCollisionObjectWrapper* a,
+                      btManifoldResult* result);
+  void add_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result);
+  void process_by_bullet(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
+                         const btTransform& transform_b, const btDispatcherInfo& info, btScalar threshold,
+                         btManifoldResult* result);
+
+  BulletPenetrationDepthSolver& solver_;
+  btPersistentManifold* manifold_;
+  bool owns_manifold_ = false;
+  std::unique_ptr<PairMemory> memory_;  ///< of pairs with a manifold of their own
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,57 @@
+/// @file
+/// What the contact algorithm remembers of a pair between steps, reachable by the pair's manifold so that snapshots can
+/// save it: a replay is bit for bit only if the warm start is the same.
+#pragma once
+
+#include <LinearMath/btVector3.h>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include "pd/depth/warm_certificate.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+class btPersistentManifold;
+
+namespace pd::detail {
+
+/// Which feature pair made a manifold point: the point is recognised by its exact local position.
+struct RememberedPoint {
+  btVector3 local_a;
+  std::int64_t feature_id;
+};
+
+struct PairMemory {
+  WarmCertificate warm;
+  /// Held so that the certificate's shapes stay where they are.
+  std::shared_ptr<const ConvexShape> shape_a;
+  std::shared_ptr<const ConvexShape> shape_b;
+  std::array<RememberedPoint, 4> points;
+  int num_points = 0;
+};
+
+/// Memories by manifold. Algorithms come and go on the dispatcher's threads.
+class PairRegistry {
+ public:
+  void add(const btPersistentManifold* manifold, PairMemory* memory) {
+    const std::lock_guard lock(mutex_);
+    memories_[manifold] = memory;
+  }
+  void remove(const btPersistentManifold* manifold) {
+    const std::lock_guard lock(mutex_);
+    memories_.erase(manifold);
+  }
+  [[nodiscard]] PairMemory* find(const btPersistentManifold* manifold) {
+    const std::lock_guard lock(mutex_);
+    const auto found = memories_.find(manifold);
+    return found == memories_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<const btPersistentManifold*, PairMemory*> memories_;  // looked up only, never iterated
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,212 @@
+// Contact points of pairs whose contact is known.
+#include "pd/contact/manifold.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "pd/depth/scratch.hpp"
+
+namespace {
+
+using pd::ContactManifold;
+using pd::ConvexPolytope;
+using pd::ConvexShape;
+using pd::Pose;
+using pd::Vec3;
+
+ConvexShape box(double x, double y, double z) { return ConvexShape(ConvexPolytope::box(Vec3(x, y, z)).value()); }
+
+Pose pose(const Vec3& at, const Vec3& axis = Vec3::UnitX(), double angle = 0) {
+  return Pose::from_trusted_matrix(Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), at);
+}
+
+struct Contact {
+  pd::PenetrationDepth answer;
+  ContactManifold manifold;
+};
+
+Contact touch(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b, const Pose& pose_b,
+              double threshold = 0.02) {
+  pd::Scratch scratch;
+  pd::ManifoldScratch buffers;
+  Contact result;
+  result.answer = pd::penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
+  result.manifold = pd::contact_manifold({&a, pose_a}, {&b, pose_b}, result.answer, threshold, buffers);
+  const double signed_depth =
+      result.answer.contact == pd::ContactClass::separated ? -result.answer.distance : result.answer.depth;
+  for (int i = 0; i < result.manifold.count; ++i) {
+    const auto& point = result.manifold.points[i];
+    EXPECT_NEAR((point.position_b - point.position_a - point.depth * result.manifold.normal).norm(), 0, 1e-12);
+    EXPECT_LE(point.depth, signed_depth + 1e-12);
+    EXPECT_GE(point.depth, -threshold);
+  }
+  return result;
+}
+
+double area(const ContactManifold& manifold) {
+  // Twice the largest triangle with the first point: enough to tell a face from a line.
+  double best = 0;
+  for (int i = 1; i < manifold.count; ++i) {
+    for (int j = i + 1; j < manifold.count; ++j) {
+      best = std::max(best, (manifold.points[i].position_b - manifold.points[0].position_b)
+                                .cross(manifold.points[j].position_b - manifold.points[0].position_b)
+                                .norm());
+    }
+  }
+  return best;
+}
+
+TEST(Manifold, BoxOnBoxHasItsFourCorners) {
+  const ConvexShape small = box(0.5, 0.5, 0.5);
+  const ConvexShape large = box(3, 1, 3);
+  const Contact contact = touch(small, pose(Vec3(0.2, 1.4, -0.3)), large, Pose());
+  ASSERT_EQ(contact.manifold.count, 4);
+  EXPECT_NEAR(contact.manifold.normal.y(), 1, 1e-15);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(contact.manifold.points[i].depth, 0.1, 1e-12);
+    EXPECT_NEAR(contact.manifold.points[i].position_b.y(), 1, 1e-12);
+    EXPECT_NEAR(contact.manifold.points[i].position_a.y(), 0.9, 1e-12);
+  }
+  EXPECT_NEAR(area(contact.manifold), 1, 1e-12);
+  std::set<std::int64_t> ids;
+  for (int i = 0; i < 4; ++i) {
+    ids.insert(contact.manifold.points[i].feature_id);
+  }
+  EXPECT_EQ(ids.size(), 4u);
+}
+
+TEST(Manifold, FeatureIdsStayWhileTheFaceTurns) {
+  const ConvexShape small = box(0.5, 0.5, 0.5);
+  const ConvexShape large = box(3, 1, 3);
+  std::set<std::int64_t> first;
+  for (int step = 0; step < 20; ++step) {
+    const Contact contact =
+        touch(small, pose(Vec3(0.01 * step, 1.49, 0), Vec3(0.02, 1, 0.01), 0.02 * step), large, Pose(), 0.1);
+    ASSERT_EQ(contact.manifold.count, 4) << step;
+    std::set<std::int64_t> ids;
+    for (int i = 0; i < 4; ++i) {
+      ids.insert(contact.manifold.points[i].feature_id);
+    }
+    if (step == 0) {
+      first = ids;
+    }
+    EXPECT_EQ(ids, first) << step;
+  }
+}
+
+TEST(Manifold, EightCornersBecomeFourThatSpanTheFace) {
+  const ConvexShape cube = box(1, 1, 1);
+  const Contact contact = touch(cube, pose(Vec3(0, 1.9, 0), Vec3::UnitY(), M_PI / 4), cube, Pose());
+  ASSERT_EQ(contact.manifold.count, 4);
+  EXPECT_GT(area(contact.manifold), 1.6);
+}
+
+TEST(Manifold, CrossedEdgesMeetInOnePoint) {
+  const ConvexShape bar = box(2, 0.5, 0.5);
+  // Both bars lie on an edge, one along x and one along z: two edges cross at a right angle.
+  const Contact contact = touch(
+      bar,
+      Pose::from_trusted_matrix(
+          (Eigen::AngleAxisd(M_PI / 2, Vec3::UnitY()) * Eigen::AngleAxisd(M_PI / 4, Vec3::UnitX())).toRotationMatrix(),
+          Vec3(0, std::sqrt(2.0) - 0.1, 0)),
+      bar, pose(Vec3::Zero(), Vec3::UnitX(), M_PI / 4));
+  ASSERT_EQ(contact.manifold.count, 1);
+  EXPECT_NEAR(contact.manifold.points[0].depth, 0.1, 1e-12);
+  EXPECT_NEAR(contact.manifold.points[0].position_b.x(), 0, 1e-9);
+}
+
+TEST(Manifold, EdgeOnFaceHasTwoEnds) {
+  const ConvexShape bar = box(1, 0.5, 0.5);
+  const ConvexShape floor = box(5, 1, 5);
+  const Contact contact =
+      touch(bar, pose(Vec3(0, 1 + std::sqrt(0.5) - 0.01, 0), Vec3::UnitX(), M_PI / 4), floor, Pose());
+  ASSERT_EQ(contact.manifold.count, 2);
+  EXPECT_NEAR((contact.manifold.points[0].position_b - contact.manifold.points[1].position_b).norm(), 2, 1e-9);
+}
+
+TEST(Manifold, RoundedBodiesStandOnTheirMargins) {
+  const ConvexShape capsule = ConvexShape::capsule(0.25, 1, 0).value();
+  const ConvexShape floor = box(5, 1, 5);
+  const Contact lying = touch(capsule, pose(Vec3(0, 1.2, 0)), floor, Pose());
+  ASSERT_EQ(lying.manifold.count, 2);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(lying.manifold.points[i].depth, 0.05, 1e-12);
+    EXPECT_NEAR(lying.manifold.points[i].position_a.y(), 0.95, 1e-12);
+    EXPECT_NEAR(std::abs(lying.manifold.points[i].position_a.x()), 1, 1e-12);
+  }
+  const ConvexShape ball = ConvexShape::sphere(0.5).value();
+  const Contact resting = touch(ball, pose(Vec3(0.3, 1.5 - 0.01, 0)), floor, Pose());
+  ASSERT_EQ(resting.manifold.count, 1);
+  EXPECT_NEAR(resting.manifold.points[0].depth, 0.01, 1e-12);
+
+  const ConvexShape rounded = box(0.4, 0.4, 0.4).with_margin(0.1).value();
+  const Contact soft = touch(rounded, pose(Vec3(0, 1.45, 0)), floor, Pose());
+  ASSERT_EQ(soft.manifold.count, 4);
+  EXPECT_NEAR(area(soft.manifold), 0.64, 1e-12);
+}
+
+TEST(Manifold, CylindersAndConesStandOnTheirDiscs) {
+  const ConvexShape floor = box(5, 1, 5);
+  const ConvexShape cylinder = ConvexShape::cylinder(0.5, 0.5, 1).value();
+  const Contact standing = touch(cylinder, pose(Vec3(0, 1.49, 0)), floor, Pose());
+  ASSERT_EQ(standing.manifold.count, 4);
+  EXPECT_GT(area(standing.manifold), 0.45);  // a square in the disc has 0.5
+  const Contact lying = touch(cylinder, pose(Vec3(0, 1.49, 0), Vec3::UnitZ(), M_PI / 2), floor, Pose());
+  ASSERT_EQ(lying.manifold.count, 2);
+  const ConvexShape cone = ConvexShape::cone(0.5, 0.5, 1).value();
+  EXPECT_EQ(touch(cone, pose(Vec3(0, 1.49, 0)), floor, Pose()).manifold.count, 4);
+  EXPECT_EQ(touch(cone, pose(Vec3(0, 1.49, 0), Vec3::UnitZ(), M_PI), floor, Pose()).manifold.count, 1);
+}
+
+TEST(Manifold, TiltedFaceKeepsOnlyWhatIsNear) {
+  const ConvexShape cube = box(0.5, 0.5, 0.5);
+  const ConvexShape floor = box(5, 1, 5);
+  // Tilted by 0.2 about z: the far edge is 0.2 above the near one.
+  const Contact contact = touch(cube, pose(Vec3(0, 1.58, 0), Vec3::UnitZ(), 0.2), floor, Pose(), 0.02);
+  ASSERT_EQ(contact.manifold.count, 2);
+}
+
+TEST(Manifold, ApartWithinTheThresholdAndBeyondIt) {
+  const ConvexShape cube = box(0.5, 0.5, 0.5);
+  const Contact near = touch(cube, pose(Vec3(0, 1.01, 0)), cube, Pose(), 0.02);
+  ASSERT_EQ(near.manifold.count, 4);
+  EXPECT_NEAR(near.manifold.points[0].depth, -0.01, 1e-12);
+  EXPECT_EQ(touch(cube, pose(Vec3(0, 1.05, 0)), cube, Pose(), 0.02).manifold.count, 0);
+}
+
+TEST(Manifold, DeepestPairIsThePenetrationDepth) {
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  const auto cloud = [&](int n) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < n; ++i) {
+      points.emplace_back(normal(random), normal(random), normal(random));
+    }
+    return ConvexShape(ConvexPolytope::from_points(points).value());
+  };
+  for (int i = 0; i < 300; ++i) {
+    const ConvexShape a = cloud(8 + i % 20);
+    const ConvexShape b = i % 3 ? cloud(12) : ConvexShape::cylinder(1, 1, i % 2).value();
+    const Pose pa = pose(Vec3(normal(random), normal(random), normal(random)),
+                         Vec3(normal(random), normal(random), normal(random)), normal(random));
+    const Contact contact = touch(a, pa, b, Pose(), 0.05);
+    const double signed_depth =
+        contact.answer.contact == pd::ContactClass::separated ? -contact.answer.distance : contact.answer.depth;
+    if (signed_depth < -0.05) {
+      EXPECT_EQ(contact.manifold.count, 0);
+      continue;
+    }
+    ASSERT_GE(contact.manifold.count, 1) << i;
+    double deepest = -HUGE_VAL;
+    for (int k = 0; k < contact.manifold.count; ++k) {
+      deepest = std::max(deepest, contact.manifold.points[k].depth);
+    }
+    EXPECT_NEAR(deepest, signed_depth, 1e-3 * 0.05 + 1e-5) << i;
+  }
+}
+
+}  // namespace

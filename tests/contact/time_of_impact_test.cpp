@@ -1,0 +1,121 @@
+// First contacts that are known in closed form, and by stepping.
+#include "pd/contact/time_of_impact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "pd/depth/scratch.hpp"
+
+namespace {
+
+using pd::ConvexPolytope;
+using pd::ConvexShape;
+using pd::MovingShape;
+using pd::Pose;
+using pd::Vec3;
+
+Pose at(double x, double y, double z) { return Pose::from_trusted_matrix(pd::Mat3::Identity(), Vec3(x, y, z)); }
+
+TEST(TimeOfImpact, BallsHeadOn) {
+  const ConvexShape ball = ConvexShape::sphere(0.5).value();
+  pd::Scratch scratch;
+  const MovingShape a{{&ball, at(3, 0, 0)}, {Vec3(-4, 0, 0), Vec3(1, 2, 3)}};
+  const MovingShape b{{&ball, at(0, 0, 0)}, {Vec3(1, 0, 0), Vec3::Zero()}};
+  const auto hit = pd::time_of_impact(a, b, 1, scratch);
+  ASSERT_TRUE(hit.hit);
+  EXPECT_NEAR(hit.time, 0.4, 1e-9);
+  EXPECT_LE(hit.certified, hit.time);
+  EXPECT_GT(hit.certified, 0.39);
+  EXPECT_EQ(hit.contact.contact, pd::ContactClass::separated);
+  EXPECT_FALSE(pd::time_of_impact(a, b, 0.39, scratch).hit);
+}
+
+TEST(TimeOfImpact, PassingByAndParting) {
+  const ConvexShape ball = ConvexShape::sphere(0.5).value();
+  pd::Scratch scratch;
+  const MovingShape still{{&ball, Pose()}, {}};
+  const auto near_miss =
+      pd::time_of_impact({{&ball, at(3, 1.001, 0)}, {Vec3(-6, 0, 0), Vec3::Zero()}}, still, 1, scratch);
+  EXPECT_FALSE(near_miss.hit);
+  EXPECT_EQ(near_miss.time, 1);
+  EXPECT_FALSE(pd::time_of_impact({{&ball, at(3, 0, 0)}, {Vec3(6, 0, 0), Vec3::Zero()}}, still, 1, scratch).hit);
+  const auto grazing =
+      pd::time_of_impact({{&ball, at(3, 0.999, 0)}, {Vec3(-6, 0, 0), Vec3::Zero()}}, still, 1, scratch);
+  ASSERT_TRUE(grazing.hit);
+  EXPECT_NEAR(grazing.time, (3 - std::sqrt(1 - 0.999 * 0.999)) / 6, 1e-7);
+}
+
+TEST(TimeOfImpact, ThinWallIsNotMissed) {
+  const ConvexShape ball = ConvexShape::sphere(0.05).value();
+  const ConvexShape wall(ConvexPolytope::box(Vec3(0.001, 5, 5)).value());
+  pd::Scratch scratch;
+  const auto hit = pd::time_of_impact({{&ball, at(-10, 0.3, 0)}, {Vec3(1000, 0, 0), Vec3::Zero()}},
+                                      {{&wall, Pose()}, {}}, 1, scratch);
+  ASSERT_TRUE(hit.hit);
+  EXPECT_NEAR(hit.time, (10 - 0.051) / 1000, 1e-10);
+}
+
+TEST(TimeOfImpact, SpinningBarAgainstAWall) {
+  // A bar of half length 1 turning at 2 rad/s about its centre, 0.6 in front of a wall: its tip at height sin(2t) =
+  // 0.6.
+  const ConvexShape bar(ConvexPolytope::from_points(std::vector<Vec3>{Vec3(-1, 0, 0), Vec3(1, 0, 0)}).value());
+  const ConvexShape wall(ConvexPolytope::box(Vec3(5, 1, 5)).value());
+  pd::Scratch scratch;
+  const auto hit =
+      pd::time_of_impact({{&bar, at(0, 1.6, 0)}, {Vec3::Zero(), Vec3(0, 0, 2)}}, {{&wall, Pose()}, {}}, 2, scratch);
+  ASSERT_TRUE(hit.hit);
+  EXPECT_NEAR(hit.time, std::asin(0.6) / 2, 1e-8);
+  EXPECT_LT(hit.queries, 60);
+}
+
+TEST(TimeOfImpact, StartsInside) {
+  const ConvexShape ball = ConvexShape::sphere(0.5).value();
+  pd::Scratch scratch;
+  const auto hit = pd::time_of_impact({{&ball, at(0.5, 0, 0)}, {}}, {{&ball, Pose()}, {}}, 1, scratch);
+  EXPECT_TRUE(hit.hit);
+  EXPECT_EQ(hit.time, 0);
+}
+
+TEST(TimeOfImpact, AgainstSmallSteps) {
+  std::mt19937 random(23);
+  std::normal_distribution<double> normal;
+  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  pd::Scratch scratch;
+  int hits = 0;
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Vec3> points(10);
+    for (Vec3& p : points) {
+      p = 0.5 * vector();
+    }
+    const ConvexShape a(ConvexPolytope::from_points(points).value());
+    const ConvexShape b =
+        i % 2 ? ConvexShape(ConvexPolytope::box(Vec3(1, 0.2, 0.6)).value()) : ConvexShape::capsule(0.3, 0.8, 1).value();
+    const MovingShape moving_a{{&a, at(4, 0, 0)}, {Vec3(-6, 0, 0) + vector(), 3 * vector()}};
+    const MovingShape moving_b{{&b, Pose()}, {vector(), 3 * vector()}};
+    const auto found = pd::time_of_impact(moving_a, moving_b, 1, scratch);
+    double first = HUGE_VAL;
+    for (int k = 0; k <= 2000 && first == HUGE_VAL; ++k) {
+      const double t = k / 2000.0;
+      const auto answer =
+          pd::penetration_depth({&a, pd::pose_at(moving_a, t)}, {&b, pd::pose_at(moving_b, t)}, scratch);
+      if (answer.contact != pd::ContactClass::separated) {
+        first = t;
+      }
+    }
+    if (first < HUGE_VAL) {
+      ASSERT_TRUE(found.hit) << i;
+      EXPECT_LE(found.time, first + 1e-9) << i;
+      EXPECT_GT(found.time, first - 0.02) << i;
+      ++hits;
+    }
+    if (found.hit) {
+      EXPECT_LE(found.contact.distance, 1e-9) << i;
+    }
+  }
+  EXPECT_GT(hits, 15);
+}
+
+}  // namespace

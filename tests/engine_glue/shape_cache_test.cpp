@@ -1,0 +1,110 @@
+// The cache never answers for what a shape was, only for what it is.
+#include "pd/bullet/shape_cache.hpp"
+
+#include <btBulletCollisionCommon.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+namespace {
+
+TEST(ShapeCache, ConvertsOnceAndFollowsChanges) {
+  pd::BulletShapeCache cache;
+  btBoxShape box(btVector3(1, 1, 1));
+  const auto first = cache.find_or_convert(box);
+  EXPECT_EQ(cache.find_or_convert(box), first);
+  EXPECT_EQ(cache.conversions(), 1);
+  box.setLocalScaling(btVector3(2, 1, 1));
+  const auto second = cache.find_or_convert(box);
+  EXPECT_NE(second, first);
+  EXPECT_EQ(cache.size(), 1u);
+  EXPECT_GT(second->polytope()->max_abs_coordinate(), 1.9);
+  EXPECT_LT(first->polytope()->max_abs_coordinate(), 1.0);  // still alive for those who hold it
+}
+
+TEST(ShapeCache, AddressUsedAgainByAnotherShape) {
+  pd::BulletShapeCache cache;
+  alignas(16) std::byte memory[std::max(sizeof(btSphereShape), sizeof(btCapsuleShape))];
+  auto* sphere = new (memory) btSphereShape(1);
+  EXPECT_EQ(cache.find_or_convert(*sphere)->polytope()->num_vertices(), 1);
+  sphere->~btSphereShape();
+  auto* capsule = new (memory) btCapsuleShape(1, 2);
+  EXPECT_EQ(cache.find_or_convert(*capsule)->polytope()->num_vertices(), 2);
+  capsule->~btCapsuleShape();
+}
+
+TEST(ShapeCache, BoundedLeastRecentlyUsedFirst) {
+  pd::BulletShapeCache cache(3);
+  std::vector<std::unique_ptr<btSphereShape>> spheres;
+  for (int i = 0; i < 4; ++i) {
+    spheres.push_back(std::make_unique<btSphereShape>(btScalar(i + 1)));
+  }
+  for (int i : {0, 1, 2, 0, 3}) {
+    ASSERT_NE(cache.find_or_convert(*spheres[i]), nullptr);
+    EXPECT_LE(cache.size(), 3u);
+  }
+  EXPECT_EQ(cache.conversions(), 4);
+  ASSERT_NE(cache.find_or_convert(*spheres[0]), nullptr);
+  EXPECT_EQ(cache.conversions(), 4);  // kept: used after 1 was
+  ASSERT_NE(cache.find_or_convert(*spheres[1]), nullptr);
+  EXPECT_EQ(cache.conversions(), 5);
+}
+
+TEST(ShapeCache, ForgetAndClear) {
+  pd::BulletShapeCache cache;
+  btSphereShape a(1);
+  btSphereShape b(2);
+  ASSERT_NE(cache.find_or_convert(a), nullptr);
+  ASSERT_NE(cache.find_or_convert(b), nullptr);
+  cache.forget(&a);
+  EXPECT_EQ(cache.size(), 1u);
+  cache.clear();
+  EXPECT_EQ(cache.size(), 0u);
+}
+
+TEST(ShapeCache, ShapesWithoutExactFormAreRememberedToo) {
+  pd::BulletShapeCache cache;
+  const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
+  const btScalar radii[2] = {1, 2};
+  const btMultiSphereShape unequal(centres, radii, 2);
+  EXPECT_EQ(cache.find_or_convert(unequal), nullptr);
+  EXPECT_EQ(cache.find_or_convert(unequal), nullptr);
+  EXPECT_EQ(cache.conversions(), 1);
+}
+
+TEST(ShapeCache, TrianglesOnTheStackLeaveNoEntry) {
+  pd::BulletShapeCache cache;
+  const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
+  EXPECT_EQ(cache.find_or_convert(triangle)->polytope()->num_vertices(), 3);
+  EXPECT_EQ(cache.size(), 0u);
+}
+
+TEST(ShapeCache, ManyThreadsOneBody) {
+  pd::BulletShapeCache cache;
+  std::vector<std::unique_ptr<btBoxShape>> boxes;
+  for (int i = 0; i < 20; ++i) {
+    boxes.push_back(std::make_unique<btBoxShape>(btVector3(btScalar(1 + i), 1, 1)));
+  }
+  std::vector<std::vector<const pd::ConvexShape*>> seen(4);
+  std::vector<std::thread> threads;
+  for (auto& mine : seen) {
+    threads.emplace_back([&cache, &boxes, &mine] {
+      for (int round = 0; round < 50; ++round) {
+        mine.clear();
+        for (const auto& box : boxes) {
+          mine.push_back(cache.find_or_convert(*box).get());
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (const auto& mine : seen) {
+    EXPECT_EQ(mine, seen[0]);
+  }
+  EXPECT_EQ(cache.size(), boxes.size());
+}
+
+}  // namespace

@@ -1,0 +1,163 @@
+// A replay after restore gives the same bits.
+#include "pd/bullet/snapshot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <random>
+
+#include "engine_glue/bullet_world.hpp"
+#include "pd/bullet/install.hpp"
+
+namespace pd::test {
+namespace {
+
+enum class Contacts { bullet, persistent, one_shot };
+
+struct Record {
+  std::vector<btScalar> numbers;
+  void add(const btVector3& v) { numbers.insert(numbers.end(), {v.x(), v.y(), v.z()}); }
+};
+
+Record record(BulletWorld& scene) {
+  Record result;
+  for (const auto& body : scene.bodies()) {
+    result.add(body->getWorldTransform().getOrigin());
+    for (int i = 0; i < 3; ++i) {
+      result.add(body->getWorldTransform().getBasis()[i]);
+    }
+    result.add(body->getLinearVelocity());
+    result.add(body->getAngularVelocity());
+    result.numbers.push_back(static_cast<btScalar>(body->getActivationState()));
+  }
+  for (int i = 0; i < scene.dispatcher().getNumManifolds(); ++i) {
+    const btPersistentManifold* manifold = scene.dispatcher().getManifoldByIndexInternal(i);
+    for (int k = 0; k < manifold->getNumContacts(); ++k) {
+      const btManifoldPoint& point = manifold->getContactPoint(k);
+      result.add(point.m_localPointA);
+      result.add(point.m_localPointB);
+      result.numbers.push_back(point.m_appliedImpulse);
+      result.numbers.push_back(point.m_appliedImpulseLateral1);
+      result.numbers.push_back(point.m_distance1);
+    }
+  }
+  return result;
+}
+
+/// A heap of boxes, hulls, cylinders, capsules and a compound, thrown down at random.
+void fill(BulletWorld& scene, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto u = [&] { return static_cast<btScalar>(uniform(random)); };
+  auto* floor = scene.shape<btBoxShape>(btVector3(20, 1, 20));
+  scene.body(floor, 0, btVector3(0, -1, 0));
+  auto* box = scene.shape<btBoxShape>(btVector3(btScalar(0.4), btScalar(0.3), btScalar(0.5)));
+  box->setMargin(0);
+  auto* hull = box_hull(scene, btVector3(btScalar(0.3), btScalar(0.3), btScalar(0.3)), btScalar(0.01));
+  auto* cylinder = scene.shape<btCylinderShape>(btVector3(btScalar(0.3), btScalar(0.4), btScalar(0.3)));
+  auto* capsule = scene.shape<btCapsuleShape>(btScalar(0.2), btScalar(0.6));
+  auto* compound = scene.shape<btCompoundShape>();
+  compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(-0.3), 0, 0)), box);
+  compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.3), 0, 0)), hull);
+  btCollisionShape* kinds[] = {box, hull, cylinder, capsule, compound};
+  for (int i = 0; i < 15; ++i) {
+    btQuaternion turn(u(), u(), u(), u());
+    turn.normalize();
+    btRigidBody* body = scene.body(kinds[i % 5], 1, btTransform(turn, btVector3(u(), btScalar(1 + 0.45 * i), u())));
+    body->setLinearVelocity(btVector3(u(), -2, u()));
+    body->setAngularVelocity(btVector3(3 * u(), 3 * u(), 3 * u()));
+  }
+}
+
+class Replay : public ::testing::TestWithParam<Contacts> {};
+
+TEST_P(Replay, BitForBit) {
+  for (const int save_at : {0, 20, 60, 110}) {
+    for (const int length : {1, 2, 7, 40}) {
+      BulletPenetrationDepthSolver solver;
+      BulletWorld scene;
+      BulletPenetrationDepthSolver* installed = nullptr;
+      if (GetParam() != Contacts::bullet) {
+        install(scene.world(), solver,
+                GetParam() == Contacts::one_shot ? BulletContacts::one_shot : BulletContacts::persistent);
+        installed = &solver;
+      }
+      scene.world().getDispatchInfo().m_deterministicOverlappingPairs = true;
+      scene.world().getSolverInfo().m_solverMode |= SOLVER_RANDMIZE_ORDER;
+      fill(scene, 3);
+      const btScalar h = btScalar(1.0 / 60);
+      for (int i = 0; i < save_at; ++i) {
+        scene.world().stepSimulation(h, 0);
+      }
+      const BulletSnapshot snapshot(scene.world(), installed);
+      const auto run = [&] {
+        for (int i = 0; i < length; ++i) {
+          scene.world().stepSimulation(h, 0);
+        }
+        return record(scene);
+      };
+      const Record first = run();
+      for (int replay = 0; replay < 2; ++replay) {
+        snapshot.restore();
+        const Record again = run();
+        ASSERT_EQ(again.numbers.size(), first.numbers.size()) << save_at << "+" << length;
+        EXPECT_EQ(std::memcmp(again.numbers.data(), first.numbers.data(), sizeof(btScalar) * first.numbers.size()), 0)
+            << save_at << "+" << length << " replay " << replay;
+      }
+    }
+  }
+}
+
+TEST_P(Replay, AStepOfAnotherLengthInBetweenLeavesNoTrace) {
+  BulletPenetrationDepthSolver solver;
+  BulletWorld scene;
+  BulletPenetrationDepthSolver* installed = nullptr;
+  if (GetParam() != Contacts::bullet) {
+    install(scene.world(), solver,
+            GetParam() == Contacts::one_shot ? BulletContacts::one_shot : BulletContacts::persistent);
+    installed = &solver;
+  }
+  scene.world().getDispatchInfo().m_deterministicOverlappingPairs = true;
+  fill(scene, 5);
+  const btScalar h = btScalar(1.0 / 60);
+  for (int i = 0; i < 50; ++i) {
+    scene.world().stepSimulation(h, 0);
+  }
+  const BulletSnapshot snapshot(scene.world(), installed);
+  scene.world().stepSimulation(h, 0);
+  const Record plain = record(scene);
+  for (const double share : {0.9, 0.37, 0.01}) {
+    snapshot.restore();
+    scene.world().stepSimulation(static_cast<btScalar>(share) * h, 0);
+    snapshot.restore();
+    scene.world().stepSimulation(h, 0);
+    EXPECT_EQ(record(scene).numbers, plain.numbers) << share;
+  }
+}
+
+TEST(Snapshot, ForcesComeBackThroughTheFactors) {
+  BulletWorld scene;
+  auto* sphere = scene.shape<btSphereShape>(btScalar(1));
+  btRigidBody* body = scene.body(sphere, 1, btVector3(0, 0, 0));
+  body->setLinearFactor(btVector3(btScalar(0.5), 1, 0));
+  body->setAngularFactor(btVector3(1, btScalar(0.25), 1));
+  body->applyCentralForce(btVector3(4, 5, 6));
+  body->applyTorque(btVector3(1, 2, 3));
+  const btVector3 force = body->getTotalForce();
+  const btVector3 torque = body->getTotalTorque();
+  const BulletSnapshot snapshot(scene.world(), nullptr);
+  body->clearForces();
+  body->applyCentralForce(btVector3(9, 9, 9));
+  snapshot.restore();
+  EXPECT_EQ(body->getTotalForce(), force);
+  EXPECT_EQ(body->getTotalTorque(), torque);
+  EXPECT_EQ(body->getLinearFactor(), btVector3(btScalar(0.5), 1, 0));
+}
+
+INSTANTIATE_TEST_SUITE_P(AllContacts, Replay,
+                         ::testing::Values(Contacts::bullet, Contacts::persistent, Contacts::one_shot));
+
+}  // namespace
+}  // namespace pd::test
