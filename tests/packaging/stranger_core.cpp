@@ -1,7 +1,6 @@
 /// @file
 /// A stranger's program on pd_core alone: two unit cubes, one a quarter deep in the other.
 #include <cstdio>
-
 #include <pd/depth/penetration_depth.hpp>
 #include <pd/depth/scratch.hpp>
 #include <pd/shape/convex_polytope.hpp>

@@ -3,7 +3,6 @@
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 
 #include <cstdio>
-
 #include <pd/bullet/scalar.hpp>
 #include <pd/bullet/shape_conversion.hpp>
 #include <pd/depth/penetration_depth.hpp>

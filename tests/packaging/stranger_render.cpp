@@ -1,7 +1,6 @@
 /// @file
 /// A stranger's program on render: a chart drawn, written as PNG and read back.
 #include <cstdio>
-
 #include <pd/render/chart.hpp>
 #include <pd/render/image.hpp>
 
