@@ -92,22 +92,24 @@ PointPair placed(Points a, Points b, DepthClass depth, Random& random) {
 Vec3 random_extents(Random& random) { return {random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1)}; }
 
 /// A stands below, B comes from above, turned by a right angle about z and upside down: the profiles cross.
-PointPair crossed(Points a, Points b, DepthClass depth, Random& random) {
+/// Deep means the same place when `nested`, else by 1 (where the facets of two roofs are all nearly tied).
+PointPair crossed(Points a, Points b, DepthClass depth, bool nested, Random& random) {
   PointPair pair{std::move(a), std::move(b), {}, {}};
   Mat3 m = Mat3::Zero();
   m(0, 1) = 1;
   m(1, 0) = 1;
   m(2, 2) = -1;
-  const double overlap = depth == DepthClass::gap       ? -0.01
-                         : depth == DepthClass::shallow ? 0.01
-                         : depth == DepthClass::mid     ? 0.1
-                                                        : 1;
   double contact_height = 0;
   for (const Points* body : {&pair.a, &pair.b}) {
     double top = 0;
     for (const Vec3& p : *body) top = std::max(top, p.z());
     contact_height += top;
   }
+  const double overlap = depth == DepthClass::gap       ? -0.01
+                         : depth == DepthClass::shallow ? 0.01
+                         : depth == DepthClass::mid     ? 0.1
+                         : nested                       ? contact_height
+                                                        : 1;
   const Vec3 t(0.02 * random.uniform(-1, 1), 0.02 * random.uniform(-1, 1), contact_height - overlap);
   pair.pose_b = matrix_pose(m, t);
   return pair;
@@ -275,13 +277,13 @@ PointPair make_pair(PairFamily family, int n, DepthClass depth, std::uint64_t se
     case PairFamily::prism:
       return placed(prism(n), prism(n), depth, random);
     case PairFamily::grid:
-      return crossed(lens(n, 0.5), lens(n, 0.5), depth, random);
+      return crossed(lens(n, 0.5), lens(n, 0.5), depth, true, random);
     case PairFamily::patch:
-      return crossed(roof(n, {0.5, 0.2, 0}, random), roof(n, {0.5, 0.2, 0}, random), depth, random);
+      return crossed(roof(n, {0.5, 0.2, 0}, random), roof(n, {0.5, 0.2, 0}, random), depth, false, random);
     case PairFamily::roofs:
-      return crossed(roof(n, {0.1, 0.2, 0}, random), roof(n, {0.1, 0.2, 0}, random), depth, random);
+      return crossed(roof(n, {0.1, 0.2, 0}, random), roof(n, {0.1, 0.2, 0}, random), depth, false, random);
     case PairFamily::tilted_roofs:
-      return crossed(roof(n, {0.5, 0.2, 0.2}, random), roof(n, {0.5, 0.2, 0.2}, random), depth, random);
+      return crossed(roof(n, {0.5, 0.2, 0.2}, random), roof(n, {0.5, 0.2, 0.2}, random), depth, false, random);
     case PairFamily::slivers: {
       static constexpr double kThickness[] = {1e-3, 1e-6, 1e-9, 1e-12};
       Points a = sliver(n, kThickness[random.integer(0, 3)], random);
