@@ -35,11 +35,18 @@ bool no_longer_than(const Vec3& t, double length) {
 /// A double triple t with <unit, t> >= depth and |t| <= upper. The cap between plane and sphere is less than an ulp
 /// high but about 1e8 ulps wide, so it holds many triples: two coordinates walk near the exact translation, the third
 /// (the one with the finest ulps) is solved for. Candidates are sifted in double-double and proved exactly.
-bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& unit, const DoubleDouble& depth,
-                      double upper, Vec3& translation) {
+///
+/// Lengths are brought near 1 by a power of two for the sifting.
+bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& unit, const DoubleDouble& true_depth,
+                      double true_upper, Vec3& translation) {
+  const int exponent = std::ilogb(true_upper);
+  const DoubleDouble depth{std::ldexp(true_depth.hi, -exponent), std::ldexp(true_depth.lo, -exponent)};
+  const double upper = std::ldexp(true_upper, -exponent);
   const Vec3 base = high({unit.x * depth, unit.y * depth, unit.z * depth});
-  const auto accept = [&](const Vec3& t) {
-    if (!separates(plane, r, t) || !no_longer_than(t, upper)) return false;
+  const auto accept = [&](const Vec3& candidate) {
+    const Vec3 t(std::ldexp(candidate.x(), exponent), std::ldexp(candidate.y(), exponent),
+                 std::ldexp(candidate.z(), exponent));
+    if (!separates(plane, r, t) || !no_longer_than(t, true_upper)) return false;
     translation = t;
     return true;
   };
@@ -48,9 +55,9 @@ bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& 
   int order[3] = {0, 1, 2};
   std::sort(order, order + 3, [&](int i, int j) { return std::abs(base[i]) > std::abs(base[j]); });
   const double scale = std::abs(base[order[0]]);
-  // A coordinate far below the others' ulps is nearly a zero of the normal: it stays.
+  // A coordinate that is nearly a zero of the normal hardly moves the plane's side, but lengthens t: it stays, or goes.
   int live = 1;
-  while (live < 3 && std::abs(base[order[live]]) > 0x1p-60 * scale) ++live;
+  while (live < 3 && std::abs(base[order[live]]) > 0x1p-20 * scale) ++live;
   const DoubleDouble components[3] = {unit.x, unit.y, unit.z};
   const double height = to_double(DoubleDouble{upper, 0} - depth);
   const auto ulp = [&](int i) { return std::nextafter(std::abs(base[i]), HUGE_VAL) - std::abs(base[i]); };
@@ -67,9 +74,14 @@ bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& 
       t[solved] = std::nextafter(t[solved], components[solved].hi > 0 ? HUGE_VAL : -HUGE_VAL);
       excess = components[solved] * t[solved] - rest;
     }
-    return excess.hi <= height * 1.0001 && accept(t);
+    if (excess.hi > height * 1.0001) return false;
+    const DoubleDouble length = two_product(t.x(), t.x()) + two_product(t.y(), t.y()) + two_product(t.z(), t.z());
+    return (length - two_product(upper, upper)).hi <= 0x1p-90 * upper * upper && accept(t);
   };
-  if (live == 1) return solve(base);
+  Vec3 bare = base;
+  for (int i = live; i < 3; ++i) bare[order[i]] = 0;
+  if (solve(bare) || solve(base)) return true;
+  if (live == 1) return false;
   for (const int reach : {4, 40, 400}) {
     const int first_reach = live == 2 ? reach * reach : reach;
     const int second_reach = live == 2 ? 0 : reach;
@@ -132,8 +144,9 @@ void finish(const NearestPlane& plane, const Margins& margins, PenetrationDepth&
     out.lower = value.round_down();
     out.upper = value.round_up(out.lower);
     const DoubleDouble depth = value.approximate();
-    while (!find_translation(plane, r, unit, depth, out.upper, out.translation)) {
-      out.upper = std::nextafter(out.upper, std::numeric_limits<double>::infinity());
+    // Strides grow, so that subnormal lengths, whose coordinates are coarse, end too.
+    for (double ulps = 1; !find_translation(plane, r, unit, depth, out.upper, out.translation); ulps *= 2) {
+      out.upper += ulps * (std::nextafter(out.upper, HUGE_VAL) - out.upper);
     }
     out.depth = out.upper;
   }
