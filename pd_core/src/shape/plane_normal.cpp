@@ -13,6 +13,7 @@ namespace {
 // that below 16u of the normal's length (u = 2^-53). Double-double keeps it below u down to a ratio of 2^45.
 constexpr double kPlainRatio = 4;
 constexpr double kDoubleDoubleRatio = 0x1p45;
+
 Vec3 unit(const Vec3& v) { return v / std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
 
 /// The power of two that brings the largest coordinate of v into [1/2, 1), as near as doubles allow. Normals then have
@@ -53,6 +54,7 @@ Vec3 plane_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3DD n = cross(exact_difference(b, a, scale_u), exact_difference(c, a, scale_v));
     return unit({to_double(n.x), to_double(n.y), to_double(n.z)});
   }
+  // The triangle is thinner than 106 bits can tell.
   const Dyadic3 origin = to_dyadic(a);
   const Dyadic3 n = cross(to_dyadic(b) - origin, to_dyadic(c) - origin);
   const int exponent = std::max({magnitude_exponent(n.x), magnitude_exponent(n.y), magnitude_exponent(n.z)});
