@@ -42,19 +42,35 @@ std::array<std::int32_t, 5> rank(const PosedPair& pair, const OverlayPiece& piec
 /// The search: the nearest plane so far, in as many stages as were needed.
 class NearestPlane {
  public:
-  NearestPlane(const PosedPair& pair, const OverlayDepthBuffers& buffers)
-      : pair_(pair), buffers_(buffers), point_error_((2 * pair.vector_error()) * (1 + 8 * kU)) {}
+  explicit NearestPlane(const OverlayWalk& walk)
+      : walk_(walk), pair_(walk.pair()), a_(walk.buffers().a), b_(walk.buffers().b) {
+    PairVector translation;
+    translation.translated = true;
+    offset_ = pair_.approximate(translation);
+    const double error = pair_.vector_error();
+    reach_ = (a_.reach + b_.reach + norm1(offset_) + 3 * error) * (1 + 8 * kU);
+    point_error_ = (3 * error + 2 * kU * reach_) * (1 + 8 * kU);
+    // For edges x, y and n = x x y the error of n is e (|x| + |y| + 2e) + 3u |x||y| per coordinate (1-norms), and that
+    // of <point, n> is reach error(n) + |n|_1 (error(point) + 4u reach) + 3 error(n) error(point). With 2 reach
+    // error(n) for the length of n, all of it is a polynomial in |x| and |y| whose coefficients belong to the pair.
+    const double edge_error = std::max(a_.edge_error, b_.edge_error);
+    const double per_normal_error = 3 * reach_ + 3 * point_error_;
+    constant_ = (2 * edge_error * edge_error * per_normal_error) * (1 + 16 * kU) + 0x1p-900;
+    linear_ = edge_error * per_normal_error * (1 + 16 * kU);
+    bilinear_ = (3 * kU * per_normal_error + point_error_ + 4 * kU * reach_) * (1 + 16 * kU);
+  }
 
-  /// False when the origin lies strictly outside some facet (`separating` names it).
+  /// False when the origin lies strictly outside some facet (`piece` is it).
   bool consume(std::span<const OverlayPiece> pieces) {
+    visited_ += static_cast<std::int64_t>(pieces.size());
     for (const OverlayPiece& piece : pieces) {
-      ++visited_;
+      if (piece.kind == OverlayPiece::Kind::edges && far_edges(piece)) continue;
       const Plane plane = evaluate(piece);
       const double length = std::sqrt(plane.normal.squaredNorm());
       // Rejected when the plane is certainly farther than the nearest one: offset / |normal| > upper.
-      const double longest = (length * (1 + 8 * kU) + 2 * plane.normal_error);
+      const double longest = length * (1 + 8 * kU) + 2 * plane.normal_error;
       if (plane.offset - plane.offset_error > upper_ * longest) continue;
-      if (!consider(piece, plane, length)) return false;
+      if (!consider(piece, plane)) return false;
     }
     return true;
   }
@@ -77,53 +93,63 @@ class NearestPlane {
     Dyadic denominator;
   };
 
+  /// Whether an edge-edge plane is certainly farther than the nearest one, by one comparison of squares.
+  bool far_edges(const OverlayPiece& piece) const {
+    const PosedDiagram::Edge& x = b_.half_edges[static_cast<std::size_t>(piece.b)];
+    const PosedDiagram::Edge& y = a_.half_edges[static_cast<std::size_t>(piece.a)];
+    const Vec3& on_b = b_.points[static_cast<std::size_t>(pair_.b().half_edge(piece.b).origin)];
+    const Vec3& on_a = a_.points[static_cast<std::size_t>(pair_.a().half_edge(piece.a).origin)];
+    const double n0 = x.vector[1] * y.vector[2] - x.vector[2] * y.vector[1];
+    const double n1 = x.vector[2] * y.vector[0] - x.vector[0] * y.vector[2];
+    const double n2 = x.vector[0] * y.vector[1] - x.vector[1] * y.vector[0];
+    const double offset = (on_b.x() - on_a.x() + offset_.x()) * n0 + (on_b.y() - on_a.y() + offset_.y()) * n1 +
+                          (on_b.z() - on_a.z() + offset_.z()) * n2;
+    const double least = offset - (constant_ + linear_ * (x.size + y.size) + bilinear_ * (x.size * y.size));
+    return least > 0 && least * least > upper_squared_ * (n0 * n0 + n1 * n1 + n2 * n2) + 0x1p-900;
+  }
+
   Plane evaluate(const OverlayPiece& piece) const {
-    const PosedDiagram& a = buffers_.overlay.a;
-    const PosedDiagram& b = buffers_.overlay.b;
     Plane plane;
     int va = piece.a, vb = piece.b;
     switch (piece.kind) {
       case OverlayPiece::Kind::facet_of_a: {
-        const PosedDiagram::Facet& f = a.facets[static_cast<std::size_t>(piece.a)];
+        const PosedDiagram::Facet& f = a_.facets[static_cast<std::size_t>(piece.a)];
         plane.normal = Vec3(-f.normal[0], -f.normal[1], -f.normal[2]);
-        plane.normal_error = f.error;
+        plane.normal_error = a_.normal_errors[static_cast<std::size_t>(piece.a)];
         va = pair_.a().facet_vertices(piece.a)[0];
         break;
       }
       case OverlayPiece::Kind::facet_of_b: {
-        const PosedDiagram::Facet& f = b.facets[static_cast<std::size_t>(piece.b)];
+        const PosedDiagram::Facet& f = b_.facets[static_cast<std::size_t>(piece.b)];
         plane.normal = Vec3(f.normal[0], f.normal[1], f.normal[2]);
-        plane.normal_error = f.error;
+        plane.normal_error = b_.normal_errors[static_cast<std::size_t>(piece.b)];
         vb = pair_.b().facet_vertices(piece.b)[0];
         break;
       }
       case OverlayPiece::Kind::edges: {
-        const PosedDiagram::Edge& x = b.half_edges[static_cast<std::size_t>(piece.b)];
-        const PosedDiagram::Edge& y = a.half_edges[static_cast<std::size_t>(piece.a)];
+        const PosedDiagram::Edge& x = b_.half_edges[static_cast<std::size_t>(piece.b)];
+        const PosedDiagram::Edge& y = a_.half_edges[static_cast<std::size_t>(piece.a)];
         plane.normal = Vec3(x.vector[1] * y.vector[2] - x.vector[2] * y.vector[1],
                             x.vector[2] * y.vector[0] - x.vector[0] * y.vector[2],
                             x.vector[0] * y.vector[1] - x.vector[1] * y.vector[0]);
-        const double e = pair_.vector_error();
-        plane.normal_error = (e * (x.norm1 + y.norm1 + 2 * e) + 3 * kU * x.norm1 * y.norm1) * (1 + 8 * kU);
+        const double e = std::max(a_.edge_error, b_.edge_error);
+        plane.normal_error = (e * (x.size + y.size + 2 * e) + 3 * kU * x.size * y.size) * (1 + 8 * kU);
         va = pair_.a().half_edge(piece.a).origin;
         vb = pair_.b().half_edge(piece.b).origin;
       }
     }
-    const Vec3 point = buffers_.posed_b[static_cast<std::size_t>(vb)] + buffers_.posed_a[static_cast<std::size_t>(va)];
+    const Vec3 point = b_.points[static_cast<std::size_t>(vb)] - a_.points[static_cast<std::size_t>(va)] + offset_;
     plane.offset = point.dot(plane.normal);
-    const double size = norm1(point);
     plane.offset_error =
-        offset_error(size, norm1(plane.normal), point_error_ + kU * size, plane.normal_error, 4 * kU) + 0x1p-900;
+        offset_error(norm1(point), norm1(plane.normal), point_error_, plane.normal_error, 4 * kU) + 0x1p-900;
     return plane;
   }
 
-  bool consider(const OverlayPiece& piece, const Plane& plane, double length) {
+  bool consider(const OverlayPiece& piece, const Plane& plane) {
+    // A piece that only cuts another one's plane (or has no area) adds nothing, and its tie would cost exact
+    // arithmetic.
+    if (piece.kind != OverlayPiece::Kind::facet_of_a && !whole_facet(walk_, piece)) return true;
     const FacetOfDifference facet = facet_of(pair_, piece);
-    // Two exactly parallel edges span no plane.
-    if (piece.kind == OverlayPiece::Kind::edges && length <= 2 * plane.normal_error &&
-        pair_.parallel(facet.u, facet.v)) {
-      return true;
-    }
     int sign = 1;
     if (!(plane.offset > plane.offset_error)) {
       sign = pair_.sign_determinant(facet.point(), facet.u, facet.v);
@@ -136,7 +162,7 @@ class NearestPlane {
     if (sign == 0) {
       if (!found_ || !zero_ || rank(pair_, piece) < rank(pair_, best_)) best_ = piece;
       found_ = zero_ = true;
-      upper_ = 0;
+      set_upper(0);
       return true;
     }
     if (zero_) return true;
@@ -148,11 +174,16 @@ class NearestPlane {
       best_squared_known_ = false;
       found_ = true;
     }
-    // The bound is that of the best plane in double-double, rounded up.
-    upper_ = std::isfinite(best_distance_.error)
-                 ? (to_double(best_distance_.value) + best_distance_.error) * (1 + 4 * kU)
-                 : kInfinity;
+    set_upper(std::isfinite(best_distance_.error)
+                  ? (to_double(best_distance_.value) + best_distance_.error) * (1 + 4 * kU)
+                  : kInfinity);
     return true;
+  }
+
+  /// Upper bound of the nearest plane's distance. Below the reach, as the error polynomial of `far_edges` requires.
+  void set_upper(double upper) {
+    upper_ = upper;
+    upper_squared_ = upper <= reach_ ? upper * upper * (1 + 64 * kU) : kInfinity;
   }
 
   Distance measure(const FacetOfDifference& facet) const {
@@ -192,10 +223,18 @@ class NearestPlane {
     return {offset * offset, dot(n, n)};
   }
 
+  const OverlayWalk& walk_;
   const PosedPair& pair_;
-  const OverlayDepthBuffers& buffers_;
+  const PosedDiagram& a_;
+  const PosedDiagram& b_;
+  Vec3 offset_;
+  double reach_;
   double point_error_;
+  double constant_;
+  double linear_;
+  double bilinear_;
   double upper_ = kInfinity;
+  double upper_squared_ = kInfinity;
   bool found_ = false;
   bool outside_ = false;
   bool zero_ = false;
@@ -225,21 +264,8 @@ OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers) 
     return result;
   }
 
-  buffers.posed_a.resize(static_cast<std::size_t>(pair.a().num_vertices()));
-  for (int v = 0; v < pair.a().num_vertices(); ++v) {
-    PairVector minus_a;
-    minus_a.a_to = v;
-    buffers.posed_a[static_cast<std::size_t>(v)] = pair.approximate(minus_a);
-  }
-  buffers.posed_b.resize(static_cast<std::size_t>(pair.b().num_vertices()));
-  for (int v = 0; v < pair.b().num_vertices(); ++v) {
-    PairVector b;
-    b.b_to = v;
-    b.translated = true;
-    buffers.posed_b[static_cast<std::size_t>(v)] = pair.approximate(b);
-  }
   OverlayWalk walk(pair, buffers.overlay);
-  NearestPlane nearest(pair, buffers);
+  NearestPlane nearest(walk);
   walk.run([&](std::span<const OverlayPiece> pieces) { return nearest.consume(pieces); });
 
   result.facets_visited = nearest.visited();

@@ -21,8 +21,6 @@ namespace pd::detail {
 /// Grown on first use.
 struct OverlayDepthBuffers {
   OverlayBuffers overlay;
-  std::vector<Vec3> posed_a;  ///< -(R_A a)
-  std::vector<Vec3> posed_b;  ///< R_B b + (t_B - t_A)
   std::vector<DifferencePoint> loop;
 };
 

@@ -24,40 +24,100 @@ PairVector edge_vector(bool of_a, int from, int to) {
   return of_a ? PairVector::edge_a(from, to) : PairVector::edge_b(from, to);
 }
 
-/// Poses a body's edges and facet normals. `error` bounds each coordinate of a posed vector.
-void pose_diagram(const PosedPair& pair, bool of_a, PosedDiagram& diagram) {
+/// Bit 3 i + j: entry (i, j) of the rotation is exactly zero, read off the stored numbers.
+std::uint32_t zero_entries(const Pose& pose) {
+  std::uint32_t mask = 0;
+  const auto set = [&](int i, int j, bool zero) { mask |= static_cast<std::uint32_t>(zero) << (3 * i + j); };
+  if (!pose.is_quaternion()) {
+    for (int i = 0; i < 9; ++i) set(i / 3, i % 3, pose.rotation()(i / 3, i % 3) == 0);
+    return mask;
+  }
+  // Off the diagonal an entry is 2 (p q +- r s): zero when both products are, whatever rounding does.
+  const std::array<double, 4>& q = pose.quaternion_wxyz();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (i == j) continue;
+      const std::size_t x = static_cast<std::size_t>(i) + 1, y = static_cast<std::size_t>(j) + 1, z = 6 - x - y;
+      set(i, j, (q[x] == 0 || q[y] == 0) && (q[0] == 0 || q[z] == 0));
+    }
+  }
+  return mask;
+}
+
+/// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is.
+std::uint32_t zero_coordinates(const ConvexPolytope& body, std::uint32_t rotation, int from, int to) {
+  const std::uint32_t still = static_cast<std::uint32_t>(body.x()[from] == body.x()[to]) |
+                              static_cast<std::uint32_t>(body.y()[from] == body.y()[to]) << 1 |
+                              static_cast<std::uint32_t>(body.z()[from] == body.z()[to]) << 2;
+  std::uint32_t mask = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (((rotation >> (3 * i) | still) & 7u) == 7u) mask |= 1u << i;
+  }
+  return mask;
+}
+
+/// Whether each of the six products of det(e, u, v) has a factor that is exactly zero: aligned boxes and prisms, whose
+/// ties would otherwise all be left to exact arithmetic.
+bool vanishes_term_by_term(std::uint32_t e, std::uint32_t u, std::uint32_t v) {
+  constexpr std::array<std::array<int, 3>, 6> kTerms{
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  return std::all_of(kTerms.begin(), kTerms.end(),
+                     [&](const std::array<int, 3>& t) { return ((e >> t[0] | u >> t[1] | v >> t[2]) & 1u) != 0; });
+}
+
+/// Poses a body's points and edges.
+void pose_edges(const PosedPair& pair, bool of_a, PosedDiagram& diagram) {
   const ConvexPolytope& body = of_a ? pair.a() : pair.b();
-  const double error = pair.vector_error();
+  diagram.point_error = pair.vector_error();
+  diagram.points.resize(static_cast<std::size_t>(body.num_vertices()));
+  double reach = 0;
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    PairVector posed;  // R_A a = -(R_A (0 - a)), or R_B b
+    (of_a ? posed.a_from : posed.b_to) = v;
+    Vec3& point = diagram.points[static_cast<std::size_t>(v)];
+    point = pair.approximate(posed);
+    reach = std::max(reach, norm1(point));
+  }
+  diagram.reach = reach * (1 + 4 * kU) + 3 * diagram.point_error;
+  // The difference of two points, rounded.
+  diagram.edge_error = (2 * diagram.point_error + kU * 2 * diagram.reach) * (1 + 4 * kU);
   diagram.half_edges.resize(static_cast<std::size_t>(body.num_half_edges()));
+  double total = 0;
   for (int h = 0; h < body.num_half_edges(); ++h) {
     const HalfEdge& half_edge = body.half_edge(h);
-    PosedDiagram::Edge& edge = diagram.half_edges[static_cast<std::size_t>(h)];
-    if (half_edge.twin < h) {
-      const PosedDiagram::Edge& twin = diagram.half_edges[static_cast<std::size_t>(half_edge.twin)];
-      edge = {{-twin.vector[0], -twin.vector[1], -twin.vector[2]}, twin.norm1};
-      continue;
-    }
-    const Vec3 v = pair.approximate(edge_vector(of_a, half_edge.origin, body.target(h)));
-    edge = {{v.x(), v.y(), v.z()}, norm1(v)};
+    const Vec3 v = diagram.points[static_cast<std::size_t>(body.half_edge(half_edge.twin).origin)] -
+                   diagram.points[static_cast<std::size_t>(half_edge.origin)];
+    const double size = norm1(v);
+    diagram.half_edges[static_cast<std::size_t>(h)] = {{v.x(), v.y(), v.z()}, size};
+    total += size;
   }
-  diagram.facets.resize(static_cast<std::size_t>(body.num_facets()));
-  diagram.cell.resize(static_cast<std::size_t>(body.num_facets()));
-  for (int f = 0; f < body.num_facets(); ++f) {
-    const auto corner = FacetOfDifference::corners(body, f);
-    const Vec3 u = pair.approximate(edge_vector(of_a, corner[0], corner[1]));
-    const Vec3 v = pair.approximate(edge_vector(of_a, corner[0], corner[2]));
+  diagram.edge_size = body.num_half_edges() > 0 ? total / body.num_half_edges() + diagram.edge_error : 1;
+  for (PosedDiagram::Edge& edge : diagram.half_edges) edge.size += diagram.edge_size;
+}
+
+/// Poses a body's facets, whose normals will be tried against the edges of `other`.
+void pose_facets(const ConvexPolytope& body, const PosedDiagram& other, PosedDiagram& diagram) {
+  const double error = diagram.edge_error;
+  const std::size_t count = static_cast<std::size_t>(body.num_facets());
+  diagram.facets.resize(count);
+  diagram.normal_errors.resize(count);
+  diagram.cell.assign(count, -1);
+  for (std::size_t f = 0; f < count; ++f) {
+    const auto corner = FacetOfDifference::corners(body, static_cast<int>(f));
+    const Vec3& origin = diagram.points[static_cast<std::size_t>(corner[0])];
+    const Vec3 u = diagram.points[static_cast<std::size_t>(corner[1])] - origin;
+    const Vec3 v = diagram.points[static_cast<std::size_t>(corner[2])] - origin;
     const Vec3 n = u.cross(v);
-    PosedDiagram::Facet& facet = diagram.facets[static_cast<std::size_t>(f)];
     // A coordinate is u_j v_k - u_k v_j: input errors, then two products and a difference (3u of the sum of
     // magnitudes).
-    const double su = norm1(u), sv = norm1(v);
-    facet = {{n.x(), n.y(), n.z()}, 0, 0, 0};
-    facet.error = (error * (su + sv + 2 * error) + 3 * kU * su * sv) * (1 + 8 * kU);
-    // <e, n>: |e|_1 error(n) + 4u |e|_1 |n|_1 for the products and sums, and error(e) (|n|_1 + 3 error(n)).
-    const double sn = norm1(n);
-    facet.slope = (facet.error + 4 * kU * sn) * (1 + 8 * kU);
-    facet.constant = error * (sn + 3 * facet.error) * (1 + 8 * kU) + 0x1p-900;
-    diagram.cell[static_cast<std::size_t>(f)] = -1;
+    const double su = norm1(u), sv = norm1(v), sn = norm1(n);
+    const double normal_error = (error * (su + sv + 2 * error) + 3 * kU * su * sv) * (1 + 8 * kU);
+    diagram.normal_errors[f] = normal_error;
+    // <e, n> errs by |e|_1 (error(n) + 4u |n|_1), the latter for products and sums, and by error(e) (|n|_1 + 3
+    // error(n)).
+    const double slope = normal_error + 4 * kU * sn;
+    const double constant = other.edge_error * (sn + 3 * normal_error) + 0x1p-900;
+    diagram.facets[f] = {{n.x(), n.y(), n.z()}, std::max(slope, constant / other.edge_size) * (1 + 16 * kU)};
   }
 }
 
@@ -82,16 +142,19 @@ FacetOfDifference facet_of(const PosedPair& pair, const OverlayPiece& piece) {
                                        pair.b().half_edge(piece.b).origin, pair.b().target(piece.b));
 }
 
-OverlayWalk::OverlayWalk(const PosedPair& pair, OverlayBuffers& buffers) : pair_(&pair), buffers_(&buffers) {
-  pose_diagram(pair, true, buffers.a);
-  pose_diagram(pair, false, buffers.b);
+OverlayWalk::OverlayWalk(const PosedPair& pair, OverlayBuffers& buffers)
+    : pair_(&pair), buffers_(&buffers), zero_entries_{zero_entries(pair.pose_a()), zero_entries(pair.pose_b())} {
+  pose_edges(pair, true, buffers.a);
+  pose_edges(pair, false, buffers.b);
+  pose_facets(pair.a(), buffers.b, buffers.a);
+  pose_facets(pair.b(), buffers.a, buffers.b);
 }
 
 int OverlayWalk::side_of_edge_a(int half_edge_a, int facet_b, bool symbolic) const {
   const PosedDiagram::Edge& e = buffers_->a.half_edges[static_cast<std::size_t>(half_edge_a)];
   const PosedDiagram::Facet& f = buffers_->b.facets[static_cast<std::size_t>(facet_b)];
   const double value = e.vector[0] * f.normal[0] + e.vector[1] * f.normal[1] + e.vector[2] * f.normal[2];
-  if (std::abs(value) > f.slope * e.norm1 + f.constant) return value > 0 ? 1 : -1;
+  if (std::abs(value) > f.bound * e.size) return value > 0 ? 1 : -1;
   return decide_exactly(true, half_edge_a, facet_b, symbolic);
 }
 
@@ -99,7 +162,7 @@ int OverlayWalk::side_of_edge_b(int half_edge_b, int facet_a, bool symbolic) con
   const PosedDiagram::Edge& e = buffers_->b.half_edges[static_cast<std::size_t>(half_edge_b)];
   const PosedDiagram::Facet& f = buffers_->a.facets[static_cast<std::size_t>(facet_a)];
   const double value = e.vector[0] * f.normal[0] + e.vector[1] * f.normal[1] + e.vector[2] * f.normal[2];
-  if (std::abs(value) > f.slope * e.norm1 + f.constant) return value > 0 ? 1 : -1;
+  if (std::abs(value) > f.bound * e.size) return value > 0 ? 1 : -1;
   return decide_exactly(false, half_edge_b, facet_a, symbolic);
 }
 
@@ -114,7 +177,13 @@ int OverlayWalk::decide_exactly(bool edge_of_a, int half_edge, int facet, bool s
   const auto corner = FacetOfDifference::corners(facet_body, facet);
   const PairVector u = edge_vector(!edge_of_a, corner[0], corner[1]);
   const PairVector v = edge_vector(!edge_of_a, corner[0], corner[2]);
-  const int sign = pair_->sign_determinant(e, u, v);
+  const std::uint32_t turned = edge_of_a ? zero_entries_[0] : zero_entries_[1];
+  const std::uint32_t facing = edge_of_a ? zero_entries_[1] : zero_entries_[0];
+  const bool vanishes = vanishes_term_by_term(
+      zero_coordinates(edge_body, turned, edge_body.half_edge(half_edge).origin, edge_body.target(half_edge)),
+      zero_coordinates(facet_body, facing, corner[0], corner[1]),
+      zero_coordinates(facet_body, facing, corner[0], corner[2]));
+  const int sign = vanishes ? 0 : pair_->sign_determinant(e, u, v);
   if (sign != 0 || !symbolic) return sign;
 
   // <e, n> = 0. Turning A moves <e, n> by <omega, e x n> when e is of A, and by -<omega, e x n> when n is.
@@ -127,11 +196,13 @@ int OverlayWalk::decide_exactly(bool edge_of_a, int half_edge, int facet, bool s
                        x.vector[2] * y.normal[0] - x.vector[0] * y.normal[2],
                        x.vector[0] * y.normal[1] - x.vector[1] * y.normal[0]};
   const double value = kAxis[0] * c[0] + kAxis[1] * c[1] + kAxis[2] * c[2];
-  // |w|_inf < 1: the error of the cross product's coordinates (as in `pose_diagram`) summed, and 4u for the sum.
+  // |w|_inf < 1: the error of the cross product's coordinates (as in `pose_facets`) summed, and 4u for the sum.
   const double sn = norm1(y.normal);
-  const double error = pair_->vector_error();
+  const double edge_error = edges.edge_error;
+  const double normal_error = facets.normal_errors[static_cast<std::size_t>(facet)];
   const double bound =
-      3 * ((x.norm1 * y.error + sn * error + 3 * error * y.error) + 3 * kU * x.norm1 * sn) + 4 * kU * norm1(c);
+      3 * (x.size * normal_error + sn * edge_error + 3 * edge_error * normal_error + 3 * kU * x.size * sn) +
+      4 * kU * norm1(c);
   if (std::abs(value) > bound * (1 + 16 * kU) + 0x1p-900) return value > 0 ? direction : -direction;
 
   const Dyadic3 moved = cross(pair_->exact(e), cross(pair_->exact(u), pair_->exact(v)));
