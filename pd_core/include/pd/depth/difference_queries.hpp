@@ -1,0 +1,33 @@
+/// @file
+/// Questions about P = B + (-A) that are answered without building it.
+#pragma once
+
+#include <cstdint>
+
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/numeric/expected.hpp"
+
+namespace pd {
+
+class Scratch;
+
+struct DifferenceSupport {
+  double value = 0;  ///< h_P(direction) = max <x, direction> over P, within 2 ulp of the exact one (polytopes)
+  std::int32_t vertex_a = -1;  ///< a vertex of A (of its core) that attains it, the lowest of several; -1: smooth
+  std::int32_t vertex_b = -1;
+};
+
+/// Support of P in a direction of any finite length but zero (the value scales with it). For polytopes the vertices
+/// attain the maximum exactly. For smooth bodies `value` is rounded.
+/// @return ErrorCode::zero_direction or non_finite ("direction").
+/// Time: hill climbing, O(sqrt n) on round bodies.
+[[nodiscard]] Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const PosedShape& b,
+                                                                const Vec3& direction);
+
+/// Where a point lies: `overlapping` inside P, `touching` on its boundary (anywhere in a flat P), `separated` outside.
+/// As exact as the class of `penetration_depth`, for every finite point.
+/// @return ErrorCode::non_finite or out_of_range ("point").
+[[nodiscard]] Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
+                                                         Scratch& scratch);
+
+}  // namespace pd
