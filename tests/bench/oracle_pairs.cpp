@@ -39,6 +39,7 @@ struct Settings {
   int size = 0;
   double large_share = 0.0;
   std::string dump = "oracle_failures.json";
+  int examples = 3;
 };
 
 struct Tally {
@@ -52,6 +53,7 @@ struct Tally {
   std::int64_t exact_signs = 0;
   double engine_seconds = 0;
   double oracle_seconds = 0;
+  std::array<std::int64_t, pd::oracle::kPromises> breaches{};
 
   void add(const Tally& t) {
     pairs += t.pairs;
@@ -64,6 +66,7 @@ struct Tally {
     exact_signs += t.exact_signs;
     engine_seconds += t.engine_seconds;
     oracle_seconds += t.oracle_seconds;
+    for (std::size_t k = 0; k < breaches.size(); ++k) breaches[k] += t.breaches[k];
   }
 };
 
@@ -116,6 +119,12 @@ class Run {
       all.add(t);
     }
     print_row("all", all);
+    std::printf("broken promises:");
+    for (std::size_t k = 0; k < all.breaches.size(); ++k) {
+      std::printf(" %s %lld", std::string(to_string(static_cast<pd::oracle::Promise>(k))).c_str(),
+                  static_cast<long long>(all.breaches[k]));
+    }
+    std::printf("\n");
     return all.wrong;
   }
 
@@ -154,7 +163,8 @@ class Run {
     ++tally.pairs;
     if (!a || !b) {
       ++tally.wrong;
-      report(task, p, "hull refused: " + (a ? b.error().message : a.error().message), nullptr);
+      const std::string& message = a ? b.error().message : a.error().message;
+      report(task, p, {{{pd::oracle::Promise::finite, "hull refused: " + message}}, 0}, nullptr);
       return;
     }
     const pd::ConvexShape shape_a(*a);
@@ -173,6 +183,7 @@ class Run {
     ++tally.classes[static_cast<std::size_t>(verdict.contact)];
     const bool undecided = verdict.contact == ContactClass::separated && !verdict.distance_known;
     tally.undecided += undecided;
+    for (const pd::oracle::Breach& w : findings.wrong) ++tally.breaches[static_cast<std::size_t>(w.promise)];
     tally.large += a->num_vertices() >= 512 && b->num_vertices() >= 512;
     tally.worst_width = std::max(tally.worst_width, findings.relative_width);
     tally.filtered += answer.statistics.exact_signs == 0;
@@ -181,17 +192,23 @@ class Run {
     tally.oracle_seconds += std::chrono::duration<double>(t2 - t1).count();
     if (!findings.wrong.empty()) {
       tally.wrong += !undecided || findings.wrong.size() > 1;
-      std::string all;
-      for (const std::string& w : findings.wrong) all += (all.empty() ? "" : "; ") + w;
-      report(task, p, all, &verdict);
+      report(task, p, findings, &verdict);
     }
   }
 
-  void report(const Task& task, const pd::scenes::PointPair& p, const std::string& what,
+  void report(const Task& task, const pd::scenes::PointPair& p, const pd::oracle::Findings& findings,
               const pd::oracle::Verdict* verdict) {
     const std::lock_guard lock(mutex_);
-    int& shown = shown_[static_cast<std::size_t>(task.family)];
-    if (++shown > 8) return;
+    // A few of each kind of each family are enough to work on.
+    bool show = false;
+    std::string what;
+    for (const pd::oracle::Breach& w : findings.wrong) {
+      int& shown = shown_[static_cast<std::size_t>(task.family)][static_cast<std::size_t>(w.promise)];
+      show = show || shown < settings_.examples;
+      ++shown;
+      what += (what.empty() ? "" : "; ") + std::string(to_string(w.promise)) + ": " + w.what;
+    }
+    if (!show) return;
     const std::string name = std::string(pd::scenes::to_string(task.family)) + " n=" + std::to_string(task.n) + " " +
                              std::string(pd::scenes::to_string(task.depth)) + " seed=" + std::to_string(task.seed);
     std::printf("WRONG %s: %s\n", name.c_str(), what.c_str());
@@ -225,7 +242,7 @@ class Run {
   std::atomic<std::int64_t> done_ = 0;
   std::mutex mutex_;
   std::array<Tally, pd::scenes::kPairFamilies> tallies_{};
-  std::array<int, pd::scenes::kPairFamilies> shown_{};
+  std::array<std::array<int, pd::oracle::kPromises>, pd::scenes::kPairFamilies> shown_{};
 };
 
 }  // namespace
@@ -245,6 +262,8 @@ int main(int argc, char** argv) {
   app.add_option("--large-share", settings.large_share, "share of pairs with at least 512 vertices on each side")
       ->capture_default_str();
   app.add_option("--dump", settings.dump, "file that failing pairs are appended to")->capture_default_str();
+  app.add_option("--examples", settings.examples, "failing pairs shown and dumped of each kind and family")
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
   std::vector<PairFamily> families;

@@ -39,12 +39,12 @@ class Checker {
   Findings run() {
     if (!finite()) return findings_;
     if (answer_.contact != verdict_.contact) {
-      fail("class " + std::string(to_string(answer_.contact)) + " instead of " +
-           std::string(to_string(verdict_.contact)));
+      fail(Promise::contact, "class " + std::string(to_string(answer_.contact)) + " instead of " +
+                                 std::string(to_string(verdict_.contact)));
       return findings_;
     }
     const double length = answer_.normal.norm();
-    if (std::abs(length - 1) > 4 * 0x1p-52) fail(text("normal of length 1 + %g", length - 1, 0));
+    if (std::abs(length - 1) > 4 * 0x1p-52) fail(Promise::normal, text("normal of length 1 + %g", length - 1, 0));
     switch (answer_.contact) {
       case ContactClass::overlapping:
         overlapping();
@@ -62,7 +62,7 @@ class Checker {
   }
 
  private:
-  void fail(std::string what) { findings_.wrong.push_back(std::move(what)); }
+  void fail(Promise promise, std::string what) { findings_.wrong.push_back({promise, std::move(what)}); }
 
   bool finite() {
     const double numbers[] = {answer_.depth,    answer_.lower,          answer_.upper,
@@ -70,34 +70,35 @@ class Checker {
     bool all = answer_.translation.allFinite() && answer_.normal.allFinite() && answer_.witness_a.allFinite() &&
                answer_.witness_b.allFinite();
     for (const double x : numbers) all = all && std::isfinite(x);
-    if (!all) fail("non_finite numbers in the answer");
+    if (!all) fail(Promise::finite, "non_finite numbers in the answer");
     return all;
   }
 
   void bracket(const ExactLength& truth, double lower, double middle, double upper, const char* name) {
     if (lower < 0 || truth.compare(lower) > 0)
-      fail(std::string(name) + text(" bracket: lower %.17g above %.17g", lower, truth.approximate()));
+      fail(Promise::bracket, std::string(name) + text(" bracket: lower %.17g above %.17g", lower, truth.approximate()));
     if (truth.compare(upper) < 0)
-      fail(std::string(name) + text(" bracket: upper %.17g below %.17g", upper, truth.approximate()));
+      fail(Promise::bracket, std::string(name) + text(" bracket: upper %.17g below %.17g", upper, truth.approximate()));
     if (middle < lower * (1 - 0x1p-51) || middle > upper * (1 + 0x1p-51)) {
-      fail(std::string(name) + text(" outside its bracket: %.17g, lower %.17g", middle, lower));
+      fail(Promise::bracket, std::string(name) + text(" outside its bracket: %.17g, lower %.17g", middle, lower));
     }
     const double width = upper - lower;
     if (extent_ > 0) findings_.relative_width = width / extent_;
     // Where the extent is denormal, one step of the doubles is the least width there is.
     if (width > std::max(4e-15 * extent_, 2 * std::numeric_limits<double>::denorm_min())) {
-      fail(std::string(name) + text(" width %g for L = %g", width, extent_));
+      fail(Promise::width, std::string(name) + text(" width %g for L = %g", width, extent_));
     }
     if (question_.bracket == Bracket::tightest) {
       const double down = truth.round_down();
       const double up = std::nextafter(truth.round_up(), INFINITY);
-      if (lower < down) fail(std::string(name) + text(" tightest: lower %.17g below %.17g", lower, down));
-      if (upper > up) fail(std::string(name) + text(" tightest: upper %.17g above %.17g", upper, up));
+      if (lower < down)
+        fail(Promise::width, std::string(name) + text(" tightest: lower %.17g below %.17g", lower, down));
+      if (upper > up) fail(Promise::width, std::string(name) + text(" tightest: upper %.17g above %.17g", upper, up));
     }
   }
 
   void zero(double value, const char* name) {
-    if (value != 0) fail(std::string("zero expected: ") + name + text(" = %g", value, 0));
+    if (value != 0) fail(Promise::zero, std::string("zero expected: ") + name + text(" = %g", value, 0));
   }
   void no_depth() {
     zero(answer_.depth, "depth");
@@ -115,34 +116,35 @@ class Checker {
     no_distance();
     bracket(verdict_.depth, answer_.lower, answer_.depth, answer_.upper, "depth");
     const ExactPair moved(pair_.a(), *question_.pose_a, pair_.b(), *question_.pose_b, answer_.translation);
-    if (!separates(moved)) fail("translation does not separate");
+    if (!separates(moved)) fail(Promise::translation, "translation does not separate");
     if (exact_length(answer_.translation).compare(answer_.upper) < 0) {
-      fail(
-          text("translation longer than upper %.17g by %g", answer_.upper, answer_.translation.norm() - answer_.upper));
+      fail(Promise::translation, text("translation longer than upper %.17g by %g", answer_.upper,
+                                      answer_.translation.norm() - answer_.upper));
     }
-    near(answer_.witness_b - answer_.witness_a, answer_.translation, "witness_b - witness_a against translation");
-    near(answer_.depth * answer_.normal, answer_.translation, "depth * normal against translation");
+    near(Promise::witness, answer_.witness_b - answer_.witness_a, answer_.translation,
+         "witness_b - witness_a against translation");
+    near(Promise::normal, answer_.depth * answer_.normal, answer_.translation, "depth * normal against translation");
     features();
   }
 
   void touching() {
     no_depth();
     no_distance();
-    near(answer_.witness_b, answer_.witness_a, "witnesses of touching bodies");
+    near(Promise::witness, answer_.witness_b, answer_.witness_a, "witnesses of touching bodies");
     if (verdict_.flat_difference) return;  // every direction out of the plane leads out
     const double out = pair_.support(answer_.normal);
     if (out > 0x1p-44 * pair_.magnitude())
-      fail(text("normal of touching bodies leads out only after %g of %g", out, pair_.magnitude()));
+      fail(Promise::normal, text("normal of touching bodies leads out only after %g of %g", out, pair_.magnitude()));
   }
 
   void separated() {
     no_depth();
     if (!verdict_.distance_known) {
-      fail("oracle: distance not certified");
+      fail(Promise::oracle, "oracle: distance not certified");
       return;
     }
     bracket(verdict_.distance, answer_.distance_lower, answer_.distance, answer_.distance_upper, "distance");
-    near(answer_.distance * answer_.normal, answer_.witness_a - answer_.witness_b,
+    near(Promise::normal, answer_.distance * answer_.normal, answer_.witness_a - answer_.witness_b,
          "witness_a - witness_b against distance * normal");
   }
 
@@ -151,10 +153,9 @@ class Checker {
     return interiors_disjoint(moved, verdict_.normals);
   }
 
-  void near(const Vec3& got, const Vec3& wanted, const char* what) {
+  void near(Promise promise, const Vec3& got, const Vec3& wanted, const char* what) {
     const double error = (got - wanted).cwiseAbs().maxCoeff();
-    if (error > tolerance_)
-      fail(std::string("witness/normal: ") + what + text(" differ by %g, allowed %g", error, tolerance_));
+    if (error > tolerance_) fail(promise, std::string(what) + text(" differ by %g, allowed %g", error, tolerance_));
   }
 
   /// Both features lie in the faces that an optimal direction supports.
@@ -172,7 +173,7 @@ class Checker {
     const std::vector<int> a = points(answer_.feature_a, *question_.a);
     const std::vector<int> b = points(answer_.feature_b, *question_.b);
     if (a.empty() || b.empty() || std::count(a.begin(), a.end(), -1) > 0 || std::count(b.begin(), b.end(), -1) > 0) {
-      fail("feature missing");
+      fail(Promise::feature, "feature missing");
       return;
     }
     for (std::size_t k = 0; k < verdict_.normals.size(); ++k) {
@@ -185,7 +186,7 @@ class Checker {
       }
       if (all) return;
     }
-    fail("feature pair is not optimal");
+    fail(Promise::feature, "feature pair is not optimal");
   }
 
   /// Not farther than the tolerance outside any facet plane (solids), or from the body (flat ones, in doubles).
@@ -201,8 +202,8 @@ class Checker {
     // The planes are evaluated in doubles, which costs the check some ulps of its own.
     const double allowed = tolerance_ + 16 * ulp_of(extent_);
     if (outside > allowed) {
-      fail(std::string("witness_") + (of_b ? "b" : "a") +
-           text(" outside its body by %g, allowed %g", outside, allowed));
+      fail(Promise::witness, std::string("witness_") + (of_b ? "b" : "a") +
+                                 text(" outside its body by %g, allowed %g", outside, allowed));
     }
   }
 
@@ -245,7 +246,13 @@ class Checker {
   Findings findings_;
 };
 
+constexpr std::string_view kPromiseNames[] = {"finite",  "class",  "bracket", "width", "translation",
+                                              "witness", "normal", "feature", "zero",  "oracle"};
+static_assert(std::size(kPromiseNames) == kPromises);
+
 }  // namespace
+
+std::string_view to_string(Promise promise) { return kPromiseNames[static_cast<std::size_t>(promise)]; }
 
 double difference_extent(const ExactPair& pair) {
   double largest = 0;

@@ -3,7 +3,9 @@
 /// normal, features.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "oracle/depth_oracle.hpp"
@@ -20,9 +22,29 @@ struct Question {
   Bracket bracket = Bracket::certified;
 };
 
+enum class Promise : std::uint8_t {
+  finite,       ///< no NaN, no infinity
+  contact,      ///< the exact class
+  bracket,      ///< lower <= true value <= upper, and the value between them
+  width,        ///< upper - lower <= 4e-15 L, or as tight as doubles allow where asked for
+  translation,  ///< separates exactly as stored, no longer than upper
+  witness,      ///< in the bodies, and their difference is the translation
+  normal,       ///< unit, along the translation
+  feature,      ///< the faces of an optimal direction
+  zero,         ///< fields that the class says are zero
+  oracle,       ///< the oracle itself could not decide
+};
+inline constexpr int kPromises = 10;
+[[nodiscard]] std::string_view to_string(Promise promise);
+
+struct Breach {
+  Promise promise;
+  std::string what;
+};
+
 struct Findings {
-  std::vector<std::string> wrong;  ///< one line for each broken promise, its kind first
-  double relative_width = 0;       ///< (upper - lower) / L of the depth or of the distance
+  std::vector<Breach> wrong;
+  double relative_width = 0;  ///< (upper - lower) / L of the depth or of the distance
 };
 
 /// L: the largest |coordinate| of b - a over the posed vertices (rounded).
