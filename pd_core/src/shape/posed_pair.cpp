@@ -99,11 +99,12 @@ Dyadic3 rotate(const ConvexPolytope& p, const Dyadic (&r)[9], int to, int from) 
 
 }  // namespace
 
-PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b)
-    : a_(&a), b_(&b), pose_a_(&pose_a), pose_b_(&pose_b) {
+PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
+                     const Vec3& origin)
+    : a_(&a), b_(&b), pose_a_(&pose_a), pose_b_(&pose_b), origin_(origin) {
   const Vec3 offset = pose_b.translation() - pose_a.translation();
-  const double largest =
-      std::max({a.max_abs_coordinate(), b.max_abs_coordinate(), offset.cwiseAbs().maxCoeff(), 0x1p-1000});
+  const double largest = std::max({a.max_abs_coordinate(), b.max_abs_coordinate(), offset.cwiseAbs().maxCoeff(),
+                                   origin.cwiseAbs().maxCoeff(), 0x1p-1000});
   // Rescale only where a product of three lengths could leave the range of doubles: within it scaling changes no bit.
   scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
   const double scale = std::ldexp(1.0, -scale_exponent_);
@@ -119,8 +120,9 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   DoubleDouble offset_exact[3];
   for (int i = 0; i < 3; ++i) {
     offset_exact[i] = two_sum(pose_b.translation()[i] * scale, -(pose_a.translation()[i] * scale));
+    offset_size = std::max(offset_size, std::abs(offset_exact[i].hi) + std::abs(origin[i] * scale));
+    offset_exact[i] = offset_exact[i] - dd(origin[i] * scale);
     offset_scaled[i] = offset_exact[i].hi;
-    offset_size = std::max(offset_size, std::abs(offset_scaled[i]));
   }
   offset_ = Vec3(offset_scaled[0], offset_scaled[1], offset_scaled[2]);
   offset_dd_ = {offset_exact[0], offset_exact[1], offset_exact[2]};
@@ -169,7 +171,8 @@ void PosedPair::prepare_exact() const {
     body_a_.rotation_exact[i] = body_a_.rotation_exact[i] * body_b_.denominator;
     body_b_.rotation_exact[i] = body_b_.rotation_exact[i] * body_a_.denominator;
   }
-  offset_exact_ = (to_dyadic(pose_b_->translation()) - to_dyadic(pose_a_->translation())) * homogeneous_factor_;
+  offset_exact_ = (to_dyadic(pose_b_->translation()) - to_dyadic(pose_a_->translation()) - to_dyadic(origin_)) *
+                  homogeneous_factor_;
 }
 
 const Dyadic& PosedPair::homogeneous_factor() const {

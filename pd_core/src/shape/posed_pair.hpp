@@ -42,8 +42,9 @@ struct PairVector {
 
 class PosedPair {
  public:
-  /// Refers to the polytopes: they must outlive it.
-  PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b);
+  /// Refers to the polytopes: they must outlive it. Points of P are taken relative to `origin` (exactly).
+  PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
+            const Vec3& origin = Vec3::Zero());
 
   [[nodiscard]] const ConvexPolytope& a() const { return *a_; }
   [[nodiscard]] const ConvexPolytope& b() const { return *b_; }
@@ -101,7 +102,8 @@ class PosedPair {
   mutable Dyadic homogeneous_factor_;
   mutable Body body_a_;
   mutable Body body_b_;
-  Vec3 offset_;  ///< (t_B - t_A) scaled, rounded
+  Vec3 origin_;
+  Vec3 offset_;  ///< (t_B - t_A - origin) scaled, rounded
   Vec3DD offset_dd_;
   mutable Dyadic3 offset_exact_;
   mutable StageCounts stages_;
