@@ -76,7 +76,9 @@ Expected<std::unique_ptr<OffscreenContext>> create_egl_context() {
   if (display == EGL_NO_DISPLAY || egl.initialize(display, nullptr, nullptr) != EGL_TRUE) {
     return refusal("EGL's surfaceless display does not start (Debian package libgl1-mesa-dri brings its drivers)");
   }
-  constexpr std::array<EGLint, 3> kConfigAttributes = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  // No kind of surface is asked for; the default would ask for windows.
+  constexpr std::array<EGLint, 5> kConfigAttributes = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                                       EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (egl.bind_api(EGL_OPENGL_API) != EGL_TRUE ||

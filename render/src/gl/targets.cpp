@@ -16,15 +16,19 @@ TextureTarget texture_target(const GlFunctions& gl, Size size, GLint internal_fo
   gl.TexImage2D(GL_TEXTURE_2D, 0, internal_format, size.width, size.height, 0, format, type, nullptr);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  // Outside the light's view nothing stands in the way: depth 1 there.
-  constexpr std::array<float, 4> kFar = {1, 1, 1, 1};
-  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, kFar.data());
+  const bool from_light = attachment == GL_DEPTH_ATTACHMENT;
+  const GLint wrap = from_light ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE;
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+  if (from_light) {
+    // Outside the light's view nothing stands in the way: depth 1 there.
+    constexpr std::array<float, 4> kFar = {1, 1, 1, 1};
+    gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, kFar.data());
+  }
   gl.GenFramebuffers(1, &target.framebuffer);
   gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, target.texture, 0);
-  if (attachment == GL_DEPTH_ATTACHMENT) {
+  if (from_light) {
     gl.DrawBuffer(GL_NONE);
     gl.ReadBuffer(GL_NONE);
   }

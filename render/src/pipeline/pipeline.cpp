@@ -141,7 +141,9 @@ void Pipeline::draw_ground_plane(const Program& program, const FrameSetup& frame
   program.set("axes", frame.axes);
   program.set("reach", frame.ground_reach);
   gl_->BindVertexArray(empty_array_);
+  gl_->Disable(GL_CULL_FACE);
   gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  gl_->Enable(GL_CULL_FACE);
 }
 
 void Pipeline::draw_surface(const Scene& scene, const FrameSetup& frame) {
@@ -177,6 +179,7 @@ void Pipeline::draw_occlusion(const FrameSetup& frame) {
   const GlFunctions& gl = *gl_;
   const Size half = targets_->surface.size;
   gl.Disable(GL_DEPTH_TEST);
+  gl.Disable(GL_CULL_FACE);
   gl.Viewport(0, 0, half.width, half.height);
   gl.BindVertexArray(empty_array_);
 
@@ -206,6 +209,7 @@ void Pipeline::draw_occlusion(const FrameSetup& frame) {
   bind_texture(0, targets_->raw_occlusion.texture);
   smooth.set("raw", 0);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_DEPTH_TEST);
 }
 
@@ -252,7 +256,9 @@ void Pipeline::draw_ground_and_backdrop(const Scene& scene, const FrameSetup& fr
   backdrop.set("backdrop_bottom", to_vector(palette::kBackdropBottom));
   backdrop.set("picture", picture);
   gl_->BindVertexArray(empty_array_);
+  gl_->Disable(GL_CULL_FACE);
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->Enable(GL_CULL_FACE);
 }
 
 void Pipeline::draw_edges(const DeviceMesh& mesh) const {

@@ -15,10 +15,14 @@ vec3 to_linear(vec3 display) { return display * (display * (display * 0.30530601
 vec3 filmic(vec3 x) { return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14); }
 )";
 
-// Half-size occlusion brought to full size: bilinear, weighted by likeness of distance. The smoothing pass averages a
-// window that is off by half a texel, which the shift takes back.
+// Half-size occlusion brought to full size: bilinear, weighted by likeness of distance; along silhouettes, where none
+// of the four texels belongs to this surface, the ring of twelve round them is asked too. The smoothing pass averages a
+// window that is off by half a texel, which the missing shift takes back.
 constexpr const char* kOcclusionLookup = R"(
 uniform sampler2D occlusion;
+const ivec2 kNear[16] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(1, 1),
+  ivec2(-1, 0), ivec2(-1, 1), ivec2(2, 0), ivec2(2, 1), ivec2(0, -1), ivec2(1, -1), ivec2(0, 2), ivec2(1, 2),
+  ivec2(-1, -1), ivec2(2, -1), ivec2(-1, 2), ivec2(2, 2));
 vec2 visibility(float along) {
   vec2 at = gl_FragCoord.xy * 0.5;
   ivec2 base = ivec2(floor(at));
@@ -26,11 +30,13 @@ vec2 visibility(float along) {
   ivec2 last = textureSize(occlusion, 0) - 1;
   vec2 sum = vec2(0);
   float weights = 0;
-  for (int k = 0; k < 4; ++k) {
-    ivec2 corner = ivec2(k & 1, k >> 1);
-    vec3 tap = texelFetch(occlusion, min(base + corner, last), 0).xyz;
-    vec2 share = mix(1 - part, part, vec2(corner));
-    float weight = (share.x * share.y + 1e-3) / (0.002 + abs(tap.z - along) / along);
+  bool found = false;
+  for (int k = 0; k < 4 || (k < 16 && !found); ++k) {
+    vec3 tap = texelFetch(occlusion, clamp(base + kNear[k], ivec2(0), last), 0).xyz;
+    vec2 near = max(vec2(0), 1 - abs(vec2(kNear[k]) - part));
+    float apart = abs(tap.z - along) / along;
+    found = found || apart < 0.02;
+    float weight = (near.x * near.y + 1e-3) / (1e-3 + apart * (1 + 400 * apart));
     sum += weight * tap.xy;
     weights += weight;
   }
