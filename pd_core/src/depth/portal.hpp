@@ -1,0 +1,26 @@
+/// @file
+/// Where a line through the inside of P = B + (-A) leaves it: a triangle of vertices of P that the line crosses (a
+/// portal), pushed outwards until its plane supports P.
+///
+/// After Snethen, "XenoCollide" (Game Programming Gems 7, 2008), with two differences: every choice is an exact sign,
+/// and instead of a cone at an interior point the portal is a triangle about the line, so that it may start behind the
+/// origin. Each step moves the crossing strictly outwards along the (symbolically moved) line, so the search ends.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "depth/ray_signs.hpp"
+
+namespace pd::detail {
+
+struct Portal {
+  /// Counter-clockwise seen against the direction; the plane through them supports P where the line leaves it.
+  std::array<PairId, 3> corners;
+  std::int64_t support_calls = 0;
+};
+
+/// Requires the origin in the interior of P. Measured 7 to 30 supports; each O(sqrt n) on round bodies.
+[[nodiscard]] Portal find_portal(const RaySigns& ray);
+
+}  // namespace pd::detail
