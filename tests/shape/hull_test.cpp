@@ -295,7 +295,7 @@ TEST(Hull, OrderOfPointsDoesNotMatter) {
 }
 
 TEST(Hull, PowersOfTwoChangeNothing) {
-  const Points points = test::sphere_cloud(500, 21);
+  const Points points = test::sphere_cloud(100, 21);
   const ConvexPolytope reference = hull(points);
   for (const int exponent : {-900, -300, -40, 40, 300, 900}) {
     Points other = points;
@@ -322,7 +322,7 @@ TEST(Hull, MagnitudesThatSpanTheWholeRange) {
   EXPECT_EQ(test::combinatorics(p).facets, expected.facets);
   std::mt19937_64 random(31);
   std::uniform_int_distribution<int> exponent(-1070, 990);
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < 4; ++round) {
     Points wild;
     for (int i = 0; i < 10; ++i) {
       Vec3 q;

@@ -9,21 +9,18 @@
 #include "shape/affine_frame.hpp"
 #include "shape/facet_loops.hpp"
 #include "shape/planar_hull.hpp"
+#include "shape/point_survey.hpp"
 #include "shape/polytope_storage.hpp"
 #include "shape/quickhull.hpp"
 
 namespace pd::detail {
 namespace {
 
-// Below this size the order of points in memory does not matter (everything is in the cache).
+// From this size on most points are sorted out before the hull is built. Measured at 10^4 points: saves a third of the
+// time in a ball and half of it in a box, costs 5 % on a sphere, where nothing can be sorted out.
+constexpr std::size_t kSurveyedSize = 2000;
+// Below this size the order of points in memory does not matter: they stay in the cache.
 constexpr int kSortedSize = 4096;
-
-FacetLoops solid_loops(HullPoints& points, const AffineFrame& frame) {
-  Quickhull hull(points, frame);
-  hull.insert(0, points.size());
-  hull.compact();
-  return merge_facets(hull, points.size());
-}
 
 /// Both sides of a polygon in space.
 FacetLoops doubly_covered(const std::vector<int>& polygon) {
@@ -39,6 +36,12 @@ FacetLoops doubly_covered(const std::vector<int>& polygon) {
 
 std::optional<Error> refuse_points(std::span<const Vec3> points) {
   if (points.empty()) return Error{ErrorCode::too_few_points, "no points; one at least is needed", "vertices"};
+  // One plain loop over all numbers first: nearly always nothing is wrong.
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  const double* numbers = points.front().data();
+  int wrong = 0;
+  for (std::size_t i = 0; i < 3 * points.size(); ++i) wrong |= std::abs(numbers[i]) <= kMaxCoordinate ? 0 : 1;
+  if (wrong == 0) return std::nullopt;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& p = points[i];
     for (int k = 0; k < 3; ++k) {
@@ -56,14 +59,41 @@ ConvexPolytope build_hull(std::span<const Vec3> source, std::span<const std::int
   double max_abs = 0;
   for (const Vec3& p : source) max_abs = std::max(max_abs, p.cwiseAbs().maxCoeff());
   HullPoints points(source, max_abs);
-  points.reserve(source.size());
-  for (std::size_t i = 0; i < source.size(); ++i) points.append(static_cast<std::int32_t>(i));
-  if (points.size() > kSortedSize) points.sort_spatially(0);
 
-  const AffineFrame frame = find_affine_frame(points);
+  // The hull of a few extreme points leaves few points outside, where there are many and they are not flat.
+  std::optional<Quickhull> hull;
+  if (source.size() >= kSurveyedSize) {
+    for (const std::int32_t id : extreme_points(source)) points.append(id);
+    const AffineFrame frame = find_affine_frame(points);
+    if (frame.dimension == 3) {
+      hull.emplace(points, frame);
+      hull->insert(0, points.size());
+      hull->compact();
+    }
+  }
+  const int first = points.size();
+  if (hull) {
+    for (const std::int32_t id : points_not_inside(source, points.scale(), hull->triangles())) points.append(id);
+  } else {
+    points.reserve(points.size() + source.size());
+    for (std::size_t i = 0; i < source.size(); ++i) points.append(static_cast<std::int32_t>(i));
+  }
+  if (points.size() - first > kSortedSize) points.sort_spatially(first);
+
+  AffineFrame frame;
+  frame.dimension = 3;
+  if (!hull) {
+    frame = find_affine_frame(points);
+    if (frame.dimension == 3) hull.emplace(points, frame);
+  }
   FacetLoops loops;
-  if (frame.dimension == 3) loops = solid_loops(points, frame);
-  if (frame.dimension == 2) loops = doubly_covered(planar_hull(points, frame));
+  if (hull) {
+    hull->insert(first, points.size());
+    hull->compact();
+    loops = merge_facets(*hull, points.size());
+  } else if (frame.dimension == 2) {
+    loops = doubly_covered(planar_hull(points, frame));
+  }
 
   // Positions of the vertices that are left, in place of point indices.
   std::vector<HullVertex> vertices;

@@ -36,6 +36,7 @@ class HullPoints {
 
   [[nodiscard]] int size() const { return static_cast<int>(points_.size()); }
   [[nodiscard]] double scale() const { return scale_; }
+  [[nodiscard]] bool scaling_exact() const { return scaling_exact_; }
   [[nodiscard]] HullPoint& operator[](int i) { return points_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const HullPoint& operator[](int i) const { return points_[static_cast<std::size_t>(i)]; }
 

@@ -39,7 +39,20 @@ HullTriangle Quickhull::make_triangle(int a, int b, int c) const {
   t.furthest_height = 0;
   t.first_outside = -1;
   t.mark = -1;
+  if (p.x == q.x && q.x == r.x) align_with_axis(t, 0);
+  if (p.y == q.y && q.y == r.y) align_with_axis(t, 1);
+  if (p.z == q.z && q.z == r.z) align_with_axis(t, 2);
   return t;
+}
+
+void Quickhull::align_with_axis(HullTriangle& t, int axis) const {
+  if (!points_.scaling_exact()) return;
+  const int sign = points_.orient2d(t.vertex[0], t.vertex[1], t.vertex[2], axis);
+  const HullPoint& p = points_[t.vertex[0]];
+  const double coordinate = axis == 0 ? p.x : (axis == 1 ? p.y : p.z);
+  for (int k = 0; k < 3; ++k) t.normal[k] = k == axis ? sign : 0;
+  t.offset = sign * coordinate;
+  t.error = 0;
 }
 
 Quickhull::Quickhull(HullPoints& points, const AffineFrame& frame) : points_(points) {

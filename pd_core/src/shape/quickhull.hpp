@@ -17,11 +17,12 @@
 namespace pd::detail {
 
 struct HullTriangle {
-  std::int32_t vertex[3];      ///< counter-clockwise from outside
-  std::int32_t neighbour[3];   ///< across the edge vertex[i] -> vertex[i + 1]
-  double normal[3];            ///< rounded, not normalised
-  double offset;               ///< rounded <normal, vertex[0]>
-  double error;                ///< bounds |height() - true| for every point in [-1, 1]^3
+  std::int32_t vertex[3];     ///< counter-clockwise from outside
+  std::int32_t neighbour[3];  ///< across the edge vertex[i] -> vertex[i + 1]
+  double normal[3];           ///< rounded, not normalised
+  double offset;              ///< rounded <normal, vertex[0]>
+  double error;  ///< bounds |height() - true| for every point in [-1, 1]^3; 0: the sign of height() is that of one
+                 ///< difference
   double furthest_height;      ///< of the first outside point
   std::int32_t first_outside;  ///< list of the points assigned to this triangle; -1: none, kDead: not of the hull
   std::int32_t mark;           ///< stamp of the last insertion that looked at it
@@ -51,6 +52,7 @@ class Quickhull {
     const double height = t.height(points_[p]);
     if (height > t.error) return 1;
     if (height < -t.error) return -1;
+    if (t.error == 0 && points_.scaling_exact()) return 0;
     return points_.orient3d(t.vertex[0], t.vertex[1], t.vertex[2], p);
   }
 
@@ -62,6 +64,8 @@ class Quickhull {
   };
 
   HullTriangle make_triangle(int a, int b, int c) const;
+  /// Points are often given on planes across an axis; there one difference of coordinates decides, exactly.
+  void align_with_axis(HullTriangle& t, int axis) const;
   [[nodiscard]] std::int32_t allocate();
   void add_outside(std::int32_t triangle, int p);
   void add_vertex(std::int32_t triangle);
