@@ -41,9 +41,9 @@ Vec3 light_direction(const Scene& scene) {
   Vec3 x;
   Vec3 y;
   ground_axes(scene.up, x, y);
-  // 48 degrees to the left of the default view angle, 52 degrees high.
+  // 52 degrees to the left of the default view angle, 56 degrees high.
   const double azimuth = (-58.0 - 52.0) * std::numbers::pi / 180;
-  const double elevation = 50 * std::numbers::pi / 180;
+  const double elevation = 56 * std::numbers::pi / 180;
   return std::cos(elevation) * (std::cos(azimuth) * x + std::sin(azimuth) * y) +
          std::sin(elevation) * scene.up.normalized();
 }

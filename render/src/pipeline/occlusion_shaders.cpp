@@ -91,7 +91,7 @@ float key_visibility(vec3 place, vec3 normal, mat2 turn) {
   float push = 1.5 * shadow_texel * shadow_width * (1 + 2 * sqrt(1 - facing * facing));
   vec3 map = (shadow_from_view * vec4(place + push * normal, 1)).xyz;
   if (map.x <= 0 || map.x >= 1 || map.y <= 0 || map.y >= 1) return 1.0;
-  float search = clamp(0.35 * radius * light_tangent * 8 / shadow_width, 3 * shadow_texel, 0.06);
+  float search = clamp(0.32 * light_tangent, 3 * shadow_texel, 0.06);
   float blockers = 0;
   float depths = 0;
   for (int i = 0; i < kSearchTaps; ++i) {

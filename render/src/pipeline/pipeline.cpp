@@ -29,7 +29,7 @@ enum ProgramIndex : std::size_t {
 constexpr float kOpaque = 0.995f;
 
 /// Half the angle of the key light, as a tangent: soft enough to read as a studio lamp.
-constexpr float kLightTangent = 0.11f;
+constexpr float kLightTangent = 0.13f;
 
 /// Ink is pulled this share of the way to the eye, so that it wins over its own surface and over nothing else.
 constexpr float kInkPull = 0.0012f;

@@ -12,7 +12,12 @@ vec3 to_display(vec3 linear) {
   return clamp(0.585122381 * a + 0.783140355 * b - 0.368262736 * sqrt(b), 0, 1);
 }
 vec3 to_linear(vec3 display) { return display * (display * (display * 0.305306011 + 0.682171111) + 0.012522878); }
-vec3 filmic(vec3 x) { return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14); }
+float filmic(float x) { return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14); }
+// On the brightest component, so that a hue stays itself on its way to white.
+vec3 filmic(vec3 colour) {
+  float peak = max(max(colour.r, colour.g), max(colour.b, 1e-4));
+  return colour * (filmic(peak) / peak);
+}
 )";
 
 // Half-size occlusion brought to full size: bilinear, weighted by likeness of distance; along silhouettes, where none
@@ -102,12 +107,12 @@ float grid_lines(vec2 at, float width_pixels) {
 
 void main() {
   float away = length(ground);
-  vec2 seen = visibility(distance_along);
+  vec2 seen = mix(visibility(distance_along), vec2(1), smoothstep(3.5 * focus_radius, 7 * focus_radius, away));
   float fade = 1 - smoothstep(1.2 * focus_radius, 4.5 * focus_radius, away);
   vec3 floor_colour = to_linear(backdrop());
   // A pool of light round the bodies.
   floor_colour *= 1 + 0.07 * exp(-away * away / (2.6 * focus_radius * focus_radius));
-  vec3 key = vec3(0.57, 0.55, 0.52);
+  vec3 key = vec3(0.56, 0.535, 0.50);
   vec3 light = (1 - key) * seen.x + key * seen.y * mix(1.0, seen.x, 0.4);
   vec2 at = ground / grid_step + grid_offset;
   float ink = 0.10 * grid_lines(at, 1.0) + 0.13 * grid_lines(at / 10, 1.4);
@@ -160,7 +165,7 @@ void main() {
   float grazing = 1 - max(0, dot(normal, sight));
   float rim = grazing * grazing * grazing * grazing * (0.35 + 0.65 * height) * seen.x;
   vec3 light = albedo * (ambient + key) + vec3(0.16, 0.18, 0.21) * rim;
-  pixel = vec4(to_display(filmic(0.68 * light)), colour.a);
+  pixel = vec4(to_display(filmic(0.64 * light)), colour.a);
 }
 )";
 }

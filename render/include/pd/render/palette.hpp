@@ -73,8 +73,8 @@ inline constexpr Colour kPaper = hex(0xF6F5F2);
 inline constexpr Colour kRule = hex(0xD9DADB);
 
 /// The studio's backdrop, top and bottom of the picture.
-inline constexpr Colour kBackdropTop = hex(0xDCE1E7);
-inline constexpr Colour kBackdropBottom = hex(0xEFECE7);
+inline constexpr Colour kBackdropTop = hex(0xD3D9E0);
+inline constexpr Colour kBackdropBottom = hex(0xEAE6DF);
 
 }  // namespace palette
 }  // namespace pd::render
