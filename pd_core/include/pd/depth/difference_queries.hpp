@@ -12,7 +12,7 @@ namespace pd {
 class Scratch;
 
 struct DifferenceSupport {
-  double value = 0;  ///< h_P(direction) = max <x, direction> over P, within 2 ulp of the exact one (polytopes)
+  double value = 0;            ///< h_P(direction) = max <x, direction> over P, from double-double (polytopes)
   std::int32_t vertex_a = -1;  ///< a vertex of A (of its core) that attains it, the lowest of several; -1: smooth
   std::int32_t vertex_b = -1;
 };

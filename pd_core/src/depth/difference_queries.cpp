@@ -1,0 +1,140 @@
+#include "pd/depth/difference_queries.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "depth/exact_expansion.hpp"
+#include "depth/finish.hpp"
+#include "depth/posed_support.hpp"
+#include "depth/ray_signs.hpp"
+#include "depth/smooth_difference.hpp"
+#include "numeric/root_sum.hpp"
+#include "pd/depth/scratch.hpp"
+
+namespace pd {
+
+namespace {
+
+using detail::Dyadic;
+using detail::Dyadic3;
+using detail::PairVector;
+using detail::PosedPair;
+
+DifferenceSupport polytope_support(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
+                                   const Pose& pose_b, double margin, const Vec3& direction) {
+  const PosedPair pair(a, pose_a, b, pose_b);
+  const detail::RaySigns signs(pair, direction);
+  const auto sign = [&](const PairVector& edge) { return signs.along(edge); };
+  const detail::PairId found = support_exactly(pair, signs.scaled(), sign);
+  std::vector<std::int32_t> stack;
+  DifferenceSupport support;
+  support.vertex_a = detail::lowest_of_face(
+      a, found.a, [&](int from, int to) { return sign(PairVector::edge_a(from, to)); }, stack);
+  support.vertex_b = detail::lowest_of_face(
+      b, found.b, [&](int from, int to) { return sign(PairVector::edge_b(from, to)); }, stack);
+  // Largest exponents kept in range by the scaled direction; the product may still exceed the range of doubles.
+  const detail::Vec3DD x = pair.approximate_dd(PairVector::point(support.vertex_a, support.vertex_b));
+  const Vec3& d = signs.scaled();
+  const detail::DoubleDouble product = x.x * d.x() + x.y * d.y() + x.z * d.z();
+  const int exponent = std::ilogb(direction.cwiseAbs().maxCoeff());
+  support.value = std::ldexp(detail::to_double(product), exponent + pair.scale_exponent());
+  if (margin > 0) support.value += margin * direction.stableNorm();
+  return support;
+}
+
+/// max <R x + t, n> of a core, with a vertex where it has any.
+double smooth_support(const PosedShape& body, const Vec3& n, std::int32_t& vertex) {
+  if (const ConvexPolytope* polytope = body.shape->polytope()) {
+    vertex = detail::support_vertex(*polytope, body.pose.rotation().transpose() * n, -1);
+    return body.pose.apply(polytope->vertex(vertex)).dot(n);
+  }
+  const Mat3 rotation = body.pose.nearest_rotation();
+  const Vec3 local = detail::support_point(body.shape->core(), rotation.transpose() * n);
+  return (rotation * local + body.pose.translation()).dot(n);
+}
+
+/// x + y where the sum is a triple of doubles that a pose may hold.
+std::optional<Vec3> exact_sum(const Vec3& x, const Vec3& y) {
+  Vec3 sum;
+  for (int i = 0; i < 3; ++i) {
+    const detail::DoubleDouble s = detail::two_sum(x[i], y[i]);
+    if (s.lo != 0 || !(std::abs(s.hi) <= kMaxCoordinate)) return std::nullopt;
+    sum[i] = s.hi;
+  }
+  return sum;
+}
+
+/// The pose with another translation. Requires one within kMaxCoordinate.
+Pose moved(const Pose& pose, const Vec3& translation) {
+  if (pose.is_quaternion()) return *Pose::from_quaternion(pose.quaternion_wxyz(), translation);
+  return Pose::from_trusted_matrix(pose.rotation(), translation);
+}
+
+ContactClass exact_class(const PosedShape& a, const PosedShape& b, const Vec3& point) {
+  const PosedPair pair(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose, point);
+  const detail::PairId start{0, 0};
+  const detail::ExactNearest nearest = exact_nearest(pair, &start, 1);
+  const detail::Margins margins{a.shape->margin(), b.shape->margin()};
+  const bool rounded = margins.a > 0 || margins.b > 0;
+  if (nearest.apart) {
+    if (!rounded) return ContactClass::separated;
+    PenetrationDepth answer;
+    finish_apart(pair, nearest, margins, answer);
+    return answer.contact;
+  }
+  if (rounded) return ContactClass::overlapping;
+  return exact_expansion(pair, nearest.simplex.data(), nearest.count, std::numeric_limits<int>::max()).contact;
+}
+
+}  // namespace
+
+Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const PosedShape& b, const Vec3& direction) {
+  if (!direction.allFinite()) {
+    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
+  }
+  if (direction.isZero(0)) {
+    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
+  }
+  const ConvexPolytope* const polytope_a = a.shape->polytope();
+  const ConvexPolytope* const polytope_b = b.shape->polytope();
+  const double margin = a.shape->margin() + b.shape->margin();
+  if (polytope_a && polytope_b) {
+    return polytope_support(*polytope_a, a.pose, *polytope_b, b.pose, margin, direction);
+  }
+  DifferenceSupport support;
+  const double scale = direction.cwiseAbs().maxCoeff();
+  const Vec3 n = direction / scale;
+  const double on_b = smooth_support(b, n, support.vertex_b);
+  const double on_a = smooth_support(a, -n, support.vertex_a);
+  support.value = (on_a + on_b + margin * n.norm()) * scale;
+  return support;
+}
+
+Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
+                                           Scratch& scratch) {
+  if (!point.allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", "point"};
+  if (point.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", "point"};
+  }
+  // x lies in P where the origin lies in B + (-(A + x)).
+  const std::optional<Vec3> exact = exact_sum(a.pose.translation(), point);
+  const bool polytopes = a.shape->polytope() && b.shape->polytope();
+  const Vec3 sum = exact ? *exact : Vec3(a.pose.translation() + point);
+  if (sum.cwiseAbs().maxCoeff() <= kMaxCoordinate) {
+    DepthSettings roughly;
+    roughly.delta = 1;
+    const PenetrationDepth answer = penetration_depth({a.shape, moved(a.pose, sum)}, b, scratch, roughly);
+    if (exact || !polytopes) return answer.contact;
+    // The move was rounded: the signed depth changes by at most as much.
+    const double slack = 2 * 0x1p-53 * sum.cwiseAbs().sum();
+    if (answer.contact == ContactClass::overlapping && answer.lower > slack) return answer.contact;
+    if (answer.contact == ContactClass::separated && answer.distance_lower > slack) return answer.contact;
+  } else if (!polytopes) {
+    return Error{ErrorCode::out_of_range, "the point and the translation of a add up to more than 1e300", "point"};
+  }
+  return exact_class(a, b, point);
+}
+
+}  // namespace pd

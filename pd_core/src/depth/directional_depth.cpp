@@ -1,0 +1,157 @@
+#include "pd/depth/directional_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "depth/portal.hpp"
+#include "depth/scratch_buffers.hpp"
+#include "numeric/root_sum.hpp"
+#include "pd/depth/scratch.hpp"
+#include "structure/overlay_walk.hpp"
+
+namespace pd {
+
+namespace {
+
+using detail::Dyadic;
+using detail::Dyadic3;
+using detail::ExactDirection;
+using detail::PairVector;
+using detail::PosedPair;
+
+/// A supporting plane of P and where the ray meets it: t = offset / slope, in units of |d| and up to one common factor.
+struct Crossing {
+  Dyadic3 normal;
+  Dyadic offset;  ///< <point, normal>, > 0
+  Dyadic slope;   ///< <d, normal>, > 0
+};
+
+Crossing crossing_of(const PosedPair& pair, const Dyadic3& direction, const PairVector& point, const PairVector& u,
+                     const PairVector& v) {
+  Crossing c;
+  c.normal = cross(pair.exact(u), pair.exact(v));
+  c.offset = dot(pair.exact(point), c.normal);
+  c.slope = dot(direction, c.normal);
+  return c;
+}
+
+/// The least crossing over every facet of P that faces along the ray.
+class NearestCrossing {
+ public:
+  NearestCrossing(const detail::OverlayWalk& walk, const detail::RaySigns& ray)
+      : walk_(walk), pair_(walk.pair()), ray_(ray) {}
+
+  void consume(std::span<const detail::OverlayPiece> pieces) {
+    for (const detail::OverlayPiece& piece : pieces) {
+      ++visited_;
+      const detail::FacetOfDifference facet = facet_of(pair_, piece);
+      const Vec3 u = pair_.approximate(facet.u), v = pair_.approximate(facet.v);
+      const Vec3 n = u.cross(v);
+      const Vec3 p = pair_.approximate(facet.point());
+      const double e = pair_.vector_error();
+      const double su = u.cwiseAbs().sum(), sv = v.cwiseAbs().sum(), sp = p.cwiseAbs().sum();
+      // Errors of a normal's coordinate, and with it of both products (3 coordinates, 1-norms, as in the overlay
+      // engine).
+      const double en = (e * (su + sv + 2 * e) + 0x1p-51 * su * sv) * (1 + 0x1p-40);
+      const double sn = n.cwiseAbs().sum() + 3 * en;
+      const double slope = n.dot(ray_.scaled()), slope_error = 3 * en * 2 + 0x1p-48 * sn;
+      const double offset = n.dot(p), offset_error = en * (sp + 3 * e) + sn * e + 0x1p-48 * sp * sn + 0x1p-900;
+      // Out of the question: facing away for certain, or certainly farther than the best.
+      if (slope < -slope_error) continue;
+      const double farthest_slope = std::max(0.0, slope + slope_error);
+      if (found_ && offset - offset_error > upper_ * farthest_slope * (1 + 0x1p-40)) continue;
+      consider(piece, facet, (offset + offset_error) * (1 + 0x1p-50), slope - slope_error);
+    }
+  }
+
+  [[nodiscard]] const Crossing& best() const { return best_; }
+  [[nodiscard]] std::int64_t visited() const { return visited_; }
+
+ private:
+  void consider(const detail::OverlayPiece& piece, const detail::FacetOfDifference& facet, double offset_upper,
+                double slope_lower) {
+    if (piece.kind != detail::OverlayPiece::Kind::facet_of_a && !whole_facet(walk_, piece)) return;
+    const Crossing c = crossing_of(pair_, ray_.exact(), facet.point(), facet.u, facet.v);
+    if (c.slope.sign() <= 0) return;
+    if (found_ && (c.offset * best_.slope - best_.offset * c.slope).sign() >= 0) return;
+    best_ = c;
+    upper_ = slope_lower > 0 ? offset_upper / slope_lower * (1 + 0x1p-50) : HUGE_VAL;
+    found_ = true;
+  }
+
+  const detail::OverlayWalk& walk_;
+  const PosedPair& pair_;
+  const detail::RaySigns& ray_;
+  Crossing best_;
+  double upper_ = HUGE_VAL;
+  bool found_ = false;
+  std::int64_t visited_ = 0;
+};
+
+void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, DirectionalDepth& out) {
+  // offset carries the pair's homogeneous factor once more than slope; times |d| it is a length.
+  const Dyadic denominator = c.slope * pair.homogeneous_factor();
+  const detail::RootSum exact(Dyadic(0.0), 1, c.offset * c.offset * dot(direction, direction),
+                              denominator * denominator);
+  out.lower = exact.round_down();
+  out.upper = exact.round_up(out.lower);
+  out.depth = std::clamp(detail::to_double(exact.approximate()), out.lower, out.upper);
+  const ExactDirection normal(c.normal);
+  out.normal = normal.unit;
+  const detail::FacetOfDifference facet = facet_of_direction(pair, normal);
+  out.feature_a = facet.on_a;
+  out.feature_b = facet.on_b;
+}
+
+}  // namespace
+
+Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction,
+                                             Scratch& scratch, DirectionalMethod method) {
+  if (!direction.allFinite()) {
+    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
+  }
+  if (direction.isZero(0)) {
+    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
+  }
+  const ConvexPolytope* const polytope_a = a.shape->polytope();
+  const ConvexPolytope* const polytope_b = b.shape->polytope();
+  if (!polytope_a || !polytope_b || a.shape->margin() > 0 || b.shape->margin() > 0) {
+    return Error{ErrorCode::unsupported, "directional depth is for polytopes without a margin", ""};
+  }
+
+  DirectionalDepth out;
+  // The class alone: a factor of two of the depth is enough, and the class is exact in any case.
+  DepthSettings roughly;
+  roughly.delta = 1;
+  const PenetrationDepth overlap = penetration_depth(a, b, scratch, roughly);
+  out.contact = overlap.contact;
+  out.statistics = overlap.statistics;
+  if (out.contact != ContactClass::overlapping) return out;
+
+  const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
+  const detail::RaySigns ray(pair, direction);
+  Crossing crossing;
+  if (method == DirectionalMethod::overlay) {
+    detail::OverlayWalk walk(pair, scratch.buffers().overlay.overlay);
+    NearestCrossing nearest(walk, ray);
+    walk.run([&](std::span<const detail::OverlayPiece> pieces) {
+      nearest.consume(pieces);
+      return true;
+    });
+    crossing = nearest.best();
+    out.statistics.facets_visited += nearest.visited();
+  } else {
+    const detail::Portal portal = find_portal(ray);
+    const detail::PairId& p = portal.corners[0];
+    const auto to = [&](const detail::PairId& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
+    crossing =
+        crossing_of(pair, ray.exact(), PairVector::point(p.a, p.b), to(portal.corners[1]), to(portal.corners[2]));
+    out.statistics.support_calls += portal.support_calls;
+  }
+  fill(pair, ray.exact(), crossing, out);
+  out.statistics.exact_signs += pair.stages().double_double + pair.stages().exact;
+  return out;
+}
+
+}  // namespace pd

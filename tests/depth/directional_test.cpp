@@ -1,0 +1,207 @@
+/// @file
+/// Directional depth by two methods against each other and against the exact oracle, and the queries on P that never
+/// build it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "oracle/depth_oracle.hpp"
+#include "pd/depth/difference_queries.hpp"
+#include "pd/depth/directional_depth.hpp"
+#include "pd/depth/scratch.hpp"
+
+namespace pd {
+namespace {
+
+struct Bodies {
+  std::vector<Vec3> points_a, points_b;
+  ConvexShape a, b;
+  Pose pose_a, pose_b;
+  Bodies(std::vector<Vec3> pa, const Pose& qa, std::vector<Vec3> pb, const Pose& qb)
+      : points_a(std::move(pa)),
+        points_b(std::move(pb)),
+        a(*ConvexPolytope::from_points(points_a)),
+        b(*ConvexPolytope::from_points(points_b)),
+        pose_a(qa),
+        pose_b(qb) {}
+  [[nodiscard]] PosedShape posed_a() const { return {&a, pose_a}; }
+  [[nodiscard]] PosedShape posed_b() const { return {&b, pose_b}; }
+};
+
+std::vector<Vec3> sphere_points(int n, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i) points.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
+  return points;
+}
+
+std::vector<Vec3> grid_points(std::mt19937_64& random, int n) {
+  std::uniform_int_distribution<int> coordinate(-2, 2);
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i) points.push_back(Vec3(coordinate(random), coordinate(random), coordinate(random)));
+  return points;
+}
+
+Pose random_pose(std::mt19937_64& random, double spread) {
+  std::normal_distribution<double> normal;
+  std::array<double, 4> q{normal(random), normal(random), normal(random), normal(random)};
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (double& c : q) c /= length;
+  return *Pose::from_quaternion(q, spread * Vec3(normal(random), normal(random), normal(random)));
+}
+
+/// Both methods must give the same neighbouring doubles; the point that they bracket lies inside P before and outside
+/// after.
+void check(const Bodies& bodies, const Vec3& direction, Scratch& scratch, int& overlapping) {
+  const auto portal = directional_depth(bodies.posed_a(), bodies.posed_b(), direction, scratch);
+  const auto overlay =
+      directional_depth(bodies.posed_a(), bodies.posed_b(), direction, scratch, DirectionalMethod::overlay);
+  ASSERT_TRUE(portal.has_value() && overlay.has_value());
+  ASSERT_EQ(portal->contact, overlay->contact);
+  EXPECT_EQ(portal->lower, overlay->lower);
+  EXPECT_EQ(portal->upper, overlay->upper);
+  EXPECT_EQ(portal->depth, overlay->depth);
+  if (portal->contact != ContactClass::overlapping) {
+    EXPECT_EQ(portal->depth, 0);
+    return;
+  }
+  ++overlapping;
+  EXPECT_LE(portal->lower, portal->upper);
+  EXPECT_LE(portal->upper, std::nextafter(portal->lower, HUGE_VAL));
+  const oracle::Body body_a(bodies.points_a), body_b(bodies.points_b);
+  oracle::JudgeSettings settings;
+  settings.distance = false;
+  const Vec3 unit = direction.stableNormalized();
+  for (const double factor : {1 - 1e-9, 1 + 1e-9}) {
+    const oracle::ExactPair exact(body_a, bodies.pose_a, body_b, bodies.pose_b, factor * portal->depth * unit);
+    const ContactClass contact = oracle::judge(exact, settings).contact;
+    EXPECT_EQ(contact, factor < 1 ? ContactClass::overlapping : ContactClass::separated);
+  }
+}
+
+TEST(DirectionalDepth, RandomSolids) {
+  std::mt19937_64 random(21);
+  std::normal_distribution<double> normal;
+  Scratch scratch;
+  int overlapping = 0;
+  for (int round = 0; round < 200 && !HasFailure(); ++round) {
+    SCOPED_TRACE(round);
+    const Bodies bodies(sphere_points(4 + round % 40, random), random_pose(random, 0.4),
+                        sphere_points(4 + (3 * round) % 40, random), random_pose(random, 0.4));
+    check(bodies, Vec3(normal(random), normal(random), normal(random)), scratch, overlapping);
+  }
+  EXPECT_GT(overlapping, 80);
+}
+
+TEST(DirectionalDepth, GridBodiesAlongGridDirections) {
+  // Rays through vertices and along edges and facets of P, and vertices of P at or in line with the origin.
+  std::mt19937_64 random(22);
+  std::uniform_int_distribution<int> coordinate(-2, 2);
+  Scratch scratch;
+  int overlapping = 0;
+  for (int round = 0; round < 500 && !HasFailure(); ++round) {
+    SCOPED_TRACE(round);
+    const Bodies bodies(grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose());
+    Vec3 direction(coordinate(random), coordinate(random), coordinate(random));
+    if (direction.isZero(0)) direction = Vec3::UnitZ();
+    check(bodies, direction, scratch, overlapping);
+  }
+  EXPECT_GT(overlapping, 200);
+}
+
+TEST(DirectionalDepth, BoxesByHand) {
+  Scratch scratch;
+  const ConvexShape box(*ConvexPolytope::box(Vec3(1, 1, 1)));
+  const Pose aside = *Pose::from_matrix(Mat3::Identity(), Vec3(0.5, 0, 0));
+  const auto depth = [&](const Vec3& direction) {
+    return directional_depth({&box, aside}, {&box, Pose()}, direction, scratch)->depth;
+  };
+  EXPECT_EQ(depth(Vec3(3, 0, 0)), 1.5);
+  EXPECT_EQ(depth(Vec3(-1e-200, 0, 0)), 2.5);
+  EXPECT_EQ(depth(Vec3(0, 1e200, 0)), 2);
+  EXPECT_DOUBLE_EQ(depth(Vec3(1, 1, 0)), 1.5 * std::sqrt(2.0));
+  EXPECT_EQ(directional_depth({&box, aside}, {&box, Pose()}, Vec3::Zero(), scratch).error().code,
+            ErrorCode::zero_direction);
+  EXPECT_EQ(directional_depth({&box, aside}, {&box, Pose()}, Vec3(0, NAN, 0), scratch).error().code,
+            ErrorCode::non_finite);
+  const ConvexShape sphere = *ConvexShape::sphere(1);
+  EXPECT_EQ(directional_depth({&sphere, aside}, {&box, Pose()}, Vec3::UnitX(), scratch).error().code,
+            ErrorCode::unsupported);
+}
+
+TEST(DirectionalDepth, SupportsGrowSlowly) {
+  std::mt19937_64 random(23);
+  std::normal_distribution<double> normal;
+  Scratch scratch;
+  for (const int n : {8, 128, 2048}) {
+    const Bodies bodies(sphere_points(n, random), random_pose(random, 0), sphere_points(n, random),
+                        random_pose(random, 0.1));
+    const PenetrationDepth alone = [&] {
+      DepthSettings roughly;
+      roughly.delta = 1;
+      return penetration_depth(bodies.posed_a(), bodies.posed_b(), scratch, roughly);
+    }();
+    std::int64_t most = 0;
+    for (int ray = 0; ray < 100; ++ray) {
+      const Vec3 d(normal(random), normal(random), normal(random));
+      const auto found = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch);
+      most = std::max(most, found->statistics.support_calls - alone.statistics.support_calls);
+    }
+    EXPECT_LE(most, 10 + 2.5 * std::log2(n)) << n;
+  }
+}
+
+TEST(DifferenceQueries, SupportsAreExactAndLowest) {
+  std::mt19937_64 random(24);
+  std::uniform_int_distribution<int> coordinate(-3, 3);
+  for (int round = 0; round < 300 && !HasFailure(); ++round) {
+    const Bodies bodies(grid_points(random, 1 + round % 12), Pose(), grid_points(random, 1 + round % 9), Pose());
+    Vec3 d(coordinate(random), coordinate(random), coordinate(random));
+    if (d.isZero(0)) d = Vec3::UnitX();
+    const auto support = support_of_difference(bodies.posed_a(), bodies.posed_b(), d);
+    const ConvexPolytope& a = *bodies.a.polytope();
+    const ConvexPolytope& b = *bodies.b.polytope();
+    int lowest_a = 0, lowest_b = 0;
+    for (int v = 0; v < a.num_vertices(); ++v) {
+      if (a.vertex(v).dot(d) < a.vertex(lowest_a).dot(d)) lowest_a = v;
+    }
+    for (int v = 0; v < b.num_vertices(); ++v) {
+      if (b.vertex(v).dot(d) > b.vertex(lowest_b).dot(d)) lowest_b = v;
+    }
+    EXPECT_EQ(support->vertex_a, lowest_a);
+    EXPECT_EQ(support->vertex_b, lowest_b);
+    EXPECT_EQ(support->value, (b.vertex(lowest_b) - a.vertex(lowest_a)).dot(d));
+  }
+}
+
+TEST(DifferenceQueries, PointClassesAreExact) {
+  std::mt19937_64 random(25);
+  std::uniform_int_distribution<int> coordinate(-4, 4);
+  Scratch scratch;
+  oracle::JudgeSettings settings;
+  settings.distance = false;
+  int counts[3] = {0, 0, 0};
+  for (int round = 0; round < 600 && !HasFailure(); ++round) {
+    // A translation whose sum with the point is no double, on half of the rounds.
+    const Vec3 far = round % 2 ? Vec3(1e9 + 0.1, -3e7 + 0.3, 1e-9) : Vec3(Vec3::Zero());
+    const Pose pose = *Pose::from_matrix(Mat3::Identity(), far);
+    const Bodies bodies(grid_points(random, 1 + round % 9), pose, grid_points(random, 1 + round % 7), pose);
+    const Vec3 x(coordinate(random), coordinate(random), coordinate(random));
+    const auto found = point_in_difference(bodies.posed_a(), bodies.posed_b(), x, scratch);
+    const oracle::Body body_a(bodies.points_a), body_b(bodies.points_b);
+    const oracle::ExactPair exact(body_a, bodies.pose_a, body_b, bodies.pose_b, x);
+    ASSERT_EQ(*found, oracle::judge(exact, settings).contact) << round;
+    ++counts[static_cast<int>(*found)];
+  }
+  for (const int count : counts) EXPECT_GT(count, 30);
+  const ConvexShape sphere = *ConvexShape::sphere(1);
+  EXPECT_EQ(*point_in_difference({&sphere, Pose()}, {&sphere, Pose()}, Vec3(2, 0, 0), scratch), ContactClass::touching);
+  EXPECT_EQ(*point_in_difference({&sphere, Pose()}, {&sphere, Pose()}, Vec3(1.9, 0, 0), scratch),
+            ContactClass::overlapping);
+}
+
+}  // namespace
+}  // namespace pd
