@@ -1,0 +1,86 @@
+/// @file
+/// `pdepth-bench`: penetration depth measured beside the peers, every answer judged by the exact oracle.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <random>
+
+#include "bench/pairs.hpp"
+
+namespace {
+
+using namespace pd::bench;
+
+struct Options {
+  std::vector<std::string> families;
+  std::vector<int> vertices;
+  std::vector<std::string> solvers;
+  std::uint64_t seed = 0;
+  bool seed_given = false;
+  bool quick = false;
+  int pairs = 0;
+  std::string csv;
+};
+
+void add_common(CLI::App& command, Options& o) {
+  command.add_option("--seed", o.seed, "repeats a run (default: drawn, and printed)");
+  command.add_option("--solvers", o.solvers, "names of solvers (default: all)")->delimiter(',');
+  command.add_option("--csv", o.csv, "writes the table to this file");
+  command.add_flag("--quick", o.quick, "under a minute: fewer pairs, no dear cells");
+}
+
+/// Drops the solvers that were not asked for. False when a name is unknown.
+bool select(Solvers& solvers, const std::vector<std::string>& names) {
+  if (names.empty()) return true;
+  Solvers chosen;
+  for (const std::string& name : names) {
+    const auto found =
+        std::find_if(solvers.begin(), solvers.end(), [&](const auto& s) { return s != nullptr && s->name() == name; });
+    if (found == solvers.end()) {
+      fmt::print(stderr, "--solvers: no solver of this name: {}\n", name);
+      return false;
+    }
+    chosen.push_back(std::move(*found));
+  }
+  solvers = std::move(chosen);
+  return true;
+}
+
+int pairs_command(const Options& o) {
+  const auto cells = choose_cells(o.families, o.vertices, o.quick);
+  if (!cells) {
+    fmt::print(stderr, "{}: {}\n", cells.error().where, cells.error().message);
+    return 2;
+  }
+  Solvers solvers;
+  add_ours(solvers, true, false);
+  add_peers(solvers);
+  if (!select(solvers, o.solvers)) return 2;
+  for (const std::string& note : peer_notes()) fmt::print("{}\n", note);
+  fmt::print("seed {}\n\n", o.seed);
+  PairsSettings settings;
+  settings.cells = *cells;
+  settings.seed = o.seed;
+  settings.pairs = o.pairs > 0 ? o.pairs : o.quick ? 12 : 72;
+  const std::vector<Row> rows = run_pairs(settings, solvers);
+  print_summary(rows);
+  if (!o.csv.empty() && !write_text(o.csv, to_csv(rows))) return 1;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Exact penetration depth beside the peers; every answer is judged by an exact oracle."};
+  app.require_subcommand(1);
+  CLI::App* pairs = app.add_subcommand("pairs", "cold single pairs: families x vertices x depth");
+  add_common(*pairs, options);
+  pairs->add_option("--families", options.families, "names of families (default: all)")->delimiter(',');
+  pairs->add_option("--vertices", options.vertices, "sizes (default: the family's own)")->delimiter(',');
+  pairs->add_option("--pairs", options.pairs, "pairs in each cell (default: 72, quick 12)");
+  CLI11_PARSE(app, argc, argv);
+  if (pairs->count("--seed") == 0) options.seed = std::random_device{}();
+  return pairs_command(options);
+}

@@ -1,0 +1,114 @@
+#include "bench/pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/allocation_counter.hpp"
+#include "bench/judge.hpp"
+#include "bench/stopwatch.hpp"
+
+namespace pd::bench {
+
+void Tally::add(double ns, double allocations, double supports, bool wrong, double error) {
+  times_.push_back(ns);
+  allocations_ += allocations;
+  supports_ += supports;
+  wrong_ += wrong ? 1 : 0;
+  worst_error_ = std::max(worst_error_, error);
+}
+
+Row Tally::row() const {
+  Row row;
+  row.pairs = count();
+  row.p50_ns = quantile(times_, 0.5);
+  row.p99_ns = quantile(times_, 0.99);
+  row.allocations = allocations_ / row.pairs;
+  row.supports = supports_ / row.pairs;
+  row.wrong = wrong_;
+  row.worst_error = worst_error_;
+  return row;
+}
+
+bool measure_draw(const Draw& draw, Solvers& solvers, const std::vector<char>& sits_out, std::vector<Tally>& tallies) {
+  const JudgedBodies bodies(draw.bodies);
+  const Judge judge(bodies, draw.pose_a, draw.pose_b);
+  if (judge.contact(Precision::binary64) != ContactClass::overlapping) return false;
+
+  struct Lane {
+    std::size_t solver;
+    std::unique_ptr<Attempt> attempt;
+    Plan plan;
+    double least_ns = std::numeric_limits<double>::infinity();
+    std::int64_t allocations = 0;
+    std::int64_t calls = 0;
+  };
+  std::vector<Lane> lanes;
+  int rounds = 0;
+  for (std::size_t s = 0; s < solvers.size(); ++s) {
+    if (sits_out[s] != 0) continue;
+    Lane lane{s, solvers[s]->prepare(draw.bodies), {}};
+    lane.attempt->stand(draw.pose_a, draw.pose_b);
+    lane.attempt->run();  // grows buffers, loads caches
+    const auto t0 = Clock::now();
+    lane.attempt->run();
+    lane.plan = plan_for(elapsed_ns(t0, Clock::now()));
+    rounds = std::max(rounds, lane.plan.rounds);
+    lanes.push_back(std::move(lane));
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (Lane& lane : lanes) {
+      if (round >= lane.plan.rounds) continue;
+      lane.attempt->run();  // the others have had the caches in between
+      const std::int64_t before = allocations();
+      const auto t0 = Clock::now();
+      for (int k = 0; k < lane.plan.calls; ++k) lane.attempt->run();
+      const auto t1 = Clock::now();
+      lane.allocations += allocations() - before;
+      lane.calls += lane.plan.calls;
+      lane.least_ns = std::min(lane.least_ns, elapsed_ns(t0, t1) / lane.plan.calls);
+    }
+  }
+  for (const Lane& lane : lanes) {
+    const Judgement j = judge.judge(lane.attempt->answer(), solvers[lane.solver]->precision());
+    tallies[lane.solver].add(lane.least_ns, static_cast<double>(lane.allocations) / static_cast<double>(lane.calls),
+                             lane.attempt->supports(), j.wrong, j.relative_error);
+  }
+  return true;
+}
+
+std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers) {
+  std::vector<Row> rows;
+  print_header();
+  for (const Cell& cell : settings.cells) {
+    std::vector<Tally> tallies(solvers.size());
+    std::vector<char> sits_out(solvers.size(), 0);
+    int refused = 0;
+    std::uint64_t number = 0;
+    for (int done = 0; done < settings.pairs && refused < 20 * settings.pairs;) {
+      const std::optional<Draw> d = draw(cell, settings.seed, number++);
+      if (!d || !measure_draw(*d, solvers, sits_out, tallies)) {
+        ++refused;
+        continue;
+      }
+      ++done;
+      if (done > 1) continue;
+      for (std::size_t s = 0; s < solvers.size(); ++s) sits_out[s] = tallies[s].row().p50_ns > settings.slow_ns;
+    }
+    std::vector<Row> block;
+    for (std::size_t s = 0; s < solvers.size(); ++s) {
+      if (tallies[s].count() == 0) continue;
+      Row row = tallies[s].row();
+      row.family = scenes::to_string(cell.family);
+      row.vertices = cell.vertices;
+      row.depth = scenes::to_string(cell.depth);
+      row.solver = solvers[s]->name();
+      block.push_back(std::move(row));
+    }
+    set_ratios(block);
+    print_rows(block);
+    rows.insert(rows.end(), block.begin(), block.end());
+  }
+  return rows;
+}
+
+}  // namespace pd::bench

@@ -1,0 +1,68 @@
+#include "bench/solver.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "pd/depth/warm_certificate.hpp"
+
+namespace pd::bench {
+
+namespace {
+
+class OurAttempt final : public Attempt {
+ public:
+  OurAttempt(const Bodies& bodies, Scratch& scratch, const DepthSettings& settings, bool remembering)
+      : a_{&bodies.a, {}}, b_{&bodies.b, {}}, scratch_(scratch), settings_(settings), remembering_(remembering) {}
+
+  void stand(const Pose& a, const Pose& b) override {
+    a_.pose = a;
+    b_.pose = b;
+  }
+  void run() override {
+    answer_ = penetration_depth(a_, b_, scratch_, settings_, remembering_ ? &certificate_ : nullptr);
+  }
+  [[nodiscard]] Answer answer() const override {
+    return {answer_.contact == ContactClass::overlapping, answer_.depth, answer_.translation};
+  }
+  [[nodiscard]] double supports() const override { return static_cast<double>(answer_.statistics.support_calls); }
+  [[nodiscard]] bool warm() const override { return answer_.warm; }
+
+ private:
+  PosedShape a_;
+  PosedShape b_;
+  Scratch& scratch_;
+  DepthSettings settings_;
+  bool remembering_;
+  WarmCertificate certificate_;
+  PenetrationDepth answer_;
+};
+
+class OurSolver final : public Solver {
+ public:
+  OurSolver(std::string name, const DepthSettings& settings, bool remembering)
+      : name_(std::move(name)), settings_(settings), remembering_(remembering) {}
+
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] Precision precision() const override { return Precision::binary64; }
+  [[nodiscard]] std::unique_ptr<Attempt> prepare(const Bodies& bodies) override {
+    return std::make_unique<OurAttempt>(bodies, scratch_, settings_, remembering_);
+  }
+
+ private:
+  std::string name_;
+  DepthSettings settings_;
+  bool remembering_;
+  Scratch scratch_;
+};
+
+}  // namespace
+
+void add_ours(Solvers& solvers, bool every_engine, bool remembering) {
+  solvers.push_back(std::make_unique<OurSolver>(std::string(kOurs), DepthSettings{}, remembering));
+  if (remembering) solvers.push_back(std::make_unique<OurSolver>("pdepth-cold", DepthSettings{}, false));
+  if (!every_engine) return;
+  solvers.push_back(
+      std::make_unique<OurSolver>("pdepth-tightest", DepthSettings{.bracket = Bracket::tightest}, remembering));
+  solvers.push_back(std::make_unique<OurSolver>("pdepth-expansion", DepthSettings{.method = Method::expansion}, false));
+  solvers.push_back(std::make_unique<OurSolver>("pdepth-overlay", DepthSettings{.method = Method::overlay}, false));
+}
+
+}  // namespace pd::bench

@@ -1,0 +1,44 @@
+#include "bench/solver.hpp"
+
+namespace pd::bench {
+
+scenes::Points vertices_of(const ConvexShape& shape) {
+  scenes::Points points;
+  const ConvexPolytope& polytope = *shape.polytope();
+  for (int v = 0; v < polytope.num_vertices(); ++v) points.push_back(polytope.vertex(v));
+  return points;
+}
+
+void add_peers([[maybe_unused]] Solvers& solvers) {
+#ifdef PD_BENCH_WITH_BULLET
+  add_bullet(solvers);
+#endif
+#ifdef PD_BENCH_WITH_CCD
+  add_ccd(solvers);
+#endif
+#ifdef PD_BENCH_WITH_FCL
+  add_fcl(solvers);
+#endif
+}
+
+std::vector<std::string> peer_notes() {
+  std::vector<std::string> notes;
+#ifdef PD_BENCH_WITH_BULLET
+  notes.push_back(bullet_note());
+#else
+  notes.emplace_back("Bullet: missing when this was built, so there are no ratios");
+#endif
+#ifdef PD_BENCH_WITH_CCD
+  notes.emplace_back("libccd 2 (double)");
+#else
+  notes.emplace_back("libccd: missing when this was built");
+#endif
+#ifdef PD_BENCH_WITH_FCL
+  notes.push_back(fcl_note());
+#else
+  notes.emplace_back("FCL: missing when this was built");
+#endif
+  return notes;
+}
+
+}  // namespace pd::bench

@@ -1,0 +1,82 @@
+/// @file
+/// What every solver of the bench is to the stopwatch and to the judge: ours, and each peer in a file of its own
+/// (`peers/`). Convention of all answers: A moves, B stays, in the frame that both share.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pd/shape/convex_shape.hpp"
+#include "scenes/shape_families.hpp"
+
+namespace pd::bench {
+
+/// The numbers that a solver works on: it is judged on the ones it received, not on those it never saw.
+enum class Precision : std::uint8_t { binary32, binary64 };
+
+/// Two bodies as every solver gets them: the vertices of their hulls, each in its own frame, once.
+struct Bodies {
+  ConvexShape a;
+  ConvexShape b;
+};
+
+struct Answer {
+  bool overlapping = false;  ///< false: the solver saw no overlap, or gave up
+  double depth = 0;
+  Vec3 translation = Vec3::Zero();  ///< of A; out of B
+};
+
+/// A solver at work on one pair of bodies; `run` is what is timed.
+class Attempt {
+ public:
+  virtual ~Attempt() = default;
+  /// Sets where the bodies stand from the next run on, in the solver's own types.
+  virtual void stand(const Pose& a, const Pose& b) = 0;
+  virtual void run() = 0;
+  [[nodiscard]] virtual Answer answer() const = 0;
+  /// Support points asked for in the last run; NaN where the solver does not tell.
+  [[nodiscard]] virtual double supports() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// The last run was answered from the memory of the pair.
+  [[nodiscard]] virtual bool warm() const { return false; }
+};
+
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual Precision precision() const = 0;
+  /// Refers to `bodies`.
+  [[nodiscard]] virtual std::unique_ptr<Attempt> prepare(const Bodies& bodies) = 0;
+};
+
+using Solvers = std::vector<std::unique_ptr<Solver>>;
+
+inline constexpr std::string_view kOurs = "pdepth-auto";
+inline constexpr std::string_view kBulletEpa = "bullet-epa";
+
+/// Vertices of the hull in its canonical order.
+[[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);
+
+/// pdepth-auto (the default settings), and with `every_engine` pdepth-tightest, pdepth-expansion, pdepth-overlay.
+/// `remembering`: pdepth-auto keeps a warm certificate for each pair, and pdepth-cold stands beside it.
+void add_ours(Solvers& solvers, bool every_engine, bool remembering);
+
+/// Bullet's EPA and Minkowski sampling in the precision that this program was built for, libccd's EPA and MPR, FCL's
+/// signed distance and contact query: those whose packages were there when the bench was built.
+void add_peers(Solvers& solvers);
+
+/// One line for each package: its version, or that it is missing.
+[[nodiscard]] std::vector<std::string> peer_notes();
+
+/// The peers of one package; each is defined where its package was found.
+void add_bullet(Solvers& solvers);
+void add_ccd(Solvers& solvers);
+void add_fcl(Solvers& solvers);
+[[nodiscard]] std::string bullet_note();
+[[nodiscard]] std::string fcl_note();
+
+}  // namespace pd::bench

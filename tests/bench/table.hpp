@@ -1,0 +1,52 @@
+/// @file
+/// What was measured, for the terminal and as CSV.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "pd/numeric/expected.hpp"
+
+namespace pd::bench {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// One solver in one cell. Times are of one call.
+struct Row {
+  std::string family;
+  int vertices = 0;
+  std::string depth;
+  std::string solver;
+  int pairs = 0;
+  double p50_ns = kUnknown;
+  double p99_ns = kUnknown;
+  double ratio_to_bullet = kUnknown;  ///< p50 over that of Bullet's EPA on the same pairs
+  int wrong = 0;
+  double allocations = 0;      ///< in one call, mean
+  double worst_error = 0;      ///< |depth - truth| / truth
+  double supports = kUnknown;  ///< in one call, mean
+};
+
+/// Sets ratio_to_bullet of rows that belong to one cell.
+void set_ratios(std::vector<Row>& cell);
+
+/// A header line, then the rows of a cell under it. A row with wrong answers is marked.
+void print_header();
+void print_rows(const std::vector<Row>& cell);
+
+/// Geometric means of the ratios, and the sum of wrong answers, of each solver over all cells.
+void print_summary(const std::vector<Row>& rows);
+
+/// Columns family,vertices,depth,solver,pairs,p50_ns,p99_ns,ratio_to_bullet,wrong,allocations; an unknown ratio is
+/// empty.
+[[nodiscard]] std::string to_csv(const std::vector<Row>& rows);
+/// Reads what `to_csv` wrote. ErrorCode::bad_value with the line's number where it is something else.
+[[nodiscard]] Expected<std::vector<Row>> from_csv(const std::string& text);
+
+/// Writes a text file (folders are made), or says why not.
+[[nodiscard]] bool write_text(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace pd::bench
