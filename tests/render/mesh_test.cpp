@@ -53,7 +53,8 @@ TEST(Mesh, PolytopeInksItsEdgesAndKeepsFacetColours) {
   EXPECT_EQ(plain->triangles.size(), 36u);
   EXPECT_NEAR(enclosed_volume(*plain), 8, 1e-5);
   const std::vector<Colour> colours(6, palette::kNearestFacet);
-  for (const Mesh::Vertex& vertex : polytope_mesh(*box, colours)->vertices) {
+  const MeshRef coloured = polytope_mesh(*box, colours);
+  for (const Mesh::Vertex& vertex : coloured->vertices) {
     EXPECT_EQ(vertex.tint[3], 1.0f);
     EXPECT_EQ(vertex.tint[0], palette::kNearestFacet.r);
   }

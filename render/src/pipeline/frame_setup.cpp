@@ -165,6 +165,9 @@ FrameSetup set_up_frame(const Scene& scene, const Camera& camera, Size size) {
   for (const Body& body : scene.bodies) {
     casters.include(posed_bounds(*body.mesh, body.pose));
   }
+  for (const Solid& solid : scene.solids) {
+    casters.include(posed_bounds(*solid.mesh, solid.pose));
+  }
   fit_shadow(frame, casters.empty() ? focus : casters, Targets::kShadowSide);
   return frame;
 }

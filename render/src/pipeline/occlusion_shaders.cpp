@@ -12,7 +12,18 @@ void main() {
 }
 )";
 
+// A translucent caster lets a share of the light through: it leaves out that share of the map's texels, in an ordered
+// pattern that the soft shadow's many taps average.
 const char* const kShadowFragment = R"(#version 330 core
+uniform float density;
+const float kOrder[16] = float[](0.5, 8.5, 2.5, 10.5, 12.5, 4.5, 14.5, 6.5, 3.5, 11.5, 1.5, 9.5, 15.5, 7.5, 13.5, 5.5);
+void main() {
+  ivec2 cell = ivec2(gl_FragCoord.xy) % 4;
+  if (kOrder[cell.x + 4 * cell.y] > 16 * density) discard;
+}
+)";
+
+const char* const kOpaqueShadowFragment = R"(#version 330 core
 void main() {}
 )";
 
@@ -92,11 +103,13 @@ float key_visibility(vec3 place, vec3 normal, mat2 turn) {
   vec3 map = (shadow_from_view * vec4(place + push * normal, 1)).xyz;
   if (map.x <= 0 || map.x >= 1 || map.y <= 0 || map.y >= 1) return 1.0;
   float search = clamp(0.32 * light_tangent, 3 * shadow_texel, 0.06);
+  // The map ends with its casters: receivers behind its far plane are compared just in front of it.
+  float compared = min(map.z, 0.9999);
   float blockers = 0;
   float depths = 0;
   for (int i = 0; i < kSearchTaps; ++i) {
     float depth = texture(shadow_map, map.xy + turn * kDisc[2 * i + 1] * search).r;
-    float blocks = step(depth, map.z);
+    float blocks = step(depth, compared);
     blockers += blocks;
     depths += blocks * depth;
   }
@@ -106,7 +119,7 @@ float key_visibility(vec3 place, vec3 normal, mat2 turn) {
     float width = clamp(gap * light_tangent, 1.6 * shadow_texel, 0.06);
     lit = 0;
     for (int i = 0; i < kShadowTaps; ++i) {
-      lit += step(map.z, texture(shadow_map, map.xy + turn * kDisc[i] * width).r);
+      lit += step(compared, texture(shadow_map, map.xy + turn * kDisc[i] * width).r);
     }
     lit /= kShadowTaps;
   }

@@ -93,7 +93,7 @@ void add_disc(OverlayGeometry& geometry, const ContactDisc& disc, const FrameSet
   const Vector3f point = to_drawing(frame, disc.point);
   const Vector3f normal = disc.normal.normalized().cast<float>();
   const float unit = line_unit(frame, point);
-  const float radius = disc.radius > 0 ? static_cast<float>(disc.radius * frame.scale) : 6 * unit;
+  const float radius = disc.radius > 0 ? static_cast<float>(disc.radius * frame.scale) : 4.5f * unit;
   const float half = 0.6f * unit;
   const float stem = 3.4f * radius;
   const auto draw = [&](std::vector<OverlayVertex>& out, float grow, std::array<float, 4> tint) {

@@ -13,6 +13,7 @@ namespace {
 /// Places in `programs_`.
 enum ProgramIndex : std::size_t {
   kShadowProgram,
+  kGhostShadowProgram,
   kSurfaceProgram,
   kGroundSurfaceProgram,
   kOcclusionProgram,
@@ -25,8 +26,11 @@ enum ProgramIndex : std::size_t {
   kOverlayProgram,
 };
 
-/// Below this a body is a ghost: it casts no shadow and hides nothing.
+/// Below this a body is a ghost: it casts a lighter shadow and hides nothing.
 constexpr float kOpaque = 0.995f;
+
+/// A translucent body's shadow, as a share of its opacity.
+constexpr float kGhostShadow = 0.75f;
 
 /// Half the angle of the key light, as a tangent: soft enough to read as a studio lamp.
 constexpr float kLightTangent = 0.13f;
@@ -63,6 +67,7 @@ Expected<Pipeline> Pipeline::create(const GlFunctions& gl) {
   const std::string body = body_fragment();
   const std::string translucent = translucent_fragment();
   const std::pair<std::string_view, std::string_view> sources[] = {
+      {kShadowVertex, kOpaqueShadowFragment},
       {kShadowVertex, kShadowFragment},
       {kSurfaceVertex, kSurfaceFragment},
       {kGroundVertex, kGroundSurfaceFragment},
@@ -117,16 +122,29 @@ void Pipeline::draw_shadow_map(const Scene& scene, const FrameSetup& frame) {
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.5f, 2);
   gl.Disable(GL_CULL_FACE);
-  const Program& program = programs_[kShadowProgram];
-  program.use();
-  program.set("shadow", frame.shadow);
+  const auto cast = [&](const Program& program, const MeshRef& mesh, const Pose& pose, float density) {
+    const DeviceMesh& device = meshes_.get(mesh);
+    program.set("shadow", frame.shadow);
+    program.set("density", density);
+    program.set("model", model_matrix(frame, pose, mesh->unit));
+    gl.BindVertexArray(device.surface);
+    gl.DrawElements(GL_TRIANGLES, device.index_count, GL_UNSIGNED_INT, nullptr);
+  };
+  programs_[kShadowProgram].use();
   for (const Body& body : scene.bodies) {
     if (body.opacity >= kOpaque) {
-      const DeviceMesh& mesh = meshes_.get(body.mesh);
-      program.set("model", body_model(frame, body));
-      gl.BindVertexArray(mesh.surface);
-      gl.DrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+      cast(programs_[kShadowProgram], body.mesh, body.pose, 1);
     }
+  }
+  const Program& ghost = programs_[kGhostShadowProgram];
+  ghost.use();
+  for (const Body& body : scene.bodies) {
+    if (body.opacity < kOpaque) {
+      cast(ghost, body.mesh, body.pose, kGhostShadow * body.opacity);
+    }
+  }
+  for (const Solid& solid : scene.solids) {
+    cast(ghost, solid.mesh, solid.pose, kGhostShadow * solid.opacity);
   }
   gl.Disable(GL_POLYGON_OFFSET_FILL);
   gl.Enable(GL_CULL_FACE);
@@ -296,36 +314,40 @@ void Pipeline::draw_body_edges(const Scene& scene, const FrameSetup& frame) {
 
 std::vector<Pipeline::Sheet> Pipeline::translucent_sheets(const Scene& scene, const FrameSetup& frame) {
   std::vector<Sheet> sheets;
-  const auto add = [&](const MeshRef& mesh, const Pose& pose, double unit, const Eigen::Vector4f& colour, float hidden,
-                       bool edges) {
-    const Box box = posed_bounds(*mesh, pose);
-    if (box.empty()) {
+  const auto add = [&](Layer layer, const MeshRef& mesh, const Pose& pose, double unit, const Eigen::Vector4f& colour,
+                       float hidden, bool edges) {
+    if (mesh->bounds.empty()) {
       return;
     }
     const Eigen::Matrix4f model = model_matrix(frame, pose, unit);
-    const double radius = 0.5 * mesh->bounds.diagonal() * (unit / mesh->unit) * frame.scale;
-    const double distance = (to_drawing(frame, box.centre()) - frame.eye).norm();
+    const double to_world = unit / mesh->unit;
+    const double radius = 0.5 * mesh->bounds.diagonal() * to_world * frame.scale;
+    const double distance = (to_drawing(frame, pose.apply(to_world * mesh->bounds.centre())) - frame.eye).norm();
     const DeviceMesh* device = &meshes_.get(mesh);
-    sheets.push_back({distance + radius, true, device, model, normal_scale(model), colour, hidden, edges});
-    sheets.push_back({distance - radius, false, device, model, normal_scale(model), colour, hidden, edges});
+    for (const bool back : {true, false}) {
+      sheets.push_back({layer, back ? distance + radius : distance - radius, back, device, model, normal_scale(model),
+                        colour, hidden, edges});
+    }
   };
   for (const Body& body : scene.bodies) {
     if (body.opacity < kOpaque) {
-      add(body.mesh, body.pose, body.mesh->unit,
-          to_vector(body.highlight ? saturated(body.colour) : body.colour, body.opacity), 0, body.edges);
+      const Colour colour = body.highlight ? saturated(body.colour) : body.colour;
+      add(Layer::ghost, body.mesh, body.pose, body.mesh->unit, to_vector(colour, body.opacity), 0, body.edges);
     }
   }
   for (const Solid& solid : scene.solids) {
-    add(solid.mesh, solid.pose, solid.mesh->unit, to_vector(solid.colour, solid.opacity), solid.hidden_opacity,
-        solid.edges);
+    add(Layer::solid, solid.mesh, solid.pose, solid.mesh->unit, to_vector(solid.colour, solid.opacity),
+        solid.hidden_opacity, solid.edges);
   }
   for (const Ball& ball : scene.balls) {
-    add(ball_, Pose::from_trusted_matrix(Mat3::Identity(), ball.centre), ball.radius,
-        to_vector(ball.colour, ball.opacity), 0.55f * ball.opacity, false);
+    add(ball.opacity < kOpaque ? Layer::ball : Layer::mark, ball_,
+        Pose::from_trusted_matrix(Mat3::Identity(), ball.centre), ball.radius, to_vector(ball.colour, ball.opacity),
+        0.8f * ball.opacity, false);
   }
   // Far sides of far things first: an outer shell's back lies behind, and its front before, everything inside it.
-  std::stable_sort(sheets.begin(), sheets.end(),
-                   [](const Sheet& a, const Sheet& b) { return a.distance > b.distance; });
+  std::stable_sort(sheets.begin(), sheets.end(), [](const Sheet& a, const Sheet& b) {
+    return a.layer != b.layer ? a.layer < b.layer : a.distance > b.distance;
+  });
   return sheets;
 }
 
@@ -361,7 +383,7 @@ void Pipeline::draw_translucent(const Scene& scene, const FrameSetup& frame) {
     if (!sheet.back && sheet.edges) {
       ink.use();
       ink.set("model", sheet.model);
-      const Colour line = palette::mix({sheet.colour.x(), sheet.colour.y(), sheet.colour.z()}, palette::kInk, 0.62f);
+      const Colour line = palette::mix({sheet.colour.x(), sheet.colour.y(), sheet.colour.z()}, palette::kInk, 0.72f);
       ink.set("width", std::max(1.0f, 1.3f * frame.line_pixels));
       ink.set("back_share", 0.28f);
       gl.Disable(GL_CULL_FACE);

@@ -22,8 +22,12 @@ class Pipeline {
   Expected<Image> draw(const Scene& scene, const Camera& camera, Size size);
 
  private:
-  /// One side of one translucent surface, drawn far to near.
+  /// What explains goes over what stands: later layers are never tinted by earlier ones.
+  enum class Layer { ghost, solid, ball, mark };
+
+  /// One side of one translucent surface, drawn far to near within its layer.
   struct Sheet {
+    Layer layer;
     double distance;
     bool back;
     const DeviceMesh* mesh;

@@ -12,6 +12,7 @@ namespace pd::render::detail {
 /// Depth from the light.
 extern const char* const kShadowVertex;
 extern const char* const kShadowFragment;
+extern const char* const kOpaqueShadowFragment;
 
 /// Half-size surface: view-space normal and distance along the line of sight.
 extern const char* const kSurfaceVertex;

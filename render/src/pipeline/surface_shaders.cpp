@@ -56,7 +56,7 @@ uniform vec2 picture;
 vec3 backdrop() {
   vec2 at = gl_FragCoord.xy / picture;
   vec2 off = (at - vec2(0.5, 0.52)) * vec2(1.0, 0.9);
-  float vignette = 1 - 0.16 * smoothstep(0.1, 0.75, dot(off, off) * 1.9);
+  float vignette = 1 - 0.11 * smoothstep(0.1, 0.75, dot(off, off) * 1.9);
   return mix(backdrop_top, backdrop_bottom, smoothstep(0.0, 0.95, at.y)) * vignette;
 }
 )";

@@ -63,7 +63,7 @@ double draw_sparkline(Canvas& canvas, const Sparkline& sparkline, const Layout& 
   canvas.fill_polygon(area, sparkline.colour, 0.13);
   canvas.fill_circle(line[now], 3.4 * u, palette::kPaper, 0.95);
   canvas.fill_circle(line[now], 2.4 * u, sparkline.colour);
-  const TextStyle quiet{.size = 12 * u, .weight = 450, .colour = palette::kInkSoft, .halo = 1.5 * u};
+  const TextStyle quiet{.size = 12 * u, .weight = 450, .colour = palette::kInkSoft};
   canvas.text({left, base - height - 6 * u}, sparkline.meaning, quiet);
   if (!sparkline.full_scale_text.empty()) {
     const std::array<Point, 2> top = {{{left, base - height}, {right, base - height}}};

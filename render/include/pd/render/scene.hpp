@@ -12,7 +12,7 @@
 
 namespace pd::render {
 
-/// A matte body that casts and receives shadows. Below full opacity it is a ghost: seen through, casting none.
+/// A matte body that casts and receives shadows. Below full opacity it is a ghost: seen through, with a lighter shadow.
 struct Body {
   MeshRef mesh;
   Pose pose = {};
@@ -55,7 +55,7 @@ struct Arrow {
 struct ContactDisc {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
-  double radius = 0;  ///< 0: about 6 pixels of a 720-line picture
+  double radius = 0;  ///< 0: 4.5 pixels of a 720-line picture
   Colour colour = palette::kContact;
   bool stem = true;
 };
