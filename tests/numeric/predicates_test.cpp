@@ -47,7 +47,26 @@ TEST(Predicates, FilterDecidesPlainInput) {
   EXPECT_EQ(orient2d({0, 0}, {1, 0.25}, {0.5, 3}, &stages), 1);
   EXPECT_EQ(orient3d({0, 0, 0}, {1, 0.5, 0}, {0, 1, 0.25}, {0.3, 0.2, 4}, &stages), 1);
   EXPECT_EQ(stages.filtered, 2);
+  EXPECT_EQ(stages.double_double, 0);
   EXPECT_EQ(stages.expansion, 0);
+  EXPECT_EQ(stages.dyadic, 0);
+}
+
+TEST(Predicates, DoubleDoubleDecidesNearMisses) {
+  // Points of a rounded tilted plane: off it by an ulp or so, and never by less than double-double sees.
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(-1, 1);
+  PredicateStages stages;
+  for (int round = 0; round < 1000; ++round) {
+    Vec3 p[4];
+    for (Vec3& q : p) {
+      q.x() = u(random);
+      q.y() = u(random);
+      q.z() = 0.3 * q.x() + 0.7 * q.y();
+    }
+    ASSERT_EQ(orient3d(p[0], p[1], p[2], p[3], &stages), rational_orient3d(p[0], p[1], p[2], p[3]));
+  }
+  EXPECT_GT(stages.double_double, 900);
   EXPECT_EQ(stages.dyadic, 0);
 }
 
@@ -60,7 +79,10 @@ TEST(Predicates, ExpansionsDecideWhatRoundingHides) {
   EXPECT_EQ(orient3d({0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0.3, 0.3, high}, &stages), 1);
   EXPECT_EQ(orient3d({0.1, 0.2, 0.3}, {0.2, 0.4, 0.6}, {0.7, 0.1, 0.4}, {0.3, 0.6, 0.1 + 0.8}, &stages),
             rational_orient3d({0.1, 0.2, 0.3}, {0.2, 0.4, 0.6}, {0.7, 0.1, 0.4}, {0.3, 0.6, 0.1 + 0.8}));
+  // Exactly on a plane: only exact arithmetic can say so.
+  EXPECT_EQ(orient3d({0.1, 0.2, 0.3}, {0.3, 0.1, 0.7}, {0.5, 0.9, 0.2}, {0.1, 0.2, 0.3}, &stages), 0);
   EXPECT_EQ(stages.expansion, 3);
+  EXPECT_EQ(stages.double_double, 1);
   EXPECT_EQ(stages.filtered, 1);
   EXPECT_EQ(stages.dyadic, 0);
 }
@@ -103,7 +125,8 @@ TEST(Predicates, AgreeWithRationalsNearDegeneracy) {
     ASSERT_EQ(orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]}, &stages),
               rational_orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]}));
   }
-  EXPECT_GT(stages.expansion, 1000);
+  EXPECT_GT(stages.expansion, 300);
+  EXPECT_GT(stages.double_double, 300);
   EXPECT_GT(stages.filtered, 1000);
 }
 

@@ -22,6 +22,13 @@ using detail::sum;
 constexpr double kBound2d = 4 * 0x1p-53;
 constexpr double kBound3d = 8 * 0x1p-53;
 constexpr double kUnderflow = 0x1p-700;
+// Differences are exact in double-double. Two levels of products (5u^2 each) and three of sums (3u^2 each) on
+// magnitudes that the permanent bounds give 19u^2(1 + O(u)) of it; the bound leaves room for the permanent's own
+// rounding.
+constexpr double kBoundDoubleDouble = 32 * 0x1p-106;
+// Expanded numbers are at least 2^-300 or 0, and their differences at least 2^-352: what underflows is below 2^-1074
+// times differences below 2^322, a few times.
+constexpr double kTinyDoubleDouble = 0x1p-740;
 constexpr double kLargestFiltered = 0x1p330;
 
 // Within these magnitudes (or zero) every bit of every product of three differences lies in 2^-1056 .. 2^1000, and
@@ -59,8 +66,23 @@ int orient2d_unfiltered(const std::array<double, 2>& a, const std::array<double,
   return ((Dyadic(b[0]) - ax) * (Dyadic(c[1]) - ay) - (Dyadic(b[1]) - ay) * (Dyadic(c[0]) - ax)).sign();
 }
 
-int orient3d_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, PredicateStages* stages) {
+/// The determinant of orient3d, its differences exact and its products and sums in double-double.
+double determinant_in_double_double(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto from_a = [&](const Vec3& p) {
+    return detail::Vec3DD{detail::two_sum(p.x(), -a.x()), detail::two_sum(p.y(), -a.y()),
+                          detail::two_sum(p.z(), -a.z())};
+  };
+  return dot(from_a(d), cross(from_a(b), from_a(c))).hi;  // the sum is normalised: hi has its sign
+}
+
+int orient3d_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double permanent,
+                        PredicateStages* stages) {
   if (expandable({a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), c.x(), c.y(), c.z(), d.x(), d.y(), d.z()})) {
+    const double determinant = determinant_in_double_double(a, b, c, d);
+    if (std::abs(determinant) > kBoundDoubleDouble * permanent + kTinyDoubleDouble) {
+      count(&PredicateStages::double_double, stages);
+      return sign_of(determinant);
+    }
     count(&PredicateStages::expansion, stages);
     const Expansion<2> bx = difference(b.x(), a.x());
     const Expansion<2> by = difference(b.y(), a.y());
@@ -124,7 +146,7 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Predica
     count(&PredicateStages::filtered, stages);
     return sign_of(determinant);
   }
-  return orient3d_unfiltered(a, b, c, d, stages);
+  return orient3d_unfiltered(a, b, c, d, permanent, stages);
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c, PredicateStages* stages) {

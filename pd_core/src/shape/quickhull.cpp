@@ -1,7 +1,9 @@
 #include "shape/quickhull.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace pd::detail {
 namespace {
@@ -12,6 +14,12 @@ namespace {
 // rounding of the bound. Underflow adds less than kUnderflow.
 constexpr double kHeightError = 24 * 0x1p-53;
 constexpr double kUnderflow = 1e-300;
+
+// The hull first grows in breadth: growing one corner at a time gives its vertices degrees of order n where two long
+// curves face each other, and then time of order n^2 (two parabolas of 10^5 points: 14.7 s, against 0.27 s). With this
+// many triangles the rest of each is small, and depth first is twice as fast as breadth on spheres, since it stays in
+// the cache.
+constexpr std::size_t kFrontierSize = 2048;
 
 }  // namespace
 
@@ -98,6 +106,17 @@ void Quickhull::insert(int first, int last) {
   for (const std::int32_t t : living) {
     if (at(t).first_outside >= 0) pending_.push_back(t);
   }
+  std::vector<std::int32_t> wave;
+  while (!pending_.empty() && triangles_.size() <= kFrontierSize) {
+    wave.swap(pending_);
+    pending_.clear();
+    for (const std::int32_t t : wave) {
+      if (at(t).first_outside >= 0) add_vertex(t);
+    }
+  }
+  std::erase_if(pending_, [&](std::int32_t t) { return at(t).first_outside < 0; });
+  std::sort(pending_.begin(), pending_.end(),
+            [&](std::int32_t s, std::int32_t t) { return at(s).first_outside > at(t).first_outside; });
   while (!pending_.empty()) {
     const std::int32_t t = pending_.back();
     pending_.pop_back();

@@ -1,9 +1,9 @@
 /// @file
 /// Exact orientation tests on doubles: the sign of a determinant of the stored numbers, never that of a rounded one.
 ///
-/// Three stages: 1. doubles with a running error bound, 2. expansions, exact while no product can over- or underflow,
-/// 3. dyadic numbers, exact always. [S] Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
-/// geometric predicates", 1997.
+/// Stages: 1. doubles with a running error bound, 2. double-double with an error bound (orient3d), 3. expansions, exact
+/// while no product can over- or underflow, 4. dyadic numbers, exact always. [S] Shewchuk, "Adaptive precision
+/// floating-point arithmetic and fast robust geometric predicates", 1997.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@ namespace pd {
 /// Which stage decided how often; the caller owns the counters.
 struct PredicateStages {
   std::int64_t filtered = 0;
+  std::int64_t double_double = 0;
   std::int64_t expansion = 0;
   std::int64_t dyadic = 0;
 };
