@@ -72,6 +72,7 @@ std::optional<BulletPairAnswer> BulletPenetrationDepthSolver::query(const btConv
     auto buffers = buffers_->lease();
     DepthSettings settings;
     settings.delta = settings_.delta;
+    settings.bracket = Bracket::certified;  // Bullet rounds to its own scalar anyway
     answer.depth = penetration_depth({answer.shape_a.get(), answer.pose_a}, {answer.shape_b.get(), answer.pose_b},
                                      buffers->scratch, settings, warm);
   }

@@ -1,9 +1,11 @@
 #include "depth/finish.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "depth/nearest.hpp"
 #include "numeric/root_sum.hpp"
 
 namespace pd::detail {
@@ -37,9 +39,12 @@ bool no_longer_than(const Vec3& t, double length) {
 /// (the one with the finest ulps) is solved for. Candidates are sifted in double-double and proved exactly.
 ///
 /// Lengths are brought near 1 by a power of two for the sifting.
+/// It stays within 4 ulp of L, a coordinate, of the exact one.
 bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& unit, const DoubleDouble& true_depth,
-                      double true_upper, Vec3& translation) {
+                      double true_upper, double true_extent, Vec3& translation) {
   const int exponent = std::ilogb(true_upper);
+  const double extent = std::ldexp(true_extent, -exponent);
+  const double leeway = 4 * (std::nextafter(extent, HUGE_VAL) - extent);
   const DoubleDouble depth{std::ldexp(true_depth.hi, -exponent), std::ldexp(true_depth.lo, -exponent)};
   const double upper = std::ldexp(true_upper, -exponent);
   const Vec3 base = high({unit.x * depth, unit.y * depth, unit.z * depth});
@@ -69,6 +74,7 @@ bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& 
       if (i != solved) rest = rest - components[i] * t[i];
     }
     t[solved] = to_double(rest / components[solved]);
+    if (std::abs(t[solved] - base[solved]) > leeway) t[solved] = base[solved];
     DoubleDouble excess = components[solved] * t[solved] - rest;
     if (excess.hi < 0) {
       t[solved] = std::nextafter(t[solved], components[solved].hi > 0 ? HUGE_VAL : -HUGE_VAL);
@@ -82,19 +88,18 @@ bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& 
   for (int i = live; i < 3; ++i) bare[order[i]] = 0;
   if (solve(bare) || solve(base)) return true;
   if (live == 1) return false;
-  for (const int reach : {4, 40, 400}) {
-    const int first_reach = live == 2 ? reach * reach : reach;
-    const int second_reach = live == 2 ? 0 : reach;
-    for (int i = -first_reach; i <= first_reach; ++i) {
-      for (int j = -second_reach; j <= second_reach; ++j) {
-        Vec3 t = base;
-        t[order[0]] += i * ulp(order[0]);
-        if (live == 3) t[order[1]] += j * ulp(order[1]);
-        if (solve(t)) return true;
-      }
+  // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.
+  if (!(height > 0)) return false;
+  const auto reach = [&](int i) { return std::clamp(static_cast<int>(leeway / ulp(i)), 4, 64); };
+  const int first = reach(order[0]);
+  const int second = live == 3 ? reach(order[1]) : 0;
+  for (int i = -first; i <= first; ++i) {
+    for (int j = -second; j <= second; ++j) {
+      Vec3 t = base;
+      t[order[0]] += i * ulp(order[0]);
+      if (live == 3) t[order[1]] += j * ulp(order[1]);
+      if (solve(t)) return true;
     }
-    // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.
-    if (!(height > 0)) return false;
   }
   return false;
 }
@@ -119,8 +124,22 @@ void set_features(const PosedPair& pair, const ExactDirection& normal, Penetrati
   }
 }
 
+/// L, rounded: the largest |coordinate| of b - a over the posed vertices.
+double largest_coordinate(const PosedPair& pair) {
+  const auto box = [](const ConvexPolytope& body, const Pose& pose) {
+    Eigen::AlignedBox3d bounds;
+    for (int v = 0; v < body.num_vertices(); ++v) bounds.extend(Vec3(pose.rotation() * body.vertex(v)));
+    return bounds;
+  };
+  const Eigen::AlignedBox3d a = box(pair.a(), pair.pose_a());
+  const Eigen::AlignedBox3d b = box(pair.b(), pair.pose_b());
+  const Vec3 offset = pair.pose_b().translation() - pair.pose_a().translation();
+  return std::max((b.max() - a.min() + offset).cwiseAbs().maxCoeff(),
+                  (b.min() - a.max() + offset).cwiseAbs().maxCoeff());
+}
+
 /// Class, bracket, normal and translation from the plane and the margins.
-void finish(const NearestPlane& plane, const Margins& margins, PenetrationDepth& out) {
+void finish(const PosedPair& pair, const NearestPlane& plane, const Margins& margins, PenetrationDepth& out) {
   const Dyadic r = Dyadic(margins.a) + Dyadic(margins.b);
   const RootSum value(r, plane.level.sign() < 0 ? -1 : 1, plane.level * plane.level,
                       plane.weight * plane.weight * dot(plane.normal.exact, plane.normal.exact));
@@ -145,46 +164,85 @@ void finish(const NearestPlane& plane, const Margins& margins, PenetrationDepth&
     out.upper = value.round_up(out.lower);
     const DoubleDouble depth = value.approximate();
     // Strides grow, so that subnormal lengths, whose coordinates are coarse, end too.
-    for (double ulps = 1; !find_translation(plane, r, unit, depth, out.upper, out.translation); ulps *= 2) {
+    const double extent = largest_coordinate(pair) + margins.a + margins.b;
+    for (double ulps = 1; !find_translation(plane, r, unit, depth, out.upper, extent, out.translation); ulps *= 2) {
       out.upper += ulps * (std::nextafter(out.upper, HUGE_VAL) - out.upper);
     }
     out.depth = out.upper;
   }
 }
 
-/// Where the perpendicular from the origin meets the facet, split into its two points.
-CorePoints split_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Vec3& translation) {
-  if (facet.on_a.kind == Feature::Kind::vertex) {
-    const Vec3 a = pair.pose_a().apply(pair.a().vertex(facet.on_a.first));
-    return {a, a + translation};
+/// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
+/// be large and cancel.
+Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& first, const Vec3& rest) {
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  const auto coordinate = [&](double t, const DoubleDouble& f, double r) {
+    return to_double(DoubleDouble{t, 0} + (f + DoubleDouble{r, 0}) * scale);
+  };
+  return {coordinate(translation.x(), first.x, rest.x()), coordinate(translation.y(), first.y, rest.y()),
+          coordinate(translation.z(), first.z, rest.z())};
+}
+
+Vec3 point_of_a(const PosedPair& pair, const PairId* ids, const double* weights, int count) {
+  Vec3 rest = Vec3::Zero();
+  for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_a(ids[0].a, ids[i].a));
+  const Vec3DD negated = pair.approximate_dd({ids[0].a, -1, -1, -1, false});
+  return world_point(pair, pair.pose_a().translation(), {-negated.x, -negated.y, -negated.z}, rest);
+}
+
+Vec3 point_of_b(const PosedPair& pair, const PairId* ids, const double* weights, int count) {
+  Vec3 rest = Vec3::Zero();
+  for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_b(ids[0].b, ids[i].b));
+  return world_point(pair, pair.pose_b().translation(), pair.approximate_dd({-1, -1, ids[0].b, -1, false}), rest);
+}
+
+/// The point of the nearest facet at the core's translation, split into a point of A's face and one of B's: the convex
+/// combination of their vertices' differences nearest to it, found in the facet's plane (Gilbert, Johnson, Keerthi on
+/// two polygons). Parallel facets and edges need no case of their own.
+CorePoints split_overlapping(const PosedPair& pair, const ExactDirection& normal, const Vec3& translation) {
+  const SupportFace on_a = support_face_a(pair, normal);
+  const SupportFace on_b = support_face_b(pair, normal);
+  const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
+  const auto difference = [&](std::int32_t a, std::int32_t b) {
+    const Vec3DD p = pair.approximate_dd(PairVector::point(a, b));  // local coordinates may be large and cancel
+    const Vec3 x = high(p - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
+    return DifferenceVertex{x - x.dot(normal.unit) * normal.unit, a, b};
+  };
+  const auto extreme = [&](const SupportFace& face, const Vec3& direction, const auto& value) {
+    return *std::max_element(face.begin(), face.end(), [&](std::int32_t v, std::int32_t w) {
+      return value(v).dot(direction) < value(w).dot(direction);
+    });
+  };
+  const auto edge_b = [&](std::int32_t v) { return pair.approximate(PairVector::edge_b(on_b.front(), v)); };
+  const auto edge_a = [&](std::int32_t v) { return Vec3(-pair.approximate(PairVector::edge_a(on_a.front(), v))); };
+
+  DifferenceVertex simplex[4] = {difference(on_a.front(), on_b.front())};
+  double weights[4] = {1, 0, 0, 0};
+  int count = 1;
+  double best = std::numeric_limits<double>::infinity();
+  for (Vec3 point = simplex[0].x; point.squaredNorm() < best;) {
+    best = point.squaredNorm();
+    DifferenceVertex next[4];
+    double next_weights[4];
+    int next_count = count;
+    std::copy(simplex, simplex + count, next);
+    next[next_count++] = difference(extreme(on_a, -point, edge_a), extreme(on_b, -point, edge_b));
+    point = nearest_of_simplex(next, next_count, next_weights, true);
+    if (!(point.squaredNorm() < best)) break;
+    count = next_count;
+    std::copy(next, next + count, simplex);
+    std::copy(next_weights, next_weights + count, weights);
   }
-  if (facet.on_b.kind == Feature::Kind::vertex) {
-    const Vec3 b = pair.pose_b().apply(pair.b().vertex(facet.on_b.first));
-    return {b - translation, b};
-  }
-  // translation = (b0 + s e_b) - (a0 + q e_a): solve for q on A's edge.
-  const double scale = std::ldexp(1.0, -pair.scale_exponent());
-  const Vec3 edge_b = pair.approximate(facet.u);
-  const Vec3 edge_a = pair.approximate(facet.v);
-  const Vec3 normal = edge_b.cross(edge_a);
-  const Vec3 rest = translation * scale - pair.approximate(facet.point());
-  const double q = std::clamp(edge_b.cross(rest).dot(normal) / -normal.squaredNorm(), 0.0, 1.0);
-  // facet.v runs from the facet's own vertex of A along its edge.
-  const int far = facet.on_a.first == facet.a ? facet.on_a.second : facet.on_a.first;
-  const Vec3 from = pair.a().vertex(facet.a);
-  const Vec3 a = pair.pose_a().apply(Vec3(from + q * (pair.a().vertex(far) - from)));
+  PairId ids[3];
+  for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
+  const Vec3 a = point_of_a(pair, ids, weights, count);
   return {a, a + translation};
 }
 
 /// The nearest points of cores that are apart or touch, from the weights of the simplex.
 CorePoints split_apart(const PosedPair& pair, const ExactNearest& nearest) {
-  Vec3 a = Vec3::Zero();
-  Vec3 b = Vec3::Zero();
-  for (int i = 0; i < nearest.count; ++i) {
-    a += nearest.weights[i] * pair.a().vertex(nearest.simplex[i].a);
-    b += nearest.weights[i] * pair.b().vertex(nearest.simplex[i].b);
-  }
-  return {pair.pose_a().apply(a), pair.pose_b().apply(b)};
+  return {point_of_a(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count),
+          point_of_b(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count)};
 }
 
 void set_witnesses(const CorePoints& core, const Margins& margins, PenetrationDepth& out) {
@@ -201,16 +259,16 @@ NearestPlane plane_of_facet(const PosedPair& pair, const ExactDirection& normal,
 void finish_overlapping(const PosedPair& pair, const ExactDirection& normal, const Margins& margins,
                         PenetrationDepth& out) {
   const FacetOfDifference facet = facet_of_direction(pair, normal);
-  finish(plane_of_facet(pair, normal, facet), margins, out);
+  finish(pair, plane_of_facet(pair, normal, facet), margins, out);
   out.feature_a = facet.on_a;
   out.feature_b = facet.on_b;
   const Vec3 core_translation = out.translation - (margins.a + margins.b) * out.normal;
-  set_witnesses(split_overlapping(pair, facet, core_translation), margins, out);
+  set_witnesses(split_overlapping(pair, normal, core_translation), margins, out);
 }
 
 void finish_touching(const PosedPair& pair, const ExactDirection& normal, const ExactNearest& nearest,
                      const Margins& margins, PenetrationDepth& out) {
-  finish({normal, Dyadic(1.0), Dyadic()}, margins, out);
+  finish(pair, {normal, Dyadic(1.0), Dyadic()}, margins, out);
   set_features(pair, normal, out);
   CorePoints core = split_apart(pair, nearest);
   core.b = core.a;  // one point, computed on A
@@ -221,7 +279,7 @@ void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Marg
   const Dyadic3& y = nearest.point;
   const ExactDirection normal(Dyadic3{-y.x, -y.y, -y.z});
   // The plane through the nearest point y / scale, normal to it.
-  finish({normal, nearest.scale, -dot(y, y)}, margins, out);
+  finish(pair, {normal, nearest.scale, -dot(y, y)}, margins, out);
   set_features(pair, normal, out);
   set_witnesses(split_apart(pair, nearest), margins, out);
 }

@@ -55,8 +55,8 @@ bool inside_tetrahedron(const DifferenceVertex* s) {
 
 }  // namespace
 
-Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]) {
-  if (count == 4 && inside_tetrahedron(simplex)) {
+Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
+  if (count == 4 && !planar && inside_tetrahedron(simplex)) {
     weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
     return Vec3::Zero();
   }

@@ -23,11 +23,12 @@ struct NearestResult {
 };
 
 /// Reduces the simplex to the face that holds its point nearest to the origin; returns that point. Weights sum to 1.
-Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]);
+/// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
+Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
 
 /// @param first     a vertex of P to begin with.
 /// @param relative  stop when upper <= (1 + relative) lower ...
-/// @param absolute  ... or upper - lower <= absolute (a length).
+/// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
 template <class Difference>
 NearestResult nearest_point(const Difference& difference, const DifferenceVertex& first, double relative,
                             double absolute, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
@@ -40,6 +41,7 @@ NearestResult nearest_point(const Difference& difference, const DifferenceVertex
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
   double best = r.point.norm();
+  double largest = first.x.cwiseAbs().maxCoeff();
   for (;;) {
     const double length = r.point.norm();
     r.upper = length + upper_error;
@@ -47,10 +49,11 @@ NearestResult nearest_point(const Difference& difference, const DifferenceVertex
     const Vec3 toward = -r.point / length;
     DifferenceVertex s = difference.support(toward, &r.simplex[r.count - 1]);
     ++support_calls;
+    largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
     double height = -s.x.dot(toward);
     const auto narrow = [&] {
       r.lower = height - lower_error;
-      return r.lower > 0 && (r.upper - r.lower <= absolute || r.upper <= (1 + relative) * r.lower);
+      return r.lower > 0 && (r.upper - r.lower <= absolute * largest || r.upper <= (1 + relative) * r.lower);
     };
     if (narrow()) {
       s = difference.certified_support(toward, s, stack);

@@ -217,7 +217,7 @@ class PolytopeQuery {
   bool fill_separated(const ExpansionResult& result) {
     const DifferenceVertex first = difference_.support(result.normal, nullptr);
     const NearestResult nearest =
-        nearest_point(difference_, first, settings_.delta, kCertifiedWidth * difference_.reach() / 2, buffers_.stack,
+        nearest_point(difference_, first, settings_.delta, kCertifiedWidth, buffers_.stack,
                       out_.statistics.support_calls);
     for (int i = 0; i < nearest.count; ++i) start_[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
     start_count_ = nearest.count;

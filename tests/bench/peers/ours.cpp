@@ -56,12 +56,15 @@ class OurSolver final : public Solver {
 }  // namespace
 
 void add_ours(Solvers& solvers, bool every_engine, bool remembering) {
-  solvers.push_back(std::make_unique<OurSolver>(std::string(kOurs), DepthSettings{}, remembering));
-  if (remembering) solvers.push_back(std::make_unique<OurSolver>("pdepth-cold", DepthSettings{}, false));
+  solvers.push_back(
+      std::make_unique<OurSolver>(std::string(kOurs), DepthSettings{.bracket = Bracket::certified}, remembering));
+  if (remembering)
+    solvers.push_back(std::make_unique<OurSolver>("pdepth-cold", DepthSettings{.bracket = Bracket::certified}, false));
   if (!every_engine) return;
   solvers.push_back(
       std::make_unique<OurSolver>("pdepth-tightest", DepthSettings{.bracket = Bracket::tightest}, remembering));
-  solvers.push_back(std::make_unique<OurSolver>("pdepth-expansion", DepthSettings{.method = Method::expansion}, false));
+  solvers.push_back(std::make_unique<OurSolver>(
+      "pdepth-expansion", DepthSettings{.method = Method::expansion, .bracket = Bracket::certified}, false));
   solvers.push_back(std::make_unique<OurSolver>("pdepth-overlay", DepthSettings{.method = Method::overlay}, false));
 }
 

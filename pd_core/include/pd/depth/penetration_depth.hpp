@@ -42,13 +42,13 @@ enum class Method : std::uint8_t {
 
 /// How tight the bracket of an exact answer is made.
 enum class Bracket : std::uint8_t {
-  certified,  ///< upper - lower <= 4e-15 L, the hot path's choice
+  certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
   tightest,   ///< lower and upper are the exact depth rounded down and up
 };
 
 struct DepthSettings {
   Method method = Method::automatic;
-  Bracket bracket = Bracket::certified;
+  Bracket bracket = Bracket::tightest;
   /// Relative error (upper <= (1 + delta) lower) where the answer is approximate; in (0, 1]. For polytopes, 0 = exact.
   double delta = 0;
 };
