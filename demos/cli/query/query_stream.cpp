@@ -88,7 +88,7 @@ class OrderedWork {
 
   /// A worker's life: answers lines until there are no more.
   void work(const Limits& limits) {
-    Session session{limits, Scratch()};
+    Session session{.limits = limits};
     for (;;) {
       Job* job = nullptr;
       {
@@ -146,7 +146,7 @@ class OrderedWork {
 };
 
 StreamEnd answer_alone(LineSource& source, AnswerSink& sink, const Limits& limits) {
-  Session session{limits, Scratch()};
+  Session session{.limits = limits};
   std::string line;
   for (;;) {
     const LineSource::Next next = source.next(line);

@@ -1,6 +1,7 @@
 /// @file
-/// hull: the exact convex hull of one body's points.
+/// Queries about one body: hull, width.
 #include "pair_reader.hpp"
+#include "pd/depth/width.hpp"
 
 namespace pd::query {
 
@@ -34,6 +35,31 @@ void answer_hull(const Node& line, Session& session, JsonWriter& answer) {
   answer.key("bytes").integer(static_cast<std::int64_t>(hull->memory_bytes()));
   answer.key("nanoseconds").integer(nanoseconds);
   answer.end_object();
+}
+
+void answer_width(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "method", "delta"});
+  Method method = Method::automatic;
+  const auto method_node = line.find("method");
+  if (method_node) method = read_method(*method_node);
+  // Every width is exact up to rounding, which is within every delta.
+  if (const auto delta = line.find("delta")) (void)read_delta(*delta);
+  const NamedShape a = read_shape(line.at("a"), session.limits);
+  const Pose pose = read_optional_pose(line, "pose_a");
+  if (method != Method::automatic && method != Method::expansion && method != Method::overlay) {
+    method_node->refuse("unsupported", "this method gives no widths yet; \"auto\" is exact");
+  }
+  if (!supports(method, a.shape, a.shape)) {
+    method_node->refuse("unsupported", "this method does not answer for this shape; \"auto\" does");
+  }
+  const Stopwatch watch;
+  const Width result = width({&a.shape, pose}, session.scratch, method);
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  answer.key("width").number(result.width);
+  answer.key("lower").number(result.lower);
+  answer.key("upper").number(result.upper);
+  answer.key("normal").vector(result.normal);
+  write_statistics(result.statistics, nanoseconds, answer);
 }
 
 }  // namespace pd::query

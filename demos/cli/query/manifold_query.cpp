@@ -1,0 +1,34 @@
+/// @file
+/// contact_manifold: at most four pairs of contact points.
+#include "pair_reader.hpp"
+#include "pd/contact/manifold.hpp"
+
+namespace pd::query {
+
+void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold"});
+  double threshold = 0;
+  if (const auto node = line.find("breaking_threshold")) {
+    threshold = read_number(*node);
+    if (threshold < 0) node->refuse("bad_value", "a breaking threshold must be 0 or greater");
+  }
+  const Pair pair = read_pair(line, session.limits);
+  const PenetrationDepth depth = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch,
+                                                   {.method = Method::automatic, .bracket = Bracket::tightest});
+  const ContactManifold manifold =
+      contact_manifold(pair.posed_a(), pair.posed_b(), depth, threshold, session.manifold_scratch);
+  answer.key("normal").vector(manifold.normal);
+  answer.key("points").begin_array();
+  for (int i = 0; i < manifold.count; ++i) {
+    const ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
+    answer.begin_object();
+    answer.key("position_a").vector(point.position_a);
+    answer.key("position_b").vector(point.position_b);
+    answer.key("depth").number(point.depth);
+    answer.key("feature_id").integer(point.feature_id);
+    answer.end_object();
+  }
+  answer.end_array();
+}
+
+}  // namespace pd::query
