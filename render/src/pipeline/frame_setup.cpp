@@ -34,18 +34,22 @@ double typical_body_radius(const Scene& scene, double fallback) {
   return std::min(*middle, fallback);
 }
 
-Vec3 light_direction(const Scene& scene) {
+/// 52 degrees to the left of the camera, as seen from the scene, and 56 degrees high.
+Vec3 light_direction(const Scene& scene, const Camera& camera) {
   if (scene.light_direction.squaredNorm() > 0) {
     return scene.light_direction.normalized();
   }
-  Vec3 x;
-  Vec3 y;
-  ground_axes(scene.up, x, y);
-  // 52 degrees to the left of the default view angle, 56 degrees high.
-  const double azimuth = (-58.0 - 52.0) * std::numbers::pi / 180;
+  const Vec3 up = scene.up.normalized();
+  const Vec3 backward = camera.eye - camera.target;
+  Vec3 level = backward - backward.dot(up) * up;
+  if (level.norm() < 1e-6 * backward.norm()) {
+    Vec3 across;
+    ground_axes(scene.up, level, across);
+  }
+  level.normalize();
+  const double turn = 52 * std::numbers::pi / 180;
   const double elevation = 56 * std::numbers::pi / 180;
-  return std::cos(elevation) * (std::cos(azimuth) * x + std::sin(azimuth) * y) +
-         std::sin(elevation) * scene.up.normalized();
+  return std::cos(elevation) * (std::cos(turn) * level + std::sin(turn) * level.cross(up)) + std::sin(elevation) * up;
 }
 
 /// Fits an orthographic view from the light round the casters. The side grows in steps of a quarter octave and the
@@ -160,7 +164,7 @@ FrameSetup set_up_frame(const Scene& scene, const Camera& camera, Size size) {
   view.block<3, 1>(0, 3) = -axes * ((camera.eye - frame.origin) * frame.scale);
   frame.projection = (clip * view).cast<float>();
 
-  frame.to_light = light_direction(scene).cast<float>();
+  frame.to_light = light_direction(scene, camera).cast<float>();
   Box casters;
   for (const Body& body : scene.bodies) {
     casters.include(posed_bounds(*body.mesh, body.pose));

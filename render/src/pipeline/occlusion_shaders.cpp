@@ -159,6 +159,8 @@ void main() {
 const char* const kSmoothFragment = R"(#version 330 core
 out vec4 result;
 uniform sampler2D raw;
+uniform int stride;  // of the 4 x 4 taps, -2..1 times this
+uniform int shift;
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   ivec2 last = textureSize(raw, 0) - 1;
@@ -167,7 +169,7 @@ void main() {
   float weights = 0;
   for (int y = -2; y < 2; ++y) {
     for (int x = -2; x < 2; ++x) {
-      vec3 tap = texelFetch(raw, clamp(here + ivec2(x, y), ivec2(0), last), 0).xyz;
+      vec3 tap = texelFetch(raw, clamp(here + ivec2(x, y) * stride + shift, ivec2(0), last), 0).xyz;
       float weight = max(1e-4, 1 - abs(tap.z - along) * 40 / (along + 1e-6));
       sum += weight * tap.xy;
       weights += weight;

@@ -193,7 +193,7 @@ void Pipeline::draw_surface(const Scene& scene, const FrameSetup& frame) {
   }
 }
 
-void Pipeline::draw_occlusion(const FrameSetup& frame) {
+void Pipeline::draw_occlusion(const FrameSetup& frame, bool grainy) {
   const GlFunctions& gl = *gl_;
   const Size half = targets_->surface.size;
   gl.Disable(GL_DEPTH_TEST);
@@ -221,12 +221,22 @@ void Pipeline::draw_occlusion(const FrameSetup& frame) {
   program.set("light_tangent", kLightTangent);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 
-  gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->occlusion.framebuffer);
   const Program& smooth = programs_[kSmoothProgram];
   smooth.use();
-  bind_texture(0, targets_->raw_occlusion.texture);
   smooth.set("raw", 0);
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  const auto smooth_into = [&](const TextureTarget& to, const TextureTarget& from, int stride, int shift) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, to.framebuffer);
+    bind_texture(0, from.texture);
+    smooth.set("stride", stride);
+    smooth.set("shift", shift);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  };
+  smooth_into(targets_->occlusion, targets_->raw_occlusion, 1, 0);
+  if (grainy) {
+    // Twice more, wider and centred: -3 -1 1 3, then -6 -2 2 6.
+    smooth_into(targets_->raw_occlusion, targets_->occlusion, 2, 1);
+    smooth_into(targets_->occlusion, targets_->raw_occlusion, 4, 2);
+  }
   gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_DEPTH_TEST);
 }
@@ -387,13 +397,14 @@ void Pipeline::draw_translucent(const Scene& scene, const FrameSetup& frame) {
       ink.set("width", std::max(1.0f, 1.3f * frame.line_pixels));
       ink.set("back_share", 0.28f);
       gl.Disable(GL_CULL_FACE);
+      const float strength = std::min(0.2f + 1.1f * sheet.colour.w(), 0.85f);
       if (sheet.hidden_opacity > 0) {
         gl.DepthFunc(GL_GREATER);
-        ink.set("colour", to_vector(line, 0.55f));
+        ink.set("colour", to_vector(line, 0.7f * strength));
         draw_edges(*sheet.mesh);
       }
       gl.DepthFunc(GL_LEQUAL);
-      ink.set("colour", to_vector(line, 0.8f));
+      ink.set("colour", to_vector(line, strength));
       draw_edges(*sheet.mesh);
       gl.Enable(GL_CULL_FACE);
     }
@@ -483,7 +494,9 @@ Expected<Image> Pipeline::draw(const Scene& scene, const Camera& camera, Size si
   gl.FrontFace(GL_CW);  // the projection turns y round
   draw_shadow_map(scene, frame);
   draw_surface(scene, frame);
-  draw_occlusion(frame);
+  const bool grainy = !scene.solids.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                           [](const Body& body) { return body.opacity < kOpaque; });
+  draw_occlusion(frame, grainy);
 
   gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->frame);
   gl.Viewport(0, 0, size.width, size.height);

@@ -42,7 +42,8 @@ class Pipeline {
 
   void draw_shadow_map(const Scene& scene, const FrameSetup& frame);
   void draw_surface(const Scene& scene, const FrameSetup& frame);
-  void draw_occlusion(const FrameSetup& frame);
+  /// @param grainy  translucent casters leave a coarse pattern to smooth away.
+  void draw_occlusion(const FrameSetup& frame, bool grainy);
   void draw_bodies(const Scene& scene, const FrameSetup& frame);
   void draw_ground_and_backdrop(const Scene& scene, const FrameSetup& frame);
   void draw_body_edges(const Scene& scene, const FrameSetup& frame);
