@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "pipeline/overlay_geometry.hpp"
 #include "pipeline/pass_parts.hpp"
 #include "pipeline/shaders.hpp"
 
