@@ -164,6 +164,7 @@ void ContactAlgorithm::replace_points(const BulletPairAnswer& answer, double thr
   }
   memory_->num_points = 0;
   for (int i = 0; i < manifold_->getNumContacts(); ++i) {
+    ++manifold_->getContactPoint(i).m_lifeTime;
     const btVector3& stored = manifold_->getContactPoint(i).m_localPointA;
     int nearest = -1;
     for (int k = 0; k < fresh.count; ++k) {

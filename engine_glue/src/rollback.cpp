@@ -26,6 +26,7 @@ struct RollbackStepper::Impact {
   const Part* a = nullptr;
   const Part* b = nullptr;
   double time = HUGE_VAL;
+  double allowed_depth = 0;  ///< 0: a first contact
 };
 
 namespace {
@@ -47,9 +48,7 @@ Vec3 velocity_at(const btCollisionObject& object, const Vec3& point) {
 
 RollbackStepper::RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
                                  const RollbackSettings& settings)
-    : world_(world), solver_(solver), settings_(settings) {
-  world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
-}
+    : world_(world), solver_(solver), settings_(settings) {}
 
 RollbackStepper::~RollbackStepper() = default;
 
@@ -106,12 +105,15 @@ bool RollbackStepper::earliest_impact(double duration, Impact& impact) {
         continue;
       }
       const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_);
-      if (signed_distance(before) <= 2 * settings_.gap) {
+      const double depth_allowed = settings_.contact_depth_share * std::min(a.radius, b.radius);
+      const bool in_contact = signed_distance(before) <= 2 * settings_.gap;
+      if (in_contact && signed_distance(before) <= -depth_allowed) {
         continue;
       }
+      settings.allowed_depth = in_contact ? depth_allowed : 0;
       const TimeOfImpact found = time_of_impact(moving_a, moving_b, duration, scratch_, settings);
       if (found.hit && found.time < impact.time) {
-        impact = {&a, &b, found.time};
+        impact = {&a, &b, found.time, settings.allowed_depth};
       }
     }
   }
@@ -142,14 +144,15 @@ FirstContact RollbackStepper::advance_to(const Impact& impact, const BulletSnaps
     result.contact = measure();
     result.gap = signed_distance(result.contact);
     result.time = time;
-    if ((result.gap > 0 && result.gap <= settings_.gap) || result.trials >= settings_.max_trials) {
+    const double clearance = result.gap + impact.allowed_depth;
+    if ((clearance > 0 && clearance <= settings_.gap) || result.trials >= settings_.max_trials) {
       return result;
     }
-    (result.gap > 0 ? low : high) = time;
+    (clearance > 0 ? low : high) = time;
     const double closing =
         (velocity_at(*result.body_b, result.contact.witness_b) - velocity_at(*result.body_a, result.contact.witness_a))
             .dot(result.contact.normal);
-    double next = closing > 0 ? time + (result.gap - 0.5 * settings_.gap) / closing : HUGE_VAL;
+    double next = closing > 0 ? time + (clearance - 0.5 * settings_.gap) / closing : HUGE_VAL;
     if (!(next > low && next < high)) {
       next = 0.5 * (low + high);
     }
@@ -171,7 +174,7 @@ RollbackReport RollbackStepper::step(btScalar step) {
     remember_start_poses();
     world_.stepSimulation(static_cast<btScalar>(remaining), 0);
     ++report.simulation_steps;
-    report.bounded = static_cast<int>(report.contacts.size()) >= settings_.max_contacts_per_step;
+    report.bounded = static_cast<int>(report.contacts.size()) + report.deepened >= settings_.max_contacts_per_step;
     Impact impact;
     if (report.bounded || !earliest_impact(remaining, impact)) {
       return report;
@@ -179,7 +182,11 @@ RollbackReport RollbackStepper::step(btScalar step) {
     FirstContact contact = advance_to(impact, start, remaining, report);
     const double advanced = contact.time;
     contact.time += done;
-    report.contacts.push_back(contact);
+    if (impact.allowed_depth > 0) {
+      ++report.deepened;
+    } else {
+      report.contacts.push_back(contact);
+    }
     done += advanced;
     remaining -= advanced;
   }

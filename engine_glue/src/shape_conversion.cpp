@@ -279,6 +279,7 @@ Expected<ConvexShape> to_convex_shape(const btConvexShape& shape) {
     case CONVEX_2D_SHAPE_PROXYTYPE:
       return to_convex_shape(*static_cast<const btConvex2dShape&>(shape).getChildShape());
     case MINKOWSKI_SUM_SHAPE_PROXYTYPE:
+    case MINKOWSKI_DIFFERENCE_SHAPE_PROXYTYPE:  // what btMinkowskiSumShape calls itself
       return from_minkowski_sum(static_cast<const btMinkowskiSumShape&>(shape));
     default:
       return unsupported(shape, "a convex type of the host's own that is not polyhedral has no exact form");
@@ -331,7 +332,8 @@ std::uint64_t shape_fingerprint(const btConvexShape& shape) {
     case CONVEX_2D_SHAPE_PROXYTYPE:
       hash.add(shape_fingerprint(*static_cast<const btConvex2dShape&>(shape).getChildShape()));
       break;
-    case MINKOWSKI_SUM_SHAPE_PROXYTYPE: {
+    case MINKOWSKI_SUM_SHAPE_PROXYTYPE:
+    case MINKOWSKI_DIFFERENCE_SHAPE_PROXYTYPE: {
       const auto& sum = static_cast<const btMinkowskiSumShape&>(shape);
       hash.add(sum.getTransformA());
       hash.add(sum.GetTransformB());

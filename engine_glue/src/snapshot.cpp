@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "broadphase_state.hpp"
 #include "pair_registry.hpp"
 
 namespace pd {
@@ -37,7 +38,6 @@ struct BodyState {
 struct ManifoldState {
   const btCollisionObject* body0;
   const btCollisionObject* body1;
-  int ordinal;  ///< among the manifolds of these two bodies (compounds have several)
   std::vector<btManifoldPoint> points;
   std::optional<detail::PairMemory> memory;
 };
@@ -112,8 +112,22 @@ btSequentialImpulseConstraintSolver* seeded_solver(btDiscreteDynamicsWorld& worl
   return dynamic_cast<btSequentialImpulseConstraintSolver*>(world.getConstraintSolver());
 }
 
-bool same_bodies(const btPersistentManifold& manifold, const ManifoldState& state) {
-  return manifold.getBody0() == state.body0 && manifold.getBody1() == state.body1;
+enum class Likeness { other, possible, same };
+
+/// Whether a manifold is the saved one. A compound has one for each pair of children, which only their points name.
+Likeness compare(const btPersistentManifold& manifold, const ManifoldState& state) {
+  if (manifold.getBody0() != state.body0 || manifold.getBody1() != state.body1) {
+    return Likeness::other;
+  }
+  if (manifold.getNumContacts() == 0 || state.points.empty()) {
+    return Likeness::possible;
+  }
+  const btManifoldPoint& a = manifold.getContactPoint(0);
+  const btManifoldPoint& b = state.points[0];
+  return a.m_index0 == b.m_index0 && a.m_index1 == b.m_index1 && a.m_partId0 == b.m_partId0 &&
+                 a.m_partId1 == b.m_partId1
+             ? Likeness::same
+             : Likeness::other;
 }
 
 }  // namespace
@@ -124,78 +138,58 @@ struct BulletSnapshot::State {
   std::vector<BodyState> bodies;
   std::vector<ManifoldState> manifolds;
   std::vector<JointState> joints;
+  detail::BroadphaseState broadphase;
   unsigned long seed = 0;
 
-  [[nodiscard]] bool knows(const btPersistentManifold& manifold) const {
-    return std::any_of(manifolds.begin(), manifolds.end(),
-                       [&](const ManifoldState& state) { return same_bodies(manifold, state); });
-  }
-
-  /// Puts the present manifolds into the saved order, those made since behind them.
-  /// @return false where one is missing.
-  [[nodiscard]] bool reorder() const {
+  /// Puts the present manifolds into the saved order, those that the saved state does not know behind them.
+  /// @return for each manifold in the new order its saved state, or nullptr.
+  [[nodiscard]] std::vector<const ManifoldState*> reorder() const {
     btCollisionDispatcher& dispatcher = dispatcher_of(world);
     btPersistentManifold** present = dispatcher.getInternalManifoldPointer();
     const int count = dispatcher.getNumManifolds();
-    for (int i = 0; i < static_cast<int>(manifolds.size()); ++i) {
-      const ManifoldState& wanted = manifolds[i];
-      int ordinal = wanted.ordinal;
-      for (int k = 0; k < i; ++k) {
-        ordinal -= same_bodies(*present[k], wanted) ? 1 : 0;
+    std::vector<const ManifoldState*> saved;
+    for (const ManifoldState& wanted : manifolds) {
+      const int placed = static_cast<int>(saved.size());
+      int found = -1;
+      for (int i = placed; i < count; ++i) {
+        const Likeness likeness = compare(*present[i], wanted);
+        if (likeness == Likeness::same || (likeness == Likeness::possible && found < 0)) {
+          found = i;
+        }
+        if (likeness == Likeness::same) {
+          break;
+        }
       }
-      int found = i;
-      while (found < count && !(same_bodies(*present[found], wanted) && ordinal-- == 0)) {
-        ++found;
+      if (found >= 0) {
+        std::rotate(present + placed, present + found, present + found + 1);
+        saved.push_back(&wanted);
       }
-      if (found >= count) {
-        return false;
-      }
-      std::rotate(present + i, present + found, present + found + 1);
     }
+    saved.resize(static_cast<std::size_t>(count), nullptr);
     for (int i = 0; i < count; ++i) {
       present[i]->m_index1a = i;  // Bullet finds a manifold's slot by this when it releases it
     }
-    return true;
+    return saved;
   }
 
-  /// Pairs that came into being after the snapshot forget their algorithms, as if they were yet to be found.
-  void drop_newer_manifolds() const {
-    btOverlappingPairCache* cache = world.getPairCache();
-    btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
-    for (int i = 0; i < pairs.size(); ++i) {
-      if (pairs[i].m_algorithm == nullptr) {
-        continue;
-      }
-      btManifoldArray made;
-      pairs[i].m_algorithm->getAllContactManifolds(made);
-      bool newer = made.size() > 0;
-      for (int k = 0; k < made.size(); ++k) {
-        newer = newer && !knows(*made[k]);
-      }
-      if (newer) {
-        cache->cleanOverlappingPair(pairs[i], world.getDispatcher());
-      }
-    }
-  }
-
-  void fill_manifolds() const {
+  /// Hands the saved points to the manifolds; those without saved points are emptied.
+  void fill_manifolds(const std::vector<const ManifoldState*>& saved) const {
     btCollisionDispatcher& dispatcher = dispatcher_of(world);
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
       btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
-      const bool saved = i < static_cast<int>(manifolds.size()) && same_bodies(*manifold, manifolds[i]);
-      manifold->setNumContacts(saved ? static_cast<int>(manifolds[i].points.size()) : 0);
+      manifold->setNumContacts(saved[i] != nullptr ? static_cast<int>(saved[i]->points.size()) : 0);
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
-        manifold->getContactPoint(k) = manifolds[i].points[k];
+        manifold->getContactPoint(k) = saved[i]->points[k];
       }
       if (detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
-        *memory = saved && manifolds[i].memory ? *manifolds[i].memory : detail::PairMemory();
+        *memory = saved[i] != nullptr && saved[i]->memory ? *saved[i]->memory : detail::PairMemory();
       }
     }
   }
 };
 
 BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver)
-    : state_(std::make_unique<State>(State{world, solver, {}, {}, {}})) {
+    : state_(std::make_unique<State>(State{world, solver, {}, {}, {}, detail::BroadphaseState(world)})) {
   const auto& objects = world.getCollisionObjectArray();
   for (int i = 0; i < objects.size(); ++i) {
     state_->bodies.push_back(save_body(objects[i]));
@@ -203,10 +197,7 @@ BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetration
   btCollisionDispatcher& dispatcher = dispatcher_of(world);
   for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
-    ManifoldState saved{manifold->getBody0(), manifold->getBody1(), 0, {}, {}};
-    for (const ManifoldState& earlier : state_->manifolds) {
-      saved.ordinal += same_bodies(*manifold, earlier) ? 1 : 0;
-    }
+    ManifoldState saved{manifold->getBody0(), manifold->getBody1(), {}, {}};
     for (int k = 0; k < manifold->getNumContacts(); ++k) {
       saved.points.push_back(manifold->getContactPoint(k));
     }
@@ -233,15 +224,13 @@ void BulletSnapshot::restore() const {
   for (const BodyState& body : state_->bodies) {
     restore_body(body);
   }
-  state_->drop_newer_manifolds();
-  if (!state_->reorder()) {
-    // A pair went apart since: found again at the saved poses, it gets a manifold again, whose points are then
+  if (state_->broadphase.restore(world)) {
+    // A pair went apart since; detection at the saved poses gives it its manifold again, whose points are then
     // replaced.
-    world.performDiscreteCollisionDetection();
-    state_->drop_newer_manifolds();
-    static_cast<void>(state_->reorder());  // a manifold still missing has no pair in the broadphase: nothing to restore
+    world.getDispatcher()->dispatchAllCollisionPairs(world.getPairCache(), world.getDispatchInfo(),
+                                                     world.getDispatcher());
   }
-  state_->fill_manifolds();
+  state_->fill_manifolds(state_->reorder());
   for (const JointState& saved : state_->joints) {
     saved.joint->internalSetAppliedImpulse(saved.applied_impulse);
     saved.joint->setEnabled(saved.enabled);

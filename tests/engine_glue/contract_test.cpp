@@ -246,7 +246,7 @@ TEST(SmallBodies, FiveMillimetreBoxesAreAnsweredAtTheirOwnScale) {
   // Bullet's EPA has absolute tolerances of 1e-4: at half a centimetre most of its answers are off by more than 1 %.
   // Truth for two boxes: the least overlap over the 15 axes of the separating axis test.
   const double h = 0.005;
-  btBoxShape box(btVector3(btScalar(h), btScalar(h), btScalar(h)));
+  btBoxShape box(pd::to_bullet(pd::Vec3::Constant(h)));
   box.setMargin(0);
   const double half = static_cast<double>(box.getImplicitShapeDimensions().x());
   std::mt19937 random(11);

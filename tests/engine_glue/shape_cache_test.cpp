@@ -1,6 +1,7 @@
 // The cache never answers for what a shape was, only for what it is.
 #include "pd/bullet/shape_cache.hpp"
 
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <BulletCollision/CollisionShapes/btConvex2dShape.h>
 #include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
 #include <BulletCollision/CollisionShapes/btMinkowskiSumShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <btBulletCollisionCommon.h>
 #include <gtest/gtest.h>
 
@@ -170,7 +171,13 @@ TEST(ShapeConversion, WrappersFollowTheirChild) {
   btConvex2dShape flat(&hull);
   expect_same_support(flat);
   btBox2dShape box_2d(btVector3(1, 2, 0));
-  expect_same_support(box_2d);
+  const auto flat_box = pd::to_convex_shape(box_2d);
+  ASSERT_TRUE(flat_box.has_value());
+  // Bullet takes the margin off its zero thickness too; in its plane, where it is used, it is a box of these half
+  // extents.
+  EXPECT_NEAR(support_value(*flat_box, pd::Vec3::UnitX()), 1, 1e-6);
+  EXPECT_NEAR(support_value(*flat_box, pd::Vec3::UnitY()), 2, 1e-6);
+  EXPECT_EQ(flat_box->polytope()->affine_dimension(), 2);
 
   btMinkowskiSumShape sum(&hull, &sphere);
   sum.setTransformA(btTransform(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)), btVector3(1, 0, 2)));

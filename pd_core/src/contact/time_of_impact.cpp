@@ -13,10 +13,10 @@ namespace {
 /// Newton's method takes over when the gap is this part of the two radii.
 constexpr double kNewtonRange = 1e-3;
 
-/// Signed distance of the pair at a time, with what the two methods need.
+/// The pair at a time, with what the two methods need.
 class MovingPair {
  public:
-  MovingPair(const MovingShape& a, const MovingShape& b, Scratch& scratch, const DepthSettings& settings)
+  MovingPair(const MovingShape& a, const MovingShape& b, Scratch& scratch, const TimeOfImpactSettings& settings)
       : a_(a),
         b_(b),
         scratch_(scratch),
@@ -28,12 +28,14 @@ class MovingPair {
   void ask(double time) {
     pose_a_ = pose_at(a_, time);
     pose_b_ = pose_at(b_, time);
-    answer_ = penetration_depth({a_.start.shape, pose_a_}, {b_.start.shape, pose_b_}, scratch_, settings_);
+    answer_ = penetration_depth({a_.start.shape, pose_a_}, {b_.start.shape, pose_b_}, scratch_, settings_.depth);
     ++queries_;
   }
 
-  [[nodiscard]] double signed_distance() const {
-    return answer_.contact == ContactClass::separated ? answer_.distance : -answer_.depth;
+  /// Signed distance above the allowed depth. It falls no faster along a normal inside than outside: the separation
+  /// along any one normal bounds the signed distance from below.
+  [[nodiscard]] double clearance() const {
+    return settings_.allowed_depth + (answer_.contact == ContactClass::separated ? answer_.distance : -answer_.depth);
   }
   /// No point of A comes nearer to B along the present normal faster than this, at any time.
   [[nodiscard]] double closing_bound() const {
@@ -58,7 +60,7 @@ class MovingPair {
   const MovingShape& a_;
   const MovingShape& b_;
   Scratch& scratch_;
-  const DepthSettings& settings_;
+  const TimeOfImpactSettings& settings_;
   double radius_a_;
   double radius_b_;
   Pose pose_a_;
@@ -99,7 +101,7 @@ double bounding_radius(const ConvexShape& shape) {
 
 TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
                             const TimeOfImpactSettings& settings) {
-  MovingPair pair(a, b, scratch, settings.depth);
+  MovingPair pair(a, b, scratch, settings);
   TimeOfImpact result;
   const auto finish = [&](bool hit, double time) {
     result.hit = hit;
@@ -111,13 +113,13 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
 
   double apart = 0;  // the latest time known to be apart and proved to have no contact before
   pair.ask(apart);
-  if (pair.signed_distance() <= 0) {
+  if (pair.clearance() <= 0) {
     return finish(true, 0);
   }
   // Each pass proves the span up to the new `apart`; the gap shrinks by the share (1 - true speed / bound).
-  while (pair.signed_distance() > std::max(settings.distance_tolerance, kNewtonRange * pair.size())) {
+  while (pair.clearance() > std::max(settings.distance_tolerance, kNewtonRange * pair.size())) {
     const double bound = pair.closing_bound();
-    const double next = bound > 0 ? apart + pair.signed_distance() / bound : HUGE_VAL;
+    const double next = bound > 0 ? apart + pair.clearance() / bound : HUGE_VAL;
     if (next > duration) {
       result.certified = duration;
       return finish(false, duration);
@@ -135,9 +137,9 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
   // open to the right. Inside it, a step that leaves the bracket is replaced by bisection.
   double together = HUGE_VAL;
   double time = apart;
-  while (!(pair.signed_distance() > 0 && pair.signed_distance() <= settings.distance_tolerance)) {
+  while (!(pair.clearance() > 0 && pair.clearance() <= settings.distance_tolerance)) {
     // Aimed at half the tolerance, so that the root is approached from the side where the bodies are apart.
-    const double aim = pair.signed_distance() - 0.5 * settings.distance_tolerance;
+    const double aim = pair.clearance() - 0.5 * settings.distance_tolerance;
     const double speed = pair.closing_speed();
     double next = speed > 0 ? time + aim / speed : HUGE_VAL;
     if (together == HUGE_VAL) {
@@ -153,19 +155,19 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
     }
     time = next;
     pair.ask(time);
-    if (pair.signed_distance() > 0) {
+    if (pair.clearance() > 0) {
       apart = time;
-      if (time >= duration && pair.signed_distance() > settings.distance_tolerance) {
+      if (time >= duration && pair.clearance() > settings.distance_tolerance) {
         return finish(false, duration);
       }
     } else {
       together = time;
     }
   }
-  if (pair.signed_distance() <= 0) {
+  if (pair.clearance() <= 0) {
     pair.ask(apart);
   }
-  return finish(together < HUGE_VAL || pair.signed_distance() <= settings.distance_tolerance, apart);
+  return finish(together < HUGE_VAL || pair.clearance() <= settings.distance_tolerance, apart);
 }
 
 }  // namespace pd

@@ -18,11 +18,14 @@ struct RollbackSettings {
   /// The gap left at a first contact, > 0, in the world's unit. Floats cannot place a body finer than about 1e-7 of its
   /// coordinates.
   double gap = 1e-5;
+  /// Pairs in contact already may get this deep within a step before it is cut there too, as a share of the smaller
+  /// body's radius: after a corner hits, a fast body still turns its other corners through the wall.
+  double contact_depth_share = 0.02;
   /// Trials of a shorter step for one contact.
   int max_trials = 24;
-  /// First contacts taken singly within one step; what is left of the step is then made in one piece (a ball that comes
+  /// Cuts of one step; what is left of the step is then made in one piece (a ball that comes
   /// to rest bounces without end in finite time).
-  int max_contacts_per_step = 32;
+  int max_contacts_per_step = 64;
 };
 
 /// One first contact.
@@ -39,14 +42,14 @@ struct FirstContact {
 
 struct RollbackReport {
   std::vector<FirstContact> contacts;  ///< in order of time
+  int deepened = 0;                    ///< cuts of the step at pairs in contact that went deeper than they may
   int simulation_steps = 0;            ///< calls of stepSimulation, trials included
   bool bounded = false;                ///< max_contacts_per_step was reached
 };
 
 class RollbackStepper {
  public:
-  /// @param solver  installed in the world. World and solver must outlive the stepper. Turns on
-  /// `m_deterministicOverlappingPairs`, so that a replayed trial is the trial.
+  /// @param solver  installed in the world. World and solver must outlive the stepper.
   RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
                   const RollbackSettings& settings = {});
 

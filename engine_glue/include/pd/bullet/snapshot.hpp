@@ -18,11 +18,12 @@ namespace pd {
 /// not owned. May be restored any number of times.
 ///
 /// Bit for bit means: the same calls of `stepSimulation(h, 0)` after `restore` give the same transforms, velocities and
-/// contact points. Where pairs come into being during the replay, their order is the same only with
-/// `world.getDispatchInfo().m_deterministicOverlappingPairs = true` (the broadphase's tree is not part of the state).
-/// Not saved: the remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their
-/// total, soft bodies, motion states (they follow at the next step). `m_userPersistentData` of contact points is
-/// restored as a pointer.
+/// contact points. The broadphase's trees and pairs belong to it (of btDbvtBroadphase; other broadphases are updated to
+/// the restored poses, so that pairs found later may come in another order). Bullet's trees follow the addresses of
+/// their nodes: where a body fell asleep or woke in between, a later pair may come in another order too. Not saved: the
+/// remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their total, soft
+/// bodies, motion states (they follow at the next step). `m_userPersistentData` of contact points is restored as a
+/// pointer.
 class BulletSnapshot {
  public:
   /// @param solver  the one installed in the world: its pairs' warm starts are saved with their manifolds; nullptr

@@ -36,6 +36,9 @@ struct MovingShape {
 struct TimeOfImpactSettings {
   /// The gap at which the bodies count as meeting, > 0, unit of length.
   double distance_tolerance = 1e-9;
+  /// >= 0: looks for the first time at which the bodies are deeper than this in each other, for pairs that are in
+  /// contact from the start. "Apart" below then means: not as deep as this.
+  double allowed_depth = 0;
   /// A cap on the number of distance queries; when it is reached the answer is what is proved by then.
   int max_queries = 200;
   DepthSettings depth;

@@ -1,0 +1,184 @@
+#include "scenes/worlds.hpp"
+
+#include <cmath>
+
+namespace pd::scenes {
+
+namespace {
+
+/// The same numbers on every platform (the standard's distributions are not).
+class Stream {
+ public:
+  explicit Stream(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 0x2545F4914F6CDD1DULL) {}
+  /// In [-1, 1).
+  double next() {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return static_cast<double>(state_ >> 11) * 0x1p-52 - 1;
+  }
+  Vec3 vector() {
+    const double x = next();
+    const double y = next();
+    return {x, y, next()};
+  }
+  Vec3 direction() {
+    for (;;) {
+      const Vec3 v = vector();
+      if (v.norm() > 0.1 && v.norm() <= 1) {
+        return v.normalized();
+      }
+    }
+  }
+  Eigen::Quaterniond orientation() { return Eigen::Quaterniond(Eigen::AngleAxisd(M_PI * next(), direction())); }
+
+ private:
+  std::uint64_t state_;
+};
+
+constexpr double kDensity = 700;  // wood
+
+WorldBody floor_below(double extent) {
+  WorldBody body;
+  body.points = box_points(Vec3(extent, extent, 0.25 * extent));
+  body.position = Vec3(0, 0, -0.25 * extent);
+  body.drawn = false;
+  return body;
+}
+
+WorldBody box_hull(const Vec3& half, const Vec3& at, int colour) {
+  WorldBody body;
+  body.points = box_points(half);
+  body.half_extents = half;
+  body.mass = kDensity * 8 * half.prod();
+  body.position = at;
+  body.colour = colour;
+  return body;
+}
+
+WorldBody cylinder(double radius, double half_height, const Vec3& at, int colour) {
+  WorldBody body;
+  body.kind = WorldBody::Kind::cylinder;
+  body.half_extents = Vec3(radius, radius, half_height);
+  body.mass = kDensity * M_PI * radius * radius * 2 * half_height;
+  body.position = at;
+  body.colour = colour;
+  return body;
+}
+
+/// A rough stone: points on an ellipsoid's surface.
+WorldBody stone(Stream& random, double radius, int points, const Vec3& at, int colour) {
+  WorldBody body;
+  const Vec3 radii = radius * (Vec3::Ones() + 0.3 * random.vector());
+  for (int i = 0; i < points; ++i) {
+    body.points.push_back(radii.cwiseProduct(random.direction()));
+  }
+  body.mass = kDensity * 4.0 / 3 * M_PI * radii.prod();
+  body.position = at;
+  body.colour = colour;
+  return body;
+}
+
+}  // namespace
+
+std::vector<Vec3> box_points(const Vec3& half_extents) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    points.emplace_back((i & 1 ? 1 : -1) * half_extents.x(), (i & 2 ? 1 : -1) * half_extents.y(),
+                        (i & 4 ? 1 : -1) * half_extents.z());
+  }
+  return points;
+}
+
+World small_towers(std::uint64_t seed) {
+  World world;
+  world.name = "towers";
+  world.title = "Towers of 2 cm bodies, margin 0";
+  world.steps = 720;
+  Stream random(seed);
+  world.bodies.push_back(floor_below(1));
+  const double h = 0.01;
+  for (int i = 0; i < 10; ++i) {
+    WorldBody body =
+        box_hull(Vec3(h, h, h), Vec3(-0.03 + 4e-4 * random.next(), 4e-4 * random.next(), h + 2 * h * i), 0);
+    body.orientation = Eigen::AngleAxisd(0.15 * random.next(), Vec3::UnitZ());
+    world.bodies.push_back(body);
+  }
+  for (int i = 0; i < 8; ++i) {
+    WorldBody body = cylinder(h, h, Vec3(0.03 + 4e-4 * random.next(), 4e-4 * random.next(), h + 2 * h * i), 1);
+    body.orientation = Eigen::AngleAxisd(M_PI * random.next(), Vec3::UnitZ());
+    world.bodies.push_back(body);
+  }
+  world.view_lower = Vec3(-0.06, -0.03, 0);
+  world.view_upper = Vec3(0.06, 0.03, 0.21);
+  return world;
+}
+
+World deep_pile(std::uint64_t seed) {
+  World world;
+  world.name = "pile";
+  world.title = "A pile of 1 to 2 cm bodies that start inside each other, margin 0";
+  world.steps = 720;
+  Stream random(seed + 17);
+  world.bodies.push_back(floor_below(1));
+  const double r = 0.008;
+  int made = 0;
+  for (int layer = 0; layer < 4; ++layer) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column, ++made) {
+        const Vec3 at =
+            Vec3(1.45 * r * (column - 1), 1.45 * r * (row - 1), r + 1.45 * r * layer) + 0.2 * r * random.vector();
+        WorldBody body = made % 3 == 0   ? box_hull(r * (Vec3::Constant(0.9) + 0.25 * random.vector()), at, 0)
+                         : made % 3 == 1 ? cylinder(0.9 * r, 0.9 * r, at, 1)
+                                         : stone(random, r, 18, at, 2);
+        body.orientation = random.orientation();
+        world.bodies.push_back(body);
+      }
+    }
+  }
+  world.view_lower = Vec3(-0.05, -0.05, 0);
+  world.view_upper = Vec3(0.05, 0.05, 0.06);
+  return world;
+}
+
+World fast_throws(std::uint64_t seed) {
+  World world;
+  world.name = "throws";
+  world.title = "Thrown at each other at 20 to 40 m/s";
+  world.steps = 30;
+  world.steps_per_second = 60;
+  world.restitution = 0.35;
+  world.gravity = Vec3(0, 0, -9.81);
+  Stream random(seed + 5);
+  world.bodies.push_back(floor_below(12));
+
+  WorldBody wall = box_hull(Vec3(0.03, 0.9, 0.75), Vec3(1.6, 0, 0.75), 6);
+  wall.mass = 0;
+  world.bodies.push_back(wall);
+
+  // A long crystal turning end over end at the wall; a stone and a box that meet in front of it.
+  WorldBody crystal = stone(random, 0.16, 26, Vec3(-1.5, 0.42, 0.95), 0);
+  for (Vec3& point : crystal.points) {
+    point.x() *= 2.2;
+  }
+  crystal.linear_velocity = Vec3(32, -1.0, 1.5);
+  crystal.angular_velocity = Vec3(3, 14, 4);
+  world.bodies.push_back(crystal);
+
+  WorldBody left = box_hull(Vec3(0.15, 0.15, 0.15), Vec3(-1.7, -0.4, 0.55), 1);
+  left.orientation = random.orientation();
+  left.linear_velocity = Vec3(24, 0, 2);
+  left.angular_velocity = Vec3(9, -6, 11);
+  world.bodies.push_back(left);
+
+  WorldBody right = stone(random, 0.2, 40, Vec3(1.25, -0.33, 0.6), 2);
+  right.linear_velocity = Vec3(-22, 0, 1.5);
+  right.angular_velocity = Vec3(-5, 8, 3);
+  world.bodies.push_back(right);
+
+  world.view_lower = Vec3(-1.5, -0.75, 0);
+  world.view_upper = Vec3(1.7, 0.75, 1.35);
+  return world;
+}
+
+}  // namespace pd::scenes

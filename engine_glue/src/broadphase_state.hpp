@@ -1,0 +1,66 @@
+/// @file
+/// The broadphase's part of a snapshot: which pairs there are, in which order, and the trees that find the next ones.
+///
+/// The order of pairs decides the order in which Bullet merges bodies into islands and solves contacts, so it is part
+/// of the state. btDbvtBroadphase improves its trees a little every step, choosing by the addresses of nodes; so nodes
+/// are written back to the addresses that they had.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+
+#include <array>
+#include <vector>
+
+namespace pd::detail {
+
+class BroadphaseState {
+ public:
+  explicit BroadphaseState(btCollisionWorld& world);
+
+  /// Brings trees and pairs back. Pairs that came since lose their algorithm and go; pairs that went are there again.
+  /// @return whether a pair needs a new algorithm: the caller has to run a collision detection.
+  [[nodiscard]] bool restore(btCollisionWorld& world) const;
+
+ private:
+  struct SavedNode {
+    btDbvtNode* address;
+    btDbvtNode content;
+  };
+  struct SavedTree {
+    std::vector<SavedNode> nodes;
+    btDbvtNode* root;
+    int lookahead;
+    int leaves;
+    unsigned path;
+  };
+  struct SavedProxy {
+    btDbvtProxy* proxy;
+    btDbvtProxy content;
+  };
+  struct SavedPair {
+    btBroadphaseProxy* proxy0;
+    btBroadphaseProxy* proxy1;
+    int num_manifolds;  ///< of its algorithm (compounds have one a pair of children); -1 without one
+  };
+
+  void save_trees(const btDbvtBroadphase& broadphase, const btCollisionWorld& world);
+  void restore_trees(btDbvtBroadphase& broadphase) const;
+  [[nodiscard]] bool restore_pairs(btCollisionWorld& world) const;
+
+  std::vector<SavedPair> pairs_;
+  std::vector<SavedProxy> proxies_;
+  std::array<SavedTree, 2> trees_{};
+  std::array<btDbvtProxy*, btDbvtBroadphase::STAGECOUNT + 1> stage_roots_{};
+  int stage_current_ = 0;
+  int new_pairs_ = 0;
+  int fixed_left_ = 0;
+  unsigned updates_call_ = 0;
+  unsigned updates_done_ = 0;
+  btScalar updates_ratio_ = 0;
+  int pid_ = 0;
+  int cid_ = 0;
+  bool need_cleanup_ = false;
+};
+
+}  // namespace pd::detail
