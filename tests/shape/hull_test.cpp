@@ -326,7 +326,11 @@ TEST(Hull, MagnitudesThatSpanTheWholeRange) {
     Points wild;
     for (int i = 0; i < 10; ++i) {
       Vec3 q;
-      for (int k = 0; k < 3; ++k) q[k] = std::ldexp(test::uniform(random), exponent(random));
+      for (int k = 0; k < 3; ++k) {
+        const double fraction =
+            test::uniform(random);  // one draw a statement: the order of arguments is the compiler's
+        q[k] = std::ldexp(fraction, exponent(random));
+      }
       wild.push_back(q);
     }
     const ConvexPolytope w = hull(wild);
@@ -344,6 +348,18 @@ TEST(Hull, SubnormalCoordinates) {
   const ConvexPolytope p = hull(points);
   EXPECT_EQ(p.num_vertices(), 8);
   EXPECT_EQ(p.num_facets(), 6);
+}
+
+TEST(Hull, NormalsOfEdgesOfUnlikeLength) {
+  // Well-conditioned planes whose cross products are tiny, or lost to underflow, next to the longest edge.
+  for (const double tiny : {1e-100, 1e-160, 1e-250, 1e-300}) {
+    const ConvexPolytope p = hull({{0, 0, 0}, {1, 0, 0}, {0.5, tiny, 0}, {0.5, 0, tiny}});
+    ASSERT_EQ(p.num_facets(), 4);
+    for (int f = 0; f < 4; ++f) {
+      EXPECT_LE(std::abs(p.facet_normal(f).x()), 2 * tiny);
+      EXPECT_GE(p.facet_normal(f).cwiseAbs().maxCoeff(), std::sqrt(0.5) - 1e-15);
+    }
+  }
 }
 
 TEST(Hull, NormalsOfSliversAreAccurate) {

@@ -14,7 +14,9 @@ namespace {
 constexpr double kPlainRatio = 4;
 constexpr double kDoubleDoubleRatio = 0x1p45;
 
-Vec3 unit(const Vec3& v) { return v / std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
+// Well-conditioned products may still be small, where one edge is much longer than another in every coordinate that
+// counts; below this they would lose bits to underflow.
+constexpr double kSmallestProduct = 0x1p-900;
 
 /// The power of two that brings the largest coordinate of v into [1/2, 1), as near as doubles allow. Normals then have
 /// the same bits at every magnitude, and nothing that matters under- or overflows.
@@ -22,6 +24,11 @@ double unit_scale(const Vec3& v) {
   int exponent = 0;
   std::frexp(v.cwiseAbs().maxCoeff(), &exponent);
   return std::ldexp(1.0, -std::max(exponent, -1000));
+}
+
+Vec3 unit(const Vec3& v) {
+  const Vec3 s = v * unit_scale(v);  // squares of it neither over- nor underflow
+  return s / std::sqrt(s.x() * s.x() + s.y() * s.y() + s.z() * s.z());
 }
 
 Vec3DD exact_difference(const Vec3& to, const Vec3& from, double scale) {
@@ -49,8 +56,9 @@ Vec3 plane_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double products = std::abs(u.y() * v.z()) + std::abs(u.z() * v.y()) + std::abs(u.z() * v.x()) +
                           std::abs(u.x() * v.z()) + std::abs(u.x() * v.y()) + std::abs(u.y() * v.x());
   const double length = plain.cwiseAbs().maxCoeff();
-  if (products <= kPlainRatio * length) return unit(plain);
-  if (products <= kDoubleDoubleRatio * length) {
+  const bool in_range = products >= kSmallestProduct;
+  if (in_range && products <= kPlainRatio * length) return unit(plain);
+  if (in_range && products <= kDoubleDoubleRatio * length) {
     const Vec3DD n = cross(exact_difference(b, a, scale_u), exact_difference(c, a, scale_v));
     return unit({to_double(n.x), to_double(n.y), to_double(n.z)});
   }

@@ -122,7 +122,7 @@ Finding check_polygon(const ConvexPolytope& p, int f) {
     if ((seen(i, axis) < seen(i + 1, axis)) != (seen(i + 1, axis) < seen(i + 2, axis))) ++crossings;
   }
   if (crossings != 2) return indexed("facets", f) + " winds more than once";
-  if (std::abs(p.facet_normal(f).norm() - 1) > 1e-15) return indexed("facet_normals", f) + " is not a unit vector";
+  if (!(std::abs(p.facet_normal(f).norm() - 1) <= 1e-15)) return indexed("facet_normals", f) + " is not a unit vector";
   return std::nullopt;
 }
 
