@@ -160,7 +160,7 @@ class Expansion {
       if (!(squared > 0)) return undecided(result);
       const Vec3 unit = normal / std::sqrt(squared);
 
-      DifferenceVertex s = difference_.support(unit, best_hint(f, unit));
+      DifferenceVertex s = difference_.support(unit, difference_.climbs() ? best_hint(f, unit) : nullptr);
       ++support_calls_;
       double height = s.x.dot(unit);
       if (height + bound_error() < result.upper) {

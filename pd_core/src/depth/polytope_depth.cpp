@@ -159,7 +159,7 @@ class PolytopeQuery {
       const int least = static_cast<int>(std::min_element(weights, weights + 3) - weights);
       if (weights[least] >= 0) return f;
       // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.
-      const int next = surface.faces[f].adj[(least + 1) % 3];
+      const int next = surface.faces[f].adj[(least + 1) % 3] >> 2;
       if (std::sqrt(std::max(0.0, surface.keys[next])) > level) return f;
       f = next;
     }

@@ -40,6 +40,9 @@ class PolytopeDifference {
     return vertex(ia, ib);
   }
 
+  /// Whether `support` makes use of a vertex at hand.
+  [[nodiscard]] bool climbs() const { return a_.num_vertices() > kScanLimit || b_.num_vertices() > kScanLimit; }
+
   [[nodiscard]] DifferenceVertex vertex(int ia, int ib) const {
     return {(rotation_b_ * b_.vertex(ib) - rotation_a_ * a_.vertex(ia)) + offset_, ia, ib};
   }

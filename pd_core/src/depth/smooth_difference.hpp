@@ -27,6 +27,7 @@ class SmoothDifference {
                                                    std::vector<std::int32_t>&) const {
     return s;
   }
+  [[nodiscard]] static constexpr bool climbs() { return false; }
   [[nodiscard]] const PointPair& points(const DifferenceVertex& s) const {
     return points_[static_cast<std::size_t>(s.a)];
   }

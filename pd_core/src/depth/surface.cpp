@@ -8,7 +8,9 @@ namespace pd::detail {
 namespace {
 
 /// Up to this many slots the nearest face is found by a scan, which costs less than keeping a heap.
-constexpr std::size_t kHeapFrom = 96;
+constexpr int kHeapFrom = 96;
+
+constexpr std::int32_t next_edge(std::int32_t e) { return e == 2 ? 0 : e + 1; }
 
 constexpr auto kLater = [](const auto& x, const auto& y) {
   return x.key > y.key || (x.key == y.key && x.face > y.face);
@@ -18,13 +20,10 @@ constexpr auto kLater = [](const auto& x, const auto& y) {
 
 void Surface::clear() {
   vertices.clear();
-  faces.clear();
-  keys.clear();
-  stamps_.clear();
   free_.clear();
-  marked_.clear();
   heap_.clear();
   heap_active_ = false;
+  slots_ = 0;
   in_use_ = 0;
 }
 
@@ -35,11 +34,14 @@ int Surface::new_face() {
     free_.pop_back();
     return f;
   }
-  faces.emplace_back();
-  keys.push_back(kRemoved);
-  stamps_.push_back(0);
-  marked_.push_back(0);
-  return static_cast<int>(faces.size()) - 1;
+  if (static_cast<std::size_t>(slots_) == faces.size()) {
+    const std::size_t room = std::max<std::size_t>(static_cast<std::size_t>(kHeapFrom), 2 * faces.size());
+    faces.resize(room);
+    keys.resize(room);
+    stamps_.resize(room, 0);
+    marked_.resize(room, 0);
+  }
+  return slots_++;
 }
 
 void Surface::set_plane(int f) {
@@ -71,7 +73,11 @@ bool Surface::start_tetrahedron(double flat) {
   // Face 0 1 2 must have vertex 3 behind it.
   if (volume > 0) std::swap(vertices[1], vertices[2]);
   static constexpr std::int32_t kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-  static constexpr std::int32_t kAdjacent[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
+  // 4 * face + edge: edge 0 1 of face 0 is edge 1 0 (the last) of face 1, and so on.
+  static constexpr std::int32_t kAdjacent[4][3] = {{4 * 1 + 2, 4 * 2 + 2, 4 * 3 + 2},
+                                                   {4 * 3 + 1, 4 * 2 + 0, 4 * 0 + 0},
+                                                   {4 * 1 + 1, 4 * 3 + 0, 4 * 0 + 1},
+                                                   {4 * 2 + 1, 4 * 1 + 0, 4 * 0 + 2}};
   for (int f = 0; f < 4; ++f) {
     const int slot = new_face();
     for (int i = 0; i < 3; ++i) {
@@ -86,24 +92,27 @@ bool Surface::start_tetrahedron(double flat) {
 void Surface::refresh() {
   heap_active_ = false;
   heap_.clear();
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (keys[f] != kRemoved) set_plane(static_cast<int>(f));
+  for (int f = 0; f < slots_; ++f) {
+    if (keys[f] != kRemoved) set_plane(f);
   }
 }
 
 int Surface::nearest() {
-  if (!heap_active_ && faces.size() <= kHeapFrom) {
+  if (!heap_active_ && slots_ <= kHeapFrom) {
     int best = 0;
-    for (std::size_t f = 1; f < keys.size(); ++f) {
-      if (keys[f] < keys[best]) best = static_cast<int>(f);
+    double least = keys[0];
+    for (int f = 1; f < slots_; ++f) {
+      const bool nearer = keys[f] < least;
+      least = nearer ? keys[f] : least;
+      best = nearer ? f : best;
     }
     return best;
   }
   if (!heap_active_) {
     heap_active_ = true;
     heap_.clear();
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (keys[f] != kRemoved) heap_.push_back({keys[f], static_cast<std::int32_t>(f), stamps_[f]});
+    for (int f = 0; f < slots_; ++f) {
+      if (keys[f] != kRemoved) heap_.push_back({keys[f], f, stamps_[f]});
     }
     std::make_heap(heap_.begin(), heap_.end(), kLater);
   }
@@ -130,21 +139,18 @@ bool Surface::insert(int from, int v) {
       visits_.pop_back();
       continue;
     }
-    const std::int32_t f = visit.face;
+    const SurfaceFace& face = faces[visit.face];
     const std::int32_t e = visit.edge;
-    visit.edge = e == 2 ? 0 : e + 1;
+    visit.edge = next_edge(e);
     --visit.left;
-    const std::int32_t g = faces[f].adj[e];
+    const std::int32_t g = face.adj[e] >> 2;
     if (marked_[g]) continue;
-    const std::int32_t entered = faces[g].adj[0] == f && faces[g].v[1] == faces[f].v[e]   ? 0
-                                 : faces[g].adj[1] == f && faces[g].v[2] == faces[f].v[e] ? 1
-                                                                                          : 2;
     if (x.dot(faces[g].normal) > faces[g].level) {
       marked_[g] = 1;
       removed_.push_back(g);
-      visits_.push_back({g, entered == 2 ? 0 : entered + 1, 2});
+      visits_.push_back({g, next_edge(face.adj[e] & 3), 2});
     } else {
-      horizon_.push_back({g, entered, faces[f].v[e], faces[f].v[e == 2 ? 0 : e + 1]});
+      horizon_.push_back({face.adj[e], face.v[e], face.v[next_edge(e)]});
     }
   }
   for (const std::int32_t f : removed_) marked_[f] = 0;
@@ -169,19 +175,19 @@ bool Surface::insert(int from, int v) {
     face.v[0] = edge.from;
     face.v[1] = edge.to;
     face.v[2] = v;
-    face.adj[0] = edge.face;
-    face.adj[2] = previous;
-    faces[edge.face].adj[edge.edge] = f;
+    face.adj[0] = edge.outside;
+    faces[edge.outside >> 2].adj[edge.outside & 3] = 4 * f;
     if (previous >= 0) {
-      faces[previous].adj[1] = f;
+      face.adj[2] = 4 * previous + 1;
+      faces[previous].adj[1] = 4 * f + 2;
     } else {
       first = f;
     }
     previous = f;
     set_plane(f);
   }
-  faces[first].adj[2] = previous;
-  faces[previous].adj[1] = first;
+  faces[first].adj[2] = 4 * previous + 1;
+  faces[previous].adj[1] = 4 * first + 2;
   return true;
 }
 

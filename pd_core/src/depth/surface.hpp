@@ -21,7 +21,7 @@ struct SurfaceFace {
   Vec3 normal;          ///< cross product of two edges, outward, any length
   double level;         ///< max over the three vertices of <x, normal>: what a visible point must exceed
   std::int32_t v[3];    ///< counter-clockwise from outside
-  std::int32_t adj[3];  ///< face across the edge v[i] -> v[i + 1]
+  std::int32_t adj[3];  ///< across the edge v[i] -> v[i + 1]: 4 * face + its edge
 };
 
 /// Signed squared distance of a face's plane, a monotone stand-in for the distance that needs no root.
@@ -30,7 +30,7 @@ inline constexpr double kRemoved = std::numeric_limits<double>::infinity();
 class Surface {
  public:
   std::vector<DifferenceVertex> vertices;
-  std::vector<SurfaceFace> faces;
+  std::vector<SurfaceFace> faces;  ///< the first slots() are in use or free, the rest is room
   /// Lower bound of the face's distance from the origin, as sign * square; kRemoved for a free slot. NaN never.
   std::vector<double> keys;
 
@@ -39,22 +39,22 @@ class Surface {
   template <class CachedFaces>
   void restore(const CachedFaces& cached) {
     for (const auto& from : cached) {
-      SurfaceFace& face = faces[new_face()];
+      const int f = new_face();
       for (int i = 0; i < 3; ++i) {
-        face.v[i] = from.vertex[i];
-        face.adj[i] = from.neighbour[i];
+        faces[f].v[i] = from.vertex[i];
+        faces[f].adj[i] = from.neighbour[i];
       }
+      keys[f] = 0;
     }
-    for (double& key : keys) key = 0;
   }
   /// The inverse: the faces in use and the vertices that they use, numbered anew.
   template <class CachedVertices, class CachedFaces>
   void save(CachedVertices& cached_vertices, CachedFaces& cached_faces) {
-    face_numbers_.assign(faces.size(), -1);
+    face_numbers_.assign(static_cast<std::size_t>(slots_), -1);
     vertex_numbers_.assign(vertices.size(), -1);
     std::int16_t next_face = 0;
     std::int16_t next_vertex = 0;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int f = 0; f < slots_; ++f) {
       if (keys[f] == kRemoved) continue;
       face_numbers_[f] = next_face++;
       for (const std::int32_t v : faces[f].v) {
@@ -63,11 +63,11 @@ class Surface {
         cached_vertices.push_back({vertices[v].a, vertices[v].b});
       }
     }
-    for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int f = 0; f < slots_; ++f) {
       if (keys[f] == kRemoved) continue;
       const SurfaceFace& face = faces[f];
       cached_faces.push_back({{vertex_numbers_[face.v[0]], vertex_numbers_[face.v[1]], vertex_numbers_[face.v[2]]},
-                              {face_numbers_[face.adj[0]], face_numbers_[face.adj[1]], face_numbers_[face.adj[2]]}});
+                              {renumbered(face.adj[0]), renumbered(face.adj[1]), renumbered(face.adj[2])}});
     }
   }
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
@@ -82,14 +82,18 @@ class Surface {
   bool insert(int from, int v);
   /// Number of faces in use.
   [[nodiscard]] int size() const { return in_use_; }
+  [[nodiscard]] int slots() const { return slots_; }
 
  private:
+  [[nodiscard]] std::int16_t renumbered(std::int32_t adjacent) const {
+    return static_cast<std::int16_t>(4 * face_numbers_[adjacent >> 2] + (adjacent & 3));
+  }
   void set_plane(int f);
   int new_face();
 
   struct Horizon {
-    std::int32_t face, edge;  ///< of the face that stays
-    std::int32_t from, to;    ///< the edge as the removed side runs along it
+    std::int32_t outside;   ///< 4 * face + edge of the face that stays
+    std::int32_t from, to;  ///< the edge as the removed side runs along it
   };
   struct Visit {
     std::int32_t face, edge, left;
@@ -111,6 +115,7 @@ class Surface {
   std::vector<std::int16_t> face_numbers_;
   std::vector<std::int16_t> vertex_numbers_;
   bool heap_active_ = false;
+  int slots_ = 0;
   int in_use_ = 0;
 };
 

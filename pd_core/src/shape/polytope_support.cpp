@@ -3,39 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shape/farthest_vertex.hpp"
+
 namespace pd::detail {
 
 namespace {
 
-constexpr int kLanes = 8;
-
-/// Scans in a fixed lane order, so that the winner among equals does not depend on the instruction set.
-int scan(const double* x, const double* y, const double* z, int n, const Vec3& d) {
-  double best[kLanes];
-  double block_of[kLanes];
-  for (int k = 0; k < kLanes; ++k) {
-    best[k] = x[k] * d.x() + y[k] * d.y() + z[k] * d.z();
-    block_of[k] = 0;
-  }
-  for (int i = kLanes; i < n; i += kLanes) {
-    const double block = i;
-    for (int k = 0; k < kLanes; ++k) {
-      const double value = x[i + k] * d.x() + y[i + k] * d.y() + z[i + k] * d.z();
-      const bool better = value > best[k];
-      best[k] = better ? value : best[k];
-      block_of[k] = better ? block : block_of[k];
-    }
-  }
-  int winner = 0;
-  int winner_id = static_cast<int>(block_of[0]);
-  for (int k = 1; k < kLanes; ++k) {
-    const int id = static_cast<int>(block_of[k]) + k;
-    if (best[k] > best[winner] || (best[k] == best[winner] && id < winner_id)) {
-      winner = k;
-      winner_id = id;
-    }
-  }
-  return winner_id < n ? winner_id : 0;  // the padding repeats vertex 0
+int scan(const ConvexPolytope& p, const Vec3& d) {
+  return farthest_vertex(p.x(), p.y(), p.z(), p.num_vertices(), d.x(), d.y(), d.z());
 }
 
 /// The best of about sqrt(n) vertices spread over the canonical order.
@@ -75,7 +50,7 @@ int climb(const ConvexPolytope& p, const Vec3& d, int v) {
 }  // namespace
 
 int support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
-  if (p.num_vertices() <= kScanLimit) return scan(p.x(), p.y(), p.z(), p.num_vertices(), direction);
+  if (p.num_vertices() <= kScanLimit) return scan(p, direction);
   return climb(p, direction, near >= 0 ? near : sampled_start(p, direction));
 }
 
@@ -88,7 +63,7 @@ int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int
   int best = v;
   double best_value = p.vertex(v).dot(direction);
   for (std::size_t i = 0; i < stack.size(); ++i) {
-    if (stack.size() > kScanLimit) return scan(p.x(), p.y(), p.z(), p.num_vertices(), direction);
+    if (stack.size() > kScanLimit) return scan(p, direction);
     const Vec3 from = p.vertex(stack[i]);
     for (const std::int32_t w : p.neighbours(stack[i])) {
       const Vec3 edge = p.vertex(w) - from;
