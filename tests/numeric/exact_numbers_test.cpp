@@ -1,0 +1,119 @@
+// Dyadic, double-double and root sums: the numbers behind the last bits of every answer.
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "numeric/double_double.hpp"
+#include "numeric/dyadic.hpp"
+#include "numeric/root_sum.hpp"
+
+namespace {
+
+using pd::detail::DoubleDouble;
+using pd::detail::Dyadic;
+using pd::detail::RootSum;
+using Rational = boost::multiprecision::cpp_rational;
+
+Rational rational(double x) { return Rational(x); }
+
+/// Doubles of every size that the arithmetic must survive.
+class Numbers {
+ public:
+  explicit Numbers(int exponents) : exponents_(exponents) {}
+  double operator()() {
+    const double fraction = static_cast<double>(bits_() >> 11) * 0x1p-53 + 0.5;
+    const int exponent = static_cast<int>(bits_() % static_cast<unsigned>(2 * exponents_ + 1)) - exponents_;
+    return std::ldexp(bits_() % 2 ? fraction : -fraction, exponent);
+  }
+
+ private:
+  std::mt19937_64 bits_{20261121};
+  int exponents_;
+};
+
+TEST(Dyadic, SumsAndProductsAreExactAtEveryScale) {
+  Numbers next(1000);
+  for (int i = 0; i < 200; ++i) {
+    const double a = next(), b = next(), c = next();
+    const Dyadic value = Dyadic(a) * Dyadic(b) - Dyadic(c);
+    const Rational expected = rational(a) * rational(b) - rational(c);
+    EXPECT_EQ(value.sign(), expected.sign());
+    EXPECT_EQ((value + Dyadic(c) - Dyadic(a) * Dyadic(b)).sign(), 0);
+  }
+}
+
+TEST(Dyadic, RoundsDownAndUpToNeighbours) {
+  Numbers next(40);
+  for (int i = 0; i < 500; ++i) {
+    const double a = next(), b = next();
+    const Dyadic value = Dyadic(a) * Dyadic(b);
+    const double down = value.round_down();
+    const double up = value.round_up();
+    const Rational exact = rational(a) * rational(b);
+    EXPECT_LE(rational(down), exact);
+    EXPECT_GE(rational(up), exact);
+    EXPECT_TRUE(up == down || up == std::nextafter(down, HUGE_VAL)) << a << " * " << b;
+  }
+}
+
+TEST(Dyadic, RoundsBelowTheSmallestNormal) {
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  const Dyadic half = Dyadic(tiny) * Dyadic(0.5);
+  EXPECT_EQ(half.round_down(), 0.0);
+  EXPECT_EQ(half.round_up(), tiny);
+  EXPECT_EQ((-half).round_down(), -tiny);
+  EXPECT_EQ(Dyadic(tiny).round_down(), tiny);
+}
+
+TEST(DoubleDouble, ProductAndQuotientKeepAHundredBits) {
+  Numbers next(20);
+  for (int i = 0; i < 500; ++i) {
+    const DoubleDouble a = pd::detail::two_product(next(), next());
+    const DoubleDouble b = pd::detail::two_sum(next(), next());
+    const auto value = [](const DoubleDouble& x) { return rational(x.hi) + rational(x.lo); };
+    const Rational bound = Rational(1) / (boost::multiprecision::cpp_int(1) << 100);
+    const Rational product = value(a) * value(b);
+    EXPECT_LE(abs(value(a * b) - product), abs(product) * bound);
+    const Rational quotient = value(a) / value(b);
+    EXPECT_LE(abs(value(a / b) - quotient), abs(quotient) * bound);
+    const DoubleDouble square = a * a;
+    const Rational root = value(sqrt(square));
+    EXPECT_LE(abs(root - abs(value(a))), abs(root) * bound * 4);
+  }
+}
+
+TEST(RootSum, ComparesExactlyWhereDoublesCannot) {
+  // 1 - sqrt(1 - 2^-120): about 2^-121, lost in any fixed precision.
+  const Dyadic one(1.0);
+  const Dyadic numerator = one - Dyadic(std::ldexp(1.0, -120));
+  const RootSum value(one, -1, numerator, one);
+  EXPECT_EQ(value.compare(Dyadic()), 1);
+  EXPECT_EQ(value.compare(Dyadic(std::ldexp(1.0, -122))), 1);
+  EXPECT_EQ(value.compare(Dyadic(std::ldexp(1.0, -120))), -1);
+  const double down = value.round_down();
+  EXPECT_GE(value.compare(Dyadic(down)), 0);
+  EXPECT_LT(value.compare(Dyadic(std::nextafter(down, HUGE_VAL))), 0);
+}
+
+TEST(RootSum, RoundsRationalRootsToThemselves) {
+  const RootSum five(Dyadic(0.0), 1, Dyadic(25.0), Dyadic(1.0));
+  EXPECT_EQ(five.round_down(), 5.0);
+  EXPECT_EQ(five.round_up(5.0), 5.0);
+  const RootSum root_two(Dyadic(0.0), 1, Dyadic(2.0), Dyadic(1.0));
+  EXPECT_EQ(root_two.round_down(), 0x1.6a09e667f3bccp0);
+  EXPECT_EQ(root_two.round_up(root_two.round_down()), 0x1.6a09e667f3bcdp0);
+}
+
+TEST(RootSum, SurvivesScalesWhoseSquaresOverflow) {
+  const Dyadic huge(1e200);
+  const RootSum value(Dyadic(0.0), 1, huge * huge * Dyadic(2.0), Dyadic(1.0));
+  EXPECT_NEAR(value.round_down() / 1e200, std::sqrt(2.0), 1e-15);
+  const Dyadic tiny(1e-200);
+  const RootSum small(Dyadic(0.0), 1, tiny * tiny * Dyadic(2.0), Dyadic(1.0));
+  EXPECT_NEAR(small.round_down() / 1e-200, std::sqrt(2.0), 1e-15);
+}
+
+}  // namespace

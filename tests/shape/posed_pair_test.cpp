@@ -1,0 +1,117 @@
+// Exact predicates on posed pairs: every stage is reached, and says the same as the exact one.
+#include "shape/posed_pair.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace {
+
+using pd::ConvexPolytope;
+using pd::Pose;
+using pd::Vec3;
+using pd::detail::Dyadic;
+using pd::detail::Dyadic3;
+using pd::detail::PairVector;
+using pd::detail::PosedPair;
+
+ConvexPolytope box(double x, double y, double z) { return ConvexPolytope::box(Vec3(x, y, z)).value(); }
+
+Pose quaternion(double w, double x, double y, double z, const Vec3& t) {
+  const double length = std::sqrt(w * w + x * x + y * y + z * z);
+  return Pose::from_quaternion({w / length, x / length, y / length, z / length}, t).value();
+}
+
+PairVector any_vector(std::mt19937_64& bits) {
+  const auto vertex = [&] { return static_cast<int>(bits() % 8); };
+  switch (bits() % 4) {
+    case 0:
+      return PairVector::point(vertex(), vertex());
+    case 1:
+      return PairVector::edge_a(vertex(), vertex());
+    case 2:
+      return PairVector::edge_b(vertex(), vertex());
+    default:
+      return PairVector::difference(vertex(), vertex(), vertex(), vertex());
+  }
+}
+
+void expect_exact_signs(const PosedPair& pair, int rounds) {
+  std::mt19937_64 bits(7);
+  for (int i = 0; i < rounds; ++i) {
+    const PairVector u = any_vector(bits), v = any_vector(bits), w = any_vector(bits);
+    const Dyadic3 x = pair.exact(u), y = pair.exact(v), z = pair.exact(w);
+    EXPECT_EQ(pair.sign_determinant(u, v, w), determinant(x, y, z).sign());
+    EXPECT_EQ(pair.sign_dot(u, v), dot(x, y).sign());
+    const Dyadic3 c = cross(x, y);
+    EXPECT_EQ(pair.parallel(u, v), c.x.sign() == 0 && c.y.sign() == 0 && c.z.sign() == 0);
+  }
+}
+
+TEST(PosedPair, FilterDecidesGenericPositions) {
+  const ConvexPolytope a = box(1, 2, 3), b = box(0.5, 0.7, 0.9);
+  const Pose pa = quaternion(1, 0.2, 0.3, 0.4, Vec3(0.1, 0.2, 0.3)), pb = quaternion(1, -0.5, 0.25, 0.1, Vec3(1, 1, 1));
+  const PosedPair pair(a, pa, b, pb);
+  for (int i = 1; i < 8; ++i) {
+    EXPECT_NE(
+        pair.sign_determinant(PairVector::point(0, 0), PairVector::edge_a(0, 1), PairVector::edge_b(0, i % 7 + 1)), 0);
+  }
+  EXPECT_EQ(pair.stages().double_double, 0);
+  EXPECT_EQ(pair.stages().exact, 0);
+  EXPECT_GT(pair.stages().filtered, 0);
+}
+
+TEST(PosedPair, DoubleDoubleDecidesNearTies) {
+  const ConvexPolytope a = box(1, 1, 1), b = box(1, 1, 1);
+  const Pose pa, pb = quaternion(1, 1e-20, 0, 0, Vec3(0, 0, 2));
+  const PosedPair pair(a, pa, b, pb);
+  // Edges along y of the two boxes enclose 2e-20 rad: below doubles, far above double-double.
+  EXPECT_NE(pair.sign_determinant(PairVector::edge_a(0, 2), PairVector::edge_b(0, 2), PairVector::edge_a(0, 4)), 0);
+  EXPECT_EQ(pair.stages().double_double, 1);
+  EXPECT_EQ(pair.stages().exact, 0);
+}
+
+TEST(PosedPair, ExactStageDecidesTies) {
+  const ConvexPolytope a = box(1, 1, 1), b = box(0.3, 0.3, 0.3);
+  const Pose pa = quaternion(1, 0.2, 0.3, 0.4, Vec3::Zero()), pb = pa;
+  const PosedPair pair(a, pa, b, pb);
+  EXPECT_EQ(pair.sign_determinant(PairVector::edge_a(0, 1), PairVector::edge_b(0, 1), PairVector::point(3, 5)), 0);
+  EXPECT_EQ(pair.stages().exact, 1);
+}
+
+TEST(PosedPair, EveryStageAgreesWithTheExactOne) {
+  const ConvexPolytope a = box(1, 2, 0.5), b = box(1, 1, 1);
+  const Pose identity;
+  const Pose turned = quaternion(0.5, 0.5, 0.5, 0.5, Vec3(0.25, 0.5, -1));
+  const Pose generic = quaternion(1, 0.1, 0.7, -0.3, Vec3(0.3, 0.1, 0.2));
+  expect_exact_signs(PosedPair(a, identity, b, turned), 400);
+  expect_exact_signs(PosedPair(a, generic, b, generic), 400);
+  expect_exact_signs(PosedPair(a, generic, b, turned), 400);
+}
+
+TEST(PosedPair, NoScaleOverflowsOrUnderflows) {
+  for (const double scale : {1e-290, 1e-150, 1e150, 1e290}) {
+    const ConvexPolytope a = box(scale, 2 * scale, scale / 2), b = box(scale, scale, scale);
+    const Pose identity;
+    const Pose shifted = Pose::from_quaternion({0.6, 0.8, 0, 0}, Vec3(scale, 0, scale / 4)).value();
+    expect_exact_signs(PosedPair(a, identity, b, shifted), 60);
+  }
+}
+
+TEST(PosedPair, DecisionsObeyPowersOfTwo) {
+  const ConvexPolytope a = box(1, 2, 3), b = box(0.5, 0.7, 0.9);
+  const double k = 0x1p40;
+  const ConvexPolytope a2 = box(k, 2 * k, 3 * k), b2 = box(0.5 * k, 0.7 * k, 0.9 * k);
+  const Pose pa = quaternion(1, 0.2, 0.3, 0.4, Vec3(0.1, 0.2, 0.3)), pb = quaternion(1, -0.5, 0.25, 0.1, Vec3(1, 1, 1));
+  const Pose pa2 = Pose::from_quaternion(pa.quaternion_wxyz(), pa.translation() * k).value();
+  const Pose pb2 = Pose::from_quaternion(pb.quaternion_wxyz(), pb.translation() * k).value();
+  const PosedPair one(a, pa, b, pb), two(a2, pa2, b2, pb2);
+  std::mt19937_64 bits(3);
+  for (int i = 0; i < 200; ++i) {
+    const PairVector u = any_vector(bits);
+    EXPECT_EQ(one.approximate(u) * k, two.approximate(u));
+  }
+}
+
+}  // namespace
