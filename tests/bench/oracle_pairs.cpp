@@ -35,7 +35,7 @@ struct Settings {
   std::uint64_t seed = 1;
   int threads = 1;
   std::string method = "auto";
-  std::string bracket = "certified";
+  std::string bracket = "tightest";
   int size = 0;
   double large_share = 0.0;
   std::string dump = "oracle_failures.json";

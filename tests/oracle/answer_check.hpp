@@ -19,18 +19,18 @@ struct Question {
   const ConvexPolytope* b;
   const Pose* pose_a;
   const Pose* pose_b;
-  Bracket bracket = Bracket::certified;
+  Bracket bracket = Bracket::tightest;
 };
 
 enum class Promise : std::uint8_t {
   finite,       ///< no NaN, no infinity
   contact,      ///< the exact class
   bracket,      ///< lower <= true value <= upper, and the value between them
-  width,        ///< upper - lower <= 4e-15 L, or as tight as doubles allow where asked for
+  width,        ///< upper - lower <= 2e-14 L (certified), or neighbouring doubles (tightest)
   translation,  ///< separates exactly as stored, no longer than upper
   witness,      ///< in the bodies, and their difference is the translation
   normal,       ///< unit, along the translation
-  feature,      ///< the faces of an optimal direction
+  feature,      ///< the faces of an optimal direction (tightest)
   zero,         ///< fields that the class says are zero
   oracle,       ///< the oracle itself could not decide
 };

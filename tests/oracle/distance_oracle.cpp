@@ -210,8 +210,10 @@ class FacePairs {
   const ExactPair& pair_;
 };
 
+/// The faces all of whose corners are near. A triangle's corner inside a facet bears no edge and is always let through.
 std::vector<Face> faces_within(const Body& body, const std::vector<int>& near) {
-  std::vector<char> in(body.exact.size(), 0);
+  std::vector<char> in(body.exact.size(), 1);
+  for (const int v : body.vertices) in[v] = 0;
   for (const int v : near) in[v] = 1;
   std::vector<Face> faces;
   for (const int v : near) faces.push_back({{v, -1, -1}, 1});

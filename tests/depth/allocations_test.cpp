@@ -1,0 +1,101 @@
+/// @file
+/// The hot path allocates nothing once its scratch has grown: every allocation of the program is counted.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "oracle/judged_pair.hpp"
+#include "pd/depth/warm_certificate.hpp"
+
+namespace {
+
+std::atomic<std::int64_t> allocations{0};
+
+void* counted(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  void* p = std::malloc(size == 0 ? 1 : size);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+void* counted(std::size_t size, std::align_val_t alignment) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  const auto a = static_cast<std::size_t>(alignment);
+  void* p = std::aligned_alloc(a, (size + a - 1) / a * a);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, alignment); }
+void* operator new[](std::size_t size, std::align_val_t alignment) { return counted(size, alignment); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace pd {
+namespace {
+
+using oracle::JudgedPair;
+using scenes::DepthClass;
+using scenes::PairFamily;
+
+TEST(Allocations, NoneAfterTheFirstCall) {
+  const DepthSettings hot{.bracket = Bracket::certified};
+  Scratch scratch;
+  int exact = 0;
+  int pairs = 0;
+  for (int f = 0; f < scenes::kPairFamilies; ++f) {
+    for (int d = 0; d < scenes::kDepthClasses; ++d) {
+      for (const int n : {8, 64}) {
+        const JudgedPair pair = JudgedPair::of_family(static_cast<PairFamily>(f), n, static_cast<DepthClass>(d), 31);
+        const PosedShape a = pair.a();
+        const PosedShape b = pair.b();
+        (void)penetration_depth(a, b, scratch, hot);
+        const std::int64_t before = allocations.load();
+        const PenetrationDepth answer = penetration_depth(a, b, scratch, hot);
+        const std::int64_t after = allocations.load();
+        ++pairs;
+        // Numbers of unbounded length may allocate; the filter decides nearly always.
+        if (answer.statistics.exact_signs > 0) {
+          ++exact;
+          continue;
+        }
+        EXPECT_EQ(after - before, 0) << pair.name();
+      }
+    }
+  }
+  std::printf("%d pairs, %d of them reached exact arithmetic\n", pairs, exact);
+}
+
+TEST(Allocations, NoneWhenWarm) {
+  Scratch scratch;
+  WarmCertificate certificate;
+  const JudgedPair pair = JudgedPair::of_family(PairFamily::sphere, 64, DepthClass::mid, 5);
+  const PosedShape a = pair.a();
+  PosedShape b = pair.b();
+  const auto q = b.pose.quaternion_wxyz();
+  (void)penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &certificate);
+  (void)penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &certificate);
+  std::int64_t counted_in_loop = 0;
+  for (int k = 1; k <= 100; ++k) {
+    b.pose = *Pose::from_quaternion(q, pair.b().pose.translation() + 1e-4 * k * Vec3(1, -1, 0.5));
+    const std::int64_t before = allocations.load();
+    (void)penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &certificate);
+    if (k > 10) counted_in_loop += allocations.load() - before;
+  }
+  EXPECT_EQ(counted_in_loop, 0);
+}
+
+}  // namespace
+}  // namespace pd
