@@ -20,10 +20,13 @@ namespace pd {
 /// Bit for bit means: the same calls of `stepSimulation(h, 0)` after `restore` give the same transforms, velocities and
 /// contact points. The broadphase's trees and pairs belong to it (of btDbvtBroadphase; other broadphases are updated to
 /// the restored poses, so that pairs found later may come in another order). Bullet's trees follow the addresses of
-/// their nodes: where a body fell asleep or woke in between, a later pair may come in another order too. Not saved: the
-/// remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their total, soft
-/// bodies, motion states (they follow at the next step). `m_userPersistentData` of contact points is restored as a
-/// pointer.
+/// their nodes: where a body fell asleep or woke in between, a later pair may come in another order too. A compound's
+/// children have a manifold each, made and dropped in an order that Bullet keeps nowhere: worlds with compounds replay
+/// a step or two bit for bit under pdepth's contacts, and may not under Bullet's own.
+///
+/// Not saved: the remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their
+/// total, soft bodies, motion states (they follow at the next step). `m_userPersistentData` of contact points is
+/// restored as a pointer.
 class BulletSnapshot {
  public:
   /// @param solver  the one installed in the world: its pairs' warm starts are saved with their manifolds; nullptr

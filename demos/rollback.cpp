@@ -1,0 +1,478 @@
+/// @file
+/// `pdepth demo rollback`: bodies thrown fast at each other. A plain step ends deep inside; the rollback stepper
+/// restores the state, bit for bit, and advances it to the first contact.
+#include "pd/bullet/rollback.hpp"
+
+#include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkConvexCast.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
+#include <BulletCollision/NarrowPhaseCollision/btSubSimplexConvexCast.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+#include <btBulletDynamicsCommon.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "demo_output.hpp"
+#include "demo_registry.hpp"
+#include "demo_world.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/scratch.hpp"
+#include "pd/render/annotation.hpp"
+#include "pd/render/composition.hpp"
+#include "pd/render/renderer.hpp"
+#include "pd/render/video.hpp"
+
+namespace pd::demo {
+
+namespace {
+
+constexpr int kFramesPerSecond = 30;
+/// Frames of the film for one step (slow motion), and for a step in which a contact was taken back.
+constexpr int kFramesPerStep = 2;
+constexpr int kFramesPerImpact = 15;
+/// Depths below this are not worth an arrow.
+constexpr double kShownDepth = 2e-3;
+
+/// When a method says that two bodies meet, and how deep they are by then.
+struct Verdict {
+  std::string method;
+  bool hit = false;
+  double time = 0;   ///< seconds since the step began
+  double depth = 0;  ///< exact penetration at that time; negative: a gap
+};
+
+/// One impact: the two bodies at the start of the step in which they meet.
+struct Impact {
+  int a = -1;
+  int b = -1;
+  MovingShape moving_a;
+  MovingShape moving_b;
+  double step = 0;         ///< length of the step, seconds
+  double plain_depth = 0;  ///< at the end of the plain step
+  FirstContact contact;
+  std::vector<Verdict> verdicts;
+};
+
+double signed_depth(const MovingShape& a, const MovingShape& b, double time, Scratch& scratch) {
+  const PenetrationDepth answer =
+      penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch);
+  return answer.contact == ContactClass::separated ? -answer.distance : answer.depth;
+}
+
+btTransform to_transform(const Pose& pose) {
+  const Mat3& r = pose.rotation();
+  const btMatrix3x3 basis(
+      static_cast<btScalar>(r(0, 0)), static_cast<btScalar>(r(0, 1)), static_cast<btScalar>(r(0, 2)),
+      static_cast<btScalar>(r(1, 0)), static_cast<btScalar>(r(1, 1)), static_cast<btScalar>(r(1, 2)),
+      static_cast<btScalar>(r(2, 0)), static_cast<btScalar>(r(2, 1)), static_cast<btScalar>(r(2, 2)));
+  return btTransform(basis, to_bullet(pose.translation()));
+}
+
+/// The exact time beside what Bullet's own casts say about the same motion.
+std::vector<Verdict> compare_methods(const Impact& impact, const btConvexShape& shape_a, const btConvexShape& shape_b) {
+  Scratch scratch;
+  std::vector<Verdict> verdicts;
+  const TimeOfImpact exact = time_of_impact(impact.moving_a, impact.moving_b, impact.step, scratch);
+  verdicts.push_back({"pdepth, exact", exact.hit, exact.time, 0});
+
+  const btTransform a0 = to_transform(pose_at(impact.moving_a, 0));
+  const btTransform a1 = to_transform(pose_at(impact.moving_a, impact.step));
+  const btTransform b0 = to_transform(pose_at(impact.moving_b, 0));
+  const btTransform b1 = to_transform(pose_at(impact.moving_b, impact.step));
+  btVoronoiSimplexSolver simplex;
+  btGjkEpaPenetrationDepthSolver epa;
+  btContinuousConvexCollision continuous(&shape_a, &shape_b, &simplex, &epa);
+  btGjkConvexCast gjk(&shape_a, &shape_b, &simplex);
+  btSubsimplexConvexCast subsimplex(&shape_a, &shape_b, &simplex);
+  const std::pair<const char*, btConvexCast*> casts[] = {
+      {"btContinuousConvexCollision", &continuous}, {"btGjkConvexCast", &gjk}, {"btSubsimplexConvexCast", &subsimplex}};
+  for (const auto& [name, cast] : casts) {
+    btConvexCast::CastResult result;
+    result.m_fraction = btScalar(1);
+    const bool hit = cast->calcTimeOfImpact(a0, a1, b0, b1, result);
+    verdicts.push_back({name, hit, static_cast<double>(result.m_fraction) * impact.step, 0});
+  }
+  for (Verdict& verdict : verdicts) {
+    const double when = verdict.hit ? verdict.time : impact.step;
+    verdict.depth = signed_depth(impact.moving_a, impact.moving_b, when, scratch);
+  }
+  return verdicts;
+}
+
+MovingShape moving(DemoWorld& world, int i, const btTransform& start, const btTransform& end, double step) {
+  MovingShape result{{&world.shape(i), to_pd(start)}, {}};
+  btVector3 linear;
+  btVector3 angular;
+  btTransformUtil::calculateVelocity(start, end, static_cast<btScalar>(step), linear, angular);
+  result.motion = {to_pd(linear), to_pd(angular)};
+  return result;
+}
+
+/// Pictures of one moment of a world.
+class Stage {
+ public:
+  Stage(render::Renderer& renderer, const scenes::World& plan, render::Size whole, int panels)
+      : renderer_(renderer), size_(render::panel_size(whole, panels)) {
+    view_.include(plan.view_lower);
+    view_.include(plan.view_upper);
+    camera_ = render::frame_box(view_, size_, {-68, 17});
+  }
+
+  /// A camera that sees the two bodies of an impact from nearby, through all of the step.
+  void look_at(const Impact& impact) {
+    render::Box box;
+    for (const MovingShape* body : {&impact.moving_a, &impact.moving_b}) {
+      const double reach = std::min(bounding_radius(*body->start.shape), 0.45);
+      const Vec3 at = 0.5 * (impact.contact.contact.witness_a + impact.contact.contact.witness_b);
+      box.include(Vec3(at + Vec3::Constant(reach)));
+      box.include(Vec3(at - Vec3::Constant(reach)));
+    }
+    camera_ = render::frame_box(box, size_, {-62, 18}, {0.02, 0.02, 0.05, 0.05});
+  }
+
+  Expected<render::Image> draw(const render::Scene& scene) { return renderer_.draw(scene, camera_, size_); }
+
+ private:
+  render::Renderer& renderer_;
+  render::Size size_;
+  render::Box view_;
+  render::Camera camera_;
+};
+
+std::string time_text(double seconds) { return fmt::format("{:.4f} ms", 1e3 * seconds); }
+
+/// The two bodies of an impact at a time of the step, everything else left out of focus.
+render::Scene moment(DemoWorld& world, const Impact& impact, double time, bool contact_disc) {
+  Scratch scratch;
+  render::Scene scene;
+  const Pose pose_a = pose_at(impact.moving_a, time);
+  const Pose pose_b = pose_at(impact.moving_b, time);
+  for (const auto& [index, pose] : {std::pair{impact.a, pose_a}, std::pair{impact.b, pose_b}}) {
+    render::Body body;
+    body.mesh = render::shape_mesh(world.shape(index));
+    body.pose = pose;
+    body.colour = render::palette::categorical(static_cast<std::size_t>(world.description(index).colour));
+    body.highlight = world.description(index).mass > 0;
+    scene.bodies.push_back(std::move(body));
+  }
+  const PenetrationDepth answer =
+      penetration_depth({impact.moving_a.start.shape, pose_a}, {impact.moving_b.start.shape, pose_b}, scratch);
+  if (answer.contact == ContactClass::overlapping) {
+    scene.arrows.push_back(
+        {answer.witness_a, answer.witness_b,
+         fmt::format("{}\n[{:.6g}, {:.6g}] m", length_text(answer.depth), answer.lower, answer.upper)});
+  } else if (contact_disc) {
+    scene.discs.push_back({answer.witness_b, answer.normal});
+  }
+  return scene;
+}
+
+/// Before, at and after the contact, in one picture.
+Expected<std::filesystem::path> draw_triptych(DemoWorld& world, const Impact& impact, int number, Stage& stage,
+                                              render::Size whole, const std::filesystem::path& folder) {
+  stage.look_at(impact);
+  const double first = impact.verdicts[0].time;
+  struct Moment {
+    double time;
+    std::string heading;
+    bool disc;
+  };
+  const Moment moments[] = {{0.55 * first, fmt::format("before, {}", time_text(0.55 * first)), false},
+                            {first, fmt::format("first contact, {}", time_text(first)), true},
+                            {impact.step, fmt::format("end of the plain step, {}", time_text(impact.step)), false}};
+  std::vector<render::Panel> panels;
+  for (const Moment& m : moments) {
+    auto drawn = stage.draw(moment(world, impact, m.time, m.disc));
+    if (!drawn) {
+      return drawn.error();
+    }
+    panels.push_back({std::move(drawn).value(), m.heading});
+  }
+  const std::string undone = impact.plain_depth > 0 ? length_text(impact.plain_depth) + " deep"
+                                                    : std::string("behind each other, no contact left");
+  return render::write_png(
+      render::side_by_side(
+          panels, "Taken back to the first contact",
+          fmt::format("a plain step ends {}, the rollback {} apart", undone, length_text(impact.contact.gap)), whole),
+      folder / fmt::format("impact_{}.png", number));
+}
+
+struct Course {
+  std::vector<Impact> impacts;
+  double deepest_plain = 0;
+  double deepest_rollback = 0;
+  int simulation_steps = 0;
+  int steps = 0;
+  bool replay_same_bits = true;
+};
+
+/// Replays the coming step from a snapshot and compares every number of every body.
+bool replay_is_exact(DemoWorld& world, double step) {
+  const auto numbers = [&] {
+    std::vector<btScalar> result;
+    for (int i = 0; i < world.num_bodies(); ++i) {
+      const btRigidBody& body = world.body(i);
+      for (const btVector3& v : {body.getWorldTransform().getOrigin(), body.getWorldTransform().getBasis()[0],
+                                 body.getWorldTransform().getBasis()[1], body.getWorldTransform().getBasis()[2],
+                                 body.getLinearVelocity(), body.getAngularVelocity()}) {
+        result.insert(result.end(), {v.x(), v.y(), v.z()});
+      }
+    }
+    return result;
+  };
+  const BulletSnapshot snapshot(world.bullet(), &world.solver());
+  world.bullet().stepSimulation(static_cast<btScalar>(step), 0);
+  const auto first = numbers();
+  snapshot.restore();
+  world.bullet().stepSimulation(static_cast<btScalar>(step), 0);
+  const bool same = numbers() == first;
+  snapshot.restore();
+  return same;
+}
+
+nlohmann::json to_json(const Course& course, DemoWorld& world) {
+  nlohmann::json result{{"steps", course.steps},
+                        {"simulation_steps", course.simulation_steps},
+                        {"deepest_plain_m", course.deepest_plain},
+                        {"deepest_rollback_m", course.deepest_rollback},
+                        {"replay_bit_for_bit", course.replay_same_bits},
+                        {"impacts", nlohmann::json::array()}};
+  for (const Impact& impact : course.impacts) {
+    nlohmann::json entry{
+        {"body_a", impact.a},
+        {"body_b", impact.b},
+        {"speed_m_per_s", (impact.moving_a.motion.linear_velocity - impact.moving_b.motion.linear_velocity).norm()},
+        {"time_in_step_s", impact.contact.time},
+        {"trials", impact.contact.trials},
+        {"gap_m", impact.contact.gap},
+        {"plain_step_depth_m", impact.plain_depth}};
+    for (const Verdict& verdict : impact.verdicts) {
+      entry["methods"].push_back({{"method", verdict.method},
+                                  {"hit", verdict.hit},
+                                  {"time_in_step_s", verdict.time},
+                                  {"depth_then_m", verdict.depth}});
+    }
+    result["impacts"].push_back(entry);
+  }
+  result["bodies"] = world.num_bodies();
+  return result;
+}
+
+void print_headline(const Course& course) {
+  fmt::print("Rollback: {} first contacts in {} steps of 1/60 s; {} simulation steps in all\n", course.impacts.size(),
+             course.steps, course.simulation_steps);
+  fmt::print("  deepest penetration of thrown bodies: plain {}, with rollback {}\n", length_text(course.deepest_plain),
+             length_text(course.deepest_rollback));
+  fmt::print("  a step replayed from its snapshot gives {}\n",
+             course.replay_same_bits ? "the same bits, in every step" : "OTHER BITS");
+  for (std::size_t i = 0; i < course.impacts.size(); ++i) {
+    const Impact& impact = course.impacts[i];
+    fmt::print("  impact {}: plain step ends {} deep; stopped {} apart after {} trials\n", i + 1,
+               length_text(impact.plain_depth), length_text(impact.contact.gap), impact.contact.trials);
+    for (const Verdict& verdict : impact.verdicts) {
+      fmt::print("    {:<28} {:>14}   {}\n", verdict.method, verdict.hit ? time_text(verdict.time) : "missed",
+                 verdict.depth > 0 ? length_text(verdict.depth) + " deep by then"
+                                   : length_text(-verdict.depth) + " apart then");
+    }
+  }
+}
+
+/// The rollback world's next step: what a plain step would do, then the step that stops at contacts.
+void advance(DemoWorld& world, RollbackStepper& stepper, double step, Course& course) {
+  const int count = world.num_bodies();
+  const auto poses = [&] {
+    std::vector<btTransform> result;
+    for (int i = 0; i < count; ++i) {
+      result.push_back(world.body(i).getWorldTransform());
+    }
+    return result;
+  };
+  course.replay_same_bits = replay_is_exact(world, step) && course.replay_same_bits;
+  const std::vector<btTransform> start = poses();
+  const BulletSnapshot snapshot(world.bullet(), &world.solver());
+  world.bullet().stepSimulation(static_cast<btScalar>(step), 0);
+  const std::vector<btTransform> plain_end = poses();
+  snapshot.restore();
+  const RollbackReport report = stepper.step(static_cast<btScalar>(step));
+  course.simulation_steps += report.simulation_steps;
+  ++course.steps;
+  std::vector<bool> met(static_cast<std::size_t>(count), false);
+  for (const FirstContact& contact : report.contacts) {
+    Impact impact;
+    impact.a = world.index_of(contact.body_a);
+    impact.b = world.index_of(contact.body_b);
+    // A body that met something earlier in this step no longer moves as the plain step said.
+    const bool undisturbed = !met[impact.a] && !met[impact.b];
+    met[impact.a] = met[impact.a] || world.description(impact.a).mass > 0;
+    met[impact.b] = met[impact.b] || world.description(impact.b).mass > 0;
+    if (!undisturbed || !world.description(impact.a).drawn || !world.description(impact.b).drawn) {
+      continue;
+    }
+    impact.step = step;
+    impact.contact = contact;
+    impact.moving_a = moving(world, impact.a, start[impact.a], plain_end[impact.a], step);
+    impact.moving_b = moving(world, impact.b, start[impact.b], plain_end[impact.b], step);
+    Scratch scratch;
+    impact.plain_depth = std::max(0.0, signed_depth(impact.moving_a, impact.moving_b, step, scratch));
+    impact.verdicts =
+        compare_methods(impact, static_cast<const btConvexShape&>(*world.body(impact.a).getCollisionShape()),
+                        static_cast<const btConvexShape&>(*world.body(impact.b).getCollisionShape()));
+    course.impacts.push_back(std::move(impact));
+  }
+}
+
+/// One world's half of a film frame.
+Expected<render::Panel> draw_half(DemoWorld& world, const Measurement& now, const std::vector<double>& depths,
+                                  double full_scale, const std::string& heading, const std::string& status,
+                                  Stage& stage) {
+  render::Scene scene = world.picture(now, kShownDepth);
+  if (now.deepest > kShownDepth) {
+    const PenetrationDepth& answer = now.deepest_answer;
+    scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
+  }
+  auto drawn = stage.draw(scene);
+  if (!drawn) {
+    return drawn.error();
+  }
+  render::Panel panel{std::move(drawn).value(), heading};
+  render::Annotation words;
+  words.status = status;
+  words.headlines = {{length_text(now.deepest), "deepest penetration",
+                      now.deepest > kShownDepth ? render::palette::kTrouble : render::palette::kGood}};
+  words.sparkline = {depths, depths.size() - 1, "deepest penetration", full_scale, length_text(full_scale)};
+  render::annotate(panel.image, words);
+  return panel;
+}
+
+/// Runs both worlds, drawing as they go. @return how many frames there are.
+Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, const DemoOptions& options,
+                         const std::filesystem::path& folder, render::Renderer& renderer, Course& course) {
+  const double step = 1 / plan.steps_per_second;
+  DemoWorld plain(plan, kind);
+  DemoWorld guarded(plan, SolverKind::exact);
+  RollbackStepper stepper(guarded.bullet(), guarded.solver());
+  const render::Size whole{options.width, options.height};
+  Stage stage(renderer, plan, whole, 2);
+  Stage close_up(renderer, plan, whole, 3);
+  std::optional<render::VideoWriter> film;
+  if (options.video) {
+    auto opened = render::VideoWriter::open(folder / "rollback.mp4", whole, kFramesPerSecond);
+    if (!opened) {
+      return opened.error();
+    }
+    film = std::move(opened).value();
+  }
+  CsvFile csv(folder / "rollback.csv",
+              "step,time_s,plain_deepest_m,rollback_deepest_m,plain_kinetic_energy_J,rollback_kinetic_energy_J");
+  // The scale of the sparkline stays put: half of the smallest thrown body.
+  const double full_scale = 0.15;
+  std::filesystem::create_directories(folder / "frames");
+  Progress progress("rollback", steps);
+  std::vector<double> plain_depths;
+  std::vector<double> guarded_depths;
+  std::vector<render::Panel> strip;
+  int frames = 0;
+  for (int i = 0; i <= steps && !interrupted(); ++i) {
+    const std::size_t known = course.impacts.size();
+    if (i > 0) {
+      plain.bullet().stepSimulation(static_cast<btScalar>(step), 0);
+      advance(guarded, stepper, step, course);
+    }
+    const Measurement left = plain.measure();
+    const Measurement right = guarded.measure();
+    course.deepest_plain = std::max(course.deepest_plain, left.deepest);
+    course.deepest_rollback = std::max(course.deepest_rollback, right.deepest);
+    plain_depths.push_back(left.deepest);
+    guarded_depths.push_back(right.deepest);
+    csv.row({static_cast<double>(i), i * step, left.deepest, right.deepest, left.kinetic_energy, right.kinetic_energy});
+    const std::string status = fmt::format("{:.1f} ms   step {}", 1e3 * i * step, i);
+    auto first = draw_half(plain, left, plain_depths, full_scale, "plain steps", status, stage);
+    if (!first) {
+      return first.error();
+    }
+    auto second = draw_half(guarded, right, guarded_depths, full_scale, "taken back to first contact", status, stage);
+    if (!second) {
+      return second.error();
+    }
+    const render::Panel panels[] = {std::move(first).value(), std::move(second).value()};
+    render::Image picture = render::side_by_side(panels, plan.title,
+                                                 fmt::format("penetration at the end of the step {} / {}",
+                                                             length_text(left.deepest), length_text(right.deepest)),
+                                                 whole);
+    const auto written = render::write_png(picture, folder / "frames" / fmt::format("rollback_{:04d}.png", i));
+    if (!written) {
+      return written.error();
+    }
+    const bool telling = course.impacts.size() > known || left.deepest > 10 * kShownDepth;
+    for (int k = 0; film && k < (telling ? kFramesPerImpact : kFramesPerStep); ++k) {
+      const auto added = film->add(picture);
+      if (!added) {
+        return added.error();
+      }
+    }
+    ++frames;
+    if ((telling || i % 6 == 0) && strip.size() < 6) {
+      strip.push_back({std::move(picture), fmt::format("{:.0f} ms", 1e3 * i * step)});
+    }
+    for (std::size_t k = known; k < course.impacts.size(); ++k) {
+      const auto triptych = draw_triptych(guarded, course.impacts[k], static_cast<int>(k) + 1, close_up, whole, folder);
+      if (!triptych) {
+        return triptych.error();
+      }
+    }
+    if (!write_text(folder / "rollback.json", to_json(course, guarded).dump(2) + "\n")) {
+      return Error{ErrorCode::bad_value, "rollback.json cannot be written", folder.string()};
+    }
+    progress.show(i);
+  }
+  const auto strip_written = render::write_png(render::film_strip(strip, plan.title), folder / "rollback_strip.png");
+  if (!strip_written) {
+    return strip_written.error();
+  }
+  if (film) {
+    const auto finished = film->finish();
+    if (!finished) {
+      return finished.error();
+    }
+  }
+  return frames;
+}
+
+}  // namespace
+
+int run_rollback(const DemoOptions& options) {
+  // The plain world's solver; the other world has the exact one, whose signed distance the search needs.
+  const auto kind = solver_kind(options.solver.empty() ? "exact" : options.solver);
+  if (!kind) {
+    report_failure(kind.error());
+    return kDemoBadUsage;
+  }
+  const auto folder = open_output_folder(options, "rollback");
+  if (!folder) {
+    report_failure(folder.error());
+    return kDemoBadUsage;
+  }
+  auto renderer = render::Renderer::create();
+  if (!renderer) {
+    return report_failure(renderer.error());
+  }
+  auto device = std::move(renderer).value();
+  note_interrupts();
+  const scenes::World plan = scenes::fast_throws(options.seed);
+  Course course;
+  const auto frames =
+      run_course(plan, *kind, options.steps > 0 ? options.steps : plan.steps, options, *folder, device, course);
+  if (!frames) {
+    return report_failure(frames.error());
+  }
+  print_headline(course);
+  fmt::print("Pictures, figures and films: {}\n", folder->string());
+  return interrupted() ? kDemoInterrupted : kDemoDone;
+}
+
+}  // namespace pd::demo

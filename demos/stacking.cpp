@@ -1,0 +1,308 @@
+/// @file
+/// `pdepth demo stacking`: the same bodies under two solvers from the same start, side by side.
+///
+/// Small bodies without margins, where a depth solver is asked at every contact (bullet notes: with Bullet's default
+/// margins an ordinary stack asks it never). What is drawn as penetration is measured by pd_core for both.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "demo_output.hpp"
+#include "demo_registry.hpp"
+#include "demo_world.hpp"
+#include "pd/render/annotation.hpp"
+#include "pd/render/chart.hpp"
+#include "pd/render/composition.hpp"
+#include "pd/render/renderer.hpp"
+#include "pd/render/video.hpp"
+
+namespace pd::demo {
+
+namespace {
+
+constexpr int kFramesPerSecond = 30;
+/// Depths below this are not worth an arrow.
+constexpr double kShownDepth = 2e-4;
+
+/// One of the two worlds of a run, with all it measured.
+struct Contender {
+  Contender(const scenes::World& plan, SolverKind solver) : kind(solver), world(plan, solver) {
+    history.push_back(world.measure());
+  }
+  SolverKind kind;
+  DemoWorld world;
+  std::vector<Measurement> history;
+  /// Bodies' poses at each frame, so that pictures can be drawn when the shared scale is known.
+  std::vector<render::Scene> frames;
+
+  [[nodiscard]] double deepest() const {
+    double result = 0;
+    for (const Measurement& m : history) {
+      result = std::max(result, m.deepest);
+    }
+    return result;
+  }
+  /// Of the last quarter: what is left when the start has settled.
+  [[nodiscard]] double late_mean(double Measurement::*field) const {
+    const std::size_t first = history.size() - std::max<std::size_t>(history.size() / 4, 1);
+    double sum = 0;
+    for (std::size_t i = first; i < history.size(); ++i) {
+      sum += history[i].*field;
+    }
+    return sum / static_cast<double>(history.size() - first);
+  }
+  [[nodiscard]] double calls_per_step() const {
+    double sum = 0;
+    for (const Measurement& m : history) {
+      sum += static_cast<double>(m.solver_calls);
+    }
+    return sum / std::max<double>(1, static_cast<double>(history.size() - 1));
+  }
+  [[nodiscard]] double mean(double Measurement::*field) const {
+    double sum = 0;
+    for (const Measurement& m : history) {
+      sum += m.*field;
+    }
+    return sum / std::max<double>(1, static_cast<double>(history.size() - 1));
+  }
+};
+
+struct Run {
+  scenes::World plan;
+  std::vector<std::unique_ptr<Contender>> contenders;
+  std::vector<std::size_t> frame_steps;  ///< step shown by each frame
+};
+
+void write_csv(const Run& run, const std::filesystem::path& folder) {
+  for (const auto& contender : run.contenders) {
+    CsvFile csv(folder / fmt::format("{}_{}.csv", run.plan.name, to_string(contender->kind)),
+                "step,time_s,deepest_penetration_m,total_penetration_m,overlapping_pairs,drift_m,kinetic_energy_J,"
+                "potential_energy_J,contacts,solver_calls,solver_us,step_us");
+    for (std::size_t i = 0; i < contender->history.size(); ++i) {
+      const Measurement& m = contender->history[i];
+      csv.row({static_cast<double>(i), static_cast<double>(i) / run.plan.steps_per_second, m.deepest, m.total_depth,
+               static_cast<double>(m.overlapping_pairs), m.drift, m.kinetic_energy, m.potential_energy,
+               static_cast<double>(m.contacts), static_cast<double>(m.solver_calls), m.solver_microseconds,
+               m.step_microseconds});
+    }
+  }
+}
+
+nlohmann::json summary(const Run& run) {
+  nlohmann::json result{{"scene", run.plan.name},
+                        {"bodies", run.plan.bodies.size() - 1},
+                        {"steps", run.contenders[0]->history.size() - 1},
+                        {"steps_per_second", run.plan.steps_per_second}};
+  for (const auto& contender : run.contenders) {
+    result["solvers"].push_back({{"solver", to_string(contender->kind)},
+                                 {"deepest_penetration_m", contender->deepest()},
+                                 {"late_mean_penetration_m", contender->late_mean(&Measurement::deepest)},
+                                 {"final_drift_m", contender->history.back().drift},
+                                 {"late_mean_kinetic_energy_J", contender->late_mean(&Measurement::kinetic_energy)},
+                                 {"solver_calls_per_step", contender->calls_per_step()},
+                                 {"solver_us_per_step", contender->mean(&Measurement::solver_microseconds)},
+                                 {"step_us", contender->mean(&Measurement::step_microseconds)}});
+  }
+  return result;
+}
+
+/// "deepest penetration now 0.01 mm / 2.31 mm, drift 0.2 mm / 34 mm"
+std::string statement(const Run& run, std::size_t step) {
+  const Measurement& ours = run.contenders[0]->history[step];
+  const Measurement& theirs = run.contenders[1]->history[step];
+  return fmt::format("penetration {} / {}      moved from the start {} / {}", length_text(ours.deepest),
+                     length_text(theirs.deepest), length_text(ours.drift), length_text(theirs.drift));
+}
+
+Expected<render::Image> draw_frame(const Run& run, std::size_t frame, render::Renderer& renderer,
+                                   const render::Camera& camera, render::Size whole, double full_scale) {
+  const std::size_t step = run.frame_steps[frame];
+  std::vector<render::Panel> panels;
+  for (const auto& contender : run.contenders) {
+    const Measurement& now = contender->history[step];
+    const render::Size size = render::panel_size(whole, static_cast<int>(run.contenders.size()));
+    auto drawn = renderer.draw(contender->frames[frame], camera, size);
+    if (!drawn) {
+      return drawn.error();
+    }
+    render::Panel panel{std::move(drawn).value(), std::string(describe(contender->kind))};
+    render::Annotation words;
+    words.status = fmt::format("{:.2f} s   step {}", static_cast<double>(step) / run.plan.steps_per_second, step);
+    words.headlines = {{length_text(now.deepest), "deepest penetration",
+                        now.deepest > kShownDepth ? render::palette::kTrouble : render::palette::kGood}};
+    for (const Measurement& m : contender->history) {
+      words.sparkline.values.push_back(m.deepest);
+    }
+    words.sparkline.now = step;
+    words.sparkline.meaning = "deepest penetration";
+    words.sparkline.full_scale = full_scale;
+    words.sparkline.full_scale_text = length_text(full_scale);
+    render::annotate(panel.image, words);
+    panels.push_back(std::move(panel));
+  }
+  return render::side_by_side(panels, run.plan.title, statement(run, step), whole);
+}
+
+/// Steps both worlds together and keeps what each frame will show.
+void simulate(Run& run, int steps) {
+  const int steps_per_frame = std::max(1, static_cast<int>(run.plan.steps_per_second) / kFramesPerSecond);
+  const auto keep_frame = [&](std::size_t step) {
+    run.frame_steps.push_back(step);
+    for (const auto& contender : run.contenders) {
+      const Measurement& now = contender->history[step];
+      render::Scene scene = contender->world.picture(now, kShownDepth);
+      if (now.deepest > kShownDepth) {
+        const PenetrationDepth& answer = now.deepest_answer;
+        scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
+      }
+      contender->frames.push_back(std::move(scene));
+    }
+  };
+  Progress progress(run.plan.name + ": simulating", steps);
+  keep_frame(0);
+  for (int step = 1; step <= steps && !interrupted(); ++step) {
+    for (const auto& contender : run.contenders) {
+      contender->history.push_back(contender->world.step());
+    }
+    if (step % steps_per_frame == 0) {
+      keep_frame(static_cast<std::size_t>(step));
+    }
+    progress.show(step);
+  }
+}
+
+Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::filesystem::path& folder,
+                       render::Renderer& renderer) {
+  const render::Size whole{options.width, options.height};
+  const render::Size panel = render::panel_size(whole, static_cast<int>(run.contenders.size()));
+  render::Box view;
+  view.include(run.plan.view_lower);
+  view.include(run.plan.view_upper);
+  const render::Camera camera = render::frame_box(view, panel, {-62, 16});
+  double full_scale = 1e-4;
+  for (const auto& contender : run.contenders) {
+    full_scale = std::max(full_scale, contender->deepest());
+  }
+  std::optional<render::VideoWriter> film;
+  if (options.video) {
+    auto opened = render::VideoWriter::open(folder / (run.plan.name + ".mp4"), whole, kFramesPerSecond);
+    if (!opened) {
+      return opened.error();
+    }
+    film = std::move(opened).value();
+  }
+  const int frames = static_cast<int>(run.frame_steps.size());
+  std::vector<render::Panel> strip;
+  std::array<int, 6> telling{};
+  for (int i = 0; i < 6; ++i) {
+    telling[i] = i * (frames - 1) / 5;
+  }
+  Progress progress(run.plan.name + ": drawing", frames);
+  std::filesystem::create_directories(folder / "frames");
+  for (int i = 0; i < frames && !interrupted(); ++i) {
+    auto drawn = draw_frame(run, static_cast<std::size_t>(i), renderer, camera, whole, full_scale);
+    if (!drawn) {
+      return drawn.error();
+    }
+    render::Image picture = std::move(drawn).value();
+    const auto written = render::write_png(picture, folder / "frames" / fmt::format("{}_{:04d}.png", run.plan.name, i));
+    if (!written) {
+      return written.error();
+    }
+    if (film) {
+      const auto added = film->add(picture);
+      if (!added) {
+        return added.error();
+      }
+    }
+    if (std::find(telling.begin(), telling.end(), i) != telling.end()) {
+      const double seconds = static_cast<double>(run.frame_steps[i]) / run.plan.steps_per_second;
+      strip.push_back({std::move(picture), fmt::format("{:.2f} s", seconds)});
+    }
+    progress.show(i + 1);
+  }
+  if (!strip.empty()) {
+    const auto written =
+        render::write_png(render::film_strip(strip, run.plan.title), folder / (run.plan.name + "_strip.png"));
+    if (!written) {
+      return written.error();
+    }
+    const auto last = render::write_png(strip.back().image, folder / (run.plan.name + "_last.png"));
+    if (!last) {
+      return last.error();
+    }
+  }
+  if (film) {
+    const auto finished = film->finish();
+    if (!finished) {
+      return finished.error();
+    }
+  }
+  return frames;
+}
+
+void print_headline(const Run& run) {
+  fmt::print("{}: {} bodies, {} steps of 1/{:.0f} s\n", run.plan.title, run.plan.bodies.size() - 1,
+             run.contenders[0]->history.size() - 1, run.plan.steps_per_second);
+  fmt::print("  {:<30} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "", "deepest", "late mean", "moved", "calls a step",
+             "step");
+  for (const auto& contender : run.contenders) {
+    fmt::print("  {:<30} {:>12} {:>12} {:>12} {:>14.1f} {:>9.0f} us\n", describe(contender->kind),
+               length_text(contender->deepest()), length_text(contender->late_mean(&Measurement::deepest)),
+               length_text(contender->history.back().drift), contender->calls_per_step(),
+               contender->mean(&Measurement::step_microseconds));
+  }
+}
+
+}  // namespace
+
+int run_stacking(const DemoOptions& options) {
+  const auto first = solver_kind(options.solver.empty() ? "exact" : options.solver);
+  if (!first) {
+    report_failure(first.error());
+    return kDemoBadUsage;
+  }
+  // The rival of a pdepth solver is Bullet's EPA; Bullet's solvers are shown against the exact one.
+  const bool ours = *first == SolverKind::exact || *first == SolverKind::approximate;
+  const SolverKind second = ours ? SolverKind::bullet_epa : SolverKind::exact;
+  const auto folder = open_output_folder(options, "stacking");
+  if (!folder) {
+    report_failure(folder.error());
+    return kDemoBadUsage;
+  }
+  auto renderer = render::Renderer::create();
+  if (!renderer) {
+    return report_failure(renderer.error());
+  }
+  auto device = std::move(renderer).value();
+  note_interrupts();
+  nlohmann::json figures = nlohmann::json::array();
+  for (const scenes::World& plan : {scenes::small_towers(options.seed), scenes::deep_pile(options.seed)}) {
+    Run run;
+    run.plan = plan;
+    run.contenders.push_back(std::make_unique<Contender>(plan, *first));
+    run.contenders.push_back(std::make_unique<Contender>(plan, second));
+    simulate(run, options.steps > 0 ? options.steps : plan.steps);
+    write_csv(run, *folder);
+    figures.push_back(summary(run));
+    if (!write_text(*folder / "stacking.json", figures.dump(2) + "\n")) {
+      return report_failure({ErrorCode::bad_value, "stacking.json cannot be written", folder->string()});
+    }
+    const auto drawn = draw_run(run, options, *folder, device);
+    if (!drawn) {
+      return report_failure(drawn.error());
+    }
+    print_headline(run);
+    if (interrupted()) {
+      fmt::print(stderr, "pdepth: stopped; what was done is in {}\n", folder->string());
+      return kDemoInterrupted;
+    }
+  }
+  fmt::print("Pictures, figures and films: {}\n", folder->string());
+  return kDemoDone;
+}
+
+}  // namespace pd::demo
