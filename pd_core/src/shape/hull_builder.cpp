@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t kSurveyedSize = 2000;
 // Below this size the order of points in memory does not matter: they stay in the cache.
 constexpr int kSortedSize = 4096;
+// A hull of n vertices has fewer than 6n half-edges, whose indices are 32 bits wide.
+constexpr std::size_t kMaxPoints = 300'000'000;
 
 /// Both sides of a polygon in space.
 FacetLoops doubly_covered(const std::vector<int>& polygon) {
@@ -36,6 +38,11 @@ FacetLoops doubly_covered(const std::vector<int>& polygon) {
 
 std::optional<Error> refuse_points(std::span<const Vec3> points) {
   if (points.empty()) return Error{ErrorCode::too_few_points, "no points; one at least is needed", "vertices"};
+  if (points.size() > kMaxPoints) {
+    return Error{ErrorCode::limit_exceeded,
+                 std::to_string(points.size()) + " points; at most " + std::to_string(kMaxPoints) + " are taken",
+                 "vertices"};
+  }
   // One plain loop over all numbers first: nearly always nothing is wrong.
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const double* numbers = points.front().data();

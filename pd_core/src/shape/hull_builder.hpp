@@ -10,7 +10,8 @@
 
 namespace pd::detail {
 
-/// Refuses an empty set, numbers that are not finite and numbers above kMaxCoordinate; the first offence is named.
+/// Refuses an empty set, one of more than 3e8 points, numbers that are not finite and numbers above kMaxCoordinate; the
+/// first offence is named.
 [[nodiscard]] std::optional<Error> refuse_points(std::span<const Vec3> points);
 
 /// The hull of points that `refuse_points` lets pass.
