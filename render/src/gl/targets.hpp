@@ -18,7 +18,7 @@ struct TextureTarget {
 /// Shadow map, half-resolution surface and occlusion, the multisampled frame and its resolved copy.
 class Targets {
  public:
-  static constexpr int kShadowSide = 1536;
+  static constexpr int kShadowSide = 1280;
 
   /// @return ErrorCode::unsupported where the driver lacks a format or 4 samples.
   static Expected<Targets> create(const GlFunctions& gl, Size size);

@@ -1,5 +1,5 @@
 /// @file
-/// Curved bodies for the eye: a profile turned about an axis, 72 steps round, 36 over a sphere's meridian.
+/// Curved bodies for the eye: a profile turned about an axis, 56 steps round, 26 over a sphere's meridian.
 #include <cmath>
 #include <numbers>
 
@@ -8,8 +8,8 @@
 namespace pd::render {
 namespace {
 
-constexpr int kAround = 72;
-constexpr int kMeridian = 36;
+constexpr int kAround = 56;
+constexpr int kMeridian = 26;
 
 /// A point of the profile: distance from the axis, height along it, and the normal in that half plane.
 struct ProfilePoint {

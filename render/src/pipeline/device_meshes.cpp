@@ -5,12 +5,10 @@
 namespace pd::render::detail {
 namespace {
 
-void attribute(const GlFunctions& gl, GLuint index, GLint count, std::size_t stride, std::size_t offset,
-               GLuint divisor) {
+void attribute(const GlFunctions& gl, GLuint index, GLint count, std::size_t stride, std::size_t offset) {
   gl.EnableVertexAttribArray(index);
   gl.VertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
                          reinterpret_cast<const void*>(offset));
-  gl.VertexAttribDivisor(index, divisor);
 }
 
 }  // namespace
@@ -42,7 +40,6 @@ DeviceMesh DeviceMeshes::upload(const Mesh& mesh) const {
   const GlFunctions& gl = *gl_;
   DeviceMesh device;
   device.index_count = static_cast<GLsizei>(mesh.triangles.size());
-  device.edge_count = static_cast<GLsizei>(mesh.feature_edges.size());
 
   gl.GenVertexArrays(1, &device.surface);
   gl.BindVertexArray(device.surface);
@@ -50,9 +47,9 @@ DeviceMesh DeviceMeshes::upload(const Mesh& mesh) const {
   gl.BindBuffer(GL_ARRAY_BUFFER, device.vertex_buffer);
   gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Mesh::Vertex)),
                 mesh.vertices.data(), GL_STATIC_DRAW);
-  attribute(gl, 0, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, position), 0);
-  attribute(gl, 1, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, normal), 0);
-  attribute(gl, 2, 4, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, tint), 0);
+  attribute(gl, 0, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, position));
+  attribute(gl, 1, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, normal));
+  attribute(gl, 2, 4, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, tint));
   gl.GenBuffers(1, &device.index_buffer);
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, device.index_buffer);
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
@@ -62,12 +59,24 @@ DeviceMesh DeviceMeshes::upload(const Mesh& mesh) const {
   gl.BindVertexArray(device.edges);
   gl.GenBuffers(1, &device.edge_buffer);
   gl.BindBuffer(GL_ARRAY_BUFFER, device.edge_buffer);
-  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.feature_edges.size() * sizeof(Mesh::Edge)),
-                mesh.feature_edges.data(), GL_STATIC_DRAW);
-  attribute(gl, 0, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, from), 1);
-  attribute(gl, 1, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, to), 1);
-  attribute(gl, 2, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, normal_left), 1);
-  attribute(gl, 3, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, normal_right), 1);
+  std::vector<Mesh::Edge> corners;
+  std::vector<std::uint32_t> indices;
+  for (const Mesh::Edge& edge : mesh.feature_edges) {
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    corners.insert(corners.end(), 4, edge);
+    indices.insert(indices.end(), {first, first + 1, first + 2, first + 2, first + 1, first + 3});
+  }
+  device.edge_index_count = static_cast<GLsizei>(indices.size());
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(Mesh::Edge)), corners.data(),
+                GL_STATIC_DRAW);
+  attribute(gl, 0, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, from));
+  attribute(gl, 1, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, to));
+  attribute(gl, 2, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, normal_left));
+  attribute(gl, 3, 3, sizeof(Mesh::Edge), offsetof(Mesh::Edge, normal_right));
+  gl.GenBuffers(1, &device.edge_index_buffer);
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, device.edge_index_buffer);
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
+                indices.data(), GL_STATIC_DRAW);
   gl.BindVertexArray(0);
   return device;
 }
@@ -78,6 +87,7 @@ void DeviceMeshes::free(const DeviceMesh& mesh) const {
   gl_->DeleteBuffers(1, &mesh.vertex_buffer);
   gl_->DeleteBuffers(1, &mesh.index_buffer);
   gl_->DeleteBuffers(1, &mesh.edge_buffer);
+  gl_->DeleteBuffers(1, &mesh.edge_index_buffer);
 }
 
 }  // namespace pd::render::detail

@@ -9,16 +9,18 @@
 
 namespace pd::render::detail {
 
-/// Vertex arrays of one mesh. Attributes of `surface`: 0 position, 1 normal, 2 tint. Of `edges`, one instance an edge:
-/// 0 from, 1 to, 2 and 3 the normals on both sides.
+/// Vertex arrays of one mesh. Attributes of `surface`: 0 position, 1 normal, 2 tint. Of `edges`: 0 from, 1 to, 2 and 3
+/// the normals on both sides, the same at an edge's four corners (vertex number modulo 4). Instances would save the
+/// copies, but software rasterisers set each one up anew.
 struct DeviceMesh {
   GLuint surface = 0;
   GLuint edges = 0;
   GLsizei index_count = 0;
-  GLsizei edge_count = 0;
+  GLsizei edge_index_count = 0;
   GLuint vertex_buffer = 0;
   GLuint index_buffer = 0;
   GLuint edge_buffer = 0;
+  GLuint edge_index_buffer = 0;
 };
 
 class DeviceMeshes {

@@ -97,33 +97,31 @@ vec3 place_at(vec2 at, float along) { return vec3((2 * at.x - 1) * tangents.x, (
 
 float key_visibility(vec3 place, vec3 normal, mat2 turn) {
   float facing = dot(normal, light_in_view);
-  if (facing <= 0) return 0.0;
   // Off the surface by about a texel, more where the light grazes.
-  float push = 1.5 * shadow_texel * shadow_width * (1 + 2 * sqrt(1 - facing * facing));
+  float push = 1.5 * shadow_texel * shadow_width * (1 + 2 * sqrt(max(0, 1 - facing * facing)));
   vec3 map = (shadow_from_view * vec4(place + push * normal, 1)).xyz;
-  if (map.x <= 0 || map.x >= 1 || map.y <= 0 || map.y >= 1) return 1.0;
+  bool mapped = facing > 0 && map.x > 0 && map.x < 1 && map.y > 0 && map.y < 1;
+  // A software rasteriser skips no branch, but it leaves a loop when no pixel is left in it: counts, not conditions.
+  int searches = mapped ? kSearchTaps : 0;
   float search = clamp(0.32 * light_tangent, 3 * shadow_texel, 0.06);
   // The map ends with its casters: receivers behind its far plane are compared just in front of it.
   float compared = min(map.z, 0.9999);
   float blockers = 0;
   float depths = 0;
-  for (int i = 0; i < kSearchTaps; ++i) {
+  for (int i = 0; i < searches; ++i) {
     float depth = texture(shadow_map, map.xy + turn * kDisc[2 * i + 1] * search).r;
     float blocks = step(depth, compared);
     blockers += blocks;
     depths += blocks * depth;
   }
-  float lit = 1;
-  if (blockers > 0) {
-    float gap = map.z - depths / blockers;
-    float width = clamp(gap * light_tangent, 1.6 * shadow_texel, 0.06);
-    lit = 0;
-    for (int i = 0; i < kShadowTaps; ++i) {
-      lit += step(compared, texture(shadow_map, map.xy + turn * kDisc[i] * width).r);
-    }
-    lit /= kShadowTaps;
+  float gap = map.z - depths / max(blockers, 1);
+  float width = clamp(gap * light_tangent, 1.6 * shadow_texel, 0.06);
+  int taps = blockers > 0 ? kShadowTaps : 0;
+  float lit = 0;
+  for (int i = 0; i < taps; ++i) {
+    lit += step(compared, texture(shadow_map, map.xy + turn * kDisc[i] * width).r);
   }
-  return lit;
+  return facing <= 0 ? 0.0 : taps == 0 ? 1.0 : lit / kShadowTaps;
 }
 
 void main() {

@@ -238,7 +238,7 @@ void Pipeline::draw_ground_and_backdrop(const Scene& scene, const FrameSetup& fr
 
 void Pipeline::draw_edges(const DeviceMesh& mesh) const {
   gl_->BindVertexArray(mesh.edges);
-  gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, mesh.edge_count);
+  gl_->DrawElements(GL_TRIANGLES, mesh.edge_index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 void Pipeline::draw_body_edges(const Scene& scene, const FrameSetup& frame) {
@@ -289,6 +289,11 @@ Image Pipeline::read_back() {
 
 Expected<Image> Pipeline::draw(const Scene& scene, const Camera& camera, Size size) {
   const GlFunctions& gl = *gl_;
+  // Near bodies first: what they hide is then never shaded.
+  Scene sorted = scene;
+  std::stable_sort(sorted.bodies.begin(), sorted.bodies.end(), [&](const Body& a, const Body& b) {
+    return (a.pose.translation() - camera.eye).squaredNorm() < (b.pose.translation() - camera.eye).squaredNorm();
+  });
   if (!targets_ || targets_->size() != size) {
     if (targets_) {
       targets_->destroy(gl);
@@ -301,7 +306,7 @@ Expected<Image> Pipeline::draw(const Scene& scene, const Camera& camera, Size si
     targets_ = *targets;
   }
   meshes_.collect();
-  const FrameSetup frame = set_up_frame(scene, camera, size);
+  const FrameSetup frame = set_up_frame(sorted, camera, size);
 
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_LEQUAL);
@@ -311,21 +316,21 @@ Expected<Image> Pipeline::draw(const Scene& scene, const Camera& camera, Size si
   gl.Enable(GL_CULL_FACE);
   gl.CullFace(GL_BACK);
   gl.FrontFace(GL_CW);  // the projection turns y round
-  draw_shadow_map(scene, frame);
-  draw_surface(scene, frame);
-  const bool grainy = !scene.solids.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                                           [](const Body& body) { return body.opacity < kOpaque; });
+  draw_shadow_map(sorted, frame);
+  draw_surface(sorted, frame);
+  const bool grainy = !sorted.solids.empty() || std::any_of(sorted.bodies.begin(), sorted.bodies.end(),
+                                                            [](const Body& body) { return body.opacity < kOpaque; });
   draw_occlusion(frame, grainy);
 
   gl.BindFramebuffer(GL_FRAMEBUFFER, targets_->frame);
   gl.Viewport(0, 0, size.width, size.height);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   bind_texture(0, targets_->occlusion.texture);
-  draw_bodies(scene, frame);
-  draw_ground_and_backdrop(scene, frame);
-  draw_body_edges(scene, frame);
-  draw_translucent(scene, frame);
-  draw_overlays(scene, frame);
+  draw_bodies(sorted, frame);
+  draw_ground_and_backdrop(sorted, frame);
+  draw_body_edges(sorted, frame);
+  draw_translucent(sorted, frame);
+  draw_overlays(sorted, frame);
   return read_back();
 }
 

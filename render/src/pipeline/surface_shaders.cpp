@@ -195,7 +195,7 @@ void main() {
 )";
 }
 
-// A line of constant width on the screen: each instance is one edge, four corners.
+// A line of constant width on the screen: four corners an edge.
 const char* const kEdgeVertex = R"(#version 330 core
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
@@ -226,8 +226,9 @@ void main() {
   along = span > 1e-4 ? along / span : vec2(1, 0);
   vec2 side = vec2(-along.y, along.x);
   float reach = 0.5 * width + 0.5;
-  bool far_end = gl_VertexID >= 2;
-  across = (gl_VertexID & 1) == 1 ? reach : -reach;
+  int corner = gl_VertexID % 4;
+  bool far_end = corner >= 2;
+  across = (corner & 1) == 1 ? reach : -reach;
   vec4 clip = far_end ? clip_b : clip_a;
   vec2 shift = side * across + along * (far_end ? 0.4 : -0.4) * width;
   clip.xy += shift * 2 / picture * clip.w;
