@@ -27,21 +27,21 @@ void Surface::clear() {
   in_use_ = 0;
 }
 
+void Surface::reserve_faces(int more) {
+  const std::size_t wanted = static_cast<std::size_t>(slots_ + more);
+  if (wanted <= faces.size()) return;
+  const std::size_t room = std::max(static_cast<std::size_t>(kHeapFrom), 2 * wanted);
+  faces.resize(room);
+  keys.resize(room);
+  stamps_.resize(room, 0);
+}
+
 int Surface::new_face() {
   ++in_use_;
-  if (!free_.empty()) {
-    const int f = free_.back();
-    free_.pop_back();
-    return f;
-  }
-  if (static_cast<std::size_t>(slots_) == faces.size()) {
-    const std::size_t room = std::max<std::size_t>(static_cast<std::size_t>(kHeapFrom), 2 * faces.size());
-    faces.resize(room);
-    keys.resize(room);
-    stamps_.resize(room, 0);
-    marked_.resize(room, 0);
-  }
-  return slots_++;
+  if (free_.empty()) return slots_++;
+  const int f = free_.back();
+  free_.pop_back();
+  return f;
 }
 
 void Surface::set_plane(int f) {
@@ -78,6 +78,7 @@ bool Surface::start_tetrahedron(double flat) {
                                                    {4 * 3 + 1, 4 * 2 + 0, 4 * 0 + 0},
                                                    {4 * 1 + 1, 4 * 3 + 0, 4 * 0 + 1},
                                                    {4 * 2 + 1, 4 * 1 + 0, 4 * 0 + 2}};
+  reserve_faces(4);
   for (int f = 0; f < 4; ++f) {
     const int slot = new_face();
     for (int i = 0; i < 3; ++i) {
@@ -126,50 +127,43 @@ int Surface::nearest() {
 bool Surface::insert(int from, int v) {
   const Vec3 x = vertices[v].x;
   horizon_.clear();
-  visits_.clear();
   removed_.clear();
+  if (horizon_from_.size() < vertices.capacity()) horizon_from_.resize(vertices.capacity());
 
-  // Depth-first flood over the faces that x lies above; edges to the others come out in their order round the hole.
-  marked_[from] = 1;
+  // Flood over the faces that x lies above; what they share with the others is the horizon, each edge found by its
+  // origin.
+  keys[from] = kRemoved;
   removed_.push_back(from);
-  visits_.push_back({from, 0, 3});
-  while (!visits_.empty()) {
-    Visit& visit = visits_.back();
-    if (visit.left == 0) {
-      visits_.pop_back();
-      continue;
-    }
-    const SurfaceFace& face = faces[visit.face];
-    const std::int32_t e = visit.edge;
-    visit.edge = next_edge(e);
-    --visit.left;
-    const std::int32_t g = face.adj[e] >> 2;
-    if (marked_[g]) continue;
-    if (x.dot(faces[g].normal) > faces[g].level) {
-      marked_[g] = 1;
-      removed_.push_back(g);
-      visits_.push_back({g, next_edge(face.adj[e] & 3), 2});
-    } else {
-      horizon_.push_back({face.adj[e], face.v[e], face.v[next_edge(e)]});
+  for (std::size_t i = 0; i < removed_.size(); ++i) {
+    const SurfaceFace& face = faces[removed_[i]];
+    for (std::int32_t e = 0; e < 3; ++e) {
+      const std::int32_t g = face.adj[e] >> 2;
+      if (keys[g] == kRemoved) continue;
+      if (x.dot(faces[g].normal) > faces[g].level) {
+        keys[g] = kRemoved;
+        removed_.push_back(g);
+      } else {
+        horizon_from_[face.v[e]] = static_cast<std::int32_t>(horizon_.size());
+        horizon_.push_back({face.adj[e], face.v[e], face.v[next_edge(e)]});
+      }
     }
   }
-  for (const std::int32_t f : removed_) marked_[f] = 0;
+  for (const std::int32_t f : removed_) ++stamps_[f];
+  free_.insert(free_.end(), removed_.begin(), removed_.end());
+  in_use_ -= static_cast<int>(removed_.size());
 
+  // Round the hole, edge by edge. A hole that is no disc ends in fewer steps than there are edges, or in an edge that
+  // does not continue the last one.
   const std::size_t count = horizon_.size();
-  if (count < 3) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (horizon_[i].to != horizon_[i + 1 == count ? 0 : i + 1].from) return false;
-  }
-
-  for (const std::int32_t f : removed_) {
-    keys[f] = kRemoved;
-    ++stamps_[f];
-    free_.push_back(f);
-    --in_use_;
-  }
+  reserve_faces(static_cast<int>(count));
   std::int32_t first = -1;
   std::int32_t previous = -1;
-  for (const Horizon& edge : horizon_) {
+  std::int32_t at = horizon_[0].from;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::int32_t slot = horizon_from_[at];
+    if (static_cast<std::size_t>(slot) >= count || horizon_[slot].from != at || (k > 0 && slot == 0)) return false;
+    const Horizon& edge = horizon_[slot];
+    at = edge.to;
     const int f = new_face();
     SurfaceFace& face = faces[f];
     face.v[0] = edge.from;
@@ -186,6 +180,7 @@ bool Surface::insert(int from, int v) {
     previous = f;
     set_plane(f);
   }
+  if (at != horizon_[0].from) return false;
   faces[first].adj[2] = 4 * previous + 1;
   faces[previous].adj[1] = 4 * first + 2;
   return true;

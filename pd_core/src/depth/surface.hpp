@@ -38,6 +38,7 @@ class Surface {
   /// Takes over faces and their neighbours as they were cached; planes come with `refresh`.
   template <class CachedFaces>
   void restore(const CachedFaces& cached) {
+    reserve_faces(static_cast<int>(cached.size()));
     for (const auto& from : cached) {
       const int f = new_face();
       for (int i = 0; i < 3; ++i) {
@@ -89,14 +90,13 @@ class Surface {
     return static_cast<std::int16_t>(4 * face_numbers_[adjacent >> 2] + (adjacent & 3));
   }
   void set_plane(int f);
+  /// Room for so many faces beyond those in use: `new_face` takes it for granted.
+  void reserve_faces(int more);
   int new_face();
 
   struct Horizon {
     std::int32_t outside;   ///< 4 * face + edge of the face that stays
     std::int32_t from, to;  ///< the edge as the removed side runs along it
-  };
-  struct Visit {
-    std::int32_t face, edge, left;
   };
   struct HeapEntry {
     double key;
@@ -108,9 +108,8 @@ class Surface {
   std::vector<std::uint32_t> stamps_;  ///< counts the lives of a slot
   std::vector<std::int32_t> free_;
   std::vector<Horizon> horizon_;
-  std::vector<Visit> visits_;
+  std::vector<std::int32_t> horizon_from_;  ///< by vertex: the horizon edge that leaves it
   std::vector<std::int32_t> removed_;
-  std::vector<std::uint8_t> marked_;
   std::vector<HeapEntry> heap_;
   std::vector<std::int16_t> face_numbers_;
   std::vector<std::int16_t> vertex_numbers_;

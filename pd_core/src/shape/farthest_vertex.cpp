@@ -28,11 +28,13 @@ PD_CLONES int farthest_vertex(const double* x, const double* y, const double* z,
     }
   }
   double greatest = best[0];
-  for (int k = 1; k < kLanes; ++k) greatest = best[k] > greatest ? best[k] : greatest;
-  int winner = 0x7fffffff;
-  for (int k = 0; k < kLanes; ++k) {
+  int winner = static_cast<int>(block_of[0]);
+  for (int k = 1; k < kLanes; ++k) {
     const int id = static_cast<int>(block_of[k]) + k;
-    winner = best[k] == greatest && id < winner ? id : winner;
+    if (best[k] > greatest || (best[k] == greatest && id < winner)) {
+      greatest = best[k];
+      winner = id;
+    }
   }
   return winner < n ? winner : 0;  // the padding repeats vertex 0
 }
