@@ -12,6 +12,7 @@ constexpr std::array kDemos{
     Demo{"stacking", "towers and piles where the solver matters: solver against solver from the same start",
          run_stacking},
     Demo{"rollback", "bodies thrown fast at each other, taken back to the exact time of first contact", run_rollback},
+    Demo{"difference", "one pair with its Minkowski difference: why the depth is what it is", run_difference},
 };
 
 }  // namespace

@@ -27,5 +27,7 @@ struct Demo {
 int run_stacking(const DemoOptions& options);
 /// Bodies thrown fast at each other: restored and advanced to the first contact.
 int run_rollback(const DemoOptions& options);
+/// One pair with its Minkowski difference, for any two meshes.
+int run_difference(const DemoOptions& options);
 
 }  // namespace pd::demo
