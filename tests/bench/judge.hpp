@@ -17,6 +17,7 @@ inline constexpr double kTolerance = 1e-3;
 struct Judgement {
   bool wrong = false;         ///< missed, depth off by more than kTolerance, or not separated
   double relative_error = 0;  ///< |depth - truth| / truth; 1 where the overlap was missed
+  double size_error = 0;      ///< |depth - truth| over the extent of the difference
 };
 
 /// Coordinates as a solver of this precision receives them.
@@ -53,6 +54,7 @@ class Judge {
     oracle::ExactPair pair;
     oracle::Verdict verdict;
     double depth = 0;
+    double extent = 0;
   };
   [[nodiscard]] const Truth& truth(Precision precision) const;
 

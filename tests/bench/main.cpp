@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <random>
 
+#include "bench/coherent.hpp"
 #include "bench/pairs.hpp"
 
 namespace {
@@ -17,9 +18,9 @@ struct Options {
   std::vector<int> vertices;
   std::vector<std::string> solvers;
   std::uint64_t seed = 0;
-  bool seed_given = false;
   bool quick = false;
   int pairs = 0;
+  int frames = 200;
   std::string csv;
 };
 
@@ -47,18 +48,24 @@ bool select(Solvers& solvers, const std::vector<std::string>& names) {
   return true;
 }
 
+int refuse(const pd::Error& error) {
+  fmt::print(stderr, "{}: {}\n", error.where, error.message);
+  return 2;
+}
+
+void print_preamble(const Options& o) {
+  for (const std::string& note : peer_notes()) fmt::print("{}\n", note);
+  fmt::print("seed {}\n\n", o.seed);
+}
+
 int pairs_command(const Options& o) {
   const auto cells = choose_cells(o.families, o.vertices, o.quick);
-  if (!cells) {
-    fmt::print(stderr, "{}: {}\n", cells.error().where, cells.error().message);
-    return 2;
-  }
+  if (!cells) return refuse(cells.error());
   Solvers solvers;
   add_ours(solvers, true, false);
   add_peers(solvers);
   if (!select(solvers, o.solvers)) return 2;
-  for (const std::string& note : peer_notes()) fmt::print("{}\n", note);
-  fmt::print("seed {}\n\n", o.seed);
+  print_preamble(o);
   PairsSettings settings;
   settings.cells = *cells;
   settings.seed = o.seed;
@@ -69,6 +76,20 @@ int pairs_command(const Options& o) {
   return 0;
 }
 
+int coherent_command(const Options& o) {
+  const auto sequences = choose_sequences(o.families, o.vertices, o.quick);
+  if (!sequences) return refuse(sequences.error());
+  Solvers solvers;
+  add_ours(solvers, false, true);
+  add_peers(solvers);
+  if (!select(solvers,
+              o.solvers.empty() ? std::vector<std::string>{"pdepth-auto", "pdepth-cold", "bullet-epa"} : o.solvers))
+    return 2;
+  print_preamble(o);
+  const std::vector<CoherentRow> rows = run_coherent({*sequences, o.frames, o.seed}, solvers);
+  return o.csv.empty() || write_text(o.csv, to_csv(rows)) ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -77,10 +98,17 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   CLI::App* pairs = app.add_subcommand("pairs", "cold single pairs: families x vertices x depth");
   add_common(*pairs, options);
-  pairs->add_option("--families", options.families, "names of families (default: all)")->delimiter(',');
-  pairs->add_option("--vertices", options.vertices, "sizes (default: the family's own)")->delimiter(',');
   pairs->add_option("--pairs", options.pairs, "pairs in each cell (default: 72, quick 12)");
+  CLI::App* coherent = app.add_subcommand("coherent", "sequences of frames, with the memory of the pair");
+  add_common(*coherent, options);
+  coherent->add_option("--frames", options.frames, "frames of a sequence")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  for (CLI::App* command : {pairs, coherent}) {
+    command->add_option("--families", options.families, "names of families (default: all)")->delimiter(',');
+    command->add_option("--vertices", options.vertices, "sizes (default: the family's own)")->delimiter(',');
+  }
   CLI11_PARSE(app, argc, argv);
-  if (pairs->count("--seed") == 0) options.seed = std::random_device{}();
-  return pairs_command(options);
+  if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
+  return *coherent ? coherent_command(options) : pairs_command(options);
 }

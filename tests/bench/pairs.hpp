@@ -14,7 +14,7 @@ struct PairsSettings {
   std::vector<Cell> cells;
   int pairs = 72;  ///< in each cell
   std::uint64_t seed = 0;
-  double slow_ns = 5e7;  ///< a solver that needs more than this for the first pair of a cell sits the cell out
+  double slow_ns = 5e7;  ///< a solver that needs more for a pair sits out the rest of the cell and larger ones like it
 };
 
 /// What the rounds of one draw add to a row.

@@ -38,7 +38,7 @@ void set_ratios(std::vector<Row>& cell) {
 
 void print_header() {
   fmt::print("{:<7} {:>8} {:<8} {:<17} {:>5} {:>10} {:>10} {:>9} {:>6} {:>9} {:>9} {:>7}\n", "family", "vertices",
-             "depth", "solver", "pairs", "p50", "p99", "x bullet", "wrong", "error", "supports", "allocs");
+             "depth", "solver", "pairs", "p50", "p99", "x bullet", "wrong", "error/L", "supports", "allocs");
 }
 
 void print_rows(const std::vector<Row>& cell) {
