@@ -78,8 +78,7 @@ struct Task {
 };
 
 /// Families whose bodies keep all their n points as vertices.
-constexpr PairFamily kLargeFamilies[] = {PairFamily::sphere, PairFamily::needle, PairFamily::patch, PairFamily::roofs,
-                                         PairFamily::tilted_roofs};
+constexpr PairFamily kLargeFamilies[] = {PairFamily::sphere, PairFamily::needle, PairFamily::patch, PairFamily::roofs};
 
 class Run {
  public:

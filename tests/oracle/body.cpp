@@ -16,6 +16,31 @@ struct Face {
   bool alive = true;
 };
 
+/// A point in long double, relative error 2^-63 in each coordinate, |coordinate| <= 1.
+struct Fine {
+  long double x, y, z;
+};
+Fine operator-(const Fine& a, const Fine& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+long double norm(const Fine& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+Vec3 divided(const Fine& v, long double s) {
+  return {static_cast<double>(v.x / s), static_cast<double>(v.y / s), static_cast<double>(v.z / s)};
+}
+/// The unit vector within 2^-50, or false where the difference has lost too many bits: it errs by 2^-61.
+bool unit_of(const Fine& v, Vec3& unit) {
+  const long double length = norm(v);
+  if (!(length > 0x1p-9L)) return false;
+  unit = divided(v, length);
+  return true;
+}
+/// The same for a cross product: each factor errs by 2^-61, the product by less than 2^-59 (|u| + |v|).
+bool unit_cross(const Fine& u, const Fine& v, Vec3& unit) {
+  const Fine n{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  const long double length = norm(n);
+  if (!(length > 0x1p-7L * (norm(u) + norm(v)))) return false;
+  unit = divided(n, length);
+  return true;
+}
+
 /// Sign of the orientation of 2D points by dropping the axis in which `normal` is not zero.
 Integer planar_area(const IVec& a, const IVec& b, const IVec& c, const IVec& normal) {
   return dot(cross(b - a, c - a), normal);
@@ -231,21 +256,31 @@ void Body::build_solid(const int (&start)[4]) {
 }
 
 void Body::finish() {
-  for (Facet& f : facets) {
-    const IVec& origin = exact[f.corner[0]];
-    f.unit_normal = to_unit(cross(exact[f.corner[1]] - origin, exact[f.corner[2]] - origin));
+  std::vector<Fine> fine;
+  const int top = scale_exponent - exponent;
+  for (const IVec& p : exact) {
+    fine.push_back({to_long_double(p.x, -top), to_long_double(p.y, -top), to_long_double(p.z, -top)});
   }
+  for (Facet& f : facets) {
+    const int* c = f.corner;
+    if (unit_cross(fine[c[1]] - fine[c[0]], fine[c[2]] - fine[c[0]], f.unit_normal)) continue;
+    f.unit_normal = to_unit(cross(exact[c[1]] - exact[c[0]], exact[c[2]] - exact[c[0]]));
+  }
+  std::multimap<double, int> known;  // |x| of a class's unit vector -> class
   for (Edge& e : edges) {
     vertices.push_back(e.from);
     vertices.push_back(e.to);
-    const IVec along = exact[e.to] - exact[e.from];
-    const Vec3 unit = to_unit(along);
+    Vec3 unit;
+    if (!unit_of(fine[e.to] - fine[e.from], unit)) unit = to_unit(exact[e.to] - exact[e.from]);
     edge_units.push_back(unit);
     e.direction = -1;
-    for (int d = 0; d < num_directions && e.direction < 0; ++d) {
-      const int other = direction_edges[d];
-      if (unit.cross(edge_units[other]).squaredNorm() > 0x1p-90) continue;
-      if (is_zero(cross(along, exact[edges[other].to] - exact[edges[other].from]))) e.direction = d;
+    const double key = std::abs(unit.x());
+    for (auto it = known.lower_bound(key - 0x1p-40); it != known.end() && it->first < key + 0x1p-40; ++it) {
+      const Edge& other = edges[direction_edges[it->second]];
+      if (unit.cross(edge_units[direction_edges[it->second]]).squaredNorm() > 0x1p-90) continue;
+      if (!is_zero(cross(exact[e.to] - exact[e.from], exact[other.to] - exact[other.from]))) continue;
+      e.direction = it->second;
+      break;
     }
     if (e.direction >= 0 && unit.dot(edge_units[direction_edges[e.direction]]) < 0) {
       std::swap(e.from, e.to);
@@ -255,6 +290,7 @@ void Body::finish() {
     if (e.direction < 0) {
       e.direction = num_directions++;
       direction_edges.push_back(static_cast<int>(&e - edges.data()));
+      known.emplace(key, e.direction);
     }
   }
   std::sort(vertices.begin(), vertices.end());

@@ -65,6 +65,16 @@ inline double to_double(const Integer& value, int exponent = 0) {
   }
   return std::ldexp(value.sign() < 0 ? -result : result, exponent);
 }
+/// value * 2^exponent, truncated to 64 bits: relative error <= 2^-63.
+inline long double to_long_double(const Integer& value, int exponent) {
+  if (value.is_zero()) return 0;
+  const Integer magnitude = boost::multiprecision::abs(value);
+  const int top = static_cast<int>(boost::multiprecision::msb(magnitude));
+  const int drop = top > 63 ? top - 63 : 0;
+  const auto result =
+      static_cast<long double>(static_cast<std::uint64_t>(drop > 0 ? Integer(magnitude >> drop) : magnitude));
+  return std::ldexp(value.sign() < 0 ? -result : result, exponent + drop);
+}
 inline double to_double(const Scaled& s) { return to_double(s.mantissa, s.exponent); }
 
 struct IVec {
