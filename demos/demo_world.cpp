@@ -1,8 +1,8 @@
 #include "demo_world.hpp"
 
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btMinkowskiPenetrationDepthSolver.h>
-#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
@@ -152,6 +152,8 @@ DemoWorld::DemoWorld(const scenes::World& world, SolverKind kind) : state_(std::
         ->m_pdSolver = &s.bullet_solver;
   }
   s.world.setGravity(to_bullet(world.gravity));
+  s.world.getSolverInfo().m_numIterations = world.solver_iterations;
+  s.world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   for (const scenes::WorldBody& plan : world.bodies) {
     s.bullet_shapes.push_back(make_shape(plan));
     btConvexShape& shape = *s.bullet_shapes.back();

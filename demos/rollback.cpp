@@ -127,12 +127,15 @@ class Stage {
   void look_at(const Impact& impact) {
     render::Box box;
     for (const MovingShape* body : {&impact.moving_a, &impact.moving_b}) {
-      const double reach = std::min(bounding_radius(*body->start.shape), 0.45);
-      const Vec3 at = 0.5 * (impact.contact.contact.witness_a + impact.contact.contact.witness_b);
-      box.include(Vec3(at + Vec3::Constant(reach)));
-      box.include(Vec3(at - Vec3::Constant(reach)));
+      if (body->motion.linear_velocity.norm() == 0) {
+        continue;
+      }
+      const render::MeshRef mesh = render::shape_mesh(*body->start.shape);
+      for (const double time : {0.7 * impact.contact.time, impact.contact.time, impact.step}) {
+        box.include(render::posed_bounds(*mesh, pose_at(*body, time)));
+      }
     }
-    camera_ = render::frame_box(box, size_, {-62, 18}, {0.02, 0.02, 0.05, 0.05});
+    camera_ = render::frame_box(box, size_, {-62, 18}, {0.05, 0.05, 0.06, 0.06});
   }
 
   Expected<render::Image> draw(const render::Scene& scene) { return renderer_.draw(scene, camera_, size_); }
@@ -182,7 +185,7 @@ Expected<std::filesystem::path> draw_triptych(DemoWorld& world, const Impact& im
     std::string heading;
     bool disc;
   };
-  const Moment moments[] = {{0.55 * first, fmt::format("before, {}", time_text(0.55 * first)), false},
+  const Moment moments[] = {{0.7 * first, fmt::format("before, {}", time_text(0.7 * first)), false},
                             {first, fmt::format("first contact, {}", time_text(first)), true},
                             {impact.step, fmt::format("end of the plain step, {}", time_text(impact.step)), false}};
   std::vector<render::Panel> panels;
@@ -369,8 +372,8 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
   }
   CsvFile csv(folder / "rollback.csv",
               "step,time_s,plain_deepest_m,rollback_deepest_m,plain_kinetic_energy_J,rollback_kinetic_energy_J");
-  // The scale of the sparkline stays put: half of the smallest thrown body.
-  const double full_scale = 0.15;
+  // The scale of the sparkline stays put: the smallest thrown body.
+  const double full_scale = 0.3;
   std::filesystem::create_directories(folder / "frames");
   Progress progress("rollback", steps);
   std::vector<double> plain_depths;
@@ -400,10 +403,9 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
       return second.error();
     }
     const render::Panel panels[] = {std::move(first).value(), std::move(second).value()};
-    render::Image picture = render::side_by_side(panels, plan.title,
-                                                 fmt::format("penetration at the end of the step {} / {}",
-                                                             length_text(left.deepest), length_text(right.deepest)),
-                                                 whole);
+    const std::string said = fmt::format("penetration at the end of the step {} / {}", length_text(left.deepest),
+                                         length_text(right.deepest));
+    const render::Image picture = render::side_by_side(panels, plan.title, said, whole);
     const auto written = render::write_png(picture, folder / "frames" / fmt::format("rollback_{:04d}.png", i));
     if (!written) {
       return written.error();
@@ -416,8 +418,8 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
       }
     }
     ++frames;
-    if ((telling || i % 6 == 0) && strip.size() < 6) {
-      strip.push_back({std::move(picture), fmt::format("{:.0f} ms", 1e3 * i * step)});
+    if ((telling || i == 0) && strip.size() < 6) {
+      strip.push_back({render::side_by_side(panels, "", said, whole), fmt::format("{:.0f} ms", 1e3 * i * step)});
     }
     for (std::size_t k = known; k < course.impacts.size(); ++k) {
       const auto triptych = draw_triptych(guarded, course.impacts[k], static_cast<int>(k) + 1, close_up, whole, folder);

@@ -145,7 +145,7 @@ World fast_throws(std::uint64_t seed) {
   World world;
   world.name = "throws";
   world.title = "Thrown at each other at 20 to 40 m/s";
-  world.steps = 30;
+  world.steps = 18;
   world.steps_per_second = 60;
   world.restitution = 0.35;
   world.gravity = Vec3(0, 0, -9.81);

@@ -33,6 +33,7 @@ struct World {
   Vec3 gravity{0, 0, -9.81};
   double friction = 0.6;
   double restitution = 0;
+  int solver_iterations = 30;  ///< of the contact solver, with two friction directions, for every depth solver
   double steps_per_second = 240;
   int steps = 0;                   ///< how long it is worth watching
   Vec3 view_lower = Vec3::Zero();  ///< what a camera should see

@@ -105,12 +105,12 @@ bool RollbackStepper::earliest_impact(double duration, Impact& impact) {
         continue;
       }
       const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_);
-      const double depth_allowed = settings_.contact_depth_share * std::min(a.radius, b.radius);
-      const bool in_contact = signed_distance(before) <= 2 * settings_.gap;
-      if (in_contact && signed_distance(before) <= -depth_allowed) {
-        continue;
-      }
-      settings.allowed_depth = in_contact ? depth_allowed : 0;
+      // From where it is, a pair in contact may sink by its share; then the step is cut, and Bullet sees it there.
+      const double start_depth = -signed_distance(before);
+      settings.allowed_depth =
+          start_depth >= -2 * settings_.gap
+              ? std::max(start_depth, 0.0) + settings_.contact_depth_share * std::min(a.radius, b.radius)
+              : 0;
       const TimeOfImpact found = time_of_impact(moving_a, moving_b, duration, scratch_, settings);
       if (found.hit && found.time < impact.time) {
         impact = {&a, &b, found.time, settings.allowed_depth};

@@ -18,8 +18,8 @@ struct RollbackSettings {
   /// The gap left at a first contact, > 0, in the world's unit. Floats cannot place a body finer than about 1e-7 of its
   /// coordinates.
   double gap = 1e-5;
-  /// Pairs in contact already may get this deep within a step before it is cut there too, as a share of the smaller
-  /// body's radius: after a corner hits, a fast body still turns its other corners through the wall.
+  /// Pairs in contact already may sink by this share of the smaller body's radius before the step is cut there too:
+  /// after a corner hits, a fast body still turns its other corners through the wall.
   double contact_depth_share = 0.02;
   /// Trials of a shorter step for one contact.
   int max_trials = 24;
