@@ -102,6 +102,30 @@ TEST(Overlay, RandomSolidsHaveTheFacetsOfBruteForce) {
   }
 }
 
+TEST(Overlay, VerticesOfHighDegree) {
+  // Pyramids and double pyramids: one or two cells with many sides, searched by halving.
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> uniform(0, 2 * M_PI);
+  OverlayBuffers buffers;
+  const auto pyramid = [&](int n, bool both) {
+    std::vector<Vec3> points{{0.05, 0, 1}, {0, 0.03, both ? -1.2 : -0.3}};
+    for (int i = 0; i < n; ++i) {
+      const double t = uniform(random);
+      points.push_back(Vec3(std::cos(t), std::sin(t), 0.01 * std::sin(3 * t)));
+    }
+    return hull(points);
+  };
+  for (int round = 0; round < 60; ++round) {
+    const ConvexPolytope a = round % 3 == 0 ? hull(sphere_points(60, random)) : pyramid(20 + 2 * round, round % 2 == 0);
+    const ConvexPolytope b = pyramid(90, round % 4 < 2);
+    const Pose pose_a = random_pose(random), pose_b = random_pose(random);
+    const PosedPair pair(a, pose_a, b, pose_b);
+    ASSERT_EQ(static_cast<std::int64_t>(pieces_of(pair, buffers).size()),
+              a.num_facets() + b.num_facets() + brute_force_crossings(a, pose_a, b, pose_b))
+        << round;
+  }
+}
+
 TEST(Overlay, EveryPlaneSupportsTheDifference) {
   std::mt19937_64 random(7);
   OverlayBuffers buffers;

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kU = 0x1p-53;
 
+/// Vertices of a higher degree are searched by halving.
+constexpr int kLargeDegree = 16;
+
 /// The fixed axis w of the symbolic rotation: short dyadic numbers (exact arithmetic stays short) in no simple ratio,
 /// so that one filtered sign decides nearly every tie. The axes y and z follow; the three are independent since w_x !=
 /// 0.
@@ -42,6 +45,11 @@ std::uint32_t zero_entries(const Pose& pose) {
     }
   }
   return mask;
+}
+
+bool same_rotation(const Pose& a, const Pose& b) {
+  if (a.is_quaternion() != b.is_quaternion()) return false;
+  return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
 }
 
 /// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is.
@@ -144,6 +152,8 @@ FacetOfDifference facet_of(const PosedPair& pair, const OverlayPiece& piece) {
 
 OverlayWalk::OverlayWalk(const PosedPair& pair, OverlayBuffers& buffers)
     : pair_(&pair), buffers_(&buffers), zero_entries_{zero_entries(pair.pose_a()), zero_entries(pair.pose_b())} {
+  // One rotation of both bodies factors out of every determinant.
+  if (same_rotation(pair.pose_a(), pair.pose_b())) zero_entries_ = {zero_entries(Pose()), zero_entries(Pose())};
   pose_edges(pair, true, buffers.a);
   pose_edges(pair, false, buffers.b);
   pose_facets(pair.a(), buffers.b, buffers.a);
@@ -354,15 +364,22 @@ void OverlayWalk::locate_facets(const Side& moving, const Side& fixed) {
 bool OverlayWalk::walk_arcs(const Side& moving, const Side& fixed) {
   const ConvexPolytope& body = *moving.body;
   const ConvexPolytope& target = *fixed.body;
-  for (int e = 0; e < body.num_half_edges(); ++e) {
-    const HalfEdge& arc = body.half_edge(e);
-    if (arc.twin < e) continue;
-    int at = moving.diagram->cell[static_cast<std::size_t>(arc.facet)];
-    const int goal = moving.diagram->cell[static_cast<std::size_t>(body.half_edge(arc.twin).facet)];
+  const auto degree = [&](int v) { return static_cast<int>(target.neighbours(v).size()); };
+  for (int h = 0; h < body.num_half_edges(); ++h) {
+    const int twin = body.half_edge(h).twin;
+    if (twin < h) continue;
+    int e = h;
+    int at = moving.diagram->cell[static_cast<std::size_t>(body.half_edge(h).facet)];
+    int goal = moving.diagram->cell[static_cast<std::size_t>(body.half_edge(twin).facet)];
     if (at == goal) continue;
+    // The first cell is gone round, so the walk begins at the end with the smaller one.
+    if (degree(at) > kLargeDegree && degree(goal) < degree(at)) {
+      std::swap(at, goal);
+      e = twin;
+    }
 
     int begin = target.first_half_edge(at);
-    int end = begin + static_cast<int>(target.neighbours(at).size());
+    const int end = begin + degree(at);
     int exit = begin;
     int before = side(moving, e, fixed, target.half_edge(target.half_edge(begin).twin).facet);
     for (; exit < end; ++exit) {
@@ -370,19 +387,35 @@ bool OverlayWalk::walk_arcs(const Side& moving, const Side& fixed) {
       if (before < 0 && after > 0) break;
       before = after;
     }
+    assert(exit < end);
     for (;;) {
-      assert(exit < end);
       if (!emit(moving, e, exit, OverlayPiece::Kind::edges)) return false;
       const int entry = target.half_edge(exit).twin;
       at = target.half_edge(entry).origin;
       if (at == goal) break;
-      // The left facet of `entry` is on the negative side; go round until the first on the positive one.
+      // Counter-clockwise from the entry the left facets lie on the negative side first, then on the positive one up to
+      // the entry's right facet: the exit is the first of those.
       begin = target.first_half_edge(at);
-      end = begin + static_cast<int>(target.neighbours(at).size());
-      exit = entry;
-      do {
-        if (++exit == end) exit = begin;
-      } while (side(moving, e, fixed, target.half_edge(exit).facet) < 0);
+      const int count = degree(at);
+      const auto positive = [&](int k) { return side(moving, e, fixed, target.half_edge(k).facet) > 0; };
+      if (count <= kLargeDegree) {
+        exit = entry;
+        do {
+          if (++exit == begin + count) exit = begin;
+        } while (!positive(exit));
+        continue;
+      }
+      const auto after_entry = [&](int k) { return begin + (entry - begin + k) % count; };
+      int first = 1;
+      for (int last = count - 1; first < last;) {
+        const int middle = (first + last) / 2;
+        if (positive(after_entry(middle))) {
+          last = middle;
+        } else {
+          first = middle + 1;
+        }
+      }
+      exit = after_entry(first);
     }
   }
   return true;
