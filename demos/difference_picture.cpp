@@ -22,6 +22,7 @@ namespace {
 namespace palette = render::palette;
 
 constexpr std::int64_t kMostFacets = 100'000;
+constexpr double kCosineOfCrease = 0.9848;  ///< 10 degrees: flatter edges are not inked
 
 bool same_face(const Feature& x, const Feature& y) {
   return x.kind == y.kind && x.first == y.first && (x.kind != Feature::Kind::edge || x.second == y.second);
@@ -94,6 +95,7 @@ render::MeshRef facet_mesh(const MinkowskiDifference& p, const Wanted& wanted, c
       const auto neighbour = facet_of_edge.find({to, from});
       const bool inner = neighbour != facet_of_edge.end() && wanted(neighbour->second);
       if (inner && neighbour->second < f) continue;  // inked from the other side
+      if (inner && p.facets[neighbour->second].normal.dot(facet.normal) > kCosineOfCrease) continue;
       const Vec3 other = inner ? p.facets[neighbour->second].normal : Vec3(-facet.normal);
       mesh->feature_edges.push_back(
           {to_floats(position(from)), to_floats(position(to)), to_floats(facet.normal), to_floats(other)});
@@ -194,7 +196,7 @@ std::vector<render::LegendEntry> legend(const PenetrationDepth& answer) {
 }
 
 std::string title_of(const NamedPair& pair, const PenetrationDepth& answer) {
-  const std::string names = short_name(pair.name_a) + " in " + short_name(pair.name_b);
+  const std::string names = short_name(pair.name_a) + " and " + short_name(pair.name_b);
   switch (answer.contact) {
     case ContactClass::overlapping:
       return fmt::format("Penetration depth {:.6g}: {}", answer.depth, names);
@@ -203,7 +205,7 @@ std::string title_of(const NamedPair& pair, const PenetrationDepth& answer) {
     case ContactClass::separated:
       break;
   }
-  return fmt::format("Apart by {:.6g}: {} and {}", answer.distance, short_name(pair.name_a), short_name(pair.name_b));
+  return fmt::format("Apart by {:.6g}: {}", answer.distance, names);
 }
 
 std::string statement_of(const PenetrationDepth& answer) {
