@@ -100,13 +100,13 @@ std::string_view to_string(SolverKind kind) {
 std::string_view describe(SolverKind kind) {
   switch (kind) {
     case SolverKind::exact:
-      return "pdepth, exact";
+      return "pdepth: exact depth, whole manifolds";
     case SolverKind::approximate:
-      return "pdepth, within 1 %";
+      return "pdepth: depth within 1 %, whole manifolds";
     case SolverKind::bullet_epa:
-      return "Bullet as shipped, GJK + EPA";
+      return "Bullet as shipped: GJK + EPA, a point a step";
     case SolverKind::bullet_minkowski:
-      return "Bullet, Minkowski sampling";
+      return "Bullet with its Minkowski sampling solver";
   }
   return "";
 }
@@ -270,6 +270,8 @@ render::Scene DemoWorld::picture(const Measurement& measurement, double shown_de
     body.colour = render::palette::varied(
         render::palette::categorical(static_cast<std::size_t>(s.plan.bodies[i].colour)), static_cast<std::uint32_t>(i));
     body.highlight = shown && (i == measurement.deepest_a || i == measurement.deepest_b);
+    // What stands still is glass: what goes on behind it and inside it is the point of the picture.
+    body.opacity = s.plan.bodies[i].mass > 0 ? 1.0f : 0.45f;
     scene.bodies.push_back(std::move(body));
   }
   scene.focus.include(s.plan.view_lower);

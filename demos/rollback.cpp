@@ -120,7 +120,7 @@ class Stage {
       : renderer_(renderer), size_(render::panel_size(whole, panels)) {
     view_.include(plan.view_lower);
     view_.include(plan.view_upper);
-    camera_ = render::frame_box(view_, size_, {-68, 17});
+    camera_ = render::frame_box(view_, size_, {-112, 15});
   }
 
   /// A camera that sees the two bodies of an impact from nearby, through all of the step.
@@ -135,7 +135,7 @@ class Stage {
         box.include(render::posed_bounds(*mesh, pose_at(*body, time)));
       }
     }
-    camera_ = render::frame_box(box, size_, {-62, 18}, {0.05, 0.05, 0.06, 0.06});
+    camera_ = render::frame_box(box, size_, {-112, 14}, {0.05, 0.05, 0.06, 0.06});
   }
 
   Expected<render::Image> draw(const render::Scene& scene) { return renderer_.draw(scene, camera_, size_); }
@@ -161,6 +161,7 @@ render::Scene moment(DemoWorld& world, const Impact& impact, double time, bool c
     body.pose = pose;
     body.colour = render::palette::categorical(static_cast<std::size_t>(world.description(index).colour));
     body.highlight = world.description(index).mass > 0;
+    body.opacity = world.description(index).mass > 0 ? 1.0f : 0.4f;
     scene.bodies.push_back(std::move(body));
   }
   const PenetrationDepth answer =

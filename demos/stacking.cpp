@@ -24,6 +24,8 @@ namespace pd::demo {
 namespace {
 
 constexpr int kFramesPerSecond = 30;
+/// When the frames of the strip are taken, as shares of the whole: most happens at the start.
+constexpr std::array<double, 6> kTellingShares{0, 0.06, 0.14, 0.3, 0.6, 1};
 /// Depths below this are not worth an arrow.
 constexpr double kShownDepth = 2e-4;
 
@@ -109,16 +111,20 @@ nlohmann::json summary(const Run& run) {
   return result;
 }
 
-/// "deepest penetration now 0.01 mm / 2.31 mm, drift 0.2 mm / 34 mm"
+/// "penetration 0.01 mm / 2.31 mm      moved from the start 0.2 mm / 34 mm"
 std::string statement(const Run& run, std::size_t step) {
-  const Measurement& ours = run.contenders[0]->history[step];
-  const Measurement& theirs = run.contenders[1]->history[step];
-  return fmt::format("penetration {} / {}      moved from the start {} / {}", length_text(ours.deepest),
-                     length_text(theirs.deepest), length_text(ours.drift), length_text(theirs.drift));
+  const Measurement& first = run.contenders[0]->history[step];
+  const Measurement& second = run.contenders[1]->history[step];
+  const std::string depth = fmt::format("penetration {} / {}", length_text(first.deepest), length_text(second.deepest));
+  return run.plan.should_stand ? fmt::format("{}      moved from the start {} / {}", depth, length_text(first.drift),
+                                             length_text(second.drift))
+                               : fmt::format("{}      kinetic energy {:.2g} / {:.2g} µJ", depth,
+                                             1e6 * first.kinetic_energy, 1e6 * second.kinetic_energy);
 }
 
 Expected<render::Image> draw_frame(const Run& run, std::size_t frame, render::Renderer& renderer,
-                                   const render::Camera& camera, render::Size whole, double full_scale) {
+                                   const render::Camera& camera, render::Size whole, double full_scale,
+                                   const std::string& title) {
   const std::size_t step = run.frame_steps[frame];
   std::vector<render::Panel> panels;
   for (const auto& contender : run.contenders) {
@@ -143,7 +149,7 @@ Expected<render::Image> draw_frame(const Run& run, std::size_t frame, render::Re
     render::annotate(panel.image, words);
     panels.push_back(std::move(panel));
   }
-  return render::side_by_side(panels, run.plan.title, statement(run, step), whole);
+  return render::side_by_side(panels, title, statement(run, step), whole);
 }
 
 /// Steps both worlds together and keeps what each frame will show.
@@ -198,16 +204,16 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
   std::vector<render::Panel> strip;
   std::array<int, 6> telling{};
   for (int i = 0; i < 6; ++i) {
-    telling[i] = i * (frames - 1) / 5;
+    telling[i] = static_cast<int>(kTellingShares[i] * (frames - 1));
   }
   Progress progress(run.plan.name + ": drawing", frames);
   std::filesystem::create_directories(folder / "frames");
   for (int i = 0; i < frames && !interrupted(); ++i) {
-    auto drawn = draw_frame(run, static_cast<std::size_t>(i), renderer, camera, whole, full_scale);
+    auto drawn = draw_frame(run, static_cast<std::size_t>(i), renderer, camera, whole, full_scale, run.plan.title);
     if (!drawn) {
       return drawn.error();
     }
-    render::Image picture = std::move(drawn).value();
+    const render::Image picture = std::move(drawn).value();
     const auto written = render::write_png(picture, folder / "frames" / fmt::format("{}_{:04d}.png", run.plan.name, i));
     if (!written) {
       return written.error();
@@ -220,7 +226,11 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
     }
     if (std::find(telling.begin(), telling.end(), i) != telling.end()) {
       const double seconds = static_cast<double>(run.frame_steps[i]) / run.plan.steps_per_second;
-      strip.push_back({std::move(picture), fmt::format("{:.2f} s", seconds)});
+      auto untitled = draw_frame(run, static_cast<std::size_t>(i), renderer, camera, whole, full_scale, "");
+      if (!untitled) {
+        return untitled.error();
+      }
+      strip.push_back({std::move(untitled).value(), fmt::format("{:.2f} s", seconds)});
     }
     progress.show(i + 1);
   }
@@ -229,10 +239,6 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
         render::write_png(render::film_strip(strip, run.plan.title), folder / (run.plan.name + "_strip.png"));
     if (!written) {
       return written.error();
-    }
-    const auto last = render::write_png(strip.back().image, folder / (run.plan.name + "_last.png"));
-    if (!last) {
-      return last.error();
     }
   }
   if (film) {
@@ -247,10 +253,10 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
 void print_headline(const Run& run) {
   fmt::print("{}: {} bodies, {} steps of 1/{:.0f} s\n", run.plan.title, run.plan.bodies.size() - 1,
              run.contenders[0]->history.size() - 1, run.plan.steps_per_second);
-  fmt::print("  {:<30} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "", "deepest", "late mean", "moved", "calls a step",
+  fmt::print("  {:<46} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "", "deepest", "late mean", "moved", "calls a step",
              "step");
   for (const auto& contender : run.contenders) {
-    fmt::print("  {:<30} {:>12} {:>12} {:>12} {:>14.1f} {:>9.0f} us\n", describe(contender->kind),
+    fmt::print("  {:<46} {:>12} {:>12} {:>12} {:>14.1f} {:>9.0f} us\n", describe(contender->kind),
                length_text(contender->deepest()), length_text(contender->late_mean(&Measurement::deepest)),
                length_text(contender->history.back().drift), contender->calls_per_step(),
                contender->mean(&Measurement::step_microseconds));

@@ -94,6 +94,7 @@ World small_towers(std::uint64_t seed) {
   World world;
   world.name = "towers";
   world.title = "Towers of 2 cm bodies, margin 0";
+  world.should_stand = true;
   world.steps = 720;
   Stream random(seed);
   world.bodies.push_back(floor_below(1));
@@ -109,8 +110,8 @@ World small_towers(std::uint64_t seed) {
     body.orientation = Eigen::AngleAxisd(M_PI * random.next(), Vec3::UnitZ());
     world.bodies.push_back(body);
   }
-  world.view_lower = Vec3(-0.06, -0.03, 0);
-  world.view_upper = Vec3(0.06, 0.03, 0.21);
+  world.view_lower = Vec3(-0.08, -0.05, 0);
+  world.view_upper = Vec3(0.08, 0.05, 0.205);
   return world;
 }
 
@@ -136,8 +137,8 @@ World deep_pile(std::uint64_t seed) {
       }
     }
   }
-  world.view_lower = Vec3(-0.05, -0.05, 0);
-  world.view_upper = Vec3(0.05, 0.05, 0.06);
+  world.view_lower = Vec3(-0.062, -0.06, 0);
+  world.view_upper = Vec3(0.062, 0.06, 0.055);
   return world;
 }
 

@@ -36,6 +36,7 @@ struct World {
   int solver_iterations = 30;  ///< of the contact solver, with two friction directions, for every depth solver
   double steps_per_second = 240;
   int steps = 0;                   ///< how long it is worth watching
+  bool should_stand = false;       ///< every move from the start is a fault
   Vec3 view_lower = Vec3::Zero();  ///< what a camera should see
   Vec3 view_upper = Vec3::Zero();
 };
