@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "shape/polytope_support.hpp"
+#include "structure/zero_pattern.hpp"
 
 namespace pd::detail {
 
@@ -21,112 +22,9 @@ constexpr int kLargeDegree = 16;
 constexpr double kAxis[3] = {40503.0 / 65536, 52433.0 / 65536, 61169.0 / 65536};
 
 double norm1(const double (&v)[3]) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
-double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
 
 PairVector edge_vector(bool of_a, int from, int to) {
   return of_a ? PairVector::edge_a(from, to) : PairVector::edge_b(from, to);
-}
-
-/// Bit 3 i + j: entry (i, j) of the rotation is exactly zero, read off the stored numbers.
-std::uint32_t zero_entries(const Pose& pose) {
-  std::uint32_t mask = 0;
-  const auto set = [&](int i, int j, bool zero) { mask |= static_cast<std::uint32_t>(zero) << (3 * i + j); };
-  if (!pose.is_quaternion()) {
-    for (int i = 0; i < 9; ++i) set(i / 3, i % 3, pose.rotation()(i / 3, i % 3) == 0);
-    return mask;
-  }
-  // Off the diagonal an entry is 2 (p q +- r s): zero when both products are, whatever rounding does.
-  const std::array<double, 4>& q = pose.quaternion_wxyz();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (i == j) continue;
-      const std::size_t x = static_cast<std::size_t>(i) + 1, y = static_cast<std::size_t>(j) + 1, z = 6 - x - y;
-      set(i, j, (q[x] == 0 || q[y] == 0) && (q[0] == 0 || q[z] == 0));
-    }
-  }
-  return mask;
-}
-
-bool same_rotation(const Pose& a, const Pose& b) {
-  if (a.is_quaternion() != b.is_quaternion()) return false;
-  return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
-}
-
-/// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is.
-std::uint32_t zero_coordinates(const ConvexPolytope& body, std::uint32_t rotation, int from, int to) {
-  const std::uint32_t still = static_cast<std::uint32_t>(body.x()[from] == body.x()[to]) |
-                              static_cast<std::uint32_t>(body.y()[from] == body.y()[to]) << 1 |
-                              static_cast<std::uint32_t>(body.z()[from] == body.z()[to]) << 2;
-  std::uint32_t mask = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (((rotation >> (3 * i) | still) & 7u) == 7u) mask |= 1u << i;
-  }
-  return mask;
-}
-
-/// Whether each of the six products of det(e, u, v) has a factor that is exactly zero: aligned boxes and prisms, whose
-/// ties would otherwise all be left to exact arithmetic.
-bool vanishes_term_by_term(std::uint32_t e, std::uint32_t u, std::uint32_t v) {
-  constexpr std::array<std::array<int, 3>, 6> kTerms{
-      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-  return std::all_of(kTerms.begin(), kTerms.end(),
-                     [&](const std::array<int, 3>& t) { return ((e >> t[0] | u >> t[1] | v >> t[2]) & 1u) != 0; });
-}
-
-/// Poses a body's points and edges.
-void pose_edges(const PosedPair& pair, bool of_a, PosedDiagram& diagram) {
-  const ConvexPolytope& body = of_a ? pair.a() : pair.b();
-  diagram.point_error = pair.vector_error();
-  diagram.points.resize(static_cast<std::size_t>(body.num_vertices()));
-  double reach = 0;
-  for (int v = 0; v < body.num_vertices(); ++v) {
-    PairVector posed;  // R_A a = -(R_A (0 - a)), or R_B b
-    (of_a ? posed.a_from : posed.b_to) = v;
-    Vec3& point = diagram.points[static_cast<std::size_t>(v)];
-    point = pair.approximate(posed);
-    reach = std::max(reach, norm1(point));
-  }
-  diagram.reach = reach * (1 + 4 * kU) + 3 * diagram.point_error;
-  // The difference of two points, rounded.
-  diagram.edge_error = (2 * diagram.point_error + kU * 2 * diagram.reach) * (1 + 4 * kU);
-  diagram.half_edges.resize(static_cast<std::size_t>(body.num_half_edges()));
-  double total = 0;
-  for (int h = 0; h < body.num_half_edges(); ++h) {
-    const HalfEdge& half_edge = body.half_edge(h);
-    const Vec3 v = diagram.points[static_cast<std::size_t>(body.half_edge(half_edge.twin).origin)] -
-                   diagram.points[static_cast<std::size_t>(half_edge.origin)];
-    const double size = norm1(v);
-    diagram.half_edges[static_cast<std::size_t>(h)] = {{v.x(), v.y(), v.z()}, size};
-    total += size;
-  }
-  diagram.edge_size = body.num_half_edges() > 0 ? total / body.num_half_edges() + diagram.edge_error : 1;
-  for (PosedDiagram::Edge& edge : diagram.half_edges) edge.size += diagram.edge_size;
-}
-
-/// Poses a body's facets, whose normals will be tried against the edges of `other`.
-void pose_facets(const ConvexPolytope& body, const PosedDiagram& other, PosedDiagram& diagram) {
-  const double error = diagram.edge_error;
-  const std::size_t count = static_cast<std::size_t>(body.num_facets());
-  diagram.facets.resize(count);
-  diagram.normal_errors.resize(count);
-  diagram.cell.assign(count, -1);
-  for (std::size_t f = 0; f < count; ++f) {
-    const auto corner = FacetOfDifference::corners(body, static_cast<int>(f));
-    const Vec3& origin = diagram.points[static_cast<std::size_t>(corner[0])];
-    const Vec3 u = diagram.points[static_cast<std::size_t>(corner[1])] - origin;
-    const Vec3 v = diagram.points[static_cast<std::size_t>(corner[2])] - origin;
-    const Vec3 n = u.cross(v);
-    // A coordinate is u_j v_k - u_k v_j: input errors, then two products and a difference (3u of the sum of
-    // magnitudes).
-    const double su = norm1(u), sv = norm1(v), sn = norm1(n);
-    const double normal_error = (error * (su + sv + 2 * error) + 3 * kU * su * sv) * (1 + 8 * kU);
-    diagram.normal_errors[f] = normal_error;
-    // <e, n> errs by |e|_1 (error(n) + 4u |n|_1), the latter for products and sums, and by error(e) (|n|_1 + 3
-    // error(n)).
-    const double slope = normal_error + 4 * kU * sn;
-    const double constant = other.edge_error * (sn + 3 * normal_error) + 0x1p-900;
-    diagram.facets[f] = {{n.x(), n.y(), n.z()}, std::max(slope, constant / other.edge_size) * (1 + 16 * kU)};
-  }
 }
 
 }  // namespace

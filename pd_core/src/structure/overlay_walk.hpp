@@ -26,6 +26,7 @@
 
 #include "shape/posed_pair.hpp"
 #include "structure/facet_of_difference.hpp"
+#include "structure/posed_diagram.hpp"
 
 namespace pd::detail {
 
@@ -43,27 +44,6 @@ struct OverlayPiece {
 
 /// What the finishing step needs of a piece.
 [[nodiscard]] FacetOfDifference facet_of(const PosedPair& pair, const OverlayPiece& piece);
-
-/// One body's diagram in the common frame (rotated, not translated), in doubles with error bounds.
-struct PosedDiagram {
-  struct Facet {
-    double normal[3];  ///< of the body itself, not of P; not normalised
-    double bound;      ///< |<e, normal> - exact| <= bound * e.size for the edges e of the other body
-  };
-  struct Edge {
-    double vector[3];  ///< the half-edge's
-    double size;       ///< |vector|_1 + edge_size
-  };
-  std::vector<Vec3> points;
-  std::vector<Edge> half_edges;
-  std::vector<Facet> facets;
-  std::vector<double> normal_errors;  ///< of each coordinate of a facet's normal
-  std::vector<std::int32_t> cell;     ///< the other body's vertex that supports a facet's plane from the other side
-  double point_error = 0;             ///< of each coordinate of a point
-  double edge_error = 0;              ///< of each coordinate of an edge
-  double edge_size = 0;               ///< mean |vector|_1
-  double reach = 0;                   ///< >= |point|_1
-};
 
 /// Owned by the caller, grown on first use, never shrunk.
 struct OverlayBuffers {

@@ -1,0 +1,61 @@
+/// @file
+/// Zeros that are read off the stored numbers: aligned boxes and prisms make ties by the dozen, and a determinant whose
+/// six products each have a factor 0 needs no arithmetic.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/pose.hpp"
+
+namespace pd::detail {
+
+/// Bit 3 i + j: entry (i, j) of the rotation is exactly zero, read off the stored numbers.
+inline std::uint32_t zero_entries(const Pose& pose) {
+  std::uint32_t mask = 0;
+  const auto set = [&](int i, int j, bool zero) { mask |= static_cast<std::uint32_t>(zero) << (3 * i + j); };
+  if (!pose.is_quaternion()) {
+    for (int i = 0; i < 9; ++i) set(i / 3, i % 3, pose.rotation()(i / 3, i % 3) == 0);
+    return mask;
+  }
+  // Off the diagonal an entry is 2 (p q +- r s): zero when both products are, whatever rounding does.
+  const std::array<double, 4>& q = pose.quaternion_wxyz();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (i == j) continue;
+      const std::size_t x = static_cast<std::size_t>(i) + 1, y = static_cast<std::size_t>(j) + 1, z = 6 - x - y;
+      set(i, j, (q[x] == 0 || q[y] == 0) && (q[0] == 0 || q[z] == 0));
+    }
+  }
+  return mask;
+}
+
+/// Whether the two rotations are one, on the stored numbers.
+inline bool same_rotation(const Pose& a, const Pose& b) {
+  if (a.is_quaternion() != b.is_quaternion()) return false;
+  return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
+}
+
+/// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is.
+inline std::uint32_t zero_coordinates(const ConvexPolytope& body, std::uint32_t rotation, int from, int to) {
+  const std::uint32_t still = static_cast<std::uint32_t>(body.x()[from] == body.x()[to]) |
+                              static_cast<std::uint32_t>(body.y()[from] == body.y()[to]) << 1 |
+                              static_cast<std::uint32_t>(body.z()[from] == body.z()[to]) << 2;
+  std::uint32_t mask = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (((rotation >> (3 * i) | still) & 7u) == 7u) mask |= 1u << i;
+  }
+  return mask;
+}
+
+/// Whether each of the six products of det(e, u, v) has a factor that is exactly zero.
+inline bool vanishes_term_by_term(std::uint32_t e, std::uint32_t u, std::uint32_t v) {
+  constexpr std::array<std::array<int, 3>, 6> kTerms{
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  return std::all_of(kTerms.begin(), kTerms.end(),
+                     [&](const std::array<int, 3>& t) { return ((e >> t[0] | u >> t[1] | v >> t[2]) & 1u) != 0; });
+}
+
+}  // namespace pd::detail
