@@ -7,7 +7,12 @@
 #include <random>
 
 #include "bench/coherent.hpp"
+#include "bench/compare.hpp"
+#include "bench/meshes.hpp"
 #include "bench/pairs.hpp"
+#ifdef PD_BENCH_WITH_RENDER
+#include "bench/plots.hpp"
+#endif
 
 namespace {
 
@@ -22,6 +27,9 @@ struct Options {
   int pairs = 0;
   int frames = 200;
   std::string csv;
+  std::string plots;
+  std::string folder;
+  CompareSettings compare;
 };
 
 void add_common(CLI::App& command, Options& o) {
@@ -58,6 +66,24 @@ void print_preamble(const Options& o) {
   fmt::print("seed {}\n\n", o.seed);
 }
 
+int pairs_of(const Options& o) { return o.pairs > 0 ? o.pairs : o.quick ? 12 : 72; }
+
+/// The summary and the files that were asked for. 1 where one of ours was wrong or a file could not be written.
+int finish(const std::vector<Row>& rows, const Options& o) {
+  print_summary(rows);
+  bool good = o.csv.empty() || write_text(o.csv, to_csv(rows));
+  if (!o.plots.empty()) {
+#ifdef PD_BENCH_WITH_RENDER
+    good = write_plots(rows, o.plots) && good;
+#else
+    fmt::print(stderr, "--plots: this was built without render\n");
+    good = false;
+#endif
+  }
+  for (const Row& r : rows) good = good && (r.wrong == 0 || !r.solver.starts_with("pdepth"));
+  return good ? 0 : 1;
+}
+
 int pairs_command(const Options& o) {
   const auto cells = choose_cells(o.families, o.vertices, o.quick);
   if (!cells) return refuse(cells.error());
@@ -69,11 +95,27 @@ int pairs_command(const Options& o) {
   PairsSettings settings;
   settings.cells = *cells;
   settings.seed = o.seed;
-  settings.pairs = o.pairs > 0 ? o.pairs : o.quick ? 12 : 72;
-  const std::vector<Row> rows = run_pairs(settings, solvers);
-  print_summary(rows);
-  if (!o.csv.empty() && !write_text(o.csv, to_csv(rows))) return 1;
-  return 0;
+  settings.pairs = pairs_of(o);
+  return finish(run_pairs(settings, solvers), o);
+}
+
+int meshes_command(const Options& o) {
+  const auto meshes = read_meshes(o.folder);
+  if (!meshes) return refuse(meshes.error());
+  Solvers solvers;
+  add_ours(solvers, true, false);
+  add_peers(solvers);
+  if (!select(solvers, o.solvers)) return 2;
+  print_preamble(o);
+  return finish(run_meshes(*meshes, pairs_of(o), o.seed, solvers), o);
+}
+
+/// Without options of its own: the quick cells, ours beside Bullet's EPA.
+int compare_command(Options o) {
+  fmt::print("seed {}\n", o.seed);
+  if (o.compare.arguments.empty()) o.compare.arguments = {"--quick", "--solvers", "pdepth-auto,bullet-epa"};
+  o.compare.arguments.insert(o.compare.arguments.end(), {"--seed", std::to_string(o.seed)});
+  return run_compare(o.compare);
 }
 
 int coherent_command(const Options& o) {
@@ -87,7 +129,9 @@ int coherent_command(const Options& o) {
     return 2;
   print_preamble(o);
   const std::vector<CoherentRow> rows = run_coherent({*sequences, o.frames, o.seed}, solvers);
-  return o.csv.empty() || write_text(o.csv, to_csv(rows)) ? 0 : 1;
+  bool good = o.csv.empty() || write_text(o.csv, to_csv(rows));
+  for (const CoherentRow& r : rows) good = good && (r.wrong == 0 || !r.solver.starts_with("pdepth"));
+  return good ? 0 : 1;
 }
 
 }  // namespace
@@ -98,7 +142,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   CLI::App* pairs = app.add_subcommand("pairs", "cold single pairs: families x vertices x depth");
   add_common(*pairs, options);
-  pairs->add_option("--pairs", options.pairs, "pairs in each cell (default: 72, quick 12)");
   CLI::App* coherent = app.add_subcommand("coherent", "sequences of frames, with the memory of the pair");
   add_common(*coherent, options);
   coherent->add_option("--frames", options.frames, "frames of a sequence")
@@ -108,7 +151,23 @@ int main(int argc, char** argv) {
     command->add_option("--families", options.families, "names of families (default: all)")->delimiter(',');
     command->add_option("--vertices", options.vertices, "sizes (default: the family's own)")->delimiter(',');
   }
+  CLI::App* meshes = app.add_subcommand("meshes", "cold single pairs over the hulls of your own meshes");
+  meshes->add_option("folder", options.folder, "searched for OBJ, STL, PLY, OFF and glTF files")->required();
+  add_common(*meshes, options);
+  for (CLI::App* command : {pairs, meshes}) {
+    command->add_option("--pairs", options.pairs, "pairs in each cell (default: 72, quick 12)");
+    command->add_option("--plots", options.plots, "writes log-log pictures into this folder");
+  }
+  CLI::App* compare = app.add_subcommand("compare", "two builds of pdepth-bench, run in turns on the same pairs");
+  compare->add_option("before", options.compare.before, "the older program")->required()->check(CLI::ExistingFile);
+  compare->add_option("after", options.compare.after, "the newer program")->required()->check(CLI::ExistingFile);
+  compare->add_option("--rounds", options.compare.rounds)->check(CLI::PositiveNumber)->capture_default_str();
+  compare->add_option("--seed", options.seed, "repeats a run (default: drawn, and printed)");
+  compare->add_option("pairs", options.compare.arguments, "options of `pairs` for both, after --");
   CLI11_PARSE(app, argc, argv);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
-  return *coherent ? coherent_command(options) : pairs_command(options);
+  if (*coherent) return coherent_command(options);
+  if (*meshes) return meshes_command(options);
+  if (*compare) return compare_command(options);
+  return pairs_command(options);
 }

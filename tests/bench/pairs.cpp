@@ -88,6 +88,22 @@ bool measure_draw(const Draw& draw, Solvers& solvers, double slow_ns, std::vecto
   return true;
 }
 
+std::vector<Row> rows_of(const Solvers& solvers, const std::vector<Tally>& tallies, std::string_view family,
+                         int vertices, scenes::DepthClass depth) {
+  std::vector<Row> block;
+  for (std::size_t s = 0; s < solvers.size(); ++s) {
+    if (tallies[s].count() == 0) continue;
+    Row row = tallies[s].row();
+    row.family = family;
+    row.vertices = vertices;
+    row.depth = scenes::to_string(depth);
+    row.solver = solvers[s]->name();
+    block.push_back(std::move(row));
+  }
+  set_ratios(block);
+  return block;
+}
+
 std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers) {
   std::vector<Row> rows;
   std::map<std::pair<scenes::PairFamily, scenes::DepthClass>, std::vector<char>> slow;
@@ -100,20 +116,10 @@ std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers) {
     std::uint64_t number = 0;
     for (int done = 0; done < settings.pairs && refused < 20 * settings.pairs;) {
       const std::optional<Draw> d = draw(cell, settings.seed, number++);
-      const bool measured = d && measure_draw(*d, solvers, settings.slow_ns, sits_out, tallies);
+      const bool measured = d && measure_draw(*d, solvers, kSlowNs, sits_out, tallies);
       ++(measured ? done : refused);
     }
-    std::vector<Row> block;
-    for (std::size_t s = 0; s < solvers.size(); ++s) {
-      if (tallies[s].count() == 0) continue;
-      Row row = tallies[s].row();
-      row.family = scenes::to_string(cell.family);
-      row.vertices = cell.vertices;
-      row.depth = scenes::to_string(cell.depth);
-      row.solver = solvers[s]->name();
-      block.push_back(std::move(row));
-    }
-    set_ratios(block);
+    const std::vector<Row> block = rows_of(solvers, tallies, scenes::to_string(cell.family), cell.vertices, cell.depth);
     print_rows(block);
     rows.insert(rows.end(), block.begin(), block.end());
   }

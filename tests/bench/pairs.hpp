@@ -10,11 +10,13 @@
 
 namespace pd::bench {
 
+/// A solver that needs more than this for a pair sits out the rest of the cell and the larger ones like it.
+inline constexpr double kSlowNs = 5e7;
+
 struct PairsSettings {
   std::vector<Cell> cells;
   int pairs = 72;  ///< in each cell
   std::uint64_t seed = 0;
-  double slow_ns = 5e7;  ///< a solver that needs more for a pair sits out the rest of the cell and larger ones like it
 };
 
 /// What the rounds of one draw add to a row.
@@ -33,8 +35,14 @@ class Tally {
 };
 
 /// Runs and judges every solver on one draw and adds to `tallies` (one for each solver; those of solvers that sit out
-/// stay as they are). Draws whose bodies do not overlap are refused: false.
-bool measure_draw(const Draw& draw, Solvers& solvers, const std::vector<char>& sits_out, std::vector<Tally>& tallies);
+/// stay as they are). A solver slower than `slow_ns` is run once and sits out from then on. Draws whose bodies do not
+/// overlap are refused: false.
+bool measure_draw(const Draw& draw, Solvers& solvers, double slow_ns, std::vector<char>& sits_out,
+                  std::vector<Tally>& tallies);
+
+/// The rows of one cell: solvers that ran at least once.
+[[nodiscard]] std::vector<Row> rows_of(const Solvers& solvers, const std::vector<Tally>& tallies,
+                                       std::string_view family, int vertices, scenes::DepthClass depth);
 
 /// All cells, printed as they come. @return the rows.
 [[nodiscard]] std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers);
