@@ -34,29 +34,6 @@ struct Frame {
   Pose b;
 };
 
-Vec3 extreme(const ConvexShape& shape, const Mat3& rotation, const Vec3& direction) {
-  Vec3 best = Vec3::Zero();
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Vec3& p : vertices_of(shape)) {
-    const Vec3 q = rotation * p;
-    if (q.dot(direction) <= most) continue;
-    most = q.dot(direction);
-    best = q;
-  }
-  return best;
-}
-
-double size_of(const ConvexShape& shape) {
-  const scenes::Points points = vertices_of(shape);
-  Vec3 low = points[0];
-  Vec3 high = points[0];
-  for (const Vec3& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return (high - low).minCoeff();
-}
-
 std::array<double, 4> turned(const std::array<double, 4>& q, const Vec3& axis, double angle) {
   const Eigen::Quaterniond r =
       Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)) * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
@@ -67,7 +44,8 @@ std::array<double, 4> turned(const std::array<double, 4>& q, const Vec3& axis, d
 /// Both bodies turn by the step about slowly drifting axes; B hangs at A's extreme point in a direction that drifts as
 /// well, deeper by the wanted share of the smaller body's least extent.
 std::vector<Frame> frames_of(const Sequence& sequence, const Bodies& bodies, int count, scenes::Random& random) {
-  const double size = std::min(size_of(bodies.a), size_of(bodies.b));
+  const double size =
+      std::min(extent_of(vertices_of(bodies.a)).size.minCoeff(), extent_of(vertices_of(bodies.b)).size.minCoeff());
   std::array<double, 4> qa = random.quaternion();
   std::array<double, 4> qb = random.quaternion();
   Vec3 axis_a = random.direction();

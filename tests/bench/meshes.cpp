@@ -29,45 +29,6 @@ scenes::Points points_of(const std::filesystem::path& file) {
   return points;
 }
 
-struct Extent {
-  Vec3 middle;
-  double size;
-};
-
-Extent extent_of(const scenes::Points& points) {
-  Vec3 low = points[0];
-  Vec3 high = points[0];
-  for (const Vec3& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return {0.5 * (low + high), (high - low).maxCoeff()};
-}
-
-Vec3 extreme(const scenes::Points& points, const Pose& pose, const Vec3& direction) {
-  return *std::max_element(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) {
-    return pose.apply(p).dot(direction) < pose.apply(q).dot(direction);
-  });
-}
-
-/// Random attitudes; then as the scenes place their families: extreme points meet and go on by a share of the size, or
-/// the middles nearly coincide.
-Draw placed(const NamedShape& a, const NamedShape& b, DepthClass depth, scenes::Random& random) {
-  const scenes::Points points_a = vertices_of(a.shape);
-  const scenes::Points points_b = vertices_of(b.shape);
-  const Pose pose_a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-  const Pose pose_b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-  const Vec3 d = random.direction();
-  Vec3 t;
-  if (depth == DepthClass::deep) {
-    t = pose_a.apply(extent_of(points_a).middle) - pose_b.apply(extent_of(points_b).middle) + 1e-3 * d;
-  } else {
-    const double share = depth == DepthClass::shallow ? 0.01 : 0.1;
-    t = pose_a.apply(extreme(points_a, pose_a, d)) - pose_b.apply(extreme(points_b, pose_b, -d)) - share * d;
-  }
-  return {{a.shape, b.shape}, pose_a, *Pose::from_quaternion(pose_b.quaternion_wxyz(), t)};
-}
-
 }  // namespace
 
 Expected<std::vector<NamedShape>> read_meshes(const std::filesystem::path& folder) {
@@ -93,7 +54,7 @@ Expected<std::vector<NamedShape>> read_meshes(const std::filesystem::path& folde
     }
     // To size 1, so that depths mean the same for all.
     const Extent extent = extent_of(points);
-    for (Vec3& p : points) p = (p - extent.middle) / extent.size;
+    for (Vec3& p : points) p = (p - extent.middle) / extent.size.maxCoeff();
     meshes.push_back({file.stem().string(), ConvexShape(*ConvexPolytope::from_points(points))});
   }
   if (meshes.empty()) return Error{ErrorCode::bad_value, "no mesh with a solid hull", folder.string()};
@@ -111,7 +72,7 @@ std::vector<Row> run_meshes(const std::vector<NamedShape>& meshes, int pairs, st
       int refused = 0;
       for (int done = 0; done < pairs && refused < 20 * pairs;) {
         const auto partner = static_cast<std::size_t>(random.integer(0, static_cast<int>(meshes.size()) - 1));
-        const Draw d = placed(mesh, meshes[partner], depth, random);
+        const Draw d = placed({mesh.shape, meshes[partner].shape}, 1, depth, random);
         ++(measure_draw(d, solvers, kSlowNs, sits_out, tallies) ? done : refused);
       }
       const std::vector<Row> block = rows_of(solvers, tallies, mesh.name, mesh.shape.polytope()->num_vertices(), depth);

@@ -104,6 +104,38 @@ std::optional<Draw> crossed_roofs(const Cell& cell, std::uint64_t seed, std::uin
 
 }  // namespace
 
+Vec3 extreme(const ConvexShape& shape, const Mat3& rotation, const Vec3& direction) {
+  const scenes::Points points = vertices_of(shape);
+  const Vec3 local = rotation.transpose() * direction;
+  return rotation * *std::max_element(points.begin(), points.end(),
+                                      [&](const Vec3& p, const Vec3& q) { return p.dot(local) < q.dot(local); });
+}
+
+Extent extent_of(const scenes::Points& points) {
+  Vec3 low = points[0];
+  Vec3 high = points[0];
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {0.5 * (low + high), high - low};
+}
+
+Draw placed(const Bodies& bodies, double size, DepthClass depth, scenes::Random& random) {
+  const Pose a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+  const Pose b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+  const Vec3 d = random.direction();
+  Vec3 t;
+  if (depth == DepthClass::deep) {
+    t = a.apply(extent_of(vertices_of(bodies.a)).middle) - b.apply(extent_of(vertices_of(bodies.b)).middle) +
+        1e-3 * size * d;
+  } else {
+    const double share = depth == DepthClass::shallow ? 0.01 : 0.1;
+    t = extreme(bodies.a, a.rotation(), d) - extreme(bodies.b, b.rotation(), -d) - share * size * d;
+  }
+  return {bodies, a, *Pose::from_quaternion(b.quaternion_wxyz(), t)};
+}
+
 Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& families, const std::vector<int>& vertices,
                                          bool quick) {
   for (const std::string& name : families) {
@@ -137,7 +169,10 @@ std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t num
   const auto a = ConvexPolytope::from_points(pair.a);
   const auto b = ConvexPolytope::from_points(pair.b);
   if (!a || !b) return std::nullopt;
-  return Draw{{ConvexShape(*a), ConvexShape(*b)}, pair.pose_a, pair.pose_b};
+  Draw d{{ConvexShape(*a), ConvexShape(*b)}, pair.pose_a, pair.pose_b};
+  if (cell.family != PairFamily::needle) return d;
+  scenes::Random random(seed + number * 0xD1B54A32D192ED03ULL);
+  return placed(d.bodies, extent_of(pair.a).size.minCoeff(), cell.depth, random);
 }
 
 }  // namespace pd::bench

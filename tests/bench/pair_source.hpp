@@ -28,6 +28,19 @@ struct Draw {
 [[nodiscard]] Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& families,
                                                        const std::vector<int>& vertices, bool quick);
 
+/// The point of the shape, turned by `rotation`, that is extreme in the direction.
+[[nodiscard]] Vec3 extreme(const ConvexShape& shape, const Mat3& rotation, const Vec3& direction);
+
+struct Extent {
+  Vec3 middle;  ///< of the bounding box in the shape's own frame
+  Vec3 size;    ///< of its sides
+};
+[[nodiscard]] Extent extent_of(const scenes::Points& points);
+
+/// Random attitudes; then the extreme points of a random direction meet and go on by 1 % (shallow) or 10 % (mid) of
+/// `size`, or the middles nearly coincide (deep).
+[[nodiscard]] Draw placed(const Bodies& bodies, double size, scenes::DepthClass depth, scenes::Random& random);
+
 /// The pair of this number. Cubes are placed here, aligned with the axes and overlapping by exactly 1/64 or 1/8 of a
 /// unit; all others are the scenes' own. Nothing where the bodies happen not to be what the cell asks for (the next
 /// number is another draw).
