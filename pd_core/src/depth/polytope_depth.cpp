@@ -11,8 +11,8 @@ namespace pd::detail {
 
 namespace {
 
-/// Width of the bracket that doubles are asked for, in units of L (`Bracket::certified`).
-constexpr double kCertifiedWidth = 2e-14;
+/// Width of the bracket that doubles are asked for, in units of L: `Bracket::certified` less the last roundings.
+constexpr double kCertifiedWidth = 1.8e-14;
 
 /// Sizes outside this range are left to the exact engines, which rescale.
 bool within_range(double reach) { return reach > 0x1p-100 && reach < 0x1p100; }
