@@ -6,21 +6,21 @@
 #include <pd/bullet/install.hpp>
 
 int main() {
+  pd::BulletPenetrationDepthSolver solver;  // outlives the world, as shapes and bodies do
+  btBoxShape table(btVector3(1, 1, 1)), die(btVector3(0.1f, 0.1f, 0.1f));
+  btRigidBody below(0, nullptr, &table), above(1, nullptr, &die, btVector3(0.01f, 0.01f, 0.01f));
+  above.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 1.09f, 0)));
+
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver impulses;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &impulses, &configuration);
-
-  pd::BulletPenetrationDepthSolver solver;
   pd::install(world, solver);  // every pair of convex shapes, from the next step on
 
-  btBoxShape table(btVector3(1, 1, 1)), die(btVector3(0.1f, 0.1f, 0.1f));
-  btRigidBody below(0, nullptr, &table), above(1, nullptr, &die, btVector3(0.01f, 0.01f, 0.01f));
-  above.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 1.09f, 0)));
   world.addRigidBody(&below);
   world.addRigidBody(&above);
   for (int step = 0; step < 240; ++step) world.stepSimulation(1.0f / 240);
-  std::printf("%s answers, the die rests at %.2f\n", solver.statistics().calls > 0 ? "exact" : "no",
+  std::printf("%lld exact answers, the die rests at %.2f\n", static_cast<long long>(solver.statistics().calls),
               double(above.getWorldTransform().getOrigin().y()));
 }
