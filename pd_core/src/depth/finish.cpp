@@ -82,7 +82,12 @@ bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& 
     }
     if (excess.hi > height * 1.0001) return false;
     const DoubleDouble length = two_product(t.x(), t.x()) + two_product(t.y(), t.y()) + two_product(t.z(), t.z());
-    return (length - two_product(upper, upper)).hi <= 0x1p-90 * upper * upper && accept(t);
+    if ((length - two_product(upper, upper)).hi > 0x1p-90 * upper * upper) return false;
+    if (accept(t)) return true;
+    // Below what double-double resolves (a body of size 1 and one of 1e-300), the plane may lie an ulp further out.
+    if (excess.hi > 0x1p-95) return false;
+    t[solved] = std::nextafter(t[solved], components[solved].hi > 0 ? HUGE_VAL : -HUGE_VAL);
+    return accept(t);
   };
   Vec3 bare = base;
   for (int i = live; i < 3; ++i) bare[order[i]] = 0;
