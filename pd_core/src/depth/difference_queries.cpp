@@ -27,7 +27,7 @@ DifferenceSupport polytope_support(const ConvexPolytope& a, const Pose& pose_a, 
   const PosedPair pair(a, pose_a, b, pose_b);
   const detail::RaySigns signs(pair, direction);
   const auto sign = [&](const PairVector& edge) { return signs.along(edge); };
-  const detail::PairId found = support_exactly(pair, signs.scaled(), sign);
+  const detail::PairId found = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, sign);
   std::vector<std::int32_t> stack;
   DifferenceSupport support;
   support.vertex_a = detail::lowest_of_face(

@@ -76,6 +76,7 @@ class NearestPlane {
   }
 
   [[nodiscard]] std::int64_t visited() const { return visited_; }
+  [[nodiscard]] std::int64_t exact_comparisons() const { return exact_comparisons_; }
   [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] bool outside() const { return outside_; }
   [[nodiscard]] bool zero() const { return zero_; }
@@ -208,6 +209,7 @@ class NearestPlane {
   bool nearer(const OverlayPiece& piece, const FacetOfDifference& facet, const Distance& distance) {
     const double gap = to_double(distance.value - best_distance_.value);
     if (std::abs(gap) > (distance.error + best_distance_.error) * (1 + 4 * kU)) return gap < 0;
+    ++exact_comparisons_;
     if (!best_squared_known_) best_squared_ = squared(best_facet_);
     best_squared_known_ = true;
     const Squared s = squared(facet);
@@ -244,6 +246,7 @@ class NearestPlane {
   Distance best_distance_{{0, 0}, kInfinity};
   Squared best_squared_;
   std::int64_t visited_ = 0;
+  std::int64_t exact_comparisons_ = 0;
 };
 
 }  // namespace
@@ -269,6 +272,7 @@ OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers) 
   walk.run([&](std::span<const OverlayPiece> pieces) { return nearest.consume(pieces); });
 
   result.facets_visited = nearest.visited();
+  result.exact_comparisons = nearest.exact_comparisons();
   result.has_facet = nearest.found();
   if (nearest.found()) result.facet = facet_of(pair, nearest.piece());
   result.contact = nearest.outside() ? ContactClass::separated

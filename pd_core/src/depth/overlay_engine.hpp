@@ -34,6 +34,8 @@ struct OverlayDepth {
   FacetOfDifference facet;
   /// Pieces of the overlay whose plane was evaluated.
   std::int64_t facets_visited = 0;
+  /// Distances compared as rationals (beside the exact signs that the pair counts itself).
+  std::int64_t exact_comparisons = 0;
 };
 
 /// Exact class and nearest facet. Time O(m + n + K deg), see `OverlayWalk`; allocates nothing once the buffers have

@@ -10,6 +10,17 @@ namespace {
 
 PairVector step(const PairId& from, const PairId& to) { return PairVector::difference(from.a, from.b, to.a, to.b); }
 
+/// Whether the step between two points of P that share a vertex of one body is this edge of the other, either way.
+bool is_edge(const PairVector& step, const PairVector& edge) {
+  const auto same = [](std::int32_t to, std::int32_t from, std::int32_t x, std::int32_t y) {
+    return (to == x && from == y) || (to == y && from == x);
+  };
+  if (edge.a_to >= 0) return step.b_to == step.b_from && same(step.a_to, step.a_from, edge.a_to, edge.a_from);
+  return step.a_to == step.a_from && same(step.b_to, step.b_from, edge.b_to, edge.b_from);
+}
+
+bool same_point(const PairId& x, const PairId& y) { return x.a == y.a && x.b == y.b; }
+
 class PortalSearch {
  public:
   explicit PortalSearch(const RaySigns& ray) : ray_(ray), pair_(ray.pair()) {}
@@ -26,8 +37,10 @@ class PortalSearch {
   /// In the direction d x w, or against it: <edge, d x w> = det(w, edge, d).
   PairId support_across(const PairVector& w, int sign) {
     ++support_calls_;
-    const Vec3 direction = sign * ray_.scaled().cross(pair_.approximate(w));
-    return support_exactly(pair_, direction, [&](const PairVector& edge) { return sign * ray_.turn(w, edge); });
+    const RoundedDirection direction =
+        rounded_cross(sign * ray_.scaled(), 0, pair_.approximate(w), pair_.vector_error());
+    return support_exactly(pair_, direction, {-1, -1},
+                           [&](const PairVector& edge) { return sign * ray_.turn(w, edge); });
   }
 
   /// A triangle of vertices of P that the line crosses. In the projection along d this is the planar portal search from
@@ -36,7 +49,8 @@ class PortalSearch {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
     const RaySigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
-    v[0] = support_exactly(pair_, sideways.scaled(), [&](const PairVector& edge) { return sideways.along(edge); });
+    v[0] = support_exactly(pair_, {sideways.scaled(), 0}, {-1, -1},
+                           [&](const PairVector& edge) { return sideways.along(edge); });
     ++support_calls_;
     const PairVector first = PairVector::point(v[0].a, v[0].b);
     v[1] = support_across(first, 1);
@@ -53,8 +67,15 @@ class PortalSearch {
     for (;;) {
       const PairVector u = step(v[0], v[1]), w = step(v[0], v[2]);
       ++support_calls_;
-      const PairId s = support_exactly(pair_, pair_.approximate(u).cross(pair_.approximate(w)),
-                                       [&](const PairVector& edge) { return pair_.sign_determinant(edge, u, w); });
+      const double error = pair_.vector_error();
+      const RoundedDirection normal = rounded_cross(pair_.approximate(u), error, pair_.approximate(w), error);
+      // The triangle's own sides lie in its plane: no arithmetic is spent on those zeros.
+      const PairVector third = step(v[1], v[2]);
+      const PairId s = support_exactly(pair_, normal, v[2], [&](const PairVector& edge) {
+        if (is_edge(u, edge) || is_edge(w, edge) || is_edge(third, edge)) return 0;
+        return pair_.sign_determinant(edge, u, w);
+      });
+      if (same_point(s, v[0]) || same_point(s, v[1]) || same_point(s, v[2])) return;
       if (pair_.sign_determinant(step(v[0], s), u, w) <= 0) return;
       const std::array<int, 3> side{ray_.side(v[0], s), ray_.side(v[1], s), ray_.side(v[2], s)};
       for (std::size_t i = 0; i < 3; ++i) {
