@@ -120,7 +120,7 @@ class Stage {
       : renderer_(renderer), size_(render::panel_size(whole, panels)) {
     view_.include(plan.view_lower);
     view_.include(plan.view_upper);
-    camera_ = render::frame_box(view_, size_, {-112, 15});
+    camera_ = render::frame_box(view_, size_, {-102, 14});
   }
 
   /// A camera that sees the two bodies of an impact from nearby, through all of the step.
@@ -135,7 +135,7 @@ class Stage {
         box.include(render::posed_bounds(*mesh, pose_at(*body, time)));
       }
     }
-    camera_ = render::frame_box(box, size_, {-112, 14}, {0.05, 0.05, 0.06, 0.06});
+    camera_ = render::frame_box(box, size_, {-102, 13}, {0.05, 0.05, 0.06, 0.06});
   }
 
   Expected<render::Image> draw(const render::Scene& scene) { return renderer_.draw(scene, camera_, size_); }

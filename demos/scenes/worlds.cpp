@@ -177,8 +177,8 @@ World fast_throws(std::uint64_t seed) {
   right.angular_velocity = Vec3(-5, 8, 3);
   world.bodies.push_back(right);
 
-  world.view_lower = Vec3(-1.5, -0.75, 0);
-  world.view_upper = Vec3(1.7, 0.75, 1.35);
+  world.view_lower = Vec3(-1.9, -0.75, 0);
+  world.view_upper = Vec3(1.75, 0.75, 1.3);
   return world;
 }
 

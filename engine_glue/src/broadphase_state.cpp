@@ -3,6 +3,7 @@
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
@@ -50,13 +51,13 @@ BroadphaseState::BroadphaseState(btCollisionWorld& world) {
   }
 }
 
-bool BroadphaseState::restore(btCollisionWorld& world) const {
+void BroadphaseState::restore(btCollisionWorld& world) const {
   if (auto* trees = dynamic_cast<btDbvtBroadphase*>(world.getBroadphase())) {
     restore_trees(*trees);
   } else {
     world.updateAabbs();
   }
-  return restore_pairs(world);
+  restore_pairs(world);
 }
 
 void BroadphaseState::save_trees(const btDbvtBroadphase& broadphase, const btCollisionWorld& world) {
@@ -150,7 +151,7 @@ void BroadphaseState::restore_trees(btDbvtBroadphase& broadphase) const {
   broadphase.m_needcleanup = need_cleanup_;
 }
 
-bool BroadphaseState::restore_pairs(btCollisionWorld& world) const {
+void BroadphaseState::restore_pairs(btCollisionWorld& world) const {
   btOverlappingPairCache* cache = world.getPairCache();
   btDispatcher* dispatcher = world.getDispatcher();
   btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
@@ -164,20 +165,20 @@ bool BroadphaseState::restore_pairs(btCollisionWorld& world) const {
     last.m_algorithm = nullptr;
     cache->removeOverlappingPair(proxy0, proxy1, dispatcher);
   }
-  bool incomplete = false;
+  std::vector<int> incomplete;
   for (const SavedPair& saved : pairs_) {
     btBroadphasePair* pair = cache->addOverlappingPair(saved.proxy0, saved.proxy1);
     const auto found = algorithms.find({saved.proxy0, saved.proxy1});
     if (pair == nullptr || saved.num_manifolds < 0) {
       continue;
     }
-    // With other children than it had, a compound's algorithm would bring their manifolds at another place in the
-    // order.
-    if (found != algorithms.end() && count_manifolds(found->second) == saved.num_manifolds) {
+    // A compound's algorithm that has lost children since is made anew; children that came since are left to the
+    // caller.
+    if (found != algorithms.end() && count_manifolds(found->second) >= saved.num_manifolds) {
       pair->m_algorithm = found->second;
       found->second = nullptr;
     } else {
-      incomplete = true;
+      incomplete.push_back(static_cast<int>(pair - &pairs[0]));
     }
   }
   for (const auto& [proxies, algorithm] : algorithms) {
@@ -185,7 +186,11 @@ bool BroadphaseState::restore_pairs(btCollisionWorld& world) const {
       free_algorithm(algorithm, dispatcher);
     }
   }
-  return incomplete;
+  // Only these are processed: the others keep their manifolds, in their order.
+  auto& narrow_phase = *static_cast<btCollisionDispatcher*>(dispatcher);
+  for (const int i : incomplete) {
+    narrow_phase.getNearCallback()(pairs[i], narrow_phase, world.getDispatchInfo());
+  }
 }
 
 }  // namespace pd::detail

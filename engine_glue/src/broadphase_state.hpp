@@ -18,9 +18,9 @@ class BroadphaseState {
  public:
   explicit BroadphaseState(btCollisionWorld& world);
 
-  /// Brings trees and pairs back. Pairs that came since lose their algorithm and go; pairs that went are there again.
-  /// @return whether a pair needs a new algorithm: the caller has to run a collision detection.
-  [[nodiscard]] bool restore(btCollisionWorld& world) const;
+  /// Brings trees and pairs back. Pairs that came since lose their algorithm and go; pairs that went are there again,
+  /// with an algorithm and manifolds made at the present poses. Restore the bodies first.
+  void restore(btCollisionWorld& world) const;
 
  private:
   struct SavedNode {
@@ -46,7 +46,7 @@ class BroadphaseState {
 
   void save_trees(const btDbvtBroadphase& broadphase, const btCollisionWorld& world);
   void restore_trees(btDbvtBroadphase& broadphase) const;
-  [[nodiscard]] bool restore_pairs(btCollisionWorld& world) const;
+  void restore_pairs(btCollisionWorld& world) const;
 
   std::vector<SavedPair> pairs_;
   std::vector<SavedProxy> proxies_;

@@ -224,12 +224,7 @@ void BulletSnapshot::restore() const {
   for (const BodyState& body : state_->bodies) {
     restore_body(body);
   }
-  if (state_->broadphase.restore(world)) {
-    // A pair went apart since; detection at the saved poses gives it its manifold again, whose points are then
-    // replaced.
-    world.getDispatcher()->dispatchAllCollisionPairs(world.getPairCache(), world.getDispatchInfo(),
-                                                     world.getDispatcher());
-  }
+  state_->broadphase.restore(world);
   state_->fill_manifolds(state_->reorder());
   for (const JointState& saved : state_->joints) {
     saved.joint->internalSetAppliedImpulse(saved.applied_impulse);

@@ -99,8 +99,8 @@ TEST_P(Install, CompoundsMeshesAndHeightfields) {
   EXPECT_GT(after_mesh, after_compounds);
 
   std::vector<float> heights(25, 0.0f);
-  auto* terrain = scene.shape<btHeightfieldTerrainShape>(5, 5, heights.data(), btScalar(1), btScalar(-1), btScalar(1),
-                                                         1, PHY_FLOAT, false);
+  const float* data = heights.data();
+  auto* terrain = scene.shape<btHeightfieldTerrainShape>(5, 5, data, btScalar(-1), btScalar(1), 1, false);
   terrain->setMargin(0);
   scene.body(terrain, 0, btVector3(80, 0, 0));
   const auto before_terrain = solver.statistics().calls;

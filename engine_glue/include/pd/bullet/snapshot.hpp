@@ -21,8 +21,9 @@ namespace pd {
 /// contact points. The broadphase's trees and pairs belong to it (of btDbvtBroadphase; other broadphases are updated to
 /// the restored poses, so that pairs found later may come in another order). Bullet's trees follow the addresses of
 /// their nodes: where a body fell asleep or woke in between, a later pair may come in another order too. A compound's
-/// children have a manifold each, made and dropped in an order that Bullet keeps nowhere: worlds with compounds replay
-/// a step or two bit for bit under pdepth's contacts, and may not under Bullet's own.
+/// children have a manifold each, made and dropped in an order that Bullet keeps nowhere: worlds with compounds come
+/// back with all their contact points, but where such a manifold is made or dropped in the replayed steps, the last
+/// bits may differ.
 ///
 /// Not saved: the remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their
 /// total, soft bodies, motion states (they follow at the next step). `m_userPersistentData` of contact points is
