@@ -125,20 +125,24 @@ class Stage {
 
   /// A camera that sees the two bodies of an impact from nearby, through all of the step.
   void look_at(const Impact& impact) {
-    render::Box box;
+    view_ = render::Box();
     for (const MovingShape* body : {&impact.moving_a, &impact.moving_b}) {
       if (body->motion.linear_velocity.norm() == 0) {
         continue;
       }
       const render::MeshRef mesh = render::shape_mesh(*body->start.shape);
       for (const double time : {0.7 * impact.contact.time, impact.contact.time, impact.step}) {
-        box.include(render::posed_bounds(*mesh, pose_at(*body, time)));
+        view_.include(render::posed_bounds(*mesh, pose_at(*body, time)));
       }
     }
-    camera_ = render::frame_box(box, size_, {-102, 13}, {0.05, 0.05, 0.06, 0.06});
+    camera_ = render::frame_box(view_, size_, {-102, 13}, {0.05, 0.05, 0.06, 0.06});
   }
 
-  Expected<render::Image> draw(const render::Scene& scene) { return renderer_.draw(scene, camera_, size_); }
+  /// Grid and shadows are those of the stage, whatever is on it.
+  Expected<render::Image> draw(render::Scene scene) {
+    scene.focus = view_;
+    return renderer_.draw(scene, camera_, size_);
+  }
 
  private:
   render::Renderer& renderer_;
