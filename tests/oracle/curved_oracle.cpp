@@ -9,6 +9,10 @@ namespace pd::oracle {
 
 namespace {
 
+/// Cosines of the eight directions of the compass; the sine is the cosine of the direction six further on.
+constexpr long double kDiagonal = 0.70710678118654752440L;
+constexpr long double kCompass[8] = {1, kDiagonal, 0, -kDiagonal, -1, -kDiagonal, 0, kDiagonal};
+
 Vec3L unit(const Vec3L& v) {
   const long double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
   return {v.x / length, v.y / length, v.z / length};
@@ -55,7 +59,7 @@ class Support {
     const auto* cylinder = std::get_if<Cylinder>(&shape_.core());
     const auto* cone = std::get_if<Cone>(&shape_.core());
     const int axis = cylinder != nullptr ? cylinder->axis : cone->axis;
-    const long double across = std::hypot(n[(axis + 1) % 3], n[(axis + 2) % 3]);
+    const long double across = std::sqrt(n[(axis + 1) % 3] * n[(axis + 1) % 3] + n[(axis + 2) % 3] * n[(axis + 2) % 3]);
     if (cylinder != nullptr) {
       return static_cast<long double>(cylinder->radius) * across +
              static_cast<long double>(cylinder->half_height) * std::abs(n[axis]);
@@ -70,6 +74,11 @@ class Support {
 };
 
 }  // namespace
+
+long double difference_support(const PosedShape& a, const PosedShape& b, const Vec3& direction) {
+  const Vec3L n = unit({direction.x(), direction.y(), direction.z()});
+  return Support(b)(n) + Support(a)({-n.x, -n.y, -n.z});
+}
 
 Sweep sweep_directions(const PosedShape& a, const PosedShape& b, int directions, int refined) {
   const Support support_a(a);
@@ -96,7 +105,8 @@ Sweep sweep_directions(const PosedShape& a, const PosedShape& b, int directions,
   for (int start = 0; start < std::min(refined, static_cast<int>(samples.size())); ++start) {
     Sweep here = samples[static_cast<std::size_t>(start)];
     // Pattern search on the tangent plane: eight steps round the compass, halved when none goes down.
-    for (long double step = 4 / std::sqrt(static_cast<long double>(directions)); step > 1e-16L;) {
+    long double step = 4 / std::sqrt(static_cast<long double>(directions));
+    for (int moves = 0; step > 1e-12L && moves < 1000; ++moves) {
       const Vec3L& n = here.direction;
       const Vec3L other = std::abs(n.x) < 0.6L ? Vec3L{1, 0, 0} : Vec3L{0, 1, 0};
       const Vec3L u =
@@ -104,8 +114,8 @@ Sweep sweep_directions(const PosedShape& a, const PosedShape& b, int directions,
       const Vec3L v{n.y * u.z - n.z * u.y, n.z * u.x - n.x * u.z, n.x * u.y - n.y * u.x};
       Sweep next = here;
       for (int k = 0; k < 8; ++k) {
-        const long double c = step * std::cos(0.78539816339744830961L * k);
-        const long double s = step * std::sin(0.78539816339744830961L * k);
+        const long double c = step * kCompass[k];
+        const long double s = step * kCompass[(k + 6) % 8];
         const Vec3L m = unit({n.x + c * u.x + s * v.x, n.y + c * u.y + s * v.y, n.z + c * u.z + s * v.z});
         const long double h = value(m);
         if (h < next.least) next = {h, m};

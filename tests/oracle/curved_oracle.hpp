@@ -20,6 +20,10 @@ struct Sweep {
   Vec3L direction;        ///< unit
 };
 
+/// h_P(n) / |n| for one direction, rounding error below 1e-16 of the size: an answer's own normal proves its upper
+/// bound.
+[[nodiscard]] long double difference_support(const PosedShape& a, const PosedShape& b, const Vec3& direction);
+
 /// @param directions  number of samples of the sphere; the best `refined` of them are followed downhill by pattern
 /// search.
 [[nodiscard]] Sweep sweep_directions(const PosedShape& a, const PosedShape& b, int directions = 2000, int refined = 12);

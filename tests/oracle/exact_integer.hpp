@@ -110,8 +110,8 @@ struct ExactLength {
   int exponent = 0;
 
   /// Sign of (x - length), exact; x >= 0.
-  [[nodiscard]] int compare(double x) const {
-    const Scaled s = to_scaled(x);
+  [[nodiscard]] int compare(double x) const { return compare(to_scaled(x)); }
+  [[nodiscard]] int compare(const Scaled& s) const {
     const Integer left = s.mantissa * s.mantissa * denominator;
     const int gap = 2 * s.exponent - exponent;
     return (gap >= 0 ? Integer(left << gap) - numerator : left - Integer(numerator << -gap)).sign();

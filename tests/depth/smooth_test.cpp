@@ -1,0 +1,107 @@
+/// @file
+/// Smooth bodies against the direction sweep: brackets that hold, are tight, and hold what they promise at every delta;
+/// and polytopes stopped early.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "oracle/curved_oracle.hpp"
+#include "oracle/judged_pair.hpp"
+
+namespace pd {
+namespace {
+
+ConvexShape random_shape(int kind, scenes::Random& random) {
+  const auto size = [&] { return random.uniform(0.3, 1.5); };
+  switch (kind) {
+    case 0:
+      return *ConvexShape::ellipsoid(Vec3(size(), size(), size()));
+    case 1:
+      return *ConvexShape::cylinder(size(), size(), random.integer(0, 2));
+    case 2:
+      return *ConvexShape::cone(size(), size(), random.integer(0, 2));
+    case 3:
+      return *ConvexShape::capsule(size(), size(), random.integer(0, 2));
+    case 4:
+      return *ConvexShape::sphere(size());
+    case 5:
+      return *ConvexShape::cylinder(size(), size(), 2)->with_margin(0.1);
+    default:
+      return ConvexShape(*ConvexPolytope::box(Vec3(size(), size(), size())));
+  }
+}
+
+TEST(Smooth, BracketsAgreeWithTheSweep) {
+  Scratch scratch;
+  scenes::Random random(23);
+  int overlapping = 0;
+  int separated = 0;
+  for (int kind_a = 0; kind_a < 7; ++kind_a) {
+    for (int kind_b = 0; kind_b <= kind_a; ++kind_b) {
+      for (int k = 0; k < 4; ++k) {
+        const ConvexShape a = random_shape(kind_a, random);
+        const ConvexShape b = random_shape(kind_b, random);
+        const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.direction());
+        const double reach = k == 0 ? 0.01 : k == 3 ? 3.2 : 1.2;
+        const Pose pose_b =
+            *Pose::from_quaternion(random.quaternion(), pose_a.translation() + reach * random.direction());
+        SCOPED_TRACE("kinds " + std::to_string(kind_a) + ", " + std::to_string(kind_b) + ", try " + std::to_string(k));
+        const oracle::Sweep sweep = oracle::sweep_directions({&a, pose_a}, {&b, pose_b}, 400, 4);
+        const auto least = static_cast<double>(sweep.least);
+        for (const double delta : {1e-2, 1e-6}) {
+          const PenetrationDepth d = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch, {.delta = delta});
+          EXPECT_NEAR(d.normal.norm(), 1, 1e-15);
+          const long double own = oracle::difference_support({&a, pose_a}, {&b, pose_b}, d.normal);
+          if (std::abs(least) < 1e-9) continue;
+          char numbers[400];
+          std::snprintf(numbers, sizeof numbers,
+                        "delta %g sweep %.17g own %.17g lower %.17g upper %.17g distance %.17g %.17g", delta, least,
+                        static_cast<double>(own), d.lower, d.upper, d.distance_lower, d.distance_upper);
+          SCOPED_TRACE(numbers);
+          if (least > 0) {
+            ++overlapping;
+            ASSERT_EQ(d.contact, ContactClass::overlapping);
+            EXPECT_LE(d.lower, least * (1 + 1e-12) + 1e-13);
+            EXPECT_LE(d.upper, d.lower * (1 + delta) * (1 + 1e-12) + 1e-11);
+            // The answer's own direction proves the upper bound; the sweep need not have found as good a one.
+            EXPECT_LE(static_cast<double>(own), d.upper * (1 + 1e-12) + 1e-13);
+            EXPECT_GE(static_cast<double>(own), d.lower * (1 - 1e-12) - 1e-13);
+            EXPECT_LE(d.translation.norm(), d.upper * (1 + 1e-15));
+          } else {
+            ++separated;
+            ASSERT_EQ(d.contact, ContactClass::separated);
+            EXPECT_GE(d.distance_upper, -least * (1 - 1e-12) - 1e-13);
+            EXPECT_GE(static_cast<double>(-own), d.distance_lower * (1 - 1e-9) - 1e-12);
+            EXPECT_LE(d.distance_upper - d.distance_lower, delta * d.distance_upper + 1e-11);
+          }
+        }
+      }
+    }
+  }
+  std::printf("%d overlapping, %d separated\n", overlapping, separated);
+  EXPECT_GT(overlapping, 60);
+  EXPECT_GT(separated, 20);
+}
+
+TEST(Approximate, PolytopesStoppedEarlyKeepTheirBracket) {
+  Scratch scratch;
+  for (const scenes::PairFamily family :
+       {scenes::PairFamily::sphere, scenes::PairFamily::box, scenes::PairFamily::roofs}) {
+    for (const double delta : {1.0, 0.1, 1e-3}) {
+      for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const oracle::JudgedPair pair = oracle::JudgedPair::of_family(family, 40, scenes::DepthClass::deep, seed);
+        const PenetrationDepth d = penetration_depth(pair.a(), pair.b(), scratch, {.delta = delta});
+        const oracle::Verdict& v = pair.verdict();
+        ASSERT_EQ(d.contact, v.contact);
+        if (v.contact != ContactClass::overlapping) continue;
+        EXPECT_LE(v.depth.compare(d.lower), 0) << pair.name();
+        EXPECT_GE(v.depth.compare(d.upper), 0) << pair.name();
+        EXPECT_LE(d.upper, d.lower * (1 + delta) + 4e-14) << pair.name();
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pd
