@@ -61,7 +61,8 @@ inline constexpr std::string_view kBulletEpa = "bullet-epa";
 /// Vertices of the hull in its canonical order.
 [[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);
 
-/// pdepth-auto (the default settings), and with `every_engine` pdepth-tightest, pdepth-expansion, pdepth-overlay.
+/// pdepth-auto (the automatic method with Bracket::certified, as a physics engine uses it), and with `every_engine`
+/// pdepth-tightest (Bracket::tightest), pdepth-expansion, pdepth-overlay.
 /// `remembering`: pdepth-auto keeps a warm certificate for each pair, and pdepth-cold stands beside it.
 void add_ours(Solvers& solvers, bool every_engine, bool remembering);
 

@@ -56,16 +56,16 @@ class OurSolver final : public Solver {
 }  // namespace
 
 void add_ours(Solvers& solvers, bool every_engine, bool remembering) {
-  solvers.push_back(
-      std::make_unique<OurSolver>(std::string(kOurs), DepthSettings{.bracket = Bracket::certified}, remembering));
-  if (remembering)
-    solvers.push_back(std::make_unique<OurSolver>("pdepth-cold", DepthSettings{.bracket = Bracket::certified}, false));
+  const auto add = [&](std::string_view name, const DepthSettings& settings, bool remembers) {
+    solvers.push_back(std::make_unique<OurSolver>(std::string(name), settings, remembers));
+  };
+  const auto certified = [](Method method) { return DepthSettings{.method = method, .bracket = Bracket::certified}; };
+  add(kOurs, certified(Method::automatic), remembering);
+  if (remembering) add("pdepth-cold", certified(Method::automatic), false);
   if (!every_engine) return;
-  solvers.push_back(
-      std::make_unique<OurSolver>("pdepth-tightest", DepthSettings{.bracket = Bracket::tightest}, remembering));
-  solvers.push_back(std::make_unique<OurSolver>(
-      "pdepth-expansion", DepthSettings{.method = Method::expansion, .bracket = Bracket::certified}, false));
-  solvers.push_back(std::make_unique<OurSolver>("pdepth-overlay", DepthSettings{.method = Method::overlay}, false));
+  add("pdepth-tightest", {.bracket = Bracket::tightest}, remembering);
+  add("pdepth-expansion", certified(Method::expansion), false);
+  add("pdepth-overlay", certified(Method::overlay), false);
 }
 
 }  // namespace pd::bench

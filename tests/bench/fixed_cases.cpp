@@ -1,0 +1,84 @@
+/// @file
+/// Six fixed queries whose instructions callgrind counts (`instruction_budget.cmake`): `fixed_cases NAME` sets one up,
+/// runs it until no buffer grows any more, and then once more inside `pdepth_counted_call`, the only function that is
+/// counted.
+///
+/// Instruction counts repeat where times do not, so that a slower hot path is seen in review.
+
+#include <cstdio>
+#include <cstring>
+
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "pd/depth/warm_certificate.hpp"
+#include "scenes/shape_families.hpp"
+
+namespace {
+
+constexpr pd::DepthSettings kHotPath{.bracket = pd::Bracket::certified};
+
+using pd::scenes::DepthClass;
+using pd::scenes::PairFamily;
+
+struct FixedCase {
+  const char* name;
+  PairFamily family;
+  int vertices;
+  DepthClass depth;
+  bool warm;  ///< counted from the certificate of a pose that differs by 0.01 rad
+};
+constexpr FixedCase kCases[] = {
+    {"box_mid", PairFamily::box, 8, DepthClass::mid, false},
+    {"sphere_8_deep", PairFamily::sphere, 8, DepthClass::deep, false},
+    {"sphere_128_mid", PairFamily::sphere, 128, DepthClass::mid, false},
+    {"sphere_128_deep", PairFamily::sphere, 128, DepthClass::deep, false},
+    {"sphere_2048_shallow", PairFamily::sphere, 2048, DepthClass::shallow, false},
+    {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, true},
+};
+
+}  // namespace
+
+extern "C" {
+
+/// By its plain name in callgrind's option --toggle-collect.
+__attribute__((noinline)) void pdepth_counted_call(const pd::PosedShape* a, const pd::PosedShape* b,
+                                                   pd::Scratch* scratch, pd::WarmCertificate* certificate,
+                                                   pd::PenetrationDepth* answer) {
+  *answer = pd::penetration_depth(*a, *b, *scratch, kHotPath, certificate);
+}
+}
+
+int main(int argc, char** argv) {
+  for (const FixedCase& c : kCases) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::scenes::PointPair pair = pd::scenes::make_pair(c.family, c.vertices, c.depth, 1);
+    const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
+    const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
+    const pd::PosedShape posed_a{&a, pair.pose_a};
+    const pd::PosedShape posed_b{&b, pair.pose_b};
+    pd::Scratch scratch;
+    pd::WarmCertificate certificate;
+    pd::PenetrationDepth answer;
+    if (c.warm) {
+      const double half_angle = 0.005;
+      const pd::Mat3 turn{{1 - 2 * half_angle * half_angle, -2 * half_angle, 0},
+                          {2 * half_angle, 1 - 2 * half_angle * half_angle, 0},
+                          {0, 0, 1}};
+      const pd::PosedShape before{
+          &b, pd::Pose::from_trusted_matrix(turn * pair.pose_b.rotation(), pair.pose_b.translation())};
+      answer = pd::penetration_depth(posed_a, before, scratch, kHotPath, &certificate);
+    } else {
+      answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
+    }
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, c.warm ? &certificate : nullptr, &answer);
+    // The depth is printed so that no call can be left out; it also shows that the case is what it was.
+    std::printf("%s: depth %.17g, %lld supports, %lld exact signs\n", c.name, answer.depth,
+                static_cast<long long>(answer.statistics.support_calls),
+                static_cast<long long>(answer.statistics.exact_signs));
+    return 0;
+  }
+  std::fprintf(stderr, "fixed_cases NAME, one of:");
+  for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
+  std::fprintf(stderr, "\n");
+  return 2;
+}
