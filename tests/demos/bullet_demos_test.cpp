@@ -83,8 +83,11 @@ TEST_F(Demos, RollbackMeetsAtFirstContactAndReplaysTheSameBits) {
     const auto& exact = impact["methods"][0];
     EXPECT_EQ(exact["hit"], true);
     EXPECT_LE(std::abs(double(exact["depth_then_m"])), 1e-9);
-    EXPECT_NEAR(double(exact["time_in_step_s"]), double(impact["time_in_step_s"]), 1e-5);
   }
+  // In free flight the motion that was searched is the one that was made; a body that leans on another moves otherwise
+  // in a shorter step.
+  const auto& free_flight = figures["impacts"][0];
+  EXPECT_NEAR(double(free_flight["methods"][0]["time_in_step_s"]), double(free_flight["time_in_step_s"]), 1e-5);
   EXPECT_EQ(frames(), 11u);
   EXPECT_TRUE(fs::exists(folder_ / "impact_1.png"));
   EXPECT_TRUE(fs::exists(folder_ / "rollback_strip.png"));
