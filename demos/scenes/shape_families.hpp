@@ -100,8 +100,11 @@ enum class PairFamily : std::uint8_t {
   scales,
   far_translations,
   single_precision,
+  mixed_scales,
+  ulp_noise,
+  near_equal_bodies,
 };
-inline constexpr int kPairFamilies = 23;
+inline constexpr int kPairFamilies = 26;
 [[nodiscard]] std::string_view to_string(PairFamily family);
 
 /// How deep the pair stands: apart by 1 % of the size, overlapping by at most 1 % or 10 % of it, or with centres that

@@ -223,6 +223,52 @@ PointPair single_precision(int n, DepthClass depth, Random& random) {
   return pair;
 }
 
+/// A small body against one that is up to 1e40 times as large.
+PointPair mixed_scales(int n, DepthClass depth, Random& random) {
+  static constexpr double kRatios[] = {1e-3, 1e-6, 1e-9, 1e-15, 1e-20, 1e-40};
+  PointPair pair{sphere_hull(n, random), box(random_extents(random)), {}, {}};
+  const double ratio = kRatios[random.integer(0, 5)];
+  for (Vec3& p : random.integer(0, 1) != 0 ? pair.a : pair.b) p *= ratio;
+  pair.pose_a = quaternion_pose(random, Vec3::Zero());
+  pair.pose_b = quaternion_pose(random, Vec3::Zero());
+  place(pair, depth, random);
+  return pair;
+}
+
+/// Boxes and prisms whose every coordinate is off by an ulp or two: facets nearly coplanar, edges nearly parallel.
+PointPair ulp_noise(int n, DepthClass depth, Random& random) {
+  PointPair pair{random.integer(0, 1) != 0 ? box(random_extents(random)) : prism(n),
+                 random.integer(0, 1) != 0 ? box(random_extents(random)) : prism(n),
+                 {},
+                 {}};
+  for (Points* body : {&pair.a, &pair.b}) {
+    for (Vec3& p : *body) {
+      for (int k = 0; k < 3; ++k) {
+        for (int step = random.integer(0, 2); step > 0; --step) p[k] = std::nextafter(p[k], 2 * random.uniform(-1, 1));
+      }
+    }
+  }
+  if (random.integer(0, 1) != 0) {
+    pair.pose_a = quaternion_pose(random, random.direction());
+    pair.pose_b = *Pose::from_quaternion(pair.pose_a.quaternion_wxyz(), Vec3::Zero());
+  }
+  place(pair, depth, random);
+  return pair;
+}
+
+/// A body against itself, turned and moved by almost nothing.
+PointPair near_equal(int n, DepthClass depth, Random& random) {
+  static constexpr double kSteps[] = {1e-15, 1e-12, 1e-8, 1e-4};
+  PointPair pair{sphere_hull(n, random), {}, {}, {}};
+  if (depth == DepthClass::shallow) pair.a = box(random_extents(random));
+  if (depth == DepthClass::mid) pair.a = prism(n);
+  pair.b = pair.a;
+  const double step = kSteps[random.integer(0, 3)];
+  pair.pose_b = *Pose::from_quaternion(small_rotation(random, step), step * random.direction());
+  if (depth == DepthClass::gap) place(pair, depth, random);
+  return pair;
+}
+
 constexpr std::string_view kFamilyNames[] = {"box",
                                              "cubes",
                                              "sphere",
@@ -245,7 +291,10 @@ constexpr std::string_view kFamilyNames[] = {"box",
                                              "integer_grid",
                                              "scales",
                                              "far_translations",
-                                             "single_precision"};
+                                             "single_precision",
+                                             "mixed_scales",
+                                             "ulp_noise",
+                                             "near_equal_bodies"};
 static_assert(std::size(kFamilyNames) == kPairFamilies);
 constexpr std::string_view kDepthNames[] = {"gap", "shallow", "mid", "deep"};
 
@@ -350,6 +399,12 @@ PointPair make_pair(PairFamily family, int n, DepthClass depth, std::uint64_t se
       return far_translation(n, depth, random);
     case PairFamily::single_precision:
       return single_precision(n, depth, random);
+    case PairFamily::mixed_scales:
+      return mixed_scales(n, depth, random);
+    case PairFamily::ulp_noise:
+      return ulp_noise(n, depth, random);
+    case PairFamily::near_equal_bodies:
+      return near_equal(n, depth, random);
   }
   return {};
 }
