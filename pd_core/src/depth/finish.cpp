@@ -90,7 +90,9 @@ bool find_translation(const NearestPlane& plane, const Dyadic& r, const Vec3DD& 
     return accept(t);
   };
   Vec3 bare = base;
-  for (int i = live; i < 3; ++i) bare[order[i]] = 0;
+  for (int i = live; i < 3; ++i) {
+    if (std::abs(bare[order[i]]) <= leeway) bare[order[i]] = 0;
+  }
   if (solve(bare) || solve(base)) return true;
   if (live == 1) return false;
   // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.

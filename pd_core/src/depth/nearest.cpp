@@ -19,11 +19,17 @@ void consider(Candidate& best, const DifferenceVertex* simplex, std::initializer
   Candidate c;
   for (const int m : members) c.members[c.count++] = m;
   int k = 0;
+  double total = 0;
   for (const double w : weights) {
     if (!(w > 0)) return;
     c.weights[k++] = w;
+    total += w;
   }
-  for (int i = 0; i < c.count; ++i) c.point += c.weights[i] * simplex[c.members[i]].x;
+  // Whatever rounding did to the weights of a sliver, the point is a convex combination: it lies in P.
+  for (int i = 0; i < c.count; ++i) {
+    c.weights[i] /= total;
+    c.point += c.weights[i] * simplex[c.members[i]].x;
+  }
   c.squared = c.point.squaredNorm();
   if (c.squared < best.squared) best = c;
 }

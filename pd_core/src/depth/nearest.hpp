@@ -6,6 +6,7 @@
 /// before the bracket is as narrow as asked, the answer is `undecided` and exact arithmetic takes over.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "depth/polytope_difference.hpp"
@@ -41,7 +42,10 @@ NearestResult nearest_point(const Difference& difference, const DifferenceVertex
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
   double best = r.point.norm();
-  double largest = first.x.cwiseAbs().maxCoeff();
+  // What is near the origin says little about L: look at P's far side once.
+  const DifferenceVertex far = difference.support(difference.centre(), nullptr);
+  ++support_calls;
+  double largest = std::max(first.x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
   for (;;) {
     const double length = r.point.norm();
     r.upper = length + upper_error;

@@ -4,6 +4,7 @@
 
 #include "depth/polytope_depth.hpp"
 #include "depth/smooth_depth.hpp"
+#include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace pd {
@@ -123,13 +124,18 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
 
 PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scratch& scratch,
                                    const DepthSettings& settings, WarmCertificate* warm) {
+  const detail::FloatingPointGuard guard;
   PenetrationDepth out;
   if (in_canonical_order(a, b)) {
     solve(a, b, settings, scratch.buffers(), warm, out);
-    return out;
+  } else {
+    solve(b, a, settings, scratch.buffers(), warm, out);
+    out = turned_round(out);
   }
-  solve(b, a, settings, scratch.buffers(), warm, out);
-  return turned_round(out);
+  // No negative zeros: a swap negates, and people read the numbers.
+  out.translation.array() += 0.0;
+  out.normal.array() += 0.0;
+  return out;
 }
 
 bool supports(Method method, const ConvexShape& a, const ConvexShape& b) {

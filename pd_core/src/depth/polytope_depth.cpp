@@ -110,6 +110,9 @@ class PolytopeQuery {
     state.direction = result.normal;
     state.vertices.clear();
     state.faces.clear();
+    // A closed triangulated surface of F faces has F / 2 + 2 vertices.
+    state.vertices.reserve(kMaxCachedFaces / 2 + 2);
+    state.faces.reserve(kMaxCachedFaces);
     if (result.status != ExpansionStatus::certified || buffers_.surface.size() > kMaxCachedFaces) return;
     buffers_.surface.save(state.vertices, state.faces);
   }
@@ -295,6 +298,7 @@ class PolytopeQuery {
     out_.method = Method::overlay;
     const OverlayDepth overlay = overlay_depth(posed, buffers_.overlay);
     out_.statistics.facets_visited += overlay.facets_visited;
+    out_.statistics.exact_signs += overlay.exact_comparisons;
     if (overlay.contact == ContactClass::overlapping) {
       finish_overlapping(posed, normal_of(posed, overlay.facet), pair_.margins, out_);
     } else {
@@ -322,8 +326,9 @@ class PolytopeQuery {
     return {s.a, s.b};
   }
 
+  /// The finishing step itself decides one sign exactly.
   void count_stages(const PosedPair& posed) {
-    out_.statistics.exact_signs += posed.stages().double_double + posed.stages().exact;
+    out_.statistics.exact_signs += 1 + posed.stages().double_double + posed.stages().exact;
   }
 
   static constexpr int kMaxCachedFaces = 128;

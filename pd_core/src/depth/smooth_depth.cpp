@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "depth/expansion.hpp"
 #include "depth/nearest.hpp"
@@ -123,6 +124,26 @@ class SmoothQuery {
     out_.witness_b = b / total + a_.pose.translation() + b_.shape->margin() * out_.normal;
   }
 
+  struct WayOut {
+    Vec3 normal;
+    double upper;
+  };
+
+  /// The least h(n) over the axes of both bodies: cores thinner than rounding leave the expansion without a facet, and
+  /// what is that thin is thin along an axis of its own.
+  WayOut thinnest_axis() const {
+    WayOut best{Vec3::UnitX(), std::numeric_limits<double>::infinity()};
+    for (const PosedShape* body : {&a_, &b_}) {
+      const Mat3 rotation = body->pose.nearest_rotation();
+      for (int axis = 0; axis < 6; ++axis) {
+        const Vec3 n = axis < 3 ? Vec3(rotation.col(axis)) : Vec3(-rotation.col(axis - 3));
+        const double h = difference_.support(n, nullptr).x.dot(n) + difference_.support_error();
+        if (h < best.upper) best = {n, std::max(0.0, h)};
+      }
+    }
+    return best;
+  }
+
   void fill_touching(const Vec3& normal) {
     out_.contact = ContactClass::touching;
     out_.normal = normal;
@@ -159,8 +180,9 @@ class SmoothQuery {
     }
     out_.contact = ContactClass::overlapping;
     // The cores' signed distance is at most h(normal), certified by the expansion where they are not apart.
-    const double core_upper = directed ? -nearest.lower : std::max(0.0, core.upper);
-    set_depth(margin_ - nearest.upper, margin_ + core_upper, normal);
+    WayOut out{normal, directed ? -nearest.lower : std::max(0.0, core.upper)};
+    if (!std::isfinite(out.upper)) out = thinnest_axis();
+    set_depth(margin_ - nearest.upper, margin_ + out.upper, out.normal);
     set_witnesses(nearest.simplex, nearest.weights, nearest.count);
     out_.witness_b = out_.witness_a + out_.translation;
   }

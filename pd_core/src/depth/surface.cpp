@@ -19,6 +19,17 @@ constexpr auto kLater = [](const auto& x, const auto& y) {
 }  // namespace
 
 void Surface::clear() {
+  if (faces.empty()) {
+    // Room for an ordinary query at once, so that the first one does not grow it piece by piece.
+    reserve_faces(2 * kHeapFrom);
+    vertices.reserve(2 * kHeapFrom);
+    free_.reserve(kHeapFrom);
+    removed_.reserve(kHeapFrom);
+    horizon_.reserve(kHeapFrom);
+    horizon_from_.resize(vertices.capacity());
+    face_numbers_.reserve(2 * kHeapFrom);
+    vertex_numbers_.reserve(2 * kHeapFrom);
+  }
   vertices.clear();
   free_.clear();
   heap_.clear();
@@ -155,6 +166,7 @@ bool Surface::insert(int from, int v) {
   // Round the hole, edge by edge. A hole that is no disc ends in fewer steps than there are edges, or in an edge that
   // does not continue the last one.
   const std::size_t count = horizon_.size();
+  if (count < 3) return false;  // everything is seen from v
   reserve_faces(static_cast<int>(count));
   std::int32_t first = -1;
   std::int32_t previous = -1;
