@@ -35,7 +35,7 @@ class Tally {
 };
 
 /// Runs and judges every solver on one draw and adds to `tallies` (one for each solver; those of solvers that sit out
-/// stay as they are). A solver slower than `slow_ns` is run once and sits out from then on. Draws whose bodies do not
+/// stay as they are). A solver slower than `slow_ns` is run twice and sits out from then on. Draws whose bodies do not
 /// overlap are refused: false.
 bool measure_draw(const Draw& draw, Solvers& solvers, double slow_ns, std::vector<char>& sits_out,
                   std::vector<Tally>& tallies);
