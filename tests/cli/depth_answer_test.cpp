@@ -123,6 +123,18 @@ TEST(DepthAnswer, FlatBodiesAreBodies) {
   EXPECT_EQ(reply.at("depth"), 1.0);
 }
 
+TEST(DepthAnswer, BodiesThinnerThanRoundingHaveADepth) {
+  const std::string ball = R"({"type":"sphere","radius":1})";
+  const Json reply = answer(depth_line(ball, R"({"type":"ellipsoid","radii":[1,2,1e-17]})"));
+  EXPECT_EQ(reply.at("class"), "overlapping");
+  EXPECT_NEAR(reply.at("depth").get<double>(), 1, 1e-13);
+  EXPECT_NEAR(std::abs(reply.at("normal")[2].get<double>()), 1, 1e-13);
+  // The depth 1 + 1e-300 is 1 rounded down, and an ulp more rounded up.
+  const Json mixed = answer(depth_line(R"({"type":"box","half_extents":[1e-300,1e-300,1e-300]})", kUnitBox));
+  EXPECT_EQ(mixed.at("lower"), 1.0);
+  EXPECT_LE(mixed.at("upper").get<double>(), 1 + 0x1p-52);
+}
+
 TEST(DistanceAnswer, IsADepthAnswer) {
   const Json reply = answer(std::string(R"({"id":1,"query":"distance","a":)") + kUnitBox + R"(,"b":)" + kUnitBox + "," +
                             at(3, 0, 0) + "}");

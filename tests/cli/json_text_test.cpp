@@ -3,6 +3,7 @@
 #include "query/json_text.hpp"
 
 #include <bit>
+#include <cmath>
 #include <random>
 
 #include "protocol_lines.hpp"
@@ -114,6 +115,13 @@ TEST(Numbers, ReadBackToTheSameBits) {
     ++checked;
   }
   EXPECT_GT(checked, 190'000);
+}
+
+TEST(Numbers, WhatIsNotFiniteIsNeverWritten) {
+  for (const double value : {HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+    std::string text;
+    EXPECT_THROW(query::JsonWriter(text).number(value), query::Refusal);
+  }
 }
 
 TEST(Numbers, WholeNumbersStayDoubles) {

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "refusal.hpp"
+
 namespace pd::query {
 
 void append_number(std::string& out, double value) {
@@ -98,6 +100,9 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 }
 
 JsonWriter& JsonWriter::number(double value) {
+  if (!std::isfinite(value)) {
+    refuse("out_of_range", "the answer is past the range of doubles; bring the sizes nearer to each other", "");
+  }
   separate();
   append_number(out_, value);
   return *this;

@@ -32,6 +32,7 @@ class JsonWriter {
   JsonWriter& end_array();
   JsonWriter& key(std::string_view name);
 
+  /// @throws Refusal out_of_range for a value that is not finite: JSON has no word for it.
   JsonWriter& number(double value);
   JsonWriter& integer(std::int64_t value);
   JsonWriter& string(std::string_view text);

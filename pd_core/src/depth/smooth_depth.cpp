@@ -157,8 +157,8 @@ class SmoothQuery {
   void solve_apart(const ExpansionResult& core) {
     const DifferenceVertex first = difference_.support(core.normal, nullptr);
     const double relative = margin_ > 0 ? 0.0 : delta_;
-    const NearestResult nearest = nearest_point(difference_, first, relative, 0.25 * kAbsolute, buffers_.stack,
-                                                out_.statistics.support_calls);
+    const NearestResult nearest =
+        nearest_point(difference_, first, relative, 0.25 * kAbsolute, buffers_.stack, out_.statistics.support_calls);
     const double touching = kAbsolute * std::max(size(), nearest.point.cwiseAbs().maxCoeff());
     const bool directed = nearest.lower > 0;
     const Vec3 normal = directed ? Vec3(-nearest.point.normalized()) : core.normal;
