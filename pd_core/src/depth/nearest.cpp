@@ -1,5 +1,6 @@
 #include "depth/nearest.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace pd::detail {
@@ -52,11 +53,16 @@ void consider_triangle(Candidate& best, const DifferenceVertex* s, int i, int j,
   consider(best, s, {i, j, k}, {wi, wj, wk});
 }
 
+/// Certain only beyond rounding: four nearly coplanar points enclose nothing.
 bool inside_tetrahedron(const DifferenceVertex* s) {
+  double size = 0;
+  for (int i = 0; i < 4; ++i) size = std::max(size, s[i].x.cwiseAbs().maxCoeff());
+  const double noise = 256 * 0x1p-53 * size * size * size;
   const double volume = (s[1].x - s[0].x).cross(s[2].x - s[0].x).dot(s[3].x - s[0].x);
-  const auto same = [&](double v) { return v * volume > 0; };
-  return same(s[1].x.cross(s[2].x).dot(s[3].x)) && same(-s[0].x.cross(s[2].x).dot(s[3].x)) &&
-         same(s[0].x.cross(s[1].x).dot(s[3].x)) && same(-s[0].x.cross(s[1].x).dot(s[2].x));
+  const double side = volume < 0 ? -1 : 1;
+  const auto inside = [&](double v) { return side * v > noise; };
+  return inside(s[1].x.cross(s[2].x).dot(s[3].x)) && inside(-s[0].x.cross(s[2].x).dot(s[3].x)) &&
+         inside(s[0].x.cross(s[1].x).dot(s[3].x)) && inside(-s[0].x.cross(s[1].x).dot(s[2].x));
 }
 
 }  // namespace

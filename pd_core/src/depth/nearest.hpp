@@ -70,9 +70,20 @@ NearestResult nearest_point(const Difference& difference, const DifferenceVertex
     for (int i = 0; i < r.count; ++i) {
       if (r.simplex[i].a == s.a && r.simplex[i].b == s.b) return r;  // nothing new: rounding has the last word
     }
+    const NearestResult last = r;
     r.simplex[r.count++] = s;
     r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
-    if (r.count == 4 || !(r.point.norm() < best)) return r;
+    if (r.count == 4) return r;
+    if (!(r.point.norm() < best)) {
+      // A sliver of nearly equal supports has lost its nearest point. Analytic bodies go on from that point alone, as
+      // from a vertex: the segment to the next support always leads nearer. Exact arithmetic takes over for polytopes.
+      r = last;
+      if (!Difference::kAnalytic || r.count == 1) return r;
+      if constexpr (Difference::kAnalytic) r.simplex[0] = difference.combination(r.simplex, r.weights, r.count);
+      r.weights[0] = 1;
+      r.count = 1;
+      r.point = r.simplex[0].x;
+    }
     best = r.point.norm();
   }
 }

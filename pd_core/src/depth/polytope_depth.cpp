@@ -218,14 +218,15 @@ class PolytopeQuery {
 
   /// False when doubles do not narrow the bracket enough or cannot tell the class.
   bool fill_separated(const ExpansionResult& result) {
+    const double margin = pair_.margins.a + pair_.margins.b;
+    // What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
+    const double relative = margin > 0 ? 0.0 : settings_.delta;
     const DifferenceVertex first = difference_.support(result.normal, nullptr);
     const NearestResult nearest =
-        nearest_point(difference_, first, settings_.delta, kCertifiedWidth, buffers_.stack,
-                      out_.statistics.support_calls);
+        nearest_point(difference_, first, relative, kCertifiedWidth, buffers_.stack, out_.statistics.support_calls);
     for (int i = 0; i < nearest.count; ++i) start_[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
     start_count_ = nearest.count;
     if (!nearest.certified) return false;
-    const double margin = pair_.margins.a + pair_.margins.b;
     out_.normal = -nearest.point.normalized();
     const double round = 4 * 0x1p-53 * (nearest.upper + margin);
     if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;

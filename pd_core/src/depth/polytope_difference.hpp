@@ -23,6 +23,9 @@ struct DifferenceVertex {
 
 class PolytopeDifference {
  public:
+  /// Supports are vertices with ids of their own (not points of curved surfaces).
+  static constexpr bool kAnalytic = false;
+
   PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b)
       : a_(a),
         b_(b),
