@@ -2,8 +2,8 @@
 /// The front door: penetration depth of two convex bodies in R^3, with a proof.
 ///
 /// P = B + (-A) is the Minkowski difference and pi(A, B) the length of the shortest t after which int(A + t) and B are
-/// disjoint: the distance from the origin to the boundary of P when the origin lies in int P, 0 otherwise. A moves, B stays.
-/// Every engine answers with the same type, so that engines are compared by running them.
+/// disjoint: the distance from the origin to the boundary of P when the origin lies in int P, 0 otherwise. A moves, B
+/// stays. Every engine answers with the same type, so that engines are compared by running them.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
@@ -59,8 +59,8 @@ struct Statistics {
   std::int64_t exact_signs = 0;     ///< decisions that the floating-point filter left to exact arithmetic
 };
 
-/// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B share.
-/// L below is the largest |coordinate| of b - a over the posed vertices.
+/// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B
+/// share. L below is the largest |coordinate| of b - a over the posed vertices.
 struct PenetrationDepth {
   ContactClass contact = ContactClass::separated;
   Method method = Method::automatic;  ///< the engine that answered
@@ -74,7 +74,7 @@ struct PenetrationDepth {
   double distance_lower = 0;
   double distance_upper = 0;
 
-  Vec3 translation = Vec3::Zero();  ///< separates A from B exactly as stored: it lies outside int P; |translation| <= upper
+  Vec3 translation = Vec3::Zero();  ///< separates A from B exactly as stored: outside int P; |translation| <= upper
   Vec3 normal = Vec3::UnitX();      ///< unit; translation / depth, or (witness_a - witness_b) / distance, or a way out
   Vec3 witness_a = Vec3::Zero();    ///< point of A; translation = witness_b - witness_a up to 8 ulp of L
   Vec3 witness_b = Vec3::Zero();
@@ -91,8 +91,8 @@ struct PenetrationDepth {
 /// |signed distance| <= 1e-12 L. Depth: exact for (rounded) polytopes (bracket as `settings.bracket` says), certified
 /// (1 + delta) for smooth bodies (`settings.delta`, 1e-6 when 0).
 ///
-/// Deterministic: the same bits for every run, thread count, order of input vertices and instruction set. Swapping A and B
-/// negates translation and normal (except where both are the same point set, where the least direction is not unique).
+/// Deterministic: the same bits for every run, thread count, order of input vertices and instruction set. Swapping A
+/// and B negates translation and normal (except for equal point sets, where the least direction is not unique).
 ///
 /// @param scratch  buffers, one per thread; nothing is allocated once they have grown.
 /// @param warm     the memory of this pair, or nullptr: the next answer starts from the last surface.

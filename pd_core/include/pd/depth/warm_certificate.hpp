@@ -9,8 +9,8 @@
 
 namespace pd {
 
-/// Opaque and movable. Holds for one pair of shapes; given to another pair it is refused and starts afresh (the answer is
-/// right in any case: a warm answer is certified from the present poses alone).
+/// Opaque and movable. Holds for one pair of shapes; given to another pair it is refused and starts afresh (the answer
+/// is right in any case: a warm answer is certified from the present poses alone).
 class WarmCertificate {
  public:
   WarmCertificate() = default;

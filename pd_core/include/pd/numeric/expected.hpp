@@ -43,7 +43,7 @@ struct Error {
 template <class T>
 class [[nodiscard]] Expected {
  public:
-  Expected(T value) : state_(std::move(value)) {}  // NOLINT(google-explicit-constructor): mirrors std::expected
+  Expected(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor): mirrors std::expected
   Expected(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] bool has_value() const { return state_.index() == 0; }

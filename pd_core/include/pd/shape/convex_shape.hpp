@@ -1,8 +1,8 @@
 /// @file
 /// Every convex body of the library: a core (polytope or smooth) swept by a ball.
 ///
-/// A sphere is a point with a margin, a capsule a segment with a margin; they need no code of their own, and their depth is
-/// exact: the core's signed distance less the two margins (design of rounded bodies, [A] section 1 on Minkowski sums).
+/// A sphere is a point with a margin, a capsule a segment with a margin; they need no code of their own, and their
+/// depth is exact: the core's signed distance less the two margins ([A] section 1 on Minkowski sums).
 #pragma once
 
 #include <string_view>
@@ -34,8 +34,8 @@ struct Cone {
   int axis;
 };
 
-/// A convex core and a margin >= 0 (the body is the Minkowski sum of the posed core and a ball of that radius). Value type,
-/// cheap to copy.
+/// A convex core and a margin >= 0 (the body is the Minkowski sum of the posed core and a ball of that radius). Value
+/// type, cheap to copy.
 class ConvexShape {
  public:
   using Core = std::variant<ConvexPolytope, Ellipsoid, Cylinder, Cone>;

@@ -52,8 +52,8 @@ class Pose {
   bool is_quaternion_ = false;
 };
 
-/// Coordinates, translations, radii and margins are refused above this magnitude (`out_of_range`), so that no sum of two
-/// posed coordinates overflows.
+/// Coordinates, translations, radii and margins are refused above this magnitude (`out_of_range`), so that no sum of
+/// two posed coordinates overflows.
 inline constexpr double kMaxCoordinate = 1e300;
 
 }  // namespace pd
