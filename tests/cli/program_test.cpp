@@ -128,6 +128,21 @@ TEST_F(Program, DepthForPrograms) {
   EXPECT_EQ(answer.at("feature").at("a"), Json({0}));
 }
 
+TEST_F(Program, DifferenceDemoDrawsAnyTwoMeshes) {
+  if (run("demo").out.find("difference") == std::string::npos) GTEST_SKIP() << "this build has no demos";
+  const std::string command = "demo difference spike.off cube.obj --size 640x360 --out drawn";
+  const Outcome result = run(command);
+  if (result.status == 1) GTEST_SKIP() << "no off-screen graphics here: " << result.err;
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(read("drawn/difference.png").starts_with("\x89PNG"));
+  EXPECT_EQ(Json::parse(read("drawn/difference.json")).at("depth"), 0.5);
+  EXPECT_EQ(run(command).status, 2) << "what is there is not replaced unasked";
+  EXPECT_EQ(run(command + " --force").status, 0);
+  EXPECT_EQ(run("demo difference cube.obj --out other").status, 2) << "two meshes, or none";
+  EXPECT_EQ(run("depth spike.off cube.obj --picture pair.png").status, 0);
+  EXPECT_TRUE(read("pair.png").starts_with("\x89PNG"));
+}
+
 TEST_F(Program, DepthTakesEveryKindOfPose) {
   for (const char* pose : {"0,0,1", "0,0,1,1,0,0,0", "0,0,1,1,0,0,0,1,0,0,0,1"}) {
     const Outcome result = run(std::string("depth cube.obj cube.obj --json --pose-b ") + pose);
