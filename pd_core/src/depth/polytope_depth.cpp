@@ -108,6 +108,11 @@ class PolytopeQuery {
     state.shape_a = pair_.a->x();
     state.shape_b = pair_.b->x();
     state.direction = result.normal;
+    // A certificate that held as it stood is remembered already.
+    if (out_.warm && result.status == ExpansionStatus::certified &&
+        buffers_.surface.vertices.size() == state.vertices.size()) {
+      return;
+    }
     state.vertices.clear();
     state.faces.clear();
     // A closed triangulated surface of F faces has F / 2 + 2 vertices.

@@ -27,14 +27,13 @@ PD_CLONES int farthest_vertex(const double* x, const double* y, const double* z,
       best[k] = value > best[k] ? value : best[k];
     }
   }
+  // Two short loops: one that keeps both the value and its index takes more instructions.
   double greatest = best[0];
-  int winner = static_cast<int>(block_of[0]);
-  for (int k = 1; k < kLanes; ++k) {
+  for (int k = 1; k < kLanes; ++k) greatest = best[k] > greatest ? best[k] : greatest;
+  int winner = 0x7fffffff;
+  for (int k = 0; k < kLanes; ++k) {
     const int id = static_cast<int>(block_of[k]) + k;
-    if (best[k] > greatest || (best[k] == greatest && id < winner)) {
-      greatest = best[k];
-      winner = id;
-    }
+    winner = best[k] == greatest && id < winner ? id : winner;
   }
   return winner < n ? winner : 0;  // the padding repeats vertex 0
 }
