@@ -2,7 +2,7 @@
 #
 #   cmake -DWAY=package|pkg_config|subproject -DCOMPONENTS=<list> -DPREFIX=<installed copy> -DSOURCE=<source tree>
 #         -DWORK=<folder> -DCXX=<compiler> -DLAUNCHER=<launcher or empty> -DBUILD_TYPE=<kind> -DFLAGS=<compiler flags>
-#         -DBULLET_DOUBLE=<bool> -P consume.cmake
+#         -DBULLET_DOUBLE=<bool> -DWARNINGS_AS_ERRORS=<bool> -P consume.cmake
 cmake_minimum_required(VERSION 3.25)
 
 set(here ${CMAKE_CURRENT_LIST_DIR})
@@ -39,6 +39,7 @@ set(CMAKE_BUILD_TYPE \"${BUILD_TYPE}\" CACHE STRING \"\")
 set(CMAKE_PREFIX_PATH \"${PREFIX}\" CACHE STRING \"\")
 set(PDEPTH_SOURCE \"${SOURCE}\" CACHE STRING \"\")
 set(PD_BULLET_DOUBLE ${BULLET_DOUBLE} CACHE BOOL \"\")
+set(PD_WARNINGS_AS_ERRORS ${WARNINGS_AS_ERRORS} CACHE BOOL \"\")
 ")
 set(configure ${CMAKE_COMMAND} -G Ninja -C ${WORK}/settings.cmake)
 if(WAY STREQUAL "package")
