@@ -67,8 +67,8 @@ ExactNearest exact_nearest(const PosedPair& pair, const PairId* start, int count
   for (int i = 0; i < count; ++i) add(start[i]);
 
   for (;;) {
-    // The nearest point of the simplex lies in the relative interior of exactly one smallest face that is optimal
-    // against all the others; up to 5 points are at hand only in the call's first round.
+    // The nearest point of the at most five points' hull is that of a face of one to four of them, in its relative
+    // interior, which no other point undercuts.
     Projection best;
     std::array<int, 4> chosen{};
     int chosen_count = 0;

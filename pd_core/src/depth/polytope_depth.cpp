@@ -92,7 +92,10 @@ class PolytopeQuery {
   /// Puts the last surface at the present poses. False when there is none for this pair.
   bool restore() {
     WarmCertificate::State& state = warm_->state();
-    if (state.shape_a != pair_.a->x() || state.shape_b != pair_.b->x()) warm_->clear();
+    if (state.shape_a != pair_.a->x() || state.shape_b != pair_.b->x() || state.vertices_a != pair_.a->num_vertices() ||
+        state.vertices_b != pair_.b->num_vertices()) {
+      warm_->clear();
+    }
     if (state.faces.empty()) return false;
     Surface& surface = buffers_.surface;
     surface.clear();
@@ -107,6 +110,8 @@ class PolytopeQuery {
     WarmCertificate::State& state = warm_->state();
     state.shape_a = pair_.a->x();
     state.shape_b = pair_.b->x();
+    state.vertices_a = pair_.a->num_vertices();
+    state.vertices_b = pair_.b->num_vertices();
     state.direction = result.normal;
     // A certificate that held as it stood is remembered already.
     if (out_.warm && result.status == ExpansionStatus::certified &&
