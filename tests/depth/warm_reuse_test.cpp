@@ -1,4 +1,4 @@
-// A shape that dies leaves its address to another: the certificate of the old pair must not be read for the new one.
+// The certificate of one pair must not be read for another.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using pd::ConvexShape;
 using pd::Pose;
 using pd::Vec3;
 
-TEST(Warm, CertificateOfADeadShapeIsRefused) {
+TEST(Warm, CertificateOfAnotherPairIsRefused) {
   std::vector<Vec3> points;
   for (int i = 0; i < 40; ++i) {
     const double angle = 0.7 * i;
@@ -30,9 +30,8 @@ TEST(Warm, CertificateOfADeadShapeIsRefused) {
   (void)penetration_depth({&many, Pose()}, {&many, pose}, scratch, hot, &warm);
   ASSERT_FALSE(warm.state().faces.empty());
 
-  // As if the box had been allocated where the other shape was.
-  warm.state().shape_a = few.polytope()->x();
-  warm.state().shape_b = few.polytope()->x();
+  // Radii alike, as far as the certificate knows: ids out of range must not be read.
+  warm.state().radius_a = warm.state().radius_b = few.polytope()->radius();
   const auto answer = penetration_depth({&few, Pose()}, {&few, pose}, scratch, hot, &warm);
   EXPECT_FALSE(answer.warm);
   EXPECT_EQ(answer.contact, pd::ContactClass::overlapping);

@@ -92,8 +92,8 @@ class PolytopeQuery {
   /// Puts the last surface at the present poses. False when there is none for this pair.
   bool restore() {
     WarmCertificate::State& state = warm_->state();
-    if (state.shape_a != pair_.a->x() || state.shape_b != pair_.b->x() || state.vertices_a != pair_.a->num_vertices() ||
-        state.vertices_b != pair_.b->num_vertices()) {
+    if (state.vertices_a != pair_.a->num_vertices() || state.vertices_b != pair_.b->num_vertices() ||
+        state.radius_a != pair_.a->radius() || state.radius_b != pair_.b->radius()) {
       warm_->clear();
     }
     if (state.faces.empty()) return false;
@@ -108,10 +108,10 @@ class PolytopeQuery {
   void remember(const ExpansionResult& result) {
     if (!warm_) return;
     WarmCertificate::State& state = warm_->state();
-    state.shape_a = pair_.a->x();
-    state.shape_b = pair_.b->x();
     state.vertices_a = pair_.a->num_vertices();
     state.vertices_b = pair_.b->num_vertices();
+    state.radius_a = pair_.a->radius();
+    state.radius_b = pair_.b->radius();
     state.direction = result.normal;
     // A certificate that held as it stood is remembered already.
     if (out_.warm && result.status == ExpansionStatus::certified &&

@@ -29,11 +29,11 @@ class WarmCertificate {
   };
   /// For the engines.
   struct State {
-    const void* shape_a = nullptr;
-    const void* shape_b = nullptr;
-    /// Beside the addresses, which a new shape may take over: ids must stay in range.
+    /// The shapes by content, not by address: the same calls give the same bits wherever memory lies, and ids stay in range.
     std::int32_t vertices_a = 0;
     std::int32_t vertices_b = 0;
+    double radius_a = 0;
+    double radius_b = 0;
     Vec3 direction = Vec3::Zero();  ///< last normal, or last separating direction
     std::vector<CachedVertex> vertices;
     std::vector<CachedFace> faces;
