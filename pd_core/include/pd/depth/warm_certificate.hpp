@@ -29,7 +29,7 @@ class WarmCertificate {
   };
   /// For the engines.
   struct State {
-    /// The shapes by content, not by address: the same calls give the same bits wherever memory lies, and ids stay in range.
+    /// The shapes by content, not by address: the same calls give the same bits wherever memory lies.
     std::int32_t vertices_a = 0;
     std::int32_t vertices_b = 0;
     double radius_a = 0;
