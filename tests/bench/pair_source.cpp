@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/agarwal_families.hpp"
+
 namespace pd::bench {
 
 namespace {
@@ -57,49 +59,11 @@ Draw aligned_cubes(DepthClass depth, std::uint64_t seed, std::uint64_t number) {
           Pose::from_trusted_matrix(Mat3::Identity(), offset)};
 }
 
-/// Half of the round-patch construction: an arc of radius 1 in the plane y = 0 whose slopes run over [-eta, eta],
-/// closed on one side by an apex, on the other by the same arc farther down and an apex, each steeper than eta. The
-/// edges of the arc are thus extreme for every normal (a, b, 1) with |a|, |b| <= eta. The ends of the arc go on along
-/// their tangents, so that no way out beside the arc is shorter.
-scenes::Points roof(int n, double eta, scenes::Random& random) {
-  const int ridges = std::max(2, (n - 8) / 2);
-  const double step = 2 * eta / (ridges - 1);
-  const double reach = 4;
-  const double drop = 1.2 * eta * reach;
-  scenes::Points points;
-  const auto ridge = [&](double x, double z) {
-    points.emplace_back(x, 0, z);
-    points.emplace_back(x, reach, z - drop);
-  };
-  for (int i = 0; i < ridges; ++i) {
-    const double slope = -eta + step * i;
-    const double length = std::sqrt(1 + slope * slope);
-    const double radius = 1 + 0.2 * step * step * random.uniform(-0.5, 0.5);
-    ridge(radius * slope / length, radius / length);
-  }
-  const double length = std::sqrt(1 + eta * eta);
-  for (const double side : {-1.0, 1.0}) ridge(side * (eta + 0.5) / length, (1 - 0.5 * eta) / length);
-  points.emplace_back(0, -1, 1 - 1.2 * eta);
-  points.emplace_back(0, reach + 1, 1 - drop - 2.4 * eta);
-  for (const double y : {-1.0, reach + 1}) points.emplace_back(0, y, -drop - 3);
-  return points;
-}
-
-/// Two roofs, one turned by a right angle and upside down: every edge of one arc crosses every edge of the other, and
-/// the distances of these (n / 2)^2 facets from a point one radius below both tops (deep) are (sqrt(1 + a^2) + sqrt(1 +
-/// b^2) - 1) / sqrt(1 + a^2 + b^2): all nearly tied.
-std::optional<Draw> crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
-  scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 29);
-  constexpr double kEta = 0.1;
-  const auto a = ConvexPolytope::from_points(roof(cell.vertices, kEta, random));
-  const auto b = ConvexPolytope::from_points(roof(cell.vertices, kEta, random));
-  if (!a || !b) return std::nullopt;
-  Mat3 m = Mat3::Zero();
-  m(0, 1) = m(1, 0) = 1;
-  m(2, 2) = -1;
+Draw crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   const double overlap = cell.depth == DepthClass::shallow ? 0.01 : cell.depth == DepthClass::mid ? 0.1 : 1;
-  const Vec3 t(0, 0, 2 - overlap);
-  return Draw{{ConvexShape(*a), ConvexShape(*b)}, Pose(), Pose::from_trusted_matrix(m, t)};
+  const scenes::PolytopePair pair =
+      scenes::crossed_roofs(cell.vertices, overlap, seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL);
+  return {{ConvexShape(pair.a), ConvexShape(pair.b)}, pair.pose_a, pair.pose_b};
 }
 
 }  // namespace
