@@ -11,11 +11,9 @@ namespace pd::detail {
 namespace {
 
 constexpr double kU = 0x1p-53;
-constexpr double kUdd = 0x1p-104;  ///< relative error unit of double-double operations, each < 5u^2 < 2 kUdd
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
-Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
 
 /// A facet's plane: offset <point, n> and normal n, neither normalised, with errors of `offset` and of each coordinate
 /// of the normal.
@@ -33,17 +31,11 @@ double offset_error(double point_norm1, double normal_norm1, double point_error,
          (1 + 16 * kU);
 }
 
-/// The order of pieces that lie at exactly the same distance.
-std::array<std::int32_t, 5> rank(const PosedPair& pair, const OverlayPiece& piece) {
-  const FacetOfDifference f = facet_of(pair, piece);
-  return {static_cast<std::int32_t>(piece.kind), f.on_a.first, f.on_a.second, f.on_b.first, f.on_b.second};
-}
-
-/// The search: the nearest plane so far, in as many stages as were needed.
-class NearestPlane {
+/// Bounds of every plane's distance in doubles; the class of the contact, exactly.
+class PlaneSearch {
  public:
-  explicit NearestPlane(const OverlayWalk& walk)
-      : walk_(walk), pair_(walk.pair()), a_(walk.buffers().a), b_(walk.buffers().b) {
+  PlaneSearch(const OverlayWalk& walk, FacetCandidates& candidates, double upper)
+      : walk_(walk), pair_(walk.pair()), a_(walk.buffers().a), b_(walk.buffers().b), nearest_(walk, candidates, upper) {
     PairVector translation;
     translation.translated = true;
     offset_ = pair_.approximate(translation);
@@ -58,6 +50,10 @@ class NearestPlane {
     constant_ = (2 * edge_error * edge_error * per_normal_error) * (1 + 16 * kU) + 0x1p-900;
     linear_ = edge_error * per_normal_error * (1 + 16 * kU);
     bilinear_ = (3 * kU * per_normal_error + point_error_ + 4 * kU * reach_) * (1 + 16 * kU);
+    // |vector|_1 of an edge is its size less this, rounded up.
+    size_a_ = a_.edge_size * (1 - 4 * kU);
+    size_b_ = b_.edge_size * (1 - 4 * kU);
+    square_upper();
   }
 
   /// False when the origin lies strictly outside some facet (`piece` is it).
@@ -65,35 +61,21 @@ class NearestPlane {
     visited_ += static_cast<std::int64_t>(pieces.size());
     for (const OverlayPiece& piece : pieces) {
       if (piece.kind == OverlayPiece::Kind::edges && far_edges(piece)) continue;
-      const Plane plane = evaluate(piece);
-      const double length = std::sqrt(plane.normal.squaredNorm());
-      // Rejected when the plane is certainly farther than the nearest one: offset / |normal| > upper.
-      const double longest = length * (1 + 8 * kU) + 2 * plane.normal_error;
-      if (plane.offset - plane.offset_error > upper_ * longest) continue;
-      if (!consider(piece, plane)) return false;
+      if (!consider(piece, evaluate(piece))) return false;
     }
     return true;
   }
 
   [[nodiscard]] std::int64_t visited() const { return visited_; }
-  [[nodiscard]] std::int64_t exact_comparisons() const { return exact_comparisons_; }
-  [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] std::int64_t exact_comparisons() const { return nearest_.exact_comparisons(); }
   [[nodiscard]] bool outside() const { return outside_; }
   [[nodiscard]] bool zero() const { return zero_; }
-  [[nodiscard]] const OverlayPiece& piece() const { return best_; }
+  /// The separating, touching or nearest piece.
+  [[nodiscard]] std::optional<OverlayPiece> piece(bool exactly) {
+    return outside_ || zero_ ? std::optional(best_) : nearest_.winner(exactly);
+  }
 
  private:
-  /// A distance as a double-double with an error bound, or infinitely uncertain.
-  struct Distance {
-    DoubleDouble value;
-    double error;
-  };
-  /// offset |offset| / |normal|^2 as a fraction of exact numbers.
-  struct Squared {
-    Dyadic numerator;
-    Dyadic denominator;
-  };
-
   /// Whether an edge-edge plane is certainly farther than the nearest one, by one comparison of squares.
   bool far_edges(const OverlayPiece& piece) const {
     const PosedDiagram::Edge& x = b_.half_edges[static_cast<std::size_t>(piece.b)];
@@ -105,7 +87,8 @@ class NearestPlane {
     const double n2 = x.vector[0] * y.vector[1] - x.vector[1] * y.vector[0];
     const double offset = (on_b.x() - on_a.x() + offset_.x()) * n0 + (on_b.y() - on_a.y() + offset_.y()) * n1 +
                           (on_b.z() - on_a.z() + offset_.z()) * n2;
-    const double least = offset - (constant_ + linear_ * (x.size + y.size) + bilinear_ * (x.size * y.size));
+    const double sx = x.size - size_b_, sy = y.size - size_a_;
+    const double least = offset - (constant_ + linear_ * (sx + sy) + bilinear_ * (sx * sy));
     return least > 0 && least * least > upper_squared_ * (n0 * n0 + n1 * n1 + n2 * n2) + 0x1p-900;
   }
 
@@ -134,7 +117,8 @@ class NearestPlane {
                             x.vector[2] * y.vector[0] - x.vector[0] * y.vector[2],
                             x.vector[0] * y.vector[1] - x.vector[1] * y.vector[0]);
         const double e = std::max(a_.edge_error, b_.edge_error);
-        plane.normal_error = (e * (x.size + y.size + 2 * e) + 3 * kU * x.size * y.size) * (1 + 8 * kU);
+        const double sx = x.size - size_b_, sy = y.size - size_a_;
+        plane.normal_error = (e * (sx + sy + 2 * e) + 3 * kU * sx * sy) * (1 + 8 * kU);
         va = pair_.a().half_edge(piece.a).origin;
         vb = pair_.b().half_edge(piece.b).origin;
       }
@@ -147,82 +131,44 @@ class NearestPlane {
   }
 
   bool consider(const OverlayPiece& piece, const Plane& plane) {
-    // A piece that only cuts another one's plane (or has no area) adds nothing, and its tie would cost exact
-    // arithmetic.
+    const double length = std::sqrt(plane.normal.squaredNorm());
+    const double longest = length * (1 + 8 * kU) + 2 * plane.normal_error;
+    const double shortest = length * (1 - 8 * kU) - 2 * plane.normal_error;
+    if (plane.offset > plane.offset_error && shortest > 0) {
+      if (zero_) return true;
+      nearest_.offer(piece, (plane.offset - plane.offset_error) * (1 - 4 * kU) / longest,
+                     (plane.offset + plane.offset_error) * (1 + 4 * kU) / shortest);
+      square_upper();
+      return true;
+    }
+    // Doubles know neither sign nor length. A piece that only cuts another one's plane (or has no area) adds nothing.
     if (piece.kind != OverlayPiece::Kind::facet_of_a && !whole_facet(walk_, piece)) return true;
-    const FacetOfDifference facet = facet_of(pair_, piece);
     int sign = 1;
     if (!(plane.offset > plane.offset_error)) {
+      const FacetOfDifference facet = facet_of(pair_, piece);
       sign = pair_.sign_determinant(facet.point(), facet.u, facet.v);
     }
     if (sign < 0) {
-      outside_ = found_ = true;
+      outside_ = true;
       best_ = piece;
       return false;
     }
     if (sign == 0) {
-      if (!found_ || !zero_ || rank(pair_, piece) < rank(pair_, best_)) best_ = piece;
-      found_ = zero_ = true;
-      set_upper(0);
+      if (!zero_ || compare_rank(pair_, piece, best_) < 0) best_ = piece;
+      zero_ = true;
       return true;
     }
     if (zero_) return true;
-    const Distance distance = measure(facet);
-    if (!found_ || nearer(piece, facet, distance)) {
-      best_ = piece;
-      best_facet_ = facet;
-      best_distance_ = distance;
-      best_squared_known_ = false;
-      found_ = true;
-    }
-    set_upper(std::isfinite(best_distance_.error)
-                  ? (to_double(best_distance_.value) + best_distance_.error) * (1 + 4 * kU)
-                  : kInfinity);
+    const double upper = shortest > 0 ? (plane.offset + plane.offset_error) * (1 + 4 * kU) / shortest : kInfinity;
+    nearest_.offer(piece, 0, std::max(upper, 0.0));
+    square_upper();
     return true;
   }
 
-  /// Upper bound of the nearest plane's distance. Below the reach, as the error polynomial of `far_edges` requires.
-  void set_upper(double upper) {
-    upper_ = upper;
+  /// Below the reach, as the error polynomial of `far_edges` requires.
+  void square_upper() {
+    const double upper = zero_ ? 0 : nearest_.upper();
     upper_squared_ = upper <= reach_ ? upper * upper * (1 + 64 * kU) : kInfinity;
-  }
-
-  Distance measure(const FacetOfDifference& facet) const {
-    const Vec3DD u = pair_.approximate_dd(facet.u), v = pair_.approximate_dd(facet.v);
-    const Vec3DD p = pair_.approximate_dd(facet.point());
-    const Vec3DD n = cross(u, v);
-    const double e = pair_.vector_error_dd();
-    const double su = norm1(high(u)), sv = norm1(high(v));
-    const double normal_error = (e * (su + sv + 2 * e) + 8 * kUdd * su * sv) * (1 + 16 * kU) + 0x1p-900;
-    const DoubleDouble squared = dot(n, n);
-    const double length = std::sqrt(squared.hi);
-    if (!(length > 4 * normal_error)) return {{0, 0}, kInfinity};
-    const DoubleDouble value = dot(p, n) / sqrt(squared);
-    // value = N / |n|: dN / |n| + |value| d|n| / |n|, both over the least possible |n|; operations' own rounding last.
-    const double least = length * (1 - 8 * kU) - 2 * normal_error;
-    const double numerator = offset_error(norm1(high(p)), norm1(high(n)), e, normal_error, 16 * kUdd);
-    const double magnitude = std::abs(to_double(value));
-    return {value, ((numerator + 2 * normal_error * magnitude) / least + 64 * kUdd * magnitude) * (1 + 16 * kU)};
-  }
-
-  /// Whether the piece replaces the best one.
-  bool nearer(const OverlayPiece& piece, const FacetOfDifference& facet, const Distance& distance) {
-    const double gap = to_double(distance.value - best_distance_.value);
-    if (std::abs(gap) > (distance.error + best_distance_.error) * (1 + 4 * kU)) return gap < 0;
-    ++exact_comparisons_;
-    if (!best_squared_known_) best_squared_ = squared(best_facet_);
-    best_squared_known_ = true;
-    const Squared s = squared(facet);
-    const int order = (s.numerator * best_squared_.denominator - best_squared_.numerator * s.denominator).sign();
-    if (order != 0) return order < 0;
-    return rank(pair_, piece) < rank(pair_, best_);
-  }
-
-  /// Of a plane with a positive offset; the common factor of the two homogeneous vectors drops out of comparisons.
-  Squared squared(const FacetOfDifference& facet) const {
-    const Dyadic3 n = cross(pair_.exact(facet.u), pair_.exact(facet.v));
-    const Dyadic offset = dot(pair_.exact(facet.point()), n);
-    return {offset * offset, dot(n, n)};
   }
 
   const OverlayWalk& walk_;
@@ -235,23 +181,19 @@ class NearestPlane {
   double constant_;
   double linear_;
   double bilinear_;
-  double upper_ = kInfinity;
+  double size_a_;
+  double size_b_;
+  NearestFacet nearest_;
   double upper_squared_ = kInfinity;
-  bool found_ = false;
   bool outside_ = false;
   bool zero_ = false;
-  bool best_squared_known_ = false;
   OverlayPiece best_{};
-  FacetOfDifference best_facet_;
-  Distance best_distance_{{0, 0}, kInfinity};
-  Squared best_squared_;
   std::int64_t visited_ = 0;
-  std::int64_t exact_comparisons_ = 0;
 };
 
 }  // namespace
 
-OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers) {
+OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers, bool exactly, double upper) {
   OverlayDepth result;
   const std::optional<FlatDifference> flat = flat_difference(pair);
   if (flat && !contains_origin(pair, *flat, buffers.loop)) return result;
@@ -268,16 +210,17 @@ OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers) 
   }
 
   OverlayWalk walk(pair, buffers.overlay);
-  NearestPlane nearest(walk);
-  walk.run([&](std::span<const OverlayPiece> pieces) { return nearest.consume(pieces); });
+  PlaneSearch search(walk, buffers.candidates, upper);
+  walk.run([&](std::span<const OverlayPiece> pieces) { return search.consume(pieces); });
 
-  result.facets_visited = nearest.visited();
-  result.exact_comparisons = nearest.exact_comparisons();
-  result.has_facet = nearest.found();
-  if (nearest.found()) result.facet = facet_of(pair, nearest.piece());
-  result.contact = nearest.outside() ? ContactClass::separated
-                   : nearest.zero()  ? ContactClass::touching
-                                     : ContactClass::overlapping;
+  const std::optional<OverlayPiece> piece = search.piece(exactly);
+  result.facets_visited = search.visited();
+  result.exact_comparisons = search.exact_comparisons();
+  result.has_facet = piece.has_value();
+  if (piece) result.facet = facet_of(pair, *piece);
+  result.contact = search.outside() ? ContactClass::separated
+                   : search.zero()  ? ContactClass::touching
+                                    : ContactClass::overlapping;
   return result;
 }
 

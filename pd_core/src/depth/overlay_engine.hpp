@@ -4,13 +4,15 @@
 /// enumerated).
 ///
 /// pi(A, B) is attained at the plane of a facet when the origin lies inside P; the origin lies outside P exactly when
-/// it lies strictly outside the plane of some facet. Planes are compared in doubles with error bounds, then in
-/// double-double, then as exact rationals, so that the winner does not depend on rounding.
+/// it lies strictly outside the plane of some facet. Planes are bounded in doubles; `NearestFacet` parts those that
+/// tie.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "depth/nearest_facet.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "structure/face_sum.hpp"
 #include "structure/facet_of_difference.hpp"
@@ -22,6 +24,7 @@ namespace pd::detail {
 struct OverlayDepthBuffers {
   OverlayBuffers overlay;
   std::vector<DifferencePoint> loop;
+  FacetCandidates candidates;
 };
 
 struct OverlayDepth {
@@ -34,12 +37,18 @@ struct OverlayDepth {
   FacetOfDifference facet;
   /// Pieces of the overlay whose plane was evaluated.
   std::int64_t facets_visited = 0;
-  /// Distances compared as rationals (beside the exact signs that the pair counts itself).
+  /// Distances compared as fractions (beside the exact signs that the pair counts itself).
   std::int64_t exact_comparisons = 0;
 };
 
 /// Exact class and nearest facet. Time O(m + n + K deg), see `OverlayWalk`; allocates nothing once the buffers have
 /// grown, except in exact arithmetic.
-OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers);
+///
+/// @param exactly  whether facets that double-double cannot part are compared as fractions (some 1e-30 of the depth
+/// lies
+///                 between them otherwise).
+/// @param upper    a bound on the depth that is known already, in the pair's scaled lengths.
+OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers, bool exactly = true,
+                           double upper = std::numeric_limits<double>::infinity());
 
 }  // namespace pd::detail
