@@ -5,6 +5,7 @@
 
 #include "pair_reader.hpp"
 #include "pd/depth/difference_queries.hpp"
+#include "pd/depth/linear_separation.hpp"
 
 namespace pd::query {
 
@@ -170,6 +171,14 @@ void answer_distance(const Node& line, Session& session, JsonWriter& answer) {
 void answer_intersect(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
   const Pair pair = read_pair(line, session.limits);
+  const ConvexPolytope* const a = pair.a.shape.polytope();
+  const ConvexPolytope* const b = pair.b.shape.polytope();
+  if (a != nullptr && b != nullptr && pair.a.shape.margin() == 0 && pair.b.shape.margin() == 0) {
+    const LinearSeparation found = linear_separation(*a, pair.pose_a, *b, pair.pose_b);
+    answer.key("class").string(to_string(found.contact));
+    if (found.strict) answer.key("separating_direction").vector(found.direction);
+    return;
+  }
   const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch);
   answer.key("class").string(to_string(result.contact));
   if (result.contact == ContactClass::separated) {
