@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <random>
 
+#include "bench/agarwal/agarwal.hpp"
 #include "bench/coherent.hpp"
 #include "bench/compare.hpp"
 #include "bench/meshes.hpp"
@@ -30,6 +31,7 @@ struct Options {
   std::string plots;
   std::string folder;
   CompareSettings compare;
+  AgarwalSettings agarwal;
 };
 
 void add_common(CLI::App& command, Options& o) {
@@ -164,7 +166,14 @@ int main(int argc, char** argv) {
   compare->add_option("--rounds", options.compare.rounds)->check(CLI::PositiveNumber)->capture_default_str();
   compare->add_option("--seed", options.seed, "repeats a run (default: drawn, and printed)");
   compare->add_option("pairs", options.compare.arguments, "options of `pairs` for both, after --");
+  CLI::App* agarwal = app.add_subcommand("agarwal", "the bounds of Agarwal et al. 2000, claim by claim");
+  agarwal->add_option("--seed", options.agarwal.seed, "seed of the families and pairs")->capture_default_str();
+  agarwal->add_option("--chapters", options.agarwal.chapters, agarwal_chapters())->delimiter(',');
+  agarwal->add_option("--out", options.agarwal.out, "folder for the table (CSV, Markdown), the points and the plots");
+  agarwal->add_option("--pairs", options.agarwal.pairs, "of the exactness chapter (default: 100000, quick 2000)");
+  agarwal->add_flag("--quick", options.agarwal.quick, "under a minute: smaller sizes, fewer pairs");
   CLI11_PARSE(app, argc, argv);
+  if (*agarwal) return run_agarwal(options.agarwal);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);
