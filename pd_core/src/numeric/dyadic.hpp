@@ -8,6 +8,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <compare>
+#include <utility>
 
 #include "pd/numeric/vector.hpp"
 
@@ -28,6 +29,14 @@ class Dyadic {
     const double fraction = std::frexp(value, &exponent);
     mantissa_ = static_cast<std::int64_t>(std::ldexp(fraction, 53));
     exponent_ = exponent - 53;
+  }
+
+  /// mantissa * 2^exponent.
+  static Dyadic from_integer(Integer mantissa, int exponent) {
+    Dyadic r;
+    r.exponent_ = mantissa.is_zero() ? 0 : exponent;
+    r.mantissa_ = std::move(mantissa);
+    return r;
   }
 
   [[nodiscard]] int sign() const { return mantissa_.sign(); }
