@@ -107,41 +107,7 @@ NamedShape read_mesh(const Node& node, const Limits& limits) {
   }
 }
 
-NamedShape read_shape_nested(const Node& node, const Limits& limits, int depth);
-
-/// Checks the parts, so that what is wrong in one is named before the whole is refused.
-[[noreturn]] void refuse_compound(const Node& node, const Limits& limits, int depth) {
-  allow_only(node, {"type", "margin", "parts"});
-  const Node parts = node.at("parts");
-  require_array(parts, "an array of parts");
-  if (parts.size() == 0) parts.refuse("bad_value", "a compound needs a part at least");
-  if (depth > kMaxCompoundNesting) {
-    node.refuse("limit_exceeded", "compounds may nest " + std::to_string(kMaxCompoundNesting) + " deep");
-  }
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Node part = parts.element(i);
-    require_object(part);
-    allow_only(part, {"shape", "pose"});
-    const Node shape = part.at("shape");
-    try {
-      (void)read_shape_nested(shape, limits, depth + 1);
-    } catch (const Refusal& refusal) {
-      if (refusal.code != "unsupported") throw;  // a compound inside a compound is this one's own refusal
-    }
-    if (const auto pose = part.find("pose")) (void)read_pose(*pose);
-  }
-  node.at("type").refuse("unsupported", "compounds are not answered yet; their convex parts are");
-}
-
-[[noreturn]] void refuse_star(const Node& node, const Limits& limits) {
-  allow_only(node, {"type", "margin", "vertices", "faces", "center"});
-  const std::vector<Vec3> points = read_points(node.at("vertices"), limits.max_vertices);
-  (void)read_faces(node.at("faces"), points.size(), limits);
-  (void)read_vector(node.at("center"));
-  node.at("type").refuse("unsupported", "star-shaped bodies are not answered yet; convex ones are");
-}
-
-NamedShape read_core(const Node& node, const Limits& limits, int depth) {
+NamedShape read_core(const Node& node, const Limits& limits) {
   const Node type_node = node.at("type");
   const std::string type = read_string(type_node);
   if (type == "convex") return read_convex(node, limits);
@@ -161,16 +127,22 @@ NamedShape read_core(const Node& node, const Limits& limits, int depth) {
   if (type == "cylinder") return {read_about_axis(node, &ConvexShape::cylinder), {}};
   if (type == "cone") return {read_about_axis(node, &ConvexShape::cone), {}};
   if (type == "mesh") return read_mesh(node, limits);
-  if (type == "compound") refuse_compound(node, limits, depth);
-  if (type == "star") refuse_star(node, limits);
+  if (type == "compound" || type == "star") {
+    type_node.refuse("unsupported",
+                     "this query is for convex shapes; for compounds and star-shaped bodies there are "
+                     "depth, distance, intersect, directional_depth, point_in_difference, "
+                     "support_of_difference and contact_manifold");
+  }
   type_node.refuse(
       "bad_value",
       "unknown shape; known: convex, box, sphere, ellipsoid, capsule, cylinder, cone, mesh, compound, star");
 }
 
-NamedShape read_shape_nested(const Node& node, const Limits& limits, int depth) {
+}  // namespace
+
+NamedShape read_shape(const Node& node, const Limits& limits) {
   require_object(node);
-  NamedShape shape = read_core(node, limits, depth);
+  NamedShape shape = read_core(node, limits);
   if (const auto margin_node = node.find("margin")) {
     const double margin = read_number(*margin_node);
     if (margin < 0) margin_node->refuse("bad_value", "a margin must be 0 or greater");
@@ -178,10 +150,6 @@ NamedShape read_shape_nested(const Node& node, const Limits& limits, int depth) 
   }
   return shape;
 }
-
-}  // namespace
-
-NamedShape read_shape(const Node& node, const Limits& limits) { return read_shape_nested(node, limits, 1); }
 
 Pose read_pose(const Node& node) {
   require_object(node);

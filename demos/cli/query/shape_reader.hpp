@@ -26,8 +26,8 @@ struct NamedShape {
   }
 };
 
-/// Reads a shape. Refuses as the protocol says; compounds and star-shaped bodies are checked as far as their form goes
-/// and then refused as unsupported.
+/// Reads a convex shape. Refuses as the protocol says; compounds and star-shaped bodies as unsupported (`read_body`
+/// reads them).
 [[nodiscard]] NamedShape read_shape(const Node& node, const Limits& limits);
 
 /// Reads a pose; the identity where a part is missing.
