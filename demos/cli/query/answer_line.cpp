@@ -3,7 +3,9 @@
 #include <array>
 #include <new>
 
+#include "body_reader.hpp"
 #include "handlers.hpp"
+#include "union_queries.hpp"
 
 namespace pd::query {
 
@@ -48,7 +50,10 @@ Handler find_handler(const Node& line) {
   const std::string name = read_string(name_node);
   std::string known;
   for (const QueryEntry& entry : kQueries) {
-    if (entry.name == name) return entry.handler;
+    if (entry.name == name) {
+      const Handler non_convex = names_non_convex(line) ? find_union_handler(name) : nullptr;
+      return non_convex ? non_convex : entry.handler;
+    }
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
   name_node.refuse("unknown_query", "there is no query \"" + shortened(name) + "\"; known: " + known);
