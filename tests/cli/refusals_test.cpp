@@ -41,8 +41,8 @@ TEST(Refusals, Queries) {
 
 TEST(Refusals, QueriesOfLaterWork) {
   for (const char* name :
-       {"hierarchy", "decomposition", "polygon_depth", "approx_directional_width", "approx_intersect",
-        "approx_minkowski_sum", "approx_width", "approximate", "epsilon_kernel", "approx_membership"}) {
+       {"hierarchy", "polygon_depth", "approx_directional_width", "approx_intersect", "approx_minkowski_sum",
+        "approx_width", "approximate", "epsilon_kernel", "approx_membership"}) {
     expect_refusals({{R"({"id":1,"query":")" + std::string(name) + "\"}", "unsupported", "query"}});
   }
 }

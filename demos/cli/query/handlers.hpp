@@ -31,8 +31,10 @@ void answer_support_of_difference(const Node& line, Session& session, JsonWriter
 void answer_point_in_difference(const Node& line, Session& session, JsonWriter& answer);
 void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer);
 void answer_directional_depth(const Node& line, Session& session, JsonWriter& answer);
+void answer_decomposition(const Node& line, Session& session, JsonWriter& answer);
 void answer_minkowski_difference(const Node& line, Session& session, JsonWriter& answer);
 void answer_width(const Node& line, Session& session, JsonWriter& answer);
+void answer_hierarchy(const Node& line, Session& session, JsonWriter& answer);
 [[noreturn]] void refuse_unsupported_query(const Node& line, Session& session, JsonWriter& answer);
 
 }  // namespace pd::query
