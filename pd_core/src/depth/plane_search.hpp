@@ -51,6 +51,14 @@ class PlaneSearch {
     return true;
   }
 
+  /// Takes a facet whose distance is known to lie in [lower, upper], lower > 0.
+  void offer(const OverlayPiece& piece, double lower, double upper) {
+    ++visited_;
+    if (zero_) return;
+    nearest_.offer(piece, lower, upper);
+    square_upper();
+  }
+
   /// No facet whose distance is certainly greater need be offered; 0 once a facet through the origin was.
   [[nodiscard]] double upper() const { return zero_ ? 0 : nearest_.upper(); }
   [[nodiscard]] std::int64_t visited() const { return visited_; }

@@ -51,12 +51,18 @@ struct DepthSettings {
   Bracket bracket = Bracket::tightest;
   /// Relative error (upper <= (1 + delta) lower) where the answer is approximate; in (0, 1]. For polytopes, 0 = exact.
   double delta = 0;
+  /// Of the random order in which the decomposition tries blocks of edges: times depend on it, answers do not.
+  std::uint64_t seed = 0;
 };
 
 struct Statistics {
   std::int64_t support_calls = 0;   ///< supports of P (one on each body)
   std::int64_t facets_visited = 0;  ///< facets of P (or of polytopes inside it) whose plane was evaluated
   std::int64_t exact_signs = 0;     ///< decisions that the floating-point filter left to exact arithmetic
+  // The search for the closest lines ([A] Theorem 2.4), whose work is their sum.
+  std::int64_t pair_evaluations = 0;  ///< pairs of edges whose lines' distance was taken
+  std::int64_t block_bounds = 0;      ///< blocks of pairs of edges that were bounded together
+  std::int64_t lines_scanned = 0;     ///< edges passed over for those bounds
 };
 
 /// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B

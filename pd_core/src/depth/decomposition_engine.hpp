@@ -1,0 +1,53 @@
+/// @file
+/// The depth engine after [A] section 2 (algorithm Penetration-Depth): facet-vertex facets by point location in the
+/// other normal diagram (step 1), edge-edge facets as closest pairs of lines (step 2), without meeting them all.
+///
+/// The paper looks at every facet and edge. Here a bound on the depth that is known already (from a search by support
+/// functions) and the vertices of P found on the way leave out most: for x in P and a facet's normal n, <x, n> / |n| is
+/// a lower bound of its plane's distance; and along an arc shorter than half a circle <x, n> is a piece of a sine,
+/// which stays above a positive level where both ends do, so that one x shows a whole arc to be too far.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "depth/closest_lines.hpp"
+#include "depth/exact_nearest.hpp"
+#include "depth/overlay_engine.hpp"
+
+namespace pd::detail {
+
+struct DecompositionBuffers {
+  struct Probe {
+    Vec3 x;
+    std::int32_t a;
+    std::int32_t b;
+  };
+  std::vector<Probe> probes;
+  std::vector<std::int32_t> far_from;  ///< by facet: a probe that shows it too far, or -1
+  std::vector<std::int32_t> edges;
+  ClosestLinesBuffers lines;
+};
+
+struct DecompositionSettings {
+  double upper = std::numeric_limits<double>::infinity();  ///< a bound on the depth, in the pair's scaled lengths
+  std::span<const PairId> vertices;                        ///< of P, found so far
+  std::uint64_t seed = 0;                                  ///< of the random order; no answer depends on it
+  bool exactly = true;                                     ///< as for `overlay_depth`
+};
+
+struct DecompositionDepth {
+  OverlayDepth nearest;  ///< never separated
+  ClosestLinesCounts lines;
+  std::int64_t edges_a = 0;  ///< edges that took part in the search for the closest lines
+  std::int64_t edges_b = 0;
+};
+
+/// Nearest facet, equal to that of `overlay_depth`. Requires that the origin lies in P (boundary included), as [A]
+/// does.
+DecompositionDepth decomposition_depth(const PosedPair& pair, const DecompositionSettings& settings,
+                                       OverlayDepthBuffers& overlay, DecompositionBuffers& buffers);
+
+}  // namespace pd::detail
