@@ -42,12 +42,6 @@ SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const Exa
   return face;
 }
 
-/// A doubly covered polygon has two facets with the same vertices: the one that faces along the direction.
-int facing(const ConvexPolytope& body, int facet, const Mat3& rotation, const Vec3& direction) {
-  if (body.affine_dimension() != 2) return facet;
-  return (rotation * body.facet_normal(facet)).dot(direction) > 0 ? facet : 1 - facet;
-}
-
 }  // namespace
 
 ExactDirection::ExactDirection(Dyadic3 direction) : exact(std::move(direction)), unit(leading(exact).normalized()) {}
@@ -76,15 +70,22 @@ int common_facet(const ConvexPolytope& body, const SupportFace& vertices) {
   return -1;
 }
 
+int facing_facet(const ConvexPolytope& body, const SupportFace& vertices, const Mat3& rotation, const Vec3& outward) {
+  const int facet = common_facet(body, vertices);
+  // A doubly covered polygon has two facets with the same vertices.
+  if (body.affine_dimension() != 2) return facet;
+  return (rotation * body.facet_normal(facet)).dot(outward) > 0 ? facet : 1 - facet;
+}
+
 FacetOfDifference facet_of_direction(const PosedPair& pair, const ExactDirection& normal) {
   const SupportFace on_a = support_face_a(pair, normal);
   const SupportFace on_b = support_face_b(pair, normal);
   if (on_b.size() >= 3) {
-    const int facet = facing(pair.b(), common_facet(pair.b(), on_b), pair.pose_b().rotation(), normal.unit);
+    const int facet = facing_facet(pair.b(), on_b, pair.pose_b().rotation(), normal.unit);
     return FacetOfDifference::from_facet_of_b(pair.b(), facet, on_a.front());
   }
   if (on_a.size() >= 3) {
-    const int facet = facing(pair.a(), common_facet(pair.a(), on_a), pair.pose_a().rotation(), -normal.unit);
+    const int facet = facing_facet(pair.a(), on_a, pair.pose_a().rotation(), -normal.unit);
     return FacetOfDifference::from_facet_of_a(pair.a(), facet, on_b.front());
   }
   assert(on_a.size() == 2 && on_b.size() == 2);

@@ -29,6 +29,11 @@ using SupportFace = std::vector<std::int32_t>;
 /// The facet of a body whose loop is made of exactly these vertices (at least three).
 [[nodiscard]] int common_facet(const ConvexPolytope& body, const SupportFace& vertices);
 
+/// `common_facet`, and of a flat body's two such facets the one whose posed normal has a positive product with
+/// `outward`.
+[[nodiscard]] int facing_facet(const ConvexPolytope& body, const SupportFace& vertices, const Mat3& rotation,
+                               const Vec3& outward);
+
 /// The facet of P with this exact outward normal: a facet of one body and the lowest vertex of the other's face, or two
 /// edges. Requires that the two support faces span a plane (the direction is a facet normal of P).
 [[nodiscard]] FacetOfDifference facet_of_direction(const PosedPair& pair, const ExactDirection& normal);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "depth/exact_nearest.hpp"
+#include "depth/plane_faces.hpp"
 #include "pd/depth/penetration_depth.hpp"
 
 namespace pd::detail {
@@ -12,27 +13,22 @@ namespace pd::detail {
 struct Margins {
   double a = 0;
   double b = 0;
+  [[nodiscard]] double both() const { return a + b; }
 };
 
-/// The plane {x : weight <normal, x> = level} that supports P and carries its boundary point nearest to the origin. The
-/// signed distance of the cores is level / (weight |normal|): positive inside.
-struct NearestPlane {
-  ExactDirection normal;
-  Dyadic weight;  ///< > 0
-  Dyadic level;
-};
-
-/// The plane through the facet of P with this exact outward normal.
-[[nodiscard]] NearestPlane plane_of_facet(const PosedPair& pair, const ExactDirection& normal,
-                                          const FacetOfDifference& facet);
-
-/// Core answers, margins added: the cores overlap and `facet` is the nearest facet of P.
+/// Core answers, margins added: the cores overlap and the plane of `facet` is the nearest plane of a facet of P (or
+/// supports the whole of P there, with more of it than `facet` names).
 ///
-/// lower and upper are the exact depth (core depth + margins) rounded down and up. The translation is a triple of
-/// doubles outside int P exactly, no longer than upper; where no such triple exists (the exact depth is a double, its
-/// translation is not) upper is the next double.
-void finish_overlapping(const PosedPair& pair, const ExactDirection& normal, const Margins& margins,
-                        PenetrationDepth& out);
+/// Tightest: lower and upper are the exact depth (core depth + margins) rounded down and up; the translation is a
+/// triple of doubles outside int P exactly, no longer than upper; where no such triple exists (the exact depth is a
+/// double, its translation is not) upper is the next double. Certified: upper - lower <= 2e-14 L. Decided in
+/// double-double where its error bound allows, then exactly; allocates in exact arithmetic only.
+/// @param faces  a buffer.
+void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
+                        PlaneFaces& faces, PenetrationDepth& out);
+/// The same with `faces` collected and `plane` measured before.
+void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
+                        const PlaneFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out);
 
 /// The cores touch: a supporting plane with this normal passes through the origin, and `nearest` holds the origin.
 /// Touching without margins, else overlapping by them.

@@ -46,10 +46,16 @@ std::optional<OverlayPiece> NearestFacet::winner(bool exactly) {
   std::sort(candidates_->begin(), candidates_->end(),
             [&](const FacetCandidate& x, const FacetCandidate& y) { return compare_rank(pair, x.piece, y.piece) < 0; });
   if (candidates_->empty()) return std::nullopt;
+  // Planes known to the full width of double-double that face clearly apart, and still tie, are equally good: either
+  // foot of the origin lies in P up to rounding. Of nearly parallel ones only the nearest holds its own foot.
+  const double equal = 1024 * pair.vector_error_dd();
+  const auto as_good = [&](const FacetCandidate& x, const FacetCandidate& y) {
+    return x.error + y.error <= equal && (x.unit - y.unit).squaredNorm() > 0x1p-40;
+  };
   const FacetCandidate* best = &candidates_->front();
   std::optional<SquaredFacetDistance> least;
   for (const FacetCandidate& c : *candidates_) {
-    if (&c == best || (!exactly && known(c) && known(*best))) continue;
+    if (&c == best || (!exactly && as_good(c, *best))) continue;
     ++exact_comparisons_;
     if (!least) least = squared_distance(pair, facet_of(pair, best->piece));
     const SquaredFacetDistance squared = squared_distance(pair, facet_of(pair, c.piece));
@@ -67,6 +73,7 @@ void NearestFacet::part_in_double_double() {
     const FacetPlane plane = measure_facet(walk_->pair(), facet_of(walk_->pair(), c.piece));
     c.distance = plane.distance;
     c.error = plane.distance_error;
+    c.unit = {plane.unit.x.hi, plane.unit.y.hi, plane.unit.z.hi};
     if (!known(c)) continue;
     if (best == nullptr || to_double(c.distance - best->distance) + (c.error - best->error) < 0) best = &c;
   }

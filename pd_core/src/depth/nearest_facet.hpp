@@ -25,6 +25,7 @@ struct FacetCandidate {
   double upper = 0;
   DoubleDouble distance{};  ///< the second stage's
   double error = 0;
+  Vec3 unit = Vec3::Zero();
 };
 
 /// Grown on first use.
@@ -50,12 +51,13 @@ class NearestFacet {
     if (lower > upper_) return;
     if (upper < upper_) upper_ = upper;
     if (candidates_->size() >= limit_) compact();
-    candidates_->push_back({piece, lower, upper, {}, 0});
+    candidates_->push_back({piece, lower, upper, {}, 0, Vec3::Zero()});
   }
 
   /// The nearest facet; nothing when none was offered. Of facets at equal distances the first by (kind: facet of A,
   /// facet of B, edges; ids of A; ids of B).
-  /// @param exactly  whether facets that double-double cannot part are compared as fractions; else they count as equal.
+  /// @param exactly  whether all facets that double-double cannot part are compared as fractions; else only those that
+  ///                 are nearly parallel, the others count as equal.
   [[nodiscard]] std::optional<OverlayPiece> winner(bool exactly);
 
   /// Distances compared as fractions.

@@ -1,10 +1,12 @@
 #include "depth/polytope_depth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "depth/exact_expansion.hpp"
 #include "depth/expansion.hpp"
+#include "depth/facet_proof.hpp"
 #include "depth/nearest.hpp"
 
 namespace pd::detail {
@@ -30,6 +32,7 @@ class PolytopeQuery {
 
   void solve() {
     const bool exactly = settings_.bracket == Bracket::tightest && settings_.delta == 0;
+    bracket_ = exactly ? Bracket::tightest : Bracket::certified;
     if (settings_.method == Method::overlay) {
       solve_by_overlay();
       return;
@@ -42,10 +45,10 @@ class PolytopeQuery {
     }
     switch (result.status) {
       case ExpansionStatus::certified:
-        if (exactly) {
-          solve_overlapping_exactly(result);
-        } else {
+        if (!exactly) {
           fill_overlapping(result);
+        } else if (!solve_by_proof(result)) {
+          solve_overlapping_exactly(result);
         }
         return;
       case ExpansionStatus::separated:
@@ -53,12 +56,12 @@ class PolytopeQuery {
         return;
       case ExpansionStatus::over_budget:
         if (result.lower > 0) {
-          solve_by_overlay();
+          solve_by_overlay(result.upper);
           return;
         }
         [[fallthrough]];
       default:
-        solve_exactly(result);
+        if (!solve_by_proof(result)) solve_exactly(result);
     }
   }
 
@@ -279,6 +282,39 @@ class PolytopeQuery {
     count_stages(posed);
   }
 
+  /// The nearest face of the surface proved to lie in the nearest facet of P, mostly without big numbers. False where
+  /// that fails.
+  bool solve_by_proof(const ExpansionResult& result) {
+    if (!(result.lower > 0) || result.face < 0) return false;
+    // Keys err by the error of a point and of the distance itself; what lies beyond is certainly farther.
+    const Surface& surface = buffers_.surface;
+    const double error = difference_.point_error() + 8 * 0x1p-53 * difference_.reach();
+    const double limit = result.lower + 8 * error;
+    std::array<SurfaceCorners, kMaxNearFaces> near;
+    std::size_t count = 0;
+    const auto add = [&](int f) {
+      for (int i = 0; i < 3; ++i) {
+        const DifferenceVertex& v = surface.vertices[surface.faces[f].v[i]];
+        near[count].v[i] = {v.a, v.b};
+      }
+      ++count;
+    };
+    add(result.face);
+    for (int f = 0; f < surface.slots(); ++f) {
+      if (f == result.face || !(surface.keys[f] <= limit * limit)) continue;
+      if (count == near.size()) return false;
+      add(f);
+    }
+    const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
+    const double beyond = std::ldexp(limit - 2 * error, -posed.scale_exponent());
+    const auto proven = prove_nearest_facet(posed, std::span(near).first(count), beyond, buffers_.faces);
+    if (proven) {
+      finish_overlapping(posed, proven->facet, proven->plane, buffers_.faces, pair_.margins, bracket_, out_);
+    }
+    count_stages(posed);
+    return proven.has_value();
+  }
+
   void solve_overlapping_exactly(const ExpansionResult& result) {
     const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
     PairId seed[3];
@@ -298,20 +334,23 @@ class PolytopeQuery {
     if (!exact.complete) {
       solve_by_overlay();
     } else if (exact.contact == ContactClass::overlapping) {
-      finish_overlapping(posed, *exact.normal, pair_.margins, out_);
+      finish_overlapping(posed, facet_of_direction(posed, *exact.normal), pair_.margins, bracket_, buffers_.faces,
+                         out_);
     } else {
       finish_touching(posed, *exact.normal, *nearest, pair_.margins, out_);
     }
   }
 
-  void solve_by_overlay() {
+  /// @param upper  of the cores' depth.
+  void solve_by_overlay(double upper = std::numeric_limits<double>::infinity()) {
     const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
     out_.method = Method::overlay;
-    const OverlayDepth overlay = overlay_depth(posed, buffers_.overlay);
+    const OverlayDepth overlay = overlay_depth(posed, buffers_.overlay, bracket_ == Bracket::tightest,
+                                               std::ldexp(upper, -posed.scale_exponent()));
     out_.statistics.facets_visited += overlay.facets_visited;
     out_.statistics.exact_signs += overlay.exact_comparisons;
     if (overlay.contact == ContactClass::overlapping) {
-      finish_overlapping(posed, normal_of(posed, overlay.facet), pair_.margins, out_);
+      finish_overlapping(posed, overlay.facet, pair_.margins, bracket_, buffers_.faces, out_);
     } else {
       const PairId any{0, 0};
       const ExactNearest nearest = exact_nearest(posed, &any, 1);
@@ -343,6 +382,8 @@ class PolytopeQuery {
   }
 
   static constexpr int kMaxCachedFaces = 128;
+  /// More faces that may be nearest are left to exact arithmetic.
+  static constexpr std::size_t kMaxNearFaces = 16;
 
   const PolytopePair& pair_;
   const DepthSettings& settings_;
@@ -350,6 +391,7 @@ class PolytopeQuery {
   WarmCertificate* warm_;
   PenetrationDepth& out_;
   PolytopeDifference difference_;
+  Bracket bracket_ = Bracket::tightest;
   PairId start_[4];
   int start_count_ = 0;
 };

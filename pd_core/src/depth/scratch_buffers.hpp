@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "depth/overlay_engine.hpp"
+#include "depth/plane_faces.hpp"
 #include "depth/smooth_difference.hpp"
 #include "depth/surface.hpp"
 
@@ -15,6 +16,7 @@ struct ScratchBuffers {
   std::vector<std::int32_t> stack;
   std::vector<PointPair> points;
   OverlayDepthBuffers overlay;
+  PlaneFaces faces;
 };
 
 }  // namespace pd::detail
