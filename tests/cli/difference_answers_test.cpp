@@ -50,7 +50,7 @@ TEST(PointInDifference, ClassesAreExact) {
 }
 
 TEST(DirectionalDepth, DiagonalOfTwoCubes) {
-  for (const char* method : {R"("method":"portal",)", R"("method":"overlay",)", ""}) {
+  for (const char* method : {R"("method":"portal",)", R"("method":"overlay",)", R"("method":"hierarchy",)", ""}) {
     const Json reply =
         answer(line("directional_depth", kUnitBox, kUnitBox, std::string(method) + R"("direction":[3,3,0])"));
     EXPECT_NEAR(reply.at("depth").get<double>(), 2 * std::sqrt(2.0), 1e-15);
@@ -67,14 +67,13 @@ TEST(DirectionalDepth, Refusals) {
   EXPECT_EQ(where_of(zero), "direction");
   EXPECT_EQ(code_of(answer(line("directional_depth", kUnitBox, kUnitBox, R"("direction":[0,0])"))), "bad_value");
   EXPECT_EQ(code_of(answer(line("directional_depth", kUnitBox, kUnitBox, ""))), "missing_field");
-  EXPECT_EQ(
-      code_of(answer(line("directional_depth", kUnitBox, kUnitBox, R"("direction":[1,0,0],"method":"hierarchy")"))),
-      "unsupported");
   EXPECT_EQ(code_of(answer(line("directional_depth", kUnitBox, kUnitBox, R"("direction":[1,0,0],"method":"magic")"))),
             "bad_value");
-  EXPECT_EQ(
-      code_of(answer(line("directional_depth", R"({"type":"sphere","radius":1})", kUnitBox, R"("direction":[1,0,0])"))),
-      "unsupported");
+  for (const char* method : {"hierarchy", "overlay"}) {
+    EXPECT_EQ(code_of(answer(line("directional_depth", R"({"type":"sphere","radius":1})", kUnitBox,
+                                  R"("direction":[1,0,0],"method":")" + std::string(method) + "\""))),
+              "unsupported");
+  }
 }
 
 TEST(Width, BoxAndSphere) {
@@ -86,7 +85,7 @@ TEST(Width, BoxAndSphere) {
   EXPECT_EQ(answer(R"({"id":1,"query":"width","a":{"type":"sphere","radius":2}})").at("width"), 4.0);
   const Json flat = answer(R"({"id":1,"query":"width","a":{"type":"convex","vertices":[[0,0,0],[1,0,0],[0,1,0]]}})");
   EXPECT_EQ(flat.at("width"), 0.0);
-  EXPECT_EQ(code_of(answer(R"({"id":1,"query":"width","a":{"type":"sphere","radius":2},"method":"grid"})")),
+  EXPECT_EQ(code_of(answer(R"({"id":1,"query":"width","a":{"type":"sphere","radius":2},"method":"shallow"})")),
             "unsupported");
   EXPECT_EQ(code_of(answer(R"({"id":1,"query":"width","a":{"type":"sphere","radius":2},"b":1})")), "bad_value");
 }

@@ -40,9 +40,8 @@ TEST(Refusals, Queries) {
 }
 
 TEST(Refusals, QueriesOfLaterWork) {
-  for (const char* name :
-       {"hierarchy", "polygon_depth", "approx_directional_width", "approx_intersect", "approx_minkowski_sum",
-        "approx_width", "approximate", "epsilon_kernel", "approx_membership"}) {
+  for (const char* name : {"polygon_depth", "approx_directional_width", "approx_intersect", "approx_minkowski_sum",
+                           "approx_width", "approximate", "epsilon_kernel", "approx_membership"}) {
     expect_refusals({{R"({"id":1,"query":")" + std::string(name) + "\"}", "unsupported", "query"}});
   }
 }
@@ -169,8 +168,8 @@ TEST(Refusals, Options) {
       {with_more(R"("delta":"nan")"), "non_finite", "delta"},
       {with_more(R"("seed":1.5)"), "bad_value", "seed"},
       {with_more(R"("seed":-1)"), "bad_value", "seed"},
-      {with_more(R"("method":"metric")"), "unsupported", "method"},
-      {with_more(R"("method":"grid","delta":0.1)"), "unsupported", "method"},
+      {with_more(R"("method":"metric")"), "missing_field", "method"},
+      {with_more(R"("method":"shallow","delta":1e-9)"), "limit_exceeded", "delta"},
       {depth_line(R"({"type":"cone","radius":1,"half_height":1,"axis":"z"})", kUnitBox, R"("method":"overlay")"),
        "unsupported", "method"},
   });

@@ -12,6 +12,7 @@
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "scenes/shape_families.hpp"
 
 namespace pd {
 namespace {
@@ -60,6 +61,14 @@ void check(const Bodies& bodies, const Vec3& direction, Scratch& scratch, int& o
   const auto overlay =
       directional_depth(bodies.posed_a(), bodies.posed_b(), direction, scratch, DirectionalMethod::overlay);
   ASSERT_TRUE(portal.has_value() && overlay.has_value());
+  if (bodies.a.polytope()->affine_dimension() == 3 && bodies.b.polytope()->affine_dimension() == 3) {
+    const auto hierarchy =
+        directional_depth(bodies.posed_a(), bodies.posed_b(), direction, scratch, DirectionalMethod::hierarchy);
+    ASSERT_TRUE(hierarchy.has_value());
+    EXPECT_EQ(hierarchy->lower, portal->lower);
+    EXPECT_EQ(hierarchy->upper, portal->upper);
+    EXPECT_EQ(hierarchy->contact, portal->contact);
+  }
   ASSERT_EQ(portal->contact, overlay->contact);
   EXPECT_EQ(portal->lower, overlay->lower);
   EXPECT_EQ(portal->upper, overlay->upper);
@@ -128,8 +137,68 @@ TEST(DirectionalDepth, BoxesByHand) {
   EXPECT_EQ(directional_depth({&box, aside}, {&box, Pose()}, Vec3(0, NAN, 0), scratch).error().code,
             ErrorCode::non_finite);
   const ConvexShape sphere = *ConvexShape::sphere(1);
-  EXPECT_EQ(directional_depth({&sphere, aside}, {&box, Pose()}, Vec3::UnitX(), scratch).error().code,
-            ErrorCode::unsupported);
+  for (const DirectionalMethod method : {DirectionalMethod::overlay, DirectionalMethod::hierarchy}) {
+    EXPECT_EQ(directional_depth({&sphere, aside}, {&box, Pose()}, Vec3::UnitX(), scratch, method).error().code,
+              ErrorCode::unsupported);
+  }
+}
+
+TEST(DirectionalDepth, HierarchiesAgreeOnEveryFamily) {
+  scenes::Random random(29);
+  Scratch scratch;
+  for (int family = 0; family < scenes::kPairFamilies; ++family) {
+    for (const int n : {6, 60, 120}) {
+      const scenes::PointPair points =
+          make_pair(static_cast<scenes::PairFamily>(family), n, scenes::DepthClass::deep, 4);
+      const Bodies bodies(points.a, points.pose_a, points.b, points.pose_b);
+      if (bodies.a.polytope()->affine_dimension() < 3 || bodies.b.polytope()->affine_dimension() < 3) {
+        EXPECT_EQ(
+            directional_depth(bodies.posed_a(), bodies.posed_b(), Vec3::UnitX(), scratch, DirectionalMethod::hierarchy)
+                .error()
+                .code,
+            ErrorCode::not_full_dimensional);
+        continue;
+      }
+      const PolyhedralHierarchy a = *PolyhedralHierarchy::build(*bodies.a.polytope(), HierarchyKind::inner);
+      const PolyhedralHierarchy b = *PolyhedralHierarchy::build(*bodies.b.polytope(), HierarchyKind::inner);
+      const DirectionalHierarchies hierarchies{&a, &b};
+      for (int ray = 0; ray < 5; ++ray) {
+        const Vec3 d = random.direction();
+        const auto plain = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch);
+        const auto found = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch,
+                                             DirectionalMethod::hierarchy, &hierarchies);
+        EXPECT_EQ(found->contact, plain->contact);
+        EXPECT_EQ(found->lower, plain->lower) << family;
+        EXPECT_EQ(found->upper, plain->upper) << family;
+      }
+    }
+  }
+}
+
+TEST(DirectionalDepth, SweptAndSmoothBodies) {
+  Scratch scratch;
+  const ConvexShape ball = *ConvexShape::sphere(1), small = *ConvexShape::sphere(0.5);
+  const Pose aside = *Pose::from_matrix(Mat3::Identity(), Vec3(0.3, 0.4, 0));
+  // Two balls: A's centre moves from (.3, .4, 0) along d until it is 1.5 from the origin.
+  scenes::Random random(30);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 d = random.direction();
+    const Vec3 c(0.3, 0.4, 0);
+    const double exact = -c.dot(d) + std::sqrt(c.dot(d) * c.dot(d) + 1.5 * 1.5 - c.squaredNorm());
+    const auto found = directional_depth({&small, aside}, {&ball, Pose()}, 3 * d, scratch);
+    EXPECT_LE(found->lower, exact * (1 + 1e-15));
+    EXPECT_GE(found->upper, exact * (1 - 1e-15));
+    EXPECT_NEAR(found->upper, found->lower, 1e-11);
+  }
+  // A cylinder leaves a box along its axis, and sideways.
+  const ConvexShape can = *ConvexShape::cylinder(0.5, 1, 2);
+  const ConvexShape box(*ConvexPolytope::box(Vec3(1, 1, 1)));
+  EXPECT_NEAR(directional_depth({&can, Pose()}, {&box, Pose()}, Vec3(0, 0, 2), scratch)->depth, 2, 1e-11);
+  EXPECT_NEAR(directional_depth({&can, Pose()}, {&box, Pose()}, Vec3(0, 1, 0), scratch)->depth, 1.5, 1e-11);
+  const ConvexShape rounded = *ConvexShape(*ConvexPolytope::box(Vec3(1, 1, 1))).with_margin(0.25);
+  // Rounded box against a box: along the diagonal it leaves at the corner of the sum, a ball about (2, 2, 2).
+  EXPECT_NEAR(directional_depth({&rounded, Pose()}, {&box, Pose()}, Vec3(1, 1, 1), scratch)->depth,
+              2 * std::sqrt(3.0) + 0.25, 1e-11);
 }
 
 TEST(DirectionalDepth, SupportsGrowSlowly) {

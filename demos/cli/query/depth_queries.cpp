@@ -6,6 +6,7 @@
 #include "pair_reader.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/linear_separation.hpp"
+#include "pd/depth/polyhedral_depth.hpp"
 
 namespace pd::query {
 
@@ -49,7 +50,7 @@ Method read_method(const Node& node) {
     if (word == name) return method;
     known += (known.empty() ? "" : ", ") + std::string(name);
   }
-  if (word == "metric") node.refuse("unsupported", "the polyhedral metric is not answered yet");
+  if (word == "metric") node.refuse("missing_field", "the method \"metric\" needs the field \"metric\"");
   node.refuse("bad_value", "unknown method; known: " + known + ", metric");
 }
 
@@ -64,6 +65,9 @@ void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, Js
   answer.key("support_calls").integer(statistics.support_calls);
   answer.key("facets_visited").integer(statistics.facets_visited);
   answer.key("exact_signs").integer(statistics.exact_signs);
+  answer.key("pair_evaluations").integer(statistics.pair_evaluations);
+  answer.key("block_bounds").integer(statistics.block_bounds);
+  answer.key("lines_scanned").integer(statistics.lines_scanned);
   answer.key("nanoseconds").integer(nanoseconds);
   answer.end_object();
 }
@@ -104,7 +108,7 @@ std::string feature_kind(const PenetrationDepth& result) {
 }
 
 void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, const NamedShape& b,
-                        std::int64_t nanoseconds, JsonWriter& answer) {
+                        std::int64_t nanoseconds, JsonWriter& answer, std::string_view method) {
   answer.key("class").string(to_string(result.contact));
   answer.key("depth").number(result.depth);
   answer.key("lower").number(result.lower);
@@ -130,29 +134,71 @@ void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, con
     write_ids(result.feature_b, b, answer);
     answer.end_object();
   }
-  answer.key("method").string(to_string(result.method));
+  answer.key("method").string(method.empty() ? to_string(result.method) : method);
   write_statistics(result.statistics, nanoseconds, answer);
 }
 
+namespace {
+
+/// Rays that one line may ask of a grid: seconds of work.
+constexpr std::int64_t kMostRays = std::int64_t{1} << 20;
+
+/// "metric": the depth under the gauge of a convex polytope round the origin.
+void answer_metric_depth(const Node& line, const Node& metric, Session& session, JsonWriter& answer) {
+  if (const auto method = line.find("method")) {
+    const std::string word = read_string(*method);
+    if (word != "metric" && word != "auto") {
+      method->refuse("bad_value", "a metric is answered by the method \"metric\" (or \"auto\")");
+    }
+  }
+  const Pair pair = read_pair(line, session.limits);
+  require_object(metric);
+  allow_only(metric, {"vertices"});
+  const Node vertices = metric.at("vertices");
+  const std::vector<Vec3> points = read_points(vertices, session.limits.max_vertices);
+  const Expected<ConvexPolytope> ball = ConvexPolytope::from_points(points);
+  if (!ball) metric.refuse(ball.error());
+  const Stopwatch watch;
+  const Expected<PenetrationDepth> result = polyhedral_depth(pair.posed_a(), pair.posed_b(), *ball, session.scratch);
+  if (!result) {
+    const Error& error = result.error();
+    (error.where == "metric" ? metric : line).refuse(to_string(error.code), error.message);
+  }
+  write_depth_answer(*result, pair.a, pair.b, watch.nanoseconds(), answer, "metric");
+}
+
+}  // namespace
+
 void answer_depth(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed"});
+  if (const auto metric = line.find("metric")) {
+    if (const auto delta_node = line.find("delta")) (void)read_delta(*delta_node);
+    if (const auto seed = line.find("seed")) (void)read_integer(*seed, 0, std::int64_t{1} << 53);
+    answer_metric_depth(line, *metric, session, answer);
+    return;
+  }
   DepthSettings settings;
   settings.bracket = Bracket::tightest;
   const auto method_node = line.find("method");
   if (method_node) settings.method = read_method(*method_node);
   double delta = 0;
   if (const auto delta_node = line.find("delta")) delta = read_delta(*delta_node);
-  // No engine draws at random, so that a seed changes nothing.
-  if (const auto seed = line.find("seed")) (void)read_integer(*seed, 0, std::int64_t{1} << 53);
+  if (const auto seed = line.find("seed")) {
+    settings.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, std::int64_t{1} << 53));
+  }
   const Pair pair = read_pair(line, session.limits);
-  if (const auto metric = line.find("metric"))
-    metric->refuse("unsupported", "the polyhedral metric is not answered yet");
-  // (Rounded) polytopes are answered exactly, which is within every delta.
+  // (Rounded) polytopes are answered exactly, which is within every delta, but where delta steers the method.
   const bool smooth = pair.a.shape.polytope() == nullptr || pair.b.shape.polytope() == nullptr;
-  if (smooth) settings.delta = delta;
+  if (smooth || settings.method == Method::grid || settings.method == Method::shallow) settings.delta = delta;
   if (!supports(settings.method, pair.a.shape, pair.b.shape)) {
     method_node->refuse("unsupported", "the method \"" + std::string(to_string(settings.method)) +
                                            "\" does not answer for these shapes; \"auto\" does");
+  }
+  // About 11 / delta rays.
+  if (settings.method == Method::shallow && delta > 0 && 11 / delta > static_cast<double>(kMostRays)) {
+    line.at("delta").refuse("limit_exceeded",
+                            "the method \"shallow\" shoots about 11 / delta rays, more than 2^20 here; "
+                            "its answer is exact for every delta, 0.25 is a good one");
   }
   const Stopwatch watch;
   const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, settings);

@@ -29,8 +29,7 @@ DirectionalMethod read_directional_method(const Node& node) {
   const std::string word = read_string(node);
   if (word == "portal") return DirectionalMethod::portal;
   if (word == "overlay") return DirectionalMethod::overlay;
-  if (word == "hierarchy")
-    node.refuse("unsupported", "the polyhedral hierarchies are not built yet; \"portal\" is exact");
+  if (word == "hierarchy") return DirectionalMethod::hierarchy;
   node.refuse("bad_value", "unknown method; known: hierarchy, portal, overlay");
 }
 
@@ -96,11 +95,14 @@ void answer_directional_depth(const Node& line, Session& session, JsonWriter& an
   const Pair pair = read_pair(line, session.limits);
   const Node direction_node = line.at("direction");
   const Vec3 direction = read_vector(direction_node);
-  (void)require_polytope(pair.a, line.at("a"));
-  (void)require_polytope(pair.b, line.at("b"));
+  if (method != DirectionalMethod::portal) {
+    (void)require_polytope(pair.a, line.at("a"));
+    (void)require_polytope(pair.b, line.at("b"));
+  }
   const Stopwatch watch;
   const Expected<DirectionalDepth> result =
       directional_depth(pair.posed_a(), pair.posed_b(), direction, session.scratch, method);
+  if (!result && result.error().where.empty()) line.refuse(to_string(result.error().code), result.error().message);
   if (!result) direction_node.refuse(to_string(result.error().code), result.error().message);
   const std::int64_t nanoseconds = watch.nanoseconds();
   answer.key("depth").number(result->depth);

@@ -1,7 +1,8 @@
 /// @file
-/// Queries about one body: hull, width.
+/// Queries about one body: hull, width, hierarchy.
 #include "pair_reader.hpp"
 #include "pd/depth/width.hpp"
+#include "pd/structure/polyhedral_hierarchy.hpp"
 
 namespace pd::query {
 
@@ -42,24 +43,56 @@ void answer_width(const Node& line, Session& session, JsonWriter& answer) {
   Method method = Method::automatic;
   const auto method_node = line.find("method");
   if (method_node) method = read_method(*method_node);
-  // Every width is exact up to rounding, which is within every delta.
-  if (const auto delta = line.find("delta")) (void)read_delta(*delta);
+  // Every width is exact up to rounding, which is within every delta, but that of the grid.
+  double delta = 0;
+  if (const auto delta_node = line.find("delta")) delta = read_delta(*delta_node);
   const NamedShape a = read_shape(line.at("a"), session.limits);
   const Pose pose = read_optional_pose(line, "pose_a");
-  if (method != Method::automatic && method != Method::expansion && method != Method::overlay) {
+  if (method == Method::shallow || method == Method::decomposition) {
     method_node->refuse("unsupported", "this method gives no widths yet; \"auto\" is exact");
   }
   if (!supports(method, a.shape, a.shape)) {
     method_node->refuse("unsupported", "this method does not answer for this shape; \"auto\" does");
   }
   const Stopwatch watch;
-  const Width result = width({&a.shape, pose}, session.scratch, method);
+  const Width result = width({&a.shape, pose}, session.scratch, method, delta);
   const std::int64_t nanoseconds = watch.nanoseconds();
   answer.key("width").number(result.width);
   answer.key("lower").number(result.lower);
   answer.key("upper").number(result.upper);
   answer.key("normal").vector(result.normal);
   write_statistics(result.statistics, nanoseconds, answer);
+}
+
+void answer_hierarchy(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "kind"});
+  HierarchyKind kind = HierarchyKind::inner;
+  if (const auto node = line.find("kind")) {
+    const std::string word = read_string(*node);
+    if (word == "outer") {
+      kind = HierarchyKind::outer;
+    } else if (word != "inner") {
+      node->refuse("bad_value", "unknown kind; known: inner, outer");
+    }
+  }
+  const Node a = line.at("a");
+  const NamedShape named = read_shape(a, session.limits);
+  (void)read_optional_pose(line, "pose_a");  // levels do not depend on it
+  const ConvexPolytope* const body = named.shape.polytope();
+  if (body == nullptr || named.shape.margin() > 0) {
+    a.refuse("unsupported", "a hierarchy is that of a polytope: convex, box or mesh, without a margin");
+  }
+  const Expected<PolyhedralHierarchy> hierarchy = PolyhedralHierarchy::build(*body, kind);
+  if (!hierarchy) a.refuse(to_string(hierarchy.error().code), hierarchy.error().message);
+  answer.key("levels").begin_array();
+  for (const PolyhedralHierarchy::Level& level : hierarchy->levels()) {
+    answer.begin_object();
+    answer.key("vertices").integer(level.vertices);
+    answer.key("facets").integer(level.facets);
+    answer.key("max_degree").integer(level.max_degree);
+    answer.end_object();
+  }
+  answer.end_array();
 }
 
 }  // namespace pd::query

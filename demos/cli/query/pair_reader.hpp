@@ -25,7 +25,8 @@ struct Pair {
 /// Reads the pose named `key`, the identity where it is missing.
 [[nodiscard]] Pose read_optional_pose(const Node& line, std::string_view key);
 
-/// "method" of depth and width: one of the protocol's words, else bad_value; "metric" is unsupported.
+/// "method" of depth and width: one of the protocol's words, else bad_value; "metric" without the field of that name is
+/// missing_field.
 [[nodiscard]] Method read_method(const Node& node);
 /// "delta", in (0, 1].
 [[nodiscard]] double read_delta(const Node& node);
@@ -41,9 +42,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The fields of a depth answer from "class" to "stats".
+/// The fields of a depth answer from "class" to "stats". `method`: its word, where it is no `Method`.
 void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, const NamedShape& b,
-                        std::int64_t nanoseconds, JsonWriter& answer);
+                        std::int64_t nanoseconds, JsonWriter& answer, std::string_view method = {});
 
 /// The field "stats".
 void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, JsonWriter& answer);

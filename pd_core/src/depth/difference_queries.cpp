@@ -10,6 +10,7 @@
 #include "depth/posed_support.hpp"
 #include "depth/ray_signs.hpp"
 #include "depth/smooth_difference.hpp"
+#include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
 
@@ -91,6 +92,7 @@ ContactClass exact_class(const PosedShape& a, const PosedShape& b, const Vec3& p
 }  // namespace
 
 Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const PosedShape& b, const Vec3& direction) {
+  const detail::FloatingPointGuard guard;
   if (!direction.allFinite()) {
     return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
   }
@@ -114,6 +116,7 @@ Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const Pos
 
 Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
                                            Scratch& scratch) {
+  const detail::FloatingPointGuard guard;
   if (!point.allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", "point"};
   if (point.cwiseAbs().maxCoeff() > kMaxCoordinate) {
     return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", "point"};

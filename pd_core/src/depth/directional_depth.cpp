@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "depth/portal.hpp"
+#include "depth/ray_shot.hpp"
 #include "depth/scratch_buffers.hpp"
+#include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
 #include "structure/overlay_walk.hpp"
@@ -104,10 +107,25 @@ void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, Di
   out.feature_b = facet.on_b;
 }
 
+/// Swept and smooth bodies: a portal search in doubles.
+void swept_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction, double inner_radius,
+                 detail::ScratchBuffers& buffers, DirectionalDepth& out) {
+  constexpr double kRelative = 1e-13;
+  detail::SweptShooter shooter(a, b, buffers.points, inner_radius, kRelative);
+  const detail::RayShot shot = shooter.shoot(direction.stableNormalized());
+  out.lower = shot.lower;
+  out.upper = shot.upper;
+  out.depth = shot.upper;
+  out.normal = shot.normal;
+  out.statistics.support_calls += shooter.support_calls();
+}
+
 }  // namespace
 
 Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction,
-                                             Scratch& scratch, DirectionalMethod method) {
+                                             Scratch& scratch, DirectionalMethod method,
+                                             const DirectionalHierarchies* hierarchies) {
+  const detail::FloatingPointGuard guard;
   if (!direction.allFinite()) {
     return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
   }
@@ -116,8 +134,22 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
   }
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
-  if (!polytope_a || !polytope_b || a.shape->margin() > 0 || b.shape->margin() > 0) {
-    return Error{ErrorCode::unsupported, "directional depth is for polytopes without a margin", ""};
+  const bool exact = polytope_a && polytope_b && a.shape->margin() == 0 && b.shape->margin() == 0;
+  if (!exact && method != DirectionalMethod::portal) {
+    return Error{ErrorCode::unsupported, "this method is for polytopes without a margin; portal answers for all", ""};
+  }
+
+  detail::PortalHierarchies starts;
+  std::optional<PolyhedralHierarchy> built[2];
+  if (method == DirectionalMethod::hierarchy && hierarchies != nullptr) starts = {hierarchies->a, hierarchies->b};
+  if (method == DirectionalMethod::hierarchy && hierarchies == nullptr) {
+    for (const int side : {0, 1}) {
+      Expected<PolyhedralHierarchy> hierarchy =
+          PolyhedralHierarchy::build(side == 0 ? *polytope_a : *polytope_b, HierarchyKind::inner);
+      if (!hierarchy) return hierarchy.error();
+      built[side] = *std::move(hierarchy);
+    }
+    starts = {&*built[0], &*built[1]};
   }
 
   DirectionalDepth out;
@@ -127,7 +159,12 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
   const PenetrationDepth overlap = penetration_depth(a, b, scratch, roughly);
   out.contact = overlap.contact;
   out.statistics = overlap.statistics;
+
   if (out.contact != ContactClass::overlapping) return out;
+  if (!exact) {
+    swept_depth(a, b, direction, overlap.lower, scratch.buffers(), out);
+    return out;
+  }
 
   const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
   const detail::RaySigns ray(pair, direction);
@@ -142,7 +179,7 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
     crossing = nearest.best();
     out.statistics.facets_visited += nearest.visited();
   } else {
-    const detail::Portal portal = find_portal(ray);
+    const detail::Portal portal = find_portal(ray, starts);
     const detail::PairId& p = portal.corners[0];
     const auto to = [&](const detail::PairId& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
     crossing =

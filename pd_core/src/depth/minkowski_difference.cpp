@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "numeric/floating_point_guard.hpp"
 #include "structure/face_sum.hpp"
 #include "structure/overlay_walk.hpp"
 
@@ -91,6 +92,7 @@ std::string_view to_string(DifferenceFacetKind kind) {
 
 Expected<MinkowskiDifference> minkowski_difference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
                                                    const Pose& pose_b, std::int64_t max_facets) {
+  const detail::FloatingPointGuard guard;
   const PosedPair pair(a, pose_a, b, pose_b);
   MinkowskiDifference result;
   std::vector<DifferencePoint> loop;

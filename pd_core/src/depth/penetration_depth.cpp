@@ -1,8 +1,11 @@
 #include "pd/depth/penetration_depth.hpp"
 
 #include <algorithm>
+#include <limits>
 
+#include "depth/grid_engine.hpp"
 #include "depth/polytope_depth.hpp"
+#include "depth/shallow_engine.hpp"
 #include "depth/smooth_depth.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
@@ -113,7 +116,16 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};
-  if (polytope_a && polytope_b) {
+  if (settings.method == Method::grid) {
+    detail::grid_depth(a, b, settings, buffers, out);
+  } else if (settings.method == Method::shallow) {
+    const double delta = settings.delta > 0 ? settings.delta : detail::kDefaultShallowDelta;
+    const Expected<DirectionGrid> grid = direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere,
+                                                        std::numeric_limits<std::int64_t>::max());
+    ShallowCounts counts;
+    detail::shallow_depth({polytope_a, polytope_b, &a.pose, &b.pose, margins}, delta, *grid, settings, buffers, out,
+                          counts);
+  } else if (polytope_a && polytope_b) {
     detail::polytope_depth({polytope_a, polytope_b, &a.pose, &b.pose, margins}, settings, buffers, warm, out);
   } else {
     detail::smooth_depth(a, b, settings, buffers, out);
@@ -142,8 +154,10 @@ bool supports(Method method, const ConvexShape& a, const ConvexShape& b) {
   switch (method) {
     case Method::automatic:
     case Method::expansion:
+    case Method::grid:
       return true;
     case Method::overlay:
+    case Method::shallow:
       return a.polytope() && b.polytope();
     default:
       return false;

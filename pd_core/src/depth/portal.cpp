@@ -23,7 +23,8 @@ bool same_point(const PairId& x, const PairId& y) { return x.a == y.a && x.b == 
 
 class PortalSearch {
  public:
-  explicit PortalSearch(const RaySigns& ray) : ray_(ray), pair_(ray.pair()) {}
+  PortalSearch(const RaySigns& ray, const PortalHierarchies& hierarchies)
+      : ray_(ray), pair_(ray.pair()), hierarchies_(hierarchies) {}
 
   Portal run() {
     Portal portal;
@@ -34,12 +35,19 @@ class PortalSearch {
   }
 
  private:
+  /// A vertex of P that is extreme up to rounding, where hierarchies tell; else the one at hand.
+  PairId start(const Vec3& direction, const PairId& near) const {
+    if (hierarchies_.a == nullptr) return near;
+    return {hierarchies_.a->support(-(pair_.pose_a().rotation().transpose() * direction)),
+            hierarchies_.b->support(pair_.pose_b().rotation().transpose() * direction)};
+  }
+
   /// In the direction d x w, or against it: <edge, d x w> = det(w, edge, d).
   PairId support_across(const PairVector& w, int sign) {
     ++support_calls_;
     const RoundedDirection direction =
         rounded_cross(sign * ray_.scaled(), 0, pair_.approximate(w), pair_.vector_error());
-    return support_exactly(pair_, direction, {-1, -1},
+    return support_exactly(pair_, direction, start(direction.vector, {-1, -1}),
                            [&](const PairVector& edge) { return sign * ray_.turn(w, edge); });
   }
 
@@ -49,7 +57,7 @@ class PortalSearch {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
     const RaySigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
-    v[0] = support_exactly(pair_, {sideways.scaled(), 0}, {-1, -1},
+    v[0] = support_exactly(pair_, {sideways.scaled(), 0}, start(sideways.scaled(), {-1, -1}),
                            [&](const PairVector& edge) { return sideways.along(edge); });
     ++support_calls_;
     const PairVector first = PairVector::point(v[0].a, v[0].b);
@@ -71,7 +79,7 @@ class PortalSearch {
       const RoundedDirection normal = rounded_cross(pair_.approximate(u), error, pair_.approximate(w), error);
       // The triangle's own sides lie in its plane: no arithmetic is spent on those zeros.
       const PairVector third = step(v[1], v[2]);
-      const PairId s = support_exactly(pair_, normal, v[2], [&](const PairVector& edge) {
+      const PairId s = support_exactly(pair_, normal, start(normal.vector, v[2]), [&](const PairVector& edge) {
         if (is_edge(u, edge) || is_edge(w, edge) || is_edge(third, edge)) return 0;
         return pair_.sign_determinant(edge, u, w);
       });
@@ -89,11 +97,14 @@ class PortalSearch {
 
   const RaySigns& ray_;
   const PosedPair& pair_;
+  const PortalHierarchies& hierarchies_;
   std::int64_t support_calls_ = 0;
 };
 
 }  // namespace
 
-Portal find_portal(const RaySigns& ray) { return PortalSearch(ray).run(); }
+Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies) {
+  return PortalSearch(ray, hierarchies).run();
+}
 
 }  // namespace pd::detail

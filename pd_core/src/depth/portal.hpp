@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "depth/ray_signs.hpp"
+#include "pd/structure/polyhedral_hierarchy.hpp"
 
 namespace pd::detail {
 
@@ -20,7 +21,14 @@ struct Portal {
   std::int64_t support_calls = 0;
 };
 
-/// Requires the origin in the interior of P. Measured 7 to 30 supports; each O(sqrt n) on round bodies.
-[[nodiscard]] Portal find_portal(const RaySigns& ray);
+/// Inner hierarchies of the two polytopes, both or none.
+struct PortalHierarchies {
+  const PolyhedralHierarchy* a = nullptr;
+  const PolyhedralHierarchy* b = nullptr;
+};
+
+/// Requires the origin in the interior of P. Measured 7 to 30 supports; each O(sqrt n) on round bodies, O(log n) where
+/// hierarchies say where its climb starts.
+[[nodiscard]] Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies = {});
 
 }  // namespace pd::detail

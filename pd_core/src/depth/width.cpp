@@ -4,8 +4,10 @@
 #include <limits>
 
 #include "depth/exact_expansion.hpp"
+#include "depth/grid_engine.hpp"
 #include "depth/overlay_engine.hpp"
 #include "depth/scratch_buffers.hpp"
+#include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
 
@@ -43,7 +45,23 @@ Vec3 normal_of_flat(const PosedPair& pair) {
                     pair.exact(detail::PairVector::edge_a(corner[0], corner[2]))));
 }
 
-void polytope_width(const ConvexPolytope& body, const Pose& pose, const Dyadic& margins, Method method,
+/// The plane of the best ray is exact, the bound from below that of the cells ([A] Corollary 3.3).
+void grid_width(const PosedPair& pair, const Dyadic& margins, double delta, Width& out) {
+  detail::PolytopeShooter shooter(pair);
+  constexpr std::size_t kHalfTheFaces = 10;
+  const detail::CellSearchResult found =
+      detail::CellSearch(shooter, delta > 0 ? delta : detail::kDefaultGridDelta, kHalfTheFaces).run();
+  const detail::PolytopeShooter::Plane& plane = shooter.kept();
+  const Dyadic& factor = pair.homogeneous_factor();
+  fill(margins, plane.offset * plane.offset, dot(plane.normal, plane.normal) * factor * factor, out);
+  out.width = out.upper;
+  out.lower = std::min(out.lower, (Dyadic(found.lower) + margins).round_down());
+  out.normal = ExactDirection(plane.normal).unit;
+  out.statistics.support_calls = shooter.support_calls();
+  out.statistics.facets_visited = shooter.shots();
+}
+
+void polytope_width(const ConvexPolytope& body, const Pose& pose, const Dyadic& margins, Method method, double delta,
                     detail::ScratchBuffers& buffers, Width& out) {
   const PosedPair pair(body, pose, body, pose);
   if (body.affine_dimension() < 3) {
@@ -51,7 +69,9 @@ void polytope_width(const ConvexPolytope& body, const Pose& pose, const Dyadic& 
     out.normal = normal_of_flat(pair);
     return;
   }
-  if (method == Method::expansion) {
+  if (method == Method::grid) {
+    grid_width(pair, margins, delta, out);
+  } else if (method == Method::expansion) {
     const detail::PairId start{0, body.num_vertices() - 1};
     const detail::ExactDepth exact = detail::exact_expansion(pair, &start, 1, std::numeric_limits<int>::max());
     fill(margins, exact.squared.numerator, exact.squared.denominator, out);
@@ -104,11 +124,12 @@ void smooth_width(const Cone& c, const Dyadic& margins, Width& out) {
 
 }  // namespace
 
-Width width(const PosedShape& body, Scratch& scratch, Method method) {
+Width width(const PosedShape& body, Scratch& scratch, Method method, double delta) {
+  const detail::FloatingPointGuard guard;
   Width out;
   const Dyadic margins = Dyadic(body.shape->margin()).scaled(1);
   if (const ConvexPolytope* polytope = body.shape->polytope()) {
-    polytope_width(*polytope, body.pose, margins, method, scratch.buffers(), out);
+    polytope_width(*polytope, body.pose, margins, method, delta, scratch.buffers(), out);
     return out;
   }
   if (const auto* ellipsoid = std::get_if<Ellipsoid>(&body.shape->core())) smooth_width(*ellipsoid, margins, out);

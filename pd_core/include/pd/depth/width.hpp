@@ -1,7 +1,8 @@
 /// @file
 /// The width of a convex body: the least distance of two parallel planes that hold it between them.
 ///
-/// width(P) = pi(P, P) ([A] Proposition 2.1), so that every exact depth engine computes it.
+/// width(P) = pi(P, P) ([A] Proposition 2.1), so that every depth engine computes it. For many points without a hull,
+/// see `approximate_width.hpp`.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"
@@ -13,7 +14,7 @@ class Scratch;
 
 struct Width {
   double width = 0;
-  double lower = 0;  ///< lower <= exact width <= upper; neighbouring doubles (or equal)
+  double lower = 0;  ///< lower <= exact width <= upper; neighbouring doubles (or equal) but for Method::grid
   double upper = 0;
   Vec3 normal = Vec3::UnitX();  ///< unit normal of the two planes, in the common frame
   Statistics statistics;
@@ -25,8 +26,12 @@ struct Width {
 /// posed by the nearest rotation; for a cone of height H and base radius r, the lesser of H and 2 r H / sqrt(H^2 +
 /// r^2).
 ///
-/// @param method  automatic or overlay (every facet of P + (-P): O(m + K)), or expansion.
+/// @param method  automatic or overlay (every facet of P + (-P): O(m + K)), expansion, or grid: upper <= (1 + delta)
+/// lower for polytopes by rays along directions that cover half the sphere, P + (-P) being symmetric ([A]
+/// Corollary 3.3, its grid refined where it matters).
+/// @param delta   for Method::grid, in (0, 1]; 0 means 1e-2.
 /// Requires one of those methods.
-[[nodiscard]] Width width(const PosedShape& body, Scratch& scratch, Method method = Method::automatic);
+[[nodiscard]] Width width(const PosedShape& body, Scratch& scratch, Method method = Method::automatic,
+                          double delta = 0);
 
 }  // namespace pd

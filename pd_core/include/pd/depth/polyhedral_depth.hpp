@@ -1,0 +1,31 @@
+/// @file
+/// Penetration depth under a polyhedral metric: [A] section 3.1, Corollary 3.4.
+///
+/// The unit ball is any convex polytope Q with the origin inside, symmetric or not; the length of t is its gauge, the
+/// least lambda with t in lambda Q. The largest lambda Q inside P = B + (-A) touches the boundary of P with a vertex,
+/// and its vertices move on rays from the origin: one ray a vertex of Q, the least lambda.
+#pragma once
+
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/numeric/expected.hpp"
+#include "pd/shape/convex_polytope.hpp"
+
+namespace pd {
+
+class Scratch;
+
+/// The least lambda for which some translation in lambda Q separates two posed polytopes, exact on the stored numbers
+/// and poses.
+///
+/// As `penetration_depth`, but where the bodies overlap depth, lower and upper are lambda (neighbouring doubles, or
+/// equal), translation is lambda times a vertex of Q, rounded outwards so that it separates exactly as stored (its
+/// gauge exceeds lambda by some ulps), and normal is its unit vector. Where they do not, distances are Euclidean.
+///
+/// @param unit_ball  Q, in the frame that A and B share.
+/// @return ErrorCode::not_full_dimensional or bad_value ("metric") when the origin is not inside Q; unsupported when a
+/// shape is smooth or has a margin.
+/// Time O(m + n) for the class, and one portal search a vertex of Q (the paper's ray in two hierarchies).
+[[nodiscard]] Expected<PenetrationDepth> polyhedral_depth(const PosedShape& a, const PosedShape& b,
+                                                          const ConvexPolytope& unit_ball, Scratch& scratch);
+
+}  // namespace pd
