@@ -29,5 +29,7 @@ int run_stacking(const DemoOptions& options);
 int run_rollback(const DemoOptions& options);
 /// One pair with its Minkowski difference, for any two meshes.
 int run_difference(const DemoOptions& options);
+/// The constructions of [A] as pictures: normal diagrams, direction grid, shallow search, width.
+int run_agarwal(const DemoOptions& options);
 
 }  // namespace pd::demo

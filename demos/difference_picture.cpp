@@ -2,14 +2,11 @@
 /// The picture of a pair and its Minkowski difference.
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <array>
-#include <map>
-#include <utility>
 #include <vector>
 
 #include "demo_output.hpp"
 #include "difference.hpp"
+#include "difference_mesh.hpp"
 #include "pd/depth/minkowski_difference.hpp"
 #include "pd/render/annotation.hpp"
 #include "pd/render/composition.hpp"
@@ -22,7 +19,6 @@ namespace {
 namespace palette = render::palette;
 
 constexpr std::int64_t kMostFacets = 100'000;
-constexpr double kCosineOfCrease = 0.9848;  ///< 10 degrees: flatter edges are not inked
 
 bool same_face(const Feature& x, const Feature& y) {
   return x.kind == y.kind && x.first == y.first && (x.kind != Feature::Kind::edge || x.second == y.second);
@@ -43,65 +39,6 @@ std::size_t nearest_facet(const MinkowskiDifference& p, const PenetrationDepth& 
     }
   }
   return best;
-}
-
-render::Colour colour_of(DifferenceFacetKind kind) {
-  switch (kind) {
-    case DifferenceFacetKind::facet_vertex:
-    case DifferenceFacetKind::facet_edge:
-    case DifferenceFacetKind::facet_facet:
-      return palette::kFacetVertex;
-    case DifferenceFacetKind::vertex_facet:
-    case DifferenceFacetKind::edge_facet:
-      return palette::kVertexFacet;
-    case DifferenceFacetKind::edge_edge:
-      break;
-  }
-  return palette::kEdgeEdge;
-}
-
-std::array<float, 3> to_floats(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-/// The facets that `wanted` names, coloured by kind, each edge inked.
-template <class Wanted>
-render::MeshRef facet_mesh(const MinkowskiDifference& p, const Wanted& wanted, const render::Colour* one_colour) {
-  auto mesh = std::make_shared<render::Mesh>();
-  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> facet_of_edge;
-  for (std::size_t f = 0; f < p.facets.size(); ++f) {
-    const MinkowskiDifference::Facet& facet = p.facets[f];
-    for (std::int32_t k = 0; k < facet.count; ++k) {
-      const std::int32_t from = p.corners[static_cast<std::size_t>(facet.first + k)];
-      const std::int32_t to = p.corners[static_cast<std::size_t>(facet.first + (k + 1) % facet.count)];
-      facet_of_edge[{from, to}] = f;
-    }
-  }
-  const auto position = [&](std::int32_t v) { return p.vertices[static_cast<std::size_t>(v)].position; };
-  for (std::size_t f = 0; f < p.facets.size(); ++f) {
-    if (!wanted(f)) continue;
-    const MinkowskiDifference::Facet& facet = p.facets[f];
-    const render::Colour colour = one_colour != nullptr ? *one_colour : colour_of(facet.kind);
-    const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
-    for (std::int32_t k = 0; k < facet.count; ++k) {
-      const std::int32_t from = p.corners[static_cast<std::size_t>(facet.first + k)];
-      const std::int32_t to = p.corners[static_cast<std::size_t>(facet.first + (k + 1) % facet.count)];
-      mesh->vertices.push_back({to_floats(position(from)), to_floats(facet.normal), {colour.r, colour.g, colour.b, 1}});
-      mesh->bounds.include(position(from));
-      if (k >= 2) {
-        const auto corner = first + static_cast<std::uint32_t>(k);
-        mesh->triangles.insert(mesh->triangles.end(), {first, corner - 1, corner});
-      }
-      const auto neighbour = facet_of_edge.find({to, from});
-      const bool inner = neighbour != facet_of_edge.end() && wanted(neighbour->second);
-      if (inner && neighbour->second < f) continue;  // inked from the other side
-      if (inner && p.facets[neighbour->second].normal.dot(facet.normal) > kCosineOfCrease) continue;
-      const Vec3 other = inner ? p.facets[neighbour->second].normal : Vec3(-facet.normal);
-      mesh->feature_edges.push_back(
-          {to_floats(position(from)), to_floats(position(to)), to_floats(facet.normal), to_floats(other)});
-    }
-  }
-  return mesh;
 }
 
 std::string short_name(const std::string& name) { return std::filesystem::path(name).filename().string(); }
@@ -157,12 +94,11 @@ Expected<render::Image> draw_difference(const MinkowskiDifference& p, const Pene
   const std::size_t nearest = nearest_facet(p, answer);
   const render::Colour bright = palette::kNearestFacet;
   render::Scene scene;
-  scene.solids.push_back({.mesh = facet_mesh(
-                              p, [&](std::size_t f) { return f != nearest; }, nullptr),
+  scene.solids.push_back({.mesh = difference_mesh(p, [&](std::size_t f) { return f != nearest; }),
                           .opacity = 0.42f,
                           .hidden_opacity = 0.42f});
-  scene.solids.push_back({.mesh = facet_mesh(
-                              p, [&](std::size_t f) { return f == nearest; }, &bright),
+  scene.solids.push_back({.mesh = difference_mesh(
+                              p, [&](std::size_t f) { return f == nearest; }, [&](std::size_t) { return bright; }),
                           .colour = bright,
                           .opacity = 0.9f,
                           .hidden_opacity = 0.75f});
