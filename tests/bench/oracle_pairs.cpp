@@ -84,9 +84,10 @@ class Run {
  public:
   Run(const Settings& settings, std::vector<PairFamily> families)
       : settings_(settings), families_(std::move(families)) {
-    depth_settings_.method = settings.method == "expansion" ? pd::Method::expansion
-                             : settings.method == "overlay" ? pd::Method::overlay
-                                                            : pd::Method::automatic;
+    depth_settings_.method = settings.method == "expansion"       ? pd::Method::expansion
+                             : settings.method == "overlay"       ? pd::Method::overlay
+                             : settings.method == "decomposition" ? pd::Method::decomposition
+                                                                  : pd::Method::automatic;
     depth_settings_.bracket = settings.bracket == "tightest" ? pd::Bracket::tightest : pd::Bracket::certified;
   }
 
@@ -254,7 +255,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", settings.seed)->capture_default_str();
   app.add_option("--threads", settings.threads)->capture_default_str();
   app.add_option("--method", settings.method)
-      ->check(CLI::IsMember({"auto", "expansion", "overlay"}))
+      ->check(CLI::IsMember({"auto", "expansion", "overlay", "decomposition"}))
       ->capture_default_str();
   app.add_option("--bracket", settings.bracket)->check(CLI::IsMember({"certified", "tightest"}))->capture_default_str();
   app.add_option("--size", settings.size, "points a body (default: a mixture of 4 to 128)");

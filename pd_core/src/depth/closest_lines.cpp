@@ -13,7 +13,7 @@ namespace {
 constexpr double kU = 0x1p-53;
 
 /// Largest product of the sizes of two nodes that is tried pair by pair.
-constexpr std::int64_t kLeafPairs = 36;
+constexpr std::int64_t kLeafPairs = 16;
 
 /// Blocks in random order: so many are made before the order is drawn.
 constexpr std::size_t kRandomBlocks = 64;

@@ -25,9 +25,12 @@ struct DecompositionBuffers {
     std::int32_t a;
     std::int32_t b;
   };
+  std::vector<PairId> vertices;  ///< for the caller's list
   std::vector<Probe> probes;
-  std::vector<std::int32_t> far_from;  ///< by facet: a probe that shows it too far, or -1
-  std::vector<std::int32_t> edges;
+  std::vector<std::int32_t> far_from_a;  ///< by facet: a probe that shows it too far, or -1
+  std::vector<std::int32_t> far_from_b;
+  std::vector<std::int32_t> edges_a;  ///< that no probe shows too far, as half-edges
+  std::vector<std::int32_t> edges_b;
   ClosestLinesBuffers lines;
 };
 
@@ -36,6 +39,7 @@ struct DecompositionSettings {
   std::span<const PairId> vertices;                        ///< of P, found so far
   std::uint64_t seed = 0;                                  ///< of the random order; no answer depends on it
   bool exactly = true;                                     ///< as for `overlay_depth`
+  bool may_enumerate = false;  ///< whether all facets may be looked at where they are too few for anything better
 };
 
 struct DecompositionDepth {
@@ -43,6 +47,7 @@ struct DecompositionDepth {
   ClosestLinesCounts lines;
   std::int64_t edges_a = 0;  ///< edges that took part in the search for the closest lines
   std::int64_t edges_b = 0;
+  bool enumerated = false;  ///< the answer is that of `overlay_depth`
 };
 
 /// Nearest facet, equal to that of `overlay_depth`. Requires that the origin lies in P (boundary included), as [A]

@@ -28,7 +28,7 @@ class LineTree {
  public:
   /// Slabs are taken along so many directions: the axes and the diagonals of the cube.
   static constexpr int kSlabs = 7;
-  static constexpr int kLeaf = 6;
+  static constexpr int kLeaf = 4;
 
   struct Slabs {
     std::array<double, kSlabs> low;
