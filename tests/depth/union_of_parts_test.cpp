@@ -276,7 +276,13 @@ TEST(UnionOfParts, AConvexPairIsTheConvexAnswer) {
     const ConvexShape a = *ConvexPolytope::from_points(pair.a), b = *ConvexPolytope::from_points(pair.b);
     const Compound union_a(a), union_b(b);
     const PenetrationDepth convex = penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch);
-    const UnionDepth answer = *penetration_depth({&union_a, pair.pose_a}, {&union_b, pair.pose_b}, scratch);
+    const PosedCompound posed_a{&union_a, pair.pose_a}, posed_b{&union_b, pair.pose_b};
+    const UnionDepth same = *penetration_depth(posed_a, posed_b, scratch);
+    EXPECT_EQ(same.depth, convex.depth);
+    EXPECT_EQ(same.translation, convex.translation);
+    UnionSettings settings;
+    settings.method = UnionMethod::facets;
+    const UnionDepth answer = *penetration_depth(posed_a, posed_b, scratch, settings);
     ASSERT_EQ(answer.contact, convex.contact);
     EXPECT_LE(answer.lower, convex.upper);
     EXPECT_GE(answer.upper, convex.lower);

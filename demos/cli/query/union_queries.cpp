@@ -9,6 +9,7 @@
 #include "pair_reader.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/difference_queries.hpp"
+#include "pd/depth/union_difference.hpp"
 #include "pd/depth/union_of_parts.hpp"
 
 namespace pd::query {
@@ -255,6 +256,42 @@ void answer_union_contact_manifold(const Node& line, Session& session, JsonWrite
   answer.key("part_b").integer(depth.part_b);
 }
 
+std::string_view word_of(Feature::Kind kind) {
+  return kind == Feature::Kind::facet ? "facet" : kind == Feature::Kind::edge ? "edge" : "vertex";
+}
+
+void answer_union_minkowski_difference(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
+  const BodyPair pair = read_bodies(line, session.limits);
+  const UnionDifference result =
+      value_or_refuse(minkowski_difference(pair.posed_a(), pair.posed_b(), session.limits.max_vertices), line);
+  answer.key("vertices").begin_array();
+  for (const Vec3& vertex : result.vertices) answer.vector(vertex);
+  answer.end_array();
+  answer.key("facets").begin_array();
+  for (const UnionDifference::Facet& facet : result.facets) {
+    answer.begin_array();
+    for (std::int32_t k = 0; k < facet.count; ++k) {
+      answer.integer(result.corners[static_cast<std::size_t>(facet.first + k)]);
+    }
+    answer.end_array();
+  }
+  answer.end_array();
+  answer.key("K").integer(static_cast<std::int64_t>(result.facets.size()));
+  answer.key("facet_kinds").begin_array();
+  for (const UnionDifference::Facet& facet : result.facets) {
+    answer.string(std::string(word_of(facet.on_a.kind)) + "-" + std::string(word_of(facet.on_b.kind)));
+  }
+  answer.end_array();
+  const auto write_parts = [&](std::string_view key, std::int32_t UnionDifference::Facet::*part) {
+    answer.key(key).begin_array();
+    for (const UnionDifference::Facet& facet : result.facets) answer.integer(facet.*part);
+    answer.end_array();
+  };
+  write_parts("parts_a", &UnionDifference::Facet::part_a);
+  write_parts("parts_b", &UnionDifference::Facet::part_b);
+}
+
 constexpr std::array kUnionQueries{
     QueryEntry{"depth", answer_union_depth},
     QueryEntry{"distance", answer_union_distance},
@@ -263,6 +300,7 @@ constexpr std::array kUnionQueries{
     QueryEntry{"point_in_difference", answer_union_point_in_difference},
     QueryEntry{"support_of_difference", answer_union_support},
     QueryEntry{"contact_manifold", answer_union_contact_manifold},
+    QueryEntry{"minkowski_difference", answer_union_minkowski_difference},
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 #include <utility>
 
 #include "numeric/root_sum.hpp"
@@ -27,82 +26,12 @@ int compare(const Squared& x, const Squared& y) {
   return (x.numerator * y.denominator - y.numerator * x.denominator).sign();
 }
 
-/// Where a polygon meets the ray t d, t >= 0: the least t.
-class RayMeeting {
- public:
-  /// @param exact, unit  one direction.
-  RayMeeting(const PlaneSet& planes, const Dyadic3& exact, const Vec3& unit)
-      : planes_(planes), exact_(exact), unit_(unit) {}
-
-  [[nodiscard]] const Dyadic3& exact() const { return exact_; }
-
-  [[nodiscard]] std::optional<RayParameter> least(const PlanePolygon& polygon) const {
-    if (!near(polygon)) return std::nullopt;
-    const Dyadic slope = dot(planes_.exact_normal(polygon.plane), exact_);
-    const Dyadic offset = planes_.exact_offset(polygon.plane);
-    if (slope.sign() != 0) {
-      const RayParameter t = slope.sign() > 0 ? RayParameter{offset, slope} : RayParameter{-offset, -slope};
-      if (t.numerator.sign() < 0) return std::nullopt;
-      for (const Side s : polygon.sides) {
-        if (planes_.sign_on_ray(s, exact_, t) > 0) return std::nullopt;
-      }
-      return t;
-    }
-    if (offset.sign() != 0) return std::nullopt;
-    // The ray runs in the plane: clipped by the sides.
-    RayParameter from{Dyadic(0.0), Dyadic(1.0)};
-    std::optional<RayParameter> to;
-    for (const Side s : polygon.sides) {
-      const Dyadic rise = dot(planes_.exact_normal(s), exact_);
-      const Dyadic level = planes_.exact_offset(s);
-      if (rise.sign() == 0) {
-        if (level.sign() < 0) return std::nullopt;
-      } else if (rise.sign() > 0) {
-        const RayParameter t{level, rise};
-        if (!to || t.compare(*to) < 0) to = t;
-      } else {
-        const RayParameter t{-level, -rise};
-        if (t.compare(from) > 0) from = t;
-      }
-    }
-    if (to && to->compare(from) < 0) return std::nullopt;
-    return from;
-  }
-
- private:
-  /// False only when the ray misses the polygon for certain.
-  [[nodiscard]] bool near(const PlanePolygon& polygon) const {
-    Vec3 low = polygon.corners[0], high = low;
-    for (const Vec3& x : polygon.corners) {
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
-    }
-    const double slack = 4 * polygon.error + 0x1p-44 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-    double from = 0, to = HUGE_VAL;
-    for (int i = 0; i < 3; ++i) {
-      const double a = low[i] - slack, b = high[i] + slack;
-      if (std::abs(unit_[i]) < 0x1p-40) {
-        const double drift = to < HUGE_VAL ? 0x1p-40 * to : HUGE_VAL;
-        if (drift < HUGE_VAL && (a > drift || b < -drift)) return false;
-        continue;
-      }
-      double enter = a / unit_[i], leave = b / unit_[i];
-      if (enter > leave) std::swap(enter, leave);
-      from = std::max(from, enter - 0x1p-44 * std::abs(enter));
-      to = std::min(to, leave + 0x1p-44 * std::abs(leave));
-    }
-    return from <= to;
-  }
-
-  const PlaneSet& planes_;
-  Dyadic3 exact_;
-  Vec3 unit_;
-};
-
 }  // namespace
 
 UncoveredBoundary::UncoveredBoundary(const PartDifferences& differences)
-    : differences_(differences), planes_(differences.planes()) {}
+    : differences_(differences), planes_(differences.planes()) {
+  for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
+}
 
 const DifferenceFacet& UncoveredBoundary::facet(const Spot& spot) const {
   return differences_.pieces()[spot.piece].facets[spot.facet];
@@ -147,8 +76,12 @@ std::ptrdiff_t UncoveredBoundary::covering(const Vec3& x, const Taken& taken, do
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     if (has(taken, k)) continue;
+    const Box& box = boxes_[k];
+    if (box.low.x() - x.x() > tolerance || x.x() - box.high.x() > tolerance || box.low.y() - x.y() > tolerance ||
+        x.y() - box.high.y() > tolerance || box.low.z() - x.z() > tolerance || x.z() - box.high.z() > tolerance) {
+      continue;
+    }
     const PartDifference& piece = pieces[k];
-    if ((piece.low - x).maxCoeff() > tolerance || (x - piece.high).maxCoeff() > tolerance) continue;
     double highest = -HUGE_VAL;
     const double limit = std::min(tolerance, least);
     for (const DifferenceFacet& f : piece.facets) {
@@ -163,6 +96,33 @@ std::ptrdiff_t UncoveredBoundary::covering(const Vec3& x, const Taken& taken, do
   return best;
 }
 
+bool UncoveredBoundary::swallowed(const PlanePolygon& polygon) {
+  const double slack = 2 * polygon.error + 0x1p-44 * differences_.extent();
+  for (std::size_t i = 0; i < recent_.size(); ++i) {
+    const std::size_t k = recent_[i];
+    const auto& facets = differences_.pieces()[k].facets;
+    const bool inside = std::all_of(facets.begin(), facets.end(), [&](const DifferenceFacet& f) {
+      const Side s = f.polygon.plane;
+      const Vec3 normal = planes_.normal(s) * planes_.inverse_length(s);
+      const double limit = planes_.offset(s) * planes_.inverse_length(s) - slack;
+      return std::all_of(polygon.corners.begin(), polygon.corners.end(),
+                         [&](const Vec3& x) { return normal.dot(x) < limit; });
+    });
+    if (inside) {
+      std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
+                  recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      return true;
+    }
+  }
+  return false;
+}
+
+void UncoveredBoundary::remember(std::size_t k) {
+  if (std::find(recent_.begin(), recent_.end(), k) != recent_.end()) return;
+  if (recent_.size() == kRecent) recent_.pop_back();
+  recent_.insert(recent_.begin(), k);
+}
+
 UncoveredBoundary::Nearest UncoveredBoundary::nearest(double known_lower) {
   struct Waiting {
     double key;  ///< no point of the polygon is nearer
@@ -172,7 +132,11 @@ UncoveredBoundary::Nearest UncoveredBoundary::nearest(double known_lower) {
   const auto later = [](const Waiting& x, const Waiting& y) {
     return x.key != y.key ? x.key > y.key : x.order > y.order;
   };
-  std::priority_queue<Waiting, std::vector<Waiting>, decltype(later)> queue(later);
+  std::vector<Waiting> queue;  // a heap
+  const auto push = [&](Waiting waiting) {
+    queue.push_back(std::move(waiting));
+    std::push_heap(queue.begin(), queue.end(), later);
+  };
   const double scale = differences_.extent();
   std::int64_t order = 0;
 
@@ -188,58 +152,58 @@ UncoveredBoundary::Nearest UncoveredBoundary::nearest(double known_lower) {
     cell.spot.x = nearest_point(planes_, polygon);
     const double distance = cell.spot.x.norm();
     const double key = std::max(known_lower, distance - 4 * polygon.error - 0x1p-50 * scale);
-    if (key >= best_key) return;
-    queue.push({key, order++, std::move(cell)});
+    if (key >= best_key || swallowed(polygon)) return;
+    push({key, order++, std::move(cell)});
   };
   const std::vector<PartDifference>& pieces = differences_.pieces();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f) wait({{k, f, pieces[k].facets[f].polygon, {}}, own(k)});
+    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f)
+      wait({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, own(k)});
   }
 
   while (!queue.empty()) {
-    Waiting top = queue.top();
-    queue.pop();
+    std::pop_heap(queue.begin(), queue.end(), later);
+    Waiting top = std::move(queue.back());
+    queue.pop_back();
     if (best && top.key >= best_key) break;
     ++counts_.polygons;
     Cell& cell = top.cell;
-    const double distance = cell.spot.x.norm();
+    if (swallowed(cell.spot.polygon)) continue;
     // Ties are told apart exactly, so that the lower bound is the depth itself.
     std::optional<ExactNearestPoint> exact;
-    if (best && best->exact) {
+    if (best) {
       exact = exact_nearest_point(planes_, cell.spot.polygon);
-      if (exact && compare(squared_distance(exact->point), best_squared) >= 0) continue;
+      if (compare(squared_distance(exact->point), best_squared) >= 0) continue;
     }
     const double tolerance = 8 * cell.spot.polygon.error + 0x1p-44 * scale;
     const std::ptrdiff_t k = covering(cell.spot.x, cell.taken, tolerance);
     if (k >= 0) {
       const auto index = static_cast<std::size_t>(k);
+      remember(index);
       cell.taken[index / 64] |= std::uint64_t{1} << (index % 64);
       if (!cut_away(cell.spot.polygon, cell.spot.piece, index, false)) {
-        queue.push(std::move(top));
+        push(std::move(top));
         continue;
       }
       std::vector<PlanePolygon> rest = std::move(rest_);
-      for (PlanePolygon& part : rest) wait({{cell.spot.piece, cell.spot.facet, std::move(part), {}}, cell.taken});
+      for (PlanePolygon& part : rest)
+        wait({{cell.spot.piece, cell.spot.facet, std::move(part), Vec3::Zero()}, cell.taken});
       continue;
     }
     if (!exact) exact = exact_nearest_point(planes_, cell.spot.polygon);
-    Nearest found;
-    found.spot = std::move(cell.spot);
-    found.exact = exact.has_value();
-    if (!exact) {
-      // Every key to come is at least this one.
-      found.lower = best ? std::min(top.key, best->lower) : top.key;
-      if (!best || distance < best_key) {
-        best = std::move(found);
-      } else {
-        best->lower = found.lower;
-      }
-      break;
+    const Vec3 x = rounded(exact->point);
+    if ((x - cell.spot.x).cwiseAbs().maxCoeff() > tolerance / 4) {
+      // A flat crossing misled the doubles: asked again at the right point.
+      cell.spot.x = x;
+      top.key = std::max(top.key, x.norm() * (1 - 0x1p-48));
+      push(std::move(top));
+      continue;
     }
     Squared squared = squared_distance(exact->point);
-    if (best && compare(squared, best_squared) >= 0) continue;
+    Nearest found;
+    found.spot = std::move(cell.spot);
     found.foot = exact->foot;
-    found.spot.x = rounded(exact->point);
+    found.spot.x = x;
     found.lower = RootSum(Dyadic(0.0), 1, squared.numerator, squared.denominator).round_down();
     best_key = found.lower;
     best_squared = std::move(squared);
@@ -285,86 +249,54 @@ std::optional<UncoveredBoundary::Spot> UncoveredBoundary::at(const Vec3& x, bool
   return std::nullopt;
 }
 
-std::optional<UncoveredBoundary::Hit> UncoveredBoundary::along(const Vec3& direction, const Dyadic3& exact) {
-  struct Waiting {
-    RayParameter t;
-    std::int64_t order;
-    Cell cell;
-  };
-  const auto later = [](const Waiting& x, const Waiting& y) {
-    const int sign = x.t.compare(y.t);
-    return sign != 0 ? sign > 0 : x.order > y.order;
-  };
-  std::priority_queue<Waiting, std::vector<Waiting>, decltype(later)> queue(later);
-  const RayMeeting ray(planes_, exact, direction.normalized());
-  std::int64_t order = 0;
-  const auto wait = [&](Cell cell) {
-    if (auto t = ray.least(cell.spot.polygon)) queue.push({*std::move(t), order++, std::move(cell)});
-  };
-  const std::vector<PartDifference>& pieces = differences_.pieces();
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f) wait({{k, f, pieces[k].facets[f].polygon, {}}, own(k)});
-  }
-  const auto holds = [&](const PartDifference& piece, const RayParameter& t, const Vec3& x) {
-    const double slack = 0x1p-40 * (differences_.extent() + x.cwiseAbs().maxCoeff());
-    for (const DifferenceFacet& f : piece.facets) {
-      const double height = planes_.height(f.polygon.plane, x);
-      if (height > slack) return false;
-      if (height > -slack && planes_.sign_on_ray(f.polygon.plane, ray.exact(), t) > 0) return false;
-    }
-    return true;
-  };
-  while (!queue.empty()) {
-    Waiting top = queue.top();
-    queue.pop();
-    ++counts_.polygons;
-    const double t = quotient(top.t.numerator, top.t.denominator);
-    const Vec3 x = t * direction;
-    bool again = false;
-    for (std::size_t k = 0; k < pieces.size() && !again; ++k) {
-      if (has(top.cell.taken, k) || !holds(pieces[k], top.t, x)) continue;
-      top.cell.taken[k / 64] |= std::uint64_t{1} << (k % 64);
-      if (!cut_away(top.cell.spot.polygon, top.cell.spot.piece, k, false)) continue;
-      again = true;
-      std::vector<PlanePolygon> rest = std::move(rest_);
-      for (PlanePolygon& part : rest) {
-        wait({{top.cell.spot.piece, top.cell.spot.facet, std::move(part), {}}, top.cell.taken});
-      }
-    }
-    if (again) continue;
-    top.cell.spot.x = x;
-    return Hit{std::move(top.cell.spot), std::move(top.t)};
-  }
-  return std::nullopt;
-}
-
 bool UncoveredBoundary::visit_all(const Visitor& visitor) {
   const std::vector<PartDifference>& pieces = differences_.pieces();
-  for (std::size_t own = 0; own < pieces.size(); ++own) {
-    for (std::size_t f = 0; f < pieces[own].facets.size(); ++f) {
-      std::vector<PlanePolygon> polygons{pieces[own].facets[f].polygon};
-      for (std::size_t k = 0; k < pieces.size() && !polygons.empty(); ++k) {
-        if (k == own) continue;
-        if ((pieces[k].low - pieces[own].high).maxCoeff() > 0 || (pieces[own].low - pieces[k].high).maxCoeff() > 0) {
-          continue;
-        }
-        std::vector<PlanePolygon> next;
-        for (PlanePolygon& polygon : polygons) {
-          if (!cut_away(polygon, own, k, true)) {
-            next.push_back(std::move(polygon));
-          } else {
-            for (PlanePolygon& part : rest_) next.push_back(std::move(part));
-          }
-        }
-        polygons = std::move(next);
-      }
-      for (PlanePolygon& polygon : polygons) {
+  std::vector<Cell> open;
+  for (std::size_t own_piece = 0; own_piece < pieces.size(); ++own_piece) {
+    for (std::size_t f = 0; f < pieces[own_piece].facets.size(); ++f) {
+      open.push_back({{own_piece, f, pieces[own_piece].facets[f].polygon, Vec3::Zero()}, own(own_piece)});
+      while (!open.empty()) {
+        Cell cell = std::move(open.back());
+        open.pop_back();
         ++counts_.polygons;
-        if (!visitor(Spot{own, f, std::move(polygon), Vec3::Zero()})) return false;
+        if (swallowed(cell.spot.polygon)) continue;
+        if (part_one(cell, open)) continue;
+        if (!visitor(cell.spot)) return false;
       }
     }
   }
   return true;
+}
+
+bool UncoveredBoundary::part_one(Cell& cell, std::vector<Cell>& open) {
+  const PlanePolygon& polygon = cell.spot.polygon;
+  const auto part_by = [&](std::size_t k) {
+    cell.taken[k / 64] |= std::uint64_t{1} << (k % 64);
+    if (!cut_away(polygon, cell.spot.piece, k, true)) return false;
+    for (PlanePolygon& part : rest_)
+      open.push_back({{cell.spot.piece, cell.spot.facet, std::move(part), Vec3::Zero()}, cell.taken});
+    return true;
+  };
+  // The one that holds the middle best covers most of it.
+  Vec3 middle = Vec3::Zero();
+  Vec3 low = polygon.corners[0], high = low;
+  for (const Vec3& x : polygon.corners) {
+    middle += x;
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  middle /= static_cast<double>(polygon.corners.size());
+  for (std::ptrdiff_t k = covering(middle, cell.taken, 0); k >= 0; k = covering(middle, cell.taken, 0)) {
+    remember(static_cast<std::size_t>(k));
+    if (part_by(static_cast<std::size_t>(k))) return true;
+  }
+  const double slack = 2 * polygon.error;
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    if (has(cell.taken, k)) continue;
+    if ((boxes_[k].low - high).maxCoeff() > slack || (low - boxes_[k].high).maxCoeff() > slack) continue;
+    if (part_by(k)) return true;
+  }
+  return false;
 }
 
 bool UncoveredBoundary::free_piece_near(const Vec3& low, const Vec3& high, const std::vector<std::size_t>& among) {

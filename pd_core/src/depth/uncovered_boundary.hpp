@@ -39,9 +39,8 @@ class UncoveredBoundary {
   /// @param known_lower  no boundary point is nearer: what lies inside that ball is not looked at.
   struct Nearest {
     Spot spot;
-    double lower = 0;
-    bool exact = false;  ///< lower is the distance itself, rounded down
-    bool foot = false;   ///< the nearest point is the foot of the perpendicular on the facet's plane, exactly
+    double lower = 0;   ///< the distance itself, rounded down
+    bool foot = false;  ///< the nearest point is the foot of the perpendicular on the facet's plane, exactly
   };
   [[nodiscard]] Nearest nearest(double known_lower);
 
@@ -93,8 +92,17 @@ class UncoveredBoundary {
   /// The deepest P_k, not taken yet, that holds x within the tolerance; -1: none.
   [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const Taken& taken, double tolerance) const;
 
+  /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
+  bool part_one(Cell& cell, std::vector<Cell>& open);
+  /// Whether a P_k that lately covered something holds all of a polygon in its interior, for certain.
+  bool swallowed(const PlanePolygon& polygon);
+  void remember(std::size_t k);
+  static constexpr std::size_t kRecent = 12;
+
   const PartDifferences& differences_;
   const PlaneSet& planes_;
+  std::vector<Box> boxes_;  ///< of the P_k
+  std::vector<std::size_t> recent_;
   std::vector<PlanePolygon> rest_;
   Counts counts_;
 };

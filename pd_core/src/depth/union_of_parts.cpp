@@ -191,6 +191,8 @@ Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, co
   const PairsVerdict verdict = judge_pairs(pair, scratch, settings.delta, out.work);
   take_pair(verdict, out);
   if (verdict.contact == ContactClass::separated) return out;
+  const bool convex = pair.a.size() == 1 && pair.b.size() == 1;
+  if (convex && settings.method == UnionMethod::automatic) return out;
   FacetsAnswer answer(pair, settings, out.work);
   double known_lower = verdict.nearest.lower;
   if (verdict.contact == ContactClass::touching) {
@@ -224,16 +226,31 @@ Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompou
                                        const UnionSettings& settings) {
   const detail::FloatingPointGuard guard;
   if (auto refused = refuse_settings(settings)) return *std::move(refused);
-  const Expected<UnionPair> pair = UnionPair::pose(a, b);
-  if (!pair) return pair.error();
-  if (settings.method == UnionMethod::facets && !pair->polytopes) {
+  Expected<UnionPair> posed = UnionPair::pose(a, b);
+  if (!posed) return posed.error();
+  UnionPair pair = std::move(posed).value();
+  if (settings.method == UnionMethod::facets && !pair.polytopes) {
     return Error{ErrorCode::unsupported, "the facets of the difference are known for polytopes without a margin only",
                  ""};
   }
+  // A pair is solved in one order, whichever way it was asked.
+  const bool turned = pair.turn_to_canonical_order();
   const bool facets =
-      settings.method == UnionMethod::facets || (settings.method == UnionMethod::automatic && pair->polytopes);
-  auto out = facets ? solve_by_facets(*pair, scratch, settings)
-                    : Expected<UnionDepth>(detail::solve_by_octree(*pair, scratch, settings));
+      settings.method == UnionMethod::facets || (settings.method == UnionMethod::automatic && pair.polytopes);
+  Expected<UnionDepth> solved = facets ? solve_by_facets(pair, scratch, settings)
+                                       : Expected<UnionDepth>(detail::solve_by_octree(pair, scratch, settings));
+  if (!solved) return solved.error();
+  UnionDepth out = std::move(solved).value();
+  if (turned) {
+    out.translation = -out.translation;
+    out.normal = -out.normal;
+    std::swap(out.witness_a, out.witness_b);
+    std::swap(out.feature_a, out.feature_b);
+    std::swap(out.part_a, out.part_b);
+  }
+  // No negative zeros: people read the numbers.
+  out.translation.array() += 0.0;
+  out.normal.array() += 0.0;
   return out;
 }
 

@@ -38,7 +38,55 @@ double box_gap(const Box& a, const Box& b) {
   return largest <= 0 ? largest : gap.cwiseMax(Vec3::Zero()).stableNorm() * (1 - 0x1p-40);
 }
 
+int compare(double x, double y) { return (x > y) - (x < y); }
+
+int compare(const Vec3& x, const Vec3& y) {
+  for (int i = 0; i < 3; ++i) {
+    if (const int c = compare(x[i], y[i])) return c;
+  }
+  return 0;
+}
+
+/// Compares the numbers that describe two shapes: vertices, or the sizes of curved cores.
+int compare(const ConvexShape& x, const ConvexShape& y) {
+  if (x.core().index() != y.core().index()) return x.core().index() < y.core().index() ? -1 : 1;
+  if (const int c = compare(x.margin(), y.margin())) return c;
+  if (x.polytope()) {
+    const ConvexPolytope &p = *x.polytope(), &q = *y.polytope();
+    if (p.num_vertices() != q.num_vertices()) return p.num_vertices() < q.num_vertices() ? -1 : 1;
+    for (int v = 0; v < p.num_vertices(); ++v) {
+      if (const int c = compare(p.vertex(v), q.vertex(v))) return c;
+    }
+    return 0;
+  }
+  const auto sizes = [](const ConvexShape& shape) -> Vec3 {
+    if (const auto* e = std::get_if<Ellipsoid>(&shape.core())) return e->radii;
+    if (const auto* c = std::get_if<Cylinder>(&shape.core())) return {c->radius, c->half_height, double(c->axis)};
+    const Cone& cone = std::get<Cone>(shape.core());
+    return {cone.radius, cone.half_height, double(cone.axis)};
+  };
+  return compare(sizes(x), sizes(y));
+}
+
+int compare(const PosedShape& x, const PosedShape& y) {
+  if (const int c = compare(*x.shape, *y.shape)) return c;
+  if (const int c = compare(x.pose.translation(), y.pose.translation())) return c;
+  for (int i = 0; i < 3; ++i) {
+    if (const int c = compare(Vec3(x.pose.rotation().col(i)), Vec3(y.pose.rotation().col(i)))) return c;
+  }
+  return 0;
+}
+
 }  // namespace
+
+bool UnionPair::turn_to_canonical_order() {
+  int order = compare(static_cast<double>(a.size()), static_cast<double>(b.size()));
+  for (std::size_t i = 0; order == 0 && i < a.size(); ++i) order = compare(a[i], b[i]);
+  if (order <= 0) return false;
+  std::swap(a, b);
+  std::swap(boxes_a, boxes_b);
+  return true;
+}
 
 Box bounding_box(const PosedShape& part) {
   Vec3 low, high;
@@ -120,8 +168,7 @@ PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, 
       break;
     }
     ++work.pairs;
-    DepthSettings settings;
-    settings.bracket = Bracket::tightest;
+    DepthSettings settings;  // the class is exact in any case
     const PosedShape &a = pair.a[static_cast<std::size_t>(candidate.a)],
                      &b = pair.b[static_cast<std::size_t>(candidate.b)];
     if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
@@ -141,6 +188,12 @@ PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, 
     }
     first = false;
   }
+  const PosedShape &a = pair.a[static_cast<std::size_t>(verdict.part_a)],
+                   &b = pair.b[static_cast<std::size_t>(verdict.part_b)];
+  DepthSettings settings;
+  settings.bracket = Bracket::tightest;
+  if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
+  verdict.nearest = penetration_depth(a, b, scratch, settings);
   verdict.nearest.statistics = statistics;
   return verdict;
 }

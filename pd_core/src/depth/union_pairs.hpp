@@ -22,6 +22,9 @@ struct UnionPair {
   bool polytopes = true;
 
   static Expected<UnionPair> pose(const PosedCompound& a, const PosedCompound& b);
+  /// Orders the two bodies by content, so that an answer does not depend on which was named first. True when they were
+  /// exchanged.
+  bool turn_to_canonical_order();
   /// An upper bound of the depth: the least axis-parallel move that takes the boxes of the unions apart.
   [[nodiscard]] double box_exit() const;
   /// 2^k near `size` where products of lengths could leave the range of doubles, else 0.
