@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 namespace pd::bench {
 
@@ -129,6 +130,19 @@ void ClaimTable::add_value(const Claim& claim, std::string family, std::string c
   }
   print(finding);
   findings_.push_back(std::move(finding));
+}
+
+std::vector<Finding> ClaimTable::by_claim() const {
+  std::vector<std::string> names;
+  for (const Finding& f : findings_) {
+    if (std::find(names.begin(), names.end(), f.claim.name) == names.end()) names.push_back(f.claim.name);
+  }
+  std::vector<Finding> sorted;
+  for (const std::string& name : names) {
+    std::copy_if(findings_.begin(), findings_.end(), std::back_inserter(sorted),
+                 [&](const Finding& f) { return f.claim.name == name; });
+  }
+  return sorted;
 }
 
 int ClaimTable::failures() const {

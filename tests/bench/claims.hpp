@@ -72,6 +72,8 @@ class ClaimTable {
                  std::optional<double> most = {});
 
   [[nodiscard]] const std::vector<Finding>& findings() const { return findings_; }
+  /// The same rows, those of one claim together; claims in the order in which they first came.
+  [[nodiscard]] std::vector<Finding> by_claim() const;
   /// Rows that fail.
   [[nodiscard]] int failures() const;
 

@@ -62,7 +62,8 @@ inline constexpr std::string_view kBulletEpa = "bullet-epa";
 [[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);
 
 /// pdepth-auto (the automatic method with Bracket::certified, as a physics engine uses it), and with `every_engine`
-/// pdepth-tightest (Bracket::tightest), pdepth-expansion, pdepth-overlay.
+/// pdepth-tightest (Bracket::tightest), pdepth-expansion, pdepth-overlay,
+/// pdepth-decomposition.
 /// `remembering`: pdepth-auto keeps a warm certificate for each pair, and pdepth-cold stands beside it.
 void add_ours(Solvers& solvers, bool every_engine, bool remembering);
 

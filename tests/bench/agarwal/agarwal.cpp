@@ -24,6 +24,9 @@ struct Chapter {
 constexpr Chapter kChapters[] = {
     {"sizes", measure_sizes},
     {"search", measure_search},
+    {"decomposition", measure_decomposition},
+    {"approximate", measure_approximate},
+    {"non_convex", measure_non_convex},
     {"roofs", measure_roofs},
     {"exactness", measure_exactness},
 };
@@ -56,9 +59,10 @@ std::string preamble(const AgarwalSettings& settings) {
 
 bool write_files(const AgarwalSettings& settings, const ClaimTable& table) {
   const std::filesystem::path folder(settings.out);
-  bool written = write_text(folder / "agarwal.csv", to_csv(table.findings()));
-  written = write_text(folder / "agarwal_points.csv", points_csv(table.findings())) && written;
-  written = write_text(folder / "agarwal.md", to_markdown(table.findings(), preamble(settings))) && written;
+  const std::vector<Finding> findings = table.by_claim();
+  bool written = write_text(folder / "agarwal.csv", to_csv(findings));
+  written = write_text(folder / "agarwal_points.csv", points_csv(findings)) && written;
+  written = write_text(folder / "agarwal.md", to_markdown(findings, preamble(settings))) && written;
 #ifdef PD_BENCH_WITH_RENDER
   written = write_claim_plots(table.findings(), folder) && written;
 #else

@@ -23,8 +23,9 @@ using scenes::DepthClass;
 const Claim kExact{"Exactness",
                    "every answer of every exact engine equals the brute-force oracle; at most 64 vertices"};
 
-constexpr std::array kEngineNames{"auto", "expansion", "overlay"};
-constexpr std::array kEngineMethods{Method::automatic, Method::expansion, Method::overlay};
+constexpr std::array kEngineNames{"auto", "expansion", "overlay", "decomposition", "shallow"};
+constexpr std::array kEngineMethods{Method::automatic, Method::expansion, Method::overlay, Method::decomposition,
+                                    Method::shallow};
 constexpr std::size_t kEngines = kEngineMethods.size();
 
 struct Pair {

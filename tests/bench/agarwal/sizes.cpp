@@ -20,7 +20,7 @@ const Claim kOverlay{"Section 2.2, overlay", "the overlay of the two normal diag
 
 void measure_sizes(const AgarwalSettings& settings, ClaimTable& table) {
   Overlay overlay;
-  const int top = settings.quick ? 512 : 4096;
+  const int top = settings.quick ? 1024 : 4096;
   std::vector<Growth> costs;
   for (const AgarwalFamily family : scenes::agarwal_families()) {
     const std::string name(to_string(family));
@@ -30,7 +30,7 @@ void measure_sizes(const AgarwalSettings& settings, ClaimTable& table) {
     Growth facets{name, "K", "m"};
     Growth cost{name, "time of the walk, ns", "K + m"};
     double off = 0;
-    for (const int m : doublings(quadratic ? 32 : 128, quadratic ? most : 4 * most)) {
+    for (const int m : doublings(quadratic ? most / 16 : most / 4, quadratic ? most : 4 * most)) {
       const scenes::PolytopePair pair = scenes::make_agarwal_pair(family, m, DepthClass::deep, settings.seed);
       std::int64_t k = 0;
       const std::function<void()> walk = [&] {
@@ -44,7 +44,7 @@ void measure_sizes(const AgarwalSettings& settings, ClaimTable& table) {
       }
     }
     if (family == AgarwalFamily::fogel_halperin_weibel) {
-      table.add_value(kMaximum, name, "sum of |K - formula|", fmt::format("m = n = 32..{}", most), off, 0);
+      table.add_value(kMaximum, name, "sum of |K - formula|", fmt::format("m = n = {}..{}", most / 16, most), off, 0);
     }
     table.add_order(kQuadratic, std::move(facets), quadratic ? 2 : 1, 0.1);
     costs.push_back(std::move(cost));

@@ -66,6 +66,7 @@ void add_ours(Solvers& solvers, bool every_engine, bool remembering) {
   add("pdepth-tightest", {.bracket = Bracket::tightest}, remembering);
   add("pdepth-expansion", certified(Method::expansion), false);
   add("pdepth-overlay", certified(Method::overlay), false);
+  add("pdepth-decomposition", certified(Method::decomposition), false);
 }
 
 }  // namespace pd::bench
