@@ -7,21 +7,6 @@ namespace pd::detail {
 
 namespace {
 
-/// A facet of the body, not `skip`, that holds three of its vertices; -1 when there is none.
-int facet_with(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, std::int32_t v2, int skip) {
-  const int first = body.first_half_edge(v0);
-  for (int h = first; h < first + static_cast<int>(body.neighbours(v0).size()); ++h) {
-    const int f = body.half_edge(h).facet;
-    if (f < 0 || f == skip) continue;
-    const auto loop = body.facet_vertices(f);
-    if (std::find(loop.begin(), loop.end(), v1) != loop.end() &&
-        std::find(loop.begin(), loop.end(), v2) != loop.end()) {
-      return f;
-    }
-  }
-  return -1;
-}
-
 /// The two ids when exactly two are distinct.
 std::optional<std::pair<std::int32_t, std::int32_t>> two_of(std::int32_t x, std::int32_t y, std::int32_t z) {
   if (x == y && x == z) return std::nullopt;
@@ -44,13 +29,13 @@ ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
   // A flat body's polygon has two facets, which face opposite ways.
   if (p.a == q.a && p.a == r.a) {
     for (int f = -1, tries = 0; tries < 2; ++tries) {
-      f = facet_with(pair.b(), p.b, q.b, r.b, f);
+      f = facet_holding(pair.b(), p.b, q.b, r.b, f);
       if (f < 0) break;
       if (measured(FacetOfDifference::from_facet_of_b(pair.b(), f, p.a))) return found;
     }
   } else if (p.b == q.b && p.b == r.b) {
     for (int f = -1, tries = 0; tries < 2; ++tries) {
-      f = facet_with(pair.a(), p.a, q.a, r.a, f);
+      f = facet_holding(pair.a(), p.a, q.a, r.a, f);
       if (f < 0) break;
       if (measured(FacetOfDifference::from_facet_of_a(pair.a(), f, p.b))) return found;
     }

@@ -7,6 +7,7 @@
 /// depth is also at most that distance. Both sides hold for the exact points, whatever the doubles were that led here.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -34,5 +35,20 @@ struct ProvenFacet {
 [[nodiscard]] std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair,
                                                              std::span<const SurfaceCorners> near, double beyond,
                                                              PlaneFaces& faces);
+
+/// Cores that are apart: the plane through P's point nearest to the origin, normal to it (distance negative), and that
+/// point as a combination of vertices of P.
+struct ProvenSeparation {
+  FacetPlane plane;
+  int count = 0;
+  std::array<PairId, 3> simplex{};
+  std::array<double, 3> weights{};
+};
+
+/// Proves that the point of the simplex nearest to the origin is P's: it lies in the simplex' relative interior, and
+/// the plane normal to it supports P. Nothing where the simplex is not the right one, or double-double cannot tell.
+/// @param faces  filled with the faces in that plane.
+[[nodiscard]] std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::span<const PairId> simplex,
+                                                               PlaneFaces& faces);
 
 }  // namespace pd::detail

@@ -166,4 +166,29 @@ void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Marg
   set_witnesses(split_apart(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count), margins, out);
 }
 
+bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces, const Margins& margins,
+                  Bracket bracket, PenetrationDepth& out) {
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  const DoubleDouble core = -DoubleDouble{proof.plane.distance.hi * scale, proof.plane.distance.lo * scale};
+  const DoubleDouble distance = core - two_sum(margins.a, margins.b);
+  const double error = proof.plane.distance_error * scale + 0x1p-100 * (core.hi + margins.both());
+  double down = 0, up = 0;
+  if (!round_certainly(distance, error, down, up)) {
+    if (bracket != Bracket::certified || !(distance.hi > 0x1p-900) || !(error < 0x1p-60 * distance.hi)) return false;
+    down = std::nextafter(distance.hi, 0.0);
+    up = std::nextafter(distance.hi, HUGE_VAL);
+  }
+  clear_lengths(out);
+  out.contact = ContactClass::separated;
+  out.normal = high(proof.plane.unit);
+  out.distance_lower = down;
+  out.distance_upper = up;
+  out.distance = up;
+  const FacetFeatures features = features_of(pair, faces, out.normal);
+  out.feature_a = features.on_a;
+  out.feature_b = features.on_b;
+  set_witnesses(split_apart(pair, proof.simplex.data(), proof.weights.data(), proof.count), margins, out);
+  return true;
+}
+
 }  // namespace pd::detail

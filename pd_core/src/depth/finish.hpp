@@ -4,6 +4,7 @@
 #pragma once
 
 #include "depth/exact_nearest.hpp"
+#include "depth/facet_proof.hpp"
 #include "depth/plane_faces.hpp"
 #include "pd/depth/penetration_depth.hpp"
 
@@ -37,5 +38,10 @@ void finish_touching(const PosedPair& pair, const ExactDirection& normal, const 
 
 /// The cores are apart: separated, touching or overlapping by the margins, decided exactly.
 void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out);
+
+/// The same from a proof in double-double, `faces` collected with it. False, and nothing said, where that leaves the
+/// rounding of the distance open (or the margins make the bodies overlap).
+[[nodiscard]] bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces,
+                                const Margins& margins, Bracket bracket, PenetrationDepth& out);
 
 }  // namespace pd::detail

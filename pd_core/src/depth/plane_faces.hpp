@@ -3,6 +3,9 @@
 /// features by exact signs along edges.
 #pragma once
 
+#include <span>
+
+#include "depth/exact_nearest.hpp"
 #include "depth/exact_support.hpp"
 #include "depth/facet_plane.hpp"
 
@@ -14,12 +17,29 @@ struct PlaneFaces {
   SupportFace on_b;
 };
 
+/// A facet of the body, not `skip`, that holds three of its vertices; -1 when there is none.
+[[nodiscard]] int facet_holding(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, std::int32_t v2,
+                                int skip = -1);
+
 /// Collects the faces in the plane of `facet`, whose features must lie in it. `plane` serves as a filter.
 /// Time of the order of the faces' vertices and their degrees; exact arithmetic only for ties within rounding.
 /// @return whether the plane supports P exactly: by convexity no other edges need be asked than those that leave the
 ///         faces. The faces are complete only then.
 [[nodiscard]] bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
                                  PlaneFaces& faces);
+
+/// The exact sign of <edge, normal> for a normal that is not that of a facet.
+class NormalSign {
+ public:
+  virtual ~NormalSign() = default;
+  [[nodiscard]] virtual int along(const PairVector& edge) const = 0;
+};
+/// The same for the supporting plane through points that are known to lie in it.
+/// @param plane   its unit normal serves as a filter.
+/// @param sign    asked where the filter fails.
+/// @param points  one to three vertices of P in the plane.
+[[nodiscard]] bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
+                                 std::span<const PairId> points, PlaneFaces& faces);
 
 /// The features that an answer reports for the face of P with these faces (facet and lowest vertex, or two edges).
 /// @param unit  outward normal of P there.

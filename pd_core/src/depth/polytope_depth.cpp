@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "depth/exact_expansion.hpp"
 #include "depth/expansion.hpp"
@@ -52,7 +53,7 @@ class PolytopeQuery {
         }
         return;
       case ExpansionStatus::separated:
-        if (exactly || !fill_separated(result)) solve_exactly(result);
+        if (!fill_separated(result) || exactly) solve_exactly(result);
         return;
       case ExpansionStatus::over_budget:
         if (result.lower > 0) {
@@ -61,7 +62,10 @@ class PolytopeQuery {
         }
         [[fallthrough]];
       default:
-        if (!solve_by_proof(result)) solve_exactly(result);
+        if (solve_by_proof(result)) return;
+        // A needle's first simplex may be flat to doubles although the bodies are far apart.
+        if (result.face < 0 && within_range(difference_.reach()) && fill_separated(result) && !exactly) return;
+        solve_exactly(result);
     }
   }
 
@@ -269,7 +273,13 @@ class PolytopeQuery {
 
   void solve_exactly(const ExpansionResult& result) {
     const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-    if (start_count_ == 0) {
+    if (start_count_ > 0) {
+      const auto proof = prove_separation(posed, std::span(start_).first(start_count_), buffers_.faces);
+      if (proof && finish_apart(posed, *proof, buffers_.faces, pair_.margins, bracket_, out_)) {
+        count_stages(posed);
+        return;
+      }
+    } else {
       start_[0] = any_vertex(result);
       start_count_ = 1;
     }

@@ -15,7 +15,6 @@ namespace {
 constexpr double kU = 0x1p-53;
 constexpr double kUdd = 0x1p-104;
 
-Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
 DoubleDouble scaled(const DoubleDouble& x, double power_of_two) { return {x.hi * power_of_two, x.lo * power_of_two}; }
 
 /// Within these magnitudes (or zero) squares and their roundings are exact in expansions.

@@ -41,7 +41,7 @@ class Separation {
   /// Computed when first asked for.
   [[nodiscard]] const NearestPlane& plane();
   [[nodiscard]] const Dyadic& radius() {
-    plane();
+    static_cast<void>(plane());
     return radius_;
   }
 
