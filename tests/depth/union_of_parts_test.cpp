@@ -9,11 +9,11 @@
 #include <cmath>
 #include <optional>
 
-#include "non_convex.hpp"
 #include "oracle/depth_oracle.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/star_body.hpp"
+#include "scenes/non_convex.hpp"
 
 namespace pd {
 namespace {
@@ -357,6 +357,7 @@ TEST(UnionOfParts, SettingsAreChecked) {
   exact.method = UnionMethod::facets;
   EXPECT_EQ(penetration_depth(posed, round, scratch, exact).error().code, ErrorCode::unsupported);
   UnionSettings few;
+  few.method = UnionMethod::facets;
   few.max_facets = 3;
   EXPECT_EQ(penetration_depth(posed, posed, scratch, few).error().code, ErrorCode::limit_exceeded);
   EXPECT_EQ(directional_depth(posed, posed, Vec3::Zero(), scratch).error().code, ErrorCode::zero_direction);
