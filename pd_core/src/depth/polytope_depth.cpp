@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "depth/exact_expansion.hpp"
 #include "depth/expansion.hpp"
@@ -44,6 +45,10 @@ class PolytopeQuery {
       result = expand();
       remember(result);
     }
+    if (settings_.method == Method::decomposition && result.status != ExpansionStatus::separated) {
+      solve_by_decomposition(result);
+      return;
+    }
     switch (result.status) {
       case ExpansionStatus::certified:
         if (!exactly) {
@@ -57,7 +62,7 @@ class PolytopeQuery {
         return;
       case ExpansionStatus::over_budget:
         if (result.lower > 0) {
-          solve_by_overlay(result.upper);
+          solve_by_decomposition(result);
           return;
         }
         [[fallthrough]];
@@ -357,17 +362,85 @@ class PolytopeQuery {
     out_.method = Method::overlay;
     const OverlayDepth overlay = overlay_depth(posed, buffers_.overlay, bracket_ == Bracket::tightest,
                                                std::ldexp(upper, -posed.scale_exponent()));
-    out_.statistics.facets_visited += overlay.facets_visited;
-    out_.statistics.exact_signs += overlay.exact_comparisons;
-    if (overlay.contact == ContactClass::overlapping) {
-      finish_overlapping(posed, overlay.facet, pair_.margins, bracket_, buffers_.faces, out_);
+    finish_nearest(posed, overlay);
+  }
+
+  /// [A] section 2, under the bound that the expansion leaves and with the vertices of P that it found.
+  void solve_by_decomposition(const ExpansionResult& result) {
+    const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
+    out_.method = Method::decomposition;
+    if (!(result.lower > 0)) {
+      const PairId any = any_vertex(result);
+      const ExactNearest nearest = exact_nearest(posed, &any, 1);
+      if (nearest.apart) {
+        finish_apart(posed, nearest, pair_.margins, out_);
+        count_stages(posed);
+        return;
+      }
+    }
+    DecompositionBuffers& buffers = buffers_.decomposition;
+    buffers.vertices.clear();
+    if (within_range(difference_.reach())) {
+      for (const DifferenceVertex& v : buffers_.surface.vertices) buffers.vertices.push_back({v.a, v.b});
+    }
+    DecompositionSettings settings;
+    if (result.lower > 0) {
+      const double height = least_height();
+      settings.upper = std::ldexp(std::min(result.upper, height), -posed.scale_exponent());
+    }
+    settings.vertices = buffers.vertices;
+    settings.seed = settings_.seed;
+    settings.exactly = bracket_ == Bracket::tightest;
+    settings.may_enumerate = settings_.method != Method::decomposition;
+    const DecompositionDepth found = decomposition_depth(posed, settings, buffers_.overlay, buffers);
+    if (found.enumerated) out_.method = Method::overlay;
+    out_.statistics.pair_evaluations += found.lines.pair_evaluations;
+    out_.statistics.block_bounds += found.lines.block_bounds;
+    out_.statistics.lines_scanned += found.lines.lines_scanned;
+    finish_nearest(posed, found.nearest);
+  }
+
+  /// The least height of P, certified, over the normals of the surface's nearest faces: any direction's support bounds
+  /// the depth from above.
+  double least_height() {
+    const Surface& surface = buffers_.surface;
+    constexpr std::size_t kTried = 8;
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    std::array<std::pair<double, int>, kTried> nearest;
+    nearest.fill({kNone, -1});
+    for (int f = 0; f < surface.slots(); ++f) {
+      if (!(surface.keys[f] < nearest.back().first)) continue;
+      nearest.back() = {surface.keys[f], f};
+      for (std::size_t k = kTried - 1; k > 0 && nearest[k].first < nearest[k - 1].first; --k) {
+        std::swap(nearest[k], nearest[k - 1]);
+      }
+    }
+    double least = kNone;
+    for (const auto& [key, f] : nearest) {
+      if (f < 0) break;
+      const Vec3 unit = surface.faces[f].normal.normalized();
+      const DifferenceVertex s =
+          difference_.certified_support(unit, difference_.support(unit, nullptr), buffers_.stack);
+      ++out_.statistics.support_calls;
+      // The support's own error, its point's, and that of the product and of |unit|.
+      least = std::min(least, s.x.dot(unit) + difference_.support_error() + difference_.point_error() +
+                                  8 * 0x1p-53 * difference_.reach());
+    }
+    return least;
+  }
+
+  void finish_nearest(const PosedPair& posed, const OverlayDepth& found) {
+    out_.statistics.facets_visited += found.facets_visited;
+    out_.statistics.exact_signs += found.exact_comparisons;
+    if (found.contact == ContactClass::overlapping) {
+      finish_overlapping(posed, found.facet, pair_.margins, bracket_, buffers_.faces, out_);
     } else {
       const PairId any{0, 0};
       const ExactNearest nearest = exact_nearest(posed, &any, 1);
       if (nearest.apart) {
         finish_apart(posed, nearest, pair_.margins, out_);
-      } else if (overlay.has_facet) {
-        finish_touching(posed, normal_of(posed, overlay.facet), nearest, pair_.margins, out_);
+      } else if (found.has_facet) {
+        finish_touching(posed, normal_of(posed, found.facet), nearest, pair_.margins, out_);
       } else {
         const ExactDepth flat = exact_expansion(posed, &any, 1, std::numeric_limits<int>::max());
         finish_touching(posed, *flat.normal, nearest, pair_.margins, out_);

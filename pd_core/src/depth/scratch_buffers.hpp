@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "depth/decomposition_engine.hpp"
 #include "depth/overlay_engine.hpp"
 #include "depth/plane_faces.hpp"
 #include "depth/smooth_difference.hpp"
@@ -16,6 +17,7 @@ struct ScratchBuffers {
   std::vector<std::int32_t> stack;
   std::vector<PointPair> points;
   OverlayDepthBuffers overlay;
+  DecompositionBuffers decomposition;
   PlaneFaces faces;
 };
 
