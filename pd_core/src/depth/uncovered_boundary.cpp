@@ -33,10 +33,6 @@ UncoveredBoundary::UncoveredBoundary(const PartDifferences& differences)
   for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
 }
 
-const DifferenceFacet& UncoveredBoundary::facet(const Spot& spot) const {
-  return differences_.pieces()[spot.piece].facets[spot.facet];
-}
-
 UncoveredBoundary::Taken UncoveredBoundary::own(std::size_t piece) const {
   Taken taken((differences_.pieces().size() + 63) / 64, 0);
   taken[piece / 64] |= std::uint64_t{1} << (piece % 64);

@@ -82,7 +82,6 @@ class UncoveredBoundary {
     Taken taken;
   };
 
-  [[nodiscard]] const DifferenceFacet& facet(const Spot& spot) const;
   [[nodiscard]] Taken own(std::size_t piece) const;
   static bool has(const Taken& taken, std::size_t k) { return (taken[k / 64] >> (k % 64) & 1) != 0; }
 

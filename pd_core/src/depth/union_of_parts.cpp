@@ -114,7 +114,9 @@ class FacetsAnswer {
 
   UncoveredBoundary& boundary() { return *boundary_; }
 
+  /// Adds what was done; called once for each build.
   void count() {
+    exact_signs_ += differences_->planes().exact_signs();
     work_.polygons += boundary_->counts().polygons;
     work_.cuts += boundary_->counts().cuts;
   }
@@ -128,6 +130,8 @@ class FacetsAnswer {
   [[nodiscard]] Vec3 normal(const UncoveredBoundary::Spot& spot) const {
     return differences_->planes().normal(spot.polygon.plane).normalized();
   }
+
+  [[nodiscard]] std::int64_t exact_signs() const { return exact_signs_; }
 
   void fill_overlapping(const UncoveredBoundary::Nearest& nearest, UnionDepth& out) const {
     const int exponent = pair_.scale_exponent();
@@ -165,6 +169,7 @@ class FacetsAnswer {
   const UnionPair& pair_;
   const UnionSettings& settings_;
   UnionStatistics& work_;
+  std::int64_t exact_signs_ = 0;
   std::optional<PartDifferences> differences_;
   std::optional<UncoveredBoundary> boundary_;
 };
@@ -217,6 +222,7 @@ Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, co
   if (auto refused = answer.build(pair.box_exit())) return *std::move(refused);
   answer.fill_overlapping(answer.boundary().nearest(std::ldexp(known_lower, -pair.scale_exponent())), out);
   answer.count();
+  out.statistics.exact_signs += answer.exact_signs();
   return out;
 }
 

@@ -78,11 +78,6 @@ Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePol
   return Cut::parted;
 }
 
-bool contains_origin(const PlaneSet& planes, const PlanePolygon& polygon) {
-  return planes.sign_at_origin(polygon.plane) == 0 &&
-         std::all_of(polygon.sides.begin(), polygon.sides.end(), [&](Side s) { return planes.sign_at_origin(s) <= 0; });
-}
-
 bool contains_point(const PlaneSet& planes, const PlanePolygon& polygon, const Vec3& x) {
   return planes.sign_at_point(polygon.plane, x) == 0 &&
          std::all_of(polygon.sides.begin(), polygon.sides.end(),
@@ -98,13 +93,28 @@ struct NearestFeature {
   std::ptrdiff_t corner = -1;
 };
 
+/// Whether a point of the plane lies in the polygon, by the corners: sides may cross the plane at angles too flat for
+/// doubles. Wrong only within a few `error` of the rim.
+bool seems_inside(const PlanePolygon& polygon, const Vec3& normal, const Vec3& x) {
+  const std::size_t n = polygon.corners.size();
+  Vec3 low = polygon.corners[0], high = low;
+  for (const Vec3& c : polygon.corners) {
+    low = low.cwiseMin(c);
+    high = high.cwiseMax(c);
+  }
+  if ((low - x).maxCoeff() > 4 * polygon.error || (x - high).maxCoeff() > 4 * polygon.error) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 &from = polygon.corners[(i + n - 1) % n], &to = polygon.corners[i];
+    if ((to - from).cross(x - from).dot(normal) < 0) return false;
+  }
+  return true;
+}
+
 NearestFeature nearest_feature(const PlaneSet& planes, const PlanePolygon& polygon) {
   const Vec3 normal = planes.normal(polygon.plane) * planes.inverse_length(polygon.plane);
   const Vec3 foot = normal * (planes.offset(polygon.plane) * planes.inverse_length(polygon.plane));
   const std::size_t n = polygon.corners.size();
-  if (std::all_of(polygon.sides.begin(), polygon.sides.end(), [&](Side s) { return planes.height(s, foot) <= 0; })) {
-    return {foot};
-  }
+  if (seems_inside(polygon, normal, foot)) return {foot};
   NearestFeature best{polygon.corners[0], 0, 0};
   double least = HUGE_VAL;
   for (std::size_t i = 0; i < n; ++i) {
@@ -134,41 +144,47 @@ PlaneSet::ExactPoint nearest_of_line(const PlaneSet& planes, Side f, Side q) {
 
 Vec3 nearest_point(const PlaneSet& planes, const PlanePolygon& polygon) { return nearest_feature(planes, polygon).x; }
 
-std::optional<ExactNearestPoint> exact_nearest_point(const PlaneSet& planes, const PlanePolygon& polygon) {
-  const NearestFeature guess = nearest_feature(planes, polygon);
+ExactNearestPoint exact_nearest_point(const PlaneSet& planes, const PlanePolygon& polygon) {
   const std::size_t n = polygon.sides.size();
-  const auto corner = [&](std::size_t i) {
-    return planes.exact_meet(polygon.plane, polygon.sides[i], polygon.sides[(i + 1) % n]);
-  };
+  std::vector<PlaneSet::ExactPoint> corners(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    corners[i] = planes.exact_meet(polygon.plane, polygon.sides[i], polygon.sides[(i + 1) % n]);
+  }
   ExactNearestPoint result;
-  result.foot = guess.edge < 0;
-  if (guess.edge < 0) {
-    const Dyadic3 normal = planes.exact_normal(polygon.plane);
-    result.point = {normal * planes.exact_offset(polygon.plane), dot(normal, normal)};
-    for (const Side s : polygon.sides) {
-      const Dyadic height =
-          dot(planes.exact_normal(s), result.point.numerator) - planes.exact_offset(s) * result.point.denominator;
-      if (height.sign() > 0) return std::nullopt;
+  // x is nearest exactly when it lies in the polygon and <x, c> >= <x, x> for every corner c.
+  const auto proved = [&](const PlaneSet::ExactPoint& x) {
+    const Dyadic squared = dot(x.numerator, x.numerator);
+    for (std::size_t i = 0; i < n; ++i) {
+      if ((dot(x.numerator, corners[i].numerator) * x.denominator - squared * corners[i].denominator).sign() < 0) {
+        return false;
+      }
+      const Side s = polygon.sides[i];
+      if ((dot(planes.exact_normal(s), x.numerator) - planes.exact_offset(s) * x.denominator).sign() > 0) return false;
     }
+    return true;
+  };
+  const auto accept = [&](PlaneSet::ExactPoint x, bool foot) {
+    if (!proved(x)) return false;
+    result = {std::move(x), foot};
+    return true;
+  };
+  const auto foot = [&] {
+    const Dyadic3 normal = planes.exact_normal(polygon.plane);
+    return PlaneSet::ExactPoint{normal * planes.exact_offset(polygon.plane), dot(normal, normal)};
+  };
+  const auto of_edge = [&](std::size_t i) { return nearest_of_line(planes, polygon.plane, polygon.sides[i]); };
+  // The guess of doubles first; one of them all is right.
+  const NearestFeature guess = nearest_feature(planes, polygon);
+  if (guess.corner >= 0 && accept(corners[static_cast<std::size_t>(guess.corner)], false)) return result;
+  if (guess.corner < 0 && guess.edge >= 0 && accept(of_edge(static_cast<std::size_t>(guess.edge)), false)) {
     return result;
   }
-  result.point = guess.corner >= 0
-                     ? corner(static_cast<std::size_t>(guess.corner))
-                     : nearest_of_line(planes, polygon.plane, polygon.sides[static_cast<std::size_t>(guess.edge)]);
-  const Dyadic3& x = result.point.numerator;
-  const Dyadic squared = dot(x, x);
+  if (accept(foot(), true)) return result;
   for (std::size_t i = 0; i < n; ++i) {
-    const PlaneSet::ExactPoint c = corner(i);
-    if ((dot(x, c.numerator) * result.point.denominator - squared * c.denominator).sign() < 0) return std::nullopt;
+    if (accept(of_edge(i), false)) return result;
   }
-  if (guess.corner < 0) {
-    // On the edge: inside the two sides next to it.
-    const auto i = static_cast<std::size_t>(guess.edge);
-    for (const Side s : {polygon.sides[(i + n - 1) % n], polygon.sides[(i + 1) % n]}) {
-      if ((dot(planes.exact_normal(s), x) - planes.exact_offset(s) * result.point.denominator).sign() > 0) {
-        return std::nullopt;
-      }
-    }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (accept(corners[i], false)) return result;
   }
   return result;
 }

@@ -4,7 +4,6 @@
 /// do not grow (after Bernstein, Fussell, "Fast, exact, linear booleans", 2009).
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "structure/plane_set.hpp"
@@ -34,8 +33,6 @@ enum class Cut : std::uint8_t {
 [[nodiscard]] Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner,
                       PlanePolygon& outer);
 
-/// Whether the origin lies in the closed polygon, exactly.
-[[nodiscard]] bool contains_origin(const PlaneSet& planes, const PlanePolygon& polygon);
 /// Whether a point given in doubles lies in the closed polygon, exactly.
 [[nodiscard]] bool contains_point(const PlaneSet& planes, const PlanePolygon& polygon, const Vec3& x);
 /// The point of the polygon nearest to the origin, in doubles: within a few `error` of a point of the polygon.
@@ -46,8 +43,7 @@ struct ExactNearestPoint {
   PlaneSet::ExactPoint point;  ///< denominator > 0
   bool foot;                   ///< the foot of the perpendicular on the polygon's plane
 };
-/// Nothing where doubles guess the nearest edge or corner wrong (near ties): the guess is proved by <x, c> >= <x, x>
-/// for every corner c.
-[[nodiscard]] std::optional<ExactNearestPoint> exact_nearest_point(const PlaneSet& planes, const PlanePolygon& polygon);
+/// Time O(corners) where doubles guess the nearest edge or corner right, squared else; exact arithmetic throughout.
+[[nodiscard]] ExactNearestPoint exact_nearest_point(const PlaneSet& planes, const PlanePolygon& polygon);
 
 }  // namespace pd::detail

@@ -149,8 +149,6 @@ int PlaneSet::sign_on_ray(Side h, const Dyadic3& direction, const RayParameter& 
          t.denominator.sign();
 }
 
-int PlaneSet::sign_at_origin(Side h) const { return -planes_[index(h)].exact[3].sign() * h.orientation(); }
-
 PlaneSet::ExactPoint PlaneSet::exact_meet(Side f, Side q, Side r) const {
   const Meet m = meet_exactly(planes_[index(f)].exact, planes_[index(q)].exact, planes_[index(r)].exact);
   const bool turned = f.orientation() * q.orientation() * r.orientation() < 0;

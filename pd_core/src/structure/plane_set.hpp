@@ -55,9 +55,6 @@ class PlaneSet {
   /// The plane <normal, x> = offset (outside lengths), looking along `normal`. Requires normal != 0.
   Side add(const Dyadic3& normal, const Dyadic& offset);
 
-  [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
-  [[nodiscard]] std::size_t size() const { return planes_.size(); }
-
   /// Outward normal in doubles (not unit), each coordinate within two ulp.
   [[nodiscard]] Vec3 normal(Side s) const { return s.orientation() * planes_[index(s)].normal; }
   /// d for that normal, within two ulp.
@@ -78,8 +75,6 @@ class PlaneSet {
   [[nodiscard]] int sign_at_point(Side h, const Vec3& x) const;
   /// Sign of <n_h, t d> - d_h; d in doubles.
   [[nodiscard]] int sign_on_ray(Side h, const Dyadic3& direction, const RayParameter& t) const;
-  /// Sign of -d_h: where the origin lies.
-  [[nodiscard]] int sign_at_origin(Side h) const;
 
   /// The point where three planes meet, in doubles (inside lengths), and a bound of each coordinate's error.
   struct Point {
