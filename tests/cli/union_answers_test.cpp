@@ -2,7 +2,9 @@
 /// Compounds and star-shaped bodies over the line protocol: answers known from plain geometry, and every refusal.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "protocol_lines.hpp"
 
@@ -83,6 +85,19 @@ TEST(UnionAnswers, ContactsOfTheDecidingParts) {
   EXPECT_EQ(contacts["points"].size(), 4u);
   for (const Json& point : contacts["points"]) EXPECT_EQ(point["depth"], 0.25);
   EXPECT_EQ(contacts["part_b"], 1);
+}
+
+TEST(UnionAnswers, TheDifferenceIsBuilt) {
+  // The channel has no play: the sum is a block, and no facet stands on its wall.
+  const Json built = answer(line("minkowski_difference", kCube, letter_u()));
+  ASSERT_TRUE(built.contains("facets")) << built.dump();
+  EXPECT_EQ(built["K"], built["facets"].size());
+  EXPECT_EQ(built["parts_b"].size(), built["facets"].size());
+  for (const Json& vertex : built["vertices"]) {
+    const bool outside = std::abs(vertex[0].get<double>()) == 2 || std::abs(vertex[2].get<double>()) == 1.5 ||
+                         vertex[1] == 1.5 || vertex[1] == -2.5;
+    EXPECT_TRUE(outside) << vertex.dump();
+  }
 }
 
 TEST(UnionAnswers, CompoundsNestAndCarryMargins) {
