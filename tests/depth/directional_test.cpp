@@ -272,5 +272,56 @@ TEST(DifferenceQueries, PointClassesAreExact) {
             ContactClass::overlapping);
 }
 
+TEST(DifferenceQueries, LinesAgreeWithPointClasses) {
+  std::mt19937_64 random(26);
+  std::uniform_int_distribution<int> coordinate(-5, 5);
+  Scratch scratch;
+  int crossed = 0, missed = 0;
+  for (int round = 0; round < 600 && !HasFailure(); ++round) {
+    SCOPED_TRACE(round);
+    const Bodies bodies(grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose());
+    const Vec3 x(coordinate(random), coordinate(random), coordinate(random));
+    Vec3 d(coordinate(random), coordinate(random), coordinate(random));
+    if (d.isZero(0)) d = Vec3::UnitX();
+    const LineCrossing line = *line_in_difference(bodies.posed_a(), bodies.posed_b(), x, d);
+    const Vec3 unit = d.normalized();
+    const auto contact = [&](double t) {
+      return *point_in_difference(bodies.posed_a(), bodies.posed_b(), x + t * unit, scratch);
+    };
+    if (line.crosses) {
+      ++crossed;
+      EXPECT_LE(line.enter_lower, line.enter_upper);
+      EXPECT_LT(line.enter_upper, line.leave_lower);
+      EXPECT_LE(line.leave_lower, line.leave_upper);
+      EXPECT_EQ(contact((line.enter_upper + line.leave_lower) / 2), ContactClass::overlapping);
+      EXPECT_EQ(contact(line.enter_lower - 1e-9), ContactClass::separated);
+      EXPECT_EQ(contact(line.enter_upper + 1e-9), ContactClass::overlapping);
+      EXPECT_EQ(contact(line.leave_upper + 1e-9), ContactClass::separated);
+      EXPECT_EQ(contact(line.leave_lower - 1e-9), ContactClass::overlapping);
+    } else {
+      ++missed;
+      // Multiples that are exact: a line along the boundary must not be pushed off it.
+      for (double t = -12; t <= 12; t += 0.125) {
+        EXPECT_NE(*point_in_difference(bodies.posed_a(), bodies.posed_b(), x + t * d, scratch),
+                  ContactClass::overlapping);
+      }
+    }
+    // From the origin the line leaves where the ray does.
+    const auto ray = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch);
+    if (ray->contact != ContactClass::overlapping) continue;
+    const LineCrossing through = *line_in_difference(bodies.posed_a(), bodies.posed_b(), Vec3::Zero(), d);
+    EXPECT_TRUE(through.crosses);
+    EXPECT_LE(through.leave_lower, ray->upper);
+    EXPECT_GE(through.leave_upper, ray->lower);
+    EXPECT_LT(through.enter_upper, 0);
+  }
+  EXPECT_GT(crossed, 100);
+  EXPECT_GT(missed, 100);
+  const ConvexShape sphere = *ConvexShape::sphere(1);
+  const PosedShape ball{&sphere, Pose()};
+  EXPECT_EQ(line_in_difference(ball, ball, Vec3::Zero(), Vec3::UnitX()).error().code, ErrorCode::unsupported);
+  EXPECT_EQ(line_in_difference(ball, ball, Vec3::Zero(), Vec3::Zero()).error().code, ErrorCode::zero_direction);
+}
+
 }  // namespace
 }  // namespace pd

@@ -21,11 +21,11 @@ class ShallowMethod : public testing::TestWithParam<int> {};
 TEST_P(ShallowMethod, EveryPromiseIsKept) {
   const auto family = static_cast<scenes::PairFamily>(GetParam());
   Scratch scratch;
-  const double deltas[] = {1, 0.5, 0.1};
+  const double deltas[] = {1, 0.5, 0.25};
   int turn = GetParam();
   for (int d = 0; d < scenes::kDepthClasses; ++d) {
     for (const int n : {4, 6, 9, 24}) {
-      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         const JudgedPair pair = JudgedPair::of_family(family, n, static_cast<scenes::DepthClass>(d), seed);
         const double delta = deltas[turn++ % 3];
         const auto found = shallow_penetration(pair.a(), pair.b(), scratch, delta);

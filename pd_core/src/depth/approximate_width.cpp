@@ -22,7 +22,7 @@ namespace {
 constexpr double kLargest = 1e150;
 /// Directions of one refining pass: few enough that the kernel's next width profits from them, and a pass is not
 /// waiting for memory.
-constexpr std::size_t kBatch = 16;
+constexpr std::size_t kBatch = 24;
 
 /// A facet of K + (-K): a direction in which the kernel is thin.
 struct ThinDirection {
@@ -84,10 +84,19 @@ class WidthSearch {
       kernel_.clear();
       for (int v = 0; v < kernel.num_vertices(); ++v) kernel_.push_back(kernel.vertex(v));
       result_.kernel_size = kernel.num_vertices();
-      const ConvexShape shape(kernel);
-      result_.lower = width({&shape, Pose()}, scratch_).lower;
-      if (result_.upper <= (1 + delta_) * result_.lower) break;
-      grown = pass(thin_directions(kernel));
+      directions = thin_directions(kernel);
+      // The exact width is the certificate; while doubles deny it, it is not asked for.
+      if (directions.empty()) {
+        const ConvexShape shape(kernel);
+        result_.lower = width({&shape, Pose()}, scratch_).lower;
+        if (result_.upper <= (1 + delta_) * result_.lower) break;
+        directions.push_back(result_.normal);
+      }
+      grown = pass(directions);
+      if (!grown) {
+        const ConvexShape shape(kernel);
+        result_.lower = width({&shape, Pose()}, scratch_).lower;
+      }
     }
     result_.width = result_.upper;
     return result_;
@@ -125,7 +134,7 @@ class WidthSearch {
     std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
     for (const Vec3& p : points_) largest_ = std::max(largest_, p.cwiseAbs().maxCoeff());
     to_fat_ = Mat3::Identity();
-    const DirectionGrid few = *direction_grid(GridKind::geodesic, 0.25, GridExtent::hemisphere);
+    const DirectionGrid few = *direction_grid(GridKind::geodesic, 1, GridExtent::hemisphere);
     for (int round = 0; round < 2; ++round) {
       if (round > 0) {
         directions = few.directions;
@@ -150,7 +159,7 @@ class WidthSearch {
     }
   }
 
-  /// The kernel's thinnest directions, below what would do, and well apart in the fattened space.
+  /// The kernel's thinnest directions that are too thin to do, well apart in the fattened space.
   std::vector<Vec3> thin_directions(const ConvexPolytope& kernel) {
     Facets facets(kernel);
     overlay_.walk(kernel, Pose(), kernel, Pose(), OverlayPieces::as_walked, facets);
@@ -158,13 +167,13 @@ class WidthSearch {
       if (x.width != y.width) return x.width < y.width;
       return std::lexicographical_compare(x.normal.begin(), x.normal.end(), y.normal.begin(), y.normal.end());
     });
-    // Half the spacing of a grid for delta.
-    const double apart = 1 - 0.25 * delta_;
+    // A good part of the spacing of a grid for delta.
+    const double apart = 1 - 0.5 * delta_;
     const Mat3 dual = to_fat_.inverse().transpose();
     std::vector<Vec3> chosen, chosen_fat;
     for (const ThinDirection& thin : facets.found) {
       if (chosen.size() == kBatch) break;
-      if (!chosen.empty() && thin.width * (1 + delta_) >= result_.upper) break;
+      if (thin.width * (1 + delta_) >= result_.upper) break;
       const Vec3 fat = (dual * thin.normal).normalized();
       const bool near = std::any_of(chosen_fat.begin(), chosen_fat.end(),
                                     [&](const Vec3& other) { return std::abs(other.dot(fat)) > apart; });
@@ -172,7 +181,6 @@ class WidthSearch {
       chosen.push_back(thin.normal);
       chosen_fat.push_back(fat);
     }
-    if (chosen.empty()) chosen.push_back(result_.normal);  // a flat kernel
     return chosen;
   }
 

@@ -7,7 +7,9 @@
 
 #include "depth/exact_expansion.hpp"
 #include "depth/finish.hpp"
+#include "depth/portal.hpp"
 #include "depth/posed_support.hpp"
+#include "depth/ray_shot.hpp"
 #include "depth/ray_signs.hpp"
 #include "depth/smooth_difference.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -138,6 +140,52 @@ Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape
     return Error{ErrorCode::out_of_range, "the point and the translation of a add up to more than 1e300", "point"};
   }
   return exact_class(a, b, point);
+}
+
+Expected<LineCrossing> line_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
+                                          const Vec3& direction) {
+  const detail::FloatingPointGuard guard;
+  if (!direction.allFinite()) {
+    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
+  }
+  if (direction.isZero(0)) {
+    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
+  }
+  if (!point.allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", "point"};
+  if (point.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", "point"};
+  }
+  const ConvexPolytope* const polytope_a = a.shape->polytope();
+  const ConvexPolytope* const polytope_b = b.shape->polytope();
+  if (!polytope_a || !polytope_b || a.shape->margin() > 0 || b.shape->margin() > 0) {
+    return Error{ErrorCode::unsupported, "lines are cut with the difference of polytopes without a margin", ""};
+  }
+  // Relative to the point, so that the line passes through the origin.
+  const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose, point);
+  const double length = direction.stableNorm();
+  LineCrossing crossing;
+  Dyadic levels[2], slopes[2];
+  for (const double sense : {1.0, -1.0}) {
+    const detail::RaySigns ray(pair, sense * direction);
+    const std::optional<detail::Portal> portal = find_line_portal(ray);
+    if (!portal) return LineCrossing();
+    const auto& v = portal->corners;
+    const auto to = [&](const detail::PairId& q) {
+      return pair.exact(PairVector::difference(v[0].a, v[0].b, q.a, q.b));
+    };
+    const Dyadic3 normal = cross(to(v[1]), to(v[2]));
+    const int side = sense > 0 ? 0 : 1;
+    levels[side] = dot(pair.exact(PairVector::point(v[0].a, v[0].b)), normal);
+    slopes[side] = dot(ray.exact(), normal);
+    const double t = sense * length * detail::ratio(levels[side], slopes[side] * pair.homogeneous_factor());
+    const double error = 0x1p-46 * std::abs(t);
+    (sense > 0 ? crossing.leave_lower : crossing.enter_lower) = t - error;
+    (sense > 0 ? crossing.leave_upper : crossing.enter_upper) = t + error;
+  }
+  // A flat P is left where it is entered.
+  if ((levels[0] * slopes[1] + levels[1] * slopes[0]).sign() == 0) return LineCrossing();
+  crossing.crosses = true;
+  return crossing;
 }
 
 }  // namespace pd

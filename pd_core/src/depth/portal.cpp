@@ -8,6 +8,7 @@ namespace pd::detail {
 
 namespace {
 
+PairVector point(const PairId& id) { return PairVector::point(id.a, id.b); }
 PairVector step(const PairId& from, const PairId& to) { return PairVector::difference(from.a, from.b, to.a, to.b); }
 
 /// Whether the step between two points of P that share a vertex of one body is this edge of the other, either way.
@@ -26,9 +27,10 @@ class PortalSearch {
   PortalSearch(const RaySigns& ray, const PortalHierarchies& hierarchies)
       : ray_(ray), pair_(ray.pair()), hierarchies_(hierarchies) {}
 
-  Portal run() {
+  /// Nothing where the line does not meet the interior of P.
+  std::optional<Portal> run() {
     Portal portal;
-    enclose(portal.corners);
+    if (!enclose(portal.corners)) return std::nullopt;
     push_outwards(portal.corners);
     portal.support_calls = support_calls_;
     return portal;
@@ -53,7 +55,8 @@ class PortalSearch {
 
   /// A triangle of vertices of P that the line crosses. In the projection along d this is the planar portal search from
   /// v[0] through the origin: v[1] to its left, v[2] to its right, and the side between them moves outwards.
-  void enclose(std::array<PairId, 3>& v) {
+  /// False when some support shows the projection of P on one side of the origin.
+  bool enclose(std::array<PairId, 3>& v) {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
     const RaySigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
@@ -61,12 +64,22 @@ class PortalSearch {
                            [&](const PairVector& edge) { return sideways.along(edge); });
     ++support_calls_;
     const PairVector first = PairVector::point(v[0].a, v[0].b);
+    if (sideways.along(first) <= 0) return false;
     v[1] = support_across(first, 1);
     v[2] = support_across(first, -1);
+    if (ray_.turn(first, point(v[1])) <= 0 || ray_.turn(first, point(v[2])) >= 0) return false;
     while (ray_.side(v[1], v[2]) < 0) {
-      const PairId s = support_across(step(v[1], v[2]), -1);
+      const PairVector across = step(v[1], v[2]);
+      const PairId s = support_across(across, -1);
+      if (ray_.turn(across, point(s)) >= 0) return false;
       (ray_.side(v[0], s) > 0 ? v[1] : v[2]) = s;
     }
+    // On the side itself the moved line passes inside, the line perhaps along the boundary.
+    if (ray_.turn(point(v[1]), point(v[2])) == 0) {
+      const PairVector across = step(v[1], v[2]);
+      if (ray_.turn(across, point(support_across(across, -1))) >= 0) return false;
+    }
+    return true;
   }
 
   /// The support s in the normal of the triangle projects to one side of each of the three half-lines from the origin
@@ -104,7 +117,9 @@ class PortalSearch {
 }  // namespace
 
 Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies) {
-  return PortalSearch(ray, hierarchies).run();
+  return *PortalSearch(ray, hierarchies).run();
 }
+
+std::optional<Portal> find_line_portal(const RaySigns& ray) { return PortalSearch(ray, {}).run(); }
 
 }  // namespace pd::detail

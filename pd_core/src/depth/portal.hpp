@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "depth/ray_signs.hpp"
 #include "pd/structure/polyhedral_hierarchy.hpp"
@@ -30,5 +31,8 @@ struct PortalHierarchies {
 /// Requires the origin in the interior of P. Measured 7 to 30 supports; each O(sqrt n) on round bodies, O(log n) where
 /// hierarchies say where its climb starts.
 [[nodiscard]] Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies = {});
+
+/// The same for a line that may miss: nothing where the line through the origin does not meet the interior of P.
+[[nodiscard]] std::optional<Portal> find_line_portal(const RaySigns& ray);
 
 }  // namespace pd::detail

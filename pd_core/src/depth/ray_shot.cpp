@@ -9,16 +9,6 @@ namespace pd::detail {
 
 namespace {
 
-/// x / y for exact numbers of any size; relative error below 2^-50.
-double ratio(const Dyadic& x, const Dyadic& y) {
-  const auto top = [](const Dyadic& d) {
-    return d.exponent() + static_cast<int>(msb(boost::multiprecision::abs(d.mantissa())));
-  };
-  if (x.sign() == 0) return 0;
-  const int ex = top(x), ey = top(y);
-  return std::ldexp(x.scaled(-ex).to_double() / y.scaled(-ey).to_double(), ex - ey);
-}
-
 /// sqrt(x) as a fraction in [1, 2) and an exponent of two, so that no exponent overflows; relative error below 2^-51.
 std::pair<double, int> root(const Dyadic& x) {
   int e = x.exponent() + static_cast<int>(msb(x.mantissa()));
@@ -27,6 +17,15 @@ std::pair<double, int> root(const Dyadic& x) {
 }
 
 }  // namespace
+
+double ratio(const Dyadic& x, const Dyadic& y) {
+  const auto top = [](const Dyadic& d) {
+    return d.exponent() + static_cast<int>(msb(boost::multiprecision::abs(d.mantissa())));
+  };
+  if (x.sign() == 0) return 0;
+  const int ex = top(x), ey = top(y);
+  return std::ldexp(x.scaled(-ex).to_double() / y.scaled(-ey).to_double(), ex - ey);
+}
 
 RayShot PolytopeShooter::shoot(const Vec3& direction) {
   ++shots_;

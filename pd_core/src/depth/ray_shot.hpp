@@ -11,6 +11,9 @@
 
 namespace pd::detail {
 
+/// x / y for exact numbers of any size, y not 0; relative error below 2^-50.
+[[nodiscard]] double ratio(const Dyadic& x, const Dyadic& y);
+
 /// Where the ray {t u} leaves P. Requires the origin in int P.
 struct RayShot {
   double lower = 0;  ///< lower <= t <= upper

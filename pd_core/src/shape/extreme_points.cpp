@@ -16,20 +16,45 @@ struct Block {
   alignas(64) double z[kBlock];
 };
 
-/// Least and most of a block, whose size is a multiple of kLanes, lane by lane so that compilers vectorise it.
-void range_of(const Block& block, std::size_t size, double dx, double dy, double dz, double& least, double& most) {
-  double low[kLanes], high[kLanes];
-  std::fill(low, low + kLanes, std::numeric_limits<double>::infinity());
-  std::fill(high, high + kLanes, -std::numeric_limits<double>::infinity());
+/// Four lanes; on narrower machines the compiler takes two registers for one.
+typedef double Lanes __attribute__((vector_size(32)));
+
+struct Range {
+  double least;
+  double most;
+};
+
+inline void heights(Lanes& to, const Block& block, std::size_t i, double dx, double dy, double dz) {
+  Lanes x, y, z;
+  __builtin_memcpy(&x, block.x + i, sizeof(Lanes));
+  __builtin_memcpy(&y, block.y + i, sizeof(Lanes));
+  __builtin_memcpy(&z, block.z + i, sizeof(Lanes));
+  to = x * dx + y * dy + z * dz;
+}
+
+/// Of a block whose size is a multiple of kLanes; two rows of lanes, so that comparisons do not wait for each other.
+Range range_of(const Block& block, std::size_t size, double dx, double dy, double dz) {
+  Lanes low, high;
+  heights(low, block, 0, dx, dy, dz);
+  high = low;
+  Lanes other_low = low, other_high = high;
   for (std::size_t i = 0; i < size; i += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double value = block.x[i + l] * dx + block.y[i + l] * dy + block.z[i + l] * dz;
-      low[l] = value < low[l] ? value : low[l];
-      high[l] = value > high[l] ? value : high[l];
-    }
+    Lanes next, after;
+    heights(next, block, i, dx, dy, dz);
+    heights(after, block, i + kLanes / 2, dx, dy, dz);
+    low = next < low ? next : low;
+    high = next > high ? next : high;
+    other_low = after < other_low ? after : other_low;
+    other_high = after > other_high ? after : other_high;
   }
-  least = *std::min_element(low, low + kLanes);
-  most = *std::max_element(high, high + kLanes);
+  low = other_low < low ? other_low : low;
+  high = other_high > high ? other_high : high;
+  Range range{low[0], high[0]};
+  for (int l = 1; l < 4; ++l) {
+    range.least = low[l] < range.least ? low[l] : range.least;
+    range.most = high[l] > range.most ? high[l] : range.most;
+  }
+  return range;
 }
 
 /// The first point of a block with this value.
@@ -57,8 +82,7 @@ std::vector<Extremes> extreme_points(std::span<const Vec3> points, std::span<con
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const Vec3& d = directions[k];
       Extremes& e = extremes[k];
-      double least = 0, most = 0;
-      range_of(block, padded, d.x(), d.y(), d.z(), least, most);
+      const auto [least, most] = range_of(block, padded, d.x(), d.y(), d.z());
       if (least < e.least) {
         e.least = least;
         e.argument_least = start + find(block, d.x(), d.y(), d.z(), least);
