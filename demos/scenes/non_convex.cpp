@@ -1,4 +1,4 @@
-#include "non_convex.hpp"
+#include "scenes/non_convex.hpp"
 
 #include <cmath>
 #include <map>

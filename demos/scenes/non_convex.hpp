@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shape_families.hpp"
+#include "scenes/shape_families.hpp"
 
 namespace pd::scenes {
 

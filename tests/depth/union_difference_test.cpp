@@ -9,9 +9,9 @@
 #include <array>
 #include <cmath>
 
-#include "non_convex.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/star_body.hpp"
+#include "scenes/non_convex.hpp"
 
 namespace pd {
 namespace {

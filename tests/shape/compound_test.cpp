@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include "non_convex.hpp"
 #include "pd/shape/star_body.hpp"
+#include "scenes/non_convex.hpp"
 
 namespace pd {
 namespace {
