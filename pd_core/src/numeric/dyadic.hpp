@@ -5,6 +5,7 @@
 /// underflow. About 1000 bits are kept in place; longer mantissas allocate.
 #pragma once
 
+#include <bit>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <compare>
@@ -27,8 +28,11 @@ class Dyadic {
     if (value == 0) return;
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
-    mantissa_ = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-    exponent_ = exponent - 53;
+    // An odd mantissa: boxes and grids have short numbers, and products of short numbers are short.
+    const auto whole = static_cast<std::int64_t>(fraction * 0x1p53);
+    const int zeros = std::countr_zero(static_cast<std::uint64_t>(whole));
+    mantissa_ = whole / (std::int64_t{1} << zeros);
+    exponent_ = exponent - 53 + zeros;
   }
 
   /// mantissa * 2^exponent.
@@ -51,8 +55,9 @@ class Dyadic {
   friend Dyadic operator-(const Dyadic& a, const Dyadic& b) { return sum(a, b, true); }
   friend Dyadic operator*(const Dyadic& a, const Dyadic& b) {
     Dyadic r;
+    if (a.sign() == 0 || b.sign() == 0) return r;
     r.mantissa_ = a.mantissa_ * b.mantissa_;
-    r.exponent_ = r.mantissa_.is_zero() ? 0 : a.exponent_ + b.exponent_;
+    r.exponent_ = a.exponent_ + b.exponent_;
     return r;
   }
   friend bool operator==(const Dyadic& a, const Dyadic& b) { return (a - b).sign() == 0; }
