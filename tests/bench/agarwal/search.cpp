@@ -38,7 +38,7 @@ void measure_search(const AgarwalSettings& settings, ClaimTable& table) {
     const int most = family == AgarwalFamily::fogel_halperin_weibel ? top / 4 : quadratic ? top : 4 * top;
     Growth supports{name, "supports", "m"};
     for (const Engine& engine : kEngineList) {
-      Growth time{fmt::format("{} by {}", name, engine.name), "time, ns", "m"};
+      Growth time{name, fmt::format("time by {}, ns", engine.name), "m"};
       Scratch scratch;
       for (const int m : doublings(quadratic ? 16 : 64, most)) {
         const scenes::PolytopePair pair = scenes::make_agarwal_pair(family, m, DepthClass::deep, settings.seed);
