@@ -87,7 +87,7 @@ class Expansion {
  private:
   /// Support with its plane's height as an upper bound of the depth. False when it shows the bodies apart.
   bool probe(const Vec3& unit, const DifferenceVertex* near, DifferenceVertex& s, ExpansionResult& result) {
-    s = difference_.support(unit, near);
+    s = difference_.search_support(unit, near);
     ++support_calls_;
     if (s.x.dot(unit) < 0) {
       s = difference_.certified_support(unit, s, stack_);
@@ -151,17 +151,17 @@ class Expansion {
     for (int step = 0; step < goal.budget; ++step) {
       const int f = surface_.nearest();
       ++facets_visited_;
-      const double key = surface_.keys[f];
+      const double key = surface_.key(f);
       const double distance = key >= 0 ? std::sqrt(key) : -std::sqrt(-key);
       result.lower = distance - error;
       result.face = f;
-      const Vec3 normal = surface_.faces[f].normal;
+      const Vec3 normal = surface_.normal(f);
       const double squared = normal.squaredNorm();
       if (!(squared > 0)) return undecided(result);
-      const Vec3 unit = normal / std::sqrt(squared);
-
-      DifferenceVertex s = difference_.support(unit, difference_.climbs() ? best_hint(f, unit) : nullptr);
+      // The search needs no unit vector, which takes a root and a quotient; both run beside it.
+      DifferenceVertex s = difference_.search_support(normal, difference_.climbs() ? best_hint(f, normal) : nullptr);
       ++support_calls_;
+      const Vec3 unit = normal / std::sqrt(squared);
       double height = s.x.dot(unit);
       if (height + bound_error() < result.upper) {
         // A bound is worth proving when it may decide the matter.
@@ -189,7 +189,12 @@ class Expansion {
           }
         }
       }
-      if (height - distance <= 4 * error) return undecided(result);  // on the face, and yet not narrow enough
+      if (height - distance <= 4 * error) {
+        // On the face, and yet not narrow enough, unless the search saw too little.
+        s = difference_.certified_support(unit, s, stack_);
+        height = s.x.dot(unit);
+        if (height - distance <= 4 * error) return undecided(result);
+      }
       add_vertex(s);
       largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
       if (!surface_.insert(f, static_cast<int>(surface_.vertices.size()) - 1)) return undecided(result);
@@ -210,12 +215,12 @@ class Expansion {
   }
 
   /// The vertex of face f that reaches farthest: where the climb towards the next support starts.
-  const DifferenceVertex* best_hint(int f, const Vec3& unit) const {
-    const SurfaceFace& face = surface_.faces[f];
+  const DifferenceVertex* best_hint(int f, const Vec3& direction) const {
+    const SurfaceTriangle& face = surface_.face(f);
     const DifferenceVertex* best = &surface_.vertices[face.v[0]];
     for (int i = 1; i < 3; ++i) {
       const DifferenceVertex* other = &surface_.vertices[face.v[i]];
-      if (other->x.dot(unit) > best->x.dot(unit)) best = other;
+      if (other->x.dot(direction) > best->x.dot(direction)) best = other;
     }
     return best;
   }

@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <utility>
 
+#include "depth/box_pair.hpp"
 #include "depth/exact_expansion.hpp"
 #include "depth/expansion.hpp"
 #include "depth/facet_proof.hpp"
 #include "depth/nearest.hpp"
+#include "depth/surface_bound.hpp"
 
 namespace pd::detail {
 
@@ -30,7 +31,7 @@ class PolytopeQuery {
         buffers_(buffers),
         warm_(warm),
         out_(out),
-        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b) {}
+        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b, buffers.posed) {}
 
   void solve() {
     const bool exactly = settings_.bracket == Bracket::tightest && settings_.delta == 0;
@@ -39,6 +40,7 @@ class PolytopeQuery {
       solve_by_overlay();
       return;
     }
+    if (!exactly && settings_.method == Method::automatic && solve_boxes()) return;
     out_.method = Method::expansion;
     ExpansionResult result;
     if (within_range(difference_.reach())) {
@@ -83,6 +85,30 @@ class PolytopeQuery {
     return goal;
   }
 
+  /// Two boxes by their axes of separation. False when that does not decide the matter.
+  bool solve_boxes() {
+    const std::optional<BoxFrame> box_a = box_frame(*pair_.a);
+    if (!box_a) return false;
+    const std::optional<BoxFrame> box_b = box_frame(*pair_.b);
+    if (!box_b || !within_range(difference_.reach())) return false;
+    const BoxPairDepth boxes =
+        box_pair_depth(*pair_.a, *box_a, *pair_.pose_a, *pair_.b, *box_b, *pair_.pose_b, kCertifiedWidth);
+    out_.method = Method::overlay;
+    out_.statistics.facets_visited += kBoxAxes;
+    if (boxes.status == BoxPairStatus::separated) {
+      ExpansionResult result;
+      result.normal = boxes.normal;
+      return fill_separated(result);
+    }
+    if (boxes.status == BoxPairStatus::undecided) return false;
+    set_depth(boxes.lower, boxes.upper, boxes.normal);
+    out_.witness_a = boxes.point_a + pair_.pose_a->translation() - pair_.margins.a * boxes.normal;
+    out_.witness_b = out_.witness_a + out_.translation;
+    out_.feature_a = boxes.feature_a;
+    out_.feature_b = boxes.feature_b;
+    return true;
+  }
+
   ExpansionResult expand() {
     Expansion<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
     ExpansionResult result;
@@ -113,7 +139,6 @@ class PolytopeQuery {
     surface.clear();
     for (const auto& v : state.vertices) surface.vertices.push_back(difference_.vertex(v.a, v.b));
     surface.restore(state.faces);
-    surface.refresh();
     return true;
   }
 
@@ -141,16 +166,21 @@ class PolytopeQuery {
 
   // ---- answers from doubles -------------------------------------------------------------------------------------
 
-  void fill_overlapping(const ExpansionResult& result) {
+  /// @param lower, upper  of the cores' depth.
+  void set_depth(double lower, double upper, const Vec3& normal) {
     const double margin = pair_.margins.a + pair_.margins.b;
     out_.contact = ContactClass::overlapping;
     // The sums round once; |translation| exceeds its length by the rounding of three products.
-    out_.lower = (result.lower + margin) * (1 - 0x1p-52);
-    out_.upper = (result.upper + margin) * (1 + 0x1p-50);
-    out_.depth = (result.upper + margin) * (1 + 0x1p-52);
-    out_.normal = result.normal;
-    out_.translation = out_.depth * result.normal;
-    const SurfaceFace& face = buffers_.surface.faces[face_below_origin(result.face, result.normal)];
+    out_.lower = (lower + margin) * (1 - 0x1p-52);
+    out_.upper = (upper + margin) * (1 + 0x1p-50);
+    out_.depth = (upper + margin) * (1 + 0x1p-52);
+    out_.normal = normal;
+    out_.translation = out_.depth * normal;
+  }
+
+  void fill_overlapping(const ExpansionResult& result) {
+    set_depth(result.lower, result.upper, result.normal);
+    const SurfaceTriangle& face = buffers_.surface.face(face_below_origin(result.face, result.normal));
     DifferenceVertex corners[3];
     double weights[3];
     for (int i = 0; i < 3; ++i) corners[i] = buffers_.surface.vertices[face.v[i]];
@@ -163,7 +193,7 @@ class PolytopeQuery {
   }
 
   /// Barycentric coordinates of the origin's projection on a face's plane.
-  void project(const SurfaceFace& face, const Vec3& normal, double (&weights)[3]) const {
+  void project(const SurfaceTriangle& face, const Vec3& normal, double (&weights)[3]) const {
     const std::vector<DifferenceVertex>& v = buffers_.surface.vertices;
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
@@ -177,15 +207,15 @@ class PolytopeQuery {
   /// neighbour is as near, until the projection lies inside.
   int face_below_origin(int f, const Vec3& normal) const {
     const Surface& surface = buffers_.surface;
-    const double level = std::sqrt(std::max(0.0, surface.keys[f])) + 64 * 0x1p-53 * difference_.reach();
+    const double level = std::sqrt(std::max(0.0, surface.key(f))) + 64 * 0x1p-53 * difference_.reach();
     for (int step = 0; step < surface.size(); ++step) {
       double weights[3];
-      project(surface.faces[f], normal, weights);
+      project(surface.face(f), normal, weights);
       const int least = static_cast<int>(std::min_element(weights, weights + 3) - weights);
       if (weights[least] >= 0) return f;
       // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.
-      const int next = surface.faces[f].adj[(least + 1) % 3] >> 2;
-      if (std::sqrt(std::max(0.0, surface.keys[next])) > level) return f;
+      const int next = surface.face(f).adj[(least + 1) % 3] >> 2;
+      if (std::sqrt(std::max(0.0, surface.key(next))) > level) return f;
       f = next;
     }
     return f;
@@ -309,14 +339,14 @@ class PolytopeQuery {
     std::size_t count = 0;
     const auto add = [&](int f) {
       for (int i = 0; i < 3; ++i) {
-        const DifferenceVertex& v = surface.vertices[surface.faces[f].v[i]];
+        const DifferenceVertex& v = surface.vertices[surface.face(f).v[i]];
         near[count].v[i] = {v.a, v.b};
       }
       ++count;
     };
     add(result.face);
     for (int f = 0; f < surface.slots(); ++f) {
-      if (f == result.face || !(surface.keys[f] <= limit * limit)) continue;
+      if (f == result.face || !(surface.key(f) <= limit * limit)) continue;
       if (count == near.size()) return false;
       add(f);
     }
@@ -334,7 +364,7 @@ class PolytopeQuery {
     const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
     PairId seed[3];
     for (int i = 0; i < 3; ++i) {
-      const DifferenceVertex& v = buffers_.surface.vertices[buffers_.surface.faces[result.face].v[i]];
+      const DifferenceVertex& v = buffers_.surface.vertices[buffers_.surface.face(result.face).v[i]];
       seed[i] = {v.a, v.b};
     }
     finish_from(posed, seed, 3, nullptr);
@@ -385,7 +415,7 @@ class PolytopeQuery {
     }
     DecompositionSettings settings;
     if (result.lower > 0) {
-      const double height = least_height();
+      const double height = least_height(difference_, buffers_.surface, buffers_.stack, out_.statistics.support_calls);
       settings.upper = std::ldexp(std::min(result.upper, height), -posed.scale_exponent());
     }
     settings.vertices = buffers.vertices;
@@ -398,35 +428,6 @@ class PolytopeQuery {
     out_.statistics.block_bounds += found.lines.block_bounds;
     out_.statistics.lines_scanned += found.lines.lines_scanned;
     finish_nearest(posed, found.nearest);
-  }
-
-  /// The least height of P, certified, over the normals of the surface's nearest faces: any direction's support bounds
-  /// the depth from above.
-  double least_height() {
-    const Surface& surface = buffers_.surface;
-    constexpr std::size_t kTried = 8;
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    std::array<std::pair<double, int>, kTried> nearest;
-    nearest.fill({kNone, -1});
-    for (int f = 0; f < surface.slots(); ++f) {
-      if (!(surface.keys[f] < nearest.back().first)) continue;
-      nearest.back() = {surface.keys[f], f};
-      for (std::size_t k = kTried - 1; k > 0 && nearest[k].first < nearest[k - 1].first; --k) {
-        std::swap(nearest[k], nearest[k - 1]);
-      }
-    }
-    double least = kNone;
-    for (const auto& [key, f] : nearest) {
-      if (f < 0) break;
-      const Vec3 unit = surface.faces[f].normal.normalized();
-      const DifferenceVertex s =
-          difference_.certified_support(unit, difference_.support(unit, nullptr), buffers_.stack);
-      ++out_.statistics.support_calls;
-      // The support's own error, its point's, and that of the product and of |unit|.
-      least = std::min(least, s.x.dot(unit) + difference_.support_error() + difference_.point_error() +
-                                  8 * 0x1p-53 * difference_.reach());
-    }
-    return least;
   }
 
   void finish_nearest(const PosedPair& posed, const OverlayDepth& found) {
@@ -465,6 +466,7 @@ class PolytopeQuery {
   }
 
   static constexpr int kMaxCachedFaces = 128;
+  static constexpr int kBoxAxes = 15;
   /// More faces that may be nearest are left to exact arithmetic.
   static constexpr std::size_t kMaxNearFaces = 16;
 

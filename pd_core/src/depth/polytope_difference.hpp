@@ -11,6 +11,7 @@
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/polytope_support.hpp"
+#include "shape/posed_vertices.hpp"
 
 namespace pd::detail {
 
@@ -20,22 +21,40 @@ struct DifferenceVertex {
   std::int32_t a;  ///< vertex of A, -1 for smooth bodies
   std::int32_t b;
 };
+static_assert(sizeof(DifferenceVertex) == 4 * sizeof(double));  // Surface reads coordinates with this stride
+
+/// The vertices of both bodies at their poses, where they are few enough to be scanned.
+struct PosedVerticesPair {
+  PosedVertices a;
+  PosedVertices b;
+};
 
 class PolytopeDifference {
  public:
   /// Supports are vertices with ids of their own (not points of curved surfaces).
   static constexpr bool kAnalytic = false;
 
-  PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b)
+  /// `posed` is a buffer; it must live as long as the difference.
+  PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
+                     PosedVerticesPair& posed)
       : a_(a),
         b_(b),
         rotation_a_(pose_a.rotation()),
         rotation_b_(pose_b.rotation()),
         offset_(pose_b.translation() - pose_a.translation()),
-        reach_(a.radius() + b.radius() + offset_.norm()) {}
+        reach_(a.radius() + b.radius() + offset_.norm()),
+        climbs_(a.num_vertices() > kScanLimit || b.num_vertices() > kScanLimit) {
+    if (climbs_) return;
+    posed_a_ = posed.a.turn(a, -rotation_a_);
+    posed_b_ = posed.b.turn(b, rotation_b_);
+  }
 
   /// A point of P that maximises <x, direction>, found from a vertex already at hand (`near`, or nullptr).
   [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const {
+    if (!climbs_) {
+      const VertexPair farthest = farthest_vertices(posed_a_, posed_b_, direction.x(), direction.y(), direction.z());
+      return vertex(farthest.a, farthest.b);
+    }
     const Vec3 on_a = -(rotation_a_.transpose() * direction);
     const Vec3 on_b = rotation_b_.transpose() * direction;
     const int ia = support_vertex(a_, on_a, near ? near->a : -1);
@@ -43,10 +62,26 @@ class PolytopeDifference {
     return vertex(ia, ib);
   }
 
+  /// The same up to single precision where it is found by a search: for an expansion, which checks what it inserts.
+  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction, const DifferenceVertex* near) const {
+    if (!climbs_) return support(direction, nullptr);
+    const Vec3 on_a = -(rotation_a_.transpose() * direction);
+    const Vec3 on_b = rotation_b_.transpose() * direction;
+    const int ia = nearly_support_vertex(a_, on_a, near ? near->a : -1);
+    const int ib = nearly_support_vertex(b_, on_b, near ? near->b : -1);
+    return vertex(ia, ib);
+  }
+
   /// Whether `support` makes use of a vertex at hand.
-  [[nodiscard]] bool climbs() const { return a_.num_vertices() > kScanLimit || b_.num_vertices() > kScanLimit; }
+  [[nodiscard]] bool climbs() const { return climbs_; }
 
   [[nodiscard]] DifferenceVertex vertex(int ia, int ib) const {
+    if (!climbs_) {
+      return {{(posed_b_.x[ib] + posed_a_.x[ia]) + offset_.x(), (posed_b_.y[ib] + posed_a_.y[ia]) + offset_.y(),
+               (posed_b_.z[ib] + posed_a_.z[ia]) + offset_.z()},
+              ia,
+              ib};
+    }
     return {(rotation_b_ * b_.vertex(ib) - rotation_a_ * a_.vertex(ia)) + offset_, ia, ib};
   }
 
@@ -56,10 +91,17 @@ class PolytopeDifference {
   /// maximum).
   [[nodiscard]] DifferenceVertex certified_support(const Vec3& direction, const DifferenceVertex& s,
                                                    std::vector<std::int32_t>& stack) const {
+    if (!climbs_) return s;  // scans have seen them all
     const Vec3 on_a = -(rotation_a_.transpose() * direction);
     const Vec3 on_b = rotation_b_.transpose() * direction;
     return vertex(certified_support_vertex(a_, on_a, s.a, stack), certified_support_vertex(b_, on_b, s.b, stack));
   }
+
+  /// t_B - t_A.
+  [[nodiscard]] const Vec3& offset() const { return offset_; }
+  /// The vertices of -A and of B, turned but not moved; only where neither body `climbs`.
+  [[nodiscard]] const VertexArrays& posed_a() const { return posed_a_; }
+  [[nodiscard]] const VertexArrays& posed_b() const { return posed_b_; }
 
   /// A point inside P, rounded.
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
@@ -69,8 +111,9 @@ class PolytopeDifference {
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
   [[nodiscard]] double point_error() const { return 10.5 * kHalfUlp * reach_; }
   /// h_P(n) / |n| exceeds <s, n> / |n| of a certified support s by at most this: twice the error of comparing two
-  /// vertices in a body's frame, where the rotated direction errs by 4u |n| and the product by 3u |n| |v|.
-  [[nodiscard]] double support_error() const { return 14 * kHalfUlp * reach_; }
+  /// vertices, in a body's frame, where the rotated direction errs by 4u |n| and the product by 3u |n| |v|, or posed,
+  /// where a vertex errs by 4u sqrt(3) |v| instead.
+  [[nodiscard]] double support_error() const { return 20 * kHalfUlp * reach_; }
 
   [[nodiscard]] int budget() const {
     return 64 + 4 * static_cast<int>(std::sqrt(static_cast<double>(a_.num_vertices() + b_.num_vertices())));
@@ -85,6 +128,9 @@ class PolytopeDifference {
   Mat3 rotation_b_;
   Vec3 offset_;
   double reach_;
+  bool climbs_;
+  VertexArrays posed_a_{};  ///< of -A, where supports are found by scans
+  VertexArrays posed_b_{};
 };
 
 }  // namespace pd::detail

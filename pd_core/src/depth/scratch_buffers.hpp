@@ -14,6 +14,7 @@ namespace pd::detail {
 
 struct ScratchBuffers {
   Surface surface;
+  PosedVerticesPair posed;
   std::vector<std::int32_t> stack;
   std::vector<PointPair> points;
   OverlayDepthBuffers overlay;

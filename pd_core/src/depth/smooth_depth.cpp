@@ -88,7 +88,7 @@ class SmoothQuery {
   void fill_overlapping(const ExpansionResult& core) {
     out_.contact = ContactClass::overlapping;
     set_depth(core.lower + margin_, core.upper + margin_, core.normal);
-    const SurfaceFace& face = buffers_.surface.faces[core.face];
+    const SurfaceTriangle& face = buffers_.surface.face(core.face);
     double weights[3];
     DifferenceVertex corners[3];
     for (int i = 0; i < 3; ++i) {

@@ -25,6 +25,9 @@ class SmoothDifference {
 
   [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const;
   /// A formula is within its error of the maximum wherever it is asked.
+  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction, const DifferenceVertex* near) const {
+    return support(direction / direction.norm(), near);
+  }
   [[nodiscard]] DifferenceVertex certified_support(const Vec3&, const DifferenceVertex& s,
                                                    std::vector<std::int32_t>&) const {
     return s;

@@ -14,39 +14,43 @@
 #include <vector>
 
 #include "depth/polytope_difference.hpp"
+#include "depth/surface_planes.hpp"
 
 namespace pd::detail {
 
-struct SurfaceFace {
-  Vec3 normal;          ///< cross product of two edges, outward, any length
-  double level;         ///< max over the three vertices of <x, normal>: what a visible point must exceed
+struct SurfaceTriangle {
   std::int32_t v[3];    ///< counter-clockwise from outside
-  std::int32_t adj[3];  ///< across the edge v[i] -> v[i + 1]: 4 * face + its edge
+  std::int32_t adj[3];  ///< across the edge v[i] -> v[i + 1]: 4 * triangle + its edge
 };
-
-/// Signed squared distance of a face's plane, a monotone stand-in for the distance that needs no root.
-inline constexpr double kRemoved = std::numeric_limits<double>::infinity();
 
 class Surface {
  public:
+  /// The key of a slot without a face.
+  static constexpr double kRemoved = std::numeric_limits<double>::infinity();
+
   std::vector<DifferenceVertex> vertices;
-  std::vector<SurfaceFace> faces;  ///< the first slots() are in use or free, the rest is room
-  /// Lower bound of the face's distance from the origin, as sign * square; kRemoved for a free slot. NaN never.
-  std::vector<double> keys;
+
+  [[nodiscard]] const SurfaceTriangle& face(int f) const { return triangles_[f]; }
+  /// Cross product of two edges, outward, any length.
+  [[nodiscard]] Vec3 normal(int f) const { return {nx_[f], ny_[f], nz_[f]}; }
+  /// Lower bound of the face's signed distance from the origin, as sign * square: a monotone stand-in that needs no
+  /// root; kRemoved for a free slot. NaN never.
+  [[nodiscard]] double key(int f) const { return keys_[f]; }
 
   void clear();
-  /// Takes over faces and their neighbours as they were cached; planes come with `refresh`.
+  /// Takes over faces and their neighbours as they were cached, with planes through the vertices as they are now.
   template <class CachedFaces>
   void restore(const CachedFaces& cached) {
     reserve_faces(static_cast<int>(cached.size()));
     for (const auto& from : cached) {
-      const int f = new_face();
+      SurfaceTriangle& to = triangles_[slots_++];
       for (int i = 0; i < 3; ++i) {
-        faces[f].v[i] = from.vertex[i];
-        faces[f].adj[i] = from.neighbour[i];
+        to.v[i] = from.vertex[i];
+        to.adj[i] = from.neighbour[i];
       }
-      keys[f] = 0;
     }
+    in_use_ = slots_;
+    compute_planes();
   }
   /// The inverse: the faces in use and the vertices that they use, numbered anew.
   template <class CachedVertices, class CachedFaces>
@@ -56,17 +60,17 @@ class Surface {
     std::int16_t next_face = 0;
     std::int16_t next_vertex = 0;
     for (int f = 0; f < slots_; ++f) {
-      if (keys[f] == kRemoved) continue;
+      if (keys_[f] == kRemoved) continue;
       face_numbers_[f] = next_face++;
-      for (const std::int32_t v : faces[f].v) {
+      for (const std::int32_t v : triangles_[f].v) {
         if (vertex_numbers_[v] >= 0) continue;
         vertex_numbers_[v] = next_vertex++;
         cached_vertices.push_back({vertices[v].a, vertices[v].b});
       }
     }
     for (int f = 0; f < slots_; ++f) {
-      if (keys[f] == kRemoved) continue;
-      const SurfaceFace& face = faces[f];
+      if (keys_[f] == kRemoved) continue;
+      const SurfaceTriangle& face = triangles_[f];
       cached_faces.push_back({{vertex_numbers_[face.v[0]], vertex_numbers_[face.v[1]], vertex_numbers_[face.v[2]]},
                               {renumbered(face.adj[0]), renumbered(face.adj[1]), renumbered(face.adj[2])}});
     }
@@ -74,12 +78,11 @@ class Surface {
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
   /// bound).
   bool start_tetrahedron(double flat);
-  /// Recomputes every plane and key from the vertices (after they moved).
-  void refresh();
-  /// The face with the least key.
-  [[nodiscard]] int nearest();
-  /// Replaces the faces that see vertex `v`, flooding from face `from`, by a fan. False (and unchanged but for marks)
-  /// when what is seen from v is no disc: rounding, or a surface that has become too crooked.
+  /// The face with the least key, the first of several.
+  [[nodiscard]] int nearest() const { return nearest_; }
+  /// Replaces the faces that see vertex `v`, face `from` among them, by a cone over their border. The surface stays
+  /// closed and oriented whatever they are. False, and nothing changed, when every face is seen, or when the border
+  /// meets itself in a vertex: rounding, or a surface that has become too crooked.
   bool insert(int from, int v);
   /// Number of faces in use.
   [[nodiscard]] int size() const { return in_use_; }
@@ -89,33 +92,58 @@ class Surface {
   [[nodiscard]] std::int16_t renumbered(std::int32_t adjacent) const {
     return static_cast<std::int16_t>(4 * face_numbers_[adjacent >> 2] + (adjacent & 3));
   }
-  void set_plane(int f);
-  /// Room for so many faces beyond those in use: `new_face` takes it for granted.
+  [[nodiscard]] PlaneArrays planes() { return {nx_.data(), ny_.data(), nz_.data(), levels_.data(), keys_.data()}; }
+  /// Planes of all slots, none of them free.
+  void compute_planes();
+  /// Room for so many faces beyond those in use.
   void reserve_faces(int more);
-  int new_face();
+  void reserve_horizon(std::size_t edges);
 
-  struct Horizon {
-    std::int32_t outside;   ///< 4 * face + edge of the face that stays
-    std::int32_t from, to;  ///< the edge as the removed side runs along it
-  };
+  // insert, step by step
+  void find_visible(int from, const Vec3& x);
+  void flood_visible(int from, const Vec3& x);
+  void keep_component(int from);
+  bool trace_horizon();
+  void take_slots(int count);
+  void fill_hole(int v);
+  [[nodiscard]] bool is_removed(int f) const { return (removed_bits_[f >> 6] >> (f & 63) & 1) != 0; }
+  void mark_removed(int f) { removed_bits_[f >> 6] |= std::uint64_t{1} << (f & 63); }
+  void unmark_removed();
+
   struct HeapEntry {
     double key;
     std::int32_t face;
     std::uint32_t stamp;
   };
   void push_heap(int f);
+  void start_heap();
+  void find_nearest_by_heap();
 
-  std::vector<std::uint32_t> stamps_;  ///< counts the lives of a slot
+  // The first slots_ entries are in use or free; the rest is room. Free slots and room hold infinite keys and levels,
+  // so that no loop over whole blocks need ask.
+  std::vector<SurfaceTriangle> triangles_;
+  std::vector<double> nx_, ny_, nz_, levels_, keys_;
   std::vector<std::int32_t> free_;
-  std::vector<Horizon> horizon_;
-  std::vector<std::int32_t> horizon_from_;  ///< by vertex: the horizon edge that leaves it
-  std::vector<std::int32_t> removed_;
-  std::vector<HeapEntry> heap_;
-  std::vector<std::int16_t> face_numbers_;
-  std::vector<std::int16_t> vertex_numbers_;
-  bool heap_active_ = false;
   int slots_ = 0;
   int in_use_ = 0;
+
+  std::vector<std::uint64_t> removed_bits_;  ///< by slot; all zero between calls
+  std::vector<std::int32_t> removed_;
+  // The horizon: edges as the removed side runs along them, and beyond each 4 * face + edge of the face that stays.
+  std::vector<std::int32_t> from_, to_, outside_;
+  int horizon_count_ = 0;
+  // By vertex, the horizon edge that leaves it and the one that reaches it; the last entry is a bin.
+  std::vector<std::int32_t> leaving_, reaching_;
+  std::vector<std::int32_t> new_slots_;
+  std::vector<double> new_keys_;
+  int nearest_ = 0;
+
+  std::vector<HeapEntry> heap_;
+  std::vector<std::uint32_t> stamps_;  ///< counts the lives of a slot
+  bool heap_active_ = false;
+
+  std::vector<std::int16_t> face_numbers_;
+  std::vector<std::int16_t> vertex_numbers_;
 };
 
 }  // namespace pd::detail

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <type_traits>
 
+#include "shape/polytope_support.hpp"
+
 namespace pd::detail {
 namespace {
 
@@ -23,7 +25,7 @@ class Block {
   template <class T>
   T* take(int count) {
     static_assert(std::is_trivially_destructible_v<T>);
-    const std::size_t alignment = std::is_same_v<T, double> ? kAlignment : alignof(T);
+    const std::size_t alignment = std::is_floating_point_v<T> ? kAlignment : alignof(T);
     used_ = (used_ + alignment - 1) / alignment * alignment;
     T* place = nullptr;
     if (memory_ != nullptr) {
@@ -45,6 +47,9 @@ struct Arrays {
   double* x;
   double* y;
   double* z;
+  float* sample_x;
+  float* sample_y;
+  float* sample_z;
   Vec3* facet_normals;
   HalfEdge* half_edges;
   std::int32_t* caller_ids;
@@ -61,7 +66,11 @@ struct Counts {
   int half_edges;
   int facet_vertices;
   int facets;
+  int sample;
+  int sample_stride;
 };
+
+int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
 
 Arrays take_arrays(Block& block, const Counts& n) {
   Arrays a{};
@@ -69,6 +78,9 @@ Arrays take_arrays(Block& block, const Counts& n) {
   a.x = block.take<double>(n.padded);
   a.y = block.take<double>(n.padded);
   a.z = block.take<double>(n.padded);
+  a.sample_x = block.take<float>(n.sample);
+  a.sample_y = block.take<float>(n.sample);
+  a.sample_z = block.take<float>(n.sample);
   a.facet_normals = block.take<Vec3>(n.facets);
   a.half_edges = block.take<HalfEdge>(n.half_edges);
   a.caller_ids = block.take<std::int32_t>(n.vertices);
@@ -183,13 +195,29 @@ void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
   out.facet_offsets[facet] = filled;
 }
 
+void write_sample(const Arrays& out, const Counts& n, double radius) {
+  // |coordinate| <= radius < 2^exponent: no quotient overflows.
+  int exponent = 0;
+  std::frexp(radius, &exponent);
+  for (int i = 0; i < n.sample; ++i) {
+    const int v = i * n.sample_stride < n.vertices ? i * n.sample_stride : 0;
+    out.sample_x[i] = static_cast<float>(std::ldexp(out.x[v], -exponent));
+    out.sample_y[i] = static_cast<float>(std::ldexp(out.y[v], -exponent));
+    out.sample_z[i] = static_cast<float>(std::ldexp(out.z[v], -exponent));
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, const FacetLoops& loops,
                                        int affine_dimension) {
   Counts n{};
   n.vertices = static_cast<int>(vertices.size());
-  n.padded = (n.vertices + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding;
+  n.padded = padded(n.vertices);
+  if (n.vertices > kScanLimit) {
+    n.sample_stride = n.vertices <= kSampleAllLimit ? 1 : (n.vertices + kSampleSize - 1) / kSampleSize;
+    n.sample = padded((n.vertices + n.sample_stride - 1) / n.sample_stride);
+  }
   n.facet_vertices = static_cast<int>(loops.vertices.size());
   n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
   n.facets = loops.size();
@@ -258,6 +286,12 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
     s.centre += point / n.vertices;  // divided first: a sum could overflow
     s.radius = std::max(s.radius, point.stableNorm() * (1 + 0x1p-48));
   }
+  write_sample(out, n, s.radius);
+  s.sample_x = out.sample_x;
+  s.sample_y = out.sample_y;
+  s.sample_z = out.sample_z;
+  s.sample_count = n.sample;
+  s.sample_stride = n.sample_stride;
   s.memory_bytes = block.used();
   s.x = out.x;
   s.y = out.y;

@@ -2,31 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "shape/farthest_vertex.hpp"
+#include "shape/vertex_arrays.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-int scan(const ConvexPolytope& p, const Vec3& d) {
-  return farthest_vertex(p.x(), p.y(), p.z(), p.num_vertices(), d.x(), d.y(), d.z());
+int scan(const ConvexPolytope& p, const Vec3& d) { return farthest_vertex(arrays_of(p), d.x(), d.y(), d.z()); }
+
+/// The best of the sample in single precision, -1 for directions whose scale single precision cannot hold.
+int best_of_sample(const ConvexPolytope& p, const Vec3& d) {
+  const ConvexPolytope::Storage& s = p.storage();
+  const double scale = 1 / d.cwiseAbs().maxCoeff();
+  if (!(scale < std::numeric_limits<double>::infinity()) || !(scale > 0)) return -1;
+  const int i = farthest_in_single_precision({s.sample_x, s.sample_y, s.sample_z, s.sample_count},
+                                             static_cast<float>(d.x() * scale), static_cast<float>(d.y() * scale),
+                                             static_cast<float>(d.z() * scale));
+  return i * s.sample_stride;
 }
 
-/// The best of about sqrt(n) vertices spread over the canonical order.
-int sampled_start(const ConvexPolytope& p, const Vec3& d) {
-  const int n = p.num_vertices();
-  const int step = std::max(8, static_cast<int>(std::sqrt(static_cast<double>(n))));
-  int best = 0;
-  double best_value = p.vertex(0).dot(d);
-  for (int v = step; v < n; v += step) {
-    const double value = p.vertex(v).dot(d);
-    if (value > best_value) {
-      best_value = value;
-      best = v;
-    }
-  }
-  return best;
+int better(const ConvexPolytope& p, const Vec3& d, int v, int w) {
+  if (v < 0 || w < 0) return std::max({v, w, 0});
+  return p.vertex(w).dot(d) > p.vertex(v).dot(d) ? w : v;
 }
 
 int climb(const ConvexPolytope& p, const Vec3& d, int v) {
@@ -51,7 +50,13 @@ int climb(const ConvexPolytope& p, const Vec3& d, int v) {
 
 int support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
   if (p.num_vertices() <= kScanLimit) return scan(p, direction);
-  return climb(p, direction, near >= 0 ? near : sampled_start(p, direction));
+  return climb(p, direction, better(p, direction, best_of_sample(p, direction), near));
+}
+
+int nearly_support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
+  if (p.storage().sample_stride > 1 || p.num_vertices() <= kScanLimit) return support_vertex(p, direction, near);
+  const int v = best_of_sample(p, direction);
+  return v >= 0 ? v : support_vertex(p, direction, near);
 }
 
 int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int v, std::vector<std::int32_t>& stack) {

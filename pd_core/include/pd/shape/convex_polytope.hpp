@@ -29,6 +29,7 @@ struct HalfEdge {
 /// normals. A segment has two vertices, one edge and no facet; a point has one vertex.
 class ConvexPolytope {
  public:
+  struct Storage;
   /// Vertex coordinates are padded to a multiple of this (with copies of vertex 0) for vector kernels.
   static constexpr int kPadding = 16;
 
@@ -97,6 +98,8 @@ class ConvexPolytope {
   [[nodiscard]] double radius() const { return data_->radius; }
   /// Bytes held by the shared storage.
   [[nodiscard]] std::size_t memory_bytes() const { return data_->memory_bytes; }
+  /// For the support mapping.
+  [[nodiscard]] const Storage& storage() const { return *data_; }
   /// Same storage (not: same point set).
   [[nodiscard]] bool same_storage(const ConvexPolytope& other) const { return data_ == other.data_; }
 
@@ -122,6 +125,13 @@ class ConvexPolytope {
     const std::int32_t* facet_vertices = nullptr;
     const std::int32_t* facet_half_edges = nullptr;  ///< [num_facets]
     const Vec3* facet_normals = nullptr;             ///< [num_facets]
+    /// Every sample_stride-th vertex / sample_scale, a power of two above `radius`, in single precision, padded with
+    /// copies of entry 0 to a multiple of kPadding: where the search for a support begins. Empty for small bodies.
+    const float* sample_x = nullptr;
+    const float* sample_y = nullptr;
+    const float* sample_z = nullptr;
+    std::int32_t sample_count = 0;  ///< with the padding
+    std::int32_t sample_stride = 1;
   };
 
   /// For the hull builder.

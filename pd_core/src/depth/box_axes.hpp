@@ -1,0 +1,32 @@
+/// @file
+/// The facets of P = B + (-A) for two boxes: P is a zonotope with six generators, whose facets' normals are the cross
+/// products of pairs of them, fifteen up to sign, and h_P(n) = <c, n> + sum |<g, n>| for every n.
+///
+/// Compiled for several instruction sets; every lane on its own: the same bits on each.
+#pragma once
+
+namespace pd::detail {
+
+/// Generators (half edges) of P as arrays: three of one body, the first once more, the second once more, and room.
+struct BoxGenerators {
+  double x[8], y[8], z[8];
+  double length[8];  ///< upper bounds
+};
+
+struct BoxAxesErrors {
+  double turn;  ///< of a distance, times the inverse sine of the generators' angle
+  double sine;  ///< sines below this are rounding: such pairs are left out
+};
+
+struct NearestBoxAxis {
+  double key;        ///< least of sign * square of the facets' distances
+  double lower_key;  ///< the same of distances less their `turn` error
+  int axis;  ///< 4 * block + lane: block 0 of A (edges lane, lane + 1), 1 of B, 2 + i of edge i of A and lane of B
+  double slivers;  ///< sum over pairs left out of the shorter generator's length
+};
+
+/// Distances of the facets' planes from the origin, `c` the centre of P. A pair of parallel generators spans none.
+NearestBoxAxis nearest_box_axis(const BoxGenerators& a, const BoxGenerators& b, const double (&c)[3],
+                                const BoxAxesErrors& errors);
+
+}  // namespace pd::detail

@@ -1,0 +1,20 @@
+/// @file
+/// PD_CLONES: compiles a function for several instruction sets; the loader picks one at run time.
+///
+/// Only for functions of plain loops: an inline function of a library, compiled for a wider instruction set, could be
+/// the copy that the linker keeps for everybody. Contraction is off everywhere and every lane computes on its own, so
+/// that the bits do not depend on the machine. GCC only: Clang 14 emits the widest clone alone, which older processors
+/// cannot run.
+#pragma once
+
+#if defined(__x86_64__) && defined(__linux__) && !defined(__clang__) && !defined(PD_ISA_BASELINE)
+#define PD_CLONES __attribute__((target_clones("avx2", "default")))
+/// For loops over registers of 64 bytes.
+#define PD_CLONES_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define PD_CLONES
+#define PD_CLONES_WIDE
+#endif
+
+/// For what a cloned function calls: it must become a part of each clone.
+#define PD_INLINE inline __attribute__((always_inline))

@@ -1,0 +1,137 @@
+#include "shape/vertex_arrays.hpp"
+
+#include <cstdint>
+
+#include "numeric/instruction_sets.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Four lanes; on narrower machines the compiler takes two registers for one.
+typedef double Lanes __attribute__((vector_size(32)));
+constexpr int kLanes = 4;
+static_assert(2 * kLanes == kVertexBlock);
+
+PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
+PD_INLINE void store(double* to, const Lanes& from) { __builtin_memcpy(to, &from, sizeof(Lanes)); }
+
+struct Direction {
+  double x, y, z;
+};
+
+PD_INLINE void heights(Lanes& to, const VertexArrays& v, int i, const Direction& d) {
+  Lanes x, y, z;
+  load(x, v.x + i);
+  load(y, v.y + i);
+  load(z, v.z + i);
+  to = x * d.x + y * d.y + z * d.z;
+}
+
+PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
+  // Two rows of lanes, so that comparisons do not wait for each other. Ids are counted in doubles: one kind of
+  // register.
+  const Lanes row = {0, 1, 2, 3};
+  Lanes best, other, best_id = row, other_id = row + kLanes, id = other_id;
+  heights(best, v, 0, d);
+  heights(other, v, kLanes, d);
+  for (int i = kVertexBlock; i < v.count; i += kVertexBlock) {
+    Lanes next, after;
+    heights(next, v, i, d);
+    heights(after, v, i + kLanes, d);
+    id += kLanes;
+    best_id = next > best ? id : best_id;
+    best = next > best ? next : best;
+    id += kLanes;
+    other_id = after > other ? id : other_id;
+    other = after > other ? after : other;
+  }
+  const Lanes most = other > best ? other : best;
+  const double low = most[1] > most[0] ? most[1] : most[0];
+  const double high = most[3] > most[2] ? most[3] : most[2];
+  const double top = high > low ? high : low;
+  const Lanes zero = {0, 0, 0, 0};
+  const Lanes tops = zero + top;
+  const Lanes none = zero + 0x1p40;
+  const Lanes from_best = best == tops ? best_id : none;
+  const Lanes from_other = other == tops ? other_id : none;
+  const Lanes ids = from_other < from_best ? from_other : from_best;
+  const double first = ids[1] < ids[0] ? ids[1] : ids[0];
+  const double second = ids[3] < ids[2] ? ids[3] : ids[2];
+  const double winner = second < first ? second : first;
+  // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
+  return winner < v.count ? static_cast<int>(winner) : 0;
+}
+
+}  // namespace
+
+PD_CLONES int farthest_vertex(const VertexArrays& vertices, double dx, double dy, double dz) {
+  return farthest(vertices, {dx, dy, dz});
+}
+
+PD_CLONES VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays& b, double dx, double dy, double dz) {
+  const Direction d{dx, dy, dz};
+  return {farthest(a, d), farthest(b, d)};
+}
+
+PD_CLONES_WIDE int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy, float dz) {
+  typedef float Wide __attribute__((vector_size(64)));
+  typedef float Half __attribute__((vector_size(32)));
+  typedef float Quarter __attribute__((vector_size(16)));
+  typedef std::int32_t WideIds __attribute__((vector_size(64)));
+  typedef std::int32_t HalfIds __attribute__((vector_size(32)));
+  typedef std::int32_t QuarterIds __attribute__((vector_size(16)));
+  constexpr int kWide = 16;
+  static_assert(kWide == ConvexPolytope::kPadding);
+  Wide x, y, z;
+  WideIds id = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  WideIds best_id = id;
+  __builtin_memcpy(&x, sample.x, sizeof(Wide));
+  __builtin_memcpy(&y, sample.y, sizeof(Wide));
+  __builtin_memcpy(&z, sample.z, sizeof(Wide));
+  Wide best = x * dx + y * dy + z * dz;
+  for (int i = kWide; i < sample.count; i += kWide) {
+    __builtin_memcpy(&x, sample.x + i, sizeof(Wide));
+    __builtin_memcpy(&y, sample.y + i, sizeof(Wide));
+    __builtin_memcpy(&z, sample.z + i, sizeof(Wide));
+    const Wide next = x * dx + y * dy + z * dz;
+    id += kWide;
+    best_id = next > best ? id : best_id;
+    best = next > best ? next : best;
+  }
+  const Half low = __builtin_shufflevector(best, best, 0, 1, 2, 3, 4, 5, 6, 7);
+  const Half high = __builtin_shufflevector(best, best, 8, 9, 10, 11, 12, 13, 14, 15);
+  const Half most = high > low ? high : low;
+  const Quarter first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
+  const Quarter second = __builtin_shufflevector(most, most, 4, 5, 6, 7);
+  const Quarter top = second > first ? second : first;
+  const float left = top[1] > top[0] ? top[1] : top[0];
+  const float right = top[3] > top[2] ? top[3] : top[2];
+  const WideIds none = WideIds{} + 0x7fffffff;
+  const WideIds winners = best == (Wide{} + (right > left ? right : left)) ? best_id : none;
+  const HalfIds low_ids = __builtin_shufflevector(winners, winners, 0, 1, 2, 3, 4, 5, 6, 7);
+  const HalfIds high_ids = __builtin_shufflevector(winners, winners, 8, 9, 10, 11, 12, 13, 14, 15);
+  const HalfIds least = high_ids < low_ids ? high_ids : low_ids;
+  const QuarterIds first_ids = __builtin_shufflevector(least, least, 0, 1, 2, 3);
+  const QuarterIds second_ids = __builtin_shufflevector(least, least, 4, 5, 6, 7);
+  const QuarterIds ids = second_ids < first_ids ? second_ids : first_ids;
+  const std::int32_t left_id = ids[1] < ids[0] ? ids[1] : ids[0];
+  const std::int32_t right_id = ids[3] < ids[2] ? ids[3] : ids[2];
+  const std::int32_t winner = right_id < left_id ? right_id : left_id;
+  return winner < sample.count ? winner : 0;
+}
+
+PD_CLONES void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z) {
+  const int padded = (vertices.count + kVertexBlock - 1) / kVertexBlock * kVertexBlock;
+  for (int i = 0; i < padded; i += kLanes) {
+    Lanes turned;
+    heights(turned, vertices, i, {matrix[0], matrix[1], matrix[2]});
+    store(x + i, turned);
+    heights(turned, vertices, i, {matrix[3], matrix[4], matrix[5]});
+    store(y + i, turned);
+    heights(turned, vertices, i, {matrix[6], matrix[7], matrix[8]});
+    store(z + i, turned);
+  }
+}
+
+}  // namespace pd::detail

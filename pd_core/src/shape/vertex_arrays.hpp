@@ -1,0 +1,47 @@
+/// @file
+/// Vertices as arrays of coordinates: the farthest in a direction, and all of them turned.
+///
+/// Compiled for several instruction sets and chosen at run time, in a fixed order of lanes without contraction: the
+/// same bits on every instruction set.
+#pragma once
+
+#include "pd/shape/convex_polytope.hpp"
+
+namespace pd::detail {
+
+/// Padded to a multiple of kVertexBlock with copies of entry 0.
+struct VertexArrays {
+  const double* x;
+  const double* y;
+  const double* z;
+  int count;
+};
+inline constexpr int kVertexBlock = 8;
+static_assert(ConvexPolytope::kPadding % kVertexBlock == 0);
+
+inline VertexArrays arrays_of(const ConvexPolytope& p) { return {p.x(), p.y(), p.z(), p.num_vertices()}; }
+
+/// The lowest index among the maximisers of x[i] dx + y[i] dy + z[i] dz.
+int farthest_vertex(const VertexArrays& vertices, double dx, double dy, double dz);
+
+struct VertexPair {
+  int a;
+  int b;
+};
+/// The same for two bodies in one direction.
+VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays& b, double dx, double dy, double dz);
+
+/// Coordinates in single precision, padded to a multiple of kPadding with copies of entry 0.
+struct SampleArrays {
+  const float* x;
+  const float* y;
+  const float* z;
+  int count;  ///< with the padding
+};
+/// The lowest index among the maximisers of x[i] dx + y[i] dy + z[i] dz in single precision.
+int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy, float dz);
+
+/// Writes matrix * vertex for every vertex and its padding; `matrix` is row by row.
+void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z);
+
+}  // namespace pd::detail
