@@ -30,7 +30,7 @@ double ratio(const Dyadic& x, const Dyadic& y) {
 RayShot PolytopeShooter::shoot(const Vec3& direction) {
   ++shots_;
   const RaySigns ray(*pair_, direction);
-  const Portal portal = find_portal(ray);
+  const Portal portal = find_portal(ray, hierarchies_);
   support_calls_ += portal.support_calls;
   corners_ = portal.corners;
   const std::array<PairId, 3>& corner = corners_;

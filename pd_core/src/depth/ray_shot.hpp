@@ -31,7 +31,8 @@ class PolytopeShooter {
     Dyadic offset;
   };
 
-  explicit PolytopeShooter(const PosedPair& pair) : pair_(&pair) {}
+  explicit PolytopeShooter(const PosedPair& pair, const PortalHierarchies& hierarchies = {})
+      : pair_(&pair), hierarchies_(hierarchies) {}
 
   /// Requires a direction other than zero; t counts in units of it.
   RayShot shoot(const Vec3& direction);
@@ -48,6 +49,7 @@ class PolytopeShooter {
 
  private:
   const PosedPair* pair_;
+  PortalHierarchies hierarchies_;
   Plane plane_;
   Plane kept_;
   std::array<PairId, 3> corners_{};
