@@ -3,7 +3,7 @@
 ///
 /// Gilbert, Johnson, Keerthi 1988. The upper bound is the length of a convex combination of points of P, the lower
 /// bound the height of a supporting plane: <s, v> / |v| for the support s against v. Where rounding stops progress
-/// before the bracket is as narrow as asked, the answer is `undecided` and exact arithmetic takes over.
+/// before the bracket is as narrow as asked, exact arithmetic takes over, or double-double (smooth_nearest.hpp).
 #pragma once
 
 #include <algorithm>
@@ -74,16 +74,7 @@ NearestResult nearest_point(const Difference& difference, const DifferenceVertex
     r.simplex[r.count++] = s;
     r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
     if (r.count == 4) return r;
-    if (!(r.point.norm() < best)) {
-      // A sliver of nearly equal supports has lost its nearest point. Analytic bodies go on from that point alone, as
-      // from a vertex: the segment to the next support always leads nearer. Exact arithmetic takes over for polytopes.
-      r = last;
-      if (!Difference::kAnalytic || r.count == 1) return r;
-      if constexpr (Difference::kAnalytic) r.simplex[0] = difference.combination(r.simplex, r.weights, r.count);
-      r.weights[0] = 1;
-      r.count = 1;
-      r.point = r.simplex[0].x;
-    }
+    if (!(r.point.norm() < best)) return last;  // a sliver of nearly equal supports has lost its nearest point
     best = r.point.norm();
   }
 }

@@ -31,9 +31,6 @@ struct PosedVerticesPair {
 
 class PolytopeDifference {
  public:
-  /// Supports are vertices with ids of their own (not points of curved surfaces).
-  static constexpr bool kAnalytic = false;
-
   /// `posed` is a buffer; it must live as long as the difference.
   PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
                      PosedVerticesPair& posed)

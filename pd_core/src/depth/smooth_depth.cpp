@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "depth/expansion.hpp"
-#include "depth/nearest.hpp"
+#include "depth/smooth_nearest.hpp"
 
 namespace pd::detail {
 
@@ -157,11 +157,18 @@ class SmoothQuery {
   void solve_apart(const ExpansionResult& core) {
     const DifferenceVertex first = difference_.support(core.normal, nullptr);
     const double relative = margin_ > 0 ? 0.0 : delta_;
-    const NearestResult nearest =
+    NearestResult nearest =
         nearest_point(difference_, first, relative, 0.25 * kAbsolute, buffers_.stack, out_.statistics.support_calls);
+    Vec3 proven = -nearest.point.normalized();
+    if (!nearest.certified) {
+      const SmoothNearest near =
+          smooth_nearest(difference_, first, relative, 0.25 * kAbsolute, out_.statistics.support_calls);
+      nearest = near.nearest;
+      proven = near.normal;
+    }
     const double touching = kAbsolute * std::max(size(), nearest.point.cwiseAbs().maxCoeff());
     const bool directed = nearest.lower > 0;
-    const Vec3 normal = directed ? Vec3(-nearest.point.normalized()) : core.normal;
+    const Vec3 normal = directed ? proven : core.normal;
     const double round = 4 * 0x1p-53 * (nearest.upper + margin_);
     const double distance_lower = std::max(0.0, nearest.lower) - margin_ - round;
     const double distance_upper = nearest.upper - margin_ + round;

@@ -77,18 +77,6 @@ DifferenceVertex SmoothDifference::support(const Vec3& direction, const Differen
   return {pb - pa, index, index};
 }
 
-DifferenceVertex SmoothDifference::combination(const DifferenceVertex* simplex, const double* weights,
-                                               int count) const {
-  PointPair sum{Vec3::Zero(), Vec3::Zero()};
-  for (int i = 0; i < count; ++i) {
-    sum.a += weights[i] * points(simplex[i]).a;
-    sum.b += weights[i] * points(simplex[i]).b;
-  }
-  points_.push_back(sum);
-  const auto index = static_cast<std::int32_t>(points_.size() - 1);
-  return {sum.b - sum.a, index, index};
-}
-
 Vec3 SmoothDifference::centre() const { return b_.rotation * b_.centre - a_.rotation * a_.centre + offset_; }
 
 }  // namespace pd::detail

@@ -18,8 +18,6 @@ struct PointPair {
 /// The same interface as PolytopeDifference; the "ids" of a support are its index in `points`.
 class SmoothDifference {
  public:
-  static constexpr bool kAnalytic = true;
-
   /// @param points  buffer, grown by one a support; relative to the translation of A.
   SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points);
 
@@ -36,8 +34,6 @@ class SmoothDifference {
   [[nodiscard]] const PointPair& points(const DifferenceVertex& s) const {
     return points_[static_cast<std::size_t>(s.a)];
   }
-  /// A convex combination of supports, as a point of P like any other.
-  [[nodiscard]] DifferenceVertex combination(const DifferenceVertex* simplex, const double* weights, int count) const;
   [[nodiscard]] Vec3 centre() const;
   [[nodiscard]] double reach() const { return reach_; }
   /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach.
