@@ -131,4 +131,27 @@ Surface spiked_star(double height) {
   return star;
 }
 
+Surface star_prism(int k, double inner, Random& random) {
+  Surface star;
+  const int n = 2 * k;
+  for (const double z : {-0.5, 0.5}) {
+    for (int i = 0; i < n; ++i) {
+      const Turn t = turn((i + 0.2 * random.uniform()) / n);
+      const double r = i % 2 == 0 ? random.uniform(0.9, 1) : inner;
+      star.vertices.push_back({r * t.cosine, r * t.sine, z});
+    }
+  }
+  const std::int32_t bottom = 2 * n, top = bottom + 1;
+  star.vertices.push_back({0, 0, -0.5});
+  star.vertices.push_back({0, 0, 0.5});
+  for (std::int32_t i = 0; i < n; ++i) {
+    const std::int32_t j = (i + 1) % n;
+    star.faces.push_back({i, j, n + i});
+    star.faces.push_back({j, n + j, n + i});
+    star.faces.push_back({j, i, bottom});
+    star.faces.push_back({n + i, n + j, top});
+  }
+  return star;
+}
+
 }  // namespace pd::scenes

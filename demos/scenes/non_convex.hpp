@@ -47,5 +47,8 @@ struct Surface {
 /// A cube's surface with a spike of the given height on the middle of each face: 24 faces, star-shaped about the
 /// origin.
 [[nodiscard]] Surface spiked_star(double height);
+/// A prism of height 1 over a star polygon with k rough spikes of radius up to 1 and corners at radius `inner` between
+/// them: 8 k faces, star-shaped about the origin.
+[[nodiscard]] Surface star_prism(int k, double inner, Random& random);
 
 }  // namespace pd::scenes

@@ -54,37 +54,14 @@ Compound compound_of(const scenes::PartList& parts) {
   return *Compound::from_parts(std::move(list));
 }
 
-/// Two rough rings of k spikes: star-shaped prisms over a star polygon with 2 k corners, 8 k faces.
-scenes::Surface star_prism(int k, double inner, scenes::Random& random) {
-  scenes::Surface star;
-  const int n = 2 * k;
-  for (const double z : {-0.5, 0.5}) {
-    for (int i = 0; i < n; ++i) {
-      const scenes::Turn t = scenes::turn((i + 0.2 * random.uniform()) / n);
-      const double r = i % 2 == 0 ? random.uniform(0.9, 1) : inner;
-      star.vertices.push_back({r * t.cosine, r * t.sine, z});
-    }
-  }
-  const std::int32_t bottom = 2 * n, top = bottom + 1;
-  star.vertices.push_back({0, 0, -0.5});
-  star.vertices.push_back({0, 0, 0.5});
-  for (std::int32_t i = 0; i < n; ++i) {
-    const std::int32_t j = (i + 1) % n;
-    star.faces.push_back({i, j, n + i});
-    star.faces.push_back({j, n + j, n + i});
-    star.faces.push_back({j, i, bottom});
-    star.faces.push_back({n + i, n + j, top});
-  }
-  return star;
-}
-
 void measure_stars(int largest, std::uint64_t seed) {
   std::printf("star prisms against star prisms, turned\n%6s %8s %10s %10s %10s %12s %10s %12s %10s\n", "mn", "facets",
               "built", "boundary", "vertices", "cuts", "ms", "search cuts", "search ms");
   std::vector<double> sizes, boundary, time, search;
   scenes::Random random(seed);
   for (int k = 2; 64 * k * k <= largest; ++k) {
-    const Compound a = compound_of(star_prism(k, 0.5, random)), b = compound_of(star_prism(k, 0.5, random));
+    const Compound a = compound_of(scenes::star_prism(k, 0.5, random)),
+                   b = compound_of(scenes::star_prism(k, 0.5, random));
     const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.5, 0.1, 0.2});
     double begin = processor_time();
     const auto built = pd::minkowski_difference({&a, pose}, {&b, Pose()});

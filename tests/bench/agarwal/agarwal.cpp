@@ -26,6 +26,7 @@ constexpr Chapter kChapters[] = {
     {"search", measure_search},
     {"decomposition", measure_decomposition},
     {"approximate", measure_approximate},
+    {"shallow", measure_shallow},
     {"non_convex", measure_non_convex},
     {"roofs", measure_roofs},
     {"exactness", measure_exactness},

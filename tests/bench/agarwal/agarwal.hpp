@@ -32,6 +32,7 @@ void measure_sizes(const AgarwalSettings& settings, ClaimTable& table);
 void measure_search(const AgarwalSettings& settings, ClaimTable& table);
 void measure_decomposition(const AgarwalSettings& settings, ClaimTable& table);
 void measure_approximate(const AgarwalSettings& settings, ClaimTable& table);
+void measure_shallow(const AgarwalSettings& settings, ClaimTable& table);
 void measure_non_convex(const AgarwalSettings& settings, ClaimTable& table);
 void measure_roofs(const AgarwalSettings& settings, ClaimTable& table);
 void measure_exactness(const AgarwalSettings& settings, ClaimTable& table);

@@ -1,5 +1,6 @@
 /// @file
-/// [A] section 3: direction grids, ray shots (Theorem 3.2), width (Corollary 3.3), Shallow-Penetration (Theorem 3.5).
+/// [A] section 3: direction grids, ray shots (Theorem 3.2), polyhedral metrics (Corollary 3.4), width
+/// (Corollary 3.3, and 3.4 of the earlier version).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +9,12 @@
 #include <optional>
 
 #include "bench/agarwal/agarwal.hpp"
+#include "pd/depth/approximate_separation.hpp"
 #include "pd/depth/approximate_width.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/polyhedral_depth.hpp"
 #include "pd/depth/scratch.hpp"
-#include "pd/depth/shallow_penetration.hpp"
 #include "pd/depth/width.hpp"
 #include "pd/structure/direction_grid.hpp"
 
@@ -27,13 +29,14 @@ using scenes::PolytopePair;
 const Claim kCovering{"Lemma 3.1, directions", "a grid for a relative error delta has O(1 / delta) directions"};
 const Claim kShots{"Theorem 3.2, one shot", "a ray shot costs O(log^2 n): supports over log^2 n do not grow"};
 const Claim kGrid{"Theorem 3.2, Approx-Separation", "O(log^2 n / delta) a query: supports grow at most as 1 / delta"};
+const Claim kAsItStands{"Theorem 3.2, every ray of a grid",
+                        "O(1 / delta) rays whatever the bodies; (1 + delta) holds, the exact depth between"};
+const Claim kMetric{"Corollary 3.4, polyhedral metrics", "O(m + n + k log^2 n) for a unit ball of k vertices"};
 const Claim kFactor{"Theorem 3.2, factor", "upper <= (1 + delta) lower, and both hold the exact depth"};
 const Claim kGridWidth{"Corollary 3.3, width", "width within (1 + delta) by O(1 / delta) ray shots"};
 const Claim kLinearWidth{
     "Corollary 3.4, width of points",
     "one linear pass, then time that does not depend on n; at most 3 passes of 64 products a point"};
-const Claim kShallow{"Theorem 3.5, search", "steps and degrees linear in the facets visited + 1 / delta"};
-const Claim kVisited{"Theorem 3.5, visited", "facets visited stay those near the origin (shallow), however large K"};
 
 std::vector<double> deltas(const AgarwalSettings& settings) {
   return settings.quick ? std::vector<double>{0.3, 0.1, 0.03, 0.01, 0.003}
@@ -108,6 +111,76 @@ void measure_grid_engine(const AgarwalSettings& settings, ClaimTable& table) {
     table.add_value(kFactor, name, "(upper / lower - 1) / delta, greatest", "all deltas", loosest, 1);
     table.add_value(kFactor, name, std::string(kWrongAnswers), "all deltas", misses, 0);
   }
+}
+
+/// The algorithm without refinement: time, and the depth that it leaves open.
+void measure_every_ray(const AgarwalSettings& settings, ClaimTable& table) {
+  const PolytopePair pair = scenes::make_agarwal_pair(AgarwalFamily::sphere_hulls, settings.quick ? 1024 : 16'384,
+                                                      DepthClass::mid, settings.seed);
+  const ConvexShape a(pair.a), b(pair.b);
+  const auto hierarchy_a = PolyhedralHierarchy::build(pair.a, HierarchyKind::inner);
+  const auto hierarchy_b = PolyhedralHierarchy::build(pair.b, HierarchyKind::inner);
+  const DirectionalHierarchies hierarchies{&*hierarchy_a, &*hierarchy_b};
+  Scratch scratch;
+  const PenetrationDepth exact = penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {});
+  for (const GridKind grid : {GridKind::latitude_longitude, GridKind::geodesic}) {
+    for (const DirectionalMethod shot : {DirectionalMethod::portal, DirectionalMethod::hierarchy}) {
+      const std::string name = fmt::format("{}, {}", grid == GridKind::geodesic ? "geodesic" : "latitude and longitude",
+                                           shot == DirectionalMethod::portal ? "portal" : "hierarchies");
+      const ApproximateSeparationSettings rays{.grid = grid, .shot = shot, .hierarchies = &hierarchies};
+      Growth count{name, "rays", "1 / delta"};
+      Growth time{name, "time, ns", "1 / delta"};
+      double loosest = 0, supports = 0;
+      int wrong = 0;
+      for (double delta = 0.3; delta > (settings.quick ? 0.002 : 0.0002); delta /= 3) {
+        Expected<ApproximateSeparation> found = Error{};
+        const std::function<void()> query = [&] {
+          found = approximate_separation({&a, pair.pose_a}, {&b, pair.pose_b}, delta, scratch, rays);
+        };
+        time.add(1 / delta, least_times_ns({&query, 1}, 1, false)[0]);
+        if (!found) continue;
+        count.add(1 / delta, static_cast<double>(found->rays));
+        supports = static_cast<double>(found->ray_supports) / static_cast<double>(found->rays);
+        loosest = std::max(loosest, (found->upper / found->lower - 1) / delta);
+        wrong += found->lower <= exact.upper && exact.lower <= found->upper ? 0 : 1;
+      }
+      table.add_growth(kAsItStands, std::move(count), 1.05);
+      table.add_growth(kAsItStands, std::move(time), 1.1);
+      table.add_value(kAsItStands, name, "supports a ray", "at the top", supports);
+      table.add_value(kAsItStands, name, "(upper / lower - 1) / delta, greatest", "all deltas", loosest, 1);
+      table.add_value(kAsItStands, name, std::string(kWrongAnswers), "all deltas", wrong, 0);
+    }
+  }
+}
+
+void measure_metrics(const AgarwalSettings& settings, ClaimTable& table) {
+  const PolytopePair pair =
+      scenes::make_agarwal_pair(AgarwalFamily::sphere_hulls, 1024, DepthClass::mid, settings.seed);
+  const ConvexShape a(pair.a), b(pair.b);
+  Scratch scratch;
+  const PenetrationDepth euclidean = penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {});
+  Growth supports{"sphere hulls", "supports", "k"};
+  Growth time{"sphere hulls", "time, ns", "k"};
+  int wrong = 0;
+  for (const int k : doublings(16, settings.quick ? 512 : 8192)) {
+    scenes::Random random(settings.seed + 3);
+    const ConvexPolytope ball = *ConvexPolytope::from_points(scenes::sphere_hull(k, random));
+    Expected<PenetrationDepth> found = Error{};
+    const std::function<void()> query = [&] {
+      found = polyhedral_depth({&a, pair.pose_a}, {&b, pair.pose_b}, ball, scratch);
+    };
+    time.add(k, least_times_ns({&query, 1}, 3)[0]);
+    if (!found) {
+      ++wrong;
+      continue;
+    }
+    supports.add(k, static_cast<double>(found->statistics.support_calls));
+    // A ball inside the unit ball: its gauge is at least the length.
+    wrong += found->lower >= euclidean.lower * (1 - 1e-12) ? 0 : 1;
+  }
+  table.add_growth(kMetric, std::move(supports), 1.05);
+  table.add_growth(kMetric, std::move(time), 1.1);
+  table.add_value(kMetric, "sphere hulls", std::string(kWrongAnswers), "all k", wrong, 0);
 }
 
 void measure_grid_width(const AgarwalSettings& settings, ClaimTable& table) {
@@ -191,54 +264,16 @@ void measure_linear_width(const AgarwalSettings& settings, ClaimTable& table) {
   }
 }
 
-void measure_shallow(const AgarwalSettings& settings, ClaimTable& table) {
-  constexpr double kDelta = 0.25;
-  struct Row {
-    AgarwalFamily family;
-    DepthClass depth;
-  };
-  for (const Row row :
-       {Row{AgarwalFamily::balls, DepthClass::deep}, Row{AgarwalFamily::balls, DepthClass::mid},
-        Row{AgarwalFamily::balls, DepthClass::shallow}, Row{AgarwalFamily::sphere_hulls, DepthClass::shallow},
-        Row{AgarwalFamily::patch, DepthClass::deep}}) {
-    const std::string name = fmt::format("{}, {}", to_string(row.family), to_string(row.depth));
-    const bool quadratic = scenes::is_quadratic(row.family);
-    Growth cost{name, "steps + degrees", "visited + 1 / delta"};
-    Growth visited{name, "facets visited", "n"};
-    Scratch scratch;
-    int wrong = 0;
-    const int top = settings.quick ? 1024 : 16'384;
-    for (const int n : doublings(quadratic ? 16 : 64, quadratic ? top / 16 : top)) {
-      const PolytopePair pair = scenes::make_agarwal_pair(row.family, n, row.depth, settings.seed);
-      const ConvexShape a(pair.a), b(pair.b);
-      const auto found = shallow_penetration({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, kDelta);
-      if (!found) continue;
-      const PenetrationDepth exact = penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {});
-      wrong += found->answer.lower == exact.lower && found->answer.upper == exact.upper ? 0 : 1;
-      cost.add(static_cast<double>(found->counts.visited) + 1 / kDelta,
-               static_cast<double>(found->counts.steps + found->counts.degrees));
-      visited.add(n, static_cast<double>(found->counts.visited));
-    }
-    const auto [low, high] = std::minmax_element(cost.x.begin(), cost.x.end());
-    double greatest = 0;
-    for (std::size_t i = 0; i < cost.x.size(); ++i) greatest = std::max(greatest, cost.y[i] / cost.x[i]);
-    table.add_value(kShallow, name, "greatest cost for each", fmt::format("{} sizes", cost.x.size()), greatest);
-    // Where hardly more facets are visited as n grows there is no slope to speak of.
-    if (!cost.x.empty() && *high > 8 * *low) table.add_growth(kShallow, std::move(cost), 1.1);
-    table.add_growth(kVisited, std::move(visited));
-    table.add_value(kVisited, name, std::string(kWrongAnswers), "all sizes", wrong, 0);
-  }
-}
-
 }  // namespace
 
 void measure_approximate(const AgarwalSettings& settings, ClaimTable& table) {
   measure_grids(settings, table);
   measure_shots(settings, table);
   measure_grid_engine(settings, table);
+  measure_every_ray(settings, table);
   measure_grid_width(settings, table);
+  measure_metrics(settings, table);
   measure_linear_width(settings, table);
-  measure_shallow(settings, table);
 }
 
 }  // namespace pd::bench

@@ -6,12 +6,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "bench/agarwal/agarwal.hpp"
+#include "bench/agarwal/near_facets.hpp"
 #include "pd/depth/scratch.hpp"
+#include "pd/depth/union_difference.hpp"
 #include "pd/depth/union_of_parts.hpp"
+#include "pd/shape/star_body.hpp"
 
 namespace pd::bench {
 
@@ -20,6 +24,8 @@ namespace {
 const Claim kCells{"Open problem (ii), cells", "the octree's cells as its bracket closes to (1 + delta)"};
 const Claim kBracket{"Open problem (ii), bracket", "lower <= exact depth <= upper <= (1 + delta) lower"};
 const Claim kCuts{"Section 4, exact cuts", "uncovered facets near the answer only: cuts and time as the parts grow"};
+const Claim kStars{"Remark after section 4, star-shaped",
+                   "the boundary of P in O(m^2 n^2 alpha(mn)) time: exponents in mn at most 2"};
 
 Compound compound_of(const scenes::PartList& list) {
   std::vector<Compound::Part> parts;
@@ -27,6 +33,54 @@ Compound compound_of(const scenes::PartList& list) {
     parts.push_back({ConvexShape(*ConvexPolytope::from_points(part.points)), part.pose});
   }
   return *Compound::from_parts(std::move(parts));
+}
+
+/// The least distance of the origin from the polygons of a built boundary.
+double distance_to_boundary(const UnionDifference& built) {
+  double least = HUGE_VAL;
+  std::vector<Vec3> corners;
+  for (const UnionDifference::Facet& facet : built.facets) {
+    corners.clear();
+    for (std::int32_t i = 0; i < facet.count; ++i) {
+      const std::int32_t corner = built.corners[static_cast<std::size_t>(facet.first + i)];
+      corners.push_back(built.vertices[static_cast<std::size_t>(corner)]);
+    }
+    least = std::min(least, squared_distance_from_origin(corners));
+  }
+  return std::sqrt(least);
+}
+
+/// Star prisms of k spikes, m = n = 8 k faces: the whole boundary, and the lazy search beside it.
+void measure_stars(const AgarwalSettings& settings, ClaimTable& table) {
+  Growth facets{"star prisms", "boundary facets", "mn"};
+  Growth built_time{"star prisms", "time to build P, ns", "mn"};
+  Growth search_time{"star prisms", "time to search, ns", "mn"};
+  scenes::Random random(settings.seed);
+  const auto star = [&](int k) {
+    const scenes::Surface surface = scenes::star_prism(k, 0.5, random);
+    return StarBody::from_faces(surface.vertices, surface.faces, surface.centre)->tetrahedra();
+  };
+  Scratch scratch;
+  int wrong = 0;
+  for (int k = 2; k <= (settings.quick ? 4 : 8); ++k) {
+    const Compound a = star(k), b = star(k);
+    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.5, 0.1, 0.2});
+    const double mn = 64.0 * k * k;
+    Expected<UnionDifference> built = Error{};
+    Expected<UnionDepth> answer = Error{};
+    const std::function<void()> build = [&] { built = minkowski_difference({&a, pose}, {&b, Pose()}); };
+    const std::function<void()> search = [&] { answer = penetration_depth({&a, pose}, {&b, Pose()}, scratch); };
+    built_time.add(mn, least_times_ns({&build, 1}, 1, false)[0]);
+    search_time.add(mn, least_times_ns({&search, 1}, 1, false)[0]);
+    if (!built || !answer) continue;
+    facets.add(mn, static_cast<double>(built->facets.size()));
+    const bool same = std::abs(distance_to_boundary(*built) - answer->depth) <= 1e-9;
+    wrong += answer->contact == ContactClass::overlapping && same ? 0 : 1;
+  }
+  table.add_growth(kStars, std::move(facets), 2);
+  table.add_growth(kStars, std::move(built_time), 2);
+  table.add_growth(kStars, std::move(search_time), 2);
+  table.add_value(kStars, "star prisms", std::string(kWrongAnswers), "all mn", wrong, 0);
 }
 
 struct Body {
@@ -84,6 +138,7 @@ void measure_non_convex(const AgarwalSettings& settings, ClaimTable& table) {
   }
   table.add_growth(kCuts, std::move(cuts));
   table.add_growth(kCuts, std::move(time));
+  measure_stars(settings, table);
 }
 
 }  // namespace pd::bench
