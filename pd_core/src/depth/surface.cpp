@@ -29,7 +29,6 @@ void Surface::clear() {
     reserve_horizon(kFirstRoom);
     vertices.reserve(kFirstRoom);
     free_.reserve(kFirstRoom / 2);
-    removed_.reserve(kFirstRoom / 2);
     face_numbers_.reserve(kFirstRoom);
     vertex_numbers_.reserve(kFirstRoom);
   }
@@ -43,10 +42,9 @@ void Surface::clear() {
   in_use_ = 0;
 }
 
-void Surface::reserve_faces(int more) {
-  const std::size_t wanted = static_cast<std::size_t>(slots_ + more);
-  if (wanted + kPlaneBlock <= triangles_.size()) return;
-  const std::size_t room = padded_to_block(static_cast<int>(2 * wanted) + kPlaneBlock);
+void Surface::reserve_faces(int count) {
+  if (static_cast<std::size_t>(count + kPlaneBlock) <= triangles_.size()) return;
+  const std::size_t room = padded_to_block(2 * count + kPlaneBlock);
   triangles_.resize(room);
   for (auto* values : {&nx_, &ny_, &nz_}) values->resize(room, 0);
   levels_.resize(room, kRemoved);
@@ -55,26 +53,26 @@ void Surface::reserve_faces(int more) {
   removed_bits_.resize(room / 64 + 1, 0);
 }
 
-void Surface::reserve_horizon(std::size_t edges) {
-  const std::size_t wanted = edges + kPlaneBlock;
-  if (wanted <= from_.size()) return;
-  for (auto* ids : {&from_, &to_, &outside_, &new_slots_}) ids->resize(2 * wanted);
-  new_keys_.resize(2 * wanted);
+void Surface::reserve_horizon(int edges) {
+  if (static_cast<std::size_t>(edges + kPlaneBlock) <= from_.size()) return;
+  const std::size_t room = padded_to_block(2 * edges + kPlaneBlock);
+  for (auto* ids : {&from_, &to_, &outside_, &removed_}) ids->resize(room);
+  for (auto* values : {&fan_nx_, &fan_ny_, &fan_nz_, &fan_levels_, &fan_keys_}) values->resize(room);
 }
 
 void Surface::compute_planes() {
-  reserve_horizon(static_cast<std::size_t>(slots_));
+  reserve_horizon(slots_);
   // The horizon's lists are free: they serve for the corners.
   for (int f = 0; f < slots_; ++f) {
     from_[f] = triangles_[f].v[0];
     to_[f] = triangles_[f].v[1];
     outside_[f] = triangles_[f].v[2];
-    new_slots_[f] = f;
   }
   const int padded = padded_to_block(slots_);
   for (int f = slots_; f < padded; ++f) from_[f] = to_[f] = outside_[f] = 0;
-  triangle_planes(vertices.data()->x.data(), {from_.data(), to_.data(), outside_.data()}, 0, slots_, new_slots_.data(),
-                  planes(), new_keys_.data());
+  triangle_planes(vertices.data()->x.data(), {from_.data(), to_.data(), outside_.data()}, 0, slots_, planes());
+  std::fill(keys_.begin() + slots_, keys_.begin() + padded, kRemoved);
+  std::fill(levels_.begin() + slots_, levels_.begin() + padded, kRemoved);
   nearest_ = least_key(keys_.data(), slots_);
 }
 
@@ -120,96 +118,96 @@ void Surface::find_nearest_by_heap() {
 
 bool Surface::insert(int from, int v) {
   const Vec3 x = vertices[v].x;
-  find_visible(from, x);
-  bool closed = trace_horizon();
-  if (!closed && slots_ <= kFloodFrom) {
-    // Several patches of a crooked surface see x: the one round `from` will do.
-    keep_component(from);
-    closed = trace_horizon();
+  reserve_horizon(3 * slots_);
+  reserve_faces(3 * slots_);
+  if (leaving_.size() < vertices.size()) {
+    leaving_.resize(vertices.capacity());
+    reaching_.resize(vertices.capacity());
   }
-  unmark_removed();
+  bool closed = false;
+  if (slots_ <= kFloodFrom) {
+    const std::uint64_t visible = planes_below(planes(), slots_, x.x(), x.y(), x.z()) | std::uint64_t{1} << from;
+    removed_bits_[0] = visible;
+    list_removed(visible);
+    closed = trace_horizon();
+    if (!closed) {
+      // Several patches of a crooked surface see x: the one round `from` will do.
+      keep_component(from);
+      closed = trace_horizon();
+    }
+    removed_bits_[0] = 0;
+  } else {
+    flood_visible(from, x);
+    closed = trace_horizon();
+    for (int i = 0; i < removed_count_; ++i) removed_bits_[removed_[i] >> 6] = 0;
+  }
   if (closed) fill_hole(v);
   return closed;
 }
 
-void Surface::find_visible(int from, const Vec3& x) {
-  removed_.clear();
-  if (slots_ > kFloodFrom) {
-    flood_visible(from, x);
-    return;
+void Surface::list_removed(std::uint64_t bits) {
+  std::int32_t* const removed = removed_.data();
+  int count = 0;
+  for (; bits != 0; bits &= bits - 1) removed[count++] = std::countr_zero(bits);
+  removed_count_ = count;
+}
+
+template <class Sees>
+void Surface::flood(int from, Sees&& sees) {
+  mark_removed(from);
+  removed_[0] = from;
+  removed_count_ = 1;
+  for (int i = 0; i < removed_count_; ++i) {
+    for (const std::int32_t adjacent : triangles_[removed_[i]].adj) {
+      const std::int32_t g = adjacent >> 2;
+      if (is_removed(g) || !sees(g)) continue;
+      mark_removed(g);
+      removed_[removed_count_++] = g;
+    }
   }
-  std::uint64_t visible = planes_below(planes(), slots_, x.x(), x.y(), x.z()) | std::uint64_t{1} << from;
-  removed_bits_[0] = visible;
-  for (; visible != 0; visible &= visible - 1) removed_.push_back(std::countr_zero(visible));
 }
 
 void Surface::flood_visible(int from, const Vec3& x) {
-  mark_removed(from);
-  removed_.push_back(from);
-  for (std::size_t i = 0; i < removed_.size(); ++i) {
-    const SurfaceTriangle& face = triangles_[removed_[i]];
-    for (const std::int32_t adjacent : face.adj) {
-      const std::int32_t g = adjacent >> 2;
-      if (is_removed(g) || !(x.dot(normal(g)) > levels_[g])) continue;
-      mark_removed(g);
-      removed_.push_back(g);
-    }
-  }
+  flood(from, [&](std::int32_t g) { return x.dot(normal(g)) > levels_[g]; });
 }
 
 void Surface::keep_component(int from) {
   const std::uint64_t visible = removed_bits_[0];
   removed_bits_[0] = 0;
-  removed_.clear();
-  mark_removed(from);
-  removed_.push_back(from);
-  for (std::size_t i = 0; i < removed_.size(); ++i) {
-    for (const std::int32_t adjacent : triangles_[removed_[i]].adj) {
-      const std::int32_t g = adjacent >> 2;
-      if (is_removed(g) || (visible >> g & 1) == 0) continue;
-      mark_removed(g);
-      removed_.push_back(g);
-    }
-  }
+  flood(from, [&](std::int32_t g) { return (visible >> g & 1) != 0; });
 }
 
 /// The edges between faces that go and faces that stay. False when there are none, or two that leave one vertex.
 bool Surface::trace_horizon() {
-  reserve_horizon(3 * removed_.size());
-  if (leaving_.size() <= vertices.capacity()) {
-    leaving_.resize(vertices.capacity() + 1);
-    reaching_.resize(vertices.capacity() + 1);
-  }
   // Local names for the arrays: the compiler cannot know that writing one does not move another.
   std::int32_t* const from = from_.data();
   std::int32_t* const to = to_.data();
   std::int32_t* const beyond = outside_.data();
   const SurfaceTriangle* const triangles = triangles_.data();
   const std::uint64_t* const removed_bits = removed_bits_.data();
-  std::int32_t* const leaving = leaving_.data();
-  std::int32_t* const reaching = reaching_.data();
-  const std::int32_t bin = static_cast<std::int32_t>(leaving_.size()) - 1;
+  const std::int32_t* const removed = removed_.data();
   std::int32_t count = 0;
-  for (const std::int32_t f : removed_) {
-    const SurfaceTriangle& face = triangles[f];
+  for (int i = 0; i < removed_count_; ++i) {
+    const SurfaceTriangle& face = triangles[removed[i]];
     for (std::int32_t e = 0; e < 3; ++e) {
       // Written in any case and counted where it stays: no branch to guess.
       const std::int32_t outside = face.adj[e];
       const std::int32_t g = outside >> 2;
-      const std::int32_t p = face.v[e];
-      const std::int32_t q = face.v[next_edge(e)];
-      const bool stays = (removed_bits[g >> 6] >> (g & 63) & 1) == 0;
-      from[count] = p;
-      to[count] = q;
+      from[count] = face.v[e];
+      to[count] = face.v[next_edge(e)];
       beyond[count] = outside;
-      leaving[stays ? p : bin] = count;
-      reaching[stays ? q : bin] = count;
-      count += stays;
+      count += (removed_bits[g >> 6] >> (g & 63) & 1) == 0;
     }
+  }
+  std::int32_t* const leaving = leaving_.data();
+  std::int32_t* const reaching = reaching_.data();
+  for (std::int32_t i = 0; i < count; ++i) {
+    leaving[from[i]] = i;
+    reaching[to[i]] = i;
   }
   bool simple = count > 0;
   for (std::int32_t i = 0; i < count; ++i) {
-    simple &= (leaving[from[i]] == i) & (reaching[to[i]] == i) & (from[leaving[to[i]]] == to[i]);
+    simple &= (leaving[from[i]] == i) & (reaching[to[i]] == i);
   }
   horizon_count_ = count;
   return simple;
@@ -217,68 +215,60 @@ bool Surface::trace_horizon() {
 
 void Surface::fill_hole(int v) {
   const int count = horizon_count_;
-  for (const std::int32_t f : removed_) keys_[f] = levels_[f] = kRemoved;
-  // Before the new keys: vector loads would wait for scalar stores that have just been made.
-  const int nearest_old = heap_active_ ? 0 : least_key(keys_.data(), slots_);
-  const double key_old = keys_[nearest_old];
   take_slots(count);
   std::int32_t* const from = from_.data();
   std::int32_t* const to = to_.data();
   const std::int32_t* const beyond = outside_.data();
-  const std::int32_t* const slots = new_slots_.data();
-  const int padded = padded_to_block(count);
-  for (int i = count; i < padded; ++i) {
-    from[i] = from[0];
-    to[i] = to[0];
-  }
-  triangle_planes(vertices.data()->x.data(), {from, to, nullptr}, v, count, slots, planes(), new_keys_.data());
+  std::fill_n(from + count, kPlaneBlock, from[0]);
+  std::fill_n(to + count, kPlaneBlock, to[0]);
+  const PlaneArrays fan{fan_nx_.data(), fan_ny_.data(), fan_nz_.data(), fan_levels_.data(), fan_keys_.data()};
+  triangle_planes(vertices.data()->x.data(), {from, to, nullptr}, v, count, fan);
+  const PlaneArrays plane = planes();
   SurfaceTriangle* const triangles = triangles_.data();
   const std::int32_t* const leaving = leaving_.data();
   const std::int32_t* const reaching = reaching_.data();
+  const std::int32_t* const slots = removed_.data();
   for (int i = 0; i < count; ++i) {
     const std::int32_t f = slots[i];
     triangles[f] = {{from[i], to[i], v}, {beyond[i], 4 * slots[leaving[to[i]]] + 2, 4 * slots[reaching[from[i]]] + 1}};
     triangles[beyond[i] >> 2].adj[beyond[i] & 3] = 4 * f;
+    plane.nx[f] = fan.nx[i];
+    plane.ny[f] = fan.ny[i];
+    plane.nz[f] = fan.nz[i];
+    plane.level[f] = fan.level[i];
+    plane.key[f] = fan.key[i];
   }
-  if (!heap_active_ && slots_ > kHeapFrom) {
-    start_heap();
-  } else if (heap_active_) {
-    for (int i = 0; i < count; ++i) push_heap(slots[i]);
-  }
-  if (heap_active_) {
-    find_nearest_by_heap();
+  if (slots_ <= kHeapFrom && !heap_active_) {
+    nearest_ = least_key(keys_.data(), slots_);
     return;
   }
-  // Padding repeats the first new face, so the lowest index is a real one.
-  const int least_new = least_key(new_keys_.data(), count);
-  const double key_new = new_keys_[least_new];
-  const bool old = (key_old < key_new) | ((key_old == key_new) & (nearest_old < slots[least_new]));
-  nearest_ = old ? nearest_old : slots[least_new];
+  if (heap_active_) {
+    for (int i = 0; i < count; ++i) push_heap(slots[i]);
+  } else {
+    start_heap();
+  }
+  find_nearest_by_heap();
 }
 
-/// Slots for `count` new faces: those of the removed faces come first.
+/// Makes `removed_` the slots of `count` new faces; removed faces beyond those leave free slots.
 void Surface::take_slots(int count) {
-  reserve_faces(count);
-  const int removed = static_cast<int>(removed_.size());
-  const int reused = std::min(count, removed);
-  for (int i = 0; i < reused; ++i) new_slots_[i] = removed_[i];
-  for (int i = reused; i < count; ++i) {
+  if (heap_active_) {
+    for (int i = 0; i < removed_count_; ++i) ++stamps_[removed_[i]];
+  }
+  in_use_ += count - removed_count_;
+  for (int i = removed_count_; i < count; ++i) {
     if (free_.empty()) {
-      new_slots_[i] = slots_++;
+      removed_[i] = slots_++;
     } else {
-      new_slots_[i] = free_.back();
+      removed_[i] = free_.back();
       free_.pop_back();
     }
   }
-  for (int i = reused; i < removed; ++i) free_.push_back(removed_[i]);
-  if (heap_active_) {
-    for (const std::int32_t f : removed_) ++stamps_[f];
+  for (int i = count; i < removed_count_; ++i) {
+    const std::int32_t f = removed_[i];
+    keys_[f] = levels_[f] = kRemoved;
+    free_.push_back(f);
   }
-  in_use_ += count - removed;
-}
-
-void Surface::unmark_removed() {
-  for (const std::int32_t f : removed_) removed_bits_[f >> 6] = 0;
 }
 
 }  // namespace pd::detail

@@ -95,12 +95,14 @@ class Surface {
   [[nodiscard]] PlaneArrays planes() { return {nx_.data(), ny_.data(), nz_.data(), levels_.data(), keys_.data()}; }
   /// Planes of all slots, none of them free.
   void compute_planes();
-  /// Room for so many faces beyond those in use.
-  void reserve_faces(int more);
-  void reserve_horizon(std::size_t edges);
+  /// Room for so many slots.
+  void reserve_faces(int count);
+  void reserve_horizon(int edges);
 
   // insert, step by step
-  void find_visible(int from, const Vec3& x);
+  void list_removed(std::uint64_t bits);
+  template <class Sees>
+  void flood(int from, Sees&& sees);
   void flood_visible(int from, const Vec3& x);
   void keep_component(int from);
   bool trace_horizon();
@@ -108,7 +110,6 @@ class Surface {
   void fill_hole(int v);
   [[nodiscard]] bool is_removed(int f) const { return (removed_bits_[f >> 6] >> (f & 63) & 1) != 0; }
   void mark_removed(int f) { removed_bits_[f >> 6] |= std::uint64_t{1} << (f & 63); }
-  void unmark_removed();
 
   struct HeapEntry {
     double key;
@@ -128,14 +129,13 @@ class Surface {
   int in_use_ = 0;
 
   std::vector<std::uint64_t> removed_bits_;  ///< by slot; all zero between calls
-  std::vector<std::int32_t> removed_;
+  std::vector<std::int32_t> removed_;        ///< faces that go, then the slots of those that come
+  int removed_count_ = 0;
   // The horizon: edges as the removed side runs along them, and beyond each 4 * face + edge of the face that stays.
   std::vector<std::int32_t> from_, to_, outside_;
   int horizon_count_ = 0;
-  // By vertex, the horizon edge that leaves it and the one that reaches it; the last entry is a bin.
-  std::vector<std::int32_t> leaving_, reaching_;
-  std::vector<std::int32_t> new_slots_;
-  std::vector<double> new_keys_;
+  std::vector<std::int32_t> leaving_, reaching_;  ///< by vertex: the horizon edge that leaves it, that reaches it
+  std::vector<double> fan_nx_, fan_ny_, fan_nz_, fan_levels_, fan_keys_;
   int nearest_ = 0;
 
   std::vector<HeapEntry> heap_;

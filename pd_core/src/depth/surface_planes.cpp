@@ -67,7 +67,7 @@ PD_INLINE void planes_through(Planes& out, const Points& p, const Points& q, con
 }  // namespace
 
 PD_CLONES void triangle_planes(const double* points, const CornerIds& corners, std::int32_t apex, int count,
-                               const std::int32_t* slots, const PlaneArrays& out, double* keys) {
+                               const PlaneArrays& out) {
   const double* const top = points + kPointStride * static_cast<std::ptrdiff_t>(apex);
   const Lanes zero = {0, 0, 0, 0};
   Points p, q, r{zero + top[0], zero + top[1], zero + top[2]};
@@ -77,16 +77,11 @@ PD_CLONES void triangle_planes(const double* points, const CornerIds& corners, s
     if (corners.r != nullptr) gather(r, points, corners.r + i);
     Planes found;
     planes_through(found, p, q, r);
-    store(keys + i, found.key);
-    const int lanes = count - i < kLanes ? count - i : kLanes;
-    for (int k = 0; k < lanes; ++k) {
-      const std::int32_t slot = slots[i + k];
-      out.nx[slot] = found.normal.x[k];
-      out.ny[slot] = found.normal.y[k];
-      out.nz[slot] = found.normal.z[k];
-      out.level[slot] = found.level[k];
-      out.key[slot] = found.key[k];
-    }
+    store(out.nx + i, found.normal.x);
+    store(out.ny + i, found.normal.y);
+    store(out.nz + i, found.normal.z);
+    store(out.level + i, found.level);
+    store(out.key + i, found.key);
   }
 }
 

@@ -34,10 +34,10 @@ struct CornerIds {
   const std::int32_t* r;  ///< nullptr: `apex` for all of them
 };
 
-/// Planes of `count` triangles, written at `slots[i]` of `out`. The lists of ids are read in whole blocks, so their
-/// last block must be filled up with valid ids. Keys are written to `keys` as well, in order and in whole blocks.
+/// Planes of `count` triangles. Whole blocks are written, and the lists of ids are read in whole blocks, so their last
+/// block must be filled up with valid ids.
 void triangle_planes(const double* points, const CornerIds& corners, std::int32_t apex, int count,
-                     const std::int32_t* slots, const PlaneArrays& out, double* keys);
+                     const PlaneArrays& out);
 
 /// Bit i: the point lies above plane i, i < count <= 64. Entries up to the next whole block are read, their bits given.
 std::uint64_t planes_below(const PlaneArrays& planes, int count, double x, double y, double z);

@@ -9,11 +9,8 @@
 
 #if defined(__x86_64__) && defined(__linux__) && !defined(__clang__) && !defined(PD_ISA_BASELINE)
 #define PD_CLONES __attribute__((target_clones("avx2", "default")))
-/// For loops over registers of 64 bytes.
-#define PD_CLONES_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define PD_CLONES
-#define PD_CLONES_WIDE
 #endif
 
 /// For what a cloned function calls: it must become a part of each clone.

@@ -63,6 +63,21 @@ PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
   return winner < v.count ? static_cast<int>(winner) : 0;
 }
 
+typedef float Floats __attribute__((vector_size(32)));
+typedef float HalfFloats __attribute__((vector_size(16)));
+typedef std::int32_t Ids __attribute__((vector_size(32)));
+typedef std::int32_t HalfIds __attribute__((vector_size(16)));
+constexpr int kFloats = 8;
+static_assert(ConvexPolytope::kPadding == 2 * kFloats);
+
+PD_INLINE void heights(Floats& to, const SampleArrays& v, int i, float dx, float dy, float dz) {
+  Floats x, y, z;
+  __builtin_memcpy(&x, v.x + i, sizeof(Floats));
+  __builtin_memcpy(&y, v.y + i, sizeof(Floats));
+  __builtin_memcpy(&z, v.z + i, sizeof(Floats));
+  to = x * dx + y * dy + z * dz;
+}
+
 }  // namespace
 
 PD_CLONES int farthest_vertex(const VertexArrays& vertices, double dx, double dy, double dz) {
@@ -74,49 +89,41 @@ PD_CLONES VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays
   return {farthest(a, d), farthest(b, d)};
 }
 
-PD_CLONES_WIDE int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy, float dz) {
-  typedef float Wide __attribute__((vector_size(64)));
-  typedef float Half __attribute__((vector_size(32)));
-  typedef float Quarter __attribute__((vector_size(16)));
-  typedef std::int32_t WideIds __attribute__((vector_size(64)));
-  typedef std::int32_t HalfIds __attribute__((vector_size(32)));
-  typedef std::int32_t QuarterIds __attribute__((vector_size(16)));
-  constexpr int kWide = 16;
-  static_assert(kWide == ConvexPolytope::kPadding);
-  Wide x, y, z;
-  WideIds id = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  WideIds best_id = id;
-  __builtin_memcpy(&x, sample.x, sizeof(Wide));
-  __builtin_memcpy(&y, sample.y, sizeof(Wide));
-  __builtin_memcpy(&z, sample.z, sizeof(Wide));
-  Wide best = x * dx + y * dy + z * dz;
-  for (int i = kWide; i < sample.count; i += kWide) {
-    __builtin_memcpy(&x, sample.x + i, sizeof(Wide));
-    __builtin_memcpy(&y, sample.y + i, sizeof(Wide));
-    __builtin_memcpy(&z, sample.z + i, sizeof(Wide));
-    const Wide next = x * dx + y * dy + z * dz;
-    id += kWide;
+PD_CLONES int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy, float dz) {
+  Floats best, other;
+  heights(best, sample, 0, dx, dy, dz);
+  heights(other, sample, kFloats, dx, dy, dz);
+  const Ids row = {0, 1, 2, 3, 4, 5, 6, 7};
+  Ids best_id = row, other_id = row + kFloats, id = other_id;
+  for (int i = 2 * kFloats; i < sample.count; i += 2 * kFloats) {
+    Floats next, after;
+    heights(next, sample, i, dx, dy, dz);
+    heights(after, sample, i + kFloats, dx, dy, dz);
+    id += kFloats;
     best_id = next > best ? id : best_id;
     best = next > best ? next : best;
+    id += kFloats;
+    other_id = after > other ? id : other_id;
+    other = after > other ? after : other;
   }
-  const Half low = __builtin_shufflevector(best, best, 0, 1, 2, 3, 4, 5, 6, 7);
-  const Half high = __builtin_shufflevector(best, best, 8, 9, 10, 11, 12, 13, 14, 15);
-  const Half most = high > low ? high : low;
-  const Quarter first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
-  const Quarter second = __builtin_shufflevector(most, most, 4, 5, 6, 7);
-  const Quarter top = second > first ? second : first;
+  const Floats most = other > best ? other : best;
+  const HalfFloats low = __builtin_shufflevector(most, most, 0, 1, 2, 3);
+  const HalfFloats high = __builtin_shufflevector(most, most, 4, 5, 6, 7);
+  const HalfFloats top = high > low ? high : low;
   const float left = top[1] > top[0] ? top[1] : top[0];
   const float right = top[3] > top[2] ? top[3] : top[2];
-  const WideIds none = WideIds{} + 0x7fffffff;
-  const WideIds winners = best == (Wide{} + (right > left ? right : left)) ? best_id : none;
-  const HalfIds low_ids = __builtin_shufflevector(winners, winners, 0, 1, 2, 3, 4, 5, 6, 7);
-  const HalfIds high_ids = __builtin_shufflevector(winners, winners, 8, 9, 10, 11, 12, 13, 14, 15);
+  const float greatest = right > left ? right : left;
+  const Floats tops = {greatest, greatest, greatest, greatest, greatest, greatest, greatest, greatest};
+  constexpr std::int32_t kNobody = 0x7fffffff;
+  const Ids none = {kNobody, kNobody, kNobody, kNobody, kNobody, kNobody, kNobody, kNobody};
+  const Ids from_best = best == tops ? best_id : none;
+  const Ids from_other = other == tops ? other_id : none;
+  const Ids ids = from_other < from_best ? from_other : from_best;
+  const HalfIds low_ids = __builtin_shufflevector(ids, ids, 0, 1, 2, 3);
+  const HalfIds high_ids = __builtin_shufflevector(ids, ids, 4, 5, 6, 7);
   const HalfIds least = high_ids < low_ids ? high_ids : low_ids;
-  const QuarterIds first_ids = __builtin_shufflevector(least, least, 0, 1, 2, 3);
-  const QuarterIds second_ids = __builtin_shufflevector(least, least, 4, 5, 6, 7);
-  const QuarterIds ids = second_ids < first_ids ? second_ids : first_ids;
-  const std::int32_t left_id = ids[1] < ids[0] ? ids[1] : ids[0];
-  const std::int32_t right_id = ids[3] < ids[2] ? ids[3] : ids[2];
+  const std::int32_t left_id = least[1] < least[0] ? least[1] : least[0];
+  const std::int32_t right_id = least[3] < least[2] ? least[3] : least[2];
   const std::int32_t winner = right_id < left_id ? right_id : left_id;
   return winner < sample.count ? winner : 0;
 }
