@@ -261,16 +261,17 @@ class Coarsening {
     const int d = static_cast<int>(r.size());
     for (int i = 0; i < d; ++i) {
       // In the ring of r[i] stand r[i + 1], v, r[i - 1]: v gives way to the diagonals from r[i], in the order of r.
-      std::array<int, PolyhedralHierarchy::kMaxDegree> others{};
-      std::size_t count = 0;
+      others_.clear();
       for (const auto& [from, to] : diagonals_) {
-        if (from == i) others[count++] = to;
-        if (to == i) others[count++] = from + d;
+        if (from == i) others_.push_back(to);
+        if (to == i) others_.push_back(from + d);
       }
-      std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count));
+      std::sort(others_.begin(), others_.end());
       auto& target = rings_[static_cast<std::size_t>(r[static_cast<std::size_t>(i)])];
       auto place = target.erase(std::find(target.begin(), target.end(), v));
-      for (std::size_t k = count; k-- > 0;) place = target.insert(place, r[static_cast<std::size_t>(others[k] % d)]);
+      for (std::size_t k = others_.size(); k-- > 0;) {
+        place = target.insert(place, r[static_cast<std::size_t>(others_[k] % d)]);
+      }
     }
     alive_[static_cast<std::size_t>(v)] = 0;
     --count_;
@@ -278,6 +279,7 @@ class Coarsening {
 
   const Space& space_;
   std::vector<std::vector<std::int32_t>> rings_;
+  std::vector<int> others_;  ///< buffer of `remove`
   std::vector<char> alive_;
   std::vector<char> blocked_;
   std::vector<std::int32_t> present_;  ///< alive at the beginning of a step, ascending
