@@ -87,6 +87,67 @@ TEST(Smooth, BracketsAgreeWithTheSweep) {
   EXPECT_GT(separated, 20);
 }
 
+/// Pairs moved about contact by their own answer: slivers of nearly equal supports, from both sides.
+TEST(Smooth, NearContactIsAnsweredInBoundedWork) {
+  Scratch scratch;
+  int asked = 0;
+  std::int64_t most = 0;
+  for (int kind_a = 0; kind_a < 7; ++kind_a) {
+    for (int kind_b = 0; kind_b <= kind_a; ++kind_b) {
+      for (int k = 0; k < 15; ++k) {
+        const std::uint64_t seed = 1000 * kind_a + 100 * kind_b + k + 7;
+        scenes::Random random(seed);
+        const ConvexShape a = random_shape(kind_a, random);
+        const ConvexShape b = random_shape(kind_b, random);
+        if (a.polytope() != nullptr && b.polytope() != nullptr) continue;
+        const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.direction());
+        const bool parallel = k % 3 == 2;
+        const Pose pose_b =
+            parallel ? *Pose::from_quaternion(pose_a.quaternion_wxyz(),
+                                              pose_a.translation() + Vec3(kind_a == kind_b ? 0.1 : 0.0, 0, 0.3))
+                     : *Pose::from_quaternion(random.quaternion(), pose_a.translation() + 0.6 * random.direction());
+        const PenetrationDepth first = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
+        if (first.contact != ContactClass::overlapping) continue;
+        for (int step = 0; step < 24; ++step) {
+          const double offset = step < 2 ? 0.0 : (step % 2 == 0 ? 1 : -1) * std::pow(10.0, -(2 + step / 2));
+          const double base = step == 0 ? first.lower : first.depth;
+          const Vec3 move = (base + offset) * first.normal;
+          const Pose moved = *Pose::from_quaternion(pose_a.quaternion_wxyz(), pose_a.translation() + move);
+          const PenetrationDepth d = penetration_depth({&a, moved}, {&b, pose_b}, scratch);
+          SCOPED_TRACE("kinds " + std::to_string(kind_a) + ", " + std::to_string(kind_b) + ", try " +
+                       std::to_string(k) + ", step " + std::to_string(step));
+          ++asked;
+          most = std::max(most, d.statistics.support_calls);
+          EXPECT_LT(d.statistics.support_calls, 2000);
+          // The depth is 1-Lipschitz, and h(normal) falls by what A moved along it. L < 8 throughout.
+          const double gone = move.dot(first.normal);
+          const double rounding = 4e-13;
+          const double signed_least = first.lower - move.norm() - rounding;
+          const double signed_most = first.upper - gone + rounding;
+          switch (d.contact) {
+            case ContactClass::overlapping:
+              EXPECT_LE(d.upper, d.lower * (1 + 1e-6) + 8e-12);
+              EXPECT_LE(d.lower, signed_most);
+              EXPECT_GE(d.upper, signed_least);
+              break;
+            case ContactClass::separated:
+              EXPECT_LE(d.distance_upper, d.distance_lower * (1 + 1e-6) + 8e-12);
+              EXPECT_GE(d.distance_upper, -signed_most);
+              EXPECT_LE(d.distance_lower, -signed_least);
+              break;
+            case ContactClass::touching:
+              EXPECT_GE(signed_most, -8e-12);
+              EXPECT_LE(signed_least, 8e-12);
+              break;
+          }
+        }
+      }
+    }
+  }
+  std::printf("%d asked, %lld supports at most\n", asked, static_cast<long long>(most));
+  EXPECT_GT(asked, 5000);
+}
+
 TEST(Approximate, PolytopesStoppedEarlyKeepTheirBracket) {
   Scratch scratch;
   for (const scenes::PairFamily family :

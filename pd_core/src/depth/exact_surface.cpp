@@ -1,6 +1,7 @@
 #include "depth/exact_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "numeric/double_double.hpp"
 #include "pd/numeric/predicates.hpp"
@@ -78,7 +79,6 @@ bool ExactSurface::insert(int from) {
   visible_.assign(1, from);
   face_at(from).alive = false;
   const auto first_new = static_cast<std::int32_t>(faces_.size());
-  outside_.clear();
   for (std::size_t i = 0; i < visible_.size(); ++i) {
     for (int e = 0; e < 3; ++e) {
       const std::int32_t g = face_at(visible_[i]).adj[e];
@@ -95,7 +95,6 @@ bool ExactSurface::insert(int from) {
       const std::int32_t b = face_at(f).v[(e + 1) % 3];
       const auto index = static_cast<std::int32_t>(faces_.size());
       add_face(a, b, v);
-      outside_.push_back(g);
       faces_.back().adj[0] = g;
       for (int i = 0; i < 3; ++i) {
         if (face_at(g).v[i] == b) face_at(g).adj[i] = index;

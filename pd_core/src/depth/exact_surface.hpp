@@ -1,12 +1,12 @@
 /// @file
 /// The convex hull of points of P in doubles, kept by exact signs: where expansion's surface in doubles folds.
 ///
-/// Near contact ruled bodies (cylinders, cones, against edges) leave faces as long as the bodies and 1e-8 wide. Rounding
-/// turns their planes, so that faces which see a new point by their planes are not those which see it (surface.hpp), and
-/// the surface folds: the lower bound, still true, falls. Exact orientation (predicates.hpp) of the stored points keeps
-/// every step a convex hull: faces that strictly see a point outside form one disc, and no new face is degenerate,
-/// since a point in line with the disc's border lies in the plane of a face that sees it. Distances of planes are taken
-/// in double-double. A step costs some microseconds, so only folded queries come here.
+/// Near contact ruled bodies (cylinders, cones, against edges) leave faces as long as the bodies and 1e-8 wide.
+/// Rounding turns their planes, so that faces which see a new point by their planes are not those which see it
+/// (surface.hpp), and the surface folds: the lower bound, still true, falls. Exact orientation (predicates.hpp) of the
+/// stored points keeps every step a convex hull: faces that strictly see a point outside form one disc, and no new face
+/// is degenerate, since a point in line with the disc's border lies in the plane of a face that sees it. Distances of
+/// planes are taken in double-double. A step costs some microseconds, so only folded queries come here.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,6 @@ class ExactSurface {
   std::vector<Face> faces_;  ///< never reused: an entry of the heap is stale exactly when its face is dead
   std::vector<Entry> heap_;
   std::vector<std::int32_t> visible_;
-  std::vector<std::int32_t> outside_;  ///< of each new face: the face beyond its edge v[0] -> v[1]
 };
 
 }  // namespace pd::detail

@@ -40,6 +40,8 @@ struct ExpansionGoal {
   double absolute = 0;  ///< or when upper - lower <= absolute times the largest |coordinate| seen
   double touching = 0;  ///< see ExpansionStatus::touching
   int budget = std::numeric_limits<int>::max();
+  /// `undecided` when a positive lower bound falls by more than this: a surface of supports does so where it folds.
+  double fold = std::numeric_limits<double>::infinity();
 };
 
 /// The four directions of a regular tetrahedron whose first vertex is d (unit).
@@ -148,6 +150,7 @@ class Expansion {
     double largest = 0;
     for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     const double error = lower_error();
+    double highest = 0;
     for (int step = 0; step < goal.budget; ++step) {
       const int f = surface_.nearest();
       ++facets_visited_;
@@ -155,6 +158,8 @@ class Expansion {
       const double distance = key >= 0 ? std::sqrt(key) : -std::sqrt(-key);
       result.lower = distance - error;
       result.face = f;
+      if (result.lower < highest - goal.fold && highest > 0) return undecided(result);
+      highest = std::max(highest, result.lower);
       const Vec3 normal = surface_.normal(f);
       const double squared = normal.squaredNorm();
       if (!(squared > 0)) return undecided(result);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "depth/decomposition_engine.hpp"
+#include "depth/exact_surface.hpp"
 #include "depth/overlay_engine.hpp"
 #include "depth/plane_faces.hpp"
 #include "depth/smooth_difference.hpp"
@@ -14,6 +15,7 @@ namespace pd::detail {
 
 struct ScratchBuffers {
   Surface surface;
+  ExactSurface exact_surface;
   PosedVerticesPair posed;
   std::vector<std::int32_t> stack;
   std::vector<PointPair> points;

@@ -1,11 +1,11 @@
 #include "depth/smooth_depth.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "depth/expansion.hpp"
+#include "depth/folded_expansion.hpp"
 #include "depth/smooth_nearest.hpp"
 
 namespace pd::detail {
@@ -14,16 +14,6 @@ namespace {
 
 constexpr double kDefaultDelta = 1e-6;
 constexpr double kAbsolute = 1e-12;  ///< of L: where a bracket, and `touching`, stop
-
-/// Where a folded search starts again: fixed, spread over the sphere.
-constexpr std::array<std::array<double, 3>, 8> kRestarts{{{0.36, 0.48, 0.8},
-                                                          {-0.8, 0.36, 0.48},
-                                                          {0.48, -0.8, 0.36},
-                                                          {-0.36, -0.48, -0.8},
-                                                          {0.8, 0.6, 0.0},
-                                                          {0.0, -0.8, 0.6},
-                                                          {-0.6, 0.0, -0.8},
-                                                          {0.28, 0.96, 0.0}}};
 
 class SmoothQuery {
  public:
@@ -68,13 +58,22 @@ class SmoothQuery {
     goal.absolute = kAbsolute;
     goal.touching = kAbsolute;
     Expansion<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
+    goal.fold = 4 * difference_.point_error();
     ExpansionResult best = expansion.run(Vec3::Zero(), goal);
-    for (const std::array<double, 3>& restart : kRestarts) {
-      if (best.status != ExpansionStatus::undecided) break;
-      best = expansion.run(Vec3(restart[0], restart[1], restart[2]), goal);
-    }
     out_.statistics.support_calls += expansion.support_calls();
     out_.statistics.facets_visited += expansion.facets_visited();
+    if (best.face >= 0) {
+      const SurfaceTriangle& face = buffers_.surface.face(best.face);
+      for (int i = 0; i < 3; ++i) corners_[i] = buffers_.surface.vertices[face.v[i]];
+    }
+    if (best.status != ExpansionStatus::undecided) return best;
+    best = folded_expansion(difference_, buffers_.exact_surface, best.normal, goal, out_.statistics.support_calls);
+    if (best.face >= 0) {
+      const ExactSurface::Face& face = buffers_.exact_surface.face(best.face);
+      for (int i = 0; i < 3; ++i) {
+        corners_[i] = buffers_.exact_surface.vertices[static_cast<std::size_t>(face.v[i])];
+      }
+    }
     return best;
   }
 
@@ -88,16 +87,11 @@ class SmoothQuery {
   void fill_overlapping(const ExpansionResult& core) {
     out_.contact = ContactClass::overlapping;
     set_depth(core.lower + margin_, core.upper + margin_, core.normal);
-    const SurfaceTriangle& face = buffers_.surface.face(core.face);
     double weights[3];
-    DifferenceVertex corners[3];
     for (int i = 0; i < 3; ++i) {
-      corners[i] = buffers_.surface.vertices[face.v[i]];
-      const Vec3& next = buffers_.surface.vertices[face.v[(i + 1) % 3]].x;
-      const Vec3& after = buffers_.surface.vertices[face.v[(i + 2) % 3]].x;
-      weights[i] = core.normal.dot(next.cross(after));
+      weights[i] = core.normal.dot(corners_[(i + 1) % 3].x.cross(corners_[(i + 2) % 3].x));
     }
-    set_witnesses(corners, weights, 3);
+    set_witnesses(corners_, weights, 3);
     out_.witness_b = out_.witness_a + out_.translation;
   }
 
@@ -201,6 +195,7 @@ class SmoothQuery {
   SmoothDifference difference_;
   double delta_;
   double margin_;
+  DifferenceVertex corners_[3];  ///< of the nearest face
 };
 
 }  // namespace
