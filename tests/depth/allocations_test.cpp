@@ -78,6 +78,28 @@ TEST(Allocations, NoneAfterTheFirstCall) {
   std::printf("%d pairs, %d of them reached exact arithmetic\n", pairs, exact);
 }
 
+/// Directions that are not across a needle see but its two ends: the first simplex has to be looked for.
+TEST(Allocations, NoneForNeedles) {
+  Scratch scratch;
+  int overlapping = 0;
+  for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      const scenes::PointPair points = scenes::make_pair(PairFamily::needle, 32, depth, seed);
+      const ConvexShape a(*ConvexPolytope::from_points(points.a));
+      const ConvexShape b(*ConvexPolytope::from_points(points.b));
+      for (const Bracket bracket : {Bracket::certified, Bracket::tightest}) {
+        const DepthSettings settings{.bracket = bracket};
+        (void)penetration_depth({&a, points.pose_a}, {&b, points.pose_b}, scratch, settings);
+        const std::int64_t before = allocations.load();
+        const PenetrationDepth d = penetration_depth({&a, points.pose_a}, {&b, points.pose_b}, scratch, settings);
+        overlapping += d.contact == ContactClass::overlapping;
+        EXPECT_EQ(allocations.load() - before, 0) << scenes::to_string(depth) << ", seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 40);
+}
+
 TEST(Allocations, NoneWhenWarm) {
   Scratch scratch;
   WarmCertificate certificate;

@@ -113,15 +113,30 @@ class Expansion {
     }
     const double flat = 64 * 0x1p-53 * cube(difference_.reach());
     if (surface_.start_tetrahedron(flat)) return true;
-    // Repeated or nearly coplanar vertices: look along the normals that they leave open.
-    for (int attempt = 0; attempt < 6; ++attempt) {
-      DifferenceVertex s;
-      Vec3 open = Vec3::Zero();
-      open[attempt % 3] = attempt < 3 ? 1 : -1;
-      if (!probe(open, nullptr, s, result)) return false;
-      add_vertex(s);
-    }
+    // Repeated or nearly coplanar vertices: look along the axes, then along the normals that they leave open. Nearly
+    // all directions see but the two ends of a needle; those across it see its sides.
+    const auto look = [&](const Vec3& d) {
+      for (const Vec3& open : {d, Vec3(-d)}) {
+        DifferenceVertex s;
+        if (!probe(open, nullptr, s, result)) return false;
+        add_vertex(s);
+      }
+      return true;
+    };
+    if (!look(Vec3::UnitX()) || !look(Vec3::UnitY()) || !look(Vec3::UnitZ())) return false;
     if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+    const std::vector<DifferenceVertex>& v = surface_.vertices;
+    const Vec3 along = v[1].x - v[0].x;
+    if (along.squaredNorm() > 0) {
+      const Vec3 across = along.unitOrthogonal();
+      if (!look(across) || !look(along.cross(across).normalized())) return false;
+      if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+      const Vec3 normal = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
+      if (normal.squaredNorm() > 0) {
+        if (!look(normal.normalized())) return false;
+        if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+      }
+    }
     result.status = ExpansionStatus::undecided;
     return false;
   }
