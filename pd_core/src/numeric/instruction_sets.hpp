@@ -4,10 +4,11 @@
 /// Only for functions of plain loops: an inline function of a library, compiled for a wider instruction set, could be
 /// the copy that the linker keeps for everybody. Contraction is off everywhere and every lane computes on its own, so
 /// that the bits do not depend on the machine. GCC only: Clang 14 emits the widest clone alone, which older processors
-/// cannot run.
+/// cannot run. Not under the thread sanitizer: its calls in the loader's resolvers come before it has started.
 #pragma once
 
-#if defined(__x86_64__) && defined(__linux__) && !defined(__clang__) && !defined(PD_ISA_BASELINE)
+#if defined(__x86_64__) && defined(__linux__) && !defined(__clang__) && !defined(PD_ISA_BASELINE) && \
+    !defined(__SANITIZE_THREAD__)
 #define PD_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define PD_CLONES
