@@ -120,8 +120,8 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
     detail::grid_depth(a, b, settings, buffers, out);
   } else if (settings.method == Method::shallow) {
     const double delta = settings.delta > 0 ? settings.delta : detail::kDefaultShallowDelta;
-    const Expected<DirectionGrid> grid = direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere,
-                                                        std::numeric_limits<std::int64_t>::max());
+    const Expected<DirectionGrid> grid =
+        direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere, std::numeric_limits<std::int64_t>::max());
     ShallowCounts counts;
     detail::shallow_depth({polytope_a, polytope_b, &a.pose, &b.pose, margins}, delta, *grid, settings, buffers, out,
                           counts);
