@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <limits>
 
+#include "numeric/instruction_sets.hpp"
+
 namespace pd::detail {
 
 namespace {
 
 constexpr std::size_t kBlock = 512;  ///< points; three arrays of doubles, 12 KiB
-constexpr std::size_t kLanes = 8;
+constexpr std::size_t kLanes = 16;
 
 struct Block {
   alignas(64) double x[kBlock];
@@ -16,16 +18,16 @@ struct Block {
   alignas(64) double z[kBlock];
 };
 
-/// A register of every x86-64 and 64-bit Arm: wider types are taken apart badly where they are not registers.
-typedef double Lanes __attribute__((vector_size(16)));
-constexpr std::size_t kRows = kLanes / 2;
+typedef double Lanes __attribute__((vector_size(32)));
+constexpr std::size_t kWidth = 4;
+constexpr std::size_t kRows = kLanes / kWidth;
 
 struct Range {
   double least;
   double most;
 };
 
-inline void heights(Lanes& to, const Block& block, std::size_t i, double dx, double dy, double dz) {
+PD_INLINE void heights(Lanes& to, const Block& block, std::size_t i, double dx, double dy, double dz) {
   Lanes x, y, z;
   __builtin_memcpy(&x, block.x + i, sizeof(Lanes));
   __builtin_memcpy(&y, block.y + i, sizeof(Lanes));
@@ -34,23 +36,23 @@ inline void heights(Lanes& to, const Block& block, std::size_t i, double dx, dou
 }
 
 /// Of a block whose size is a multiple of kLanes; four rows of lanes, so that comparisons do not wait for each other.
-Range range_of(const Block& block, std::size_t size, double dx, double dy, double dz) {
+PD_CLONES Range range_of(const Block& block, std::size_t size, double dx, double dy, double dz) {
   Lanes low[kRows], high[kRows];
   for (std::size_t r = 0; r < kRows; ++r) {
-    heights(low[r], block, 2 * r, dx, dy, dz);
+    heights(low[r], block, kWidth * r, dx, dy, dz);
     high[r] = low[r];
   }
   for (std::size_t i = kLanes; i < size; i += kLanes) {
     for (std::size_t r = 0; r < kRows; ++r) {
       Lanes next;
-      heights(next, block, i + 2 * r, dx, dy, dz);
+      heights(next, block, i + kWidth * r, dx, dy, dz);
       low[r] = next < low[r] ? next : low[r];
       high[r] = next > high[r] ? next : high[r];
     }
   }
   Range range{low[0][0], high[0][0]};
   for (std::size_t r = 0; r < kRows; ++r) {
-    for (int l = 0; l < 2; ++l) {
+    for (std::size_t l = 0; l < kWidth; ++l) {
       range.least = low[r][l] < range.least ? low[r][l] : range.least;
       range.most = high[r][l] > range.most ? high[r][l] : range.most;
     }
