@@ -107,8 +107,7 @@ std::string feature_kind(const PenetrationDepth& result) {
   return std::string(a) + "-" + std::string(b);
 }
 
-void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, const NamedShape& b,
-                        std::int64_t nanoseconds, JsonWriter& answer, std::string_view method) {
+void write_depth_fields(const PenetrationDepth& result, JsonWriter& answer) {
   answer.key("class").string(to_string(result.contact));
   answer.key("depth").number(result.depth);
   answer.key("lower").number(result.lower);
@@ -122,6 +121,11 @@ void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, con
   answer.key("normal").vector(result.normal);
   answer.key("witness_a").vector(result.witness_a);
   answer.key("witness_b").vector(result.witness_b);
+}
+
+void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, const NamedShape& b,
+                        std::int64_t nanoseconds, JsonWriter& answer, std::string_view method) {
+  write_depth_fields(result, answer);
   const std::string kind = feature_kind(result);
   answer.key("feature");
   if (kind.empty() || a.shape.polytope() == nullptr || b.shape.polytope() == nullptr) {

@@ -1,22 +1,19 @@
 /// @file
 /// contact_manifold: at most four pairs of contact points.
 #include "pair_reader.hpp"
-#include "pd/contact/manifold.hpp"
 
 namespace pd::query {
 
-void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold"});
+double read_breaking_threshold(const Node& line) {
   double threshold = 0;
   if (const auto node = line.find("breaking_threshold")) {
     threshold = read_number(*node);
     if (threshold < 0) node->refuse("bad_value", "a breaking threshold must be 0 or greater");
   }
-  const Pair pair = read_pair(line, session.limits);
-  const PenetrationDepth depth = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch,
-                                                   {.method = Method::automatic, .bracket = Bracket::tightest});
-  const ContactManifold manifold =
-      contact_manifold(pair.posed_a(), pair.posed_b(), depth, threshold, session.manifold_scratch);
+  return threshold;
+}
+
+void write_manifold(const ContactManifold& manifold, JsonWriter& answer) {
   answer.key("normal").vector(manifold.normal);
   answer.key("points").begin_array();
   for (int i = 0; i < manifold.count; ++i) {
@@ -29,6 +26,17 @@ void answer_contact_manifold(const Node& line, Session& session, JsonWriter& ans
     answer.end_object();
   }
   answer.end_array();
+}
+
+void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold"});
+  const double threshold = read_breaking_threshold(line);
+  const Pair pair = read_pair(line, session.limits);
+  const PenetrationDepth depth = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch,
+                                                   {.method = Method::automatic, .bracket = Bracket::tightest});
+  const ContactManifold manifold =
+      contact_manifold(pair.posed_a(), pair.posed_b(), depth, threshold, session.manifold_scratch);
+  write_manifold(manifold, answer);
 }
 
 }  // namespace pd::query

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "handlers.hpp"
+#include "pd/contact/manifold.hpp"
 #include "pd/depth/penetration_depth.hpp"
 
 namespace pd::query {
@@ -48,6 +49,15 @@ void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, con
 
 /// The field "stats".
 void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, JsonWriter& answer);
+
+/// The fields that every depth answer begins with: class, bracket, distance, translation, normal, witnesses.
+void write_depth_fields(const PenetrationDepth& result, JsonWriter& answer);
+
+/// The field "breaking_threshold", 0 where it is not given.
+/// @throws Refusal bad_value when negative.
+[[nodiscard]] double read_breaking_threshold(const Node& line);
+/// The fields "normal" and "points".
+void write_manifold(const ContactManifold& manifold, JsonWriter& answer);
 
 /// "facet-vertex", "edge-edge", ...; empty where a side has no feature.
 [[nodiscard]] std::string feature_kind(const PenetrationDepth& result);

@@ -7,7 +7,6 @@
 
 #include "body_reader.hpp"
 #include "pair_reader.hpp"
-#include "pd/contact/manifold.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/union_difference.hpp"
 #include "pd/depth/union_of_parts.hpp"
@@ -60,19 +59,7 @@ void write_work(const Statistics& statistics, const UnionStatistics& work, std::
 }
 
 void write_answer(const UnionDepth& result, const BodyPair& pair, std::int64_t nanoseconds, JsonWriter& answer) {
-  answer.key("class").string(to_string(result.contact));
-  answer.key("depth").number(result.depth);
-  answer.key("lower").number(result.lower);
-  answer.key("upper").number(result.upper);
-  answer.key("distance").number(result.distance);
-  if (result.contact == ContactClass::separated) {
-    answer.key("distance_lower").number(result.distance_lower);
-    answer.key("distance_upper").number(result.distance_upper);
-  }
-  answer.key("translation").vector(result.translation);
-  answer.key("normal").vector(result.normal);
-  answer.key("witness_a").vector(result.witness_a);
-  answer.key("witness_b").vector(result.witness_b);
+  write_depth_fields(result, answer);
   const std::string kind = feature_kind(result);
   answer.key("feature");
   if (kind.empty()) {
@@ -228,11 +215,7 @@ void answer_union_support(const Node& line, Session& session, JsonWriter& answer
 /// The contact points of the two parts that decide the answer.
 void answer_union_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold"});
-  double threshold = 0;
-  if (const auto node = line.find("breaking_threshold")) {
-    threshold = read_number(*node);
-    if (threshold < 0) node->refuse("bad_value", "a breaking threshold must be 0 or greater");
-  }
+  const double threshold = read_breaking_threshold(line);
   const BodyPair pair = read_bodies(line, session.limits);
   const UnionDepth depth = solve(line, pair, session, {});
   const std::vector<PosedShape> parts_a = value_or_refuse(pair.a.compound.posed(pair.pose_a), line);
@@ -240,18 +223,7 @@ void answer_union_contact_manifold(const Node& line, Session& session, JsonWrite
   const ContactManifold manifold =
       contact_manifold(parts_a[static_cast<std::size_t>(depth.part_a)], parts_b[static_cast<std::size_t>(depth.part_b)],
                        depth, threshold, session.manifold_scratch);
-  answer.key("normal").vector(manifold.normal);
-  answer.key("points").begin_array();
-  for (int i = 0; i < manifold.count; ++i) {
-    const ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
-    answer.begin_object();
-    answer.key("position_a").vector(point.position_a);
-    answer.key("position_b").vector(point.position_b);
-    answer.key("depth").number(point.depth);
-    answer.key("feature_id").integer(point.feature_id);
-    answer.end_object();
-  }
-  answer.end_array();
+  write_manifold(manifold, answer);
   answer.key("part_a").integer(depth.part_a);
   answer.key("part_b").integer(depth.part_b);
 }
