@@ -30,7 +30,7 @@ enum class ContactClass : std::uint8_t {
 enum class Method : std::uint8_t {
   automatic,      ///< exact for (rounded) polytopes, (1 + delta) for smooth bodies
   expansion,      ///< signed certified best-first expansion (polytopes, rounded, smooth)
-  overlay,        ///< overlay of the two normal diagrams (polytopes, rounded)
+  overlay,        ///< overlay of the two normal diagrams (polytopes, rounded); of two boxes, their fifteen axes
   decomposition,  ///< [A] section 2
   shallow,        ///< [A] Shallow-Penetration
   grid,           ///< [A] Approx-Separation
