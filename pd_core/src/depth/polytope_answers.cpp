@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+
+#include "depth/nearest.hpp"
+#include "depth/polytope_query.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// The face of one body that a face of the surface uses: one, two or three of its vertices.
+Feature feature(const ConvexPolytope& body, const DifferenceVertex (&corners)[3], std::int32_t DifferenceVertex::*id) {
+  std::int32_t ids[3] = {corners[0].*id, corners[1].*id, corners[2].*id};
+  std::sort(ids, ids + 3);
+  const int distinct = static_cast<int>(std::unique(ids, ids + 3) - ids);
+  if (distinct == 1) return {Feature::Kind::vertex, ids[0], -1};
+  if (distinct == 2) return {Feature::Kind::edge, ids[0], ids[1]};
+  const int first = body.first_half_edge(ids[0]);
+  for (int h = first; h < first + static_cast<int>(body.neighbours(ids[0]).size()); ++h) {
+    const int f = body.half_edge(h).facet;
+    if (f < 0) break;
+    const auto loop = body.facet_vertices(f);
+    if (std::find(loop.begin(), loop.end(), ids[1]) != loop.end() &&
+        std::find(loop.begin(), loop.end(), ids[2]) != loop.end()) {
+      return {Feature::Kind::facet, f, -1};
+    }
+  }
+  return {Feature::Kind::vertex, ids[0], -1};
+}
+
+std::int32_t first_vertex(const ConvexPolytope& body, const Feature& feature) {
+  return feature.kind == Feature::Kind::facet ? body.facet_vertices(feature.first)[0] : feature.first;
+}
+
+}  // namespace
+
+/// @param lower, upper  of the cores' depth.
+void PolytopeQuery::set_depth(double lower, double upper, const Vec3& normal) {
+  const double margin = pair_.margins.a + pair_.margins.b;
+  out_.contact = ContactClass::overlapping;
+  // The sums round once; |translation| exceeds its length by the rounding of three products.
+  out_.lower = (lower + margin) * (1 - 0x1p-52);
+  out_.upper = (upper + margin) * (1 + 0x1p-50);
+  out_.depth = (upper + margin) * (1 + 0x1p-52);
+  out_.normal = normal;
+  out_.translation = out_.depth * normal;
+}
+
+void PolytopeQuery::fill_overlapping(const ExpansionResult& result) {
+  set_depth(result.lower, result.upper, result.normal);
+  const SurfaceTriangle& face = buffers_.surface.face(face_below_origin(result.face, result.normal));
+  DifferenceVertex corners[3];
+  double weights[3];
+  for (int i = 0; i < 3; ++i) corners[i] = buffers_.surface.vertices[face.v[i]];
+  project(face, result.normal, weights);
+  fill_witnesses(corners, weights, 3);
+  out_.witness_b = out_.witness_a + out_.translation;
+  out_.feature_a = feature(*pair_.a, corners, &DifferenceVertex::a);
+  out_.feature_b = feature(*pair_.b, corners, &DifferenceVertex::b);
+  pair_features();
+}
+
+/// Barycentric coordinates of the origin's projection on a face's plane.
+void PolytopeQuery::project(const SurfaceTriangle& face, const Vec3& normal, double (&weights)[3]) const {
+  const std::vector<DifferenceVertex>& v = buffers_.surface.vertices;
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    weights[i] = normal.dot(v[face.v[(i + 1) % 3]].x.cross(v[face.v[(i + 2) % 3]].x));
+    sum += weights[i];
+  }
+  for (double& w : weights) w /= sum;
+}
+
+/// Coplanar faces share a facet of P: steps from f across the edge that the projection lies beyond, while the
+/// neighbour is as near, until the projection lies inside.
+int PolytopeQuery::face_below_origin(int f, const Vec3& normal) const {
+  const Surface& surface = buffers_.surface;
+  const double level = std::sqrt(std::max(0.0, surface.key(f))) + 64 * 0x1p-53 * difference_.reach();
+  for (int step = 0; step < surface.size(); ++step) {
+    double weights[3];
+    project(surface.face(f), normal, weights);
+    const int least = static_cast<int>(std::min_element(weights, weights + 3) - weights);
+    if (weights[least] >= 0) return f;
+    // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.
+    const int next = surface.face(f).adj[(least + 1) % 3] >> 2;
+    if (std::sqrt(std::max(0.0, surface.key(next))) > level) return f;
+    f = next;
+  }
+  return f;
+}
+
+void PolytopeQuery::fill_witnesses(const DifferenceVertex* corners, const double* weights, int count) {
+  Vec3 a = Vec3::Zero();
+  Vec3 b = Vec3::Zero();
+  double total = 0;
+  for (int i = 0; i < count; ++i) {
+    const double w = std::max(0.0, weights[i]);
+    a += w * pair_.a->vertex(corners[i].a);
+    b += w * pair_.b->vertex(corners[i].b);
+    total += w;
+  }
+  out_.witness_a = pair_.pose_a->apply(a / total) - pair_.margins.a * out_.normal;
+  out_.witness_b = pair_.pose_b->apply(b / total) + pair_.margins.b * out_.normal;
+}
+
+/// A facet's partner is a vertex, also where the two bodies' facets are parallel.
+void PolytopeQuery::pair_features() {
+  if (out_.feature_b.kind == Feature::Kind::facet && out_.feature_a.kind != Feature::Kind::vertex) {
+    out_.feature_a = {Feature::Kind::vertex, first_vertex(*pair_.a, out_.feature_a), -1};
+  } else if (out_.feature_a.kind == Feature::Kind::facet && out_.feature_b.kind != Feature::Kind::vertex) {
+    out_.feature_b = {Feature::Kind::vertex, first_vertex(*pair_.b, out_.feature_b), -1};
+  }
+}
+
+/// False when doubles do not narrow the bracket enough or cannot tell the class.
+bool PolytopeQuery::fill_separated(const ExpansionResult& result) {
+  const double margin = pair_.margins.a + pair_.margins.b;
+  // What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
+  const double relative = margin > 0 ? 0.0 : settings_.delta;
+  const DifferenceVertex first = difference_.support(result.normal, nullptr);
+  const NearestResult nearest =
+      nearest_point(difference_, first, relative, kCertifiedWidth, buffers_.stack, out_.statistics.support_calls);
+  for (int i = 0; i < nearest.count; ++i) start_[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
+  start_count_ = nearest.count;
+  if (!nearest.certified) return false;
+  out_.normal = -nearest.point.normalized();
+  const double round = 4 * 0x1p-53 * (nearest.upper + margin);
+  if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;
+  fill_witnesses(nearest.simplex, nearest.weights, nearest.count);
+  DifferenceVertex corners[3];
+  for (int i = 0; i < 3; ++i) corners[i] = nearest.simplex[std::min(i, nearest.count - 1)];
+  out_.feature_a = feature(*pair_.a, corners, &DifferenceVertex::a);
+  out_.feature_b = feature(*pair_.b, corners, &DifferenceVertex::b);
+  pair_features();
+  if (nearest.lower > margin) {
+    out_.contact = ContactClass::separated;
+    out_.distance_lower = nearest.lower - margin - round;
+    out_.distance_upper = nearest.upper - margin + round;
+    out_.distance = std::clamp((out_.witness_a - out_.witness_b).norm(), out_.distance_lower, out_.distance_upper);
+  } else {
+    out_.contact = ContactClass::overlapping;
+    out_.lower = margin - nearest.upper - round;
+    out_.depth = margin - nearest.lower + round;
+    out_.upper = out_.depth * (1 + 0x1p-50);
+    out_.translation = out_.depth * out_.normal;
+    out_.witness_b = out_.witness_a + out_.translation;
+  }
+  return true;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,70 @@
+/// @file
+/// One query about two posed polytopes, and the ways in which it may be answered.
+#pragma once
+
+#include <limits>
+
+#include "depth/exact_nearest.hpp"
+#include "depth/expansion.hpp"
+#include "depth/polytope_depth.hpp"
+
+namespace pd::detail {
+
+/// Width of the bracket that doubles are asked for, in units of L: `Bracket::certified` less the last roundings.
+inline constexpr double kCertifiedWidth = 1.8e-14;
+
+class PolytopeQuery {
+ public:
+  PolytopeQuery(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers, WarmCertificate* warm,
+                PenetrationDepth& out)
+      : pair_(pair),
+        settings_(settings),
+        buffers_(buffers),
+        warm_(warm),
+        out_(out),
+        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b, buffers.posed) {}
+
+  void solve();
+
+ private:
+  // The order of methods, and the memory of the pair: polytope_depth.cpp
+  [[nodiscard]] ExpansionGoal goal() const;
+  bool solve_boxes();
+  ExpansionResult expand();
+  bool restore();
+  void remember(const ExpansionResult& result);
+  /// Sizes outside this range are left to the exact engines, which rescale.
+  [[nodiscard]] bool within_range() const { return difference_.reach() > 0x1p-100 && difference_.reach() < 0x1p100; }
+
+  // Answers from doubles: polytope_answers.cpp
+  void set_depth(double lower, double upper, const Vec3& normal);
+  void fill_overlapping(const ExpansionResult& result);
+  bool fill_separated(const ExpansionResult& result);
+  void project(const SurfaceTriangle& face, const Vec3& normal, double (&weights)[3]) const;
+  [[nodiscard]] int face_below_origin(int f, const Vec3& normal) const;
+  void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count);
+  void pair_features();
+
+  // Exact answers: polytope_exact_answers.cpp
+  void solve_exactly(const ExpansionResult& result);
+  bool solve_by_proof(const ExpansionResult& result);
+  void solve_overlapping_exactly(const ExpansionResult& result);
+  void finish_from(const PosedPair& posed, const PairId* seed, int count, const ExactNearest* nearest);
+  void solve_by_overlay(double upper = std::numeric_limits<double>::infinity());
+  void solve_by_decomposition(const ExpansionResult& result);
+  void finish_nearest(const PosedPair& posed, const OverlayDepth& found);
+  [[nodiscard]] PairId any_vertex(const ExpansionResult& result) const;
+  void count_stages(const PosedPair& posed);
+
+  const PolytopePair& pair_;
+  const DepthSettings& settings_;
+  ScratchBuffers& buffers_;
+  WarmCertificate* warm_;
+  PenetrationDepth& out_;
+  PolytopeDifference difference_;
+  Bracket bracket_ = Bracket::tightest;
+  PairId start_[4];
+  int start_count_ = 0;
+};
+
+}  // namespace pd::detail
