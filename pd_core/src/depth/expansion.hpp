@@ -40,8 +40,9 @@ struct ExpansionGoal {
   double absolute = 0;  ///< or when upper - lower <= absolute times the largest |coordinate| seen
   double touching = 0;  ///< see ExpansionStatus::touching
   int budget = std::numeric_limits<int>::max();
-  /// `undecided` when a positive lower bound falls by more than this: a surface of supports does so where it folds.
+  /// `undecided` when a lower bound above `fold_from` falls by more than `fold`: the surface has folded.
   double fold = std::numeric_limits<double>::infinity();
+  double fold_from = 0;
 };
 
 /// The four directions of a regular tetrahedron whose first vertex is d (unit).
@@ -83,8 +84,16 @@ class Expansion {
     return grow(goal, result);
   }
 
-  /// From the surface as it is (its vertices just recomputed): the warm certificate.
-  ExpansionResult resume(const ExpansionGoal& goal) { return grow(goal, ExpansionResult{}); }
+  /// From the surface as it is (its vertices just recomputed): the warm certificate. Where its points have moved so
+  /// that it is no longer convex, growth may lose ground instead of gaining it; then it goes on from the points' hull.
+  ExpansionResult resume(const ExpansionGoal& goal) {
+    ExpansionGoal convex = goal;
+    convex.fold = 4 * lower_error();
+    convex.fold_from = -std::numeric_limits<double>::infinity();
+    const ExpansionResult result = grow(convex, ExpansionResult{});
+    if (result.status != ExpansionStatus::undecided || !surface_.rebuild(flat_volume())) return result;
+    return grow(goal, result);
+  }
 
  private:
   /// Support with its plane's height as an upper bound of the depth. False when it shows the bodies apart.
@@ -111,7 +120,7 @@ class Expansion {
       if (!probe(d, surface_.vertices.empty() ? nullptr : &surface_.vertices.back(), s, result)) return false;
       add_vertex(s);
     }
-    const double flat = 64 * 0x1p-53 * cube(difference_.reach());
+    const double flat = flat_volume();
     if (surface_.start_tetrahedron(flat)) return true;
     // Repeated or nearly coplanar vertices: look along the axes, then along the normals that they leave open. Nearly
     // all directions see but the two ends of a needle; those across it see its sides.
@@ -124,48 +133,28 @@ class Expansion {
       return true;
     };
     if (!look(Vec3::UnitX()) || !look(Vec3::UnitY()) || !look(Vec3::UnitZ())) return false;
-    if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+    if (surface_.start_from_spread_vertices(flat)) return true;
     const std::vector<DifferenceVertex>& v = surface_.vertices;
     const Vec3 along = v[1].x - v[0].x;
     if (along.squaredNorm() > 0) {
       const Vec3 across = along.unitOrthogonal();
       if (!look(across) || !look(along.cross(across).normalized())) return false;
-      if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+      if (surface_.start_from_spread_vertices(flat)) return true;
       const Vec3 normal = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
       if (normal.squaredNorm() > 0) {
         if (!look(normal.normalized())) return false;
-        if (choose_simplex(flat) && surface_.start_tetrahedron(flat)) return true;
+        if (surface_.start_from_spread_vertices(flat)) return true;
       }
     }
     result.status = ExpansionStatus::undecided;
     return false;
   }
 
-  /// Puts four of the vertices with a large volume in front: the two farthest apart, then greedily.
-  bool choose_simplex(double flat) {
-    std::vector<DifferenceVertex>& v = surface_.vertices;
-    const int n = static_cast<int>(v.size());
-    const auto bring = [&](int to, auto&& measure) {
-      int best = to;
-      for (int i = to + 1; i < n; ++i) {
-        if (measure(i) > measure(best)) best = i;
-      }
-      std::swap(v[to], v[best]);
-    };
-    bring(1, [&](int i) { return (v[i].x - v[0].x).squaredNorm(); });
-    bring(2, [&](int i) { return (v[i].x - v[0].x).cross(v[1].x - v[0].x).squaredNorm(); });
-    const Vec3 normal = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
-    bring(3, [&](int i) { return std::abs((v[i].x - v[0].x).dot(normal)); });
-    const bool solid = std::abs((v[3].x - v[0].x).dot(normal)) > flat;
-    v.resize(4);
-    return solid;
-  }
-
   ExpansionResult grow(const ExpansionGoal& goal, ExpansionResult result) {
     double largest = 0;
     for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     const double error = lower_error();
-    double highest = 0;
+    double highest = goal.fold_from;
     for (int step = 0; step < goal.budget; ++step) {
       const int f = surface_.nearest();
       ++facets_visited_;
@@ -173,7 +162,7 @@ class Expansion {
       const double distance = key >= 0 ? std::sqrt(key) : -std::sqrt(-key);
       result.lower = distance - error;
       result.face = f;
-      if (result.lower < highest - goal.fold && highest > 0) return undecided(result);
+      if (result.lower < highest - goal.fold && highest > goal.fold_from) return undecided(result);
       highest = std::max(highest, result.lower);
       const Vec3 normal = surface_.normal(f);
       const double squared = normal.squaredNorm();
@@ -253,7 +242,8 @@ class Expansion {
   double bound_error() const {
     return difference_.point_error() + difference_.support_error() + 8 * 0x1p-53 * difference_.reach();
   }
-  static double cube(double x) { return x * x * x; }
+  /// Error bound of six volumes.
+  double flat_volume() const { return 64 * 0x1p-53 * difference_.reach() * difference_.reach() * difference_.reach(); }
 
   const Difference& difference_;
   Surface& surface_;

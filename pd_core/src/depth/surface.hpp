@@ -78,6 +78,12 @@ class Surface {
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
   /// bound).
   bool start_tetrahedron(double flat);
+  /// The same on four of the vertices that span a large volume: the two farthest apart, then greedily. The others are
+  /// dropped.
+  bool start_from_spread_vertices(double flat);
+  /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
+  /// four that spread far; the others are dropped. False where they are flat.
+  bool rebuild(double flat);
   /// The face with the least key, the first of several.
   [[nodiscard]] int nearest() const { return nearest_; }
   /// Replaces the faces that see vertex `v`, face `from` among them, by a cone over their border. The surface stays
@@ -98,6 +104,10 @@ class Surface {
   /// Room for so many slots.
   void reserve_faces(int count);
   void reserve_horizon(int edges);
+
+  [[nodiscard]] bool find_spread_vertices(double flat, std::int32_t (&ids)[4]) const;
+  void clear_faces();
+  [[nodiscard]] int first_face_below(const Vec3& x);
 
   // insert, step by step
   void list_removed(std::uint64_t bits);
@@ -141,6 +151,13 @@ class Surface {
   std::vector<HeapEntry> heap_;
   std::vector<std::uint32_t> stamps_;  ///< counts the lives of a slot
   bool heap_active_ = false;
+
+  struct NearVertex {
+    double key;  ///< of the nearest face that uses it
+    std::int32_t vertex;
+  };
+  std::vector<NearVertex> nearness_;
+  std::vector<DifferenceVertex> kept_;
 
   std::vector<std::int16_t> face_numbers_;
   std::vector<std::int16_t> vertex_numbers_;
