@@ -45,22 +45,30 @@ struct ExpansionGoal {
   double fold_from = 0;
 };
 
-/// The four directions of a regular tetrahedron whose first vertex is d (unit).
-inline void tetrahedral_directions(const Vec3& d, Vec3 (&out)[4]) {
-  const Vec3 u = d.unitOrthogonal();
-  const Vec3 w = d.cross(u);
-  constexpr double kThird = 1.0 / 3.0;
-  constexpr double kSide = 0.94280904158206336587;    // 2 sqrt(2) / 3
-  constexpr double kHalf = 0.47140452079103168293;    // sqrt(2) / 3
-  constexpr double kHeight = 0.81649658092772603273;  // sqrt(2 / 3)
-  out[0] = d;
-  out[1] = -kThird * d + kSide * u;
-  out[2] = -kThird * d - kHalf * u + kHeight * w;
-  out[3] = -kThird * d - kHalf * u - kHeight * w;
+/// Two directions that span the plane across d (unit) with it, without a root (Duff et al. 2017).
+inline void frame_across(const Vec3& d, Vec3& u, Vec3& w) {
+  const double sign = std::copysign(1.0, d.z());
+  const double a = -1 / (sign + d.z());
+  const double b = d.x() * d.y() * a;
+  u = {1 + sign * d.x() * d.x() * a, sign * b, -sign * d.x()};
+  w = {b, sign + d.y() * d.y() * a, -d.y()};
 }
 
-/// Expansion over any difference that offers `support`, `certified_support`, `centre`, `reach`, `point_error` and
-/// `support_error` (PolytopeDifference, SmoothDifference).
+/// Three directions round d (unit), each at the angle of this sine from it (below a right one), and the one opposite:
+/// 120 degrees apart as seen along d.
+inline void surrounding_directions(const Vec3& d, double sine, Vec3 (&out)[4]) {
+  constexpr double kHeight = 0.86602540378443864676;  // sqrt(3) / 2
+  Vec3 u, w;
+  frame_across(d, u, w);
+  const Vec3 axial = std::sqrt(1 - sine * sine) * d;
+  out[0] = axial + sine * u;
+  out[1] = axial - 0.5 * sine * u + kHeight * sine * w;
+  out[2] = axial - 0.5 * sine * u - kHeight * sine * w;
+  out[3] = -d;
+}
+
+/// Expansion over any difference that offers `support`, `certified_support`, `centre`, `reach`, `spread`,
+/// `point_error` and `support_error` (PolytopeDifference, SmoothDifference).
 template <class Difference>
 class Expansion {
  public:
@@ -112,37 +120,48 @@ class Expansion {
     return true;
   }
 
+  /// Adds the support in a direction. False when it shows the bodies apart.
+  bool look(const Vec3& unit, ExpansionResult& result) {
+    DifferenceVertex s;
+    const DifferenceVertex* const near = surface_.vertices.empty() ? nullptr : &surface_.vertices.back();
+    if (!probe(unit, near, s, result)) return false;
+    add_vertex(s);
+    return true;
+  }
+  bool look_both_ways(const Vec3& unit, ExpansionResult& result) { return look(unit, result) && look(-unit, result); }
+
   bool first_simplex(const Vec3& direction, ExpansionResult& result) {
+    const double sine = difference_.spread();
     Vec3 directions[4];
-    tetrahedral_directions(direction, directions);
+    surrounding_directions(direction, sine, directions);
     for (const Vec3& d : directions) {
-      DifferenceVertex s;
-      if (!probe(d, surface_.vertices.empty() ? nullptr : &surface_.vertices.back(), s, result)) return false;
-      add_vertex(s);
+      if (!look(d, result)) return false;
     }
     const double flat = flat_volume();
     if (surface_.start_tetrahedron(flat)) return true;
-    // Repeated or nearly coplanar vertices: look along the axes, then along the normals that they leave open. Nearly
-    // all directions see but the two ends of a needle; those across it see its sides.
-    const auto look = [&](const Vec3& d) {
-      for (const Vec3& open : {d, Vec3(-d)}) {
-        DifferenceVertex s;
-        if (!probe(open, nullptr, s, result)) return false;
-        add_vertex(s);
+    // Repeated or nearly coplanar vertices: look farther round, in between the first three.
+    for (const double wider : {std::min(3 * sine, 0.8), 1.0}) {
+      surrounding_directions(direction, -wider, directions);
+      for (int i = 0; i < 3; ++i) {
+        if (!look(directions[i], result)) return false;
       }
-      return true;
-    };
-    if (!look(Vec3::UnitX()) || !look(Vec3::UnitY()) || !look(Vec3::UnitZ())) return false;
+      if (surface_.start_from_spread_vertices(flat)) return true;
+    }
+    // Then along the axes and along the normals that the vertices leave open. Nearly all directions see but the two
+    // ends of a needle; those across it see its sides.
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!look_both_ways(Vec3::Unit(axis), result)) return false;
+    }
     if (surface_.start_from_spread_vertices(flat)) return true;
     const std::vector<DifferenceVertex>& v = surface_.vertices;
     const Vec3 along = v[1].x - v[0].x;
     if (along.squaredNorm() > 0) {
       const Vec3 across = along.unitOrthogonal();
-      if (!look(across) || !look(along.cross(across).normalized())) return false;
+      if (!look_both_ways(across, result) || !look_both_ways(along.cross(across).normalized(), result)) return false;
       if (surface_.start_from_spread_vertices(flat)) return true;
       const Vec3 normal = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
       if (normal.squaredNorm() > 0) {
-        if (!look(normal.normalized())) return false;
+        if (!look_both_ways(normal.normalized(), result)) return false;
         if (surface_.start_from_spread_vertices(flat)) return true;
       }
     }

@@ -27,7 +27,7 @@ ExpansionResult folded_expansion(const SmoothDifference& difference, ExactSurfac
     return false;
   };
   Vec3 directions[4];
-  tetrahedral_directions(start, directions);
+  surrounding_directions(start, difference.spread(), directions);
   for (const Vec3& d : directions) {
     if (!probe(d)) return result;
   }

@@ -104,6 +104,11 @@ class PolytopeDifference {
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
   /// At least |x| for every point of P.
   [[nodiscard]] double reach() const { return reach_; }
+  /// Sine of the angle between the expected direction of the depth and those that a search begins with: about that
+  /// between the normals of nearby facets of P, measured best for 8 to 2048 vertices.
+  [[nodiscard]] double spread() const {
+    return std::min(0.85, 4 / std::sqrt(static_cast<double>(a_.num_vertices() + b_.num_vertices())));
+  }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
   [[nodiscard]] double point_error() const { return 10.5 * kHalfUlp * reach_; }
