@@ -154,12 +154,15 @@ class Expansion {
     }
     if (surface_.start_from_spread_vertices(flat)) return true;
     const std::vector<DifferenceVertex>& v = surface_.vertices;
-    const Vec3 along = v[1].x - v[0].x;
+    std::int32_t ids[4];
+    surface_.find_spread_vertices(flat, ids);
+    const Vec3 along = v[ids[1]].x - v[ids[0]].x;
     if (along.squaredNorm() > 0) {
       const Vec3 across = along.unitOrthogonal();
       if (!look_both_ways(across, result) || !look_both_ways(along.cross(across).normalized(), result)) return false;
       if (surface_.start_from_spread_vertices(flat)) return true;
-      const Vec3 normal = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
+      surface_.find_spread_vertices(flat, ids);
+      const Vec3 normal = (v[ids[1]].x - v[ids[0]].x).cross(v[ids[2]].x - v[ids[0]].x);
       if (normal.squaredNorm() > 0) {
         if (!look_both_ways(normal.normalized(), result)) return false;
         if (surface_.start_from_spread_vertices(flat)) return true;

@@ -108,10 +108,9 @@ bool Surface::start_tetrahedron(double flat) {
   return true;
 }
 
-/// Four of the vertices that span a large volume: vertex 0 and the one farthest from it, then greedily. False when they
-/// are flat.
 bool Surface::find_spread_vertices(double flat, std::int32_t (&ids)[4]) const {
   const std::vector<DifferenceVertex>& v = vertices;
+  std::fill_n(ids, 4, 0);
   if (v.size() < 4) return false;
   const auto find = [&](auto&& measure) {
     std::int32_t best = 0;

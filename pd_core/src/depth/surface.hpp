@@ -78,8 +78,10 @@ class Surface {
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
   /// bound).
   bool start_tetrahedron(double flat);
-  /// The same on four of the vertices that span a large volume: the two farthest apart, then greedily. The others are
-  /// dropped.
+  /// Four of the vertices that span a large volume: vertex 0 and the one farthest from it, then greedily. False when
+  /// they are flat.
+  bool find_spread_vertices(double flat, std::int32_t (&ids)[4]) const;
+  /// Four faces on those; the other vertices are dropped.
   bool start_from_spread_vertices(double flat);
   /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
   /// four that spread far; the others are dropped. False where they are flat.
@@ -105,7 +107,6 @@ class Surface {
   void reserve_faces(int count);
   void reserve_horizon(int edges);
 
-  [[nodiscard]] bool find_spread_vertices(double flat, std::int32_t (&ids)[4]) const;
   void clear_faces();
   [[nodiscard]] int first_face_below(const Vec3& x);
 
