@@ -112,6 +112,44 @@ void PolytopeQuery::pair_features() {
   }
 }
 
+/// Between the bounds that the expansion leaves. False when doubles do not narrow the bracket enough.
+bool PolytopeQuery::solve_among_ties(const ExpansionResult& result) {
+  const TiedFacets found =
+      nearest_tied_facet(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b, difference_, buffers_.surface,
+                         {result.lower, result.upper, kCertifiedWidth}, buffers_.stack, buffers_.tied_facets);
+  out_.statistics.support_calls += found.support_calls;
+  out_.statistics.facets_visited += found.facets;
+  out_.statistics.pair_evaluations += found.pairs;
+  if (!found.certified) return false;
+  out_.method = Method::decomposition;
+  set_depth(found.lower, found.upper, found.normal);
+  if (found.kind == TiedFacetsBuffers::Kind::edges) {
+    const auto [a, b] = std::pair(found.edge_a, found.edge_b);
+    const double s = found.along_a, t = found.along_b;
+    const DifferenceVertex corners[4] = {difference_.vertex(a[0], b[0]), difference_.vertex(a[1], b[0]),
+                                         difference_.vertex(a[0], b[1]), difference_.vertex(a[1], b[1])};
+    const double weights[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+    fill_witnesses(corners, weights, 4);
+    out_.witness_b = out_.witness_a + out_.translation;
+    out_.feature_a = {Feature::Kind::edge, std::min(a[0], a[1]), std::max(a[0], a[1])};
+    out_.feature_b = {Feature::Kind::edge, std::min(b[0], b[1]), std::max(b[0], b[1])};
+    return true;
+  }
+  const bool of_a = found.kind == TiedFacetsBuffers::Kind::facet_of_a;
+  const Feature facet{Feature::Kind::facet, found.facet, -1};
+  const Feature vertex{Feature::Kind::vertex, found.vertex, -1};
+  out_.feature_a = of_a ? facet : vertex;
+  out_.feature_b = of_a ? vertex : facet;
+  if (of_a) {
+    out_.witness_b = pair_.pose_b->apply(pair_.b->vertex(found.vertex)) + pair_.margins.b * out_.normal;
+    out_.witness_a = out_.witness_b - out_.translation;
+  } else {
+    out_.witness_a = pair_.pose_a->apply(pair_.a->vertex(found.vertex)) - pair_.margins.a * out_.normal;
+    out_.witness_b = out_.witness_a + out_.translation;
+  }
+  return true;
+}
+
 /// False when doubles do not narrow the bracket enough or cannot tell the class.
 bool PolytopeQuery::fill_separated(const ExpansionResult& result) {
   const double margin = pair_.margins.a + pair_.margins.b;

@@ -43,7 +43,8 @@ void PolytopeQuery::solve() {
       return;
     case ExpansionStatus::over_budget:
       if (result.lower > 0) {
-        solve_by_decomposition(result);
+        tighten_upper(result);
+        if (exactly || !solve_among_ties(result)) solve_by_decomposition(result);
         return;
       }
       [[fallthrough]];

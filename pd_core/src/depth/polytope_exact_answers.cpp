@@ -109,8 +109,14 @@ void PolytopeQuery::solve_by_overlay(double upper) {
   finish_nearest(posed, overlay);
 }
 
+/// By supports along the normals of the surface's nearest faces.
+void PolytopeQuery::tighten_upper(ExpansionResult& result) {
+  result.upper = std::min(result.upper,
+                          least_height(difference_, buffers_.surface, buffers_.stack, out_.statistics.support_calls));
+}
+
 /// [A] section 2, under the bound that the expansion leaves and with the vertices of P that it found.
-void PolytopeQuery::solve_by_decomposition(const ExpansionResult& result) {
+void PolytopeQuery::solve_by_decomposition(ExpansionResult result) {
   const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
   out_.method = Method::decomposition;
   if (!(result.lower > 0)) {
@@ -129,8 +135,8 @@ void PolytopeQuery::solve_by_decomposition(const ExpansionResult& result) {
   }
   DecompositionSettings settings;
   if (result.lower > 0) {
-    const double height = least_height(difference_, buffers_.surface, buffers_.stack, out_.statistics.support_calls);
-    settings.upper = std::ldexp(std::min(result.upper, height), -posed.scale_exponent());
+    if (settings_.method == Method::decomposition) tighten_upper(result);
+    settings.upper = std::ldexp(result.upper, -posed.scale_exponent());
   }
   settings.vertices = buffers.vertices;
   settings.seed = settings_.seed;

@@ -40,6 +40,7 @@ class PolytopeQuery {
   void set_depth(double lower, double upper, const Vec3& normal);
   void fill_overlapping(const ExpansionResult& result);
   bool fill_separated(const ExpansionResult& result);
+  bool solve_among_ties(const ExpansionResult& result);
   void project(const SurfaceTriangle& face, const Vec3& normal, double (&weights)[3]) const;
   [[nodiscard]] int face_below_origin(int f, const Vec3& normal) const;
   void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count);
@@ -51,8 +52,9 @@ class PolytopeQuery {
   void solve_overlapping_exactly(const ExpansionResult& result);
   void finish_from(const PosedPair& posed, const PairId* seed, int count, const ExactNearest* nearest);
   void solve_by_overlay(double upper = std::numeric_limits<double>::infinity());
-  void solve_by_decomposition(const ExpansionResult& result);
+  void solve_by_decomposition(ExpansionResult result);
   void finish_nearest(const PosedPair& posed, const OverlayDepth& found);
+  void tighten_upper(ExpansionResult& result);
   [[nodiscard]] PairId any_vertex(const ExpansionResult& result) const;
   void count_stages(const PosedPair& posed);
 

@@ -10,6 +10,7 @@
 #include "depth/plane_faces.hpp"
 #include "depth/smooth_difference.hpp"
 #include "depth/surface.hpp"
+#include "depth/tied_facets.hpp"
 
 namespace pd::detail {
 
@@ -21,6 +22,7 @@ struct ScratchBuffers {
   std::vector<PointPair> points;
   OverlayDepthBuffers overlay;
   DecompositionBuffers decomposition;
+  TiedFacetsBuffers tied_facets;
   PlaneFaces faces;
 };
 

@@ -1,0 +1,390 @@
+#include "depth/tied_facets.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "shape/normal_matrix.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+using Edge = TiedFacetsBuffers::Edge;
+using Candidate = TiedFacetsBuffers::Candidate;
+using Kind = TiedFacetsBuffers::Kind;
+
+constexpr double kU = 0x1p-53;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// |error| of each coordinate of an edge's direction: as of LineTree's.
+constexpr double kDirectionError = 16 * kU;
+/// |error| of a unit direction's product with a facet's normal, turned by a rounded matrix: below 100u.
+constexpr double kSideError = 0x1p-46;
+/// |n - exact| of a facet's unit normal: a few u as it is stored, 6u a coordinate for the turn, 4u for the length.
+constexpr double kNormalError = 24 * kU;
+/// Two edges whose sine is below this are parallel up to rounding.
+constexpr double kParallel = 0x1p-40;
+/// Pairs of edges, for each edge of both bodies, that may be tried; beyond that the overlay is cheaper.
+constexpr std::int64_t kPairsPerEdge = 256;
+
+class TiedFacetsSearch {
+ public:
+  TiedFacetsSearch(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
+                   const PolytopeDifference& difference, const Surface& surface, const TiedFacetsSettings& settings,
+                   std::vector<std::int32_t>& stack, TiedFacetsBuffers& buffers)
+      : a_(a),
+        b_(b),
+        pose_a_(pose_a),
+        pose_b_(pose_b),
+        difference_(difference),
+        surface_(surface),
+        settings_(settings),
+        stack_(stack),
+        buffers_(buffers),
+        reach_(difference.reach()),
+        radius_(settings.upper / reach_),
+        known_(settings.lower / reach_) {}
+
+  TiedFacets run() {
+    if (a_.affine_dimension() != 3 || b_.affine_dimension() != 3) return out_;
+    buffers_.candidates.clear();
+    for (const DifferenceVertex& v : surface_.vertices) see(v);
+    mark_far_facets(true);
+    mark_far_facets(false);
+    keep_edges(true);
+    keep_edges(false);
+    const auto pairs = static_cast<std::int64_t>(buffers_.kept_a.size() * buffers_.kept_b.size());
+    const std::int64_t edges = a_.num_edges() + b_.num_edges();
+    if (pairs > kPairsPerEdge * edges) return out_;
+    if (!measure_facets(true, edges) || !measure_facets(false, edges)) return out_;
+    if (!place_edges(true) || !place_edges(false)) return out_;
+    out_.pairs = pairs;
+    if (!try_pairs()) return out_;
+    choose();
+    return out_;
+  }
+
+ private:
+  void see(const DifferenceVertex& v) { largest_ = std::max(largest_, v.x.cwiseAbs().maxCoeff()); }
+
+  [[nodiscard]] const ConvexPolytope& body(bool of_a) const { return of_a ? a_ : b_; }
+  [[nodiscard]] const Pose& pose(bool of_a) const { return of_a ? pose_a_ : pose_b_; }
+
+  /// Single precision errs by less than 16 of its u for vectors of length 1 at most, with what a matrix that is a
+  /// rotation only up to rounding adds to a normal's length.
+  void mark_far_facets(bool of_a) {
+    const Mat3 turn = normal_matrix(pose(of_a));
+    const double stretch = std::sqrt(1 + (turn.transpose() * turn - Mat3::Identity()).norm());
+    const double scale = (of_a ? -1 : 1) / reach_;
+    ProbeArrays probes;
+    const std::size_t count = std::min<std::size_t>(kMaskProbes, surface_.vertices.size());
+    for (std::size_t k = 0; k < kMaskProbes; ++k) {
+      const Vec3 x = scale * (turn.transpose() * surface_.vertices[k < count ? k : 0].x);
+      probes.x[k] = static_cast<float>(x.x());
+      probes.y[k] = static_cast<float>(x.y());
+      probes.z[k] = static_cast<float>(x.z());
+    }
+    const double level = radius_ * stretch + 0x1p-20;
+    std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
+    const int facets = body(of_a).num_facets();
+    far.resize(static_cast<std::size_t>(facets));
+    probes_beyond(body(of_a).facet_normal(0).data(), facets, probes, static_cast<float>(level), far.data());
+  }
+
+  void keep_edges(bool of_a) {
+    const ConvexPolytope& own = body(of_a);
+    const std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
+    std::vector<std::int32_t>& kept = of_a ? buffers_.kept_a : buffers_.kept_b;
+    const int count = own.num_half_edges();
+    kept.resize(static_cast<std::size_t>(count));
+    std::size_t n = 0;
+    for (int h = 0; h < count; ++h) {
+      const HalfEdge& e = own.half_edge(h);
+      // Written in any case and counted where it stays: no branch to guess.
+      kept[n] = h;
+      const int other = own.half_edge(e.twin).facet;
+      n += static_cast<std::size_t>(
+          static_cast<int>(e.twin > h) &
+          static_cast<int>((far[static_cast<std::size_t>(e.facet)] & far[static_cast<std::size_t>(other)]) == 0));
+    }
+    kept.resize(n);
+  }
+
+  /// [A] step 1 for the facets of one body that no probe shows too far. False when there are too many.
+  bool measure_facets(bool of_a, std::int64_t edges) {
+    const std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
+    const auto near = std::count(far.begin(), far.end(), 0U);
+    if (near > 16 + edges / 8) return false;
+    if (near == 0) return true;
+    const Mat3 turn = normal_matrix(pose(of_a)) * (of_a ? -1 : 1);
+    for (std::size_t f = 0; f < far.size(); ++f) {
+      if (far[f] != 0) continue;
+      const auto facet = static_cast<std::int32_t>(f);
+      const Vec3 n = (turn * body(of_a).facet_normal(facet)).normalized();
+      const DifferenceVertex s = support(n);
+      const double height = s.x.dot(n);
+      const double lower = (height - lower_error()) / reach_ - kNormalError;
+      if (lower > radius_) continue;
+      const double upper = (height + bound_error()) / reach_;
+      buffers_.candidates.push_back(
+          {of_a ? Kind::facet_of_a : Kind::facet_of_b, true, of_a ? facet : s.a, of_a ? s.b : facet, lower, upper, n});
+      radius_ = std::min(radius_, upper);
+      ++out_.facets;
+    }
+    return true;
+  }
+
+  DifferenceVertex support(const Vec3& n) {
+    ++out_.support_calls;
+    const DifferenceVertex s = difference_.certified_support(n, difference_.support(n, nullptr), stack_);
+    see(s);
+    return s;
+  }
+
+  /// False for an edge too short for doubles.
+  bool place_edges(bool of_a) {
+    const ConvexPolytope& own = body(of_a);
+    const Mat3& turn = pose(of_a).rotation();
+    const Mat3 turn_normals = normal_matrix(pose(of_a));
+    // Relative to one vertex of A, so that points of B are points of P and those of A differences of two.
+    const Vec3 start = a_.vertex(0);
+    const Vec3 shift = of_a ? Vec3::Zero() : Vec3(difference_.offset() - pose_a_.rotation() * start);
+    const std::vector<std::int32_t>& kept = of_a ? buffers_.kept_a : buffers_.kept_b;
+    std::vector<Edge>& edges = of_a ? buffers_.edges_a : buffers_.edges_b;
+    edges.resize(kept.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const HalfEdge& e = own.half_edge(kept[i]);
+      const HalfEdge& back = own.half_edge(e.twin);
+      const Vec3 from = own.vertex(e.origin);
+      const Vec3 vector = turn * (own.vertex(back.origin) - from);
+      const double length = vector.norm();
+      if (!(length > 0x1p-200)) return false;
+      edges[i] = {vector / length,
+                  turn_normals * own.facet_normal(e.facet),
+                  turn_normals * own.facet_normal(back.facet),
+                  (turn * (of_a ? Vec3(from - start) : from) + shift) / reach_,
+                  length / reach_,
+                  e.origin,
+                  back.origin};
+    }
+    return true;
+  }
+
+  // ---- [A] step 2 -------------------------------------------------------------------------------------------------
+
+  /// False where two edges are too nearly parallel for doubles and for slivers.
+  bool try_pairs() {
+    const std::size_t count = buffers_.edges_a.size();
+    if (count == 0 || buffers_.edges_b.empty()) return true;
+    const auto padded = static_cast<std::size_t>(padded_to_lines(static_cast<int>(count)));
+    LineArrays lines;
+    lines.count = static_cast<int>(count);
+    for (std::size_t k = 0; k < 6; ++k) {
+      buffers_.lines_a[k].resize(padded);
+      std::fill(buffers_.lines_a[k].begin() + static_cast<std::ptrdiff_t>(count), buffers_.lines_a[k].end(), 0.0);
+      lines.coordinates[k] = buffers_.lines_a[k].data();
+    }
+    double largest = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      const Edge& e = buffers_.edges_a[j];
+      const Vec3 m = e.point.cross(e.direction);
+      largest = std::max(largest, m.squaredNorm());
+      for (std::size_t k = 0; k < 3; ++k) {
+        buffers_.lines_a[k][j] = m[static_cast<Eigen::Index>(k)];
+        buffers_.lines_a[k + 3][j] = e.direction[static_cast<Eigen::Index>(k)];
+      }
+    }
+    // Points of B lie within 1, so that a line's coordinates have at most the length sqrt(2).
+    rounding_ = 0x1p-46 * std::sqrt(2 * (1 + largest)) * (1 + 0x1p-40);
+    buffers_.near.resize(padded / kLineBlock);
+    for (std::size_t i = 0; i < buffers_.edges_b.size(); ++i) {
+      const Edge& e = buffers_.edges_b[i];
+      const Vec3 m = e.point.cross(e.direction);
+      lines_near(lines, {e.direction.x(), e.direction.y(), e.direction.z(), m.x(), m.y(), m.z()},
+                 {radius_ * radius_ * (1 + 64 * kU), rounding_}, buffers_.near.data());
+      for (std::size_t word = 0; word < buffers_.near.size(); ++word) {
+        for (std::uint64_t bits = buffers_.near[word]; bits != 0; bits &= bits - 1) {
+          const std::size_t j = kLineBlock * word + static_cast<std::size_t>(std::countr_zero(bits));
+          if (!try_pair(static_cast<std::int32_t>(j), static_cast<std::int32_t>(i))) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  bool try_pair(std::int32_t j, std::int32_t i) {
+    const Edge& a = buffers_.edges_a[static_cast<std::size_t>(j)];
+    const Edge& b = buffers_.edges_b[static_cast<std::size_t>(i)];
+    // As in arc_crossing.hpp: with n = s (b x a) the arcs cross where all four have the sign of s.
+    const double sides[4] = {a.direction.dot(b.left), -a.direction.dot(b.right), b.direction.dot(a.left),
+                             -b.direction.dot(a.right)};
+    const double least = std::min(std::min(sides[0], sides[1]), std::min(sides[2], sides[3]));
+    const double most = std::max(std::max(sides[0], sides[1]), std::max(sides[2], sides[3]));
+    if (least < -kSideError && most > kSideError) return true;
+    const Vec3 across = b.direction.cross(a.direction);
+    const double sine = across.norm();
+    if (sine < kParallel) {
+      slivers_ += (sine + 2 * kDirectionError) * std::min(a.length, b.length);
+      return slivers_ <= kSliverShare * settings_.width;
+    }
+    // The normal errs by an angle of at most phi, by which the distance errs as closest_lines.cpp derives.
+    const double phi = (8 * kDirectionError + 16 * kU) / sine;
+    const Vec3 w = b.point - a.point;
+    const double along = w.dot(across) / sine;
+    const double distance = std::abs(along);
+    const double error = 1.01 * phi * (w.cross(across).norm() / sine + phi * distance) + 48 * kU;
+    // Not as near as asked, or nearer than any facet of P is.
+    if (distance - error > radius_ || distance + error < known_) return true;
+    const bool certain = least > kSideError || most < -kSideError;
+    buffers_.candidates.push_back(
+        {Kind::edges, certain, j, i, distance - error, distance + error, across * ((along > 0 ? 1 : -1) / sine)});
+    if (certain) radius_ = std::min(radius_, distance + error);
+    ++out_.facets;
+    return true;
+  }
+
+  // ---- the nearest of the candidates ------------------------------------------------------------------------------
+
+  void choose() {
+    std::vector<Candidate>& candidates = buffers_.candidates;
+    std::erase_if(candidates, [&](const Candidate& c) { return c.lower > radius_; });
+    // The distance of a parallelogram is at least that of its nearest corner along any unit vector.
+    for (Candidate& c : candidates) {
+      if (c.kind == Kind::edges) c.lower = std::max(c.lower, (least_corner(c) - lower_error()) / reach_);
+    }
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
+      return std::tuple(x.lower, x.kind, x.a, x.b) < std::tuple(y.lower, y.kind, y.a, y.b);
+    });
+    double lower = kInfinity;
+    double upper = kInfinity;
+    for (const Candidate& c : candidates) {
+      if (c.lower >= std::min(upper, lower + settings_.width)) break;
+      const double height =
+          c.kind == Kind::edges ? support(c.normal).x.dot(c.normal) + bound_error() : c.upper * reach_;
+      if (!c.certain && height - 2 * bound_error() > reach_ * (c.upper + turn_error(c))) continue;
+      lower = std::min(lower, c.lower);
+      if (height / reach_ < upper && lies_below_origin(c, height)) {
+        upper = height / reach_;
+        out_.upper = height;
+        out_.normal = c.normal;
+      }
+      if (upper - lower + slivers_ <= settings_.width * largest_ / reach_) break;
+    }
+    lower -= slivers_;
+    out_.lower = lower * reach_ * (1 - 4 * kU);
+    out_.certified = lower > 0 && upper < kInfinity && out_.upper - out_.lower <= settings_.width * largest_;
+  }
+
+  /// By how much h_P may differ between the computed normal and the exact one, divided by the reach.
+  [[nodiscard]] double turn_error(const Candidate& c) const {
+    const Edge& a = buffers_.edges_a[static_cast<std::size_t>(c.a)];
+    const Edge& b = buffers_.edges_b[static_cast<std::size_t>(c.b)];
+    return (8 * kDirectionError + 16 * kU) / b.direction.cross(a.direction).norm();
+  }
+
+  [[nodiscard]] double least_corner(const Candidate& c) {
+    const Edge& a = buffers_.edges_a[static_cast<std::size_t>(c.a)];
+    const Edge& b = buffers_.edges_b[static_cast<std::size_t>(c.b)];
+    double least = kInfinity;
+    for (const std::int32_t va : {a.from, a.to}) {
+      for (const std::int32_t vb : {b.from, b.to}) {
+        const DifferenceVertex v = difference_.vertex(va, vb);
+        see(v);
+        least = std::min(least, v.x.dot(c.normal));
+      }
+    }
+    return least;
+  }
+
+  /// Whether the piece holds the point below the origin, and where.
+  bool lies_below_origin(const Candidate& c, double height) {
+    return c.kind == Kind::edges ? below_edges(c) : below_facet(c, height);
+  }
+
+  bool below_edges(const Candidate& c) {
+    const Edge& a = buffers_.edges_a[static_cast<std::size_t>(c.a)];
+    const Edge& b = buffers_.edges_b[static_cast<std::size_t>(c.b)];
+    const Vec3 w = b.point - a.point;
+    const double t = a.direction.dot(b.direction);
+    const double on_a = w.dot(a.direction), on_b = w.dot(b.direction);
+    const double squared = a.direction.cross(b.direction).squaredNorm();
+    const double along_a = (on_a - t * on_b) / squared;
+    const double along_b = (t * on_a - on_b) / squared;
+    if (along_a < -kInside || along_a > a.length + kInside || along_b < -kInside || along_b > b.length + kInside) {
+      return false;
+    }
+    out_.kind = Kind::edges;
+    out_.edge_a[0] = a.from;
+    out_.edge_a[1] = a.to;
+    out_.edge_b[0] = b.from;
+    out_.edge_b[1] = b.to;
+    out_.along_a = std::clamp(along_a / a.length, 0.0, 1.0);
+    out_.along_b = std::clamp(along_b / b.length, 0.0, 1.0);
+    return true;
+  }
+
+  /// The other body's vertex, moved by the translation, must lie inside the facet.
+  bool below_facet(const Candidate& c, double height) {
+    const bool of_a = c.kind == Kind::facet_of_a;
+    const std::int32_t facet = of_a ? c.a : c.b;
+    const std::int32_t vertex = of_a ? c.b : c.a;
+    const auto loop = body(of_a).facet_vertices(facet);
+    const Vec3 foot = height * c.normal;
+    const auto corner = [&](std::size_t k) {
+      return of_a ? difference_.vertex(loop[k], vertex).x : difference_.vertex(vertex, loop[k]).x;
+    };
+    // Seen from outside P, the corners of -A run clockwise.
+    Vec3 last = corner(loop.size() - 1);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec3 next = corner(k);
+      const Vec3 side = next - last;
+      if ((of_a ? -1 : 1) * c.normal.dot(side.cross(foot - last)) < -kInside * reach_ * side.norm()) return false;
+      last = next;
+    }
+    out_.kind = c.kind;
+    out_.facet = facet;
+    out_.vertex = vertex;
+    return true;
+  }
+
+  [[nodiscard]] double lower_error() const { return difference_.point_error() + 8 * kU * reach_; }
+  [[nodiscard]] double bound_error() const {
+    return difference_.point_error() + difference_.support_error() + 8 * kU * reach_;
+  }
+
+  /// Slivers may take this share of the width.
+  static constexpr double kSliverShare = 0.125;
+  /// A foot beyond a piece's border by no more than this, in units of the reach, is rounding.
+  static constexpr double kInside = 64 * kU;
+
+  const ConvexPolytope& a_;
+  const ConvexPolytope& b_;
+  const Pose& pose_a_;
+  const Pose& pose_b_;
+  const PolytopeDifference& difference_;
+  const Surface& surface_;
+  const TiedFacetsSettings& settings_;
+  std::vector<std::int32_t>& stack_;
+  TiedFacetsBuffers& buffers_;
+  double reach_;
+  double radius_;  ///< no piece farther than this is wanted; divided by the reach, as all lengths below
+  double known_;
+  double rounding_ = 0;
+  double slivers_ = 0;
+  double largest_ = 0;  ///< |coordinate| of P seen, not divided
+  TiedFacets out_;
+};
+
+}  // namespace
+
+TiedFacets nearest_tied_facet(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
+                              const PolytopeDifference& difference, const Surface& surface,
+                              const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack,
+                              TiedFacetsBuffers& buffers) {
+  return TiedFacetsSearch(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers).run();
+}
+
+}  // namespace pd::detail
