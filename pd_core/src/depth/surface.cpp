@@ -10,8 +10,9 @@ namespace {
 
 /// Up to this many slots the nearest face is found by a scan, which costs less than keeping a heap.
 constexpr int kHeapFrom = 448;
-/// Up to this many slots all planes are tested against a new vertex at once, which costs less than a flood.
-constexpr int kFloodFrom = 64;
+/// Up to this many slots, as many as a word has bits, all planes are tested against a new vertex at once, which costs
+/// less than a flood; beyond, faces are no longer added at the end.
+constexpr int kFewSlots = 64;
 /// A rebuilt surface takes four vertices to enclose the rest and this many of those that matter most. Measured on
 /// coherent frames: with 6 more supports are asked for, with 24 inserting them costs more than asking.
 constexpr std::size_t kRebuiltVertices = 10;
@@ -28,8 +29,7 @@ constexpr auto kLater = [](const auto& x, const auto& y) {
 
 void Surface::clear() {
   if (triangles_.empty()) {
-    reserve_faces(kFirstRoom);
-    reserve_horizon(kFirstRoom);
+    reserve(kFirstRoom);
     vertices.reserve(kFirstRoom);
     free_.reserve(kFirstRoom / 2);
     kept_.reserve(kFirstRoom);
@@ -49,9 +49,10 @@ void Surface::clear_faces() {
   heap_active_ = false;
   slots_ = 0;
   in_use_ = 0;
+  young_ = true;
 }
 
-void Surface::reserve_faces(int count) {
+void Surface::reserve(int count) {
   if (static_cast<std::size_t>(count + kPlaneBlock) <= triangles_.size()) return;
   const std::size_t room = padded_to_block(2 * count + kPlaneBlock);
   triangles_.resize(room);
@@ -60,17 +61,11 @@ void Surface::reserve_faces(int count) {
   keys_.resize(room, kRemoved);
   stamps_.resize(room, 0);
   removed_bits_.resize(room / 64 + 1, 0);
-}
-
-void Surface::reserve_horizon(int edges) {
-  if (static_cast<std::size_t>(edges + kPlaneBlock) <= from_.size()) return;
-  const std::size_t room = padded_to_block(2 * edges + kPlaneBlock);
   for (auto* ids : {&from_, &to_, &outside_, &removed_}) ids->resize(room);
   for (auto* values : {&fan_nx_, &fan_ny_, &fan_nz_, &fan_levels_, &fan_keys_}) values->resize(room);
 }
 
 void Surface::compute_planes() {
-  reserve_horizon(slots_);
   // The horizon's lists are free: they serve for the corners.
   for (int f = 0; f < slots_; ++f) {
     from_[f] = triangles_[f].v[0];
@@ -101,7 +96,7 @@ bool Surface::start_tetrahedron(double flat) {
                                                 {{0, 3, 1}, {4 * 3 + 1, 4 * 2 + 0, 4 * 0 + 0}},
                                                 {{1, 3, 2}, {4 * 1 + 1, 4 * 3 + 0, 4 * 0 + 1}},
                                                 {{2, 3, 0}, {4 * 2 + 1, 4 * 1 + 0, 4 * 0 + 2}}};
-  reserve_faces(4);
+  reserve(4);
   std::copy(kFaces, kFaces + 4, triangles_.begin());
   slots_ = in_use_ = 4;
   compute_planes();
@@ -203,88 +198,107 @@ void Surface::find_nearest_by_heap() {
 }
 
 bool Surface::insert(int from, int v) {
-  const Vec3 x = vertices[v].x;
-  reserve_horizon(3 * slots_);
-  reserve_faces(3 * slots_);
+  // A horizon has at most three edges for every face that goes.
+  reserve(3 * slots_);
   if (leaving_.size() < vertices.size()) {
     leaving_.resize(vertices.capacity());
     reaching_.resize(vertices.capacity());
   }
-  bool closed = false;
-  if (slots_ <= kFloodFrom) {
-    const std::uint64_t visible = planes_below(planes(), slots_, x.x(), x.y(), x.z()) | std::uint64_t{1} << from;
-    removed_bits_[0] = visible;
-    list_removed(visible);
-    closed = trace_horizon();
-    if (!closed) {
-      // Several patches of a crooked surface see x: the one round `from` will do.
-      keep_component(from);
-      closed = trace_horizon();
-    }
-    removed_bits_[0] = 0;
-  } else {
-    flood_visible(from, x);
-    closed = trace_horizon();
-    for (int i = 0; i < removed_count_; ++i) removed_bits_[removed_[i] >> 6] = 0;
+  return slots_ <= kFewSlots ? insert_among_few(from, v) : insert_among_many(from, v);
+}
+
+bool Surface::insert_among_few(int from, int v) {
+  const Vec3& x = vertices[v].x;
+  std::uint64_t removed = planes_below(planes(), slots_, x.x(), x.y(), x.z()) | std::uint64_t{1} << from;
+  if (!trace_horizon(removed)) {
+    // Several patches of a crooked surface see x: the one round `from` will do.
+    removed = patch_round(from, removed);
+    if (!trace_horizon(removed)) return false;
   }
-  if (closed) fill_hole(v);
+  if (young_ && padded_to_lanes(slots_) + padded_to_lanes(horizon_count_) <= kFewSlots) {
+    fill_with_new_slots(v, removed);
+    return true;
+  }
+  removed_count_ = 0;
+  for (; removed != 0; removed &= removed - 1) removed_[removed_count_++] = std::countr_zero(removed);
+  fill_with_free_slots(v);
+  return true;
+}
+
+bool Surface::insert_among_many(int from, int v) {
+  flood_visible(from, vertices[v].x);
+  const bool closed = trace_horizon();
+  for (int i = 0; i < removed_count_; ++i) removed_bits_[removed_[i] >> 6] = 0;
+  if (closed) fill_with_free_slots(v);
   return closed;
 }
 
-void Surface::list_removed(std::uint64_t bits) {
-  std::int32_t* const removed = removed_.data();
-  int count = 0;
-  for (; bits != 0; bits &= bits - 1) removed[count++] = std::countr_zero(bits);
-  removed_count_ = count;
+/// The faces that are seen and joined to `from` by faces that are seen.
+std::uint64_t Surface::patch_round(int from, std::uint64_t seen) const {
+  std::uint64_t patch = 0;
+  for (std::uint64_t open = std::uint64_t{1} << from; open != 0;) {
+    const int f = std::countr_zero(open);
+    patch |= std::uint64_t{1} << f;
+    for (const std::int32_t adjacent : triangles_[f].adj) open |= std::uint64_t{1} << (adjacent >> 2);
+    open &= seen & ~patch;
+  }
+  return patch;
 }
 
-template <class Sees>
-void Surface::flood(int from, Sees&& sees) {
+void Surface::flood_visible(int from, const Vec3& x) {
   mark_removed(from);
   removed_[0] = from;
   removed_count_ = 1;
   for (int i = 0; i < removed_count_; ++i) {
     for (const std::int32_t adjacent : triangles_[removed_[i]].adj) {
       const std::int32_t g = adjacent >> 2;
-      if (is_removed(g) || !sees(g)) continue;
+      if (is_removed(g) || !(x.dot(normal(g)) > levels_[g])) continue;
       mark_removed(g);
       removed_[removed_count_++] = g;
     }
   }
 }
 
-void Surface::flood_visible(int from, const Vec3& x) {
-  flood(from, [&](std::int32_t g) { return x.dot(normal(g)) > levels_[g]; });
-}
-
-void Surface::keep_component(int from) {
-  const std::uint64_t visible = removed_bits_[0];
-  removed_bits_[0] = 0;
-  flood(from, [&](std::int32_t g) { return (visible >> g & 1) != 0; });
-}
-
 /// The edges between faces that go and faces that stay. False when there are none, or two that leave one vertex.
-bool Surface::trace_horizon() {
+bool Surface::trace_horizon(std::uint64_t removed) {
   // Local names for the arrays: the compiler cannot know that writing one does not move another.
   std::int32_t* const from = from_.data();
   std::int32_t* const to = to_.data();
   std::int32_t* const beyond = outside_.data();
   const SurfaceTriangle* const triangles = triangles_.data();
-  const std::uint64_t* const removed_bits = removed_bits_.data();
-  const std::int32_t* const removed = removed_.data();
   std::int32_t count = 0;
-  for (int i = 0; i < removed_count_; ++i) {
-    const SurfaceTriangle& face = triangles[removed[i]];
+  for (std::uint64_t faces = removed; faces != 0; faces &= faces - 1) {
+    const SurfaceTriangle& face = triangles[std::countr_zero(faces)];
     for (std::int32_t e = 0; e < 3; ++e) {
       // Written in any case and counted where it stays: no branch to guess.
-      const std::int32_t outside = face.adj[e];
-      const std::int32_t g = outside >> 2;
       from[count] = face.v[e];
       to[count] = face.v[next_edge(e)];
-      beyond[count] = outside;
-      count += (removed_bits[g >> 6] >> (g & 63) & 1) == 0;
+      beyond[count] = face.adj[e];
+      count += static_cast<std::int32_t>(~removed >> (face.adj[e] >> 2) & 1);
     }
   }
+  return close_horizon(count);
+}
+
+/// The same for the faces listed and marked as removed.
+bool Surface::trace_horizon() {
+  std::int32_t count = 0;
+  for (int i = 0; i < removed_count_; ++i) {
+    const SurfaceTriangle& face = triangles_[removed_[i]];
+    for (std::int32_t e = 0; e < 3; ++e) {
+      from_[count] = face.v[e];
+      to_[count] = face.v[next_edge(e)];
+      outside_[count] = face.adj[e];
+      count += is_removed(face.adj[e] >> 2) ? 0 : 1;
+    }
+  }
+  return close_horizon(count);
+}
+
+/// Links the edges by their vertices.
+bool Surface::close_horizon(std::int32_t count) {
+  const std::int32_t* const from = from_.data();
+  const std::int32_t* const to = to_.data();
   std::int32_t* const leaving = leaving_.data();
   std::int32_t* const reaching = reaching_.data();
   for (std::int32_t i = 0; i < count; ++i) {
@@ -299,31 +313,43 @@ bool Surface::trace_horizon() {
   return simple;
 }
 
-void Surface::fill_hole(int v) {
+void Surface::fill_with_new_slots(int v, std::uint64_t removed) {
   const int count = horizon_count_;
+  const int first = padded_to_lanes(slots_);
+  in_use_ += count - std::popcount(removed);
+  for (std::uint64_t faces = removed; faces != 0; faces &= faces - 1) {
+    const int f = std::countr_zero(faces);
+    keys_[f] = levels_[f] = kRemoved;
+  }
+  std::fill_n(from_.begin() + count, kPlaneLanes, from_[0]);
+  std::fill_n(to_.begin() + count, kPlaneLanes, to_[0]);
+  triangle_planes(
+      vertices.data()->x.data(), {from_.data(), to_.data(), nullptr}, v, count,
+      {nx_.data() + first, ny_.data() + first, nz_.data() + first, levels_.data() + first, keys_.data() + first});
+  slots_ = first + count;
+  join_fan(v, [first](std::int32_t i) { return first + i; });
+  nearest_ = least_key(keys_.data(), slots_);
+}
+
+void Surface::fill_with_free_slots(int v) {
+  const int count = horizon_count_;
+  if (young_) list_free_slots();
   take_slots(count);
-  std::int32_t* const from = from_.data();
-  std::int32_t* const to = to_.data();
-  const std::int32_t* const beyond = outside_.data();
-  std::fill_n(from + count, kPlaneBlock, from[0]);
-  std::fill_n(to + count, kPlaneBlock, to[0]);
+  std::fill_n(from_.begin() + count, kPlaneLanes, from_[0]);
+  std::fill_n(to_.begin() + count, kPlaneLanes, to_[0]);
   const PlaneArrays fan{fan_nx_.data(), fan_ny_.data(), fan_nz_.data(), fan_levels_.data(), fan_keys_.data()};
-  triangle_planes(vertices.data()->x.data(), {from, to, nullptr}, v, count, fan);
+  triangle_planes(vertices.data()->x.data(), {from_.data(), to_.data(), nullptr}, v, count, fan);
   const PlaneArrays plane = planes();
-  SurfaceTriangle* const triangles = triangles_.data();
-  const std::int32_t* const leaving = leaving_.data();
-  const std::int32_t* const reaching = reaching_.data();
   const std::int32_t* const slots = removed_.data();
   for (int i = 0; i < count; ++i) {
     const std::int32_t f = slots[i];
-    triangles[f] = {{from[i], to[i], v}, {beyond[i], 4 * slots[leaving[to[i]]] + 2, 4 * slots[reaching[from[i]]] + 1}};
-    triangles[beyond[i] >> 2].adj[beyond[i] & 3] = 4 * f;
     plane.nx[f] = fan.nx[i];
     plane.ny[f] = fan.ny[i];
     plane.nz[f] = fan.nz[i];
     plane.level[f] = fan.level[i];
     plane.key[f] = fan.key[i];
   }
+  join_fan(v, [slots](std::int32_t i) { return slots[i]; });
   if (slots_ <= kHeapFrom && !heap_active_) {
     nearest_ = least_key(keys_.data(), slots_);
     return;
@@ -334,6 +360,31 @@ void Surface::fill_hole(int v) {
     start_heap();
   }
   find_nearest_by_heap();
+}
+
+/// The triangles of a cone over the horizon and their neighbours.
+template <class SlotOf>
+void Surface::join_fan(int v, SlotOf&& slot_of) {
+  const std::int32_t* const from = from_.data();
+  const std::int32_t* const to = to_.data();
+  const std::int32_t* const beyond = outside_.data();
+  const std::int32_t* const leaving = leaving_.data();
+  const std::int32_t* const reaching = reaching_.data();
+  SurfaceTriangle* const triangles = triangles_.data();
+  for (std::int32_t i = 0; i < horizon_count_; ++i) {
+    const std::int32_t f = slot_of(i);
+    triangles[f] = {{from[i], to[i], v},
+                    {beyond[i], 4 * slot_of(leaving[to[i]]) + 2, 4 * slot_of(reaching[from[i]]) + 1}};
+    triangles[beyond[i] >> 2].adj[beyond[i] & 3] = 4 * f;
+  }
+}
+
+void Surface::list_free_slots() {
+  young_ = false;
+  free_.clear();
+  for (int f = 0; f < slots_; ++f) {
+    if (keys_[f] == kRemoved) free_.push_back(f);
+  }
 }
 
 /// Makes `removed_` the slots of `count` new faces; removed faces beyond those leave free slots.

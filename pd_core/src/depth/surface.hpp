@@ -41,7 +41,7 @@ class Surface {
   /// Takes over faces and their neighbours as they were cached, with planes through the vertices as they are now.
   template <class CachedFaces>
   void restore(const CachedFaces& cached) {
-    reserve_faces(static_cast<int>(cached.size()));
+    reserve(static_cast<int>(cached.size()));
     for (const auto& from : cached) {
       SurfaceTriangle& to = triangles_[slots_++];
       for (int i = 0; i < 3; ++i) {
@@ -103,22 +103,26 @@ class Surface {
   [[nodiscard]] PlaneArrays planes() { return {nx_.data(), ny_.data(), nz_.data(), levels_.data(), keys_.data()}; }
   /// Planes of all slots, none of them free.
   void compute_planes();
-  /// Room for so many slots.
-  void reserve_faces(int count);
-  void reserve_horizon(int edges);
+  /// Room for so many slots, and for a horizon of as many edges.
+  void reserve(int count);
 
   void clear_faces();
   [[nodiscard]] int first_face_below(const Vec3& x);
 
   // insert, step by step
-  void list_removed(std::uint64_t bits);
-  template <class Sees>
-  void flood(int from, Sees&& sees);
+  bool insert_among_few(int from, int v);
+  bool insert_among_many(int from, int v);
+  [[nodiscard]] std::uint64_t patch_round(int from, std::uint64_t seen) const;
   void flood_visible(int from, const Vec3& x);
-  void keep_component(int from);
+  bool trace_horizon(std::uint64_t removed);
   bool trace_horizon();
+  bool close_horizon(std::int32_t count);
+  void fill_with_new_slots(int v, std::uint64_t removed);
+  void fill_with_free_slots(int v);
   void take_slots(int count);
-  void fill_hole(int v);
+  void list_free_slots();
+  template <class SlotOf>
+  void join_fan(int v, SlotOf&& slot_of);
   [[nodiscard]] bool is_removed(int f) const { return (removed_bits_[f >> 6] >> (f & 63) & 1) != 0; }
   void mark_removed(int f) { removed_bits_[f >> 6] |= std::uint64_t{1} << (f & 63); }
 
@@ -133,11 +137,14 @@ class Surface {
 
   // The first slots_ entries are in use or free; the rest is room. Free slots and room hold infinite keys and levels,
   // so that no loop over whole blocks need ask.
+  // A young surface adds a block of slots with every vertex, whose planes are written as they are computed; later faces
+  // take free slots.
   std::vector<SurfaceTriangle> triangles_;
   std::vector<double> nx_, ny_, nz_, levels_, keys_;
   std::vector<std::int32_t> free_;
   int slots_ = 0;
   int in_use_ = 0;
+  bool young_ = true;
 
   std::vector<std::uint64_t> removed_bits_;  ///< by slot; all zero between calls
   std::vector<std::int32_t> removed_;        ///< faces that go, then the slots of those that come

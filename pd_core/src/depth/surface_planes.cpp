@@ -12,7 +12,7 @@ namespace {
 /// Four lanes; on narrower machines the compiler takes two registers for one.
 typedef double Lanes __attribute__((vector_size(32)));
 typedef std::int64_t Flags __attribute__((vector_size(32)));
-constexpr int kLanes = 4;
+constexpr int kLanes = kPlaneLanes;
 
 struct Points {
   Lanes x, y, z;
@@ -70,8 +70,11 @@ PD_CLONES void triangle_planes(const double* points, const CornerIds& corners, s
                                const PlaneArrays& out) {
   const double* const top = points + kPointStride * static_cast<std::ptrdiff_t>(apex);
   const Lanes zero = {0, 0, 0, 0};
+  const Lanes infinite = zero + std::numeric_limits<double>::infinity();
+  const Lanes end = zero + static_cast<double>(count);
+  Lanes number = {0, 1, 2, 3};
   Points p, q, r{zero + top[0], zero + top[1], zero + top[2]};
-  for (int i = 0; i < padded_to_block(count); i += kLanes) {
+  for (int i = 0; i < count; i += kLanes) {
     gather(p, points, corners.p + i);
     gather(q, points, corners.q + i);
     if (corners.r != nullptr) gather(r, points, corners.r + i);
@@ -80,8 +83,9 @@ PD_CLONES void triangle_planes(const double* points, const CornerIds& corners, s
     store(out.nx + i, found.normal.x);
     store(out.ny + i, found.normal.y);
     store(out.nz + i, found.normal.z);
-    store(out.level + i, found.level);
-    store(out.key + i, found.key);
+    store(out.level + i, number < end ? found.level : infinite);
+    store(out.key + i, number < end ? found.key : infinite);
+    number += kLanes;
   }
 }
 

@@ -13,6 +13,9 @@ namespace pd::detail {
 inline constexpr int kPlaneBlock = 8;
 /// `count` rounded up to whole blocks.
 constexpr int padded_to_block(int count) { return (count + kPlaneBlock - 1) & -kPlaneBlock; }
+/// Planes are computed this many at a time.
+inline constexpr int kPlaneLanes = 4;
+constexpr int padded_to_lanes(int count) { return (count + kPlaneLanes - 1) & -kPlaneLanes; }
 
 /// Planes: normal = (q - p) x (r - p), any length; `level` = the greatest of <p, n>, <q, n>, <r, n>, which a point must
 /// exceed to be visible; `key` = the least of them as sign * square / |n|^2, a stand-in for the plane's signed distance
@@ -34,8 +37,8 @@ struct CornerIds {
   const std::int32_t* r;  ///< nullptr: `apex` for all of them
 };
 
-/// Planes of `count` triangles. Whole blocks are written, and the lists of ids are read in whole blocks, so their last
-/// block must be filled up with valid ids.
+/// Planes of `count` triangles. All lanes are written, those beyond `count` with infinite levels and keys, and the
+/// lists of ids are read so, too: they must be filled up with valid ids.
 void triangle_planes(const double* points, const CornerIds& corners, std::int32_t apex, int count,
                      const PlaneArrays& out);
 
