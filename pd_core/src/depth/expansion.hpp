@@ -67,6 +67,22 @@ inline void surrounding_directions(const Vec3& d, double sine, Vec3 (&out)[4]) {
   out[3] = -d;
 }
 
+/// Whether a bracket is as narrow as asked; `largest` as in ExpansionGoal::absolute.
+inline bool reached(const ExpansionGoal& goal, double lower, double upper, double largest) {
+  return lower > 0 && (upper - lower <= goal.absolute * largest || upper <= (1 + goal.relative) * lower);
+}
+
+/// A face's distance errs by that of its points, of a product of three terms, and of a root and a quotient.
+template <class Difference>
+double face_error(const Difference& difference) {
+  return difference.point_error() + 8 * 0x1p-53 * difference.reach();
+}
+/// <s, unit> bounds h_P(unit) up to the errors of s, of the support, of the product and of |unit|.
+template <class Difference>
+double support_plane_error(const Difference& difference) {
+  return difference.point_error() + difference.support_error() + 8 * 0x1p-53 * difference.reach();
+}
+
 /// Expansion over any difference that offers `support`, `certified_support`, `centre`, `reach`, `spread`,
 /// `point_error` and `support_error` (PolytopeDifference, SmoothDifference).
 template <class Difference>
@@ -234,9 +250,6 @@ class Expansion {
     return result;
   }
 
-  static bool reached(const ExpansionGoal& goal, double lower, double upper, double largest) {
-    return lower > 0 && (upper - lower <= goal.absolute * largest || upper <= (1 + goal.relative) * lower);
-  }
   static bool touches(const ExpansionGoal& goal, double lower, double upper, double largest) {
     return upper <= goal.touching * largest && lower >= -goal.touching * largest;
   }
@@ -258,12 +271,8 @@ class Expansion {
 
   void add_vertex(const DifferenceVertex& s) { surface_.vertices.push_back(s); }
 
-  /// A face's distance errs by that of its points, of a product of three terms, and of a root and a quotient.
-  double lower_error() const { return difference_.point_error() + 8 * 0x1p-53 * difference_.reach(); }
-  /// <s, unit> bounds h_P(unit) up to the errors of s, of the support, of the product and of |unit|.
-  double bound_error() const {
-    return difference_.point_error() + difference_.support_error() + 8 * 0x1p-53 * difference_.reach();
-  }
+  double lower_error() const { return face_error(difference_); }
+  double bound_error() const { return support_plane_error(difference_); }
   /// Error bound of six volumes.
   double flat_volume() const { return 64 * 0x1p-53 * difference_.reach() * difference_.reach() * difference_.reach(); }
 

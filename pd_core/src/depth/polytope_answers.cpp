@@ -3,6 +3,7 @@
 
 #include "depth/nearest.hpp"
 #include "depth/polytope_query.hpp"
+#include "depth/remembered_surface.hpp"
 
 namespace pd::detail {
 
@@ -48,11 +49,15 @@ void PolytopeQuery::set_depth(double lower, double upper, const Vec3& normal) {
 
 void PolytopeQuery::fill_overlapping(const ExpansionResult& result) {
   set_depth(result.lower, result.upper, result.normal);
-  const SurfaceTriangle& face = buffers_.surface.face(face_below_origin(result.face, result.normal));
   DifferenceVertex corners[3];
   double weights[3];
-  for (int i = 0; i < 3; ++i) corners[i] = buffers_.surface.vertices[face.v[i]];
-  project(face, result.normal, weights);
+  corners_of(face_below_origin(result.face, result.normal), corners);
+  project_origin(corners, result.normal, weights);
+  fill_overlapping(corners, weights);
+}
+
+/// Witnesses and features; depth and normal are set.
+void PolytopeQuery::fill_overlapping(const DifferenceVertex (&corners)[3], const double (&weights)[3]) {
   fill_witnesses(corners, weights, 3);
   out_.witness_b = out_.witness_a + out_.translation;
   out_.feature_a = feature(*pair_.a, corners, &DifferenceVertex::a);
@@ -60,15 +65,8 @@ void PolytopeQuery::fill_overlapping(const ExpansionResult& result) {
   pair_features();
 }
 
-/// Barycentric coordinates of the origin's projection on a face's plane.
-void PolytopeQuery::project(const SurfaceTriangle& face, const Vec3& normal, double (&weights)[3]) const {
-  const std::vector<DifferenceVertex>& v = buffers_.surface.vertices;
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    weights[i] = normal.dot(v[face.v[(i + 1) % 3]].x.cross(v[face.v[(i + 2) % 3]].x));
-    sum += weights[i];
-  }
-  for (double& w : weights) w /= sum;
+void PolytopeQuery::corners_of(int f, DifferenceVertex (&corners)[3]) const {
+  for (int i = 0; i < 3; ++i) corners[i] = buffers_.surface.vertices[buffers_.surface.face(f).v[i]];
 }
 
 /// Coplanar faces share a facet of P: steps from f across the edge that the projection lies beyond, while the
@@ -77,8 +75,10 @@ int PolytopeQuery::face_below_origin(int f, const Vec3& normal) const {
   const Surface& surface = buffers_.surface;
   const double level = std::sqrt(std::max(0.0, surface.key(f))) + 64 * 0x1p-53 * difference_.reach();
   for (int step = 0; step < surface.size(); ++step) {
+    DifferenceVertex corners[3];
     double weights[3];
-    project(surface.face(f), normal, weights);
+    corners_of(f, corners);
+    project_origin(corners, normal, weights);
     const int least = static_cast<int>(std::min_element(weights, weights + 3) - weights);
     if (weights[least] >= 0) return f;
     // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.

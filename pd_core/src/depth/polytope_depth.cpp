@@ -7,7 +7,6 @@ namespace pd::detail {
 
 namespace {
 
-constexpr int kMaxCachedFaces = 128;
 constexpr int kBoxAxes = 15;
 
 }  // namespace
@@ -16,11 +15,14 @@ void PolytopeQuery::solve() {
   const bool exactly = settings_.bracket == Bracket::tightest && settings_.delta == 0;
   bracket_ = exactly ? Bracket::tightest : Bracket::certified;
   if (settings_.method == Method::overlay) {
+    difference_.turn(buffers_.posed);
     solve_by_overlay();
     return;
   }
+  if (!exactly && settings_.method != Method::decomposition && solve_from_memory()) return;
   if (!exactly && settings_.method == Method::automatic && solve_boxes()) return;
   out_.method = Method::expansion;
+  difference_.turn(buffers_.posed);
   ExpansionResult result;
   if (within_range()) {
     result = expand();
@@ -75,6 +77,7 @@ bool PolytopeQuery::solve_boxes() {
   out_.method = Method::overlay;
   out_.statistics.facets_visited += kBoxAxes;
   if (boxes.status == BoxPairStatus::separated) {
+    difference_.turn(buffers_.posed);
     ExpansionResult result;
     result.normal = boxes.normal;
     return fill_separated(result);
@@ -96,6 +99,7 @@ ExpansionResult PolytopeQuery::expand() {
     result = expansion.resume(goal());
     answered = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;
     out_.warm = answered;
+    memory_held_ = expansion.facets_visited() == 1;
   }
   if (!answered) {
     const Vec3 start = warm_ ? warm_->state().direction : Vec3(Vec3::Zero());
@@ -104,43 +108,6 @@ ExpansionResult PolytopeQuery::expand() {
   out_.statistics.support_calls += expansion.support_calls();
   out_.statistics.facets_visited += expansion.facets_visited();
   return result;
-}
-
-/// Puts the last surface at the present poses. False when there is none for this pair.
-bool PolytopeQuery::restore() {
-  WarmCertificate::State& state = warm_->state();
-  if (state.vertices_a != pair_.a->num_vertices() || state.vertices_b != pair_.b->num_vertices() ||
-      state.radius_a != pair_.a->radius() || state.radius_b != pair_.b->radius()) {
-    warm_->clear();
-  }
-  if (state.faces.empty()) return false;
-  Surface& surface = buffers_.surface;
-  surface.clear();
-  for (const auto& v : state.vertices) surface.vertices.push_back(difference_.vertex(v.a, v.b));
-  surface.restore(state.faces);
-  return true;
-}
-
-void PolytopeQuery::remember(const ExpansionResult& result) {
-  if (!warm_) return;
-  WarmCertificate::State& state = warm_->state();
-  state.vertices_a = pair_.a->num_vertices();
-  state.vertices_b = pair_.b->num_vertices();
-  state.radius_a = pair_.a->radius();
-  state.radius_b = pair_.b->radius();
-  state.direction = result.normal;
-  // A certificate that held as it stood is remembered already.
-  if (out_.warm && result.status == ExpansionStatus::certified &&
-      buffers_.surface.vertices.size() == state.vertices.size()) {
-    return;
-  }
-  state.vertices.clear();
-  state.faces.clear();
-  // A closed triangulated surface of F faces has F / 2 + 2 vertices.
-  state.vertices.reserve(kMaxCachedFaces / 2 + 2);
-  state.faces.reserve(kMaxCachedFaces);
-  if (result.status != ExpansionStatus::certified || buffers_.surface.size() > kMaxCachedFaces) return;
-  buffers_.surface.save(state.vertices, state.faces);
 }
 
 void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,

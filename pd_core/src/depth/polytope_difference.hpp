@@ -31,19 +31,21 @@ struct PosedVerticesPair {
 
 class PolytopeDifference {
  public:
-  /// `posed` is a buffer; it must live as long as the difference.
-  PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
-                     PosedVerticesPair& posed)
+  /// Of supports it can `confirm` only, until `turn` is called.
+  PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b)
       : a_(a),
         b_(b),
         rotation_a_(pose_a.rotation()),
         rotation_b_(pose_b.rotation()),
         offset_(pose_b.translation() - pose_a.translation()),
         reach_(a.radius() + b.radius() + offset_.norm()),
-        climbs_(a.num_vertices() > kScanLimit || b.num_vertices() > kScanLimit) {
+        climbs_(a.num_vertices() > kScanLimit || b.num_vertices() > kScanLimit) {}
+
+  /// Makes ready for supports. `posed` is a buffer; it must live as long as the difference.
+  void turn(PosedVerticesPair& posed) {
     if (climbs_) return;
-    posed_a_ = posed.a.turn(a, -rotation_a_);
-    posed_b_ = posed.b.turn(b, rotation_b_);
+    posed_a_ = posed.a.turn(a_, -rotation_a_);
+    posed_b_ = posed.b.turn(b_, rotation_b_);
   }
 
   /// A point of P that maximises <x, direction>, found from a vertex already at hand (`near`, or nullptr).
@@ -79,7 +81,25 @@ class PolytopeDifference {
               ia,
               ib};
     }
+    return turned_vertex(ia, ib);
+  }
+  /// The same whether `turn` was called or not.
+  [[nodiscard]] DifferenceVertex turned_vertex(int ia, int ib) const {
     return {(rotation_b_ * b_.vertex(ib) - rotation_a_ * a_.vertex(ia)) + offset_, ia, ib};
+  }
+
+  /// Whether one of the pairs of these corners is a support as `certified_support` returns it, found without a search:
+  /// every edge of a body that leaves the corners' vertices must descend for certain.
+  [[nodiscard]] bool confirm_support(const Vec3& direction, DifferenceVertex& s,
+                                     const DifferenceVertex (&corners)[3]) const {
+    const Vec3 on_a = -(rotation_a_.transpose() * direction);
+    const Vec3 on_b = rotation_b_.transpose() * direction;
+    const int ia = confirmed_support_vertex(a_, on_a, {corners[0].a, corners[1].a, corners[2].a});
+    if (ia < 0) return false;
+    const int ib = confirmed_support_vertex(b_, on_b, {corners[0].b, corners[1].b, corners[2].b});
+    if (ib < 0) return false;
+    s = turned_vertex(ia, ib);
+    return true;
   }
 
   /// Replaces `s` by a maximiser within `support_error()` of the true one: hill climbing compares neighbours in doubles
@@ -94,6 +114,10 @@ class PolytopeDifference {
     return vertex(certified_support_vertex(a_, on_a, s.a, stack), certified_support_vertex(b_, on_b, s.b, stack));
   }
 
+  [[nodiscard]] const ConvexPolytope& a() const { return a_; }
+  [[nodiscard]] const ConvexPolytope& b() const { return b_; }
+  [[nodiscard]] const Mat3& rotation_a() const { return rotation_a_; }
+  [[nodiscard]] const Mat3& rotation_b() const { return rotation_b_; }
   /// t_B - t_A.
   [[nodiscard]] const Vec3& offset() const { return offset_; }
   /// The vertices of -A and of B, turned but not moved; only where neither body `climbs`.

@@ -22,15 +22,18 @@ class PolytopeQuery {
         buffers_(buffers),
         warm_(warm),
         out_(out),
-        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b, buffers.posed) {}
+        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b) {}
 
   void solve();
 
  private:
-  // The order of methods, and the memory of the pair: polytope_depth.cpp
+  // The order of methods: polytope_depth.cpp
   [[nodiscard]] ExpansionGoal goal() const;
   bool solve_boxes();
   ExpansionResult expand();
+
+  // The memory of the pair: polytope_memory.cpp
+  bool solve_from_memory();
   bool restore();
   void remember(const ExpansionResult& result);
   /// Sizes outside this range are left to the exact engines, which rescale.
@@ -39,9 +42,10 @@ class PolytopeQuery {
   // Answers from doubles: polytope_answers.cpp
   void set_depth(double lower, double upper, const Vec3& normal);
   void fill_overlapping(const ExpansionResult& result);
+  void fill_overlapping(const DifferenceVertex (&corners)[3], const double (&weights)[3]);
   bool fill_separated(const ExpansionResult& result);
   bool solve_among_ties(const ExpansionResult& result);
-  void project(const SurfaceTriangle& face, const Vec3& normal, double (&weights)[3]) const;
+  void corners_of(int f, DifferenceVertex (&corners)[3]) const;
   [[nodiscard]] int face_below_origin(int f, const Vec3& normal) const;
   void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count);
   void pair_features();
@@ -67,6 +71,7 @@ class PolytopeQuery {
   Bracket bracket_ = Bracket::tightest;
   PairId start_[4];
   int start_count_ = 0;
+  bool memory_held_ = false;  ///< the surface is the one remembered, as it was
 };
 
 }  // namespace pd::detail

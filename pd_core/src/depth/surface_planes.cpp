@@ -131,4 +131,39 @@ PD_CLONES int least_key(const double* keys, int count) {
   }
 }
 
+PD_CLONES std::uint64_t keys_up_to(const double* keys, int count, double limit) {
+  Flags found = {0, 0, 0, 0};
+  Flags bits = {1, 2, 4, 8};
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes next;
+    load(next, keys + i);
+    found |= (next <= limit) & bits;
+    bits <<= kLanes;
+  }
+  return static_cast<std::uint64_t>((found[0] | found[1]) | (found[2] | found[3]));
+}
+
+PD_CLONES double least_clearance(const PlaneArrays& planes, int count, double x, double y, double z, double slack) {
+  const Lanes zero = {0, 0, 0, 0};
+  const Lanes lowest = zero - std::numeric_limits<double>::max();
+  Lanes least = zero + std::numeric_limits<double>::infinity();
+  for (int i = 0; i < padded_to_block(count); i += kLanes) {
+    Points normal;
+    Lanes level;
+    load(normal.x, planes.nx + i);
+    load(normal.y, planes.ny + i);
+    load(normal.z, planes.nz + i);
+    load(level, planes.level + i);
+    const Lanes below = level - (normal.x * x + normal.y * y + normal.z * z) - slack;
+    const Lanes squared = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
+    const Lanes size = below < zero ? -below : below;
+    Lanes key = squared > zero ? below * size / squared : lowest;
+    key = level < std::numeric_limits<double>::infinity() ? key : level;
+    least = key < least ? key : least;
+  }
+  const double low = least[1] < least[0] ? least[1] : least[0];
+  const double high = least[3] < least[2] ? least[3] : least[2];
+  return high < low ? high : low;
+}
+
 }  // namespace pd::detail

@@ -86,4 +86,29 @@ int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int
   return best;
 }
 
+int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, const std::array<int, 3>& vertices) {
+  const double* const x = p.x();
+  const double* const y = p.y();
+  const double* const z = p.z();
+  const double size = direction.cwiseAbs().sum();
+  int best = -1;
+  double best_value = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int v = vertices[i];
+    if ((i > 0 && v == vertices[0]) || (i > 1 && v == vertices[1])) continue;
+    const Vec3 from(x[v], y[v], z[v]);
+    for (const std::int32_t w : p.neighbours(v)) {
+      const Vec3 edge(x[w] - from.x(), y[w] - from.y(), z[w] - from.z());
+      // As in certified_support_vertex.
+      if (edge.dot(direction) < -8 * 0x1p-53 * edge.cwiseAbs().maxCoeff() * size) continue;
+      if (w != vertices[0] && w != vertices[1] && w != vertices[2]) return -1;
+    }
+    const double value = from.dot(direction);
+    if (best >= 0 && value <= best_value) continue;
+    best = v;
+    best_value = value;
+  }
+  return best;
+}
+
 }  // namespace pd::detail

@@ -2,6 +2,7 @@
 /// The vertex of a polytope farthest in a direction of its own frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,5 +31,9 @@ int nearly_support_vertex(const ConvexPolytope& polytope, const Vec3& direction,
 /// certain: |<v, direction> - max| <= 6u |v| |direction|. `stack` is a buffer.
 int certified_support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int v,
                              std::vector<std::int32_t>& stack);
+
+/// The best of three vertices (repetitions allowed) if it is a maximiser as `certified_support_vertex` returns it:
+/// every edge that leaves the three descends for certain, so by convexity they hold the maximum. Otherwise -1.
+int confirmed_support_vertex(const ConvexPolytope& polytope, const Vec3& direction, const std::array<int, 3>& vertices);
 
 }  // namespace pd::detail

@@ -1,5 +1,6 @@
 #include "shape/vertex_arrays.hpp"
 
+#include <cstddef>
 #include <cstdint>
 
 #include "numeric/instruction_sets.hpp"
@@ -61,6 +62,36 @@ PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
   const double winner = second < first ? second : first;
   // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
   return winner < v.count ? static_cast<int>(winner) : 0;
+}
+
+/// Four values by their ids.
+PD_INLINE void gather(Lanes& to, const double* from, const std::int32_t* ids) {
+  to = Lanes{from[ids[0]], from[ids[2]], from[ids[4]], from[ids[6]]};
+}
+
+/// Four pairs; `ids` and `out` as in pose_pairs.
+PD_INLINE void pose_four(const PosedBodies& bodies, const std::int32_t* ids, double* out) {
+  Lanes ax, ay, az, bx, by, bz, id;
+  gather(ax, bodies.a.x, ids);
+  gather(ay, bodies.a.y, ids);
+  gather(az, bodies.a.z, ids);
+  gather(bx, bodies.b.x, ids + 1);
+  gather(by, bodies.b.y, ids + 1);
+  gather(bz, bodies.b.z, ids + 1);
+  __builtin_memcpy(&id, ids, sizeof(Lanes));
+  const double* const a = bodies.matrix_a;
+  const double* const b = bodies.matrix_b;
+  const Lanes x = ((bx * b[0] + by * b[1] + bz * b[2]) - (ax * a[0] + ay * a[1] + az * a[2])) + bodies.offset[0];
+  const Lanes y = ((bx * b[3] + by * b[4] + bz * b[5]) - (ax * a[3] + ay * a[4] + az * a[5])) + bodies.offset[1];
+  const Lanes z = ((bx * b[6] + by * b[7] + bz * b[8]) - (ax * a[6] + ay * a[7] + az * a[8])) + bodies.offset[2];
+  const Lanes xy_even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
+  const Lanes xy_odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  const Lanes zi_even = __builtin_shufflevector(z, id, 0, 4, 2, 6);
+  const Lanes zi_odd = __builtin_shufflevector(z, id, 1, 5, 3, 7);
+  store(out, __builtin_shufflevector(xy_even, zi_even, 0, 1, 4, 5));
+  store(out + 4, __builtin_shufflevector(xy_odd, zi_odd, 0, 1, 4, 5));
+  store(out + 8, __builtin_shufflevector(xy_even, zi_even, 2, 3, 6, 7));
+  store(out + 12, __builtin_shufflevector(xy_odd, zi_odd, 2, 3, 6, 7));
 }
 
 typedef float Floats __attribute__((vector_size(32)));
@@ -139,6 +170,21 @@ PD_CLONES void turn_vertices(const VertexArrays& vertices, const double (&matrix
     heights(turned, vertices, i, {matrix[6], matrix[7], matrix[8]});
     store(z + i, turned);
   }
+}
+
+PD_CLONES void pose_pairs(const PosedBodies& bodies, const std::int32_t* ids, int count, double* out) {
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes) pose_four(bodies, ids + 2 * i, out + 4 * i);
+  if (i == count) return;
+  std::int32_t last_ids[2 * kLanes];
+  double last[4 * kLanes];
+  for (int k = 0; k < kLanes; ++k) {
+    const int from = i + k < count ? i + k : i;
+    last_ids[2 * k] = ids[2 * from];
+    last_ids[2 * k + 1] = ids[2 * from + 1];
+  }
+  pose_four(bodies, last_ids, last);
+  __builtin_memcpy(out + 4 * i, last, sizeof(double) * 4 * static_cast<std::size_t>(count - i));
 }
 
 }  // namespace pd::detail

@@ -5,6 +5,8 @@
 /// same bits on every instruction set.
 #pragma once
 
+#include <cstdint>
+
 #include "pd/shape/convex_polytope.hpp"
 
 namespace pd::detail {
@@ -43,5 +45,16 @@ int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy,
 
 /// Writes matrix * vertex for every vertex and its padding; `matrix` is row by row.
 void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z);
+
+/// Vertices of two bodies by their ids, and where they meet: row i of `out`, four doubles wide, is
+/// B's matrix * b - A's matrix * a + offset for the pair (a, b) = ids[2 i], ids[2 i + 1], followed by these two ids.
+struct PosedBodies {
+  VertexArrays a;
+  VertexArrays b;
+  double matrix_a[9];  ///< row by row
+  double matrix_b[9];
+  double offset[3];
+};
+void pose_pairs(const PosedBodies& bodies, const std::int32_t* ids, int count, double* out);
 
 }  // namespace pd::detail

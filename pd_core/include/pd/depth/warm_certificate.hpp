@@ -1,16 +1,19 @@
 /// @file
-/// The memory of one pair between frames: the last surface inside P as vertex-id pairs and triangles.
+/// The memory of one pair between frames: the last surface inside P as vertex-id pairs and triangles, and how far its
+/// planes were from the origin when they were last computed.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pd/numeric/vector.hpp"
+#include "pd/shape/convex_polytope.hpp"
 
 namespace pd {
 
-/// Opaque and movable. Holds for one pair of shapes; given to another pair it is refused and starts afresh (the answer
-/// is right in any case: a warm answer is certified from the present poses alone).
+/// Opaque and movable. Holds for one pair of shapes and shares their storage; given to another pair it is refused and
+/// starts afresh.
 class WarmCertificate {
  public:
   WarmCertificate() = default;
@@ -27,6 +30,18 @@ class WarmCertificate {
     std::int16_t vertex[3];
     std::int16_t neighbour[3];
   };
+  /// When the planes of all faces were last computed, and what that says as long as the bodies have not moved far.
+  struct Reference {
+    std::optional<ConvexPolytope> a, b;  ///< the very shapes: what was measured on others says nothing
+    Mat3 rotation_a = Mat3::Zero();
+    Mat3 rotation_b = Mat3::Zero();
+    Vec3 offset = Vec3::Zero();  ///< t_B - t_A
+    Vec3 inner = Vec3::Zero();   ///< a point that every face has behind it ...
+    double clearance = 0;        ///< ... by this much at least; 0: nothing is known
+    double nearest = 0;          ///< the least distance of a face's plane from the origin, rounded down
+    double largest = 0;          ///< |coordinate| of the vertices
+    std::vector<double> keys;    ///< of the faces (Surface::key), padded to whole blocks
+  };
   /// For the engines.
   struct State {
     /// The shapes by content, not by address: the same calls give the same bits wherever memory lies.
@@ -37,6 +52,7 @@ class WarmCertificate {
     Vec3 direction = Vec3::Zero();  ///< last normal, or last separating direction
     std::vector<CachedVertex> vertices;
     std::vector<CachedFace> faces;
+    Reference reference;
   };
   [[nodiscard]] State& state() { return state_; }
 
