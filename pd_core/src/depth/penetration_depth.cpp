@@ -52,7 +52,7 @@ void WarmCertificate::clear() { state_ = State(); }
 std::size_t WarmCertificate::memory_bytes() const {
   return sizeof(*this) + state_.vertices.capacity() * sizeof(CachedVertex) +
          state_.faces.capacity() * sizeof(CachedFace) +
-         state_.reference.keys.capacity() * sizeof(double);
+         (state_.reference.distances.capacity() + state_.reference.spreads.capacity()) * sizeof(float);
 }
 
 namespace {

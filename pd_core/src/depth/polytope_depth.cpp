@@ -19,10 +19,10 @@ void PolytopeQuery::solve() {
     solve_by_overlay();
     return;
   }
-  if (!exactly && settings_.method != Method::decomposition && solve_from_memory()) return;
+  doubles_suffice_ = !exactly && settings_.method != Method::decomposition;
+  if (doubles_suffice_ && solve_from_memory()) return;
   if (!exactly && settings_.method == Method::automatic && solve_boxes()) return;
   out_.method = Method::expansion;
-  difference_.turn(buffers_.posed);
   ExpansionResult result;
   if (within_range()) {
     result = expand();
@@ -92,16 +92,20 @@ bool PolytopeQuery::solve_boxes() {
 }
 
 ExpansionResult PolytopeQuery::expand() {
-  Expansion<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
   ExpansionResult result;
-  bool answered = false;
-  if (warm_ && restore()) {
+  const bool restored = warm_ && restore();
+  if (restored && doubles_suffice_ && hold(result)) {
+    out_.warm = memory_held_ = true;
+    return result;
+  }
+  difference_.turn(buffers_.posed);
+  Expansion<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
+  if (restored) {
     result = expansion.resume(goal());
-    answered = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;
-    out_.warm = answered;
+    out_.warm = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;
     memory_held_ = expansion.facets_visited() == 1;
   }
-  if (!answered) {
+  if (!out_.warm) {
     const Vec3 start = warm_ ? warm_->state().direction : Vec3(Vec3::Zero());
     result = expansion.run(start, goal());
   }

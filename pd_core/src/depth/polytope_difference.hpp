@@ -88,6 +88,18 @@ class PolytopeDifference {
     return {(rotation_b_ * b_.vertex(ib) - rotation_a_ * a_.vertex(ia)) + offset_, ia, ib};
   }
 
+  /// `turned_vertex` of many pairs of ids {a, b}.
+  template <class Pair>
+  void turned_vertices(const Pair* pairs, int count, DifferenceVertex* out) const {
+    static_assert(sizeof(Pair) == 2 * sizeof(std::int32_t));
+    PosedBodies bodies{arrays_of(a_), arrays_of(b_), {}, {}, {offset_.x(), offset_.y(), offset_.z()}};
+    for (int i = 0; i < 9; ++i) {
+      bodies.matrix_a[i] = rotation_a_(i / 3, i % 3);
+      bodies.matrix_b[i] = rotation_b_(i / 3, i % 3);
+    }
+    pose_pairs(bodies, &pairs->a, count, out->x.data());
+  }
+
   /// Whether one of the pairs of these corners is a support as `certified_support` returns it, found without a search:
   /// every edge of a body that leaves the corners' vertices must descend for certain.
   [[nodiscard]] bool confirm_support(const Vec3& direction, DifferenceVertex& s,

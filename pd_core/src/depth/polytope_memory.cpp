@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "depth/polytope_query.hpp"
@@ -5,29 +6,67 @@
 
 namespace pd::detail {
 
-/// Most frames of a moving pair: the nearest face of the remembered surface is still a supporting plane of P. Computes
-/// a few planes and asks the neighbours of that face's vertices. False, and nothing said, otherwise.
+namespace {
+
+/// Frames without a reference after one that was of no use.
+constexpr int kLongestPause = 15;
+
+}  // namespace
+
+/// Most frames of a slowly moving pair: the nearest face of the remembered surface is still a supporting plane of P.
+/// Computes a few planes and asks the neighbours of that face's vertices. False, and nothing said, otherwise.
 bool PolytopeQuery::solve_from_memory() {
-  if (!warm_ || !within_range()) return false;
+  if (!warm_ || !(warm_->state().reference.clearance > 0) || !within_range()) return false;
   const WarmCertificate::State& state = warm_->state();
-  const WarmCertificate::Reference& since = state.reference;
-  if (!since.a || !since.a->same_storage(*pair_.a) || !since.b->same_storage(*pair_.b)) return false;
+  WarmCertificate::Reference& since = warm_->state().reference;
+  if (!since.a->same_storage(*pair_.a) || !since.b->same_storage(*pair_.b)) return false;
   RememberedFace near;
-  if (!nearest_remembered(state, difference_, near)) return false;
-  const double squared = near.normal.squaredNorm();
-  if (!(squared > 0)) return false;
-  const Vec3 unit = near.normal / std::sqrt(squared);
-  DifferenceVertex s;
-  if (!difference_.confirm_support(unit, s, near.corners)) return false;
-  const double lower = near.distance - face_error(difference_);
-  const double upper = s.x.dot(unit) + support_plane_error(difference_);
-  if (!reached(goal(), lower, upper, near.largest)) return false;
+  ExpansionResult result;
+  if (!nearest_remembered(state, difference_, near) ||
+      !supported(near.corners, near.normal, near.distance, near.largest, result)) {
+    since.pause = since.uses > 0 ? 0 : std::min(2 * since.pause_length + 1, kLongestPause);
+    since.pause_length = since.pause;
+    return false;
+  }
+  ++since.uses;
   out_.method = Method::expansion;
   out_.warm = true;
   out_.statistics.support_calls += 1;
   out_.statistics.facets_visited += near.faces_seen;
-  set_depth(lower, upper, unit);
+  set_depth(result.lower, result.upper, result.normal);
   fill_overlapping(near.corners, near.weights);
+  return true;
+}
+
+/// Whether the nearest face lies in a supporting plane of P, which its corners' neighbours tell: the depth.
+bool PolytopeQuery::supported(const DifferenceVertex (&corners)[3], const Vec3& normal, double distance, double largest,
+                              ExpansionResult& result) const {
+  const double squared = normal.squaredNorm();
+  if (!(squared > 0)) return false;
+  const Vec3 unit = normal / std::sqrt(squared);
+  DifferenceVertex s;
+  if (!difference_.confirm_support(unit, s, corners)) return false;
+  result.lower = distance - face_error(difference_);
+  result.upper = s.x.dot(unit) + support_plane_error(difference_);
+  if (!reached(goal(), result.lower, result.upper, largest)) return false;
+  result.status = ExpansionStatus::certified;
+  result.normal = unit;
+  return true;
+}
+
+/// The restored surface answers as it stands.
+bool PolytopeQuery::hold(ExpansionResult& result) {
+  const Surface& surface = buffers_.surface;
+  const int f = surface.nearest();
+  if (!(surface.key(f) > 0)) return false;
+  double largest = 0;
+  for (const DifferenceVertex& v : surface.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+  DifferenceVertex corners[3];
+  corners_of(f, corners);
+  if (!supported(corners, surface.normal(f), std::sqrt(surface.key(f)), largest, result)) return false;
+  result.face = f;
+  out_.statistics.support_calls += 1;
+  out_.statistics.facets_visited += surface.size();
   return true;
 }
 
@@ -41,7 +80,8 @@ bool PolytopeQuery::restore() {
   if (state.faces.empty()) return false;
   Surface& surface = buffers_.surface;
   surface.clear();
-  for (const auto& v : state.vertices) surface.vertices.push_back(difference_.vertex(v.a, v.b));
+  surface.vertices.resize(state.vertices.size());
+  difference_.turned_vertices(state.vertices.data(), static_cast<int>(state.vertices.size()), surface.vertices.data());
   surface.restore(state.faces);
   return true;
 }
@@ -56,17 +96,23 @@ void PolytopeQuery::remember(const ExpansionResult& result) {
   state.direction = result.normal;
   state.reference.clearance = 0;
   const bool certified = result.status == ExpansionStatus::certified;
-  if (!(memory_held_ && certified)) {
-    state.vertices.clear();
-    state.faces.clear();
-    state.vertices.reserve(kMaxRememberedVertices);
-    state.faces.reserve(kMaxRememberedFaces);
-    state.reference.keys.reserve(kMaxRememberedFaces);
-    if (!certified || buffers_.surface.size() > kMaxRememberedFaces) return;
-    buffers_.surface.save(state.vertices, state.faces);
+  if (memory_held_ && certified) {
+    // Where frames differ so much that the surface grew or the last reference was of no use, the next one would not be,
+    // either.
+    if (state.reference.pause > 0) {
+      --state.reference.pause;
+    } else {
+      set_reference(state, buffers_.surface, difference_);
+    }
+    return;
   }
-  buffers_.surface.save_keys(state.reference.keys);
-  set_reference(state, buffers_.surface, difference_);
+  state.vertices.clear();
+  state.faces.clear();
+  state.vertices.reserve(kMaxRememberedVertices);
+  state.faces.reserve(kMaxRememberedFaces);
+  state.reference.distances.reserve(kMaxRememberedFaces);
+  state.reference.spreads.reserve(kMaxRememberedFaces);
+  if (certified && buffers_.surface.size() <= kMaxRememberedFaces) buffers_.surface.save(state.vertices, state.faces);
 }
 
 }  // namespace pd::detail

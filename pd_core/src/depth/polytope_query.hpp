@@ -34,6 +34,9 @@ class PolytopeQuery {
 
   // The memory of the pair: polytope_memory.cpp
   bool solve_from_memory();
+  bool supported(const DifferenceVertex (&corners)[3], const Vec3& normal, double distance, double largest,
+                 ExpansionResult& result) const;
+  bool hold(ExpansionResult& result);
   bool restore();
   void remember(const ExpansionResult& result);
   /// Sizes outside this range are left to the exact engines, which rescale.
@@ -71,7 +74,8 @@ class PolytopeQuery {
   Bracket bracket_ = Bracket::tightest;
   PairId start_[4];
   int start_count_ = 0;
-  bool memory_held_ = false;  ///< the surface is the one remembered, as it was
+  bool doubles_suffice_ = false;  ///< neither the tightest bracket nor another method is asked for
+  bool memory_held_ = false;      ///< the surface is the one remembered, as it was
 };
 
 }  // namespace pd::detail

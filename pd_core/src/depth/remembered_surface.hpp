@@ -2,9 +2,10 @@
 /// A remembered surface looked at where it may have come near: most frames need a few of its planes only.
 ///
 /// When all planes were last computed (WarmCertificate::Reference), every face f was d_f from the origin and at least c
-/// from an inner point q, with both behind it. Since then every point of the surface has moved by at most delta. Then
-/// 1. if delta < c, no face has crossed q, so the surface still winds round q as it did, at least once;
-/// 2. a face with d_f > delta + rho is farther than rho from the origin still, and has not met the segment from the
+/// from an inner point q, with both behind it. Its points have moved by at most delta_f since: by as much as a base
+/// vertex has, and by both bodies' turning over the distance from there. Then
+/// 1. if delta_f < c for all f, no face has crossed q, so the surface still winds round q as it did, at least once;
+/// 2. a face with d_f - delta_f > rho is farther than rho from the origin still, and has not met the segment from the
 ///    origin to q (a plane's distance is linear along it);
 /// 3. the planes of the other faces are computed anew; where they have the origin and q behind them, they miss that
 ///    segment, too, so the surface winds round the origin, and round the whole ball that no face reaches.

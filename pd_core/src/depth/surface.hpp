@@ -75,14 +75,6 @@ class Surface {
                               {renumbered(face.adj[0]), renumbered(face.adj[1]), renumbered(face.adj[2])}});
     }
   }
-  /// The keys of the faces in use, in the order of `save`, padded to whole blocks.
-  void save_keys(std::vector<double>& to) const {
-    to.clear();
-    for (int f = 0; f < slots_; ++f) {
-      if (keys_[f] != kRemoved) to.push_back(keys_[f]);
-    }
-    to.resize(static_cast<std::size_t>(padded_to_block(in_use_)), kRemoved);
-  }
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
   /// bound).
   bool start_tetrahedron(double flat);
@@ -94,8 +86,6 @@ class Surface {
   /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
   /// four that spread far; the others are dropped. False where they are flat.
   bool rebuild(double flat);
-  /// Keys of all slots, padded to whole blocks.
-  [[nodiscard]] const double* keys() const { return keys_.data(); }
   /// The distance by which every face has x behind it at least, sign * square; no normal is trusted further than
   /// `slack` (six volumes) tells.
   [[nodiscard]] double clearance(const Vec3& x, double slack) {

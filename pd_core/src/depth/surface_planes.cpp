@@ -14,6 +14,11 @@ typedef double Lanes __attribute__((vector_size(32)));
 typedef std::int64_t Flags __attribute__((vector_size(32)));
 constexpr int kLanes = kPlaneLanes;
 
+typedef float Floats __attribute__((vector_size(32)));
+typedef std::int32_t Ids __attribute__((vector_size(32)));
+typedef std::int32_t HalfIds __attribute__((vector_size(16)));
+static_assert(kPlaneBlock == 8);
+
 struct Points {
   Lanes x, y, z;
 };
@@ -131,16 +136,18 @@ PD_CLONES int least_key(const double* keys, int count) {
   }
 }
 
-PD_CLONES std::uint64_t keys_up_to(const double* keys, int count, double limit) {
-  Flags found = {0, 0, 0, 0};
-  Flags bits = {1, 2, 4, 8};
-  for (int i = 0; i < count; i += kLanes) {
-    Lanes next;
-    load(next, keys + i);
-    found |= (next <= limit) & bits;
-    bits <<= kLanes;
+PD_CLONES std::uint64_t near_faces(const float* distances, const float* spreads, int count, float turn, float limit) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < count; i += kPlaneBlock) {
+    Floats distance, spread;
+    __builtin_memcpy(&distance, distances + i, sizeof(Floats));
+    __builtin_memcpy(&spread, spreads + i, sizeof(Floats));
+    const Ids found = (distance - turn * spread <= limit) & Ids{1, 2, 4, 8, 16, 32, 64, 128};
+    const HalfIds half =
+        __builtin_shufflevector(found, found, 0, 1, 2, 3) | __builtin_shufflevector(found, found, 4, 5, 6, 7);
+    bits |= static_cast<std::uint64_t>((half[0] | half[1]) | (half[2] | half[3])) << i;
   }
-  return static_cast<std::uint64_t>((found[0] | found[1]) | (found[2] | found[3]));
+  return bits;
 }
 
 PD_CLONES double least_clearance(const PlaneArrays& planes, int count, double x, double y, double z, double slack) {

@@ -36,11 +36,19 @@ class WarmCertificate {
     Mat3 rotation_a = Mat3::Zero();
     Mat3 rotation_b = Mat3::Zero();
     Vec3 offset = Vec3::Zero();  ///< t_B - t_A
+    CachedVertex base{0, 0};     ///< a vertex of the nearest face
+    int nearest = 0;             ///< that face
     Vec3 inner = Vec3::Zero();   ///< a point that every face has behind it ...
     double clearance = 0;        ///< ... by this much at least; 0: nothing is known
-    double nearest = 0;          ///< the least distance of a face's plane from the origin, rounded down
     double largest = 0;          ///< |coordinate| of the vertices
-    std::vector<double> keys;    ///< of the faces (Surface::key), padded to whole blocks
+    double widest = 0;           ///< the largest spread
+    int uses = 0;                ///< frames that it has answered
+    int pause_length = 0;        ///< frames to go without one after one that answered none
+    int pause = 0;               ///< how many of them are left
+    // By face, padded to whole blocks: the distance of its plane from the origin, rounded down, and how far its corners
+    // are from the base at most, in A and in B together, rounded up.
+    std::vector<float> distances;
+    std::vector<float> spreads;
   };
   /// For the engines.
   struct State {
