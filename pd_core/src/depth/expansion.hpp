@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "depth/expansion_budget.hpp"
 #include "depth/surface.hpp"
 
 namespace pd::detail {
@@ -40,6 +41,7 @@ struct ExpansionGoal {
   double absolute = 0;  ///< or when upper - lower <= absolute times the largest |coordinate| seen
   double touching = 0;  ///< see ExpansionStatus::touching
   int budget = std::numeric_limits<int>::max();
+  int vertices = 0;  ///< of both bodies, for ExpansionBudget; 0: given up after `budget` steps only
   /// `undecided` when a lower bound above `fold_from` falls by more than `fold`: the surface has folded.
   double fold = std::numeric_limits<double>::infinity();
   double fold_from = 0;
@@ -193,6 +195,7 @@ class Expansion {
     for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     const double error = lower_error();
     double highest = goal.fold_from;
+    ExpansionBudget budget(goal.vertices);
     for (int step = 0; step < goal.budget; ++step) {
       const int f = surface_.nearest();
       ++facets_visited_;
@@ -242,6 +245,7 @@ class Expansion {
         height = s.x.dot(unit);
         if (height - distance <= 4 * error) return undecided(result);
       }
+      if (budget.spent(step, distance, height, surface_)) break;
       add_vertex(s);
       largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
       if (!surface_.insert(f, static_cast<int>(surface_.vertices.size()) - 1)) return undecided(result);

@@ -19,7 +19,7 @@ PD_INLINE void load(Singles& to, const float* from) { __builtin_memcpy(&to, from
 
 }  // namespace
 
-PD_CLONES void probes_beyond(const double* normals, int count, const ProbeArrays& probes, float level,
+PD_CLONES void probes_beyond(const double* normals, int count, const ProbeArrays& probes, const float* levels,
                              std::uint32_t* masks) {
   constexpr int kRows = kMaskProbes / kSingles;
   Singles x[kRows], y[kRows], z[kRows];
@@ -35,7 +35,7 @@ PD_CLONES void probes_beyond(const double* normals, int count, const ProbeArrays
     SingleFlags found = {0, 0, 0, 0, 0, 0, 0, 0};
     SingleFlags bits = {1, 2, 4, 8, 16, 32, 64, 128};
     for (int r = 0; r < kRows; ++r) {
-      found |= (x[r] * nx + y[r] * ny + z[r] * nz > level) & bits;
+      found |= (x[r] * nx + y[r] * ny + z[r] * nz > levels[i]) & bits;
       bits <<= kSingles;
     }
     const SingleFlags half = found | __builtin_shufflevector(found, found, 4, 5, 6, 7, 0, 1, 2, 3);

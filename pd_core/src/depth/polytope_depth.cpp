@@ -62,7 +62,8 @@ ExpansionGoal PolytopeQuery::goal() const {
   ExpansionGoal goal;
   goal.absolute = kCertifiedWidth;
   goal.relative = settings_.delta;
-  goal.budget = difference_.budget();
+  goal.vertices = pair_.a->num_vertices() + pair_.b->num_vertices();
+  goal.budget = ExpansionBudget::limit(goal.vertices);
   return goal;
 }
 

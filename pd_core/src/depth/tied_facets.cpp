@@ -1,6 +1,7 @@
 #include "depth/tied_facets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -73,25 +74,51 @@ class TiedFacetsSearch {
   [[nodiscard]] const ConvexPolytope& body(bool of_a) const { return of_a ? a_ : b_; }
   [[nodiscard]] const Pose& pose(bool of_a) const { return of_a ? pose_a_ : pose_b_; }
 
-  /// Single precision errs by less than 16 of its u for vectors of length 1 at most, with what a matrix that is a
-  /// rotation only up to rounding adds to a normal's length.
+  /// Vertices of one body that the surface uses: the first ones found stand far apart. Returns their number.
+  std::size_t choose_vertices(bool of_a, std::array<std::int32_t, kMaskProbes>& chosen) const {
+    std::size_t count = 0;
+    for (const DifferenceVertex& v : surface_.vertices) {
+      const std::int32_t vertex = of_a ? v.a : v.b;
+      const auto end = chosen.begin() + static_cast<std::ptrdiff_t>(count);
+      if (std::find(chosen.begin(), end, vertex) != end) continue;
+      chosen[count++] = vertex;
+      if (count == kMaskProbes) break;
+    }
+    return count;
+  }
+
+  /// The points of P that are tried against a facet: one of its own corners with chosen vertices of the other body. An
+  /// edge's two facets share such points.
+  ///
+  /// Single precision errs by less than 32 of its u where both terms have length 1 at most, with what a matrix that is
+  /// a rotation only up to rounding adds to a normal's length.
   void mark_far_facets(bool of_a) {
+    const ConvexPolytope& own = body(of_a);
+    const ConvexPolytope& other = body(!of_a);
     const Mat3 turn = normal_matrix(pose(of_a));
     const double stretch = std::sqrt(1 + (turn.transpose() * turn - Mat3::Identity()).norm());
-    const double scale = (of_a ? -1 : 1) / reach_;
+    const double growth = turn.col(0).dot(pose(of_a).rotation().col(0)) / reach_;
+    const double sign = of_a ? -1 : 1;
     ProbeArrays probes;
-    const std::size_t count = std::min<std::size_t>(kMaskProbes, surface_.vertices.size());
+    std::array<std::int32_t, kMaskProbes> chosen;
+    const std::size_t count = choose_vertices(!of_a, chosen);
     for (std::size_t k = 0; k < kMaskProbes; ++k) {
-      const Vec3 x = scale * (turn.transpose() * surface_.vertices[k < count ? k : 0].x);
+      const Vec3 posed = pose(!of_a).rotation() * other.vertex(chosen[k < count ? k : 0]);
+      const Vec3 x = turn.transpose() * (difference_.offset() - sign * posed) * (sign / reach_);
       probes.x[k] = static_cast<float>(x.x());
       probes.y[k] = static_cast<float>(x.y());
       probes.z[k] = static_cast<float>(x.z());
     }
-    const double level = radius_ * stretch + 0x1p-20;
     std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
-    const int facets = body(of_a).num_facets();
+    const int facets = own.num_facets();
     far.resize(static_cast<std::size_t>(facets));
-    probes_beyond(body(of_a).facet_normal(0).data(), facets, probes, static_cast<float>(level), far.data());
+    buffers_.levels.resize(static_cast<std::size_t>(facets));
+    const double level = radius_ * stretch + 0x1p-19;
+    for (int f = 0; f < facets; ++f) {
+      const double height = growth * own.vertex(own.facet_vertices(f)[0]).dot(own.facet_normal(f));
+      buffers_.levels[static_cast<std::size_t>(f)] = static_cast<float>(level - height);
+    }
+    probes_beyond(own.facet_normal(0).data(), facets, probes, buffers_.levels.data(), far.data());
   }
 
   void keep_edges(bool of_a) {
@@ -117,7 +144,7 @@ class TiedFacetsSearch {
   bool measure_facets(bool of_a, std::int64_t edges) {
     const std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
     const auto near = std::count(far.begin(), far.end(), 0U);
-    if (near > 16 + edges / 8) return false;
+    if (near > 16 + edges / 4) return false;
     if (near == 0) return true;
     const Mat3 turn = normal_matrix(pose(of_a)) * (of_a ? -1 : 1);
     for (std::size_t f = 0; f < far.size(); ++f) {

@@ -46,7 +46,8 @@ struct TiedFacetsBuffers {
     double upper;
     Vec3 normal;  ///< unit, outward, once `lower` is sharp
   };
-  std::vector<std::uint32_t> far_from_a;  ///< by facet: the probes that show it too far
+  std::vector<float> levels;              ///< by facet
+  std::vector<std::uint32_t> far_from_a;  ///< by facet: the points that show it too far
   std::vector<std::uint32_t> far_from_b;
   std::vector<std::int32_t> kept_a;  ///< half-edges
   std::vector<std::int32_t> kept_b;
