@@ -194,10 +194,10 @@ TEST(LineLanes, KeepExactlyTheLinesWithinTheRadius) {
   lines.count = kCount;
   for (std::size_t k = 0; k < 6; ++k) lines.coordinates[k] = coordinates[k].data();
   std::uint64_t near[2];
-  lines_near(lines, {0, 1, 0, 0, 0, 0}, {66.5 * 66.5, 1e-14}, near);
+  lines_near(lines, {0, 1, 0, 0, 0, 0}, 66.5, 1e-14, near);
   EXPECT_EQ(near[0], ~std::uint64_t{0});
   EXPECT_EQ(near[1], std::uint64_t{7});  // 64, 65, 66; no padding
-  lines_near(lines, {0, 1, 0, 0, 0, 0}, {2.5 * 2.5, 1e-14}, near);
+  lines_near(lines, {0, 1, 0, 0, 0, 0}, 2.5, 1e-14, near);
   EXPECT_EQ(near[0], std::uint64_t{7});
   EXPECT_EQ(near[1], std::uint64_t{0});
 }
@@ -205,16 +205,26 @@ TEST(LineLanes, KeepExactlyTheLinesWithinTheRadius) {
 TEST(LineLanes, SetABitForEachProbeBeyondANormalsLevel) {
   ProbeArrays probes;
   for (std::size_t k = 0; k < kMaskProbes; ++k) {
-    probes.x[k] = static_cast<float>(k) / 32;
+    probes.x[k] = static_cast<float>(k);
     probes.y[k] = -1;
     probes.z[k] = 0;
   }
   const double normals[6] = {1, 0, 0, 0, 1, 0};
-  const float levels[2] = {30.5F / 32, -0.5F};
+  const float levels[2] = {kMaskProbes - 1.5F, -0.5F};
   std::uint32_t masks[2];
   probes_beyond(normals, 2, probes, levels, masks);
-  EXPECT_EQ(masks[0], std::uint32_t{1} << 31);
+  EXPECT_EQ(masks[0], std::uint32_t{1} << (kMaskProbes - 1));
   EXPECT_EQ(masks[1], 0U);
+}
+
+TEST(ExpansionBudget, IsSpentOnEvenlySpreadFacetsBeforeTheyAreMet) {
+  Scratch scratch;
+  const scenes::PolytopePair pair = scenes::ball_pair(512, 2, 1);
+  const ConvexShape a(pair.a), b(pair.b);
+  const PenetrationDepth answer =
+      penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {.bracket = Bracket::certified});
+  EXPECT_NE(answer.method, Method::expansion);
+  EXPECT_LE(answer.statistics.support_calls, 224);
 }
 
 TEST(ExpansionBudget, LeavesRoundBodiesToTheExpansionAndRoofsToTheLanes) {

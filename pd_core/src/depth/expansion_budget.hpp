@@ -4,10 +4,11 @@
 ///
 /// What tells the two apart. Let g be the relative gap between the nearest face and the least height of a support so
 /// far. Where P has about N facets, N the vertices of both bodies, spread over all directions, its facets differ in
-/// distance by some 20 / N to 60 / N of it (measured on hulls of random points on spheres, N = 64 to 8192), and when g
-/// is below 1 / N only a few faces are left below that height. P with some N^2 facets on a patch (crossed roofs, the
+/// distance by some 20 / N to 60 / N of it (measured on hulls of 128 to 2048 random points on spheres), and when g is
+/// below 1 / N only a few faces are left below that height. P with some N^2 facets on a patch (crossed roofs, the
 /// families of [A] section 2 where K is quadratic) passes that mark with all of the patch still below, and each step
-/// adds two faces more. So an expansion is given up where g < 1 / N, many faces lie below, and steps add to them.
+/// adds two faces more. So an expansion is given up where g < 1 / N, many faces lie below, and steps add to them;
+/// and where after many steps all faces are below still.
 ///
 /// A fixed budget cannot do that: random hulls of 2048 vertices need 400 steps of .35 us and are done then, roofs of
 /// 128 need 660 for what takes others (tied_facets.hpp) the time of 100.
@@ -30,27 +31,28 @@ class ExpansionBudget {
   /// but for every 16th step, and then half a nanosecond a face.
   bool spent(int step, double distance, double height, const Surface& surface) {
     lowest_ = std::min(lowest_, height);
-    return step % kEvery == 0 && step > 0 && vertices_ > 0 && hopeless(distance, surface);
+    return step % kEvery == 0 && step > 0 && vertices_ > 0 && hopeless(step, distance, surface);
   }
 
   /// More steps than these are left to the overlay, which needs no more than some 4 times their time then.
-  static int limit(int vertices) {
-    const auto root = static_cast<int>(std::sqrt(static_cast<double>(vertices)));
-    return 64 + std::max(4 * root, vertices / 4);
-  }
+  static int limit(int vertices) { return std::max(patience(vertices), 64 + vertices / 4); }
 
  private:
   static constexpr int kEvery = 16;
+  /// In so many steps faces of hulls of random points have come to lie above the least height; of evenly spread ones,
+  /// all of whose facets are nearly tied, none has.
+  static int patience(int vertices) { return 64 + 4 * static_cast<int>(std::sqrt(static_cast<double>(vertices))); }
   /// Faces below that the expansion may well be done with: about as many steps are left then, and small bodies run out
   /// of vertices.
   [[nodiscard]] int few() const { return 40 + 4096 / vertices_; }
 
-  bool hopeless(double distance, const Surface& surface) {
+  bool hopeless(int step, double distance, const Surface& surface) {
     const int before = below_;
     below_ = 0;
     if (!(distance > 0)) return false;
     const double level = lowest_ * lowest_;
     for (int f = 0; f < surface.slots(); ++f) below_ += surface.key(f) < level;
+    if (step >= patience(vertices_) && 32 * below_ >= 31 * surface.size()) return true;
     return below_ > few() && below_ >= before + kEvery && (lowest_ - distance) * vertices_ < distance;
   }
 

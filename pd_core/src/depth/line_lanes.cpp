@@ -44,16 +44,21 @@ PD_CLONES void probes_beyond(const double* normals, int count, const ProbeArrays
   }
 }
 
-PD_CLONES void lines_near(const LineArrays& a, const std::array<double, 6>& b, const NearnessLimits& limits,
+PD_CLONES void lines_near(const LineArrays& a, const std::array<double, 6>& b, double radius, double rounding,
                           std::uint64_t* near) {
+  // |N| <= r sqrt(1 - t^2 + 4 rounding) + rounding, squared: N^2 + (r t)^2 <= limit.
+  const double limit =
+      (radius * radius * (1 + 4 * rounding) + 2 * rounding * radius * (1 + 2 * rounding) + rounding * rounding) *
+      (1 + 0x1p-46);
   const Lanes zero = {0, 0, 0, 0};
   const Lanes b0 = zero + b[0], b1 = zero + b[1], b2 = zero + b[2];
   const Lanes b3 = zero + b[3], b4 = zero + b[4], b5 = zero + b[5];
-  const Lanes one = zero + (1 + 4 * limits.rounding);
+  const Lanes t0 = zero + radius * b[0], t1 = zero + radius * b[1], t2 = zero + radius * b[2];
   for (int block = 0; block < a.count; block += kLineBlock) {
+    const int end = a.count < block + kLineBlock ? a.count : block + kLineBlock;
     Flags found = {0, 0, 0, 0};
     Flags bits = {1, 2, 4, 8};
-    for (int i = block; i < block + kLineBlock; i += kLanes) {
+    for (int i = block; i < end; i += kLanes) {
       Lanes m0, m1, m2, d0, d1, d2;
       load(m0, a.coordinates[0] + i);
       load(m1, a.coordinates[1] + i);
@@ -62,10 +67,8 @@ PD_CLONES void lines_near(const LineArrays& a, const std::array<double, 6>& b, c
       load(d1, a.coordinates[4] + i);
       load(d2, a.coordinates[5] + i);
       const Lanes n = ((b0 * m0 + b1 * m1) + (b2 * m2 + b3 * d0)) + (b4 * d1 + b5 * d2);
-      const Lanes t = b0 * d0 + b1 * d1 + b2 * d2;
-      const Lanes least = (n < zero ? -n : n) - limits.rounding;
-      const Lanes most = limits.radius_squared * (one - t * t);
-      found |= ((least <= zero) | (least * least <= most)) & bits;
+      const Lanes t = t0 * d0 + t1 * d1 + t2 * d2;
+      found |= (n * n + t * t <= limit) & bits;
       bits <<= kLanes;
     }
     near[block / kLineBlock] = static_cast<std::uint64_t>((found[0] | found[1]) | (found[2] | found[3]));

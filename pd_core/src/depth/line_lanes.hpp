@@ -12,7 +12,7 @@
 namespace pd::detail {
 
 /// So many points are tried against each normal; a word holds a bit for each.
-inline constexpr int kMaskProbes = 32;
+inline constexpr int kMaskProbes = 16;
 
 struct ProbeArrays {
   std::array<float, kMaskProbes> x, y, z;
@@ -30,13 +30,10 @@ struct LineArrays {
 inline constexpr int kLineBlock = 64;
 constexpr int padded_to_lines(int count) { return (count + kLineBlock - 1) / kLineBlock * kLineBlock; }
 
-struct NearnessLimits {
-  double radius_squared;
-  double rounding;  ///< of N and of t^2
-};
-
-/// Bit j % 64 of near[j / 64]: line j of A may be within the radius of the line `b` = (d, m), that is
-/// |N| <= r sqrt(1 - t^2) with N the product of the two and t = <d, d'>, up to rounding.
-void lines_near(const LineArrays& a, const std::array<double, 6>& b, const NearnessLimits& limits, std::uint64_t* near);
+/// Bit j % 64 of near[j / 64]: line j of A may be within `radius` of the line `b` = (d, m), that is |N| <= r sqrt(1 -
+/// t^2) with N the product of the two and t = <d, d'>.
+/// @param rounding  bound of the errors of N, of t^2, and of the lines themselves; it is allowed for.
+void lines_near(const LineArrays& a, const std::array<double, 6>& b, double radius, double rounding,
+                std::uint64_t* near);
 
 }  // namespace pd::detail

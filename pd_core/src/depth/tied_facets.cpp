@@ -230,8 +230,8 @@ class TiedFacetsSearch {
     for (std::size_t i = 0; i < buffers_.edges_b.size(); ++i) {
       const Edge& e = buffers_.edges_b[i];
       const Vec3 m = e.point.cross(e.direction);
-      lines_near(lines, {e.direction.x(), e.direction.y(), e.direction.z(), m.x(), m.y(), m.z()},
-                 {radius_ * radius_ * (1 + 64 * kU), rounding_}, buffers_.near.data());
+      lines_near(lines, {e.direction.x(), e.direction.y(), e.direction.z(), m.x(), m.y(), m.z()}, radius_, rounding_,
+                 buffers_.near.data());
       for (std::size_t word = 0; word < buffers_.near.size(); ++word) {
         for (std::uint64_t bits = buffers_.near[word]; bits != 0; bits &= bits - 1) {
           const std::size_t j = kLineBlock * word + static_cast<std::size_t>(std::countr_zero(bits));
