@@ -122,27 +122,28 @@ class Expansion {
   }
 
  private:
-  /// Support with its plane's height as an upper bound of the depth. False when it shows the bodies apart.
-  bool probe(const Vec3& unit, const DifferenceVertex* near, DifferenceVertex& s, ExpansionResult& result) {
-    s = difference_.search_support(unit, near);
+  /// Adds the support in a direction. False when it shows the bodies apart.
+  bool look(const Vec3& unit, ExpansionResult& result) { return take(unit, difference_.search_support(unit), result); }
+  bool look(const Vec3 (&units)[4], ExpansionResult& result) {
+    DifferenceVertex supports[4];
+    difference_.search_supports(units, supports);
+    for (int k = 0; k < 4; ++k) {
+      if (!take(units[k], supports[k], result)) return false;
+    }
+    return true;
+  }
+  bool take(const Vec3& unit, DifferenceVertex s, ExpansionResult& result) {
     ++support_calls_;
     if (s.x.dot(unit) < 0) {
       s = difference_.certified_support(unit, s, stack_);
-      if (s.x.dot(unit) < -bound_error()) {
+      const double height = s.x.dot(unit);
+      if (height < -bound_error()) {
         result.status = ExpansionStatus::separated;
-        result.upper = s.x.dot(unit) + bound_error();
+        result.upper = height + bound_error();
         result.normal = unit;
         return false;
       }
     }
-    return true;
-  }
-
-  /// Adds the support in a direction. False when it shows the bodies apart.
-  bool look(const Vec3& unit, ExpansionResult& result) {
-    DifferenceVertex s;
-    const DifferenceVertex* const near = surface_.vertices.empty() ? nullptr : &surface_.vertices.back();
-    if (!probe(unit, near, s, result)) return false;
     add_vertex(s);
     return true;
   }
@@ -152,9 +153,7 @@ class Expansion {
     const double sine = difference_.spread();
     Vec3 directions[4];
     surrounding_directions(direction, sine, directions);
-    for (const Vec3& d : directions) {
-      if (!look(d, result)) return false;
-    }
+    if (!look(directions, result)) return false;
     const double flat = flat_volume();
     if (surface_.start_tetrahedron(flat)) return true;
     // Repeated or nearly coplanar vertices: look farther round, in between the first three.
@@ -209,7 +208,7 @@ class Expansion {
       const double squared = normal.squaredNorm();
       if (!(squared > 0)) return undecided(result);
       // The search needs no unit vector, which takes a root and a quotient; both run beside it.
-      DifferenceVertex s = difference_.search_support(normal, difference_.climbs() ? best_hint(f, normal) : nullptr);
+      DifferenceVertex s = difference_.search_support(normal);
       ++support_calls_;
       const Vec3 unit = normal / std::sqrt(squared);
       double height = s.x.dot(unit);
@@ -260,17 +259,6 @@ class Expansion {
   static ExpansionResult undecided(ExpansionResult result) {
     result.status = ExpansionStatus::undecided;
     return result;
-  }
-
-  /// The vertex of face f that reaches farthest: where the climb towards the next support starts.
-  const DifferenceVertex* best_hint(int f, const Vec3& direction) const {
-    const SurfaceTriangle& face = surface_.face(f);
-    const DifferenceVertex* best = &surface_.vertices[face.v[0]];
-    for (int i = 1; i < 3; ++i) {
-      const DifferenceVertex* other = &surface_.vertices[face.v[i]];
-      if (other->x.dot(direction) > best->x.dot(direction)) best = other;
-    }
-    return best;
   }
 
   void add_vertex(const DifferenceVertex& s) { surface_.vertices.push_back(s); }

@@ -84,8 +84,13 @@ int compare(const Round& x, const Round& y) {
 
 int compare(const ConvexShape& x, const ConvexShape& y) {
   if (x.core().index() != y.core().index()) return x.core().index() < y.core().index() ? -1 : 1;
-  const int cores = std::visit(
-      [&](const auto& core) { return compare(core, std::get<std::decay_t<decltype(core)>>(y.core())); }, x.core());
+  // Two polytopes, the common case, without a table of functions.
+  const int cores =
+      x.polytope()
+          ? compare(*x.polytope(), *y.polytope())
+          : std::visit(
+                [&](const auto& core) { return compare(core, std::get<std::decay_t<decltype(core)>>(y.core())); },
+                x.core());
   return cores != 0 ? cores : compare(x.margin(), y.margin());
 }
 
@@ -104,12 +109,11 @@ bool in_canonical_order(const PosedShape& a, const PosedShape& b) {
   return shapes != 0 ? shapes < 0 : compare(a.pose, b.pose) <= 0;
 }
 
-PenetrationDepth turned_round(PenetrationDepth answer) {
+void turn_round(PenetrationDepth& answer) {
   answer.translation = -answer.translation;
   answer.normal = -answer.normal;
   std::swap(answer.witness_a, answer.witness_b);
   std::swap(answer.feature_a, answer.feature_b);
-  return answer;
 }
 
 void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, detail::ScratchBuffers& buffers,
@@ -143,7 +147,7 @@ PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scr
     solve(a, b, settings, scratch.buffers(), warm, out);
   } else {
     solve(b, a, settings, scratch.buffers(), warm, out);
-    out = turned_round(out);
+    turn_round(out);
   }
   // No negative zeros: a swap negates, and people read the numbers.
   out.translation.array() += 0.0;

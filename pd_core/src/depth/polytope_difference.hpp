@@ -10,6 +10,7 @@
 
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
+#include "shape/direction_table.hpp"
 #include "shape/polytope_support.hpp"
 #include "shape/posed_vertices.hpp"
 
@@ -61,18 +62,25 @@ class PolytopeDifference {
     return vertex(ia, ib);
   }
 
-  /// The same up to single precision where it is found by a search: for an expansion, which checks what it inserts.
-  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction, const DifferenceVertex* near) const {
-    if (!climbs_) return support(direction, nullptr);
-    const Vec3 on_a = -(rotation_a_.transpose() * direction);
-    const Vec3 on_b = rotation_b_.transpose() * direction;
-    const int ia = nearly_support_vertex(a_, on_a, near ? near->a : -1);
-    const int ib = nearly_support_vertex(b_, on_b, near ? near->b : -1);
-    return vertex(ia, ib);
+  /// The same up to single precision where it is found in a table: for an expansion, which checks what it inserts.
+  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {
+    Vec3 scaled;
+    if (!climbs_ || !scale_for_search(direction, scaled)) return support(direction, nullptr);
+    return vertex(search(a_, -(rotation_a_.transpose() * scaled)), search(b_, rotation_b_.transpose() * scaled));
   }
 
-  /// Whether `support` makes use of a vertex at hand.
-  [[nodiscard]] bool climbs() const { return climbs_; }
+  /// In four directions at once.
+  void search_supports(const Vec3 (&directions)[4], DifferenceVertex (&supports)[4]) const {
+    if (climbs_) {
+      for (int k = 0; k < 4; ++k) supports[k] = search_support(directions[k]);
+      return;
+    }
+    double by_coordinate[12];
+    for (int k = 0; k < 12; ++k) by_coordinate[k] = directions[k % 4][k / 4];
+    VertexPair pairs[4];
+    farthest_in_four_directions(posed_a_, posed_b_, by_coordinate, pairs);
+    for (int k = 0; k < 4; ++k) supports[k] = vertex(pairs[k].a, pairs[k].b);
+  }
 
   [[nodiscard]] DifferenceVertex vertex(int ia, int ib) const {
     if (!climbs_) {
@@ -160,6 +168,11 @@ class PolytopeDifference {
   static constexpr double kHalfUlp = 0x1p-53;
 
  private:
+  [[nodiscard]] static int search(const ConvexPolytope& body, const Vec3& scaled) {
+    return body.num_vertices() > kScanLimit ? farthest_in_table(body.storage(), scaled)
+                                            : support_vertex(body, scaled, -1);
+  }
+
   const ConvexPolytope& a_;
   const ConvexPolytope& b_;
   Mat3 rotation_a_;

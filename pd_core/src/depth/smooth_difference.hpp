@@ -23,14 +23,16 @@ class SmoothDifference {
 
   [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const;
   /// A formula is within its error of the maximum wherever it is asked.
-  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction, const DifferenceVertex* near) const {
-    return support(direction / direction.norm(), near);
+  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {
+    return support(direction / direction.norm(), nullptr);
+  }
+  void search_supports(const Vec3 (&directions)[4], DifferenceVertex (&supports)[4]) const {
+    for (int k = 0; k < 4; ++k) supports[k] = search_support(directions[k]);
   }
   [[nodiscard]] DifferenceVertex certified_support(const Vec3&, const DifferenceVertex& s,
                                                    std::vector<std::int32_t>&) const {
     return s;
   }
-  [[nodiscard]] static constexpr bool climbs() { return false; }
   [[nodiscard]] const PointPair& points(const DifferenceVertex& s) const {
     return points_[static_cast<std::size_t>(s.a)];
   }

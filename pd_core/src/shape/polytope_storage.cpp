@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <new>
 #include <numeric>
 #include <tuple>
 #include <type_traits>
 
+#include "shape/direction_table.hpp"
 #include "shape/polytope_support.hpp"
 
 namespace pd::detail {
@@ -47,9 +49,6 @@ struct Arrays {
   double* x;
   double* y;
   double* z;
-  float* sample_x;
-  float* sample_y;
-  float* sample_z;
   Vec3* facet_normals;
   HalfEdge* half_edges;
   std::int32_t* caller_ids;
@@ -66,8 +65,6 @@ struct Counts {
   int half_edges;
   int facet_vertices;
   int facets;
-  int sample;
-  int sample_stride;
 };
 
 int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
@@ -78,9 +75,6 @@ Arrays take_arrays(Block& block, const Counts& n) {
   a.x = block.take<double>(n.padded);
   a.y = block.take<double>(n.padded);
   a.z = block.take<double>(n.padded);
-  a.sample_x = block.take<float>(n.sample);
-  a.sample_y = block.take<float>(n.sample);
-  a.sample_z = block.take<float>(n.sample);
   a.facet_normals = block.take<Vec3>(n.facets);
   a.half_edges = block.take<HalfEdge>(n.half_edges);
   a.caller_ids = block.take<std::int32_t>(n.vertices);
@@ -195,16 +189,23 @@ void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
   out.facet_offsets[facet] = filled;
 }
 
-void write_sample(const Arrays& out, const Counts& n, double radius) {
-  // |coordinate| <= radius < 2^exponent: no quotient overflows.
-  int exponent = 0;
-  std::frexp(radius, &exponent);
-  for (int i = 0; i < n.sample; ++i) {
-    const int v = i * n.sample_stride < n.vertices ? i * n.sample_stride : 0;
-    out.sample_x[i] = static_cast<float>(std::ldexp(out.x[v], -exponent));
-    out.sample_y[i] = static_cast<float>(std::ldexp(out.y[v], -exponent));
-    out.sample_z[i] = static_cast<float>(std::ldexp(out.z[v], -exponent));
-  }
+/// Adds the table of directions, in memory of its own: its size shows only when it is made.
+void add_table(Storage& s) {
+  const DirectionTable table = direction_table(s);
+  const std::size_t blocks = sizeof(ConvexPolytope::VertexBlock) * table.blocks.size();
+  const std::size_t offsets = sizeof(std::int32_t) * table.offsets.size();
+  auto* const memory = static_cast<std::byte*>(::operator new (blocks + offsets, std::align_val_t{kAlignment}));
+  std::memcpy(memory, table.blocks.data(), blocks);
+  std::memcpy(memory + blocks, table.offsets.data(), offsets);
+  s.table_blocks = reinterpret_cast<const ConvexPolytope::VertexBlock*>(memory);
+  s.table_offsets = reinterpret_cast<const std::int32_t*>(memory + blocks);
+  s.table_cells = table.cells;
+  s.memory_bytes += blocks + offsets;
+}
+
+void release(const Storage* storage) {
+  ::operator delete (const_cast<ConvexPolytope::VertexBlock*>(storage->table_blocks), std::align_val_t{kAlignment});
+  ::operator delete (const_cast<Storage*>(storage), std::align_val_t{kAlignment});
 }
 
 }  // namespace
@@ -214,10 +215,6 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   Counts n{};
   n.vertices = static_cast<int>(vertices.size());
   n.padded = padded(n.vertices);
-  if (n.vertices > kScanLimit) {
-    n.sample_stride = n.vertices <= kSampleAllLimit ? 1 : (n.vertices + kSampleSize - 1) / kSampleSize;
-    n.sample = padded((n.vertices + n.sample_stride - 1) / n.sample_stride);
-  }
   n.facet_vertices = static_cast<int>(loops.vertices.size());
   n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
   n.facets = loops.size();
@@ -227,9 +224,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
   Block block(memory);
   const Arrays out = take_arrays(block, n);
-  std::shared_ptr<const Storage> shared(out.storage, [](const Storage* storage) {
-    ::operator delete (const_cast<Storage*>(storage), std::align_val_t{kAlignment});
-  });
+  std::shared_ptr<const Storage> shared(out.storage, release);
 
   std::vector<std::int32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0);
@@ -286,12 +281,6 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
     s.centre += point / n.vertices;  // divided first: a sum could overflow
     s.radius = std::max(s.radius, point.stableNorm() * (1 + 0x1p-48));
   }
-  write_sample(out, n, s.radius);
-  s.sample_x = out.sample_x;
-  s.sample_y = out.sample_y;
-  s.sample_z = out.sample_z;
-  s.sample_count = n.sample;
-  s.sample_stride = n.sample_stride;
   s.memory_bytes = block.used();
   s.x = out.x;
   s.y = out.y;
@@ -304,6 +293,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   s.facet_vertices = out.facet_vertices;
   s.facet_half_edges = out.facet_half_edges;
   s.facet_normals = out.facet_normals;
+  if (n.vertices > kScanLimit) add_table(s);
   return shared;
 }
 

@@ -1,5 +1,5 @@
 /// @file
-/// Lays a hull out in the one block of memory that a ConvexPolytope shares.
+/// Lays a hull out in the memory that a ConvexPolytope shares: one block, and one for its table of directions.
 #pragma once
 
 #include <cstdint>

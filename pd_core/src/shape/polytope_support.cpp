@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "shape/direction_table.hpp"
 #include "shape/vertex_arrays.hpp"
 
 namespace pd::detail {
@@ -11,17 +12,6 @@ namespace pd::detail {
 namespace {
 
 int scan(const ConvexPolytope& p, const Vec3& d) { return farthest_vertex(arrays_of(p), d.x(), d.y(), d.z()); }
-
-/// The best of the sample in single precision, -1 for directions whose scale single precision cannot hold.
-int best_of_sample(const ConvexPolytope& p, const Vec3& d) {
-  const ConvexPolytope::Storage& s = p.storage();
-  const double scale = 1 / d.cwiseAbs().maxCoeff();
-  if (!(scale < std::numeric_limits<double>::infinity()) || !(scale > 0)) return -1;
-  const int i = farthest_in_single_precision({s.sample_x, s.sample_y, s.sample_z, s.sample_count},
-                                             static_cast<float>(d.x() * scale), static_cast<float>(d.y() * scale),
-                                             static_cast<float>(d.z() * scale));
-  return i * s.sample_stride;
-}
 
 int better(const ConvexPolytope& p, const Vec3& d, int v, int w) {
   if (v < 0 || w < 0) return std::max({v, w, 0});
@@ -50,13 +40,9 @@ int climb(const ConvexPolytope& p, const Vec3& d, int v) {
 
 int support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
   if (p.num_vertices() <= kScanLimit) return scan(p, direction);
-  return climb(p, direction, better(p, direction, best_of_sample(p, direction), near));
-}
-
-int nearly_support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
-  if (p.storage().sample_stride > 1 || p.num_vertices() <= kScanLimit) return support_vertex(p, direction, near);
-  const int v = best_of_sample(p, direction);
-  return v >= 0 ? v : support_vertex(p, direction, near);
+  Vec3 scaled;
+  const int first = scale_for_search(direction, scaled) ? farthest_in_table(p.storage(), scaled) : -1;
+  return climb(p, direction, better(p, direction, first, near));
 }
 
 int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int v, std::vector<std::int32_t>& stack) {

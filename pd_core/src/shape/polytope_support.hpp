@@ -12,20 +12,13 @@ namespace pd::detail {
 
 /// Up to this many vertices a scan in double precision beats everything else.
 inline constexpr int kScanLimit = 48;
-/// Up to this many vertices a scan in single precision sees all of them; above, a sample of about kSampleSize.
-inline constexpr int kSampleAllLimit = 512;
-inline constexpr int kSampleSize = 256;
 
 /// A vertex that maximises <v, direction> up to rounding; on equal values of a scan the lowest id. `near` is a vertex
 /// that may be close to it, or -1.
 ///
-/// Scan up to kScanLimit vertices; above, a scan of the sample in single precision and hill climbing in double from the
-/// better of its winner and `near`. The climb ends because the value strictly grows: a few steps on round bodies, O(n)
-/// at worst.
+/// Scan up to kScanLimit vertices; above, hill climbing in double from the better of `near` and what the table of
+/// directions offers. The climb ends because the value strictly grows: a step or none on round bodies, O(n) at worst.
 int support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int near);
-
-/// The same up to single precision: for searches that check what they find.
-int nearly_support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int near);
 
 /// As `support_vertex`, started at a vertex where climbing stopped, but the value is within rounding of the maximum for
 /// certain: |<v, direction> - max| <= 6u |v| |direction|. `stack` is a buffer.

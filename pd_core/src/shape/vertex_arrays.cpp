@@ -29,6 +29,57 @@ PD_INLINE void heights(Lanes& to, const VertexArrays& v, int i, const Direction&
   to = x * d.x + y * d.y + z * d.z;
 }
 
+struct Best {
+  Lanes value;
+  Lanes id;  ///< counted in doubles: one kind of register
+};
+
+/// The farther of two in every lane; of equal ones the lower id.
+PD_INLINE void take_farther(Best& best, const Best& other) {
+  const Lanes lower = other.id < best.id ? other.id : best.id;
+  best.id = other.value > best.value ? other.id : other.value == best.value ? lower : best.id;
+  best.value = other.value > best.value ? other.value : best.value;
+}
+
+/// Lane j holds the best of vertices j, j + 4, j + 8, ...
+PD_INLINE void farthest_by_lane(Best& best, const VertexArrays& v, const Direction& d) {
+  best.id = Lanes{0, 1, 2, 3};
+  heights(best.value, v, 0, d);
+  Lanes id = best.id;
+  for (int i = kLanes; i < v.count; i += kLanes) {
+    Lanes next;
+    heights(next, v, i, d);
+    id += kLanes;
+    best.id = next > best.value ? id : best.id;
+    best.value = next > best.value ? next : best.value;
+  }
+}
+
+PD_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Lanes ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+/// Lane k of `ids`: the winner in direction k.
+PD_INLINE void farthest_in_four(Lanes& ids, const VertexArrays& v, const double (&d)[12]) {
+  Best best[4];
+  for (int k = 0; k < 4; ++k) farthest_by_lane(best[k], v, {d[k], d[4 + k], d[8 + k]});
+  transpose(best[0].value, best[1].value, best[2].value, best[3].value);
+  transpose(best[0].id, best[1].id, best[2].id, best[3].id);
+  take_farther(best[0], best[1]);
+  take_farther(best[2], best[3]);
+  take_farther(best[0], best[2]);
+  // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
+  const Lanes zero = {0, 0, 0, 0};
+  ids = best[0].id < zero + static_cast<double>(v.count) ? best[0].id : zero;
+}
+
 PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
   // Two rows of lanes, so that comparisons do not wait for each other. Ids are counted in doubles: one kind of
   // register.
@@ -99,13 +150,13 @@ typedef float HalfFloats __attribute__((vector_size(16)));
 typedef std::int32_t Ids __attribute__((vector_size(32)));
 typedef std::int32_t HalfIds __attribute__((vector_size(16)));
 constexpr int kFloats = 8;
-static_assert(ConvexPolytope::kPadding == 2 * kFloats);
+static_assert(ConvexPolytope::VertexBlock::kVertices == kFloats);
 
-PD_INLINE void heights(Floats& to, const SampleArrays& v, int i, float dx, float dy, float dz) {
+PD_INLINE void heights(Floats& to, const ConvexPolytope::VertexBlock& v, float dx, float dy, float dz) {
   Floats x, y, z;
-  __builtin_memcpy(&x, v.x + i, sizeof(Floats));
-  __builtin_memcpy(&y, v.y + i, sizeof(Floats));
-  __builtin_memcpy(&z, v.z + i, sizeof(Floats));
+  __builtin_memcpy(&x, v.x, sizeof(Floats));
+  __builtin_memcpy(&y, v.y, sizeof(Floats));
+  __builtin_memcpy(&z, v.z, sizeof(Floats));
   to = x * dx + y * dy + z * dz;
 }
 
@@ -120,26 +171,29 @@ PD_CLONES VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays
   return {farthest(a, d), farthest(b, d)};
 }
 
-PD_CLONES int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy, float dz) {
-  Floats best, other;
-  heights(best, sample, 0, dx, dy, dz);
-  heights(other, sample, kFloats, dx, dy, dz);
-  const Ids row = {0, 1, 2, 3, 4, 5, 6, 7};
-  Ids best_id = row, other_id = row + kFloats, id = other_id;
-  for (int i = 2 * kFloats; i < sample.count; i += 2 * kFloats) {
-    Floats next, after;
-    heights(next, sample, i, dx, dy, dz);
-    heights(after, sample, i + kFloats, dx, dy, dz);
-    id += kFloats;
+PD_CLONES void farthest_in_four_directions(const VertexArrays& a, const VertexArrays& b, const double (&directions)[12],
+                                           VertexPair (&pairs)[4]) {
+  Lanes of_a, of_b;
+  farthest_in_four(of_a, a, directions);
+  farthest_in_four(of_b, b, directions);
+  for (int k = 0; k < 4; ++k) pairs[k] = {static_cast<int>(of_a[k]), static_cast<int>(of_b[k])};
+}
+
+PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock* blocks, int count, float dx, float dy, float dz) {
+  Floats best;
+  Ids best_id;
+  heights(best, blocks[0], dx, dy, dz);
+  __builtin_memcpy(&best_id, blocks[0].id, sizeof(Ids));
+  for (int i = 1; i < count; ++i) {
+    Floats next;
+    Ids id;
+    heights(next, blocks[i], dx, dy, dz);
+    __builtin_memcpy(&id, blocks[i].id, sizeof(Ids));
     best_id = next > best ? id : best_id;
     best = next > best ? next : best;
-    id += kFloats;
-    other_id = after > other ? id : other_id;
-    other = after > other ? after : other;
   }
-  const Floats most = other > best ? other : best;
-  const HalfFloats low = __builtin_shufflevector(most, most, 0, 1, 2, 3);
-  const HalfFloats high = __builtin_shufflevector(most, most, 4, 5, 6, 7);
+  const HalfFloats low = __builtin_shufflevector(best, best, 0, 1, 2, 3);
+  const HalfFloats high = __builtin_shufflevector(best, best, 4, 5, 6, 7);
   const HalfFloats top = high > low ? high : low;
   const float left = top[1] > top[0] ? top[1] : top[0];
   const float right = top[3] > top[2] ? top[3] : top[2];
@@ -147,16 +201,13 @@ PD_CLONES int farthest_in_single_precision(const SampleArrays& sample, float dx,
   const Floats tops = {greatest, greatest, greatest, greatest, greatest, greatest, greatest, greatest};
   constexpr std::int32_t kNobody = 0x7fffffff;
   const Ids none = {kNobody, kNobody, kNobody, kNobody, kNobody, kNobody, kNobody, kNobody};
-  const Ids from_best = best == tops ? best_id : none;
-  const Ids from_other = other == tops ? other_id : none;
-  const Ids ids = from_other < from_best ? from_other : from_best;
+  const Ids ids = best == tops ? best_id : none;
   const HalfIds low_ids = __builtin_shufflevector(ids, ids, 0, 1, 2, 3);
   const HalfIds high_ids = __builtin_shufflevector(ids, ids, 4, 5, 6, 7);
   const HalfIds least = high_ids < low_ids ? high_ids : low_ids;
   const std::int32_t left_id = least[1] < least[0] ? least[1] : least[0];
   const std::int32_t right_id = least[3] < least[2] ? least[3] : least[2];
-  const std::int32_t winner = right_id < left_id ? right_id : left_id;
-  return winner < sample.count ? winner : 0;
+  return right_id < left_id ? right_id : left_id;
 }
 
 PD_CLONES void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z) {

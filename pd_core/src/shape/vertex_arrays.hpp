@@ -33,15 +33,12 @@ struct VertexPair {
 /// The same for two bodies in one direction.
 VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays& b, double dx, double dy, double dz);
 
-/// Coordinates in single precision, padded to a multiple of kPadding with copies of entry 0.
-struct SampleArrays {
-  const float* x;
-  const float* y;
-  const float* z;
-  int count;  ///< with the padding
-};
-/// The lowest index among the maximisers of x[i] dx + y[i] dy + z[i] dz in single precision.
-int farthest_in_single_precision(const SampleArrays& sample, float dx, float dy, float dz);
+/// The same in four directions, given by their x, then y, then z: together they take little longer than one.
+void farthest_in_four_directions(const VertexArrays& a, const VertexArrays& b, const double (&directions)[12],
+                                 VertexPair (&pairs)[4]);
+
+/// The lowest id among the maximisers of x dx + y dy + z dz in single precision, over count >= 1 blocks.
+int farthest_of_blocks(const ConvexPolytope::VertexBlock* blocks, int count, float dx, float dy, float dz);
 
 /// Writes matrix * vertex for every vertex and its padding; `matrix` is row by row.
 void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z);

@@ -103,7 +103,16 @@ class ConvexPolytope {
   /// Same storage (not: same point set).
   [[nodiscard]] bool same_storage(const ConvexPolytope& other) const { return data_ == other.data_; }
 
-  /// One block of memory; filled once by the hull builder (`src/shape/`).
+  /// Eight vertices in single precision.
+  struct alignas(32) VertexBlock {
+    static constexpr int kVertices = 8;
+    float x[kVertices];
+    float y[kVertices];
+    float z[kVertices];
+    std::int32_t id[kVertices];
+  };
+
+  /// Filled once by the hull builder (`src/shape/`).
   struct Storage {
     std::int32_t affine_dimension = 0;
     std::int32_t num_vertices = 0;
@@ -125,13 +134,11 @@ class ConvexPolytope {
     const std::int32_t* facet_vertices = nullptr;
     const std::int32_t* facet_half_edges = nullptr;  ///< [num_facets]
     const Vec3* facet_normals = nullptr;             ///< [num_facets]
-    /// Every sample_stride-th vertex / sample_scale, a power of two above `radius`, in single precision, padded with
-    /// copies of entry 0 to a multiple of kPadding: where the search for a support begins. Empty for small bodies.
-    const float* sample_x = nullptr;
-    const float* sample_y = nullptr;
-    const float* sample_z = nullptr;
-    std::int32_t sample_count = 0;  ///< with the padding
-    std::int32_t sample_stride = 1;
+    /// Where the search for a support begins (src/shape/direction_table.hpp): lists of vertices by cells of directions,
+    /// divided by a power of two above `radius`. Empty for small bodies.
+    const VertexBlock* table_blocks = nullptr;
+    const std::int32_t* table_offsets = nullptr;  ///< [6 table_cells^2 + 1], in blocks
+    std::int32_t table_cells = 0;
   };
 
   /// For the hull builder.

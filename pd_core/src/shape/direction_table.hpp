@@ -1,0 +1,65 @@
+/// @file
+/// Which vertices can be farthest in a direction: lists for the cells of a cube of directions.
+///
+/// The six sides of the cube [-1, 1]^3 are cut into squares; a cell is the cone of directions through one. Its list
+/// holds every vertex that is farthest in some direction of the cell, and few others, in single precision. A search for
+/// a support reads one short list, however many vertices there are. Cells are about as many as vertices, so that lists
+/// stay short; fewer where slender normal cones cross many cells.
+///
+/// Found as follows: vertices are visited from the one farthest at the cell's middle, on along every edge whose end is
+/// as far as its start at some corner of the cell. A hill climb in any direction of the cell goes along such edges, so
+/// its summit is visited. A vertex is left out if a neighbour is farther at all four corners.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "pd/shape/convex_polytope.hpp"
+
+namespace pd::detail {
+
+/// A direction for searches in single precision: scaled by a power of two so that its largest coordinate lies in
+/// [1, 2). False for those that this cannot do (zero, subnormal, nearly overflowing, not finite).
+inline bool scale_for_search(const Vec3& direction, Vec3& scaled) {
+  const auto bits = std::bit_cast<std::uint64_t>(direction.cwiseAbs().maxCoeff());
+  const std::uint64_t exponent = bits >> 52;
+  if (exponent == 0 || exponent >= 2046) return false;
+  scaled = std::bit_cast<double>((2046 - exponent) << 52) * direction;
+  return true;
+}
+
+/// The number of the cell that holds a direction (not zero), in a table of `cells` x `cells` squares a side: sides +x,
+/// -x, +y, ..., rows and columns by the next two coordinates in cyclic order.
+inline std::int32_t cell_of(const std::array<float, 3>& d, std::int32_t cells) {
+  const std::array<float, 5> cyclic{d[0], d[1], d[2], d[0], d[1]};
+  const float x = std::abs(d[0]), y = std::abs(d[1]), z = std::abs(d[2]);
+  const bool y_leads = y > x;
+  const float larger = y_leads ? y : x;
+  const int axis = z > larger ? 2 : (y_leads ? 1 : 0);
+  const float half = 0.5F * static_cast<float>(cells);
+  const float scale = half / (z > larger ? z : larger);
+  const auto place = [&](float t) {
+    const auto i = static_cast<std::int32_t>(t * scale + half);
+    return i < cells ? i : cells - 1;
+  };
+  const std::int32_t side = 2 * axis + (std::signbit(cyclic[axis]) ? 1 : 0);
+  return (side * cells + place(cyclic[axis + 1])) * cells + place(cyclic[axis + 2]);
+}
+
+struct DirectionTable {
+  std::int32_t cells = 0;  ///< squares along an edge of the cube
+  std::vector<std::int32_t> offsets;
+  std::vector<ConvexPolytope::VertexBlock> blocks;
+};
+
+/// @param polytope  complete but for its table; at least one vertex. Coordinates are scaled by the power of two above
+/// its radius. Blocks are filled up with their cell's first vertex; ids rise within a cell. Time O(n) on round bodies.
+[[nodiscard]] DirectionTable direction_table(const ConvexPolytope::Storage& polytope);
+
+/// The vertex farthest in a direction, up to single precision; the least id of those equal in it. Requires a table.
+int farthest_in_table(const ConvexPolytope::Storage& polytope, const Vec3& scaled);
+
+}  // namespace pd::detail
