@@ -116,6 +116,7 @@ class Expansion {
     ExpansionGoal convex = goal;
     convex.fold = 4 * lower_error();
     convex.fold_from = -std::numeric_limits<double>::infinity();
+    if (surface_.size() <= kMostStraightened) surface_.straighten();
     const ExpansionResult result = grow(convex, ExpansionResult{});
     if (result.status != ExpansionStatus::undecided || !surface_.rebuild(flat_volume())) return result;
     return grow(goal, result);
@@ -267,6 +268,9 @@ class Expansion {
   double bound_error() const { return support_plane_error(difference_); }
   /// Error bound of six volumes.
   double flat_volume() const { return 64 * 0x1p-53 * difference_.reach() * difference_.reach() * difference_.reach(); }
+
+  /// Larger surfaces are rebuilt where they fold, which makes them smaller: measured on coherent frames.
+  static constexpr int kMostStraightened = 40;
 
   const Difference& difference_;
   Surface& surface_;

@@ -11,11 +11,12 @@ namespace {
 
 /// The face of one body that a face of the surface uses: one, two or three of its vertices.
 Feature feature(const ConvexPolytope& body, const DifferenceVertex (&corners)[3], std::int32_t DifferenceVertex::*id) {
-  std::int32_t ids[3] = {corners[0].*id, corners[1].*id, corners[2].*id};
-  std::sort(ids, ids + 3);
-  const int distinct = static_cast<int>(std::unique(ids, ids + 3) - ids);
-  if (distinct == 1) return {Feature::Kind::vertex, ids[0], -1};
-  if (distinct == 2) return {Feature::Kind::edge, ids[0], ids[1]};
+  const std::int32_t ids[3] = {corners[0].*id, corners[1].*id, corners[2].*id};
+  if (ids[0] == ids[1] && ids[0] == ids[2]) return {Feature::Kind::vertex, ids[0], -1};
+  if (ids[0] == ids[1] || ids[0] == ids[2] || ids[1] == ids[2]) {
+    const std::int32_t other = ids[0] == ids[1] ? ids[2] : ids[1];
+    return {Feature::Kind::edge, std::min(ids[0], other), std::max(ids[0], other)};
+  }
   const int first = body.first_half_edge(ids[0]);
   for (int h = first; h < first + static_cast<int>(body.neighbours(ids[0]).size()); ++h) {
     const int f = body.half_edge(h).facet;

@@ -104,7 +104,6 @@ ExpansionResult PolytopeQuery::expand() {
   if (restored) {
     result = expansion.resume(goal());
     out_.warm = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;
-    memory_held_ = expansion.facets_visited() == 1;
   }
   if (!out_.warm) {
     const Vec3 start = warm_ ? warm_->state().direction : Vec3(Vec3::Zero());

@@ -10,7 +10,7 @@ namespace pd::detail {
 namespace {
 
 /// More faces that may be near are dearer than all planes at once.
-constexpr int kMaxNear = 8;
+constexpr int kMaxNear = 16;
 static_assert(kMaxNear % kPlaneBlock == 0);
 
 /// Errors of points, planes and of the movement itself, in units of the reach: the first two are below 19u each, the

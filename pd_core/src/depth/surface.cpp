@@ -34,6 +34,7 @@ void Surface::clear() {
     free_.reserve(kFirstRoom / 2);
     kept_.reserve(kFirstRoom);
     nearness_.reserve(kFirstRoom);
+    open_edges_.reserve(4 * kFirstRoom);
     face_numbers_.reserve(kFirstRoom);
     vertex_numbers_.reserve(kFirstRoom);
   }

@@ -9,6 +9,7 @@
 /// surface. Hence that ball lies in P. Neither convexity nor exact visibility is needed.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -55,24 +56,31 @@ class Surface {
   /// The inverse: the faces in use and the vertices that they use, numbered anew.
   template <class CachedVertices, class CachedFaces>
   void save(CachedVertices& cached_vertices, CachedFaces& cached_faces) {
-    face_numbers_.assign(static_cast<std::size_t>(slots_), -1);
+    face_numbers_.resize(static_cast<std::size_t>(slots_));
     vertex_numbers_.assign(vertices.size(), -1);
     std::int16_t next_face = 0;
     std::int16_t next_vertex = 0;
+    cached_vertices.resize(vertices.size());
     for (int f = 0; f < slots_; ++f) {
       if (keys_[f] == kRemoved) continue;
       face_numbers_[f] = next_face++;
       for (const std::int32_t v : triangles_[f].v) {
         if (vertex_numbers_[v] >= 0) continue;
+        cached_vertices[next_vertex] = {vertices[v].a, vertices[v].b};
         vertex_numbers_[v] = next_vertex++;
-        cached_vertices.push_back({vertices[v].a, vertices[v].b});
       }
     }
+    cached_vertices.resize(next_vertex);
+    cached_faces.resize(next_face);
+    auto* to = cached_faces.data();
     for (int f = 0; f < slots_; ++f) {
       if (keys_[f] == kRemoved) continue;
       const SurfaceTriangle& face = triangles_[f];
-      cached_faces.push_back({{vertex_numbers_[face.v[0]], vertex_numbers_[face.v[1]], vertex_numbers_[face.v[2]]},
-                              {renumbered(face.adj[0]), renumbered(face.adj[1]), renumbered(face.adj[2])}});
+      for (int i = 0; i < 3; ++i) {
+        to->vertex[i] = vertex_numbers_[face.v[i]];
+        to->neighbour[i] = renumbered(face.adj[i]);
+      }
+      ++to;
     }
   }
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
@@ -83,6 +91,9 @@ class Surface {
   bool find_spread_vertices(double flat, std::int32_t (&ids)[4]) const;
   /// Four faces on those; the other vertices are dropped.
   bool start_from_spread_vertices(double flat);
+  /// Flips edges along which the surface is not convex, and drops vertices that lie inside, as far as that goes. Of a
+  /// restored surface only.
+  void straighten();
   /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
   /// four that spread far; the others are dropped. False where they are flat.
   bool rebuild(double flat);
@@ -113,6 +124,16 @@ class Surface {
 
   void clear_faces();
   [[nodiscard]] int first_face_below(const Vec3& x);
+
+  // straighten, step by step
+  static constexpr int kMostFlips = 4;  ///< a slot
+  [[nodiscard]] bool is_reflex(int f, std::int32_t e) const;
+  void flip(int f, std::int32_t e);
+  void drop_vertex(int f, int g, int third, const std::array<std::int32_t, 3>& round, std::int32_t vertex,
+                   std::int32_t beyond_first, std::int32_t beyond_second);
+  void set_plane(int f, const Vec3& normal, double level, double key);
+  /// Two edges, each 4 * face + edge, become each other's other side.
+  void join(std::int32_t outside, std::int32_t edge);
 
   // insert, step by step
   bool insert_among_few(int from, int v);
@@ -170,6 +191,7 @@ class Surface {
     std::int32_t vertex;
   };
   std::vector<NearVertex> nearness_;
+  std::vector<std::int32_t> open_edges_;
   std::vector<DifferenceVertex> kept_;
 
   std::vector<std::int16_t> face_numbers_;

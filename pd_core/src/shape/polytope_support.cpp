@@ -76,20 +76,20 @@ int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, con
   const double* const x = p.x();
   const double* const y = p.y();
   const double* const z = p.z();
-  const double size = direction.cwiseAbs().sum();
+  const double dx = direction.x(), dy = direction.y(), dz = direction.z();
+  // Two products of three terms, each within 3u of the sum of its terms' magnitudes, and their difference.
+  const double doubt = 8 * 0x1p-53 * p.radius() * (std::abs(dx) + std::abs(dy) + std::abs(dz));
   int best = -1;
   double best_value = 0;
   for (int i = 0; i < 3; ++i) {
     const int v = vertices[i];
     if ((i > 0 && v == vertices[0]) || (i > 1 && v == vertices[1])) continue;
-    const Vec3 from(x[v], y[v], z[v]);
+    const double value = x[v] * dx + y[v] * dy + z[v] * dz;
+    const double below = value - doubt;
     for (const std::int32_t w : p.neighbours(v)) {
-      const Vec3 edge(x[w] - from.x(), y[w] - from.y(), z[w] - from.z());
-      // As in certified_support_vertex.
-      if (edge.dot(direction) < -8 * 0x1p-53 * edge.cwiseAbs().maxCoeff() * size) continue;
+      if (x[w] * dx + y[w] * dy + z[w] * dz < below) continue;
       if (w != vertices[0] && w != vertices[1] && w != vertices[2]) return -1;
     }
-    const double value = from.dot(direction);
     if (best >= 0 && value <= best_value) continue;
     best = v;
     best_value = value;
