@@ -116,48 +116,40 @@ TEST(TiedFacets, QuadraticFamiliesAreDecidedWithoutATree) {
   }
 }
 
-TEST(TiedFacets, AnswerDeepRoofsWithEveryPromiseKept) {
+class TiedFacetsOfRoofs : public ::testing::TestWithParam<Bracket> {};
+
+TEST_P(TiedFacetsOfRoofs, KeepEveryPromiseWithoutATree) {
   Scratch scratch;
+  const auto points = [](const ConvexPolytope& body) {
+    scenes::Points out;
+    for (int v = 0; v < body.num_vertices(); ++v) out.push_back(body.vertex(v));
+    return out;
+  };
   for (const int n : {64, 96}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       SCOPED_TRACE(testing::Message() << "n " << n << ", seed " << seed);
       const scenes::PolytopePair pair = scenes::crossed_roofs(n, 1, seed);
       const ConvexShape a(pair.a), b(pair.b);
       const PenetrationDepth answer =
-          penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {.bracket = Bracket::certified});
+          penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {.bracket = GetParam()});
       EXPECT_EQ(answer.method, Method::decomposition);
       EXPECT_GT(answer.statistics.pair_evaluations, 0);
       EXPECT_EQ(answer.statistics.block_bounds, 0);
-      EXPECT_EQ(answer.statistics.exact_signs, 0);
+      EXPECT_LE(answer.statistics.exact_signs, GetParam() == Bracket::certified ? 0 : 2);
       EXPECT_LT(answer.statistics.support_calls, 128);
-      const auto points = [](const ConvexPolytope& body) {
-        scenes::Points out;
-        for (int v = 0; v < body.num_vertices(); ++v) out.push_back(body.vertex(v));
-        return out;
-      };
       const oracle::Body body_a(points(pair.a)), body_b(points(pair.b));
       const oracle::ExactPair exact(body_a, pair.pose_a, body_b, pair.pose_b);
       const oracle::Findings findings = oracle::check_answer(
-          exact, oracle::judge(exact), {&pair.a, &pair.b, &pair.pose_a, &pair.pose_b, Bracket::certified}, answer);
+          exact, oracle::judge(exact), {&pair.a, &pair.b, &pair.pose_a, &pair.pose_b, GetParam()}, answer);
       for (const oracle::Breach& breach : findings.wrong) ADD_FAILURE() << breach.what;
     }
   }
 }
 
-TEST(TiedFacets, AgreeWithTheTightestBracket) {
-  Scratch scratch;
-  const scenes::PolytopePair pair = scenes::crossed_roofs(96, 1, 5);
-  const ConvexShape a(pair.a), b(pair.b);
-  const PenetrationDepth exact = penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch);
-  const PenetrationDepth fast =
-      penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {.bracket = Bracket::certified});
-  EXPECT_LE(fast.lower, exact.upper);
-  EXPECT_GE(fast.upper, exact.lower);
-  EXPECT_EQ(fast.feature_a.kind, exact.feature_a.kind);
-  EXPECT_EQ(fast.feature_a.first, exact.feature_a.first);
-  EXPECT_EQ(fast.feature_b.first, exact.feature_b.first);
-  EXPECT_LE((fast.witness_a - exact.witness_a).norm(), 1e-9);
-}
+INSTANTIATE_TEST_SUITE_P(Both, TiedFacetsOfRoofs, ::testing::Values(Bracket::certified, Bracket::tightest),
+                         [](const auto& bracket) {
+                           return std::string(bracket.param == Bracket::certified ? "certified" : "tightest");
+                         });
 
 TEST(TiedFacets, AnswersDoNotDependOnWhatTheBuffersHeld) {
   const auto answer = [](Scratch& scratch) {

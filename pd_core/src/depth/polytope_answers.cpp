@@ -113,7 +113,8 @@ void PolytopeQuery::pair_features() {
   }
 }
 
-/// Between the bounds that the expansion leaves. False when doubles do not narrow the bracket enough.
+/// Between the bounds that the expansion leaves. False when doubles do not narrow the bracket enough (do not prove the
+/// facet, where the tightest one is asked for).
 bool PolytopeQuery::solve_among_ties(const ExpansionResult& result) {
   const TiedFacets found =
       nearest_tied_facet(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b, difference_, buffers_.surface,
@@ -121,8 +122,13 @@ bool PolytopeQuery::solve_among_ties(const ExpansionResult& result) {
   out_.statistics.support_calls += found.support_calls;
   out_.statistics.facets_visited += found.facets;
   out_.statistics.pair_evaluations += found.pairs;
-  if (!found.certified) return false;
   out_.method = Method::decomposition;
+  if (bracket_ == Bracket::tightest) return prove_tied(found);
+  if (found.certified) fill_tied(found);
+  return found.certified;
+}
+
+void PolytopeQuery::fill_tied(const TiedFacets& found) {
   set_depth(found.lower, found.upper, found.normal);
   if (found.kind == TiedFacetsBuffers::Kind::edges) {
     const auto [a, b] = std::pair(found.edge_a, found.edge_b);
@@ -134,7 +140,7 @@ bool PolytopeQuery::solve_among_ties(const ExpansionResult& result) {
     out_.witness_b = out_.witness_a + out_.translation;
     out_.feature_a = {Feature::Kind::edge, std::min(a[0], a[1]), std::max(a[0], a[1])};
     out_.feature_b = {Feature::Kind::edge, std::min(b[0], b[1]), std::max(b[0], b[1])};
-    return true;
+    return;
   }
   const bool of_a = found.kind == TiedFacetsBuffers::Kind::facet_of_a;
   const Feature facet{Feature::Kind::facet, found.facet, -1};
@@ -148,7 +154,6 @@ bool PolytopeQuery::solve_among_ties(const ExpansionResult& result) {
     out_.witness_a = pair_.pose_a->apply(pair_.a->vertex(found.vertex)) - pair_.margins.a * out_.normal;
     out_.witness_b = out_.witness_a + out_.translation;
   }
-  return true;
 }
 
 /// False when doubles do not narrow the bracket enough or cannot tell the class.

@@ -46,7 +46,7 @@ void PolytopeQuery::solve() {
     case ExpansionStatus::over_budget:
       if (result.lower > 0) {
         tighten_upper(result);
-        if (exactly || !solve_among_ties(result)) solve_by_decomposition(result);
+        if (!solve_among_ties(result)) solve_by_decomposition(result);
         return;
       }
       [[fallthrough]];

@@ -115,6 +115,21 @@ void PolytopeQuery::tighten_upper(ExpansionResult& result) {
                           least_height(difference_, buffers_.surface, buffers_.stack, out_.statistics.support_calls));
 }
 
+/// Of the few pieces that may be nearest, the one that is. Those pieces and what lies beyond cover the boundary of P, as
+/// the triangles of a surface enclose a ball: the proof is the same.
+bool PolytopeQuery::prove_tied(const TiedFacets& found) {
+  const std::vector<SurfaceCorners>& near = buffers_.tied_facets.nearest;
+  if (!(found.beyond > 0) || near.size() > kMaxNearFaces) return false;
+  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
+  const double beyond = std::ldexp(found.beyond, -posed.scale_exponent());
+  const auto proven = prove_nearest_facet(posed, near, beyond, buffers_.faces);
+  if (proven) {
+    finish_overlapping(posed, proven->facet, proven->plane, buffers_.faces, pair_.margins, bracket_, out_);
+  }
+  count_stages(posed);
+  return proven.has_value();
+}
+
 /// [A] section 2, under the bound that the expansion leaves and with the vertices of P that it found.
 void PolytopeQuery::solve_by_decomposition(ExpansionResult result) {
   const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);

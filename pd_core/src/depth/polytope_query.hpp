@@ -7,6 +7,7 @@
 #include "depth/exact_nearest.hpp"
 #include "depth/expansion.hpp"
 #include "depth/polytope_depth.hpp"
+#include "depth/tied_facets.hpp"
 
 namespace pd::detail {
 
@@ -48,6 +49,7 @@ class PolytopeQuery {
   void fill_overlapping(const DifferenceVertex (&corners)[3], const double (&weights)[3]);
   bool fill_separated(const ExpansionResult& result);
   bool solve_among_ties(const ExpansionResult& result);
+  void fill_tied(const TiedFacets& found);
   void corners_of(int f, DifferenceVertex (&corners)[3]) const;
   [[nodiscard]] int face_below_origin(int f, const Vec3& normal) const;
   void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count);
@@ -59,6 +61,7 @@ class PolytopeQuery {
   void solve_overlapping_exactly(const ExpansionResult& result);
   void finish_from(const PosedPair& posed, const PairId* seed, int count, const ExactNearest* nearest);
   void solve_by_overlay(double upper = std::numeric_limits<double>::infinity());
+  bool prove_tied(const TiedFacets& found);
   void solve_by_decomposition(ExpansionResult result);
   void finish_nearest(const PosedPair& posed, const OverlayDepth& found);
   void tighten_upper(ExpansionResult& result);

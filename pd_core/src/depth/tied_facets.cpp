@@ -1,7 +1,6 @@
 #include "depth/tied_facets.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -53,11 +52,11 @@ class TiedFacetsSearch {
     if (a_.affine_dimension() != 3 || b_.affine_dimension() != 3) return out_;
     buffers_.candidates.clear();
     for (const DifferenceVertex& v : surface_.vertices) see(v);
-    mark_far_facets(true);
-    mark_far_facets(false);
-    keep_edges(true);
-    keep_edges(false);
-    const auto pairs = static_cast<std::int64_t>(buffers_.kept_a.size() * buffers_.kept_b.size());
+    for (const bool of_a : {true, false}) {
+      find_near_arcs({body(of_a), pose(of_a), body(!of_a), pose(!of_a), of_a}, difference_, surface_, radius_,
+                     arcs(of_a));
+    }
+    const auto pairs = static_cast<std::int64_t>(buffers_.near_a.kept.size() * buffers_.near_b.kept.size());
     const std::int64_t edges = a_.num_edges() + b_.num_edges();
     if (pairs > kPairsPerEdge * edges) return out_;
     if (!measure_facets(true, edges) || !measure_facets(false, edges)) return out_;
@@ -73,76 +72,11 @@ class TiedFacetsSearch {
 
   [[nodiscard]] const ConvexPolytope& body(bool of_a) const { return of_a ? a_ : b_; }
   [[nodiscard]] const Pose& pose(bool of_a) const { return of_a ? pose_a_ : pose_b_; }
-
-  /// Vertices of one body that the surface uses: the first ones found stand far apart. Returns their number.
-  std::size_t choose_vertices(bool of_a, std::array<std::int32_t, kMaskProbes>& chosen) const {
-    std::size_t count = 0;
-    for (const DifferenceVertex& v : surface_.vertices) {
-      const std::int32_t vertex = of_a ? v.a : v.b;
-      const auto end = chosen.begin() + static_cast<std::ptrdiff_t>(count);
-      if (std::find(chosen.begin(), end, vertex) != end) continue;
-      chosen[count++] = vertex;
-      if (count == kMaskProbes) break;
-    }
-    return count;
-  }
-
-  /// The points of P that are tried against a facet: one of its own corners with chosen vertices of the other body. An
-  /// edge's two facets share such points.
-  ///
-  /// Single precision errs by less than 32 of its u where both terms have length 1 at most, with what a matrix that is
-  /// a rotation only up to rounding adds to a normal's length.
-  void mark_far_facets(bool of_a) {
-    const ConvexPolytope& own = body(of_a);
-    const ConvexPolytope& other = body(!of_a);
-    const Mat3 turn = normal_matrix(pose(of_a));
-    const double stretch = std::sqrt(1 + (turn.transpose() * turn - Mat3::Identity()).norm());
-    const double growth = turn.col(0).dot(pose(of_a).rotation().col(0)) / reach_;
-    const double sign = of_a ? -1 : 1;
-    ProbeArrays probes;
-    std::array<std::int32_t, kMaskProbes> chosen;
-    const std::size_t count = choose_vertices(!of_a, chosen);
-    for (std::size_t k = 0; k < kMaskProbes; ++k) {
-      const Vec3 posed = pose(!of_a).rotation() * other.vertex(chosen[k < count ? k : 0]);
-      const Vec3 x = turn.transpose() * (difference_.offset() - sign * posed) * (sign / reach_);
-      probes.x[k] = static_cast<float>(x.x());
-      probes.y[k] = static_cast<float>(x.y());
-      probes.z[k] = static_cast<float>(x.z());
-    }
-    std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
-    const int facets = own.num_facets();
-    far.resize(static_cast<std::size_t>(facets));
-    buffers_.levels.resize(static_cast<std::size_t>(facets));
-    const double level = radius_ * stretch + 0x1p-19;
-    for (int f = 0; f < facets; ++f) {
-      const double height = growth * own.vertex(own.facet_vertices(f)[0]).dot(own.facet_normal(f));
-      buffers_.levels[static_cast<std::size_t>(f)] = static_cast<float>(level - height);
-    }
-    probes_beyond(own.facet_normal(0).data(), facets, probes, buffers_.levels.data(), far.data());
-  }
-
-  void keep_edges(bool of_a) {
-    const ConvexPolytope& own = body(of_a);
-    const std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
-    std::vector<std::int32_t>& kept = of_a ? buffers_.kept_a : buffers_.kept_b;
-    const int count = own.num_half_edges();
-    kept.resize(static_cast<std::size_t>(count));
-    std::size_t n = 0;
-    for (int h = 0; h < count; ++h) {
-      const HalfEdge& e = own.half_edge(h);
-      // Written in any case and counted where it stays: no branch to guess.
-      kept[n] = h;
-      const int other = own.half_edge(e.twin).facet;
-      n += static_cast<std::size_t>(
-          static_cast<int>(e.twin > h) &
-          static_cast<int>((far[static_cast<std::size_t>(e.facet)] & far[static_cast<std::size_t>(other)]) == 0));
-    }
-    kept.resize(n);
-  }
+  [[nodiscard]] NearArcs& arcs(bool of_a) const { return of_a ? buffers_.near_a : buffers_.near_b; }
 
   /// [A] step 1 for the facets of one body that no probe shows too far. False when there are too many.
   bool measure_facets(bool of_a, std::int64_t edges) {
-    const std::vector<std::uint32_t>& far = of_a ? buffers_.far_from_a : buffers_.far_from_b;
+    const std::vector<std::uint32_t>& far = arcs(of_a).far;
     const auto near = std::count(far.begin(), far.end(), 0U);
     if (near > 16 + edges / 4) return false;
     if (near == 0) return true;
@@ -179,7 +113,7 @@ class TiedFacetsSearch {
     // Relative to one vertex of A, so that points of B are points of P and those of A differences of two.
     const Vec3 start = a_.vertex(0);
     const Vec3 shift = of_a ? Vec3::Zero() : Vec3(difference_.offset() - pose_a_.rotation() * start);
-    const std::vector<std::int32_t>& kept = of_a ? buffers_.kept_a : buffers_.kept_b;
+    const std::vector<std::int32_t>& kept = arcs(of_a).kept;
     std::vector<Edge>& edges = of_a ? buffers_.edges_a : buffers_.edges_b;
     edges.resize(kept.size());
     for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -254,6 +188,7 @@ class TiedFacetsSearch {
     const Vec3 across = b.direction.cross(a.direction);
     const double sine = across.norm();
     if (sine < kParallel) {
+      if (sliver_distance(a, b) > radius_) return true;
       slivers_ += (sine + 2 * kDirectionError) * std::min(a.length, b.length);
       return slivers_ <= kSliverShare * settings_.width;
     }
@@ -273,6 +208,28 @@ class TiedFacetsSearch {
     return true;
   }
 
+  /// Lower bound of the distance of two nearly parallel edges' parallelogram: along the unit vector to the point
+  /// nearest to the origin of the segment that it nearly is.
+  double sliver_distance(const Edge& a, const Edge& b) const {
+    Vec3 corners[4];
+    int count = 0;
+    for (const std::int32_t va : {a.from, a.to}) {
+      for (const std::int32_t vb : {b.from, b.to}) corners[count++] = difference_.vertex(va, vb).x;
+    }
+    double first = kInfinity, last = -kInfinity;
+    for (const Vec3& x : corners) {
+      first = std::min(first, x.dot(b.direction));
+      last = std::max(last, x.dot(b.direction));
+    }
+    const Vec3 across = corners[0] - corners[0].dot(b.direction) * b.direction;
+    const Vec3 nearest = across + std::clamp(0.0, first, last) * b.direction;
+    const double length = nearest.norm();
+    if (!(length > 0)) return 0;
+    double least = kInfinity;
+    for (const Vec3& x : corners) least = std::min(least, x.dot(nearest) / length);
+    return (least - lower_error()) / reach_;
+  }
+
   // ---- the nearest of the candidates ------------------------------------------------------------------------------
 
   void choose() {
@@ -287,11 +244,14 @@ class TiedFacetsSearch {
     });
     double lower = kInfinity;
     double upper = kInfinity;
-    for (const Candidate& c : candidates) {
+    for (Candidate& c : candidates) {
       if (c.lower >= std::min(upper, lower + settings_.width)) break;
       const double height =
           c.kind == Kind::edges ? support(c.normal).x.dot(c.normal) + bound_error() : c.upper * reach_;
-      if (!c.certain && height - 2 * bound_error() > reach_ * (c.upper + turn_error(c))) continue;
+      if (!c.certain && height - 2 * bound_error() > reach_ * (c.upper + turn_error(c))) {
+        c.lower = kInfinity;  // no facet of P
+        continue;
+      }
       lower = std::min(lower, c.lower);
       if (height / reach_ < upper && lies_below_origin(c, height)) {
         upper = height / reach_;
@@ -300,9 +260,31 @@ class TiedFacetsSearch {
       }
       if (upper - lower + slivers_ <= settings_.width * largest_ / reach_) break;
     }
+    if (slivers_ == 0 && upper < kInfinity) list_nearest(std::min(upper, radius_));
     lower -= slivers_;
     out_.lower = lower * reach_ * (1 - 4 * kU);
     out_.certified = lower > 0 && upper < kInfinity && out_.upper - out_.lower <= settings_.width * largest_;
+  }
+
+  void list_nearest(double beyond) {
+    buffers_.nearest.clear();
+    for (const Candidate& c : buffers_.candidates) {
+      if (c.lower <= beyond) buffers_.nearest.push_back(corners(c));
+    }
+    out_.beyond = beyond * reach_ * (1 - 4 * kU);
+  }
+
+  [[nodiscard]] SurfaceCorners corners(const Candidate& c) const {
+    if (c.kind == Kind::edges) {
+      const Edge& a = buffers_.edges_a[static_cast<std::size_t>(c.a)];
+      const Edge& b = buffers_.edges_b[static_cast<std::size_t>(c.b)];
+      return {{{a.from, b.from}, {a.to, b.from}, {a.from, b.to}}};
+    }
+    const bool of_a = c.kind == Kind::facet_of_a;
+    const auto loop = body(of_a).facet_vertices(of_a ? c.a : c.b);
+    SurfaceCorners out;
+    for (std::size_t k = 0; k < 3; ++k) out.v[k] = of_a ? PairId{loop[k], c.b} : PairId{c.a, loop[k]};
+    return out;
   }
 
   /// By how much h_P may differ between the computed normal and the exact one, divided by the reach.

@@ -2,11 +2,9 @@
 /// The nearest facet of P where so many are nearly as near that growing a surface inside P would meet them all: those
 /// of [A] section 2 whose planes may be as near as a known bound, in doubles with a certificate.
 ///
-/// [A] step 1: a facet of one body is left out when a vertex x of P shows its plane too far, <x, n> > bound; the planes
-/// of the others are measured by supports. Step 2: an edge is left out when one x shows both its facets too far (along
-/// an arc shorter than half a circle <x, n> is a piece of a sine, which stays above a positive level where both ends
-/// do). Of what is left all pairs of lines are tried, four at a time (line_lanes.hpp): 0.4 ns a pair, where the dual
-/// tree of closest_lines.hpp needs some 5 ns for each of the fewer pairs that it tries, and two trees before.
+/// [A] step 1: the planes of the facets of one body that may be near (far_arcs.hpp) are measured by supports. Step 2:
+/// of the edges left all pairs of lines are tried, four at a time (line_lanes.hpp): 0.4 ns a pair, less than the dual
+/// tree of closest_lines.hpp takes for bodies of up to some thousands of edges.
 ///
 /// Why it proves anything: the boundary of P consists of facets with a facet of one body and of parallelograms of two
 /// edges whose arcs cross. No pair is taken for crossing that need be: a pair that doubles cannot exclude counts, so
@@ -18,6 +16,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "depth/facet_proof.hpp"
+#include "depth/far_arcs.hpp"
 #include "depth/line_lanes.hpp"
 #include "depth/polytope_difference.hpp"
 #include "depth/surface.hpp"
@@ -46,16 +46,14 @@ struct TiedFacetsBuffers {
     double upper;
     Vec3 normal;  ///< unit, outward, once `lower` is sharp
   };
-  std::vector<float> levels;              ///< by facet
-  std::vector<std::uint32_t> far_from_a;  ///< by facet: the points that show it too far
-  std::vector<std::uint32_t> far_from_b;
-  std::vector<std::int32_t> kept_a;  ///< half-edges
-  std::vector<std::int32_t> kept_b;
+  NearArcs near_a;
+  NearArcs near_b;
   std::vector<Edge> edges_a;
   std::vector<Edge> edges_b;
   std::vector<double> lines_a[6];
   std::vector<std::uint64_t> near;
   std::vector<Candidate> candidates;
+  std::vector<SurfaceCorners> nearest;
 };
 
 /// The piece of P's boundary that holds its point nearest to the origin.
@@ -72,6 +70,9 @@ struct TiedFacets {
   double along_a =
       0;  ///< where the point below the origin lies on the two edges, 0 at the first vertex, 1 at the second
   double along_b = 0;
+  /// For an exact answer: `TiedFacetsBuffers::nearest` holds three corners of every piece that may be the nearest one,
+  /// the likeliest first, and all others are at least this far away; 0 where slivers spoil that.
+  double beyond = 0;
   std::int64_t pairs = 0;
   std::int64_t facets = 0;
   std::int64_t support_calls = 0;
