@@ -141,7 +141,11 @@ TEST(DecompositionDepth, AutoTakesItWhereManyFacetsAreNearlyTied) {
   const PenetrationDepth found = penetration_depth({&a, patch.pose_a}, {&b, patch.pose_b}, scratch);
   EXPECT_EQ(found.method, Method::decomposition);
   EXPECT_GT(found.statistics.pair_evaluations, 0);
-  EXPECT_LT(4 * found.statistics.pair_evaluations, 512 * 512);
+  const PenetrationDepth by_tree =
+      penetration_depth({&a, patch.pose_a}, {&b, patch.pose_b}, scratch, {.method = Method::decomposition});
+  EXPECT_EQ(by_tree.translation, found.translation);
+  EXPECT_GT(by_tree.statistics.block_bounds, 0);
+  EXPECT_LT(4 * by_tree.statistics.pair_evaluations, 512 * 512);
   const auto balls = scenes::make_agarwal_pair(scenes::AgarwalFamily::balls, 512, scenes::DepthClass::deep, 1);
   const ConvexShape c(balls.a), d(balls.b);
   EXPECT_EQ(penetration_depth({&c, balls.pose_a}, {&d, balls.pose_b}, scratch).method, Method::overlay);

@@ -129,7 +129,10 @@ TEST_P(TiedFacetsOfRoofs, KeepEveryPromiseWithoutATree) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       SCOPED_TRACE(testing::Message() << "n " << n << ", seed " << seed);
       const scenes::PolytopePair pair = scenes::crossed_roofs(n, 1, seed);
-      const ConvexShape a(pair.a), b(pair.b);
+      const scenes::Points points_a = points(pair.a), points_b = points(pair.b);
+      const ConvexPolytope hull_a = *ConvexPolytope::from_points(points_a);
+      const ConvexPolytope hull_b = *ConvexPolytope::from_points(points_b);
+      const ConvexShape a(hull_a), b(hull_b);
       const PenetrationDepth answer =
           penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, {.bracket = GetParam()});
       EXPECT_EQ(answer.method, Method::decomposition);
@@ -137,10 +140,10 @@ TEST_P(TiedFacetsOfRoofs, KeepEveryPromiseWithoutATree) {
       EXPECT_EQ(answer.statistics.block_bounds, 0);
       EXPECT_LE(answer.statistics.exact_signs, GetParam() == Bracket::certified ? 0 : 2);
       EXPECT_LT(answer.statistics.support_calls, 128);
-      const oracle::Body body_a(points(pair.a)), body_b(points(pair.b));
+      const oracle::Body body_a(points_a), body_b(points_b);
       const oracle::ExactPair exact(body_a, pair.pose_a, body_b, pair.pose_b);
       const oracle::Findings findings = oracle::check_answer(
-          exact, oracle::judge(exact), {&pair.a, &pair.b, &pair.pose_a, &pair.pose_b, GetParam()}, answer);
+          exact, oracle::judge(exact), {&hull_a, &hull_b, &pair.pose_a, &pair.pose_b, GetParam()}, answer);
       for (const oracle::Breach& breach : findings.wrong) ADD_FAILURE() << breach.what;
     }
   }

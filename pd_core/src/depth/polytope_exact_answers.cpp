@@ -115,8 +115,8 @@ void PolytopeQuery::tighten_upper(ExpansionResult& result) {
                           least_height(difference_, buffers_.surface, buffers_.stack, out_.statistics.support_calls));
 }
 
-/// Of the few pieces that may be nearest, the one that is. Those pieces and what lies beyond cover the boundary of P, as
-/// the triangles of a surface enclose a ball: the proof is the same.
+/// Of the few pieces that may be nearest, the one that is. Those pieces and what lies beyond cover the boundary of P,
+/// as the triangles of a surface enclose a ball: the proof is the same.
 bool PolytopeQuery::prove_tied(const TiedFacets& found) {
   const std::vector<SurfaceCorners>& near = buffers_.tied_facets.nearest;
   if (!(found.beyond > 0) || near.size() > kMaxNearFaces) return false;
