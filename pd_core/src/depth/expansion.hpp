@@ -196,8 +196,8 @@ class Expansion {
     const double error = lower_error();
     double highest = goal.fold_from;
     ExpansionBudget budget(goal.vertices);
+    int f = surface_.nearest();
     for (int step = 0; step < goal.budget; ++step) {
-      const int f = surface_.nearest();
       ++facets_visited_;
       const double key = surface_.key(f);
       const double distance = key >= 0 ? std::sqrt(key) : -std::sqrt(-key);
@@ -248,7 +248,8 @@ class Expansion {
       if (budget.spent(step, distance, height, surface_)) break;
       add_vertex(s);
       largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
-      if (!surface_.insert(f, static_cast<int>(surface_.vertices.size()) - 1)) return undecided(result);
+      f = surface_.insert(f, static_cast<int>(surface_.vertices.size()) - 1, s.x.x(), s.x.y(), s.x.z());
+      if (f < 0) return undecided(result);
     }
     result.status = ExpansionStatus::over_budget;
     return result;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/instruction_sets.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/direction_table.hpp"
@@ -50,7 +51,7 @@ class PolytopeDifference {
   }
 
   /// A point of P that maximises <x, direction>, found from a vertex already at hand (`near`, or nullptr).
-  [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const {
+  [[nodiscard]] PD_INLINE DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const {
     if (!climbs_) {
       const VertexPair farthest = farthest_vertices(posed_a_, posed_b_, direction.x(), direction.y(), direction.z());
       return vertex(farthest.a, farthest.b);
@@ -63,7 +64,7 @@ class PolytopeDifference {
   }
 
   /// The same up to single precision where it is found in a table: for an expansion, which checks what it inserts.
-  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {
+  [[nodiscard]] PD_INLINE DifferenceVertex search_support(const Vec3& direction) const {
     Vec3 scaled;
     if (!climbs_ || !scale_for_search(direction, scaled)) return support(direction, nullptr);
     return vertex(search(a_, -(rotation_a_.transpose() * scaled)), search(b_, rotation_b_.transpose() * scaled));
@@ -82,7 +83,7 @@ class PolytopeDifference {
     for (int k = 0; k < 4; ++k) supports[k] = vertex(pairs[k].a, pairs[k].b);
   }
 
-  [[nodiscard]] DifferenceVertex vertex(int ia, int ib) const {
+  [[nodiscard]] PD_INLINE DifferenceVertex vertex(int ia, int ib) const {
     if (!climbs_) {
       return {{(posed_b_.x[ib] + posed_a_.x[ia]) + offset_.x(), (posed_b_.y[ib] + posed_a_.y[ia]) + offset_.y(),
                (posed_b_.z[ib] + posed_a_.z[ia]) + offset_.z()},

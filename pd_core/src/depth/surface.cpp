@@ -198,32 +198,27 @@ void Surface::find_nearest_by_heap() {
   nearest_ = heap_.front().face;
 }
 
-bool Surface::insert(int from, int v) {
+int Surface::insert(int from, int v, double x, double y, double z) {
   // A horizon has at most three edges for every face that goes.
   reserve(3 * slots_);
   if (leaving_.size() < vertices.size()) {
     leaving_.resize(vertices.capacity());
     reaching_.resize(vertices.capacity());
   }
-  return slots_ <= kFewSlots ? insert_among_few(from, v) : insert_among_many(from, v);
-}
-
-bool Surface::insert_among_few(int from, int v) {
-  const Vec3& x = vertices[v].x;
-  std::uint64_t removed = planes_below(planes(), slots_, x.x(), x.y(), x.z()) | std::uint64_t{1} << from;
+  if (slots_ > kFewSlots) return insert_among_many(from, v) ? nearest_ : -1;
+  std::uint64_t removed = planes_below(planes(), slots_, x, y, z) | std::uint64_t{1} << from;
   if (!trace_horizon(removed)) {
     // Several patches of a crooked surface see x: the one round `from` will do.
     removed = patch_round(from, removed);
-    if (!trace_horizon(removed)) return false;
+    if (!trace_horizon(removed)) return -1;
   }
   if (young_ && padded_to_lanes(slots_) + padded_to_lanes(horizon_count_) <= kFewSlots) {
-    fill_with_new_slots(v, removed);
-    return true;
+    return fill_with_new_slots(v, removed);
   }
   removed_count_ = 0;
   for (; removed != 0; removed &= removed - 1) removed_[removed_count_++] = std::countr_zero(removed);
   fill_with_free_slots(v);
-  return true;
+  return nearest_;
 }
 
 bool Surface::insert_among_many(int from, int v) {
@@ -314,22 +309,25 @@ bool Surface::close_horizon(std::int32_t count) {
   return simple;
 }
 
-void Surface::fill_with_new_slots(int v, std::uint64_t removed) {
+/// Returns the nearest face.
+int Surface::fill_with_new_slots(int v, std::uint64_t removed) {
   const int count = horizon_count_;
   const int first = padded_to_lanes(slots_);
-  in_use_ += count - std::popcount(removed);
+  int gone = 0;
   for (std::uint64_t faces = removed; faces != 0; faces &= faces - 1) {
     const int f = std::countr_zero(faces);
     keys_[f] = levels_[f] = kRemoved;
+    ++gone;
   }
   std::fill_n(from_.begin() + count, kPlaneLanes, from_[0]);
   std::fill_n(to_.begin() + count, kPlaneLanes, to_[0]);
-  triangle_planes(
-      vertices.data()->x.data(), {from_.data(), to_.data(), nullptr}, v, count,
-      {nx_.data() + first, ny_.data() + first, nz_.data() + first, levels_.data() + first, keys_.data() + first});
+  const int nearest =
+      add_fan(vertices.data()->x.data(), {from_.data(), to_.data(), nullptr}, v, count, planes(), first);
   slots_ = first + count;
+  in_use_ += count - gone;
+  nearest_ = nearest;
   join_fan(v, [first](std::int32_t i) { return first + i; });
-  nearest_ = least_key(keys_.data(), slots_);
+  return nearest;
 }
 
 void Surface::fill_with_free_slots(int v) {

@@ -107,7 +107,12 @@ class Surface {
   /// Replaces the faces that see vertex `v`, face `from` among them, by a cone over their border. The surface stays
   /// closed and oriented whatever they are. False, and nothing changed, when every face is seen, or when the border
   /// meets itself in a vertex: rounding, or a surface that has become too crooked.
-  bool insert(int from, int v);
+  bool insert(int from, int v) {
+    const Vec3& x = vertices[v].x;
+    return insert(from, v, x.x(), x.y(), x.z()) >= 0;
+  }
+  /// The same for a vertex whose coordinates are at hand, which is one wait less: the next nearest face, or -1.
+  int insert(int from, int v, double x, double y, double z);
   /// Number of faces in use.
   [[nodiscard]] int size() const { return in_use_; }
   [[nodiscard]] int slots() const { return slots_; }
@@ -136,14 +141,13 @@ class Surface {
   void join(std::int32_t outside, std::int32_t edge);
 
   // insert, step by step
-  bool insert_among_few(int from, int v);
   bool insert_among_many(int from, int v);
   [[nodiscard]] std::uint64_t patch_round(int from, std::uint64_t seen) const;
   void flood_visible(int from, const Vec3& x);
   bool trace_horizon(std::uint64_t removed);
   bool trace_horizon();
   bool close_horizon(std::int32_t count);
-  void fill_with_new_slots(int v, std::uint64_t removed);
+  int fill_with_new_slots(int v, std::uint64_t removed);
   void fill_with_free_slots(int v);
   void take_slots(int count);
   void list_free_slots();

@@ -42,6 +42,12 @@ struct CornerIds {
 void triangle_planes(const double* points, const CornerIds& corners, std::int32_t apex, int count,
                      const PlaneArrays& out);
 
+/// The planes of a fan: triangles p q apex in slots first, first + 1, ... of `planes`, where `first` is a multiple of
+/// kPlaneLanes; as `triangle_planes` otherwise. Returns the lowest index of the least key of all slots so far. Keys
+/// before `first` must be there, infinite for free slots.
+int add_fan(const double* points, const CornerIds& corners, std::int32_t apex, int count, const PlaneArrays& planes,
+            int first);
+
 /// Bit i: the point lies above plane i, i < count <= 64. Entries up to the next whole block are read, their bits given.
 std::uint64_t planes_below(const PlaneArrays& planes, int count, double x, double y, double z);
 

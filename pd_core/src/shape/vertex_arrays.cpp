@@ -3,19 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "numeric/instruction_sets.hpp"
+#include "numeric/lanes.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-/// Four lanes; on narrower machines the compiler takes two registers for one.
-typedef double Lanes __attribute__((vector_size(32)));
-constexpr int kLanes = 4;
 static_assert(2 * kLanes == kVertexBlock);
-
-PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
-PD_INLINE void store(double* to, const Lanes& from) { __builtin_memcpy(to, &from, sizeof(Lanes)); }
 
 struct Direction {
   double x, y, z;
@@ -55,17 +49,6 @@ PD_INLINE void farthest_by_lane(Best& best, const VertexArrays& v, const Directi
   }
 }
 
-PD_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-  const Lanes ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-  const Lanes cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
-  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
-  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
-  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
-}
-
 /// Lane k of `ids`: the winner in direction k.
 PD_INLINE void farthest_in_four(Lanes& ids, const VertexArrays& v, const double (&d)[12]) {
   Best best[4];
@@ -84,9 +67,18 @@ PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
   // Two rows of lanes, so that comparisons do not wait for each other. Ids are counted in doubles: one kind of
   // register.
   const Lanes row = {0, 1, 2, 3};
-  Lanes best, other, best_id = row, other_id = row + kLanes, id = other_id;
+  Lanes best, other;
   heights(best, v, 0, d);
   heights(other, v, kLanes, d);
+  const Lanes zero = {0, 0, 0, 0};
+  if (v.count <= kVertexBlock) {
+    const Lanes tops = zero + greatest(other > best ? other : best);
+    const unsigned winners = mask_of_four(best == tops) | mask_of_four(other == tops) << kLanes;
+    // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
+    const int winner = __builtin_ctz(winners | 1U << kVertexBlock);
+    return winner < v.count ? winner : 0;
+  }
+  Lanes best_id = row, other_id = row + kLanes, id = other_id;
   for (int i = kVertexBlock; i < v.count; i += kVertexBlock) {
     Lanes next, after;
     heights(next, v, i, d);
@@ -98,20 +90,11 @@ PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
     other_id = after > other ? id : other_id;
     other = after > other ? after : other;
   }
-  const Lanes most = other > best ? other : best;
-  const double low = most[1] > most[0] ? most[1] : most[0];
-  const double high = most[3] > most[2] ? most[3] : most[2];
-  const double top = high > low ? high : low;
-  const Lanes zero = {0, 0, 0, 0};
-  const Lanes tops = zero + top;
+  const Lanes tops = zero + greatest(other > best ? other : best);
   const Lanes none = zero + 0x1p40;
   const Lanes from_best = best == tops ? best_id : none;
   const Lanes from_other = other == tops ? other_id : none;
-  const Lanes ids = from_other < from_best ? from_other : from_best;
-  const double first = ids[1] < ids[0] ? ids[1] : ids[0];
-  const double second = ids[3] < ids[2] ? ids[3] : ids[2];
-  const double winner = second < first ? second : first;
-  // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
+  const double winner = least(from_other < from_best ? from_other : from_best);
   return winner < v.count ? static_cast<int>(winner) : 0;
 }
 
@@ -132,31 +115,23 @@ PD_INLINE void pose_four(const PosedBodies& bodies, const std::int32_t* ids, dou
   __builtin_memcpy(&id, ids, sizeof(Lanes));
   const double* const a = bodies.matrix_a;
   const double* const b = bodies.matrix_b;
-  const Lanes x = ((bx * b[0] + by * b[1] + bz * b[2]) - (ax * a[0] + ay * a[1] + az * a[2])) + bodies.offset[0];
-  const Lanes y = ((bx * b[3] + by * b[4] + bz * b[5]) - (ax * a[3] + ay * a[4] + az * a[5])) + bodies.offset[1];
-  const Lanes z = ((bx * b[6] + by * b[7] + bz * b[8]) - (ax * a[6] + ay * a[7] + az * a[8])) + bodies.offset[2];
-  const Lanes xy_even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-  const Lanes xy_odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-  const Lanes zi_even = __builtin_shufflevector(z, id, 0, 4, 2, 6);
-  const Lanes zi_odd = __builtin_shufflevector(z, id, 1, 5, 3, 7);
-  store(out, __builtin_shufflevector(xy_even, zi_even, 0, 1, 4, 5));
-  store(out + 4, __builtin_shufflevector(xy_odd, zi_odd, 0, 1, 4, 5));
-  store(out + 8, __builtin_shufflevector(xy_even, zi_even, 2, 3, 6, 7));
-  store(out + 12, __builtin_shufflevector(xy_odd, zi_odd, 2, 3, 6, 7));
+  Lanes x = ((bx * b[0] + by * b[1] + bz * b[2]) - (ax * a[0] + ay * a[1] + az * a[2])) + bodies.offset[0];
+  Lanes y = ((bx * b[3] + by * b[4] + bz * b[5]) - (ax * a[3] + ay * a[4] + az * a[5])) + bodies.offset[1];
+  Lanes z = ((bx * b[6] + by * b[7] + bz * b[8]) - (ax * a[6] + ay * a[7] + az * a[8])) + bodies.offset[2];
+  transpose(x, y, z, id);
+  store(out, x);
+  store(out + 4, y);
+  store(out + 8, z);
+  store(out + 12, id);
 }
 
-typedef float Floats __attribute__((vector_size(32)));
-typedef float HalfFloats __attribute__((vector_size(16)));
-typedef std::int32_t Ids __attribute__((vector_size(32)));
-typedef std::int32_t HalfIds __attribute__((vector_size(16)));
-constexpr int kFloats = 8;
 static_assert(ConvexPolytope::VertexBlock::kVertices == kFloats);
 
 PD_INLINE void heights(Floats& to, const ConvexPolytope::VertexBlock& v, float dx, float dy, float dz) {
   Floats x, y, z;
-  __builtin_memcpy(&x, v.x, sizeof(Floats));
-  __builtin_memcpy(&y, v.y, sizeof(Floats));
-  __builtin_memcpy(&z, v.z, sizeof(Floats));
+  load(x, v.x);
+  load(y, v.y);
+  load(z, v.z);
   to = x * dx + y * dy + z * dz;
 }
 
@@ -181,8 +156,12 @@ PD_CLONES void farthest_in_four_directions(const VertexArrays& a, const VertexAr
 
 PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock* blocks, int count, float dx, float dy, float dz) {
   Floats best;
-  Ids best_id;
   heights(best, blocks[0], dx, dy, dz);
+  if (count == 1) {
+    const float top = greatest(best);
+    return blocks[0].id[__builtin_ctz(mask_of_eight(best == Floats{top, top, top, top, top, top, top, top}) | 128U)];
+  }
+  Ids best_id;
   __builtin_memcpy(&best_id, blocks[0].id, sizeof(Ids));
   for (int i = 1; i < count; ++i) {
     Floats next;
@@ -192,22 +171,16 @@ PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock* blocks, int 
     best_id = next > best ? id : best_id;
     best = next > best ? next : best;
   }
-  const HalfFloats low = __builtin_shufflevector(best, best, 0, 1, 2, 3);
-  const HalfFloats high = __builtin_shufflevector(best, best, 4, 5, 6, 7);
-  const HalfFloats top = high > low ? high : low;
-  const float left = top[1] > top[0] ? top[1] : top[0];
-  const float right = top[3] > top[2] ? top[3] : top[2];
-  const float greatest = right > left ? right : left;
-  const Floats tops = {greatest, greatest, greatest, greatest, greatest, greatest, greatest, greatest};
+  const float top = greatest(best);
   constexpr std::int32_t kNobody = 0x7fffffff;
   const Ids none = {kNobody, kNobody, kNobody, kNobody, kNobody, kNobody, kNobody, kNobody};
-  const Ids ids = best == tops ? best_id : none;
-  const HalfIds low_ids = __builtin_shufflevector(ids, ids, 0, 1, 2, 3);
-  const HalfIds high_ids = __builtin_shufflevector(ids, ids, 4, 5, 6, 7);
-  const HalfIds least = high_ids < low_ids ? high_ids : low_ids;
-  const std::int32_t left_id = least[1] < least[0] ? least[1] : least[0];
-  const std::int32_t right_id = least[3] < least[2] ? least[3] : least[2];
-  return right_id < left_id ? right_id : left_id;
+  const Ids ids = best == Floats{top, top, top, top, top, top, top, top} ? best_id : none;
+  const HalfIds low = __builtin_shufflevector(ids, ids, 0, 1, 2, 3);
+  const HalfIds high = __builtin_shufflevector(ids, ids, 4, 5, 6, 7);
+  const HalfIds lower = high < low ? high : low;
+  const std::int32_t left = lower[1] < lower[0] ? lower[1] : lower[0];
+  const std::int32_t right = lower[3] < lower[2] ? lower[3] : lower[2];
+  return right < left ? right : left;
 }
 
 PD_CLONES void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z) {
