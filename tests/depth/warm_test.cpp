@@ -69,6 +69,90 @@ TEST(Warm, KeepsEveryPromiseFrameByFrameAndRepeatsItself) {
   std::printf("%d of %d frames answered warm\n", warm_answers, frames);
 }
 
+/// Frames of the same two bodies, each judged and compared with a second memory that took the same way.
+struct Ride {
+  int frames = 0;
+  int warm = 0;
+  std::int64_t supports = 0;
+  std::int64_t facets = 0;
+};
+Ride ride(PairFamily family, int n, DepthClass depth, std::uint64_t seed, double angle, double drift, int frames) {
+  const scenes::PointPair start = scenes::make_pair(family, n, depth, seed);
+  const JudgedPair bodies(start, "");
+  Scratch scratch;
+  WarmCertificate first;
+  WarmCertificate second;
+  Ride out;
+  for (int k = 0; k < frames; ++k) {
+    const JudgedPair pair(frame(start, k, angle, drift),
+                          std::string(to_string(family)) + " frame " + std::to_string(k));
+    const PosedShape a{bodies.a().shape, pair.a().pose};
+    const PosedShape b{bodies.b().shape, pair.b().pose};
+    const PenetrationDepth answer = penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &first);
+    const std::string complaint = pair.complaint(answer, Bracket::certified);
+    EXPECT_TRUE(complaint.empty()) << complaint;
+    const PenetrationDepth again = penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &second);
+    EXPECT_EQ(answer.translation, again.translation);
+    EXPECT_EQ(answer.lower, again.lower);
+    EXPECT_EQ(answer.distance, again.distance);
+    EXPECT_EQ(answer.witness_a, again.witness_a);
+    if (k == 0) continue;
+    ++out.frames;
+    out.warm += answer.warm;
+    out.supports += answer.statistics.support_calls;
+    out.facets += answer.statistics.facets_visited;
+  }
+  return out;
+}
+
+TEST(Warm, LooksAtAFewFacesWhileBodiesMoveSlowly) {
+  for (const PairFamily family : {PairFamily::sphere, PairFamily::prism, PairFamily::clouds}) {
+    for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid}) {
+      const Ride slow = ride(family, 24, depth, 3, 0.0005, 1e-5, 40);
+      EXPECT_EQ(slow.warm, slow.frames) << to_string(family);
+      // A support a frame, and less than half of the thirty faces or more that such a surface has.
+      EXPECT_LE(slow.supports, slow.frames + 8) << to_string(family);
+      EXPECT_LE(slow.facets, 12 * slow.frames) << to_string(family);
+      const Ride fast = ride(family, 24, depth, 3, 0.08, 0.01, 30);
+      EXPECT_GT(10 * fast.warm, 8 * fast.frames) << to_string(family);
+      // Growing anew takes ten supports and more.
+      EXPECT_LE(fast.supports, 6 * fast.frames) << to_string(family);
+    }
+  }
+}
+
+TEST(Warm, BodiesApartAreMetWhereTheyWere) {
+  for (const PairFamily family : {PairFamily::box, PairFamily::sphere, PairFamily::prism, PairFamily::needle}) {
+    const Ride apart = ride(family, 24, DepthClass::gap, 7, 0.01, 0.002, 30);
+    EXPECT_EQ(apart.warm, apart.frames) << to_string(family);
+    // One looks at the far side, one confirms; GJK from scratch takes eight and more.
+    EXPECT_LE(apart.supports, 4 * apart.frames) << to_string(family);
+  }
+}
+
+TEST(Warm, MeasuresOfOtherBodiesAreNotBelieved) {
+  // As many vertices, and as far as the certificate knows as large, so that the surface may be tried; what it measured
+  // may not.
+  const JudgedPair pair = JudgedPair::of_family(PairFamily::sphere, 24, DepthClass::mid, 5);
+  const JudgedPair other = JudgedPair::of_family(PairFamily::sphere, 24, DepthClass::mid, 6);
+  Scratch scratch;
+  WarmCertificate certificate;
+  const DepthSettings hot{.bracket = Bracket::certified};
+  PenetrationDepth answer;
+  for (int k = 0; k < 3; ++k) answer = penetration_depth(pair.a(), pair.b(), scratch, hot, &certificate);
+  ASSERT_TRUE(answer.warm);
+  ASSERT_GT(certificate.state().reference.clearance, 0);
+  ASSERT_LE(answer.statistics.facets_visited, 16);
+  certificate.state().vertices_a = other.a().shape->polytope()->num_vertices();
+  certificate.state().vertices_b = other.b().shape->polytope()->num_vertices();
+  certificate.state().radius_a = other.a().shape->polytope()->radius();
+  certificate.state().radius_b = other.b().shape->polytope()->radius();
+  answer = penetration_depth(other.a(), other.b(), scratch, hot, &certificate);
+  const std::string complaint = other.complaint(answer, Bracket::certified);
+  EXPECT_TRUE(complaint.empty()) << complaint;
+  EXPECT_EQ(certificate.state().reference.clearance, 0);
+}
+
 TEST(Warm, SurvivesJumpsAndOtherPairs) {
   Scratch scratch;
   WarmCertificate certificate;

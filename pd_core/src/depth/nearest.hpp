@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "depth/polytope_difference.hpp"
 
@@ -27,17 +28,15 @@ struct NearestResult {
 /// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
 Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
 
-/// @param first     a vertex of P to begin with.
+/// @param start     one to three vertices of P to begin with, affinely independent.
 /// @param relative  stop when upper <= (1 + relative) lower ...
 /// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
 template <class Difference>
-NearestResult nearest_point(const Difference& difference, const DifferenceVertex& first, double relative,
+NearestResult nearest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
                             double absolute, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   NearestResult r;
-  r.simplex[0] = first;
-  r.count = 1;
-  r.weights[0] = 1;
-  r.point = first.x;
+  for (const DifferenceVertex& v : start) r.simplex[r.count++] = v;
+  r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
   const double rounding = 8 * PolytopeDifference::kHalfUlp * difference.reach();
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
@@ -45,7 +44,7 @@ NearestResult nearest_point(const Difference& difference, const DifferenceVertex
   // What is near the origin says little about L: look at P's far side once.
   const DifferenceVertex far = difference.support(difference.centre(), nullptr);
   ++support_calls;
-  double largest = std::max(first.x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
+  double largest = std::max(start[0].x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
   for (;;) {
     const double length = r.point.norm();
     r.upper = length + upper_error;

@@ -158,18 +158,24 @@ void PolytopeQuery::fill_tied(const TiedFacets& found) {
 
 /// False when doubles do not narrow the bracket enough or cannot tell the class.
 bool PolytopeQuery::fill_separated(const ExpansionResult& result) {
+  const DifferenceVertex first = difference_.support(result.normal, nullptr);
+  return fill_separated({&first, 1});
+}
+
+/// The same from vertices of P that may be near the origin.
+bool PolytopeQuery::fill_separated(std::span<const DifferenceVertex> start) {
   const double margin = pair_.margins.a + pair_.margins.b;
   // What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
   const double relative = margin > 0 ? 0.0 : settings_.delta;
-  const DifferenceVertex first = difference_.support(result.normal, nullptr);
   const NearestResult nearest =
-      nearest_point(difference_, first, relative, kCertifiedWidth, buffers_.stack, out_.statistics.support_calls);
+      nearest_point(difference_, start, relative, kCertifiedWidth, buffers_.stack, out_.statistics.support_calls);
   for (int i = 0; i < nearest.count; ++i) start_[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
   start_count_ = nearest.count;
   if (!nearest.certified) return false;
   out_.normal = -nearest.point.normalized();
   const double round = 4 * 0x1p-53 * (nearest.upper + margin);
   if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;
+  remember_apart(std::span(start_).first(static_cast<std::size_t>(start_count_)));
   fill_witnesses(nearest.simplex, nearest.weights, nearest.count);
   DifferenceVertex corners[3];
   for (int i = 0; i < 3; ++i) corners[i] = nearest.simplex[std::min(i, nearest.count - 1)];

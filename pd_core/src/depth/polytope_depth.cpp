@@ -20,7 +20,7 @@ void PolytopeQuery::solve() {
     return;
   }
   doubles_suffice_ = !exactly && settings_.method != Method::decomposition;
-  if (doubles_suffice_ && solve_from_memory()) return;
+  if (doubles_suffice_ && (solve_from_memory() || solve_apart_from_memory())) return;
   if (!exactly && settings_.method == Method::automatic && solve_boxes()) return;
   out_.method = Method::expansion;
   ExpansionResult result;

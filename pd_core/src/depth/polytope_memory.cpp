@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "depth/polytope_query.hpp"
 #include "depth/remembered_surface.hpp"
@@ -70,13 +71,54 @@ bool PolytopeQuery::hold(ExpansionResult& result) {
   return true;
 }
 
+/// Bodies that were apart: the nearest point of P is looked for from the vertices round the last one. False, and
+/// nothing said, where they overlap or doubles cannot tell.
+bool PolytopeQuery::solve_apart_from_memory() {
+  if (!warm_ || warm_->state().apart_count == 0 || !within_range()) return false;
+  WarmCertificate::State& state = warm_->state();
+  const int count = std::exchange(state.apart_count, 0);
+  if (!is_memory_of_this_pair()) return false;
+  DifferenceVertex start[3];
+  difference_.turned_vertices(state.apart, count, start);
+  difference_.turn(buffers_.posed);
+  if (!fill_separated(std::span(start).first(static_cast<std::size_t>(count)))) {
+    start_count_ = 0;
+    return false;
+  }
+  out_.method = Method::expansion;
+  out_.warm = true;
+  state.direction = out_.normal;
+  return true;
+}
+
+void PolytopeQuery::remember_apart(std::span<const PairId> simplex) {
+  if (!warm_) return;
+  own_memory();
+  WarmCertificate::State& state = warm_->state();
+  state.apart_count = static_cast<int>(simplex.size());
+  for (std::size_t i = 0; i < simplex.size(); ++i) state.apart[i] = {simplex[i].a, simplex[i].b};
+}
+
+/// As far as numbers tell: ids are in range, and whatever they lead to is computed from the present poses.
+bool PolytopeQuery::is_memory_of_this_pair() const {
+  const WarmCertificate::State& state = warm_->state();
+  return state.vertices_a == pair_.a->num_vertices() && state.vertices_b == pair_.b->num_vertices() &&
+         state.radius_a == pair_.a->radius() && state.radius_b == pair_.b->radius();
+}
+
+void PolytopeQuery::own_memory() {
+  if (!is_memory_of_this_pair()) warm_->clear();
+  WarmCertificate::State& state = warm_->state();
+  state.vertices_a = pair_.a->num_vertices();
+  state.vertices_b = pair_.b->num_vertices();
+  state.radius_a = pair_.a->radius();
+  state.radius_b = pair_.b->radius();
+}
+
 /// Puts the last surface at the present poses. False when there is none for this pair.
 bool PolytopeQuery::restore() {
   WarmCertificate::State& state = warm_->state();
-  if (state.vertices_a != pair_.a->num_vertices() || state.vertices_b != pair_.b->num_vertices() ||
-      state.radius_a != pair_.a->radius() || state.radius_b != pair_.b->radius()) {
-    warm_->clear();
-  }
+  if (!is_memory_of_this_pair()) warm_->clear();
   if (state.faces.empty()) return false;
   Surface& surface = buffers_.surface;
   surface.clear();
@@ -89,10 +131,7 @@ bool PolytopeQuery::restore() {
 void PolytopeQuery::remember(const ExpansionResult& result) {
   if (!warm_) return;
   WarmCertificate::State& state = warm_->state();
-  state.vertices_a = pair_.a->num_vertices();
-  state.vertices_b = pair_.b->num_vertices();
-  state.radius_a = pair_.a->radius();
-  state.radius_b = pair_.b->radius();
+  own_memory();
   state.direction = result.normal;
   state.reference.clearance = 0;
   const bool certified = result.status == ExpansionStatus::certified;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include "depth/exact_nearest.hpp"
 #include "depth/expansion.hpp"
@@ -35,9 +36,13 @@ class PolytopeQuery {
 
   // The memory of the pair: polytope_memory.cpp
   bool solve_from_memory();
+  bool solve_apart_from_memory();
+  void remember_apart(std::span<const PairId> simplex);
   bool supported(const DifferenceVertex (&corners)[3], const Vec3& normal, double distance, double largest,
                  ExpansionResult& result) const;
   bool hold(ExpansionResult& result);
+  [[nodiscard]] bool is_memory_of_this_pair() const;
+  void own_memory();
   bool restore();
   void remember(const ExpansionResult& result);
   /// Sizes outside this range are left to the exact engines, which rescale.
@@ -48,6 +53,7 @@ class PolytopeQuery {
   void fill_overlapping(const ExpansionResult& result);
   void fill_overlapping(const DifferenceVertex (&corners)[3], const double (&weights)[3]);
   bool fill_separated(const ExpansionResult& result);
+  bool fill_separated(std::span<const DifferenceVertex> start);
   bool solve_among_ties(const ExpansionResult& result);
   void fill_tied(const TiedFacets& found);
   void corners_of(int f, DifferenceVertex (&corners)[3]) const;

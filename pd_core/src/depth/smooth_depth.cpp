@@ -151,8 +151,8 @@ class SmoothQuery {
   void solve_apart(const ExpansionResult& core) {
     const DifferenceVertex first = difference_.support(core.normal, nullptr);
     const double relative = margin_ > 0 ? 0.0 : delta_;
-    NearestResult nearest =
-        nearest_point(difference_, first, relative, 0.25 * kAbsolute, buffers_.stack, out_.statistics.support_calls);
+    NearestResult nearest = nearest_point(difference_, {&first, 1}, relative, 0.25 * kAbsolute, buffers_.stack,
+                                          out_.statistics.support_calls);
     Vec3 proven = -nearest.point.normalized();
     if (!nearest.certified) {
       const SmoothNearest near =

@@ -11,6 +11,9 @@ namespace pd::detail {
 
 namespace {
 
+/// Facets with more vertices are left to a search.
+constexpr int kMostLevelVertices = 16;
+
 int scan(const ConvexPolytope& p, const Vec3& d) { return farthest_vertex(arrays_of(p), d.x(), d.y(), d.z()); }
 
 int better(const ConvexPolytope& p, const Vec3& d, int v, int w) {
@@ -79,16 +82,23 @@ int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, con
   const double dx = direction.x(), dy = direction.y(), dz = direction.z();
   // Two products of three terms, each within 3u of the sum of its terms' magnitudes, and their difference.
   const double doubt = 8 * 0x1p-53 * p.radius() * (std::abs(dx) + std::abs(dy) + std::abs(dz));
+  std::int32_t level[kMostLevelVertices];
+  int count = 0;
+  const auto is_listed = [&](std::int32_t v) { return std::find(level, level + count, v) != level + count; };
+  for (const int v : vertices) {
+    if (!is_listed(v)) level[count++] = v;
+  }
   int best = -1;
   double best_value = 0;
-  for (int i = 0; i < 3; ++i) {
-    const int v = vertices[i];
-    if ((i > 0 && v == vertices[0]) || (i > 1 && v == vertices[1])) continue;
+  for (int i = 0; i < count; ++i) {
+    const int v = level[i];
     const double value = x[v] * dx + y[v] * dy + z[v] * dz;
-    const double below = value - doubt;
     for (const std::int32_t w : p.neighbours(v)) {
-      if (x[w] * dx + y[w] * dy + z[w] * dz < below) continue;
-      if (w != vertices[0] && w != vertices[1] && w != vertices[2]) return -1;
+      const double other = x[w] * dx + y[w] * dy + z[w] * dz;
+      if (other < value - doubt || is_listed(w)) continue;
+      // Another vertex of the facet that the three lie on, or a higher one.
+      if (other > value + doubt || count == kMostLevelVertices) return -1;
+      level[count++] = w;
     }
     if (best >= 0 && value <= best_value) continue;
     best = v;

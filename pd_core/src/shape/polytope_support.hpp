@@ -25,8 +25,9 @@ int support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int ne
 int certified_support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int v,
                              std::vector<std::int32_t>& stack);
 
-/// The best of three vertices (repetitions allowed) if it is a maximiser as `certified_support_vertex` returns it:
-/// every edge that leaves the three descends for certain, so by convexity they hold the maximum. Otherwise -1.
+/// The best of three vertices (repetitions allowed) and of those level with them, if it is a maximiser as
+/// `certified_support_vertex` returns it: every edge that leaves these descends for certain, so by convexity they hold
+/// the maximum. Otherwise -1.
 int confirmed_support_vertex(const ConvexPolytope& polytope, const Vec3& direction, const std::array<int, 3>& vertices);
 
 }  // namespace pd::detail

@@ -23,8 +23,8 @@ class WarmCertificate {
   [[nodiscard]] std::size_t memory_bytes() const;
 
   struct CachedVertex {
-    std::int32_t a;
-    std::int32_t b;
+    std::int32_t a = 0;
+    std::int32_t b = 0;
   };
   struct CachedFace {
     std::int16_t vertex[3];
@@ -36,7 +36,7 @@ class WarmCertificate {
     Mat3 rotation_a = Mat3::Zero();
     Mat3 rotation_b = Mat3::Zero();
     Vec3 offset = Vec3::Zero();  ///< t_B - t_A
-    CachedVertex base{0, 0};     ///< a vertex of the nearest face
+    CachedVertex base;           ///< a vertex of the nearest face
     int nearest = 0;             ///< that face
     Vec3 inner = Vec3::Zero();   ///< a point that every face has behind it ...
     double clearance = 0;        ///< ... by this much at least; 0: nothing is known
@@ -61,6 +61,9 @@ class WarmCertificate {
     std::vector<CachedVertex> vertices;
     std::vector<CachedFace> faces;
     Reference reference;
+    // Of bodies apart: the vertices of P round its point nearest to the origin.
+    CachedVertex apart[3];
+    int apart_count = 0;
   };
   [[nodiscard]] State& state() { return state_; }
 
