@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "numeric/instruction_sets.hpp"
@@ -150,9 +151,10 @@ class PolytopeDifference {
   /// At least |x| for every point of P.
   [[nodiscard]] double reach() const { return reach_; }
   /// Sine of the angle between the expected direction of the depth and those that a search begins with: about that
-  /// between the normals of nearby facets of P, measured best for 8 to 2048 vertices.
+  /// between the normals of nearby facets of P, fitted to what took the fewest supports for 8 to 2048 vertices.
   [[nodiscard]] double spread() const {
-    return std::min(0.85, 4 / std::sqrt(static_cast<double>(a_.num_vertices() + b_.num_vertices())));
+    const auto n = static_cast<unsigned>(a_.num_vertices() + b_.num_vertices());
+    return std::min(0.78, (2.8 + 0.13 * std::bit_width(n)) / std::sqrt(static_cast<double>(n)));
   }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
