@@ -1,7 +1,7 @@
 /// @file
-/// Six fixed queries whose instructions callgrind counts (`instruction_budget.cmake`): `fixed_cases NAME` sets one up,
-/// runs it until no buffer grows any more, and then once more inside `pdepth_counted_call`, the only function that is
-/// counted.
+/// Six fixed queries whose instructions callgrind counts (`instruction_budget.cmake`): `fixed_cases NAME` sets one
+/// up, runs it until no buffer grows any more, and then once more inside `pdepth_counted_call`, the only function that
+/// is counted.
 ///
 /// Instruction counts repeat where times do not, so that a slower hot path is seen in review.
 
@@ -25,15 +25,15 @@ struct FixedCase {
   PairFamily family;
   int vertices;
   DepthClass depth;
-  bool warm;  ///< counted from the certificate of a pose that differs by 0.01 rad
+  double warm_radians;  ///< counted with the memory of three frames, each so far from the next; 0: cold
 };
 constexpr FixedCase kCases[] = {
-    {"box_mid", PairFamily::box, 8, DepthClass::mid, false},
-    {"sphere_8_deep", PairFamily::sphere, 8, DepthClass::deep, false},
-    {"sphere_128_mid", PairFamily::sphere, 128, DepthClass::mid, false},
-    {"sphere_128_deep", PairFamily::sphere, 128, DepthClass::deep, false},
-    {"sphere_2048_shallow", PairFamily::sphere, 2048, DepthClass::shallow, false},
-    {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, true},
+    {"box_mid", PairFamily::box, 8, DepthClass::mid, 0},
+    {"sphere_8_deep", PairFamily::sphere, 8, DepthClass::deep, 0},
+    {"sphere_128_mid", PairFamily::sphere, 128, DepthClass::mid, 0},
+    {"sphere_128_deep", PairFamily::sphere, 128, DepthClass::deep, 0},
+    {"sphere_2048_shallow", PairFamily::sphere, 2048, DepthClass::shallow, 0},
+    {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, 0.01},
 };
 
 }  // namespace
@@ -59,18 +59,20 @@ int main(int argc, char** argv) {
     pd::Scratch scratch;
     pd::WarmCertificate certificate;
     pd::PenetrationDepth answer;
-    if (c.warm) {
-      const double half_angle = 0.005;
-      const pd::Mat3 turn{{1 - 2 * half_angle * half_angle, -2 * half_angle, 0},
-                          {2 * half_angle, 1 - 2 * half_angle * half_angle, 0},
-                          {0, 0, 1}};
-      const pd::PosedShape before{
-          &b, pd::Pose::from_trusted_matrix(turn * pair.pose_b.rotation(), pair.pose_b.translation())};
-      answer = pd::penetration_depth(posed_a, before, scratch, kHotPath, &certificate);
+    if (c.warm_radians > 0) {
+      for (int frames = 3; frames > 0; --frames) {
+        const double half_angle = frames * c.warm_radians / 2;
+        const pd::Mat3 turn{{1 - 2 * half_angle * half_angle, -2 * half_angle, 0},
+                            {2 * half_angle, 1 - 2 * half_angle * half_angle, 0},
+                            {0, 0, 1}};
+        const pd::PosedShape before{
+            &b, pd::Pose::from_trusted_matrix(turn * pair.pose_b.rotation(), pair.pose_b.translation())};
+        answer = pd::penetration_depth(posed_a, before, scratch, kHotPath, &certificate);
+      }
     } else {
       answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
     }
-    pdepth_counted_call(&posed_a, &posed_b, &scratch, c.warm ? &certificate : nullptr, &answer);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, c.warm_radians > 0 ? &certificate : nullptr, &answer);
     // The depth is printed so that no call can be left out; it also shows that the case is what it was.
     std::printf("%s: depth %.17g, %lld supports, %lld exact signs\n", c.name, answer.depth,
                 static_cast<long long>(answer.statistics.support_calls),

@@ -60,17 +60,16 @@ class Surface {
     vertex_numbers_.assign(vertices.size(), -1);
     std::int16_t next_face = 0;
     std::int16_t next_vertex = 0;
-    cached_vertices.resize(vertices.size());
+    cached_vertices.clear();
     for (int f = 0; f < slots_; ++f) {
       if (keys_[f] == kRemoved) continue;
       face_numbers_[f] = next_face++;
       for (const std::int32_t v : triangles_[f].v) {
         if (vertex_numbers_[v] >= 0) continue;
-        cached_vertices[next_vertex] = {vertices[v].a, vertices[v].b};
+        cached_vertices.push_back({vertices[v].a, vertices[v].b});
         vertex_numbers_[v] = next_vertex++;
       }
     }
-    cached_vertices.resize(next_vertex);
     cached_faces.resize(next_face);
     auto* to = cached_faces.data();
     for (int f = 0; f < slots_; ++f) {
