@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "depth/nearest.hpp"
+#include "depth/origin_projection.hpp"
 #include "depth/polytope_query.hpp"
 #include "depth/remembered_surface.hpp"
 
@@ -52,8 +53,7 @@ void PolytopeQuery::fill_overlapping(const ExpansionResult& result) {
   set_depth(result.lower, result.upper, result.normal);
   DifferenceVertex corners[3];
   double weights[3];
-  corners_of(face_below_origin(result.face, result.normal), corners);
-  project_origin(corners, result.normal, weights);
+  face_below_origin(result.face, result.normal, corners, weights);
   fill_overlapping(corners, weights);
 }
 
@@ -71,23 +71,22 @@ void PolytopeQuery::corners_of(int f, DifferenceVertex (&corners)[3]) const {
 }
 
 /// Coplanar faces share a facet of P: steps from f across the edge that the projection lies beyond, while the
-/// neighbour is as near, until the projection lies inside.
-int PolytopeQuery::face_below_origin(int f, const Vec3& normal) const {
+/// neighbour is as near, until the projection lies inside. Gives the last face's corners and where it lies on them.
+void PolytopeQuery::face_below_origin(int f, const Vec3& normal, DifferenceVertex (&corners)[3],
+                                      double (&weights)[3]) const {
   const Surface& surface = buffers_.surface;
-  const double level = std::sqrt(std::max(0.0, surface.key(f))) + 64 * 0x1p-53 * difference_.reach();
+  const double key = std::max(0.0, surface.key(f));
   for (int step = 0; step < surface.size(); ++step) {
-    DifferenceVertex corners[3];
-    double weights[3];
     corners_of(f, corners);
     project_origin(corners, normal, weights);
     const int least = static_cast<int>(std::min_element(weights, weights + 3) - weights);
-    if (weights[least] >= 0) return f;
+    if (weights[least] >= 0) return;
     // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.
     const int next = surface.face(f).adj[(least + 1) % 3] >> 2;
-    if (std::sqrt(std::max(0.0, surface.key(next))) > level) return f;
+    const double level = std::sqrt(key) + 64 * 0x1p-53 * difference_.reach();
+    if (std::sqrt(std::max(0.0, surface.key(next))) > level) return;
     f = next;
   }
-  return f;
 }
 
 void PolytopeQuery::fill_witnesses(const DifferenceVertex* corners, const double* weights, int count) {
@@ -100,8 +99,9 @@ void PolytopeQuery::fill_witnesses(const DifferenceVertex* corners, const double
     b += w * pair_.b->vertex(corners[i].b);
     total += w;
   }
-  out_.witness_a = pair_.pose_a->apply(a / total) - pair_.margins.a * out_.normal;
-  out_.witness_b = pair_.pose_b->apply(b / total) + pair_.margins.b * out_.normal;
+  const double share = 1 / total;
+  out_.witness_a = pair_.pose_a->apply(share * a) - pair_.margins.a * out_.normal;
+  out_.witness_b = pair_.pose_b->apply(share * b) + pair_.margins.b * out_.normal;
 }
 
 /// A facet's partner is a vertex, also where the two bodies' facets are parallel.

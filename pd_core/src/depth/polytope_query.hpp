@@ -57,7 +57,7 @@ class PolytopeQuery {
   bool solve_among_ties(const ExpansionResult& result);
   void fill_tied(const TiedFacets& found);
   void corners_of(int f, DifferenceVertex (&corners)[3]) const;
-  [[nodiscard]] int face_below_origin(int f, const Vec3& normal) const;
+  void face_below_origin(int f, const Vec3& normal, DifferenceVertex (&corners)[3], double (&weights)[3]) const;
   void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count);
   void pair_features();
 

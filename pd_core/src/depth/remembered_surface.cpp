@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "depth/origin_projection.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -46,15 +48,6 @@ struct NearFaces {
 };
 
 }  // namespace
-
-void project_origin(const DifferenceVertex (&corners)[3], const Vec3& normal, double (&weights)[3]) {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    weights[i] = normal.dot(corners[(i + 1) % 3].x.cross(corners[(i + 2) % 3].x));
-    sum += weights[i];
-  }
-  for (double& w : weights) w /= sum;
-}
 
 void set_reference(WarmCertificate::State& state, Surface& surface, const PolytopeDifference& difference) {
   WarmCertificate::Reference& r = state.reference;

@@ -34,9 +34,6 @@ struct RememberedFace {
   int faces_seen;
 };
 
-/// Barycentric coordinates of the origin's projection on the plane of three points with this normal.
-void project_origin(const DifferenceVertex (&corners)[3], const Vec3& normal, double (&weights)[3]);
-
 /// What is remembered of a surface whose faces all have the origin behind them: `state.faces` are its slots.
 void set_reference(WarmCertificate::State& state, Surface& surface, const PolytopeDifference& difference);
 
