@@ -54,8 +54,9 @@ void Surface::clear_faces() {
 }
 
 void Surface::reserve(int count) {
-  if (static_cast<std::size_t>(count + kPlaneBlock) <= triangles_.size()) return;
-  const std::size_t room = padded_to_block(2 * count + kPlaneBlock);
+  if (count + kPlaneBlock <= room_) return;
+  room_ = padded_to_block(2 * count + kPlaneBlock);
+  const auto room = static_cast<std::size_t>(room_);
   triangles_.resize(room);
   for (auto* values : {&nx_, &ny_, &nz_}) values->resize(room, 0);
   levels_.resize(room, kRemoved);
@@ -200,8 +201,8 @@ void Surface::find_nearest_by_heap() {
 
 int Surface::insert(int from, int v, double x, double y, double z) {
   // A horizon has at most three edges for every face that goes.
-  reserve(3 * slots_);
-  if (leaving_.size() < vertices.size()) {
+  if (3 * slots_ + kPlaneBlock > room_ || vertices.size() > leaving_.size()) {
+    reserve(3 * slots_);
     leaving_.resize(vertices.capacity());
     reaching_.resize(vertices.capacity());
   }

@@ -171,6 +171,7 @@ class Surface {
   std::vector<SurfaceTriangle> triangles_;
   std::vector<double> nx_, ny_, nz_, levels_, keys_;
   std::vector<std::int32_t> free_;
+  int room_ = 0;  ///< slots that the arrays hold
   int slots_ = 0;
   int in_use_ = 0;
   bool young_ = true;
