@@ -101,7 +101,9 @@ bool Surface::start_tetrahedron(double flat) {
   reserve(4);
   std::copy(kFaces, kFaces + 4, triangles_.begin());
   slots_ = in_use_ = 4;
-  compute_planes();
+  static constexpr std::int32_t kCorners[3][kPlaneLanes] = {{0, 0, 1, 2}, {1, 3, 3, 3}, {2, 1, 2, 0}};
+  triangle_planes(vertices.data()->x.data(), {kCorners[0], kCorners[1], kCorners[2]}, 0, 4, planes());
+  nearest_ = least_key(keys_.data(), 4);
   return true;
 }
 
