@@ -124,7 +124,9 @@ class Expansion {
 
  private:
   /// Adds the support in a direction. False when it shows the bodies apart.
-  bool look(const Vec3& unit, ExpansionResult& result) { return take(unit, difference_.search_support(unit), result); }
+  bool look(const Vec3& unit, ExpansionResult& result) {
+    return take(unit, difference_.search_support_along(unit), result);
+  }
   bool look(const Vec3 (&units)[4], ExpansionResult& result) {
     DifferenceVertex supports[4];
     difference_.search_supports(units, supports);

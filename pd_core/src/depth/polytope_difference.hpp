@@ -42,6 +42,7 @@ class PolytopeDifference {
         rotation_b_(pose_b.rotation()),
         offset_(pose_b.translation() - pose_a.translation()),
         reach_(a.radius() + b.radius() + offset_.norm()),
+        normal_scale_(power_of_two_below(1 / (reach_ * reach_))),
         climbs_(a.num_vertices() > kScanLimit || b.num_vertices() > kScanLimit) {}
 
   /// Makes ready for supports. `posed` is a buffer; it must live as long as the difference.
@@ -65,16 +66,20 @@ class PolytopeDifference {
   }
 
   /// The same up to single precision where it is found in a table: for an expansion, which checks what it inserts.
-  [[nodiscard]] PD_INLINE DifferenceVertex search_support(const Vec3& direction) const {
-    Vec3 scaled;
-    if (!climbs_ || !scale_for_search(direction, scaled)) return support(direction, nullptr);
-    return vertex(search(a_, -(rotation_a_.transpose() * scaled)), search(b_, rotation_b_.transpose() * scaled));
+  /// @param normal  of a face of P, the product of two edges.
+  [[nodiscard]] PD_INLINE DifferenceVertex search_support(const Vec3& normal) const {
+    return climbs_ ? search_support_along(normal_scale_ * normal) : support(normal, nullptr);
+  }
+  /// @param direction  of a length that single precision can square.
+  [[nodiscard]] PD_INLINE DifferenceVertex search_support_along(const Vec3& direction) const {
+    if (!climbs_) return support(direction, nullptr);
+    return vertex(search(a_, -(rotation_a_.transpose() * direction)), search(b_, rotation_b_.transpose() * direction));
   }
 
-  /// In four directions at once.
+  /// Along four unit directions at once.
   void search_supports(const Vec3 (&directions)[4], DifferenceVertex (&supports)[4]) const {
     if (climbs_) {
-      for (int k = 0; k < 4; ++k) supports[k] = search_support(directions[k]);
+      for (int k = 0; k < 4; ++k) supports[k] = search_support_along(directions[k]);
       return;
     }
     double by_coordinate[12];
@@ -171,6 +176,10 @@ class PolytopeDifference {
   static constexpr double kHalfUlp = 0x1p-53;
 
  private:
+  /// `x` without its mantissa: a factor that rounds nothing.
+  [[nodiscard]] static double power_of_two_below(double x) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & 0x7ff0000000000000);
+  }
   [[nodiscard]] static int search(const ConvexPolytope& body, const Vec3& scaled) {
     return body.num_vertices() > kScanLimit ? farthest_in_table(body.storage(), scaled)
                                             : support_vertex(body, scaled, -1);
@@ -182,6 +191,7 @@ class PolytopeDifference {
   Mat3 rotation_b_;
   Vec3 offset_;
   double reach_;
+  double normal_scale_;  ///< products of two edges become fit for single precision
   bool climbs_;
   VertexArrays posed_a_{};  ///< of -A, where supports are found by scans
   VertexArrays posed_b_{};

@@ -26,8 +26,9 @@ class SmoothDifference {
   [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {
     return support(direction / direction.norm(), nullptr);
   }
+  [[nodiscard]] DifferenceVertex search_support_along(const Vec3& unit) const { return support(unit, nullptr); }
   void search_supports(const Vec3 (&directions)[4], DifferenceVertex (&supports)[4]) const {
-    for (int k = 0; k < 4; ++k) supports[k] = search_support(directions[k]);
+    for (int k = 0; k < 4; ++k) supports[k] = search_support_along(directions[k]);
   }
   [[nodiscard]] DifferenceVertex certified_support(const Vec3&, const DifferenceVertex& s,
                                                    std::vector<std::int32_t>&) const {

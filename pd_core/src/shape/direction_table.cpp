@@ -1,6 +1,7 @@
 #include "shape/direction_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "shape/vertex_arrays.hpp"
@@ -28,12 +29,13 @@ class TableBuilder {
 
   /// False when the lists take too much memory.
   bool build(std::int32_t cells, DirectionTable& table) {
+    const std::int32_t count = 6 * cells * cells;
     table.cells = cells;
-    table.offsets.assign(1, 0);
-    table.blocks.clear();
+    table.more.assign(1, count);
+    table.blocks.resize(static_cast<std::size_t>(count));
     std::fill(seen_.begin(), seen_.end(), -1);
     std::int32_t first = 0;
-    for (std::int32_t cell = 0; cell < 6 * cells * cells; ++cell) {
+    for (std::int32_t cell = 0; cell < count; ++cell) {
       const std::int32_t side = cell / (cells * cells);
       const std::int32_t row = cell / cells % cells;
       const std::int32_t column = cell % cells;
@@ -43,7 +45,7 @@ class TableBuilder {
       const Vec3 corners[4] = {direction(side, u[0], v[0]), direction(side, u[0], v[1]), direction(side, u[1], v[0]),
                                direction(side, u[1], v[1])};
       list_vertices(corners, first, cell);
-      append(table);
+      append(cell, table);
       if (table.blocks.size() > most_blocks(p_)) return false;
     }
     return true;
@@ -103,7 +105,7 @@ class TableBuilder {
     std::sort(list_.begin(), list_.end());
   }
 
-  void append(DirectionTable& table) const {
+  void append(std::int32_t cell, DirectionTable& table) const {
     for (std::size_t k = 0; k < list_.size(); k += kBlock) {
       VertexBlock block;
       for (std::size_t i = 0; i < kBlock; ++i) {
@@ -113,9 +115,13 @@ class TableBuilder {
         block.z[i] = scaled(p_.z[v]);
         block.id[i] = v;
       }
-      table.blocks.push_back(block);
+      if (k == 0) {
+        table.blocks[static_cast<std::size_t>(cell)] = block;
+      } else {
+        table.blocks.push_back(block);
+      }
     }
-    table.offsets.push_back(static_cast<std::int32_t>(table.blocks.size()));
+    table.more.push_back(static_cast<std::int32_t>(table.blocks.size()));
   }
 
   const Storage& p_;
@@ -137,12 +143,10 @@ DirectionTable direction_table(const Storage& polytope) {
   return table;
 }
 
-int farthest_in_table(const Storage& p, const Vec3& scaled) {
-  const std::array<float, 3> d{static_cast<float>(scaled.x()), static_cast<float>(scaled.y()),
-                               static_cast<float>(scaled.z())};
-  const std::int32_t cell = cell_of(d, p.table_cells);
-  const std::int32_t first = p.table_offsets[cell];
-  return farthest_of_blocks(p.table_blocks + first, p.table_offsets[cell + 1] - first, d[0], d[1], d[2]);
+int farthest_in_table(const Storage& p, float x, float y, float z) {
+  const std::int32_t cell = cell_of(x, y, z, p.table_cells);
+  return farthest_of_blocks(p.table_blocks[cell], p.table_blocks + p.table_more[cell],
+                            p.table_more[cell + 1] - p.table_more[cell], x, y, z);
 }
 
 }  // namespace pd::detail

@@ -11,7 +11,6 @@
 /// its summit is visited. A vertex is left out if a neighbour is farther at all four corners.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -33,9 +32,9 @@ inline bool scale_for_search(const Vec3& direction, Vec3& scaled) {
 
 /// The number of the cell that holds a direction (not zero), in a table of `cells` x `cells` squares a side: sides +x,
 /// -x, +y, ..., rows and columns by the next two coordinates in cyclic order.
-inline std::int32_t cell_of(const std::array<float, 3>& d, std::int32_t cells) {
-  const std::array<float, 5> cyclic{d[0], d[1], d[2], d[0], d[1]};
-  const float x = std::abs(d[0]), y = std::abs(d[1]), z = std::abs(d[2]);
+inline std::int32_t cell_of(float dx, float dy, float dz, std::int32_t cells) {
+  const float cyclic[5] = {dx, dy, dz, dx, dy};
+  const float x = std::abs(dx), y = std::abs(dy), z = std::abs(dz);
   const bool y_leads = y > x;
   const float larger = y_leads ? y : x;
   const int axis = z > larger ? 2 : (y_leads ? 1 : 0);
@@ -49,10 +48,12 @@ inline std::int32_t cell_of(const std::array<float, 3>& d, std::int32_t cells) {
   return (side * cells + place(cyclic[axis + 1])) * cells + place(cyclic[axis + 2]);
 }
 
+/// The first block of every cell in the order of cells, so that it is found without another look; then the further
+/// blocks of those that have any.
 struct DirectionTable {
-  std::int32_t cells = 0;  ///< squares along an edge of the cube
-  std::vector<std::int32_t> offsets;
-  std::vector<ConvexPolytope::VertexBlock> blocks;
+  std::int32_t cells = 0;                           ///< squares along an edge of the cube
+  std::vector<std::int32_t> more;                   ///< [6 cells^2 + 1]: where a cell's further blocks begin
+  std::vector<ConvexPolytope::VertexBlock> blocks;  ///< [more.back()]
 };
 
 /// @param polytope  complete but for its table; at least one vertex. Coordinates are scaled by the power of two above
@@ -60,6 +61,10 @@ struct DirectionTable {
 [[nodiscard]] DirectionTable direction_table(const ConvexPolytope::Storage& polytope);
 
 /// The vertex farthest in a direction, up to single precision; the least id of those equal in it. Requires a table.
-int farthest_in_table(const ConvexPolytope::Storage& polytope, const Vec3& scaled);
+int farthest_in_table(const ConvexPolytope::Storage& polytope, float x, float y, float z);
+inline int farthest_in_table(const ConvexPolytope::Storage& polytope, const Vec3& scaled) {
+  return farthest_in_table(polytope, static_cast<float>(scaled.x()), static_cast<float>(scaled.y()),
+                           static_cast<float>(scaled.z()));
+}
 
 }  // namespace pd::detail

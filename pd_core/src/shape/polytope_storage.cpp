@@ -193,14 +193,14 @@ void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
 void add_table(Storage& s) {
   const DirectionTable table = direction_table(s);
   const std::size_t blocks = sizeof(ConvexPolytope::VertexBlock) * table.blocks.size();
-  const std::size_t offsets = sizeof(std::int32_t) * table.offsets.size();
-  auto* const memory = static_cast<std::byte*>(::operator new (blocks + offsets, std::align_val_t{kAlignment}));
+  const std::size_t more = sizeof(std::int32_t) * table.more.size();
+  auto* const memory = static_cast<std::byte*>(::operator new (blocks + more, std::align_val_t{kAlignment}));
   std::memcpy(memory, table.blocks.data(), blocks);
-  std::memcpy(memory + blocks, table.offsets.data(), offsets);
+  std::memcpy(memory + blocks, table.more.data(), more);
   s.table_blocks = reinterpret_cast<const ConvexPolytope::VertexBlock*>(memory);
-  s.table_offsets = reinterpret_cast<const std::int32_t*>(memory + blocks);
+  s.table_more = reinterpret_cast<const std::int32_t*>(memory + blocks);
   s.table_cells = table.cells;
-  s.memory_bytes += blocks + offsets;
+  s.memory_bytes += blocks + more;
 }
 
 void release(const Storage* storage) {

@@ -154,20 +154,21 @@ PD_CLONES void farthest_in_four_directions(const VertexArrays& a, const VertexAr
   for (int k = 0; k < 4; ++k) pairs[k] = {static_cast<int>(of_a[k]), static_cast<int>(of_b[k])};
 }
 
-PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock* blocks, int count, float dx, float dy, float dz) {
+PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock& first, const ConvexPolytope::VertexBlock* more,
+                                 int count, float dx, float dy, float dz) {
   Floats best;
-  heights(best, blocks[0], dx, dy, dz);
-  if (count == 1) {
+  heights(best, first, dx, dy, dz);
+  if (count == 0) {
     const float top = greatest(best);
-    return blocks[0].id[__builtin_ctz(mask_of_eight(best == Floats{top, top, top, top, top, top, top, top}) | 128U)];
+    return first.id[__builtin_ctz(mask_of_eight(best == Floats{top, top, top, top, top, top, top, top}) | 128U)];
   }
   Ids best_id;
-  __builtin_memcpy(&best_id, blocks[0].id, sizeof(Ids));
-  for (int i = 1; i < count; ++i) {
+  __builtin_memcpy(&best_id, first.id, sizeof(Ids));
+  for (int i = 0; i < count; ++i) {
     Floats next;
     Ids id;
-    heights(next, blocks[i], dx, dy, dz);
-    __builtin_memcpy(&id, blocks[i].id, sizeof(Ids));
+    heights(next, more[i], dx, dy, dz);
+    __builtin_memcpy(&id, more[i].id, sizeof(Ids));
     best_id = next > best ? id : best_id;
     best = next > best ? next : best;
   }

@@ -37,8 +37,10 @@ VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays& b, doubl
 void farthest_in_four_directions(const VertexArrays& a, const VertexArrays& b, const double (&directions)[12],
                                  VertexPair (&pairs)[4]);
 
-/// The lowest id among the maximisers of x dx + y dy + z dz in single precision, over count >= 1 blocks.
-int farthest_of_blocks(const ConvexPolytope::VertexBlock* blocks, int count, float dx, float dy, float dz);
+/// The lowest id among the maximisers of x dx + y dy + z dz in single precision, over a block and `count` >= 0 more,
+/// in which ids rise.
+int farthest_of_blocks(const ConvexPolytope::VertexBlock& first, const ConvexPolytope::VertexBlock* more, int count,
+                       float dx, float dy, float dz);
 
 /// Writes matrix * vertex for every vertex and its padding; `matrix` is row by row.
 void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z);

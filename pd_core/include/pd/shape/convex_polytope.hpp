@@ -137,7 +137,7 @@ class ConvexPolytope {
     /// Where the search for a support begins (src/shape/direction_table.hpp): lists of vertices by cells of directions,
     /// divided by a power of two above `radius`. Empty for small bodies.
     const VertexBlock* table_blocks = nullptr;
-    const std::int32_t* table_offsets = nullptr;  ///< [6 table_cells^2 + 1], in blocks
+    const std::int32_t* table_more = nullptr;  ///< [6 table_cells^2 + 1], in blocks
     std::int32_t table_cells = 0;
   };
 
