@@ -129,10 +129,10 @@ class PolytopeDifference {
     return true;
   }
 
-  /// Replaces `s` by a maximiser within `support_error()` of the true one: hill climbing compares neighbours in doubles
-  /// and may stop on a nearly flat spot, so before a bound rests on it, the vertices joined to it by edges whose sign
-  /// is in doubt are searched too (every edge that leaves that set descends for certain, so by convexity it holds the
-  /// maximum).
+  /// Replaces `s` by a maximiser within `support_error()` of the true one: a search may see single
+  /// precision only, and a climb may stop on a nearly flat spot, so before a bound rests on it, the vertices joined to
+  /// it by edges whose sign is in doubt are searched too (every edge that leaves that set descends for certain, so by
+  /// convexity it holds the maximum).
   [[nodiscard]] DifferenceVertex certified_support(const Vec3& direction, const DifferenceVertex& s,
                                                    std::vector<std::int32_t>& stack) const {
     if (!climbs_) return s;  // scans have seen them all

@@ -20,7 +20,7 @@ struct DifferenceSupport {
 /// Support of P in a direction of any finite length but zero (the value scales with it). For polytopes the vertices
 /// attain the maximum exactly. For smooth bodies `value` is rounded.
 /// @return ErrorCode::zero_direction or non_finite ("direction").
-/// Time: hill climbing, O(sqrt n) on round bodies.
+/// Time: hill climbing from a table of directions, a few steps on round bodies.
 [[nodiscard]] Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const PosedShape& b,
                                                                 const Vec3& direction);
 

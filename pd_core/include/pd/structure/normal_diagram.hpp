@@ -44,7 +44,7 @@ class NormalDiagram {
 
   /// The cell that a direction lies in: the lowest vertex that attains max <v, direction>, exactly. Requires a finite
   /// direction other than zero, in the polytope's frame.
-  /// Time: hill climbing from a sample, O(sqrt n) steps on round bodies, and exact signs for ties only.
+  /// Time: hill climbing from a table of directions, a few steps on round bodies, and exact signs for ties only.
   [[nodiscard]] int locate(const Vec3& direction) const;
 
  private:
