@@ -3,8 +3,8 @@
 ///
 /// The six sides of the cube [-1, 1]^3 are cut into squares; a cell is the cone of directions through one. Its list
 /// holds every vertex that is farthest in some direction of the cell, and few others, in single precision. A search for
-/// a support reads one short list, however many vertices there are. Cells are about as many as vertices, so that lists
-/// stay short; fewer where slender normal cones cross many cells.
+/// a support reads one short list. Cells are about as many as vertices, up to 24,576, so that lists stay short; fewer
+/// where slender normal cones cross many cells.
 ///
 /// Found as follows: vertices are visited from the one farthest at the cell's middle, on along every edge whose end is
 /// as far as its start at some corner of the cell. A hill climb in any direction of the cell goes along such edges, so
