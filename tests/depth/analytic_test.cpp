@@ -7,6 +7,7 @@
 
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "scenes/shape_families.hpp"
 
 namespace pd {
 namespace {
@@ -146,6 +147,20 @@ TEST(AnalyticDepth, SmoothBodies) {
   const PenetrationDepth apart = solve(cone, at(0, 0, 0), box(1, 1, 1), at(0, 0, 4));
   EXPECT_EQ(apart.contact, ContactClass::separated);
   EXPECT_NEAR(apart.distance, 1, 1e-6);
+}
+
+/// Both caps' planes are as far from the origin to within the bracket; the witnesses must belong to one of them.
+TEST(AnalyticDepth, WitnessesWhereTwoOppositeFacetsAreTied) {
+  const ConvexShape prism(*ConvexPolytope::from_points(scenes::prism(64)));
+  const Pose turned =
+      *Pose::from_quaternion({1.0, -3.314273968048357e-13, 2.30301967460123e-13, 2.9515569523755823e-13},
+                             Vec3(-3.4840121796378397e-13, 9.283528021645887e-13, 1.2952863017305383e-13));
+  Scratch scratch;
+  const PenetrationDepth d =
+      penetration_depth({&prism, Pose()}, {&prism, turned}, scratch, {.bracket = Bracket::certified});
+  EXPECT_NEAR(d.depth, 1, 1e-11);
+  EXPECT_NEAR(std::abs(d.witness_a.z()), 0.5, 1e-11);
+  EXPECT_NEAR(std::abs(d.witness_b.z()), 0.5, 1e-11);
 }
 
 }  // namespace

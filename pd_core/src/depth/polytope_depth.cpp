@@ -34,7 +34,7 @@ void PolytopeQuery::solve() {
   }
   switch (result.status) {
     case ExpansionStatus::certified:
-      if (!exactly) {
+      if (!exactly && bound_is_of_face(result)) {
         fill_overlapping(result);
       } else if (!solve_by_proof(result)) {
         solve_overlapping_exactly(result);
@@ -56,6 +56,13 @@ void PolytopeQuery::solve() {
       if (result.face < 0 && within_range() && fill_separated(result) && !exactly) return;
       solve_exactly(result);
   }
+}
+
+/// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
+/// as far from it to within the bracket.
+bool PolytopeQuery::bound_is_of_face(const ExpansionResult& result) const {
+  const Vec3 normal = buffers_.surface.normal(result.face);
+  return normal.dot(result.normal) > 0.9 * normal.norm();
 }
 
 ExpansionGoal PolytopeQuery::goal() const {

@@ -31,6 +31,7 @@ class PolytopeQuery {
  private:
   // The order of methods: polytope_depth.cpp
   [[nodiscard]] ExpansionGoal goal() const;
+  [[nodiscard]] bool bound_is_of_face(const ExpansionResult& result) const;
   bool solve_boxes();
   ExpansionResult expand();
 
