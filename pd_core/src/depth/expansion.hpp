@@ -74,19 +74,9 @@ inline bool reached(const ExpansionGoal& goal, double lower, double upper, doubl
   return lower > 0 && (upper - lower <= goal.absolute * largest || upper <= (1 + goal.relative) * lower);
 }
 
-/// A face's distance errs by that of its points, of a product of three terms, and of a root and a quotient.
-template <class Difference>
-double face_error(const Difference& difference) {
-  return difference.point_error() + 8 * 0x1p-53 * difference.reach();
-}
-/// <s, unit> bounds h_P(unit) up to the errors of s, of the support, of the product and of |unit|.
-template <class Difference>
-double support_plane_error(const Difference& difference) {
-  return difference.point_error() + difference.support_error() + 8 * 0x1p-53 * difference.reach();
-}
-
-/// Expansion over any difference that offers `support`, `certified_support`, `centre`, `reach`, `spread`,
-/// `point_error` and `support_error` (PolytopeDifference, SmoothDifference).
+/// Expansion over any difference that offers `search_support`, `search_support_along`, `search_supports`,
+/// `certified_support`, `centre`, `reach`, `spread`, `point_error` and `support_error` (PolytopeDifference,
+/// SmoothDifference).
 template <class Difference>
 class Expansion {
  public:

@@ -6,8 +6,8 @@ namespace pd::detail {
 
 ExpansionResult folded_expansion(const SmoothDifference& difference, ExactSurface& surface, const Vec3& start,
                                  const ExpansionGoal& goal, std::int64_t& support_calls) {
-  const double lower_error = difference.point_error() + 8 * 0x1p-53 * difference.reach();
-  const double upper_error = lower_error + difference.support_error();
+  const double lower_error = face_error(difference);
+  const double upper_error = support_plane_error(difference);
   ExpansionResult result;
   double largest = 0;
   surface.clear();

@@ -197,4 +197,15 @@ class PolytopeDifference {
   VertexArrays posed_b_{};
 };
 
+/// A face's distance errs by that of its points, of a product of three terms, and of a root and a quotient.
+template <class Difference>
+double face_error(const Difference& difference) {
+  return difference.point_error() + 8 * 0x1p-53 * difference.reach();
+}
+/// <s, unit> bounds h_P(unit) up to the errors of s, of the support, of the product and of |unit|.
+template <class Difference>
+double support_plane_error(const Difference& difference) {
+  return difference.point_error() + difference.support_error() + 8 * 0x1p-53 * difference.reach();
+}
+
 }  // namespace pd::detail

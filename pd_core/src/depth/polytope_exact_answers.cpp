@@ -48,7 +48,7 @@ bool PolytopeQuery::solve_by_proof(const ExpansionResult& result) {
   if (!(result.lower > 0) || result.face < 0) return false;
   // Keys err by the error of a point and of the distance itself; what lies beyond is certainly farther.
   const Surface& surface = buffers_.surface;
-  const double error = difference_.point_error() + 8 * 0x1p-53 * difference_.reach();
+  const double error = face_error(difference_);
   const double limit = result.lower + 8 * error;
   std::array<SurfaceCorners, kMaxNearFaces> near;
   std::size_t count = 0;

@@ -101,7 +101,7 @@ bool nearest_remembered(const WarmCertificate::State& state, const PolytopeDiffe
   const Movement moved = movement(r, difference);
   if (!(moved.base + moved.turn * r.widest < r.clearance)) return false;
   const auto nearest_index = static_cast<std::size_t>(r.nearest);
-  /// The nearest face of then is no farther now, where the origin still projects into it.
+  // The nearest face of then is no farther now, where the origin still projects into it.
   const double farthest = static_cast<double>(r.distances[nearest_index]) + moved.base +
                           moved.turn * static_cast<double>(r.spreads[nearest_index]) + kFloatSlack * difference.reach();
 

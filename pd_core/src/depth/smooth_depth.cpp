@@ -6,6 +6,7 @@
 
 #include "depth/expansion.hpp"
 #include "depth/folded_expansion.hpp"
+#include "depth/origin_projection.hpp"
 #include "depth/smooth_nearest.hpp"
 
 namespace pd::detail {
@@ -88,9 +89,7 @@ class SmoothQuery {
     out_.contact = ContactClass::overlapping;
     set_depth(core.lower + margin_, core.upper + margin_, core.normal);
     double weights[3];
-    for (int i = 0; i < 3; ++i) {
-      weights[i] = core.normal.dot(corners_[(i + 1) % 3].x.cross(corners_[(i + 2) % 3].x));
-    }
+    project_origin(corners_, core.normal, weights);
     set_witnesses(corners_, weights, 3);
     out_.witness_b = out_.witness_a + out_.translation;
   }

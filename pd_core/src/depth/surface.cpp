@@ -19,8 +19,6 @@ constexpr std::size_t kRebuiltVertices = 10;
 /// Room for an ordinary query, made at once, so that the first one does not grow it piece by piece.
 constexpr int kFirstRoom = 192;
 
-constexpr std::int32_t next_edge(std::int32_t e) { return e == 2 ? 0 : e + 1; }
-
 constexpr auto kLater = [](const auto& x, const auto& y) {
   return x.key > y.key || (x.key == y.key && x.face > y.face);
 };

@@ -24,6 +24,10 @@ struct SurfaceTriangle {
   std::int32_t adj[3];  ///< across the edge v[i] -> v[i + 1]: 4 * triangle + its edge
 };
 
+/// The edges of a triangle after and before edge e.
+constexpr std::int32_t next_edge(std::int32_t e) { return e == 2 ? 0 : e + 1; }
+constexpr std::int32_t last_edge(std::int32_t e) { return e == 0 ? 2 : e - 1; }
+
 class Surface {
  public:
   /// The key of a slot without a face.

@@ -33,9 +33,7 @@ inline double least_height(const PolytopeDifference& difference, const Surface& 
     const Vec3 unit = surface.normal(f).normalized();
     const DifferenceVertex s = difference.certified_support(unit, difference.support(unit, nullptr), stack);
     ++support_calls;
-    // The support's own error, its point's, and that of the product and of |unit|.
-    least = std::min(least, s.x.dot(unit) + difference.support_error() + difference.point_error() +
-                                8 * 0x1p-53 * difference.reach());
+    least = std::min(least, s.x.dot(unit) + support_plane_error(difference));
   }
   return least;
 }

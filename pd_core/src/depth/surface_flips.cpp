@@ -7,9 +7,6 @@ namespace pd::detail {
 
 namespace {
 
-constexpr std::int32_t next_edge(std::int32_t e) { return e == 2 ? 0 : e + 1; }
-constexpr std::int32_t last_edge(std::int32_t e) { return e == 0 ? 2 : e - 1; }
-
 /// As triangle_planes.
 struct Plane {
   Vec3 normal;

@@ -56,6 +56,13 @@ PD_INLINE void planes_through(Planes& out, const Points& p, const Points& q, con
   out.key = squared > zero ? lowest_corner * size / squared : lowest;
 }
 
+PD_INLINE void load_planes(Points& normal, Lanes& level, const PlaneArrays& planes, int i) {
+  load(normal.x, planes.nx + i);
+  load(normal.y, planes.ny + i);
+  load(normal.z, planes.nz + i);
+  load(level, planes.level + i);
+}
+
 /// The index of the first key of this value, which is there.
 PD_INLINE int first_of(const double* keys, double value) {
   const Lanes zero = {0, 0, 0, 0};
@@ -98,10 +105,7 @@ PD_CLONES std::uint64_t planes_below(const PlaneArrays& planes, int count, doubl
   for (int i = 0; i < count; i += kLanes) {
     Points normal;
     Lanes level;
-    load(normal.x, planes.nx + i);
-    load(normal.y, planes.ny + i);
-    load(normal.z, planes.nz + i);
-    load(level, planes.level + i);
+    load_planes(normal, level, planes, i);
     below |= std::uint64_t{mask_of_four(normal.x * x + normal.y * y + normal.z * z > level)} << i;
   }
   return below;
@@ -170,10 +174,7 @@ PD_CLONES double least_clearance(const PlaneArrays& planes, int count, double x,
   for (int i = 0; i < padded_to_block(count); i += kLanes) {
     Points normal;
     Lanes level;
-    load(normal.x, planes.nx + i);
-    load(normal.y, planes.ny + i);
-    load(normal.z, planes.nz + i);
-    load(level, planes.level + i);
+    load_planes(normal, level, planes, i);
     const Lanes below = level - (normal.x * x + normal.y * y + normal.z * z) - slack;
     const Lanes squared = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
     const Lanes size = below < zero ? -below : below;

@@ -359,10 +359,8 @@ class TiedFacetsSearch {
     return true;
   }
 
-  [[nodiscard]] double lower_error() const { return difference_.point_error() + 8 * kU * reach_; }
-  [[nodiscard]] double bound_error() const {
-    return difference_.point_error() + difference_.support_error() + 8 * kU * reach_;
-  }
+  [[nodiscard]] double lower_error() const { return face_error(difference_); }
+  [[nodiscard]] double bound_error() const { return support_plane_error(difference_); }
 
   /// Slivers may take this share of the width.
   static constexpr double kSliverShare = 0.125;

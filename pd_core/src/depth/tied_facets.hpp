@@ -67,8 +67,8 @@ struct TiedFacets {
   std::int32_t vertex = -1;  ///< of the other body
   std::int32_t edge_a[2];    ///< vertices
   std::int32_t edge_b[2];
-  double along_a =
-      0;  ///< where the point below the origin lies on the two edges, 0 at the first vertex, 1 at the second
+  /// Where the point below the origin lies on the two edges, 0 at the first vertex, 1 at the second.
+  double along_a = 0;
   double along_b = 0;
   /// For an exact answer: `TiedFacetsBuffers::nearest` holds three corners of every piece that may be the nearest one,
   /// the likeliest first, and all others are at least this far away; 0 where slivers spoil that.

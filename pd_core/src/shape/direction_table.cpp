@@ -17,7 +17,7 @@ constexpr int kBlock = VertexBlock::kVertices;
 /// More squares than this along an edge of the cube would only cost memory.
 constexpr std::int32_t kMostCells = 64;
 
-/// Twice as many blocks as vertices would be more memory than the vertices themselves.
+/// 192 bytes a vertex at most, as much as the rest of a hull takes; round bodies need 110.
 std::size_t most_blocks(const Storage& p) { return 64 + static_cast<std::size_t>(p.num_vertices) * 3 / 2; }
 
 class TableBuilder {
