@@ -5,9 +5,9 @@
 #include <array>
 #include <string_view>
 
-#include "agarwal_pictures.hpp"
-#include "demo_output.hpp"
-#include "demo_registry.hpp"
+#include "agarwal/agarwal_pictures.hpp"
+#include "support/demo_output.hpp"
+#include "support/demo_registry.hpp"
 
 namespace pd::demo {
 

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <string>
 
-#include "demo_output.hpp"
-#include "demo_registry.hpp"
 #include "pd/render/video.hpp"
-#include "query/pair_reader.hpp"
+#include "protocol/pair_reader.hpp"
 #include "scenes/shape_families.hpp"
+#include "support/demo_output.hpp"
+#include "support/demo_registry.hpp"
 
 namespace pd::demo {
 

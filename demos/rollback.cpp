@@ -16,9 +16,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "demo_output.hpp"
-#include "demo_registry.hpp"
-#include "demo_world.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/scratch.hpp"
@@ -26,6 +23,9 @@
 #include "pd/render/composition.hpp"
 #include "pd/render/renderer.hpp"
 #include "pd/render/video.hpp"
+#include "support/demo_output.hpp"
+#include "support/demo_registry.hpp"
+#include "support/demo_world.hpp"
 
 namespace pd::demo {
 

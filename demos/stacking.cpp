@@ -10,14 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "demo_output.hpp"
-#include "demo_registry.hpp"
-#include "demo_world.hpp"
 #include "pd/render/annotation.hpp"
 #include "pd/render/chart.hpp"
 #include "pd/render/composition.hpp"
 #include "pd/render/renderer.hpp"
 #include "pd/render/video.hpp"
+#include "support/demo_output.hpp"
+#include "support/demo_registry.hpp"
+#include "support/demo_world.hpp"
 
 namespace pd::demo {
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "commands.hpp"
-#include "demo_options.hpp"
+#include "support/demo_options.hpp"
 #ifdef PDEPTH_WITH_DEMOS
-#include "demo_registry.hpp"
+#include "support/demo_registry.hpp"
 #endif
 
 namespace pd::cli {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "query/pair_reader.hpp"
+#include "protocol/pair_reader.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
 #endif

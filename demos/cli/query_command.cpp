@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "commands.hpp"
-#include "query/query_stream.hpp"
+#include "protocol/query_stream.hpp"
 
 namespace pd::cli {
 

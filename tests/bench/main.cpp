@@ -7,12 +7,12 @@
 #include <random>
 
 #include "bench/agarwal/agarwal.hpp"
-#include "bench/coherent.hpp"
-#include "bench/compare.hpp"
-#include "bench/meshes.hpp"
-#include "bench/pairs.hpp"
+#include "bench/measure/compare.hpp"
+#include "bench/pairs/coherent.hpp"
+#include "bench/pairs/meshes.hpp"
+#include "bench/pairs/pairs.hpp"
 #ifdef PD_BENCH_WITH_RENDER
-#include "bench/plots.hpp"
+#include "bench/plots/plots.hpp"
 #endif
 
 namespace {

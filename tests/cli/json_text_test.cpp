@@ -1,13 +1,13 @@
 /// @file
 /// Strict reading: everything that is not one JSON object is bad_json, and the id comes back wherever it can be read.
-#include "query/json_text.hpp"
+#include "protocol/json_text.hpp"
 
 #include <bit>
 #include <cmath>
 #include <random>
 
+#include "protocol/json_writer.hpp"
 #include "protocol_lines.hpp"
-#include "query/json_writer.hpp"
 
 namespace pd::test {
 namespace {

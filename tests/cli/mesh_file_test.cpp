@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "protocol_lines.hpp"
-#include "query/refusal.hpp"
+#include "support/refusal.hpp"
 
 namespace pd::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "query/answer_line.hpp"
+#include "protocol/answer_line.hpp"
 
 namespace pd::test {
 

@@ -48,7 +48,7 @@ expect(include_rules render/src/a.cpp "#include \"pd/bullet/solver.hpp\"\n" "ren
 expect(include_rules render/src/a.cpp "#include \"scenes/roofs.hpp\"\n" "render stands below demos")
 expect(include_rules demos/a.cpp "#include \"oracle/body.hpp\"\n" "demos do not include tests")
 expect(include_rules demos/scenes/a.cpp "#include \"cli/x.hpp\"\n" "shared by demos and tests")
-expect(include_rules tests/cli/a.cpp "#include \"demo_options.hpp\"\n" "nothing but scenes")
+expect(include_rules tests/cli/a.cpp "#include \"support/demo_options.hpp\"\n" "nothing but scenes")
 expect(include_rules tests/cli/a.cpp "#include \"query/limits.hpp\"\n" "")
 expect(include_rules tests/depth/a.cpp "#include \"query/limits.hpp\"\n" "nothing but scenes")
 

@@ -1,5 +1,5 @@
 /// The table of directions against a scan of all vertices, on shapes whose normal cones are round, slender or flat.
-#include "shape/direction_table.hpp"
+#include "shape/support/direction_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pd/structure/overlay.hpp"
-#include "structure/overlay_walk.hpp"
+#include "structure/overlay/overlay_walk.hpp"
 
 namespace pd {
 namespace {

@@ -11,8 +11,8 @@
 #include <set>
 #include <vector>
 
-#include "structure/face_sum.hpp"
-#include "structure/overlay_walk.hpp"
+#include "structure/overlay/face_sum.hpp"
+#include "structure/overlay/overlay_walk.hpp"
 
 namespace pd::detail {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <optional>
 
-#include "depth/finish.hpp"
-#include "depth/polytope_depth.hpp"
-#include "depth/ray_shot.hpp"
-#include "depth/scratch_buffers.hpp"
+#include "depth/certificate/exact_answer.hpp"
+#include "depth/pair/polytope_depth.hpp"
+#include "depth/pair/scratch_buffers.hpp"
+#include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/convex_shape.hpp"

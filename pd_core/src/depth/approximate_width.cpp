@@ -12,7 +12,7 @@
 #include "pd/depth/width.hpp"
 #include "pd/structure/direction_grid.hpp"
 #include "pd/structure/overlay.hpp"
-#include "shape/extreme_points.hpp"
+#include "shape/hull/extreme_points.hpp"
 
 namespace pd {
 

@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include "depth/exact_expansion.hpp"
-#include "depth/finish.hpp"
-#include "depth/portal.hpp"
-#include "depth/posed_support.hpp"
-#include "depth/ray_shot.hpp"
-#include "depth/ray_signs.hpp"
-#include "depth/smooth_difference.hpp"
+#include "depth/certificate/exact_answer.hpp"
+#include "depth/difference/direction_signs.hpp"
+#include "depth/difference/posed_support.hpp"
+#include "depth/difference/smooth_difference.hpp"
+#include "depth/expansion/exact_expanding_polytope.hpp"
+#include "depth/rays/portal.hpp"
+#include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"

@@ -5,13 +5,13 @@
 #include <optional>
 #include <span>
 
-#include "depth/portal.hpp"
-#include "depth/ray_shot.hpp"
-#include "depth/scratch_buffers.hpp"
+#include "depth/pair/scratch_buffers.hpp"
+#include "depth/rays/portal.hpp"
+#include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
-#include "structure/overlay_walk.hpp"
+#include "structure/overlay/overlay_walk.hpp"
 
 namespace pd {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "depth/posed_support.hpp"
-#include "depth/ray_signs.hpp"
+#include "depth/difference/direction_signs.hpp"
+#include "depth/difference/posed_support.hpp"
 #include "numeric/floating_point_guard.hpp"
 
 namespace pd {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "numeric/floating_point_guard.hpp"
-#include "structure/face_sum.hpp"
-#include "structure/overlay_walk.hpp"
+#include "structure/overlay/face_sum.hpp"
+#include "structure/overlay/overlay_walk.hpp"
 
 namespace pd {
 

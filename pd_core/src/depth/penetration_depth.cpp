@@ -4,10 +4,10 @@
 #include <cstring>
 #include <limits>
 
-#include "depth/grid_engine.hpp"
-#include "depth/polytope_depth.hpp"
-#include "depth/shallow_engine.hpp"
-#include "depth/smooth_depth.hpp"
+#include "depth/pair/grid_depth.hpp"
+#include "depth/pair/polytope_depth.hpp"
+#include "depth/pair/shallow_depth.hpp"
+#include "depth/pair/smooth_depth.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "depth/ray_shot.hpp"
+#include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"

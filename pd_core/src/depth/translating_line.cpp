@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "depth/posed_support.hpp"
-#include "depth/ray_signs.hpp"
+#include "depth/difference/direction_signs.hpp"
+#include "depth/difference/posed_support.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "depth/exact_expansion.hpp"
-#include "depth/grid_engine.hpp"
-#include "depth/overlay_engine.hpp"
-#include "depth/scratch_buffers.hpp"
+#include "depth/expansion/exact_expanding_polytope.hpp"
+#include "depth/facets/overlay_depth.hpp"
+#include "depth/pair/grid_depth.hpp"
+#include "depth/pair/scratch_buffers.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"

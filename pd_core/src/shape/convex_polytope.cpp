@@ -5,7 +5,7 @@
 
 #include "numeric/number_text.hpp"
 #include "pd/shape/pose.hpp"
-#include "shape/hull_builder.hpp"
+#include "shape/hull/hull_builder.hpp"
 
 namespace pd {
 

@@ -18,8 +18,8 @@
 #include "numeric/number_text.hpp"
 #include "pd/numeric/predicates.hpp"
 #include "pd/shape/convex_polytope.hpp"
-#include "shape/disjoint_sets.hpp"
-#include "shape/hull_builder.hpp"
+#include "shape/hull/disjoint_sets.hpp"
+#include "shape/hull/hull_builder.hpp"
 
 namespace pd {
 namespace {

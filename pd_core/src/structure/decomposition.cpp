@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "numeric/floating_point_guard.hpp"
-#include "structure/arc_crossing.hpp"
-#include "structure/cube_charts.hpp"
-#include "structure/strip_tree.hpp"
+#include "structure/bipartite/cube_charts.hpp"
+#include "structure/bipartite/strip_tree.hpp"
+#include "structure/overlay/arc_crossing.hpp"
 
 namespace pd {
 

@@ -5,7 +5,7 @@
 
 #include "numeric/floating_point_guard.hpp"
 #include "pd/structure/decomposition.hpp"
-#include "structure/overlay_walk.hpp"
+#include "structure/overlay/overlay_walk.hpp"
 
 namespace pd {
 

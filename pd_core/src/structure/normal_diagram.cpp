@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "numeric/dyadic.hpp"
-#include "shape/polytope_support.hpp"
+#include "shape/support/polytope_support.hpp"
 #include "structure/exact_climb.hpp"
 
 namespace pd {

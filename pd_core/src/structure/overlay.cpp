@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "structure/face_sum.hpp"
-#include "structure/overlay_walk.hpp"
+#include "structure/overlay/face_sum.hpp"
+#include "structure/overlay/overlay_walk.hpp"
 
 namespace pd {
 

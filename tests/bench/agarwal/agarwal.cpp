@@ -6,9 +6,9 @@
 #include <ctime>
 #include <limits>
 
-#include "bench/table.hpp"
+#include "bench/measure/table.hpp"
 #ifdef PD_BENCH_WITH_RENDER
-#include "bench/claim_plots.hpp"
+#include "bench/plots/claim_plots.hpp"
 #endif
 
 namespace pd::bench {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/claims.hpp"
+#include "bench/measure/claims.hpp"
 #include "scenes/agarwal_families.hpp"
 
 namespace pd::bench {

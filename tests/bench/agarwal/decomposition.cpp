@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/agarwal/agarwal.hpp"
-#include "depth/decomposition_engine.hpp"
+#include "depth/facets/decomposition_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 

@@ -12,9 +12,9 @@
 
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/agarwal/near_facets.hpp"
+#include "pd/compound/compound_depth.hpp"
+#include "pd/compound/compound_difference.hpp"
 #include "pd/depth/scratch.hpp"
-#include "pd/depth/union_difference.hpp"
-#include "pd/depth/union_of_parts.hpp"
 #include "pd/shape/star_body.hpp"
 
 namespace pd::bench {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "bench/agarwal/agarwal.hpp"
-#include "bench/pairs.hpp"
+#include "bench/pairs/pairs.hpp"
 
 namespace pd::bench {
 

@@ -6,7 +6,7 @@
 #include "BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h"
 #include "BulletCollision/NarrowPhaseCollision/btMinkowskiPenetrationDepthSolver.h"
 #include "BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h"
-#include "bench/solver.hpp"
+#include "bench/peers/solver.hpp"
 
 namespace pd::bench {
 

@@ -1,7 +1,7 @@
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
 
-#include "bench/solver.hpp"
+#include "bench/peers/solver.hpp"
 
 namespace pd::bench {
 

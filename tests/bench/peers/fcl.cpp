@@ -3,7 +3,7 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
-#include "bench/solver.hpp"
+#include "bench/peers/solver.hpp"
 
 namespace pd::bench {
 

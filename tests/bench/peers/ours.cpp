@@ -1,4 +1,4 @@
-#include "bench/solver.hpp"
+#include "bench/peers/solver.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/depth/warm_certificate.hpp"

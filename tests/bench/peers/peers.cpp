@@ -1,4 +1,4 @@
-#include "bench/solver.hpp"
+#include "bench/peers/solver.hpp"
 
 namespace pd::bench {
 

@@ -1,0 +1,65 @@
+/// @file
+/// Wavefront OBJ: `v` lines, and the elements f, l and p that refer to them.
+#include "mesh/mesh_text.hpp"
+
+namespace pd::query {
+
+namespace {
+
+/// OBJ lines may go on after a backslash.
+std::string_view logical_line(TextCursor& cursor, std::string& joined) {
+  std::string_view line = cursor.next_line();
+  if (!line.ends_with('\\')) return line;
+  joined.clear();
+  while (line.ends_with('\\')) {
+    joined += line.substr(0, line.size() - 1);
+    joined += ' ';
+    if (cursor.at_end()) return joined;
+    line = cursor.next_line();
+  }
+  joined += line;
+  return joined;
+}
+
+}  // namespace
+
+MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices) {
+  VertexCollector vertices(max_vertices);
+  TextCursor cursor(bytes);
+  std::string joined;
+  // Elements may stand before the vertices that they name: they are looked up at the end.
+  struct Reference {
+    std::int64_t index;
+    int line;
+  };
+  std::vector<Reference> references;
+  while (!cursor.at_end()) {
+    std::string_view rest = logical_line(cursor, joined);
+    const std::string_view keyword = next_word(rest);
+    if (keyword == "v") {
+      Vec3 point;
+      for (int k = 0; k < 3; ++k) {
+        if (!parse_number(next_word(rest), point[k])) {
+          refuse_line(cursor.line_number(), "a vertex needs three numbers");
+        }
+      }
+      vertices.add(point);  // a fourth number is a weight, further ones a colour: no coordinates
+    } else if (keyword == "f" || keyword == "l" || keyword == "p") {
+      for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+        std::int64_t index = 0;
+        if (word.starts_with('#')) break;
+        if (!parse_index(word.substr(0, word.find('/')), index) || index == 0) {
+          refuse_line(cursor.line_number(), "an element needs vertex numbers from 1, or from -1 downwards");
+        }
+        references.push_back({index > 0 ? index - 1 : vertices.size() + index, cursor.line_number()});
+      }
+    }
+  }
+  for (const Reference& reference : references) {
+    if (!vertices.reference(reference.index))
+      refuse_line(reference.line, "an element names a vertex that is not there");
+  }
+  return std::move(vertices).finish();
+}
+
+}  // namespace pd::query

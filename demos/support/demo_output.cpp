@@ -1,0 +1,142 @@
+#include "support/demo_output.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <system_error>
+
+namespace pd::demo {
+
+namespace {
+
+volatile std::sig_atomic_t interrupt_noted = 0;
+
+void on_interrupt(int signal) {
+  interrupt_noted = 1;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+Expected<std::filesystem::path> open_output_folder(const DemoOptions& options, std::string_view demo) {
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path("pdepth_out") / std::string(demo) : options.out;
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    return Error{ErrorCode::bad_value, folder.string() + " cannot be made: " + failure.message(), "--out"};
+  }
+  const bool empty = std::filesystem::is_empty(folder, failure);
+  if (failure) {
+    return Error{ErrorCode::bad_value, folder.string() + " cannot be read: " + failure.message(), "--out"};
+  }
+  if (!empty && !options.force) {
+    return Error{ErrorCode::bad_value,
+                 folder.string() + " holds files already: name another folder, or replace them with --force", "--out"};
+  }
+  return folder;
+}
+
+void note_interrupts() {
+  interrupt_noted = 0;
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool interrupted() { return interrupt_noted != 0; }
+
+Progress::Progress(std::string label, int total)
+    : label_(std::move(label)),
+      total_(std::max(total, 1)),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      start_(std::chrono::steady_clock::now()) {}
+
+Progress::~Progress() {
+  if (terminal_ && last_shown_ >= 0) {
+    fmt::print(stderr, "\n");
+  }
+}
+
+void Progress::show(int done) {
+  const int parts = terminal_ ? 100 : 10;
+  const int part = parts * done / total_;
+  if (part == last_shown_) {
+    return;
+  }
+  last_shown_ = part;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  if (terminal_) {
+    constexpr int kWidth = 30;
+    const int filled = kWidth * done / total_;
+    fmt::print(stderr, "\r{:<28} [{:=<{}}{:<{}}] {:3d} %  {:.0f} s ", label_, "", filled, "", kWidth - filled,
+               100 * done / total_, seconds);
+  } else {
+    fmt::print(stderr, "{}: {} of {}, {:.1f} s\n", label_, done, total_, seconds);
+  }
+  std::fflush(stderr);
+}
+
+CsvFile::CsvFile(const std::filesystem::path& path, std::string_view header)
+    : file_(std::fopen(path.string().c_str(), "w")) {
+  if (file_ != nullptr) {
+    fmt::print(file_, "{}\n", header);
+  }
+}
+
+CsvFile::~CsvFile() {
+  if (file_ != nullptr) {
+    std::fclose(file_);
+  }
+}
+
+void CsvFile::row(const std::vector<double>& numbers) {
+  if (file_ == nullptr) {
+    return;
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    fmt::print(file_, "{}{}", i == 0 ? "" : ",", numbers[i]);
+  }
+  fmt::print(file_, "\n");
+  std::fflush(file_);
+}
+
+bool write_text(const std::filesystem::path& path, std::string_view text) {
+  std::FILE* file = std::fopen(path.string().c_str(), "w");
+  if (file == nullptr) {
+    return false;
+  }
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  return std::fclose(file) == 0 && written;
+}
+
+std::string length_text(double metres) {
+  struct Unit {
+    double size;
+    const char* name;
+  };
+  const double magnitude = std::abs(metres);
+  if (magnitude < 5e-10) {
+    return "0 mm";
+  }
+  Unit unit{1, "m"};
+  if (magnitude < 1e-5) {
+    unit = {1e-6, "µm"};
+  } else if (magnitude < 0.1) {
+    unit = {1e-3, "mm"};
+  } else if (magnitude < 1) {
+    unit = {1e-2, "cm"};
+  }
+  const double value = metres / unit.size;
+  const int digits = std::abs(value) >= 100 ? 0 : std::abs(value) >= 10 ? 1 : std::abs(value) >= 1 ? 2 : 3;
+  return fmt::format("{:.{}f} {}", value, digits, unit.name);
+}
+
+int report_failure(const Error& error) {
+  fmt::print(stderr, "pdepth: {}{}{}\n", error.where, error.where.empty() ? "" : ": ", error.message);
+  return kDemoFailed;
+}
+
+}  // namespace pd::demo

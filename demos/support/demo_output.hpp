@@ -1,0 +1,67 @@
+/// @file
+/// What the demos share on the way out: the folder, progress, Ctrl-C, tables.
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pd/numeric/expected.hpp"
+#include "support/demo_options.hpp"
+
+namespace pd::demo {
+
+/// Makes the demo's folder ("pdepth_out/NAME" unless told otherwise).
+/// @return its path; ErrorCode::bad_value where it cannot be made, or holds files and `options.force` is not set.
+[[nodiscard]] Expected<std::filesystem::path> open_output_folder(const DemoOptions& options, std::string_view demo);
+
+/// From now on Ctrl-C and SIGTERM are only noted; a second one ends the program.
+void note_interrupts();
+[[nodiscard]] bool interrupted();
+
+/// Progress on stderr: a bar that is redrawn on a terminal, a line every tenth elsewhere.
+class Progress {
+ public:
+  Progress(std::string label, int total);
+  /// Ends the bar's line.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void show(int done);
+
+ private:
+  std::string label_;
+  int total_;
+  bool terminal_;
+  int last_shown_ = -1;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// A CSV file, complete after every row.
+class CsvFile {
+ public:
+  CsvFile(const std::filesystem::path& path, std::string_view header);
+  ~CsvFile();
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+  /// Numbers are written so that they read back to the same bits.
+  void row(const std::vector<double>& numbers);
+  [[nodiscard]] bool good() const { return file_ != nullptr; }
+
+ private:
+  std::FILE* file_;
+};
+
+/// @return false where the file cannot be written.
+bool write_text(const std::filesystem::path& path, std::string_view text);
+
+/// A length with a fitting unit and three digits: "1.24 mm", "0.31 um".
+[[nodiscard]] std::string length_text(double metres);
+
+/// Says on stderr what went wrong. @return kDemoFailed.
+int report_failure(const Error& error);
+
+}  // namespace pd::demo

@@ -1,0 +1,301 @@
+#include "compound/octree_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <utility>
+
+#include "compound/union_boundary.hpp"
+#include "numeric/root_sum.hpp"
+#include "pd/depth/difference_queries.hpp"
+#include "pd/depth/scratch.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Pairs up to this many are tried together where none covers a cell alone.
+constexpr std::size_t kFew = 12;
+
+double length_above(const Vec3& t) {
+  const Dyadic3 exact = to_dyadic(t);
+  const RootSum length(Dyadic(0.0), 1, dot(exact, exact), Dyadic(1.0));
+  return length.round_up(length.round_down());
+}
+
+/// One pair of parts; `piece` is its P_ij among the built differences, -1 when it was not built or is flat.
+struct PartPair {
+  std::int32_t a;
+  std::int32_t b;
+  std::ptrdiff_t piece = -1;
+};
+
+/// A cube of translations. `pairs` are those whose P_ij may meet it.
+struct Cell {
+  double key;  ///< no point of the cell is nearer to the origin
+  std::int64_t order;
+  Vec3 centre;
+  double half;
+  std::vector<std::int32_t> pairs;
+};
+struct Later {
+  bool operator()(const Cell& x, const Cell& y) const { return x.key != y.key ? x.key > y.key : x.order > y.order; }
+};
+
+class Octree {
+ public:
+  Octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings, UnionDepth& out)
+      : pair_(pair), scratch_(scratch), settings_(settings), out_(out) {
+    for (std::size_t i = 0; i < pair.a.size(); ++i) {
+      for (std::size_t j = 0; j < pair.b.size(); ++j) {
+        pairs_.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
+      }
+    }
+  }
+
+  void run(const PairsVerdict& deepest) {
+    const double exit = pair_.box_exit();
+    build_differences(exit);
+    start_from_boxes();
+    const double known_lower = deepest.nearest.lower;
+    try_placement(deepest.nearest.translation, all_pairs());
+    const double smallest = settings_.resolution > 0 ? settings_.resolution : 0x1p-20 * pair_.size;
+
+    std::priority_queue<Cell, std::vector<Cell>, Later> queue;
+    std::int64_t order = 0;
+    const auto wait = [&](const Vec3& centre, double half, std::vector<std::int32_t> pairs) {
+      const Vec3 nearest = (centre.cwiseAbs().array() - half).max(0.0).matrix();
+      const double key = std::max(known_lower, nearest.norm() * (1 - 0x1p-48));
+      if (key < upper_) queue.push({key, order++, centre, half, std::move(pairs)});
+    };
+    // No nearer placement lies outside the ball of the first upper bound.
+    wait(Vec3::Zero(), exit, all_pairs());
+    double unresolved = HUGE_VAL;
+    double lower = upper_;
+    while (!queue.empty()) {
+      lower = std::min({queue.top().key, unresolved, upper_});
+      if (upper_ <= (1 + settings_.delta) * lower || unresolved <= queue.top().key) break;
+      Cell cell = queue.top();
+      queue.pop();
+      lower = upper_;
+      ++out_.work.cells;
+      if (covered(cell)) continue;
+      if (2 * cell.half <= smallest) {
+        unresolved = std::min(unresolved, cell.key);
+        continue;
+      }
+      const double quarter = cell.half / 2;
+      for (int child = 0; child < 8; ++child) {
+        const Vec3 step((child & 1) != 0 ? quarter : -quarter, (child & 2) != 0 ? quarter : -quarter,
+                        (child & 4) != 0 ? quarter : -quarter);
+        wait(cell.centre + step, quarter, cell.pairs);
+      }
+    }
+    if (queue.empty()) lower = std::min(unresolved, upper_);
+    finish(std::max(std::min(lower, upper_), known_lower));
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::int32_t> all_pairs() const {
+    std::vector<std::int32_t> all(pairs_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int32_t>(i);
+    return all;
+  }
+
+  void build_differences(double reach) {
+    if (!pair_.polytopes) return;
+    const int exponent = pair_.scale_exponent();
+    // Cells reach past the ball by the diagonal of the first cube.
+    auto built = PartDifferences::build(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
+                                        std::ldexp(2 * reach, -exponent), settings_.max_facets);
+    if (!built) return;  // then cells are covered by one part or parted
+    differences_.emplace(*std::move(built));
+    boundary_.emplace(*differences_);
+    for (std::size_t k = 0; k < differences_->pieces().size(); ++k) {
+      const PartDifference& piece = differences_->pieces()[k];
+      pairs_[static_cast<std::size_t>(piece.part_a) * pair_.b.size() + static_cast<std::size_t>(piece.part_b)].piece =
+          static_cast<std::ptrdiff_t>(k);
+      out_.work.facets += static_cast<std::int64_t>(piece.facets.size());
+    }
+  }
+
+  [[nodiscard]] const PosedShape& part_a(std::int32_t p) const {
+    return pair_.a[static_cast<std::size_t>(pairs_[static_cast<std::size_t>(p)].a)];
+  }
+  [[nodiscard]] const PosedShape& part_b(std::int32_t p) const {
+    return pair_.b[static_cast<std::size_t>(pairs_[static_cast<std::size_t>(p)].b)];
+  }
+
+  /// The pair's answer after A was moved by t, and a bound of what rounding the move changes.
+  PenetrationDepth moved_answer(std::int32_t p, const Vec3& t, double& slack) {
+    const PosedShape& a = part_a(p);
+    const Vec3 translation = a.pose.translation() + t;
+    slack = 2 * 0x1p-53 * translation.cwiseAbs().sum();
+    const Pose pose = a.pose.is_quaternion() ? *Pose::from_quaternion(a.pose.quaternion_wxyz(), translation)
+                                             : Pose::from_trusted_matrix(a.pose.rotation(), translation);
+    DepthSettings rough;
+    rough.bracket = Bracket::certified;
+    if (!a.shape->polytope() || !part_b(p).shape->polytope()) rough.delta = 0.01;
+    ++out_.work.pairs;
+    return penetration_depth({a.shape, pose}, part_b(p), scratch_, rough);
+  }
+
+  /// Whether the cell holds no free placement; drops pairs that do not meet it, and tries placements near its centre.
+  bool covered(Cell& cell) {
+    const double radius = cell.half * (std::sqrt(3.0) * (1 + 0x1p-40));
+    std::vector<std::int32_t> meeting;
+    double deepest = -1;
+    Vec3 way_out = Vec3::Zero();
+    for (const std::int32_t p : cell.pairs) {
+      double slack = 0;
+      const PenetrationDepth answer = moved_answer(p, cell.centre, slack);
+      if (answer.contact == ContactClass::overlapping && answer.lower > radius + slack) return true;
+      if (answer.contact == ContactClass::separated && answer.distance_lower > radius + slack) continue;
+      meeting.push_back(p);
+      if (answer.contact == ContactClass::overlapping && answer.lower > deepest) {
+        deepest = answer.lower;
+        way_out = answer.translation + 8 * slack * answer.normal;
+      }
+    }
+    cell.pairs = std::move(meeting);
+    if (deepest < 0) {
+      if (cell.pairs.empty()) {
+        // Free as a whole: nothing in it is nearer than this.
+        const Vec3 least = cell.centre.array() - cell.half, most = cell.centre.array() + cell.half;
+        try_placement(least.cwiseMax(Vec3::Zero()) + most.cwiseMin(Vec3::Zero()), cell.pairs);
+        return true;
+      }
+      try_placement(cell.centre, cell.pairs);
+    } else {
+      if (covered_by_few(cell)) return true;
+      const Vec3 candidate = cell.centre + way_out;
+      if (candidate.norm() < upper_) try_placement(candidate, all_pairs());
+    }
+    return false;
+  }
+
+  /// Covered by the union of the P_ij that meet it: its centre is inside and no free piece of their boundary meets it.
+  bool covered_by_few(const Cell& cell) {
+    if (!boundary_ || cell.pairs.size() < 2 || cell.pairs.size() > kFew) return false;
+    std::vector<std::size_t> pieces;
+    for (const std::int32_t p : cell.pairs) {
+      const std::ptrdiff_t piece = pairs_[static_cast<std::size_t>(p)].piece;
+      if (piece >= 0) pieces.push_back(static_cast<std::size_t>(piece));
+    }
+    const double scale = std::ldexp(1.0, -pair_.scale_exponent());
+    const Vec3 low = (cell.centre.array() - cell.half).matrix() * scale;
+    const Vec3 high = (cell.centre.array() + cell.half).matrix() * scale;
+    return !boundary_->free_piece_near(low, high, pieces);
+  }
+
+  /// A placement far enough along an axis is free.
+  void start_from_boxes() {
+    const double exit = pair_.box_exit() * (1 + 0x1p-40);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        Vec3 t = Vec3::Zero();
+        t[axis] = sign * exit;
+        if (exit < upper_) try_placement(t, all_pairs());
+      }
+    }
+  }
+
+  /// Takes t as the answer so far when it is free and nearer, then slides it towards the origin until it touches.
+  void try_placement(const Vec3& t, const std::vector<std::int32_t>& pairs) {
+    if (!(t.norm() < upper_) || !is_free(t, pairs)) return;
+    accept(t);
+    const std::vector<std::int32_t> all = all_pairs();
+    Vec3 x = t;
+    for (int step = 0; step < 64; ++step) {
+      double gap = HUGE_VAL;
+      for (const std::int32_t p : all) {
+        double slack = 0;
+        const PenetrationDepth answer = moved_answer(p, x, slack);
+        gap = std::min(gap, answer.contact == ContactClass::separated ? answer.distance_lower - 4 * slack : 0.0);
+      }
+      const double length = x.norm();
+      if (!(gap > 0x1p-44 * pair_.size)) break;
+      // No P_ij is nearer than the gap: the way there is free.
+      x *= std::max(0.0, 1 - gap / length);
+      if (!(x.norm() < length) || !is_free(x, all)) break;
+      accept(x);
+    }
+  }
+
+  void accept(const Vec3& t) {
+    const double length = length_above(t);
+    if (length < upper_) {
+      upper_ = length;
+      translation_ = t;
+    }
+  }
+
+  /// Outside every P_ij, or on the boundary of one alone: exact for polytopes.
+  bool is_free(const Vec3& t, const std::vector<std::int32_t>& pairs) {
+    int touched = 0;
+    for (const std::int32_t p : pairs) {
+      const auto where = point_in_difference(part_a(p), part_b(p), t, scratch_);
+      if (!where || *where == ContactClass::overlapping) return false;
+      if (*where == ContactClass::touching && ++touched > 1) return false;
+    }
+    return true;
+  }
+
+  void finish(double lower) {
+    out_.contact = ContactClass::overlapping;
+    out_.lower = lower;
+    out_.upper = upper_;
+    out_.depth = upper_;
+    out_.translation = translation_;
+    out_.normal = translation_.normalized();
+    out_.distance = out_.distance_lower = out_.distance_upper = 0;
+    out_.closed = upper_ <= (1 + settings_.delta) * lower;
+    // The pair that holds A back there gives witnesses and features.
+    double least = HUGE_VAL;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      double slack = 0;
+      const PenetrationDepth answer = moved_answer(static_cast<std::int32_t>(p), translation_, slack);
+      const double gap = answer.contact == ContactClass::separated ? answer.distance : 0;
+      if (gap >= least) continue;
+      least = gap;
+      out_.part_a = pairs_[p].a;
+      out_.part_b = pairs_[p].b;
+      out_.witness_a = answer.witness_a - translation_;
+      out_.witness_b = answer.witness_a;
+      out_.feature_a = answer.feature_a;
+      out_.feature_b = answer.feature_b;
+    }
+    if (boundary_) {
+      out_.work.polygons = boundary_->counts().polygons;
+      out_.work.cuts = boundary_->counts().cuts;
+    }
+  }
+
+  const UnionPair& pair_;
+  Scratch& scratch_;
+  const UnionSettings& settings_;
+  UnionDepth& out_;
+  std::vector<PartPair> pairs_;
+  std::optional<PartDifferences> differences_;
+  std::optional<UncoveredBoundary> boundary_;
+  double upper_ = HUGE_VAL;
+  Vec3 translation_ = Vec3::Zero();
+};
+
+}  // namespace
+
+UnionDepth solve_by_octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
+  UnionDepth out;
+  const PairsVerdict verdict = judge_pairs(pair, scratch, std::min(settings.delta, 1e-6), out.work);
+  static_cast<PenetrationDepth&>(out) = verdict.nearest;
+  out.part_a = verdict.part_a;
+  out.part_b = verdict.part_b;
+  if (verdict.contact != ContactClass::overlapping) return out;
+  if (pair.a.size() == 1 && pair.b.size() == 1) return out;  // one convex pair: its own answer
+  Octree(pair, scratch, settings, out).run(verdict);
+  return out;
+}
+
+}  // namespace pd::detail

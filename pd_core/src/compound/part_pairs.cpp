@@ -1,0 +1,201 @@
+#include "compound/part_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pd/depth/scratch.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+double outwards(double x, double magnitude) { return x + 8 * 0x1p-52 * magnitude; }
+
+double radius_of(const ConvexShape& shape) {
+  struct {
+    double operator()(const ConvexPolytope& p) const { return p.radius(); }
+    double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
+    double operator()(const Cylinder& c) const { return std::hypot(c.radius, c.half_height); }
+    double operator()(const Cone& c) const { return std::hypot(c.radius, c.half_height); }
+  } radius;
+  return std::visit(radius, shape.core()) * (1 + 0x1p-40);
+}
+
+Box whole(const std::vector<Box>& boxes) {
+  Box box = boxes.front();
+  for (const Box& b : boxes) {
+    box.low = box.low.cwiseMin(b.low);
+    box.high = box.high.cwiseMax(b.high);
+  }
+  return box;
+}
+
+/// At most the distance of two bodies in these boxes; negative when the boxes overlap, 0 when they touch.
+double box_gap(const Box& a, const Box& b) {
+  const Vec3 gap = (b.low - a.high).cwiseMax(a.low - b.high);
+  const double largest = gap.maxCoeff();
+  return largest <= 0 ? largest : gap.cwiseMax(Vec3::Zero()).stableNorm() * (1 - 0x1p-40);
+}
+
+int compare(double x, double y) { return (x > y) - (x < y); }
+
+int compare(const Vec3& x, const Vec3& y) {
+  for (int i = 0; i < 3; ++i) {
+    if (const int c = compare(x[i], y[i])) return c;
+  }
+  return 0;
+}
+
+/// Compares the numbers that describe two shapes: vertices, or the sizes of curved cores.
+int compare(const ConvexShape& x, const ConvexShape& y) {
+  if (x.core().index() != y.core().index()) return x.core().index() < y.core().index() ? -1 : 1;
+  if (const int c = compare(x.margin(), y.margin())) return c;
+  if (x.polytope()) {
+    const ConvexPolytope &p = *x.polytope(), &q = *y.polytope();
+    if (p.num_vertices() != q.num_vertices()) return p.num_vertices() < q.num_vertices() ? -1 : 1;
+    for (int v = 0; v < p.num_vertices(); ++v) {
+      if (const int c = compare(p.vertex(v), q.vertex(v))) return c;
+    }
+    return 0;
+  }
+  const auto sizes = [](const ConvexShape& shape) -> Vec3 {
+    if (const auto* e = std::get_if<Ellipsoid>(&shape.core())) return e->radii;
+    if (const auto* c = std::get_if<Cylinder>(&shape.core())) return {c->radius, c->half_height, double(c->axis)};
+    const Cone& cone = std::get<Cone>(shape.core());
+    return {cone.radius, cone.half_height, double(cone.axis)};
+  };
+  return compare(sizes(x), sizes(y));
+}
+
+int compare(const PosedShape& x, const PosedShape& y) {
+  if (const int c = compare(*x.shape, *y.shape)) return c;
+  if (const int c = compare(x.pose.translation(), y.pose.translation())) return c;
+  for (int i = 0; i < 3; ++i) {
+    if (const int c = compare(Vec3(x.pose.rotation().col(i)), Vec3(y.pose.rotation().col(i)))) return c;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool UnionPair::turn_to_canonical_order() {
+  int order = compare(static_cast<double>(a.size()), static_cast<double>(b.size()));
+  for (std::size_t i = 0; order == 0 && i < a.size(); ++i) order = compare(a[i], b[i]);
+  if (order <= 0) return false;
+  std::swap(a, b);
+  std::swap(boxes_a, boxes_b);
+  return true;
+}
+
+Box bounding_box(const PosedShape& part) {
+  Vec3 low, high;
+  const Vec3& t = part.pose.translation();
+  double size = t.cwiseAbs().maxCoeff();
+  if (const ConvexPolytope* const body = part.shape->polytope()) {
+    low = Vec3::Constant(HUGE_VAL);
+    high = -low;
+    for (int v = 0; v < body->num_vertices(); ++v) {
+      const Vec3 x = part.pose.apply(body->vertex(v));
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    size += 4 * body->radius();
+  } else {
+    const double radius = radius_of(*part.shape);
+    low = t.array() - radius;
+    high = t.array() + radius;
+    size += radius;
+  }
+  const double margin = part.shape->margin();
+  for (int i = 0; i < 3; ++i) {
+    high[i] = outwards(high[i] + margin, size + margin);
+    low[i] = -outwards(margin - low[i], size + margin);
+  }
+  return {low, high};
+}
+
+Expected<UnionPair> UnionPair::pose(const PosedCompound& a, const PosedCompound& b) {
+  auto parts_a = a.body->posed(a.pose);
+  if (!parts_a) return Error{parts_a.error().code, parts_a.error().message, "pose_a"};
+  auto parts_b = b.body->posed(b.pose);
+  if (!parts_b) return Error{parts_b.error().code, parts_b.error().message, "pose_b"};
+  UnionPair pair;
+  pair.a = *std::move(parts_a);
+  pair.b = *std::move(parts_b);
+  for (const PosedShape& part : pair.a) pair.boxes_a.push_back(bounding_box(part));
+  for (const PosedShape& part : pair.b) pair.boxes_b.push_back(bounding_box(part));
+  const Box box_a = whole(pair.boxes_a), box_b = whole(pair.boxes_b);
+  pair.size = std::max((box_b.high - box_a.low).cwiseAbs().maxCoeff(), (box_a.high - box_b.low).cwiseAbs().maxCoeff());
+  const auto polytope = [](const PosedShape& part) { return part.shape->polytope() && part.shape->margin() == 0; };
+  pair.polytopes =
+      std::all_of(pair.a.begin(), pair.a.end(), polytope) && std::all_of(pair.b.begin(), pair.b.end(), polytope);
+  return pair;
+}
+
+double UnionPair::box_exit() const {
+  const Box box_a = whole(boxes_a), box_b = whole(boxes_b);
+  return std::max(0.0, std::min((box_b.high - box_a.low).minCoeff(), (box_a.high - box_b.low).minCoeff()));
+}
+
+int UnionPair::scale_exponent() const {
+  return size > 0x1p100 || size < 0x1p-100 ? std::ilogb(std::max(size, std::numeric_limits<double>::min())) : 0;
+}
+
+PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work) {
+  struct Candidate {
+    double gap;
+    std::int32_t a, b;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < pair.a.size(); ++i) {
+    for (std::size_t j = 0; j < pair.b.size(); ++j) {
+      candidates.push_back(
+          {box_gap(pair.boxes_a[i], pair.boxes_b[j]), static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
+    // Pairs whose boxes meet are all asked, in their own order; the others by their gap.
+    const double gx = std::max(x.gap, 0.0), gy = std::max(y.gap, 0.0);
+    return gx != gy ? gx < gy : (x.a != y.a ? x.a < y.a : x.b < y.b);
+  });
+  PairsVerdict verdict;
+  Statistics statistics;
+  bool first = true;
+  for (const Candidate& candidate : candidates) {
+    if (!first && (verdict.contact != ContactClass::separated ? candidate.gap > 0
+                                                              : candidate.gap > verdict.nearest.distance_upper)) {
+      break;
+    }
+    ++work.pairs;
+    DepthSettings settings;  // the class is exact in any case
+    const PosedShape &a = pair.a[static_cast<std::size_t>(candidate.a)],
+                     &b = pair.b[static_cast<std::size_t>(candidate.b)];
+    if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
+    const PenetrationDepth answer = penetration_depth(a, b, scratch, settings);
+    statistics.support_calls += answer.statistics.support_calls;
+    statistics.facets_visited += answer.statistics.facets_visited;
+    statistics.exact_signs += answer.statistics.exact_signs;
+    const bool better = first || answer.contact > verdict.contact ||
+                        (answer.contact == verdict.contact &&
+                         (answer.contact == ContactClass::overlapping ? answer.lower > verdict.nearest.lower
+                                                                      : answer.distance < verdict.nearest.distance));
+    if (better) {
+      verdict.contact = answer.contact;
+      verdict.nearest = answer;
+      verdict.part_a = candidate.a;
+      verdict.part_b = candidate.b;
+    }
+    first = false;
+  }
+  const PosedShape &a = pair.a[static_cast<std::size_t>(verdict.part_a)],
+                   &b = pair.b[static_cast<std::size_t>(verdict.part_b)];
+  DepthSettings settings;
+  settings.bracket = Bracket::tightest;
+  if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
+  verdict.nearest = penetration_depth(a, b, scratch, settings);
+  verdict.nearest.statistics = statistics;
+  return verdict;
+}
+
+}  // namespace pd::detail

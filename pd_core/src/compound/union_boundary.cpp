@@ -1,0 +1,364 @@
+#include "compound/union_boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "numeric/root_sum.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Squared distance of a plane from the origin as a rational.
+struct Squared {
+  Dyadic numerator;
+  Dyadic denominator;
+};
+Squared squared_distance(const PlaneSet::ExactPoint& point) {
+  return {dot(point.numerator, point.numerator), point.denominator * point.denominator};
+}
+Vec3 rounded(const PlaneSet::ExactPoint& point) {
+  const auto coordinate = [&](const Dyadic& x) { return quotient(x, point.denominator); };
+  return {coordinate(point.numerator.x), coordinate(point.numerator.y), coordinate(point.numerator.z)};
+}
+int compare(const Squared& x, const Squared& y) {
+  return (x.numerator * y.denominator - y.numerator * x.denominator).sign();
+}
+
+}  // namespace
+
+UncoveredBoundary::UncoveredBoundary(const PartDifferences& differences)
+    : differences_(differences), planes_(differences.planes()) {
+  for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
+}
+
+UncoveredBoundary::Taken UncoveredBoundary::own(std::size_t piece) const {
+  Taken taken((differences_.pieces().size() + 63) / 64, 0);
+  taken[piece / 64] |= std::uint64_t{1} << (piece % 64);
+  return taken;
+}
+
+bool UncoveredBoundary::cut_away(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once) {
+  const PartDifference& piece = differences_.pieces()[k];
+  rest_.clear();
+  for (const DifferenceFacet& f : piece.facets) {
+    const Side side = f.polygon.plane;
+    // A P_k on the same side of the plane covers nothing.
+    if (side == polygon.plane && !(once && k < own)) return false;
+  }
+  PlanePolygon left = polygon;
+  for (const DifferenceFacet& f : piece.facets) {
+    PlanePolygon inner, outer;
+    switch (cut(planes_, left, f.polygon.plane, inner, outer)) {
+      case Cut::outside:
+        rest_.clear();
+        return false;
+      case Cut::inside:
+        break;
+      case Cut::parted:
+        rest_.push_back(std::move(outer));
+        left = std::move(inner);
+        break;
+    }
+  }
+  ++counts_.cuts;
+  return true;
+}
+
+std::ptrdiff_t UncoveredBoundary::covering(const Vec3& x, const Taken& taken, double tolerance) const {
+  const std::vector<PartDifference>& pieces = differences_.pieces();
+  std::ptrdiff_t best = -1;
+  double least = HUGE_VAL;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (has(taken, k)) continue;
+    const Box& box = boxes_[k];
+    if (box.low.x() - x.x() > tolerance || x.x() - box.high.x() > tolerance || box.low.y() - x.y() > tolerance ||
+        x.y() - box.high.y() > tolerance || box.low.z() - x.z() > tolerance || x.z() - box.high.z() > tolerance) {
+      continue;
+    }
+    const PartDifference& piece = pieces[k];
+    double highest = -HUGE_VAL;
+    const double limit = std::min(tolerance, least);
+    for (const DifferenceFacet& f : piece.facets) {
+      highest = std::max(highest, planes_.height(f.polygon.plane, x));
+      if (highest > limit) break;
+    }
+    if (highest <= tolerance && highest < least) {
+      least = highest;
+      best = static_cast<std::ptrdiff_t>(k);
+    }
+  }
+  return best;
+}
+
+bool UncoveredBoundary::swallowed(const PlanePolygon& polygon) {
+  const double slack = 2 * polygon.error + 0x1p-44 * differences_.extent();
+  for (std::size_t i = 0; i < recent_.size(); ++i) {
+    const std::size_t k = recent_[i];
+    const auto& facets = differences_.pieces()[k].facets;
+    const bool inside = std::all_of(facets.begin(), facets.end(), [&](const DifferenceFacet& f) {
+      const Side s = f.polygon.plane;
+      const Vec3 normal = planes_.normal(s) * planes_.inverse_length(s);
+      const double limit = planes_.offset(s) * planes_.inverse_length(s) - slack;
+      return std::all_of(polygon.corners.begin(), polygon.corners.end(),
+                         [&](const Vec3& x) { return normal.dot(x) < limit; });
+    });
+    if (inside) {
+      std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
+                  recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      return true;
+    }
+  }
+  return false;
+}
+
+void UncoveredBoundary::remember(std::size_t k) {
+  if (std::find(recent_.begin(), recent_.end(), k) != recent_.end()) return;
+  if (recent_.size() == kRecent) recent_.pop_back();
+  recent_.insert(recent_.begin(), k);
+}
+
+UncoveredBoundary::Nearest UncoveredBoundary::nearest(double known_lower) {
+  struct Waiting {
+    double key;  ///< no point of the polygon is nearer
+    std::int64_t order;
+    Cell cell;
+  };
+  const auto later = [](const Waiting& x, const Waiting& y) {
+    return x.key != y.key ? x.key > y.key : x.order > y.order;
+  };
+  std::vector<Waiting> queue;  // a heap
+  const auto push = [&](Waiting waiting) {
+    queue.push_back(std::move(waiting));
+    std::push_heap(queue.begin(), queue.end(), later);
+  };
+  const double scale = differences_.extent();
+  std::int64_t order = 0;
+
+  std::optional<Nearest> best;
+  Squared best_squared;
+  double best_key = HUGE_VAL;  // distance of the best spot, at most this
+
+  const auto wait = [&](Cell cell) {
+    PlanePolygon& polygon = cell.spot.polygon;
+    double farthest = 0;
+    for (const Vec3& x : polygon.corners) farthest = std::max(farthest, x.squaredNorm());
+    if (std::sqrt(farthest) < known_lower - 4 * polygon.error - 0x1p-48 * scale) return;
+    cell.spot.x = nearest_point(planes_, polygon);
+    const double distance = cell.spot.x.norm();
+    const double key = std::max(known_lower, distance - 4 * polygon.error - 0x1p-50 * scale);
+    if (key >= best_key || swallowed(polygon)) return;
+    push({key, order++, std::move(cell)});
+  };
+  const std::vector<PartDifference>& pieces = differences_.pieces();
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f)
+      wait({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, own(k)});
+  }
+
+  while (!queue.empty()) {
+    std::pop_heap(queue.begin(), queue.end(), later);
+    Waiting top = std::move(queue.back());
+    queue.pop_back();
+    if (best && top.key >= best_key) break;
+    ++counts_.polygons;
+    Cell& cell = top.cell;
+    if (swallowed(cell.spot.polygon)) continue;
+    // Ties are told apart exactly, so that the lower bound is the depth itself.
+    std::optional<ExactNearestPoint> exact;
+    if (best) {
+      exact = exact_nearest_point(planes_, cell.spot.polygon);
+      if (compare(squared_distance(exact->point), best_squared) >= 0) continue;
+    }
+    const double tolerance = 8 * cell.spot.polygon.error + 0x1p-44 * scale;
+    const std::ptrdiff_t k = covering(cell.spot.x, cell.taken, tolerance);
+    if (k >= 0) {
+      const auto index = static_cast<std::size_t>(k);
+      remember(index);
+      cell.taken[index / 64] |= std::uint64_t{1} << (index % 64);
+      if (!cut_away(cell.spot.polygon, cell.spot.piece, index, false)) {
+        push(std::move(top));
+        continue;
+      }
+      std::vector<PlanePolygon> rest = std::move(rest_);
+      for (PlanePolygon& part : rest)
+        wait({{cell.spot.piece, cell.spot.facet, std::move(part), Vec3::Zero()}, cell.taken});
+      continue;
+    }
+    if (!exact) exact = exact_nearest_point(planes_, cell.spot.polygon);
+    const Vec3 x = rounded(exact->point);
+    if ((x - cell.spot.x).cwiseAbs().maxCoeff() > tolerance / 4) {
+      // A flat crossing misled the doubles: asked again at the right point.
+      cell.spot.x = x;
+      top.key = std::max(top.key, x.norm() * (1 - 0x1p-48));
+      push(std::move(top));
+      continue;
+    }
+    Squared squared = squared_distance(exact->point);
+    Nearest found;
+    found.spot = std::move(cell.spot);
+    found.foot = exact->foot;
+    found.spot.x = x;
+    found.lower = RootSum(Dyadic(0.0), 1, squared.numerator, squared.denominator).round_down();
+    best_key = found.lower;
+    best_squared = std::move(squared);
+    best = std::move(found);
+  }
+  best->lower = std::max(known_lower, best->lower);
+  return *std::move(best);
+}
+
+std::optional<UncoveredBoundary::Spot> UncoveredBoundary::at(const Vec3& x, bool& held) {
+  const std::vector<PartDifference>& pieces = differences_.pieces();
+  std::vector<std::size_t> holding;  // the closed P_k that hold x: all that matter near it
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const auto& facets = pieces[k].facets;
+    if (std::all_of(facets.begin(), facets.end(),
+                    [&](const DifferenceFacet& f) { return planes_.sign_at_point(f.polygon.plane, x) <= 0; })) {
+      holding.push_back(k);
+    }
+  }
+  held = !holding.empty();
+  for (const std::size_t own : holding) {
+    for (std::size_t f = 0; f < pieces[own].facets.size(); ++f) {
+      std::vector<PlanePolygon> polygons;
+      if (contains_point(planes_, pieces[own].facets[f].polygon, x)) polygons.push_back(pieces[own].facets[f].polygon);
+      for (const std::size_t k : holding) {
+        if (k == own) continue;
+        std::vector<PlanePolygon> next;
+        for (PlanePolygon& polygon : polygons) {
+          ++counts_.polygons;
+          if (!cut_away(polygon, own, k, false)) {
+            next.push_back(std::move(polygon));
+            continue;
+          }
+          for (PlanePolygon& part : rest_) {
+            if (contains_point(planes_, part, x)) next.push_back(std::move(part));
+          }
+        }
+        polygons = std::move(next);
+      }
+      if (!polygons.empty()) return Spot{own, f, std::move(polygons.front()), x};
+    }
+  }
+  return std::nullopt;
+}
+
+bool UncoveredBoundary::visit_all(const Visitor& visitor) {
+  const std::vector<PartDifference>& pieces = differences_.pieces();
+  std::vector<Cell> open;
+  for (std::size_t own_piece = 0; own_piece < pieces.size(); ++own_piece) {
+    for (std::size_t f = 0; f < pieces[own_piece].facets.size(); ++f) {
+      open.push_back({{own_piece, f, pieces[own_piece].facets[f].polygon, Vec3::Zero()}, own(own_piece)});
+      while (!open.empty()) {
+        Cell cell = std::move(open.back());
+        open.pop_back();
+        ++counts_.polygons;
+        if (swallowed(cell.spot.polygon)) continue;
+        if (part_one(cell, open)) continue;
+        if (!visitor(cell.spot)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool UncoveredBoundary::part_one(Cell& cell, std::vector<Cell>& open) {
+  const PlanePolygon& polygon = cell.spot.polygon;
+  const auto part_by = [&](std::size_t k) {
+    cell.taken[k / 64] |= std::uint64_t{1} << (k % 64);
+    if (!cut_away(polygon, cell.spot.piece, k, true)) return false;
+    for (PlanePolygon& part : rest_)
+      open.push_back({{cell.spot.piece, cell.spot.facet, std::move(part), Vec3::Zero()}, cell.taken});
+    return true;
+  };
+  // The one that holds the middle best covers most of it.
+  Vec3 middle = Vec3::Zero();
+  Vec3 low = polygon.corners[0], high = low;
+  for (const Vec3& x : polygon.corners) {
+    middle += x;
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  middle /= static_cast<double>(polygon.corners.size());
+  for (std::ptrdiff_t k = covering(middle, cell.taken, 0); k >= 0; k = covering(middle, cell.taken, 0)) {
+    remember(static_cast<std::size_t>(k));
+    if (part_by(static_cast<std::size_t>(k))) return true;
+  }
+  const double slack = 2 * polygon.error;
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    if (has(cell.taken, k)) continue;
+    if ((boxes_[k].low - high).maxCoeff() > slack || (low - boxes_[k].high).maxCoeff() > slack) continue;
+    if (part_by(k)) return true;
+  }
+  return false;
+}
+
+bool UncoveredBoundary::free_piece_near(const Vec3& low, const Vec3& high, const std::vector<std::size_t>& among) {
+  const auto meets = [&](const PlanePolygon& polygon) {
+    Vec3 least = polygon.corners[0], most = least;
+    for (const Vec3& x : polygon.corners) {
+      least = least.cwiseMin(x);
+      most = most.cwiseMax(x);
+    }
+    return (least - high).maxCoeff() <= 2 * polygon.error && (low - most).maxCoeff() <= 2 * polygon.error;
+  };
+  const std::vector<PartDifference>& pieces = differences_.pieces();
+  for (const std::size_t own : among) {
+    for (const DifferenceFacet& f : pieces[own].facets) {
+      if (!meets(f.polygon)) continue;
+      std::vector<PlanePolygon> polygons{f.polygon};
+      for (const std::size_t k : among) {
+        if (k == own) continue;
+        std::vector<PlanePolygon> next;
+        for (PlanePolygon& polygon : polygons) {
+          if (!cut_away(polygon, own, k, false)) {
+            next.push_back(std::move(polygon));
+            continue;
+          }
+          for (PlanePolygon& part : rest_) {
+            if (meets(part)) next.push_back(std::move(part));
+          }
+        }
+        polygons = std::move(next);
+      }
+      if (!polygons.empty()) return true;
+    }
+  }
+  return false;
+}
+
+bool UncoveredBoundary::outside_all(const Vec3& x) const {
+  for (const PartDifference& piece : differences_.pieces()) {
+    if ((piece.low - x).maxCoeff() > 0 || (x - piece.high).maxCoeff() > 0) continue;
+    if (std::all_of(piece.facets.begin(), piece.facets.end(),
+                    [&](const DifferenceFacet& f) { return planes_.sign_at_point(f.polygon.plane, x) <= 0; })) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Vec3 UncoveredBoundary::free_placement(const Spot& spot) const {
+  const Vec3& x = spot.x;
+  // The polygon is uncovered about x, so that its points there are boundary points.
+  if (contains_point(planes_, spot.polygon, x) || outside_all(x)) return x;
+  const Vec3 normal = planes_.normal(spot.polygon.plane) * planes_.inverse_length(spot.polygon.plane);
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& corner : spot.polygon.corners) centre += corner;
+  centre /= static_cast<double>(spot.polygon.corners.size());
+  const Vec3 inwards = centre - x;
+  const double length = inwards.norm();
+  const Vec3 along = length > 0 ? Vec3(inwards / length) : Vec3::Zero();
+  // Outside the polygon there is free space: straight out of its plane, and near its rim also towards its middle. Steps
+  // grow until they leave the bounded union at the latest.
+  for (double step = 0x1p-54 * std::max(x.cwiseAbs().maxCoeff(), 0x1p-900);; step *= 2) {
+    for (const double slide : {0.0, 1.0, 8.0}) {
+      const Vec3 candidate = x + step * normal + std::min(slide * step, length) * along;
+      if (outside_all(candidate)) return candidate;
+    }
+  }
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,109 @@
+/// @file
+/// The boundary of a union of convex polytopes P_k, exact, and as little of it as a question needs.
+///
+/// A facet of P_k is part of the boundary of int(union) where it is not covered: where it lies neither in the interior
+/// of another P_l nor against a facet of P_l that faces it. So a slot of zero width between two P_k is covered on both
+/// sides: it is no part of the boundary, and no way out.
+///
+/// Searches are best first: facets wait in the order of their distance from the origin (or of the ray's parameter); the
+/// first is asked which P_k hold its nearest point; one of them is cut away, exactly, and what is left goes back in the
+/// queue. A polygon whose nearest point is held by nothing ends the search. Each cut takes one P_k off a polygon's list
+/// for good, so that every search ends.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "compound/part_differences.hpp"
+
+namespace pd::detail {
+
+class UncoveredBoundary {
+ public:
+  /// Refers to the differences.
+  explicit UncoveredBoundary(const PartDifferences& differences);
+
+  /// Where in the union's boundary an answer lies.
+  struct Spot {
+    std::size_t piece = 0;
+    std::size_t facet = 0;
+    PlanePolygon polygon;   ///< part of that facet, uncovered about the spot
+    Vec3 x = Vec3::Zero();  ///< the spot, in doubles (inside lengths)
+  };
+
+  /// The boundary point nearest to the origin and a lower bound of its distance; nothing when `known_lower` is above
+  /// every distance. Inside lengths. Requires the origin in the interior of the union, and the P_k of every facet
+  /// within the distance sought to be there.
+  /// @param known_lower  no boundary point is nearer: what lies inside that ball is not looked at.
+  struct Nearest {
+    Spot spot;
+    double lower = 0;   ///< the distance itself, rounded down
+    bool foot = false;  ///< the nearest point is the foot of the perpendicular on the facet's plane, exactly
+  };
+  [[nodiscard]] Nearest nearest(double known_lower);
+
+  /// Whether a point (inside lengths, as stored) lies on the boundary, exactly. `held` tells whether a closed P_k holds
+  /// it: held and not on the boundary is inside.
+  [[nodiscard]] std::optional<Spot> at(const Vec3& x, bool& held);
+
+  /// The least t >= 0 for which t d lies on the boundary, exact; nothing when the ray meets none.
+  struct Hit {
+    Spot spot;
+    RayParameter t;
+  };
+  /// @param direction  `exact` rounded; its largest |coordinate| in [1, 2).
+  [[nodiscard]] std::optional<Hit> along(const Vec3& direction, const Dyadic3& exact);
+
+  /// Every piece of the boundary once, in the order of P_k and facets. Returns false when stopped.
+  using Visitor = std::function<bool(const Spot&)>;
+  bool visit_all(const Visitor& visitor);
+
+  /// Whether an uncovered part of the boundary of the union of these P_k may meet a box (inside lengths); false is
+  /// certain.
+  [[nodiscard]] bool free_piece_near(const Vec3& low, const Vec3& high, const std::vector<std::size_t>& among);
+
+  /// Whether x (inside lengths, as stored) lies outside every closed P_k, exactly.
+  [[nodiscard]] bool outside_all(const Vec3& x) const;
+  /// A triple of doubles outside int(union), exactly, within a few ulp of a spot that was found.
+  [[nodiscard]] Vec3 free_placement(const Spot& spot) const;
+
+  struct Counts {
+    std::int64_t polygons = 0;  ///< taken from the queue
+    std::int64_t cuts = 0;      ///< P_k taken off a polygon
+  };
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+ private:
+  using Taken = std::vector<std::uint64_t>;  ///< a bit for each P_k that was cut away (or is the polygon's own)
+  struct Cell {
+    Spot spot;
+    Taken taken;
+  };
+
+  [[nodiscard]] Taken own(std::size_t piece) const;
+  static bool has(const Taken& taken, std::size_t k) { return (taken[k / 64] >> (k % 64) & 1) != 0; }
+
+  /// Cuts P_k off a polygon of P_own. False when it covers none of it; else `rest_` holds what is left.
+  /// @param once  of two facets that lie in one plane and look the same way, the later gives way.
+  bool cut_away(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once);
+  /// The deepest P_k, not taken yet, that holds x within the tolerance; -1: none.
+  [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const Taken& taken, double tolerance) const;
+
+  /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
+  bool part_one(Cell& cell, std::vector<Cell>& open);
+  /// Whether a P_k that lately covered something holds all of a polygon in its interior, for certain.
+  bool swallowed(const PlanePolygon& polygon);
+  void remember(std::size_t k);
+  static constexpr std::size_t kRecent = 12;
+
+  const PartDifferences& differences_;
+  const PlaneSet& planes_;
+  std::vector<Box> boxes_;  ///< of the P_k
+  std::vector<std::size_t> recent_;
+  std::vector<PlanePolygon> rest_;
+  Counts counts_;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,142 @@
+/// @file
+/// The first uncovered point along a ray: `UncoveredBoundary::along`.
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+#include "compound/union_boundary.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Where a polygon meets the ray t d, t >= 0: the least t.
+class RayMeeting {
+ public:
+  /// @param exact, unit  one direction.
+  RayMeeting(const PlaneSet& planes, const Dyadic3& exact, const Vec3& unit)
+      : planes_(planes), exact_(exact), unit_(unit) {}
+
+  [[nodiscard]] const Dyadic3& exact() const { return exact_; }
+
+  [[nodiscard]] std::optional<RayParameter> least(const PlanePolygon& polygon) const {
+    if (!near(polygon)) return std::nullopt;
+    const Dyadic slope = dot(planes_.exact_normal(polygon.plane), exact_);
+    const Dyadic offset = planes_.exact_offset(polygon.plane);
+    if (slope.sign() != 0) {
+      const RayParameter t = slope.sign() > 0 ? RayParameter{offset, slope} : RayParameter{-offset, -slope};
+      if (t.numerator.sign() < 0) return std::nullopt;
+      for (const Side s : polygon.sides) {
+        if (planes_.sign_on_ray(s, exact_, t) > 0) return std::nullopt;
+      }
+      return t;
+    }
+    if (offset.sign() != 0) return std::nullopt;
+    // The ray runs in the plane: clipped by the sides.
+    RayParameter from{Dyadic(0.0), Dyadic(1.0)};
+    std::optional<RayParameter> to;
+    for (const Side s : polygon.sides) {
+      const Dyadic rise = dot(planes_.exact_normal(s), exact_);
+      const Dyadic level = planes_.exact_offset(s);
+      if (rise.sign() == 0) {
+        if (level.sign() < 0) return std::nullopt;
+      } else if (rise.sign() > 0) {
+        const RayParameter t{level, rise};
+        if (!to || t.compare(*to) < 0) to = t;
+      } else {
+        const RayParameter t{-level, -rise};
+        if (t.compare(from) > 0) from = t;
+      }
+    }
+    if (to && to->compare(from) < 0) return std::nullopt;
+    return from;
+  }
+
+ private:
+  /// False only when the ray misses the polygon for certain.
+  [[nodiscard]] bool near(const PlanePolygon& polygon) const {
+    Vec3 low = polygon.corners[0], high = low;
+    for (const Vec3& x : polygon.corners) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const double slack = 4 * polygon.error + 0x1p-44 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    double from = 0, to = HUGE_VAL;
+    for (int i = 0; i < 3; ++i) {
+      const double a = low[i] - slack, b = high[i] + slack;
+      if (std::abs(unit_[i]) < 0x1p-40) {
+        const double drift = to < HUGE_VAL ? 0x1p-40 * to : HUGE_VAL;
+        if (drift < HUGE_VAL && (a > drift || b < -drift)) return false;
+        continue;
+      }
+      double enter = a / unit_[i], leave = b / unit_[i];
+      if (enter > leave) std::swap(enter, leave);
+      from = std::max(from, enter - 0x1p-44 * std::abs(enter));
+      to = std::min(to, leave + 0x1p-44 * std::abs(leave));
+    }
+    return from <= to;
+  }
+
+  const PlaneSet& planes_;
+  Dyadic3 exact_;
+  Vec3 unit_;
+};
+
+}  // namespace
+
+std::optional<UncoveredBoundary::Hit> UncoveredBoundary::along(const Vec3& direction, const Dyadic3& exact) {
+  struct Waiting {
+    RayParameter t;
+    std::int64_t order;
+    Cell cell;
+  };
+  const auto later = [](const Waiting& x, const Waiting& y) {
+    const int sign = x.t.compare(y.t);
+    return sign != 0 ? sign > 0 : x.order > y.order;
+  };
+  std::priority_queue<Waiting, std::vector<Waiting>, decltype(later)> queue(later);
+  const RayMeeting ray(planes_, exact, direction.normalized());
+  std::int64_t order = 0;
+  const auto wait = [&](Cell cell) {
+    if (auto t = ray.least(cell.spot.polygon)) queue.push({*std::move(t), order++, std::move(cell)});
+  };
+  const std::vector<PartDifference>& pieces = differences_.pieces();
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f)
+      wait({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, own(k)});
+  }
+  const auto holds = [&](const PartDifference& piece, const RayParameter& t, const Vec3& x) {
+    const double slack = 0x1p-40 * (differences_.extent() + x.cwiseAbs().maxCoeff());
+    for (const DifferenceFacet& f : piece.facets) {
+      const double height = planes_.height(f.polygon.plane, x);
+      if (height > slack) return false;
+      if (height > -slack && planes_.sign_on_ray(f.polygon.plane, ray.exact(), t) > 0) return false;
+    }
+    return true;
+  };
+  while (!queue.empty()) {
+    Waiting top = queue.top();
+    queue.pop();
+    ++counts_.polygons;
+    const double t = quotient(top.t.numerator, top.t.denominator);
+    const Vec3 x = t * direction;
+    bool again = false;
+    for (std::size_t k = 0; k < pieces.size() && !again; ++k) {
+      if (has(top.cell.taken, k) || !holds(pieces[k], top.t, x)) continue;
+      top.cell.taken[k / 64] |= std::uint64_t{1} << (k % 64);
+      if (!cut_away(top.cell.spot.polygon, top.cell.spot.piece, k, false)) continue;
+      again = true;
+      std::vector<PlanePolygon> rest = std::move(rest_);
+      for (PlanePolygon& part : rest) {
+        wait({{top.cell.spot.piece, top.cell.spot.facet, std::move(part), Vec3::Zero()}, top.cell.taken});
+      }
+    }
+    if (again) continue;
+    top.cell.spot.x = x;
+    return Hit{std::move(top.cell.spot), std::move(top.t)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,194 @@
+#include "depth/certificate/exact_answer.hpp"
+
+#include <cassert>
+#include <cmath>
+
+#include "depth/certificate/separating_translation.hpp"
+#include "depth/certificate/witness_points.hpp"
+#include "numeric/root_sum.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// `Bracket::certified` less the last roundings, in units of L.
+constexpr double kCertifiedWidth = 1.8e-14;
+
+Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
+
+/// The supporting features in a direction where the cores do not overlap: at most one of them a facet, its partner a
+/// vertex.
+void set_features(const PosedPair& pair, const ExactDirection& normal, PenetrationDepth& out) {
+  const PlaneFaces faces{support_face_a(pair, normal), support_face_b(pair, normal)};
+  const FacetFeatures features = features_of(pair, faces, normal.unit);
+  out.feature_a = features.on_a;
+  out.feature_b = features.on_b;
+}
+
+void clear_lengths(PenetrationDepth& out) {
+  out.translation = Vec3::Zero();
+  out.depth = out.lower = out.upper = 0;
+  out.distance = out.distance_lower = out.distance_upper = 0;
+}
+
+/// base + sign * |level| / (weight |normal|) as it is.
+RootSum root_of(const NearestPlane& plane, const Dyadic& r) {
+  return RootSum(r, plane.level.sign() < 0 ? -1 : 1, plane.level * plane.level,
+                 plane.weight * plane.weight * dot(plane.normal.exact, plane.normal.exact));
+}
+
+/// The overlapping part of an answer, from the exact value.
+void fill_exactly(const PosedPair& pair, Separation& separation, const RootSum& value, const Margins& margins,
+                  PenetrationDepth& out) {
+  out.contact = ContactClass::overlapping;
+  out.lower = value.round_down();
+  out.upper = shortest_translation(pair, separation, value.approximate(), value.round_up(out.lower), margins.both(),
+                                   out.translation);
+  out.depth = out.upper;
+}
+
+/// Class, bracket, normal and translation from the plane and the margins.
+void finish(const PosedPair& pair, const NearestPlane& plane, const Margins& margins, PenetrationDepth& out) {
+  const Dyadic r = Dyadic(margins.a) + Dyadic(margins.b);
+  const RootSum value = root_of(plane, r);
+  Separation separation(plane, r);
+  out.normal = high(separation.unit());
+  clear_lengths(out);
+
+  const int sign = value.compare(Dyadic());
+  if (sign == 0) {
+    out.contact = ContactClass::touching;
+  } else if (sign < 0) {
+    out.contact = ContactClass::separated;
+    const RootSum distance = value.negated();
+    out.distance_lower = distance.round_down();
+    out.distance_upper = distance.round_up(out.distance_lower);
+    out.distance = out.distance_upper;
+  } else {
+    fill_exactly(pair, separation, value, margins, out);
+  }
+}
+
+/// The largest double <= value and the smallest >= value, where the error leaves no doubt.
+bool round_certainly(const DoubleDouble& value, double error, double& down, double& up) {
+  // Normalised: value.hi is the nearest double, and lo tells on which side of it the value lies.
+  const DoubleDouble v = quick_two_sum(value.hi, value.lo);
+  if (!(v.hi > 0x1p-900) || !(std::abs(v.lo) > error) || !(error < 0x1p-60 * v.hi)) return false;
+  down = v.lo > 0 ? v.hi : std::nextafter(v.hi, 0.0);
+  up = v.lo > 0 ? std::nextafter(v.hi, HUGE_VAL) : v.hi;
+  return true;
+}
+
+/// A bracket and a translation along the rounded normal, as wide as doubles ask for; false when that is too wide.
+///
+/// For the rounded normal m, h_P(m) exceeds <p, n> of the nearest plane by at most |m - n| |x| over P, and both |m| - 1
+/// and |m - n| are below 2u: 2u |x| and, for the product with the length, 8u of it.
+bool fill_certified(const PosedPair& pair, const FacetOfDifference& facet, const Separation& separation,
+                    PenetrationDepth& out) {
+  constexpr double kU = 0x1p-53;
+  const double depth = to_double(separation.depth());
+  const double reach =
+      pair.a().radius() + pair.b().radius() + (pair.pose_b().translation() - pair.pose_a().translation()).norm();
+  const double slack = 16 * kU * (reach + depth) + separation.depth_error();
+  if (!(depth > 4 * slack) || !(depth > 0x1p-900)) return false;
+  // A point of the facet bounds L from below; L itself costs twelve supports.
+  const double size = std::ldexp(pair.approximate(facet.point()).cwiseAbs().maxCoeff(), pair.scale_exponent());
+  if (!(1.5 * slack < kCertifiedWidth * size) && !(1.5 * slack < kCertifiedWidth * largest_coordinate(pair))) {
+    return false;
+  }
+  out.contact = ContactClass::overlapping;
+  out.lower = depth * (1 - 4 * kU) - separation.depth_error();
+  out.depth = depth + 0.5 * slack;
+  out.upper = depth + slack;
+  out.translation = out.depth * out.normal;
+  return true;
+}
+
+void set_witnesses(const CorePoints& core, const Margins& margins, PenetrationDepth& out) {
+  out.witness_a = core.a - margins.a * out.normal;
+  out.witness_b = core.b + margins.b * out.normal;
+}
+
+}  // namespace
+
+void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
+                        PlaneFaces& faces, PenetrationDepth& out) {
+  const FacetPlane plane = measure_facet(pair, facet);
+  [[maybe_unused]] const bool supporting = collect_faces(pair, facet, plane, faces);
+  assert(supporting);
+  finish_overlapping(pair, facet, plane, faces, margins, bracket, out);
+}
+
+void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
+                        const PlaneFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out) {
+  clear_lengths(out);
+  if (plane.known()) {
+    Separation separation(pair, facet, plane, margins.a, margins.b);
+    out.normal = high(separation.unit());
+    double up = 0;
+    if (bracket == Bracket::certified && fill_certified(pair, facet, separation, out)) {
+      // done
+    } else if (round_certainly(separation.depth(), separation.depth_error(), out.lower, up)) {
+      out.contact = ContactClass::overlapping;
+      out.upper = shortest_translation(pair, separation, separation.depth(), up, margins.both(), out.translation);
+      out.depth = out.upper;
+    } else {
+      fill_exactly(pair, separation, root_of(separation.plane(), separation.radius()), margins, out);
+    }
+  } else {
+    const Dyadic r = Dyadic(margins.a) + Dyadic(margins.b);
+    Separation separation(exact_plane(pair, facet), r);
+    out.normal = high(separation.unit());
+    fill_exactly(pair, separation, root_of(separation.plane(), r), margins, out);
+  }
+  const FacetFeatures features = features_of(pair, faces, out.normal);
+  out.feature_a = features.on_a;
+  out.feature_b = features.on_b;
+  const Vec3 core_translation = out.translation - margins.both() * out.normal;
+  set_witnesses(split_overlapping(pair, faces, out.normal, core_translation), margins, out);
+}
+
+void finish_touching(const PosedPair& pair, const ExactDirection& normal, const ExactNearest& nearest,
+                     const Margins& margins, PenetrationDepth& out) {
+  finish(pair, {normal, Dyadic(1.0), Dyadic()}, margins, out);
+  set_features(pair, normal, out);
+  CorePoints core = split_apart(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count);
+  core.b = core.a;  // one point, computed on A
+  set_witnesses(core, margins, out);
+}
+
+void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out) {
+  const Dyadic3& y = nearest.point;
+  const ExactDirection normal(Dyadic3{-y.x, -y.y, -y.z});
+  // The plane through the nearest point y / scale, normal to it.
+  finish(pair, {normal, nearest.scale, -dot(y, y)}, margins, out);
+  set_features(pair, normal, out);
+  set_witnesses(split_apart(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count), margins, out);
+}
+
+bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces, const Margins& margins,
+                  Bracket bracket, PenetrationDepth& out) {
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  const DoubleDouble core = -DoubleDouble{proof.plane.distance.hi * scale, proof.plane.distance.lo * scale};
+  const DoubleDouble distance = core - two_sum(margins.a, margins.b);
+  const double error = proof.plane.distance_error * scale + 0x1p-100 * (core.hi + margins.both());
+  double down = 0, up = 0;
+  if (!round_certainly(distance, error, down, up)) {
+    if (bracket != Bracket::certified || !(distance.hi > 0x1p-900) || !(error < 0x1p-60 * distance.hi)) return false;
+    down = std::nextafter(distance.hi, 0.0);
+    up = std::nextafter(distance.hi, HUGE_VAL);
+  }
+  clear_lengths(out);
+  out.contact = ContactClass::separated;
+  out.normal = high(proof.plane.unit);
+  out.distance_lower = down;
+  out.distance_upper = up;
+  out.distance = up;
+  const FacetFeatures features = features_of(pair, faces, out.normal);
+  out.feature_a = features.on_a;
+  out.feature_b = features.on_b;
+  set_witnesses(split_apart(pair, proof.simplex.data(), proof.weights.data(), proof.count), margins, out);
+  return true;
+}
+
+}  // namespace pd::detail

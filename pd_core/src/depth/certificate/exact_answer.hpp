@@ -1,0 +1,47 @@
+/// @file
+/// The last step of every exact engine: from a supporting plane of P to the answer's class, bracket, translation,
+/// normal and witnesses, each proved on the stored numbers.
+#pragma once
+
+#include "depth/certificate/nearest_facet_proof.hpp"
+#include "depth/certificate/support_faces.hpp"
+#include "depth/distance/gjk_exact.hpp"
+#include "pd/depth/penetration_depth.hpp"
+
+namespace pd::detail {
+
+/// The margins of two rounded bodies.
+struct Margins {
+  double a = 0;
+  double b = 0;
+  [[nodiscard]] double both() const { return a + b; }
+};
+
+/// Core answers, margins added: the cores overlap and the plane of `facet` is the nearest plane of a facet of P (or
+/// supports the whole of P there, with more of it than `facet` names).
+///
+/// Tightest: lower and upper are the exact depth (core depth + margins) rounded down and up; the translation is a
+/// triple of doubles outside int P exactly, no longer than upper; where no such triple exists (the exact depth is a
+/// double, its translation is not) upper is the next double. Certified: upper - lower <= 2e-14 L. Decided in
+/// double-double where its error bound allows, then exactly; allocates in exact arithmetic only.
+/// @param faces  a buffer.
+void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
+                        PlaneFaces& faces, PenetrationDepth& out);
+/// The same with `faces` collected and `plane` measured before.
+void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
+                        const PlaneFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out);
+
+/// The cores touch: a supporting plane with this normal passes through the origin, and `nearest` holds the origin.
+/// Touching without margins, else overlapping by them.
+void finish_touching(const PosedPair& pair, const ExactDirection& normal, const ExactNearest& nearest,
+                     const Margins& margins, PenetrationDepth& out);
+
+/// The cores are apart: separated, touching or overlapping by the margins, decided exactly.
+void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out);
+
+/// The same from a proof in double-double, `faces` collected with it. False, and nothing said, where that leaves the
+/// rounding of the distance open (or the margins make the bodies overlap).
+[[nodiscard]] bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces,
+                                const Margins& margins, Bracket bracket, PenetrationDepth& out);
+
+}  // namespace pd::detail

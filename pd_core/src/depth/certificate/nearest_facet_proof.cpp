@@ -1,0 +1,95 @@
+#include "depth/certificate/nearest_facet_proof.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pd::detail {
+
+namespace {
+
+/// The two ids when exactly two are distinct.
+std::optional<std::pair<std::int32_t, std::int32_t>> two_of(std::int32_t x, std::int32_t y, std::int32_t z) {
+  if (x == y && x == z) return std::nullopt;
+  if (x == y || x == z) return std::pair{x, x == y ? z : y};
+  if (y == z) return std::pair{x, y};
+  return std::nullopt;
+}
+
+bool positive(const FacetPlane& plane) { return plane.known() && to_double(plane.distance) > plane.distance_error; }
+
+/// The plane of a triangle's three points as that of a facet of A, a facet of B or two edges, which other decisions can
+/// be read off; else by its points.
+ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
+  const PairId &p = t.v[0], &q = t.v[1], &r = t.v[2];
+  ProvenFacet found;
+  const auto measured = [&](const FacetOfDifference& facet) {
+    found = {facet, measure_facet(pair, facet)};
+    return positive(found.plane);
+  };
+  // A flat body's polygon has two facets, which face opposite ways.
+  if (p.a == q.a && p.a == r.a) {
+    for (int f = -1, tries = 0; tries < 2; ++tries) {
+      f = facet_holding(pair.b(), p.b, q.b, r.b, f);
+      if (f < 0) break;
+      if (measured(FacetOfDifference::from_facet_of_b(pair.b(), f, p.a))) return found;
+    }
+  } else if (p.b == q.b && p.b == r.b) {
+    for (int f = -1, tries = 0; tries < 2; ++tries) {
+      f = facet_holding(pair.a(), p.a, q.a, r.a, f);
+      if (f < 0) break;
+      if (measured(FacetOfDifference::from_facet_of_a(pair.a(), f, p.b))) return found;
+    }
+  } else {
+    const auto on_a = two_of(p.a, q.a, r.a);
+    const auto on_b = two_of(p.b, q.b, r.b);
+    if (on_a && on_b) {
+      if (measured(FacetOfDifference::from_edges(on_a->first, on_a->second, on_b->first, on_b->second))) return found;
+      if (measured(FacetOfDifference::from_edges(on_a->second, on_a->first, on_b->first, on_b->second))) return found;
+    }
+  }
+  measured({{Feature::Kind::vertex, p.a, -1},
+            {Feature::Kind::vertex, p.b, -1},
+            PairVector::difference(p.a, p.b, q.a, q.b),
+            PairVector::difference(p.a, p.b, r.a, r.b),
+            p.a,
+            p.b});
+  return found;
+}
+
+bool lies_in(const SurfaceCorners& t, const PlaneFaces& faces) {
+  return std::all_of(std::begin(t.v), std::end(t.v), [&](const PairId& p) {
+    return std::binary_search(faces.on_a.begin(), faces.on_a.end(), p.a) &&
+           std::binary_search(faces.on_b.begin(), faces.on_b.end(), p.b);
+  });
+}
+
+}  // namespace
+
+std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<const SurfaceCorners> near,
+                                               double beyond, PlaneFaces& faces) {
+  if (near.empty()) return std::nullopt;
+  ProvenFacet best = classify(pair, near.front());
+  // Each round either ends or goes on with a plane that is certainly nearer.
+  for (std::size_t chosen = 0;;) {
+    if (!positive(best.plane) || !collect_faces(pair, best.facet, best.plane, faces)) return std::nullopt;
+    bool nearer = false;
+    for (std::size_t i = 0; i < near.size() && !nearer; ++i) {
+      if (i == chosen || lies_in(near[i], faces)) continue;
+      const ProvenFacet rival = classify(pair, near[i]);
+      if (!positive(rival.plane)) return std::nullopt;
+      const double gap = to_double(rival.plane.distance - best.plane.distance);
+      const double error = (rival.plane.distance_error + best.plane.distance_error) * (1 + 0x1p-40);
+      if (std::abs(gap) <= error) return std::nullopt;
+      if (gap < 0) {
+        best = rival;
+        chosen = i;
+        nearer = true;
+      }
+    }
+    if (nearer) continue;
+    if (!(to_double(best.plane.distance) + best.plane.distance_error < beyond)) return std::nullopt;
+    return best;
+  }
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,241 @@
+#include "depth/certificate/separating_translation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "numeric/expansion.hpp"
+#include "numeric/root_sum.hpp"
+#include "shape/support/polytope_support.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+constexpr double kU = 0x1p-53;
+constexpr double kUdd = 0x1p-104;
+
+DoubleDouble scaled(const DoubleDouble& x, double power_of_two) { return {x.hi * power_of_two, x.lo * power_of_two}; }
+
+/// Within these magnitudes (or zero) squares and their roundings are exact in expansions.
+bool squares_exactly(double x) {
+  const double magnitude = std::abs(x);
+  return x == 0 || (magnitude >= 0x1p-450 && magnitude <= 0x1p450);
+}
+
+Expansion<2> square(double x) {
+  const DoubleDouble p = two_product(x, x);
+  Expansion<2> e;
+  e.push(p.lo);
+  e.push(p.hi);
+  return e;
+}
+
+/// |t| <= length, exactly.
+bool no_longer_than(const Vec3& t, double length) {
+  if (squares_exactly(t.x()) && squares_exactly(t.y()) && squares_exactly(t.z()) && squares_exactly(length)) {
+    return sum(sum(sum(square(t.x()), square(t.y())), square(t.z())), square(length), -1).sign() <= 0;
+  }
+  const Dyadic3 exact = to_dyadic(t);
+  return (Dyadic(length) * Dyadic(length) - dot(exact, exact)).sign() >= 0;
+}
+
+/// The search for one `upper`. The cap between plane and sphere is less than an ulp high but about 1e8 ulps wide, so it
+/// holds many triples: two coordinates walk near the exact translation, the third (the one with the finest ulps) is
+/// solved for. Candidates are sifted in double-double before they are proved.
+class TranslationSearch {
+ public:
+  /// Lengths are brought near 1 by a power of two.
+  TranslationSearch(Separation& separation, const DoubleDouble& depth, double upper)
+      : separation_(separation), true_upper_(upper), exponent_(std::ilogb(upper)) {
+    upper_ = std::ldexp(upper, -exponent_);
+    depth_ = {std::ldexp(depth.hi, -exponent_), std::ldexp(depth.lo, -exponent_)};
+    const Vec3DD& unit = separation.unit();
+    components_[0] = unit.x;
+    components_[1] = unit.y;
+    components_[2] = unit.z;
+    for (int i = 0; i < 3; ++i) base_[i] = (components_[i] * depth_).hi;
+    height_ = to_double(DoubleDouble{upper_, 0} - depth_);
+  }
+
+  [[nodiscard]] const Vec3& translation() const { return translation_; }
+
+  bool at_base() { return accept(base_); }
+
+  /// Within 4 ulp of `extent`, a coordinate, of the exact translation.
+  bool near_base(double true_extent) {
+    const double extent = std::ldexp(true_extent, -exponent_);
+    leeway_ = 4 * (std::nextafter(extent, HUGE_VAL) - extent);
+    int order[3] = {0, 1, 2};
+    std::sort(order, order + 3, [&](int i, int j) { return std::abs(base_[i]) > std::abs(base_[j]); });
+    const double scale = std::abs(base_[order[0]]);
+    // A coordinate that is nearly a zero of the normal hardly moves the plane's side, but lengthens t: it stays, or
+    // goes.
+    int live = 1;
+    while (live < 3 && std::abs(base_[order[live]]) > 0x1p-20 * scale) ++live;
+    solved_ = order[live - 1];
+    Vec3 bare = base_;
+    for (int i = live; i < 3; ++i) {
+      if (std::abs(bare[order[i]]) <= leeway_) bare[order[i]] = 0;
+    }
+    if (solve(bare) || solve(base_)) return true;
+    if (live == 1) return false;
+    // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.
+    if (!(height_ > 0)) return false;
+    const int first = order[0];
+    const int second = order[1];
+    const int steps = reach(first);
+    const int inner = live == 3 ? reach(second) : 0;
+    // What the other coordinates can make up for once the first is chosen.
+    double range = height_;
+    for (int i = 1; i < live; ++i) range += 1.01 * std::abs(components_[order[i]].hi) * (leeway_ + ulp(order[i]));
+    for (int i = -steps; i <= steps; ++i) {
+      Vec3 t = base_;
+      t[first] += i * ulp(first);
+      DoubleDouble rest = depth_;
+      for (int k = 0; k < 3; ++k) rest = rest - components_[k] * t[k];
+      if (std::abs(to_double(rest)) > range) continue;
+      for (int j = -inner; j <= inner; ++j) {
+        Vec3 candidate = t;
+        if (live == 3) candidate[second] += j * ulp(second);
+        if (solve(candidate)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] double ulp(int i) const { return std::nextafter(std::abs(base_[i]), HUGE_VAL) - std::abs(base_[i]); }
+  [[nodiscard]] int reach(int i) const { return std::clamp(static_cast<int>(leeway_ / ulp(i)), 4, 64); }
+
+  bool accept(const Vec3& candidate) {
+    const Vec3 t(std::ldexp(candidate.x(), exponent_), std::ldexp(candidate.y(), exponent_),
+                 std::ldexp(candidate.z(), exponent_));
+    if (!no_longer_than(t, true_upper_) || !separation_.reached(t)) return false;
+    translation_ = t;
+    return true;
+  }
+
+  /// Solves for one coordinate, given the other two.
+  bool solve(Vec3 t) {
+    const DoubleDouble& component = components_[solved_];
+    DoubleDouble rest = depth_;
+    for (int i = 0; i < 3; ++i) {
+      if (i != solved_) rest = rest - components_[i] * t[i];
+    }
+    t[solved_] = to_double(rest / component);
+    if (std::abs(t[solved_] - base_[solved_]) > leeway_) t[solved_] = base_[solved_];
+    DoubleDouble excess = component * t[solved_] - rest;
+    const double outward = component.hi > 0 ? HUGE_VAL : -HUGE_VAL;
+    if (excess.hi < 0) {
+      t[solved_] = std::nextafter(t[solved_], outward);
+      excess = component * t[solved_] - rest;
+    }
+    if (excess.hi > height_ * 1.0001) return false;
+    const DoubleDouble length = two_product(t.x(), t.x()) + two_product(t.y(), t.y()) + two_product(t.z(), t.z());
+    if ((length - two_product(upper_, upper_)).hi > 0x1p-90 * upper_ * upper_) return false;
+    if (accept(t)) return true;
+    // Below what double-double resolves (a body of size 1 and one of 1e-300), the plane may lie an ulp further out.
+    if (excess.hi > 0x1p-95) return false;
+    t[solved_] = std::nextafter(t[solved_], outward);
+    return accept(t);
+  }
+
+  Separation& separation_;
+  double true_upper_;
+  int exponent_;
+  double upper_;
+  DoubleDouble depth_;
+  DoubleDouble components_[3];
+  Vec3 base_;
+  double height_;
+  double leeway_ = 0;
+  int solved_ = 0;
+  Vec3 translation_ = Vec3::Zero();
+};
+
+}  // namespace
+
+double largest_coordinate(const PosedPair& pair) {
+  const auto extreme = [](const ConvexPolytope& body, const Pose& pose, int axis, double sign) {
+    const Vec3 row = pose.rotation().row(axis).transpose();
+    return row.dot(body.vertex(support_vertex(body, sign * row, -1)));
+  };
+  const Vec3 offset = pair.pose_b().translation() - pair.pose_a().translation();
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const double x =
+          extreme(pair.b(), pair.pose_b(), axis, sign) - extreme(pair.a(), pair.pose_a(), axis, -sign) + offset[axis];
+      largest = std::max(largest, std::abs(x));
+    }
+  }
+  return largest;
+}
+
+NearestPlane exact_plane(const PosedPair& pair, const FacetOfDifference& facet) {
+  ExactDirection normal(cross(pair.exact(facet.u), pair.exact(facet.v)));
+  Dyadic level = dot(normal.exact, pair.exact(facet.point()));
+  return {std::move(normal), pair.homogeneous_factor(), std::move(level)};
+}
+
+Separation::Separation(NearestPlane plane, const Dyadic& r)
+    : plane_(std::move(plane)),
+      radius_(r),
+      unit_(unit_double_double(plane_->normal.exact)),
+      depth_error_(std::numeric_limits<double>::infinity()) {}
+
+Separation::Separation(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane, double margin_a,
+                       double margin_b)
+    : pair_(&pair), facet_(facet), margins_(two_sum(margin_a, margin_b)), unit_(plane.unit) {
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  unit_error_ = plane.unit_error;
+  depth_ = scaled(plane.distance, scale) + margins_;
+  depth_error_ = (plane.distance_error * scale + 4 * kUdd * std::abs(depth_.hi)) * (1 + 4 * kU) + 0x1p-960;
+}
+
+bool Separation::reached(const Vec3& t) {
+  if (depth_error_ < std::numeric_limits<double>::infinity()) {
+    const DoubleDouble along = unit_.x * t.x() + unit_.y * t.y() + unit_.z * t.z();
+    const double size = std::abs(t.x()) + std::abs(t.y()) + std::abs(t.z());
+    const double error =
+        (depth_error_ + size * (unit_error_ + 16 * kUdd) + 4 * kUdd * std::abs(depth_.hi)) * (1 + 16 * kU);
+    const double gap = to_double(along - depth_);
+    if (gap > error) return true;
+    if (gap < -error) return false;
+  }
+  const NearestPlane& exact = plane();
+  const Dyadic gap = dot(exact.normal.exact, to_dyadic(t)) * exact.weight - exact.level;
+  if (gap.sign() < 0 || radius().sign() == 0) return gap.sign() >= 0;
+  const Dyadic reach = radius() * exact.weight;
+  return (gap * gap - reach * reach * dot(exact.normal.exact, exact.normal.exact)).sign() >= 0;
+}
+
+const NearestPlane& Separation::plane() {
+  if (!plane_) {
+    plane_ = exact_plane(*pair_, facet_);
+    radius_ = Dyadic(margins_.hi) + Dyadic(margins_.lo);
+  }
+  return *plane_;
+}
+
+double shortest_translation(const PosedPair& pair, Separation& separation, const DoubleDouble& depth, double upper,
+                            double margin, Vec3& translation) {
+  double extent = -1;
+  // Strides grow, so that subnormal lengths, whose coordinates are coarse, end too.
+  for (double ulps = 1;; ulps *= 2) {
+    TranslationSearch search(separation, depth, upper);
+    bool found = search.at_base();
+    if (!found) {
+      if (extent < 0) extent = largest_coordinate(pair) + margin;
+      found = search.near_base(extent);
+    }
+    if (found) {
+      translation = search.translation();
+      return upper;
+    }
+    upper += ulps * (std::nextafter(upper, HUGE_VAL) - upper);
+  }
+}
+
+}  // namespace pd::detail

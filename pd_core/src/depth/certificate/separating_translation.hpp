@@ -1,0 +1,75 @@
+/// @file
+/// A translation in doubles that separates two bodies exactly as stored and is no longer than the depth rounded up.
+#pragma once
+
+#include <optional>
+
+#include "depth/certificate/facet_plane.hpp"
+#include "depth/difference/exact_support.hpp"
+
+namespace pd::detail {
+
+/// The plane {x : weight <normal, x> = level} that supports P and carries its boundary point nearest to the origin. The
+/// signed distance of the cores is level / (weight |normal|): positive inside.
+struct NearestPlane {
+  ExactDirection normal;
+  Dyadic weight;  ///< > 0
+  Dyadic level;
+};
+
+/// The plane of a facet of P.
+[[nodiscard]] NearestPlane exact_plane(const PosedPair& pair, const FacetOfDifference& facet);
+
+/// Where the half-space beyond the nearest plane of P, swept by a ball of radius r, begins: decides whether a
+/// translation reaches it. Double-double where that is certain, exact numbers behind it.
+class Separation {
+ public:
+  /// Known exactly from the start.
+  Separation(NearestPlane plane, const Dyadic& r);
+  /// The plane of a facet, made exact only where it must be. Refers to the pair. The plane must be known.
+  Separation(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane, double margin_a,
+             double margin_b);
+
+  /// <normal, t> >= h_P(normal) + r |normal|, exactly.
+  [[nodiscard]] bool reached(const Vec3& t);
+
+  [[nodiscard]] const Vec3DD& unit() const { return unit_; }
+  /// |t| of the translation to the nearest point, signed, and a bound of its error (infinite where the plane was given
+  /// exactly).
+  [[nodiscard]] const DoubleDouble& depth() const { return depth_; }
+  [[nodiscard]] double depth_error() const { return depth_error_; }
+  /// Computed when first asked for.
+  [[nodiscard]] const NearestPlane& plane();
+  [[nodiscard]] const Dyadic& radius() {
+    static_cast<void>(plane());
+    return radius_;
+  }
+
+ private:
+  const PosedPair* pair_ = nullptr;
+  FacetOfDifference facet_;
+  DoubleDouble margins_;
+  std::optional<NearestPlane> plane_;
+  Dyadic radius_;
+  Vec3DD unit_;
+  double unit_error_ = 0;
+  DoubleDouble depth_;  ///< of the second stage, in the input's lengths
+  double depth_error_;
+};
+
+/// A triple t of doubles that reaches the separation, as near to depth * unit and as short as doubles allow.
+///
+/// @param depth   the length wanted, positive, in double-double.
+/// @param upper   the depth rounded up.
+/// @param margin  of both bodies together.
+/// @return `upper`, or the next double (very rarely a later one) where no triple that reaches is no longer than it: t
+/// is
+///         no longer than what is returned, exactly.
+/// Deterministic; no allocation where double-double decides.
+double shortest_translation(const PosedPair& pair, Separation& separation, const DoubleDouble& depth, double upper,
+                            double margin, Vec3& translation);
+
+/// L, rounded: the largest |coordinate| of b - a over the posed vertices. Time of twelve supports.
+[[nodiscard]] double largest_coordinate(const PosedPair& pair);
+
+}  // namespace pd::detail

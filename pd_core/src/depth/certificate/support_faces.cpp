@@ -1,0 +1,156 @@
+#include "depth/certificate/support_faces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pd::detail {
+
+namespace {
+
+constexpr double kU = 0x1p-53;
+
+class FacetSign final : public NormalSign {
+ public:
+  FacetSign(const PosedPair& pair, const FacetOfDifference& facet) : pair_(pair), facet_(facet) {}
+  [[nodiscard]] int along(const PairVector& edge) const override {
+    return pair_.sign_determinant(edge, facet_.u, facet_.v);
+  }
+
+ private:
+  const PosedPair& pair_;
+  const FacetOfDifference& facet_;
+};
+
+/// Signs of <edge, normal of the plane>, exact, doubles first.
+class AlongNormal {
+ public:
+  AlongNormal(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign)
+      : pair_(pair), sign_(sign), filtered_(plane.known()) {
+    if (!filtered_) return;
+    unit_ = {plane.unit.x.hi, plane.unit.y.hi, plane.unit.z.hi};
+    // The unit normal's own error and its rounding, products and sums; then the edge's error against |unit|_1 <= 2.
+    relative_ = plane.unit_error + 8 * kU;
+    absolute_ = 2 * pair.vector_error() * (1 + 16 * kU);
+  }
+
+  [[nodiscard]] int operator()(const PairVector& edge) const {
+    if (filtered_) {
+      const Vec3 e = pair_.approximate(edge);
+      const double value = e.dot(unit_);
+      const double size = std::abs(e.x()) + std::abs(e.y()) + std::abs(e.z());
+      if (std::abs(value) > (relative_ * size + absolute_) * (1 + 16 * kU)) return value > 0 ? 1 : -1;
+    }
+    return sign_.along(edge);
+  }
+
+ private:
+  const PosedPair& pair_;
+  const NormalSign& sign_;
+  bool filtered_;
+  Vec3 unit_ = Vec3::Zero();
+  double relative_ = 0;
+  double absolute_ = 0;
+};
+
+/// Completes the face that some of its vertices are known of. `rises(from, to)`: sign of the change along the body's
+/// own outward direction.
+template <class Rises>
+bool complete(const ConvexPolytope& body, Rises&& rises, SupportFace& face) {
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const std::int32_t from = face[i];
+    for (const std::int32_t to : body.neighbours(from)) {
+      if (std::find(face.begin(), face.end(), to) != face.end()) continue;
+      const int sign = rises(from, to);
+      if (sign > 0) return false;
+      if (sign == 0) face.push_back(to);
+    }
+  }
+  std::sort(face.begin(), face.end());
+  return true;
+}
+
+template <class Rises>
+bool collect(const ConvexPolytope& body, const Feature& feature, Rises&& rises, SupportFace& face) {
+  if (feature.kind == Feature::Kind::facet) {
+    // Facets are merged exactly: nothing else of the body lies in the plane.
+    const auto loop = body.facet_vertices(feature.first);
+    face.assign(loop.begin(), loop.end());
+    std::sort(face.begin(), face.end());
+    return true;
+  }
+  face.assign(1, feature.first);
+  if (feature.kind == Feature::Kind::edge) face.push_back(feature.second);
+  return complete(body, rises, face);
+}
+
+Feature feature_of(const ConvexPolytope& body, const SupportFace& face, const Mat3& rotation, const Vec3& outward) {
+  if (face.size() == 1) return {Feature::Kind::vertex, face[0], -1};
+  if (face.size() == 2) return {Feature::Kind::edge, face[0], face[1]};
+  return {Feature::Kind::facet, facing_facet(body, face, rotation, outward), -1};
+}
+
+}  // namespace
+
+int facet_holding(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, std::int32_t v2, int skip) {
+  const int first = body.first_half_edge(v0);
+  for (int h = first; h < first + static_cast<int>(body.neighbours(v0).size()); ++h) {
+    const int f = body.half_edge(h).facet;
+    if (f < 0 || f == skip) continue;
+    const auto loop = body.facet_vertices(f);
+    if (std::find(loop.begin(), loop.end(), v1) != loop.end() &&
+        std::find(loop.begin(), loop.end(), v2) != loop.end()) {
+      return f;
+    }
+  }
+  return -1;
+}
+
+bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane, PlaneFaces& faces) {
+  const FacetSign sign(pair, facet);
+  const AlongNormal along(pair, plane, sign);
+  return collect(
+             pair.b(), facet.on_b, [&](int from, int to) { return along(PairVector::edge_b(from, to)); }, faces.on_b) &&
+         collect(
+             pair.a(), facet.on_a, [&](int from, int to) { return -along(PairVector::edge_a(from, to)); }, faces.on_a);
+}
+
+bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
+                   std::span<const PairId> points, PlaneFaces& faces) {
+  const AlongNormal along(pair, plane, sign);
+  faces.on_a.clear();
+  faces.on_b.clear();
+  const auto add = [](SupportFace& face, std::int32_t v) {
+    if (std::find(face.begin(), face.end(), v) == face.end()) face.push_back(v);
+  };
+  // Of two points of the plane that share a vertex of one body the other vertices lie equally far; without a shared one
+  // that need not be so (it is where the plane supports P, which is what has to be shown).
+  add(faces.on_a, points[0].a);
+  add(faces.on_b, points[0].b);
+  const auto has = [](const SupportFace& face, std::int32_t v) {
+    return std::find(face.begin(), face.end(), v) != face.end();
+  };
+  for (std::size_t round = 1; round < points.size(); ++round) {
+    for (const PairId& p : points.subspan(1)) {
+      if (has(faces.on_a, p.a)) add(faces.on_b, p.b);
+      if (has(faces.on_b, p.b)) add(faces.on_a, p.a);
+    }
+  }
+  return complete(
+             pair.b(), [&](int from, int to) { return along(PairVector::edge_b(from, to)); }, faces.on_b) &&
+         complete(
+             pair.a(), [&](int from, int to) { return -along(PairVector::edge_a(from, to)); }, faces.on_a);
+}
+
+FacetFeatures features_of(const PosedPair& pair, const PlaneFaces& faces, const Vec3& unit) {
+  FacetFeatures f{feature_of(pair.a(), faces.on_a, pair.pose_a().rotation(), -unit),
+                  feature_of(pair.b(), faces.on_b, pair.pose_b().rotation(), unit)};
+  // A facet's partner is a vertex, also where more of the other body lies in its plane.
+  if (f.on_b.kind == Feature::Kind::facet) {
+    f.on_a = {Feature::Kind::vertex, faces.on_a.front(), -1};
+  } else if (f.on_a.kind == Feature::Kind::facet) {
+    f.on_b = {Feature::Kind::vertex, faces.on_b.front(), -1};
+  }
+  return f;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,89 @@
+#include "depth/certificate/witness_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "depth/distance/gjk.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
+
+/// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
+/// be large and cancel.
+Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& first, const Vec3& rest) {
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  const auto coordinate = [&](double t, const DoubleDouble& f, double r) {
+    return to_double(DoubleDouble{t, 0} + (f + DoubleDouble{r, 0}) * scale);
+  };
+  return {coordinate(translation.x(), first.x, rest.x()), coordinate(translation.y(), first.y, rest.y()),
+          coordinate(translation.z(), first.z, rest.z())};
+}
+
+Vec3 point_of_a(const PosedPair& pair, const PairId* ids, const double* weights, int count) {
+  Vec3 rest = Vec3::Zero();
+  for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_a(ids[0].a, ids[i].a));
+  const Vec3DD negated = pair.approximate_dd({ids[0].a, -1, -1, -1, false});
+  return world_point(pair, pair.pose_a().translation(), {-negated.x, -negated.y, -negated.z}, rest);
+}
+
+Vec3 point_of_b(const PosedPair& pair, const PairId* ids, const double* weights, int count) {
+  Vec3 rest = Vec3::Zero();
+  for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_b(ids[0].b, ids[i].b));
+  return world_point(pair, pair.pose_b().translation(), pair.approximate_dd({-1, -1, ids[0].b, -1, false}), rest);
+}
+
+}  // namespace
+
+/// The convex
+/// combination of their vertices' differences nearest to it, found in the facet's plane (Gilbert, Johnson, Keerthi on
+/// two polygons). Parallel facets and edges need no case of their own.
+CorePoints split_overlapping(const PosedPair& pair, const PlaneFaces& faces, const Vec3& unit,
+                             const Vec3& translation) {
+  const SupportFace& on_a = faces.on_a;
+  const SupportFace& on_b = faces.on_b;
+  const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
+  const auto difference = [&](std::int32_t a, std::int32_t b) {
+    const Vec3DD p = pair.approximate_dd(PairVector::point(a, b));  // local coordinates may be large and cancel
+    const Vec3 x = high(p - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
+    return DifferenceVertex{x - x.dot(unit) * unit, a, b};
+  };
+  const auto extreme = [&](const SupportFace& face, const Vec3& direction, const auto& value) {
+    return *std::max_element(face.begin(), face.end(), [&](std::int32_t v, std::int32_t w) {
+      return value(v).dot(direction) < value(w).dot(direction);
+    });
+  };
+  const auto edge_b = [&](std::int32_t v) { return pair.approximate(PairVector::edge_b(on_b.front(), v)); };
+  const auto edge_a = [&](std::int32_t v) { return Vec3(-pair.approximate(PairVector::edge_a(on_a.front(), v))); };
+
+  DifferenceVertex simplex[4] = {difference(on_a.front(), on_b.front())};
+  double weights[4] = {1, 0, 0, 0};
+  int count = 1;
+  double best = std::numeric_limits<double>::infinity();
+  for (Vec3 point = simplex[0].x; point.squaredNorm() < best;) {
+    best = point.squaredNorm();
+    DifferenceVertex next[4];
+    double next_weights[4];
+    int next_count = count;
+    std::copy(simplex, simplex + count, next);
+    next[next_count++] = difference(extreme(on_a, -point, edge_a), extreme(on_b, -point, edge_b));
+    point = nearest_of_simplex(next, next_count, next_weights, true);
+    if (!(point.squaredNorm() < best)) break;
+    count = next_count;
+    std::copy(next, next + count, simplex);
+    std::copy(next_weights, next_weights + count, weights);
+  }
+  PairId ids[3];
+  for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
+  const Vec3 a = point_of_a(pair, ids, weights, count);
+  return {a, a + translation};
+}
+
+CorePoints split_apart(const PosedPair& pair, const PairId* simplex, const double* weights, int count) {
+  return {point_of_a(pair, simplex, weights, count), point_of_b(pair, simplex, weights, count)};
+}
+
+}  // namespace pd::detail

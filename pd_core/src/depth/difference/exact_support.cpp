@@ -1,0 +1,99 @@
+#include "depth/difference/exact_support.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pd::detail {
+
+namespace {
+
+/// The three values brought to one power of two, as doubles in [-1, 1] (each within 2u of the exact ratio).
+Vec3 leading(const Dyadic3& v) {
+  const auto top = [](const Dyadic& d) {
+    return d.sign() == 0 ? std::numeric_limits<int>::min()
+                         : d.exponent() + static_cast<int>(msb(boost::multiprecision::abs(d.mantissa())));
+  };
+  const int largest = std::max({top(v.x), top(v.y), top(v.z)});
+  return {v.x.scaled(-largest).to_double(), v.y.scaled(-largest).to_double(), v.z.scaled(-largest).to_double()};
+}
+
+/// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the exact rotated difference.
+template <class Edge>
+SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const ExactDirection& direction, double sign,
+                     Edge&& edge) {
+  const Vec3 local = sign * (rotation.transpose() * direction.unit);
+  const int n = body.num_vertices();
+  double best = -std::numeric_limits<double>::infinity();
+  for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
+  // The local direction errs by 12u per coordinate (unit 4u, rotation 4u, product 3u), the dot product by 3u |v|: twice
+  // 32u covers both values that are compared.
+  const double slack = 64 * 0x1p-53 * body.radius();
+  SupportFace face;
+  for (int v = 0; v < n; ++v) {
+    if (body.vertex(v).dot(local) < best - slack) continue;
+    if (face.empty()) {
+      face.push_back(v);
+      continue;
+    }
+    const int compared = dot(direction.exact, edge(face.front(), v)).sign() * (sign > 0 ? 1 : -1);
+    if (compared > 0) face.clear();
+    if (compared >= 0) face.push_back(v);
+  }
+  return face;
+}
+
+}  // namespace
+
+ExactDirection::ExactDirection(Dyadic3 direction) : exact(std::move(direction)), unit(leading(exact).normalized()) {}
+
+SupportFace support_face_b(const PosedPair& pair, const ExactDirection& direction) {
+  return extremal(pair.b(), pair.pose_b().rotation(), direction, 1.0,
+                  [&](int from, int to) { return pair.exact(PairVector::edge_b(from, to)); });
+}
+
+SupportFace support_face_a(const PosedPair& pair, const ExactDirection& direction) {
+  return extremal(pair.a(), pair.pose_a().rotation(), direction, -1.0,
+                  [&](int from, int to) { return pair.exact(PairVector::edge_a(from, to)); });
+}
+
+int common_facet(const ConvexPolytope& body, const SupportFace& vertices) {
+  const int v = vertices.front();
+  const int first = body.first_half_edge(v);
+  for (std::size_t k = 0; k < body.neighbours(v).size(); ++k) {
+    const int f = body.half_edge(first + static_cast<int>(k)).facet;
+    const auto loop = body.facet_vertices(f);
+    if (loop.size() != vertices.size()) continue;
+    const bool all = std::all_of(vertices.begin(), vertices.end(),
+                                 [&](std::int32_t w) { return std::find(loop.begin(), loop.end(), w) != loop.end(); });
+    if (all) return f;
+  }
+  return -1;
+}
+
+int facing_facet(const ConvexPolytope& body, const SupportFace& vertices, const Mat3& rotation, const Vec3& outward) {
+  const int facet = common_facet(body, vertices);
+  // A doubly covered polygon has two facets with the same vertices.
+  if (body.affine_dimension() != 2) return facet;
+  return (rotation * body.facet_normal(facet)).dot(outward) > 0 ? facet : 1 - facet;
+}
+
+FacetOfDifference facet_of_direction(const PosedPair& pair, const ExactDirection& normal) {
+  const SupportFace on_a = support_face_a(pair, normal);
+  const SupportFace on_b = support_face_b(pair, normal);
+  if (on_b.size() >= 3) {
+    const int facet = facing_facet(pair.b(), on_b, pair.pose_b().rotation(), normal.unit);
+    return FacetOfDifference::from_facet_of_b(pair.b(), facet, on_a.front());
+  }
+  if (on_a.size() >= 3) {
+    const int facet = facing_facet(pair.a(), on_a, pair.pose_a().rotation(), -normal.unit);
+    return FacetOfDifference::from_facet_of_a(pair.a(), facet, on_b.front());
+  }
+  assert(on_a.size() == 2 && on_b.size() == 2);
+  const Dyadic3 u = pair.exact(PairVector::edge_b(on_b[0], on_b[1]));
+  const Dyadic3 v = pair.exact(PairVector::edge_a(on_a[0], on_a[1]));
+  const bool outward = dot(cross(u, v), normal.exact).sign() > 0;
+  return outward ? FacetOfDifference::from_edges(on_a[0], on_a[1], on_b[0], on_b[1])
+                 : FacetOfDifference::from_edges(on_a[1], on_a[0], on_b[0], on_b[1]);
+}
+
+}  // namespace pd::detail

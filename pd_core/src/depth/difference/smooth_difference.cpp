@@ -1,0 +1,82 @@
+#include "depth/difference/smooth_difference.hpp"
+
+#include <cmath>
+
+namespace pd::detail {
+
+namespace {
+
+struct SupportOf {
+  Vec3 direction;
+
+  Vec3 operator()(const ConvexPolytope& p) const { return p.vertex(support_vertex(p, direction, -1)); }
+
+  /// Gradient of the support function |diag(radii) n|.
+  Vec3 operator()(const Ellipsoid& e) const {
+    const Vec3 scaled = e.radii.cwiseProduct(direction);
+    const double length = scaled.norm();
+    return length > 0 ? Vec3(e.radii.cwiseProduct(scaled) / length) : Vec3(e.radii.x(), 0, 0);
+  }
+  Vec3 operator()(const Cylinder& c) const {
+    Vec3 p = rim(c.radius, c.axis);
+    p[c.axis] = direction[c.axis] < 0 ? -c.half_height : c.half_height;
+    return p;
+  }
+  /// The apex unless the rim of the base reaches farther.
+  Vec3 operator()(const Cone& c) const {
+    Vec3 base = rim(c.radius, c.axis);
+    base[c.axis] = -c.half_height;
+    Vec3 apex = Vec3::Zero();
+    apex[c.axis] = c.half_height;
+    return base.dot(direction) > apex.dot(direction) ? base : apex;
+  }
+
+ private:
+  /// The point of the circle about the axis that reaches farthest; the axis itself where the direction runs along it.
+  Vec3 rim(double radius, int axis) const {
+    Vec3 across = direction;
+    across[axis] = 0;
+    const double length = across.norm();
+    return length > 0 ? Vec3(across * (radius / length)) : Vec3(Vec3::Zero());
+  }
+};
+
+double radius_of(const ConvexPolytope& p) { return p.radius(); }
+double radius_of(const Ellipsoid& e) { return e.radii.maxCoeff(); }
+double radius_of(const Cylinder& c) { return std::hypot(c.radius, c.half_height); }
+double radius_of(const Cone& c) { return std::hypot(c.radius, c.half_height); }
+
+}  // namespace
+
+Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction) {
+  return std::visit(SupportOf{direction}, core);
+}
+
+SmoothDifference::Body SmoothDifference::body(const PosedShape& posed) {
+  const ConvexShape::Core& core = posed.shape->core();
+  const ConvexPolytope* polytope = posed.shape->polytope();
+  return {&core, polytope ? posed.pose.rotation() : posed.pose.nearest_rotation(),
+          polytope ? polytope->centre() : Vec3(Vec3::Zero()),
+          std::visit([](const auto& c) { return radius_of(c); }, core)};
+}
+
+SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points)
+    : a_(body(a)),
+      b_(body(b)),
+      offset_(b.pose.translation() - a.pose.translation()),
+      reach_(a_.radius + b_.radius + offset_.norm()),
+      points_(points) {
+  points_.clear();
+}
+
+DifferenceVertex SmoothDifference::support(const Vec3& direction, const DifferenceVertex*) const {
+  const Vec3 pa = a_.rotation * support_point(*a_.core, -(a_.rotation.transpose() * direction));
+  const Vec3 pb = b_.rotation * support_point(*b_.core, b_.rotation.transpose() * direction) + offset_;
+  points_.push_back({pa, pb});
+  const auto index = static_cast<std::int32_t>(points_.size() - 1);
+  return {pb - pa, index, index};
+}
+
+Vec3 SmoothDifference::centre() const { return b_.rotation * b_.centre - a_.rotation * a_.centre + offset_; }
+
+}  // namespace pd::detail

@@ -1,0 +1,68 @@
+/// @file
+/// P = B + (-A) where at least one core is smooth: supports by formula, in doubles with stated error bounds.
+#pragma once
+
+#include <vector>
+
+#include "depth/difference/polytope_difference.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd::detail {
+
+/// The points of A and B whose difference a support is.
+struct PointPair {
+  Vec3 a;
+  Vec3 b;
+};
+
+/// The same interface as PolytopeDifference; the "ids" of a support are its index in `points`.
+class SmoothDifference {
+ public:
+  /// @param points  buffer, grown by one a support; relative to the translation of A.
+  SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points);
+
+  [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const;
+  /// A formula is within its error of the maximum wherever it is asked.
+  [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {
+    return support(direction / direction.norm(), nullptr);
+  }
+  [[nodiscard]] DifferenceVertex search_support_along(const Vec3& unit) const { return support(unit, nullptr); }
+  void search_supports(const Vec3 (&directions)[4], DifferenceVertex (&supports)[4]) const {
+    for (int k = 0; k < 4; ++k) supports[k] = search_support_along(directions[k]);
+  }
+  [[nodiscard]] DifferenceVertex certified_support(const Vec3&, const DifferenceVertex& s,
+                                                   std::vector<std::int32_t>&) const {
+    return s;
+  }
+  [[nodiscard]] const PointPair& points(const DifferenceVertex& s) const {
+    return points_[static_cast<std::size_t>(s.a)];
+  }
+  [[nodiscard]] Vec3 centre() const;
+  [[nodiscard]] double reach() const { return reach_; }
+  /// See PolytopeDifference.
+  [[nodiscard]] static constexpr double spread() { return 0.5; }
+  /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach.
+  [[nodiscard]] double point_error() const { return 32 * PolytopeDifference::kHalfUlp * reach_; }
+  [[nodiscard]] double support_error() const { return 32 * PolytopeDifference::kHalfUlp * reach_; }
+
+ private:
+  struct Body {
+    const ConvexShape::Core* core;
+    Mat3 rotation;
+    Vec3 centre;    ///< local
+    double radius;  ///< >= |x| for every local point
+  };
+  static Body body(const PosedShape& posed);
+
+  Body a_;
+  Body b_;
+  Vec3 offset_;
+  double reach_;
+  std::vector<PointPair>& points_;
+};
+
+/// The point of a core that is farthest in a direction of its own frame (any length; a zero direction gives some
+/// point).
+[[nodiscard]] Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction);
+
+}  // namespace pd::detail

@@ -1,0 +1,81 @@
+/// @file
+/// The point of P nearest to the origin in doubles, with a certified bracket of the distance.
+///
+/// Gilbert, Johnson, Keerthi 1988. The upper bound is the length of a convex combination of points of P, the lower
+/// bound the height of a supporting plane: <s, v> / |v| for the support s against v. Where rounding stops progress
+/// before the bracket is as narrow as asked, exact arithmetic takes over, or double-double (gjk_double_double.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "depth/difference/polytope_difference.hpp"
+
+namespace pd::detail {
+
+struct NearestResult {
+  bool certified = false;  ///< the bracket is as narrow as asked and lower > 0
+  double lower = 0;
+  double upper = 0;
+  Vec3 point = Vec3::Zero();
+  int count = 0;
+  DifferenceVertex simplex[4];
+  double weights[4];
+};
+
+/// Reduces the simplex to the face that holds its point nearest to the origin; returns that point. Weights sum to 1.
+/// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
+Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
+
+/// @param start     one to three vertices of P to begin with, affinely independent.
+/// @param relative  stop when upper <= (1 + relative) lower ...
+/// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
+template <class Difference>
+NearestResult nearest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
+                            double absolute, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
+  NearestResult r;
+  for (const DifferenceVertex& v : start) r.simplex[r.count++] = v;
+  r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
+  const double rounding = 8 * PolytopeDifference::kHalfUlp * difference.reach();
+  const double upper_error = difference.point_error() + rounding;
+  const double lower_error = difference.point_error() + difference.support_error() + rounding;
+  double best = r.point.norm();
+  // What is near the origin says little about L: look at P's far side once.
+  const DifferenceVertex far = difference.support(difference.centre(), nullptr);
+  ++support_calls;
+  double largest = std::max(start[0].x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
+  for (;;) {
+    const double length = r.point.norm();
+    r.upper = length + upper_error;
+    if (!(length > 4 * lower_error)) return r;
+    const Vec3 toward = -r.point / length;
+    DifferenceVertex s = difference.support(toward, &r.simplex[r.count - 1]);
+    ++support_calls;
+    largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
+    double height = -s.x.dot(toward);
+    const auto narrow = [&] {
+      r.lower = height - lower_error;
+      return r.lower > 0 && (r.upper - r.lower <= absolute * largest || r.upper <= (1 + relative) * r.lower);
+    };
+    if (narrow()) {
+      s = difference.certified_support(toward, s, stack);
+      height = -s.x.dot(toward);
+      if (narrow()) {
+        r.certified = true;
+        return r;
+      }
+    }
+    for (int i = 0; i < r.count; ++i) {
+      if (r.simplex[i].a == s.a && r.simplex[i].b == s.b) return r;  // nothing new: rounding has the last word
+    }
+    const NearestResult last = r;
+    r.simplex[r.count++] = s;
+    r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
+    if (r.count == 4) return r;
+    if (!(r.point.norm() < best)) return last;  // a sliver of nearly equal supports has lost its nearest point
+    best = r.point.norm();
+  }
+}
+
+}  // namespace pd::detail

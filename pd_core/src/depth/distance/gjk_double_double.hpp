@@ -1,0 +1,28 @@
+/// @file
+/// The point of a smooth P nearest to the origin where plain doubles stop short: Gilbert, Johnson, Keerthi 1988 with
+/// the simplices solved in double-double and the best bounds of all steps kept.
+///
+/// Close to contact the nearest points of successive simplices differ by less than a double tells, while their
+/// directions are still to turn by 1e-6: |v|^2 falls by (angle)^2 |v|^2 alone, and a sliver of supports 1e-7 apart
+/// loses its nearest point. In double-double the supports, whatever the rounding of their formula, count as exact
+/// points: each step that is not the last comes strictly nearer, so it ends. The bounds allow for the formula's errors.
+#pragma once
+
+#include "depth/difference/smooth_difference.hpp"
+#include "depth/distance/gjk.hpp"
+
+namespace pd::detail {
+
+struct SmoothNearest {
+  NearestResult nearest;  ///< `point`, `simplex`, `weights` of `upper`
+  Vec3 normal;            ///< unit; the plane of `lower`: every point of P has <x, normal> <= -lower
+};
+
+/// @param first     a vertex of P to begin with.
+/// @param relative  stop when upper <= (1 + relative) lower ...
+/// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
+/// `certified` is false where P holds the origin within rounding, or rounding left the bracket wider than asked.
+SmoothNearest smooth_nearest(const SmoothDifference& difference, const DifferenceVertex& first, double relative,
+                             double absolute, std::int64_t& support_calls);
+
+}  // namespace pd::detail

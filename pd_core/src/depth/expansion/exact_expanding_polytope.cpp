@@ -1,0 +1,265 @@
+#include "depth/expansion/exact_expanding_polytope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pd::detail {
+
+int compare(const SquaredDistance& x, const SquaredDistance& y) {
+  return (x.numerator * y.denominator - y.numerator * x.denominator).sign();
+}
+
+namespace {
+
+struct Face {
+  std::int32_t v[3];
+  std::int32_t adj[3];
+  double lower;  ///< bounds of the signed distance of the plane, scaled lengths
+  double upper;
+  bool alive;
+  bool facet;  ///< known to support P
+};
+
+class Hull {
+ public:
+  explicit Hull(const PosedPair& pair) : pair_(pair) {}
+
+  std::vector<PairId> vertices;
+  std::vector<Face> faces;
+
+  [[nodiscard]] PairVector edge(int from, int to) const {
+    return PairVector::difference(vertices[from].a, vertices[from].b, vertices[to].a, vertices[to].b);
+  }
+  [[nodiscard]] PairVector point(int v) const { return PairVector::point(vertices[v].a, vertices[v].b); }
+
+  /// Side of vertex v against the plane of f: +1 outside.
+  [[nodiscard]] int side(const Face& f, int v) const {
+    return pair_.sign_determinant(edge(f.v[0], v), edge(f.v[0], f.v[1]), edge(f.v[0], f.v[2]));
+  }
+  [[nodiscard]] Dyadic3 exact_normal(const Face& f) const {
+    return cross(pair_.exact(edge(f.v[0], f.v[1])), pair_.exact(edge(f.v[0], f.v[2])));
+  }
+
+  int add_face(int a, int b, int c) {
+    Face f{{a, b, c}, {-1, -1, -1}, 0, 0, true, false};
+    set_bounds(f);
+    if (!free_.empty()) {
+      const int slot = free_.back();
+      free_.pop_back();
+      faces[slot] = f;
+      return slot;
+    }
+    faces.push_back(f);
+    return static_cast<int>(faces.size()) - 1;
+  }
+
+  void start() {
+    const int order = pair_.sign_determinant(edge(0, 3), edge(0, 1), edge(0, 2));
+    if (order > 0) std::swap(vertices[1], vertices[2]);
+    add_face(0, 1, 2);
+    add_face(0, 3, 1);
+    add_face(1, 3, 2);
+    add_face(2, 3, 0);
+    static constexpr std::int32_t kAdjacent[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
+    for (int f = 0; f < 4; ++f) std::copy(kAdjacent[f], kAdjacent[f] + 3, faces[f].adj);
+  }
+
+  /// Replaces the faces strictly below vertex v, `from` among them. Exact sides of a convex surface: always a disc; no
+  /// new triangle is degenerate, since v would have to lie on the line of an edge of a face that it sees from outside.
+  void insert(int from, int v) {
+    struct Visit {
+      int face, edge, left;
+    };
+    struct Horizon {
+      int face, edge, from, to;
+    };
+    std::vector<Visit> visits{{from, 0, 3}};
+    std::vector<Horizon> horizon;
+    std::vector<int> removed{from};
+    faces[from].alive = false;
+    while (!visits.empty()) {
+      Visit& visit = visits.back();
+      if (visit.left == 0) {
+        visits.pop_back();
+        continue;
+      }
+      const int f = visit.face;
+      const int e = visit.edge;
+      visit.edge = (e + 1) % 3;
+      --visit.left;
+      const int g = faces[f].adj[e];
+      if (!faces[g].alive) continue;
+      int entered = 0;
+      while (faces[g].adj[entered] != f || faces[g].v[(entered + 1) % 3] != faces[f].v[e]) ++entered;
+      if (side(faces[g], v) > 0) {
+        faces[g].alive = false;
+        removed.push_back(g);
+        visits.push_back({g, (entered + 1) % 3, 2});
+      } else {
+        horizon.push_back({g, entered, faces[f].v[e], faces[f].v[(e + 1) % 3]});
+      }
+    }
+    free_.insert(free_.end(), removed.begin(), removed.end());
+    std::vector<int> fan;
+    for (const Horizon& h : horizon) {
+      const int f = add_face(h.from, h.to, v);
+      faces[f].adj[0] = h.face;
+      faces[h.face].adj[h.edge] = f;
+      fan.push_back(f);
+    }
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      const std::size_t j = i + 1 == fan.size() ? 0 : i + 1;
+      faces[fan[i]].adj[1] = fan[j];
+      faces[fan[j]].adj[2] = fan[i];
+    }
+  }
+
+ private:
+  void set_bounds(Face& f) const {
+    const Vec3DD p = pair_.approximate_dd(point(f.v[0]));
+    const Vec3DD u = pair_.approximate_dd(edge(f.v[0], f.v[1]));
+    const Vec3DD v = pair_.approximate_dd(edge(f.v[0], f.v[2]));
+    const Vec3DD n = cross(u, v);
+    const DoubleDouble squared = dot(n, n);
+    const auto norm1 = [](const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); };
+    // The determinant <p, u x v> and the normal, each with the errors of its arguments and of double-double products.
+    const double e = pair_.vector_error_dd();
+    const double a = norm1(p) + 3 * e, b = norm1(u) + 3 * e, c = norm1(v) + 3 * e;
+    const double volume_error = 64 * 0x1p-104 * a * b * c + 2 * e * (b * c + a * c + a * b) + 0x1p-900;
+    const double normal_error = 64 * 0x1p-104 * b * c + 4 * e * (b + c) + 0x1p-900;
+    const double length = std::sqrt(squared.hi);
+    if (!(length > 1e6 * normal_error)) {
+      f.lower = -std::numeric_limits<double>::infinity();
+      f.upper = std::numeric_limits<double>::infinity();
+      return;
+    }
+    const DoubleDouble distance = dot(p, n) / sqrt(squared);
+    const double error = 2 * (volume_error + std::abs(distance.hi) * normal_error) / length;
+    const double value = to_double(distance);
+    const double slack = error + std::abs(value) * 0x1p-52;
+    f.lower = value - slack;
+    f.upper = value + slack;
+  }
+
+  const PosedPair& pair_;
+  std::vector<int> free_;
+};
+
+PairId support(const PosedPair& pair, const ExactDirection& direction) {
+  return {support_face_a(pair, direction).front(), support_face_b(pair, direction).front()};
+}
+
+/// Finds four affinely independent vertices of P, or shows that P is flat (false).
+bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_calls,
+                      std::optional<ExactDirection>& flat) {
+  const auto independent = [&](const PairId& id) {
+    const std::vector<PairId>& v = hull.vertices;
+    const auto difference = [&](const PairId& to) { return PairVector::difference(v[0].a, v[0].b, to.a, to.b); };
+    if (v.empty()) return true;
+    const PairVector d = difference(id);
+    if (v.size() == 1) {
+      const Dyadic3 e = pair.exact(d);
+      return e.x.sign() != 0 || e.y.sign() != 0 || e.z.sign() != 0;
+    }
+    if (v.size() == 2) return !pair.parallel(d, difference(v[1]));
+    return pair.sign_determinant(d, difference(v[1]), difference(v[2])) != 0;
+  };
+  std::vector<PairId> given;
+  given.swap(hull.vertices);
+  for (const PairId& id : given) {
+    if (hull.vertices.size() < 4 && independent(id)) hull.vertices.push_back(id);
+  }
+  while (hull.vertices.size() < 4) {
+    const std::vector<PairId>& v = hull.vertices;
+    // Directions normal to what is spanned, enough to find anything outside it.
+    std::vector<Dyadic3> directions;
+    const Dyadic one(1.0), zero(0.0);
+    const std::array<Dyadic3, 3> axes{Dyadic3{one, zero, zero}, Dyadic3{zero, one, zero}, Dyadic3{zero, zero, one}};
+    if (v.size() <= 1) {
+      directions.assign(axes.begin(), axes.end());
+    } else if (v.size() == 2) {
+      const Dyadic3 e = pair.exact(hull.edge(0, 1));
+      for (const Dyadic3& axis : axes) directions.push_back(cross(e, axis));
+    } else {
+      directions.push_back(cross(pair.exact(hull.edge(0, 1)), pair.exact(hull.edge(0, 2))));
+    }
+    bool found = false;
+    for (const Dyadic3& d : directions) {
+      if (d.x.sign() == 0 && d.y.sign() == 0 && d.z.sign() == 0) continue;
+      for (const int sign : {1, -1}) {
+        const ExactDirection direction(sign > 0 ? d : Dyadic3{-d.x, -d.y, -d.z});
+        ++support_calls;
+        const PairId s = support(pair, direction);
+        if (independent(s)) {
+          hull.vertices.push_back(s);
+          found = true;
+          break;
+        }
+        flat = direction;
+      }
+      if (found) break;
+    }
+    if (!found) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+ExactDepth exact_expansion(const PosedPair& pair, const PairId* simplex, int count, int budget) {
+  ExactDepth result;
+  Hull hull(pair);
+  hull.vertices.assign(simplex, simplex + count);
+  if (!full_dimensional(pair, hull, result.support_calls, result.normal)) return result;  // flat: at most touching
+  result.normal.reset();
+  hull.start();
+
+  double best_upper = std::numeric_limits<double>::infinity();
+  for (;;) {
+    int nearest = -1;
+    for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+      const Face& face = hull.faces[f];
+      if (face.alive && !face.facet && (nearest < 0 || face.lower < hull.faces[nearest].lower)) {
+        nearest = static_cast<int>(f);
+      }
+    }
+    if (nearest < 0 || hull.faces[nearest].lower > best_upper) break;
+    ++result.facets_visited;
+    Face& face = hull.faces[nearest];
+    const Dyadic3 normal = hull.exact_normal(face);
+    const ExactDirection direction(normal);
+    if (result.support_calls >= budget) {
+      result.complete = false;
+      return result;
+    }
+    ++result.support_calls;
+    const PairId s = support(pair, direction);
+    hull.vertices.push_back(s);
+    const int v = static_cast<int>(hull.vertices.size()) - 1;
+    if (hull.side(face, v) > 0) {
+      hull.insert(nearest, v);
+      continue;
+    }
+    hull.vertices.pop_back();
+    face.facet = true;
+    const Dyadic height = dot(normal, pair.exact(hull.point(face.v[0])));
+    if (height.sign() <= 0) {
+      // A supporting plane through the origin (the origin is known to lie in P, so never beyond it).
+      result.contact = ContactClass::touching;
+      result.normal = direction;
+      return result;
+    }
+    const SquaredDistance squared{height * height,
+                                  dot(normal, normal) * pair.homogeneous_factor() * pair.homogeneous_factor()};
+    if (!result.normal || compare(squared, result.squared) < 0) {
+      result.normal = direction;
+      result.squared = squared;
+    }
+    best_upper = std::min(best_upper, face.upper);
+  }
+  result.contact = ContactClass::overlapping;
+  return result;
+}
+
+}  // namespace pd::detail

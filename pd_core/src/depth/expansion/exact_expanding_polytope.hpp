@@ -1,0 +1,38 @@
+/// @file
+/// Best-first expansion with exact signs: the engine behind the doubles.
+///
+/// Keeps the exact convex hull of the vertices of P found so far. A face whose plane supports P exactly is a facet of
+/// P; the least of those that no other face can undercut is the depth. Decides touching against overlapping, and ranks
+/// facets whose distances agree to the last bits.
+#pragma once
+
+#include <optional>
+
+#include "depth/distance/gjk_exact.hpp"
+#include "pd/depth/penetration_depth.hpp"
+
+namespace pd::detail {
+
+/// |distance of a plane from the origin| squared = numerator / denominator, unscaled.
+struct SquaredDistance {
+  Dyadic numerator;
+  Dyadic denominator;
+};
+/// Sign of x - y.
+[[nodiscard]] int compare(const SquaredDistance& x, const SquaredDistance& y);
+
+struct ExactDepth {
+  ContactClass contact = ContactClass::touching;
+  bool complete = true;                  ///< false: the budget ran out before the nearest facet was certain
+  std::optional<ExactDirection> normal;  ///< of the nearest facet of P (overlapping), or a supporting normal (touching)
+  SquaredDistance squared;               ///< overlapping only
+  std::int64_t support_calls = 0;
+  std::int64_t facets_visited = 0;
+};
+
+/// Requires that the origin lies in P (boundary included).
+/// @param simplex  vertices of P to begin with.
+/// @param budget   supports allowed.
+[[nodiscard]] ExactDepth exact_expansion(const PosedPair& pair, const PairId* simplex, int count, int budget);
+
+}  // namespace pd::detail

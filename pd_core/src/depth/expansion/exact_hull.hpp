@@ -1,0 +1,54 @@
+/// @file
+/// The convex hull of points of P in doubles, kept by exact signs: where expansion's surface in doubles folds.
+///
+/// Near contact ruled bodies (cylinders, cones, against edges) leave faces as long as the bodies and 1e-8 wide.
+/// Rounding turns their planes, so that faces which see a new point by their planes are not those which see it
+/// (inner_surface.hpp), and the surface folds: the lower bound, still true, falls. Exact orientation (predicates.hpp)
+/// of the stored points keeps every step a convex hull: faces that strictly see a point outside form one disc, and no
+/// new face is degenerate, since a point in line with the disc's border lies in the plane of a face that sees it.
+/// Distances of planes are taken in double-double. A step costs some microseconds, so only folded queries come here.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "depth/difference/polytope_difference.hpp"
+
+namespace pd::detail {
+
+class ExactSurface {
+ public:
+  struct Face {
+    std::int32_t v[3];    ///< counter-clockwise from outside
+    std::int32_t adj[3];  ///< the face across the edge v[i] -> v[i + 1]
+    Vec3 unit_normal;
+    double distance;  ///< signed, of the plane from the origin; relative error of some u, as the normal's
+    bool alive;
+  };
+
+  std::vector<DifferenceVertex> vertices;
+
+  void clear();
+  /// Four of the vertices that span a volume become the first faces. False when all lie in one plane.
+  bool start();
+  /// Puts the last vertex in. False when it does not lie strictly outside face `from`.
+  bool insert(int from);
+  /// The face whose plane is nearest (signed).
+  [[nodiscard]] int nearest();
+  [[nodiscard]] const Face& face(int f) const { return faces_[static_cast<std::size_t>(f)]; }
+
+ private:
+  struct Entry {
+    double distance;
+    std::int32_t face;
+  };
+  [[nodiscard]] const Vec3& at(std::int32_t v) const { return vertices[static_cast<std::size_t>(v)].x; }
+  [[nodiscard]] bool sees(std::int32_t v, const Face& face) const;
+  void add_face(std::int32_t a, std::int32_t b, std::int32_t c);
+
+  std::vector<Face> faces_;  ///< never reused: an entry of the heap is stale exactly when its face is dead
+  std::vector<Entry> heap_;
+  std::vector<std::int32_t> visible_;
+};
+
+}  // namespace pd::detail

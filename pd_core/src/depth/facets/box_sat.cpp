@@ -1,0 +1,214 @@
+#include "depth/facets/box_sat.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "depth/facets/box_sat_kernels.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+constexpr double kUlp = 0x1p-53;
+/// The cross product of two generators turns by at most this over the sine of their angle: each errs by 3u of its
+/// length, the product by 4u.
+constexpr double kTurn = 12 * kUlp;
+/// Sines below this are rounding.
+constexpr double kParallelSine = 8 * kUlp;
+/// |column of R| <= 1 + 1e-6 (Pose), and the rounding of the half extents.
+constexpr double kLongest = 1 + 0x1p-19;
+
+class BoxPair {
+ public:
+  BoxPair(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a, const ConvexPolytope& b,
+          const BoxFrame& frame_b, const Pose& pose_b)
+      : a_(a),
+        b_(b),
+        rotation_a_(pose_a.rotation()),
+        rotation_b_(pose_b.rotation()),
+        centre_a_(rotation_a_ * frame_a.centre),
+        centre_b_(rotation_b_ * frame_b.centre + (pose_b.translation() - pose_a.translation())),
+        centre_(centre_b_ - centre_a_),
+        reach_(a.radius() + b.radius() + (pose_b.translation() - pose_a.translation()).norm()) {
+    spread(rotation_a_, frame_a.half_extents, of_a_);
+    spread(rotation_b_, frame_b.half_extents, of_b_);
+  }
+
+  BoxPairDepth solve(double width) {
+    BoxPairDepth out;
+    // Generators and centre err by 12u of the reach together, the sum of seven products by 8u.
+    const double rounding = 20 * kUlp * reach_;
+    const double c[3] = {centre_.x(), centre_.y(), centre_.z()};
+    const NearestBoxAxis nearest = nearest_box_axis(of_a_, of_b_, c, {kTurn * reach_, kParallelSine});
+    Vec3 u, v;
+    spanning(nearest.axis, u, v);
+    const Vec3 n = u.cross(v);
+    out.normal = n * ((n.dot(centre_) > 0 ? -1 : 1) / n.norm());
+    const double distance = std::copysign(std::sqrt(std::abs(nearest.key)), nearest.key);
+    out.upper = distance + rounding;
+    if (nearest.key < 0) {
+      if (out.upper < 0) out.status = BoxPairStatus::separated;
+      return out;
+    }
+    if (!(nearest.lower_key > 0)) return out;
+    out.lower = std::sqrt(nearest.lower_key) - rounding - (kParallelSine + 2 * kTurn) * nearest.slivers;
+    if (!(out.lower > 0) || out.upper - out.lower > width * greatest_coordinate()) return out;
+    if (place_witness(nearest.axis, distance, out)) out.status = BoxPairStatus::certified;
+    return out;
+  }
+
+ private:
+  static void spread(const Mat3& rotation, const Vec3& half, BoxGenerators& out) {
+    for (int k = 0; k < 8; ++k) {
+      const int i = k % 3;
+      out.x[k] = rotation(0, i) * half[i];
+      out.y[k] = rotation(1, i) * half[i];
+      out.z[k] = rotation(2, i) * half[i];
+      out.length[k] = kLongest * half[i];
+    }
+  }
+  static Vec3 generator(const BoxGenerators& of, int i) { return {of.x[i], of.y[i], of.z[i]}; }
+
+  void spanning(int axis, Vec3& u, Vec3& v) const {
+    const int block = axis / 4, lane = axis % 4;
+    if (block < 2) {
+      const BoxGenerators& own = block == 0 ? of_a_ : of_b_;
+      u = generator(own, lane);
+      v = generator(own, lane + 1);
+    } else {
+      u = generator(of_a_, block - 2);
+      v = generator(of_b_, lane);
+    }
+  }
+
+  /// L, rounded: |c| + sum |g| a coordinate.
+  double greatest_coordinate() const {
+    Vec3 extent = centre_.cwiseAbs();
+    for (int k = 0; k < 3; ++k) extent += generator(of_a_, k).cwiseAbs() + generator(of_b_, k).cwiseAbs();
+    return extent.maxCoeff();
+  }
+
+  /// Vertices are numbered lexicographically: 4 for +x, 2 for +y, 1 for +z.
+  static constexpr int bit(int axis) { return 4 >> axis; }
+
+  /// The vertex farthest along `sign` * normal; on equal heights the one with the lower id.
+  static int farthest(const BoxGenerators& of, const Vec3& normal, double sign) {
+    int id = 0;
+    for (int k = 0; k < 3; ++k) id |= sign * generator(of, k).dot(normal) > 0 ? bit(k) : 0;
+    return id;
+  }
+  static Vec3 vertex(const BoxGenerators& of, const Vec3& centre, int id) {
+    Vec3 x = centre;
+    for (int k = 0; k < 3; ++k) x += (id & bit(k)) != 0 ? generator(of, k) : Vec3(-generator(of, k));
+    return x;
+  }
+
+  /// Finds a in A and b in B with b - a = distance * normal. False where the winner does not hold that point.
+  bool place_witness(int axis, double distance, BoxPairDepth& out) const {
+    const Vec3 x = distance * out.normal;
+    const double slack = 64 * kUlp * reach_;
+    const int block = axis / 4, lane = axis % 4;
+    const int va = farthest(of_a_, out.normal, -1), vb = farthest(of_b_, out.normal, 1);
+    if (block >= 2) {
+      const int i = block - 2, j = lane;
+      const Vec3 e = generator(of_a_, i), other = generator(of_b_, j);
+      // middle of the edge of B + t other - (middle of the edge of A + s e) = x, |s|, |t| <= 1
+      const Vec3 middle_a = vertex(of_a_, centre_a_, va | bit(i)) - e;
+      const Vec3 gap = vertex(of_b_, centre_b_, vb | bit(j)) - other - middle_a - x;
+      const Vec3 n = e.cross(other);
+      const double squared = n.squaredNorm();
+      const double s = gap.cross(other).dot(n) / squared, t = gap.cross(e).dot(n) / squared;
+      if (!(std::abs(s) <= 1 && std::abs(t) <= 1)) return false;
+      if (!((gap + t * other - s * e).squaredNorm() <= slack * slack)) return false;
+      out.point_a = middle_a + s * e;
+      out.feature_a = {Feature::Kind::edge, va & ~bit(i), va | bit(i)};
+      out.feature_b = {Feature::Kind::edge, vb & ~bit(j), vb | bit(j)};
+      return true;
+    }
+    // The facet's axis is the one that does not span it; lanes span (0, 1), (1, 2), (2, 0).
+    const int across = (lane + 2) % 3;
+    if (block == 0) {
+      return vertex_on_facet(of_b_, centre_b_, vb, out.normal, [&](const Vec3& b, int v) {
+        if (!inside(of_a_, across, b - x - centre_a_, slack)) return false;
+        out.point_a = b - x;
+        out.feature_a = {Feature::Kind::facet, facet(a_, across, (va & bit(across)) != 0), -1};
+        out.feature_b = {Feature::Kind::vertex, v, -1};
+        return true;
+      });
+    }
+    return vertex_on_facet(of_a_, centre_a_, va, out.normal, [&](const Vec3& a, int v) {
+      if (!inside(of_b_, across, a + x - centre_b_, slack)) return false;
+      out.point_a = a;
+      out.feature_a = {Feature::Kind::vertex, v, -1};
+      out.feature_b = {Feature::Kind::facet, facet(b_, across, (vb & bit(across)) != 0), -1};
+      return true;
+    });
+  }
+
+  /// Tries the farthest vertex, and those as far within rounding where facets are parallel.
+  template <class Try>
+  bool vertex_on_facet(const BoxGenerators& of, const Vec3& centre, int farthest_id, const Vec3& normal,
+                       Try&& fits) const {
+    if (fits(vertex(of, centre, farthest_id), farthest_id)) return true;
+    const double level = 16 * kUlp * reach_;
+    int loose = 0;
+    for (int k = 0; k < 3; ++k) loose |= std::abs(generator(of, k).dot(normal)) <= level ? bit(k) : 0;
+    for (int v = 0; v < 8; ++v) {
+      if ((v & ~loose) != (farthest_id & ~loose) || v == farthest_id) continue;
+      if (fits(vertex(of, centre, v), v)) return true;
+    }
+    return false;
+  }
+
+  /// Whether a point in the plane of a facet across `axis`, relative to the centre, lies on it up to `slack`.
+  static bool inside(const BoxGenerators& of, int axis, const Vec3& point, double slack) {
+    for (int k = 0; k < 3; ++k) {
+      if (k == axis) continue;
+      const Vec3 g = generator(of, k);
+      const double squared = g.squaredNorm();
+      const double along = std::abs(point.dot(g));
+      if (along > squared && (along - squared) * (along - squared) > slack * slack * squared) return false;
+    }
+    return true;
+  }
+
+  static int facet(const ConvexPolytope& p, int axis, bool positive) {
+    int f = 0;
+    while ((positive ? 1 : -1) * p.facet_normal(f)[axis] < 0.5) ++f;
+    return f;
+  }
+
+  const ConvexPolytope& a_;
+  const ConvexPolytope& b_;
+  const Mat3 rotation_a_;
+  const Mat3 rotation_b_;
+  const Vec3 centre_a_;  ///< relative to A's translation
+  const Vec3 centre_b_;  ///< relative to A's translation, too
+  const Vec3 centre_;    ///< of P
+  const double reach_;
+  BoxGenerators of_a_;
+  BoxGenerators of_b_;
+};
+
+}  // namespace
+
+std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
+  if (p.num_vertices() != 8) return std::nullopt;
+  // Vertices are in lexicographic order.
+  const double* const coordinates[3] = {p.x(), p.y(), p.z()};
+  bool box = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* const x = coordinates[axis];
+    for (int v = 0; v < 8; ++v) box &= x[v] == ((v & (4 >> axis)) != 0 ? x[7] : x[0]);
+  }
+  if (!box) return std::nullopt;
+  const Vec3 least = p.vertex(0), most = p.vertex(7);
+  return BoxFrame{0.5 * (least + most), 0.5 * (most - least)};
+}
+
+BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
+                            const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b, double width) {
+  return BoxPair(a, frame_a, pose_a, b, frame_b, pose_b).solve(width);
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,100 @@
+#include "depth/facets/box_sat_kernels.hpp"
+
+#include <cstdint>
+#include <limits>
+
+#include "numeric/instruction_sets.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+typedef double Lanes __attribute__((vector_size(32)));
+typedef std::int64_t Flags __attribute__((vector_size(32)));
+constexpr int kLanes = 4;
+constexpr int kBlocks = 5;
+
+PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
+
+struct LaneVectors {
+  Lanes x, y, z;
+};
+
+PD_INLINE void load(LaneVectors& to, const BoxGenerators& from, int i) {
+  load(to.x, from.x + i);
+  load(to.y, from.y + i);
+  load(to.z, from.z + i);
+}
+
+/// += |<n, (x, y, z)>|
+PD_INLINE void add_height(Lanes& sum, const LaneVectors& n, double x, double y, double z) {
+  const Lanes height = n.x * x + n.y * y + n.z * z;
+  sum += height < Lanes{0, 0, 0, 0} ? -height : height;
+}
+
+}  // namespace
+
+PD_CLONES NearestBoxAxis nearest_box_axis(const BoxGenerators& a, const BoxGenerators& b, const double (&c)[3],
+                                          const BoxAxesErrors& errors) {
+  const Lanes zero = {0, 0, 0, 0};
+  const Lanes none = zero + std::numeric_limits<double>::infinity();
+  const Flags first_three = {-1, -1, -1, 0};
+  Lanes best = none, lower = none, slivers = zero, best_axis = zero;
+  for (int block = 0; block < kBlocks; ++block) {
+    LaneVectors u, v;
+    Lanes length_u, length_v;
+    if (block < 2) {
+      const BoxGenerators& own = block == 0 ? a : b;
+      load(u, own, 0);
+      load(v, own, 1);
+      load(length_u, own.length);
+      load(length_v, own.length + 1);
+    } else {
+      const int i = block - 2;
+      u.x = zero + a.x[i];
+      u.y = zero + a.y[i];
+      u.z = zero + a.z[i];
+      length_u = zero + a.length[i];
+      load(v, b, 0);
+      load(length_v, b.length);
+    }
+    LaneVectors n;
+    n.x = u.y * v.z - u.z * v.y;
+    n.y = u.z * v.x - u.x * v.z;
+    n.z = u.x * v.y - u.y * v.x;
+    const Lanes squared = n.x * n.x + n.y * n.y + n.z * n.z;
+    const Lanes product = length_u * length_v;
+    const Flags parallel = squared <= (errors.sine * errors.sine) * (product * product);
+    Lanes height = zero, centre = zero;
+    for (int k = 0; k < 3; ++k) {
+      add_height(height, n, a.x[k], a.y[k], a.z[k]);
+      add_height(height, n, b.x[k], b.y[k], b.z[k]);
+    }
+    add_height(centre, n, c[0], c[1], c[2]);
+    height -= centre;
+    const Lanes lowered = height - errors.turn * product;
+    const Lanes key = height * (height < zero ? -height : height) / squared;
+    const Lanes lower_key = lowered * (lowered < zero ? -lowered : lowered) / squared;
+    const Lanes shorter = length_u < length_v ? length_u : length_v;
+    const Flags counts = first_three & ~parallel;
+    const Flags left_out = first_three & parallel;
+    const Flags nearer = counts & (key < best);
+    const Flags lowers = counts & (lower_key < lower);
+    slivers += left_out ? shorter : zero;
+    best_axis = nearer ? Lanes{0, 1, 2, 3} + static_cast<double>(kLanes * block) : best_axis;
+    best = nearer ? key : best;
+    lower = lowers ? lower_key : lower;
+  }
+  NearestBoxAxis out{best[0], lower[0], static_cast<int>(best_axis[0]), slivers[0] + slivers[1] + slivers[2]};
+  for (int lane = 1; lane < 3; ++lane) {
+    const int axis = static_cast<int>(best_axis[lane]);
+    if (best[lane] < out.key || (best[lane] == out.key && axis < out.axis)) {
+      out.key = best[lane];
+      out.axis = axis;
+    }
+    out.lower_key = lower[lane] < out.lower_key ? lower[lane] : out.lower_key;
+  }
+  return out;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,29 @@
+/// @file
+/// What a Scratch holds.
+#pragma once
+
+#include <vector>
+
+#include "depth/certificate/support_faces.hpp"
+#include "depth/difference/smooth_difference.hpp"
+#include "depth/expansion/exact_hull.hpp"
+#include "depth/expansion/inner_surface.hpp"
+#include "depth/facets/decomposition_depth.hpp"
+#include "depth/facets/near_facets.hpp"
+#include "depth/facets/overlay_depth.hpp"
+
+namespace pd::detail {
+
+struct ScratchBuffers {
+  Surface surface;
+  ExactSurface exact_surface;
+  PosedVerticesPair posed;
+  std::vector<std::int32_t> stack;
+  std::vector<PointPair> points;
+  OverlayDepthBuffers overlay;
+  DecompositionBuffers decomposition;
+  TiedFacetsBuffers tied_facets;
+  PlaneFaces faces;
+};
+
+}  // namespace pd::detail

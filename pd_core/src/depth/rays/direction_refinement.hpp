@@ -1,0 +1,169 @@
+/// @file
+/// pi within (1 + delta) by rays along a covering of the sphere that is refined where it matters: the adaptive form of
+/// [A] Approx-Separation.
+///
+/// A cell is a triangle of directions u_i. The points Delta(u_i) u_i lie on the boundary of P, so their triangle lies
+/// in P, and the boundary point nearest to the origin, if its direction is in the cell's cone, is at least as far as
+/// that triangle: a lower bound that is never below the paper's cos(alpha) min Delta(u_i), and exact where the three
+/// rays meet one facet. The cell with the least bound is cut in four until the least plane distance met so far is
+/// within (1 + delta) of it. Every shot's plane gives an upper bound; where one improves the best, a ray along its
+/// normal follows, so that the best plane ends with the origin's foot on P itself.
+///
+/// Cones of neighbours of unequal size leave gaps of rounding's width along a shared edge. A nearest point v there
+/// costs nothing: a direction w of a cone at an angle e from v has Delta(w) <= |v| / cos(e), and 1 - cos(1e-15) is 0
+/// here.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <queue>
+#include <unordered_map>
+#include <vector>
+
+#include "depth/rays/ray_shooting.hpp"
+#include "structure/icosahedron.hpp"
+
+namespace pd::detail {
+
+/// Below this a bracket is dominated by rounding.
+inline constexpr double kLeastDelta = 1e-12;
+
+struct CellSearchResult {
+  double lower = 0;  ///< certified: lower <= pi
+  double upper = 0;  ///< least plane distance, rounded up
+  Vec3 normal = Vec3::UnitX();
+};
+
+/// @tparam Shooter  PolytopeShooter or SweptShooter.
+template <class Shooter>
+class CellSearch {
+ public:
+  /// @param faces  20, or 10 where P is symmetric about the origin.
+  CellSearch(Shooter& shooter, double delta, std::size_t faces)
+      : shooter_(shooter), delta_(std::max(delta, kLeastDelta)) {
+    const Icosahedron body = icosahedron();
+    for (const Vec3& v : body.vertices) add_corner(v);
+    for (std::size_t f = 0; f < faces; ++f) push({body.faces[f][0], body.faces[f][1], body.faces[f][2], 0, 0});
+  }
+
+  CellSearchResult run() {
+    double finished = std::numeric_limits<double>::infinity();
+    while (!cells_.empty()) {
+      const Cell cell = cells_.top();
+      if (best_.upper <= (1 + delta_) * cell.lower || best_.upper - cell.lower <= shooter_.absolute_error()) break;
+      cells_.pop();
+      if (cell.level == kFinestLevel) {
+        finished = std::min(finished, cell.lower);
+        continue;
+      }
+      const std::int32_t ab = middle(cell.a, cell.b), bc = middle(cell.b, cell.c), ca = middle(cell.c, cell.a);
+      const std::int32_t level = cell.level + 1;
+      push({cell.a, ab, ca, level, 0});
+      push({ab, cell.b, bc, level, 0});
+      push({ca, bc, cell.c, level, 0});
+      push({ab, bc, ca, level, 0});
+    }
+    best_.lower = std::min(finished, cells_.empty() ? finished : cells_.top().lower);
+    best_.lower = std::min(best_.lower, best_.upper);
+    return best_;
+  }
+
+ private:
+  /// Cells of 2^-26 radians: nothing between their corners' rays is above rounding.
+  static constexpr std::int32_t kFinestLevel = 26;
+
+  struct Cell {
+    std::int32_t a, b, c;
+    std::int32_t level;
+    double lower;
+  };
+  struct Later {
+    bool operator()(const Cell& x, const Cell& y) const {
+      if (x.lower != y.lower) return x.lower > y.lower;
+      return std::array{x.a, x.b, x.c} > std::array{y.a, y.b, y.c};
+    }
+  };
+  struct Corner {
+    Vec3 direction;
+    double lower;
+  };
+
+  std::int32_t add_corner(const Vec3& direction) {
+    const RayShot shot = shooter_.shoot(direction);
+    corners_.push_back({direction, shot.lower});
+    improve(shot);
+    return static_cast<std::int32_t>(corners_.size()) - 1;
+  }
+
+  /// Takes over a lower plane, and follows its normal down to one that carries its foot.
+  void improve(RayShot shot) {
+    while (shot.height < best_.upper) {
+      const bool by_little = best_.upper - shot.height <= 0.001 * shooter_.absolute_error();
+      best_.upper = shot.height;
+      best_.normal = shot.normal;
+      shooter_.keep();
+      if (by_little) return;
+      shot = shooter_.shoot(shot.normal);
+    }
+  }
+
+  std::int32_t middle(std::int32_t a, std::int32_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
+    const auto [place, fresh] = middles_.try_emplace(key, 0);
+    if (fresh) {
+      const Vec3 sum =
+          corners_[static_cast<std::size_t>(low)].direction + corners_[static_cast<std::size_t>(high)].direction;
+      place->second = add_corner(sum.normalized());
+    }
+    return place->second;
+  }
+
+  void push(Cell cell) {
+    const auto corner = [&](std::int32_t i) -> const Corner& { return corners_[static_cast<std::size_t>(i)]; };
+    // Relative to the longest of the three, so that nothing under- or overflows.
+    const double scale = std::max({corner(cell.a).lower, corner(cell.b).lower, corner(cell.c).lower});
+    const auto point = [&](std::int32_t i) { return Vec3(corner(i).lower / scale * corner(i).direction); };
+    cell.lower = scale * distance_below(point(cell.a), point(cell.b), point(cell.c)) * (1 - 0x1p-50);
+    cells_.push(cell);
+  }
+
+  /// A lower bound of the distance from the origin of a triangle with corners in the unit ball: min <x_i, n> / |n| for
+  /// any n, here the nearest point.
+  static double distance_below(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 n = nearest(a, b, c);
+    const double length = n.norm();
+    if (!(length > 0)) return 0;
+    const double least = std::min({a.dot(n), b.dot(n), c.dot(n)}) / length;
+    return std::max(0.0, least - 16 * 0x1p-53);
+  }
+
+  /// The point of a triangle nearest to the origin, up to rounding.
+  static Vec3 nearest(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 n = (b - a).cross(c - a);
+    const bool inside = a.cross(b).dot(n) >= 0 && b.cross(c).dot(n) >= 0 && c.cross(a).dot(n) >= 0;
+    if (inside && n.squaredNorm() > 0) return n.dot(a) / n.squaredNorm() * n;
+    const auto on_side = [](const Vec3& p, const Vec3& q) {
+      const Vec3 e = q - p;
+      const double squared = e.squaredNorm();
+      const double t = squared > 0 ? std::clamp(-p.dot(e) / squared, 0.0, 1.0) : 0.0;
+      return Vec3(p + t * e);
+    };
+    Vec3 best = on_side(a, b);
+    for (const Vec3& other : {on_side(b, c), on_side(c, a)}) {
+      if (other.squaredNorm() < best.squaredNorm()) best = other;
+    }
+    return best;
+  }
+
+  Shooter& shooter_;
+  double delta_;
+  std::vector<Corner> corners_;
+  std::priority_queue<Cell, std::vector<Cell>, Later> cells_;
+  std::unordered_map<std::uint64_t, std::int32_t> middles_;
+  CellSearchResult best_{0, std::numeric_limits<double>::infinity(), Vec3::UnitX()};
+};
+
+}  // namespace pd::detail

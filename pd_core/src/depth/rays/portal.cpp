@@ -1,0 +1,125 @@
+#include "depth/rays/portal.hpp"
+
+#include <utility>
+
+#include "depth/difference/posed_support.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+PairVector point(const PairId& id) { return PairVector::point(id.a, id.b); }
+PairVector step(const PairId& from, const PairId& to) { return PairVector::difference(from.a, from.b, to.a, to.b); }
+
+/// Whether the step between two points of P that share a vertex of one body is this edge of the other, either way.
+bool is_edge(const PairVector& step, const PairVector& edge) {
+  const auto same = [](std::int32_t to, std::int32_t from, std::int32_t x, std::int32_t y) {
+    return (to == x && from == y) || (to == y && from == x);
+  };
+  if (edge.a_to >= 0) return step.b_to == step.b_from && same(step.a_to, step.a_from, edge.a_to, edge.a_from);
+  return step.a_to == step.a_from && same(step.b_to, step.b_from, edge.b_to, edge.b_from);
+}
+
+bool same_point(const PairId& x, const PairId& y) { return x.a == y.a && x.b == y.b; }
+
+class PortalSearch {
+ public:
+  PortalSearch(const RaySigns& ray, const PortalHierarchies& hierarchies)
+      : ray_(ray), pair_(ray.pair()), hierarchies_(hierarchies) {}
+
+  /// Nothing where the line does not meet the interior of P.
+  std::optional<Portal> run() {
+    Portal portal;
+    if (!enclose(portal.corners)) return std::nullopt;
+    push_outwards(portal.corners);
+    portal.support_calls = support_calls_;
+    return portal;
+  }
+
+ private:
+  /// A vertex of P that is extreme up to rounding, where hierarchies tell; else the one at hand.
+  PairId start(const Vec3& direction, const PairId& near) const {
+    if (hierarchies_.a == nullptr) return near;
+    return {hierarchies_.a->support(-(pair_.pose_a().rotation().transpose() * direction)),
+            hierarchies_.b->support(pair_.pose_b().rotation().transpose() * direction)};
+  }
+
+  /// In the direction d x w, or against it: <edge, d x w> = det(w, edge, d).
+  PairId support_across(const PairVector& w, int sign) {
+    ++support_calls_;
+    const RoundedDirection direction =
+        rounded_cross(sign * ray_.scaled(), 0, pair_.approximate(w), pair_.vector_error());
+    return support_exactly(pair_, direction, start(direction.vector, {-1, -1}),
+                           [&](const PairVector& edge) { return sign * ray_.turn(w, edge); });
+  }
+
+  /// A triangle of vertices of P that the line crosses. In the projection along d this is the planar portal search from
+  /// v[0] through the origin: v[1] to its left, v[2] to its right, and the side between them moves outwards.
+  /// False when some support shows the projection of P on one side of the origin.
+  bool enclose(std::array<PairId, 3>& v) {
+    int least = 0;
+    ray_.scaled().cwiseAbs().minCoeff(&least);
+    const RaySigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
+    v[0] = support_exactly(pair_, {sideways.scaled(), 0}, start(sideways.scaled(), {-1, -1}),
+                           [&](const PairVector& edge) { return sideways.along(edge); });
+    ++support_calls_;
+    const PairVector first = PairVector::point(v[0].a, v[0].b);
+    if (sideways.along(first) <= 0) return false;
+    v[1] = support_across(first, 1);
+    v[2] = support_across(first, -1);
+    if (ray_.turn(first, point(v[1])) <= 0 || ray_.turn(first, point(v[2])) >= 0) return false;
+    while (ray_.side(v[1], v[2]) < 0) {
+      const PairVector across = step(v[1], v[2]);
+      const PairId s = support_across(across, -1);
+      if (ray_.turn(across, point(s)) >= 0) return false;
+      (ray_.side(v[0], s) > 0 ? v[1] : v[2]) = s;
+    }
+    // On the side itself the moved line passes inside, the line perhaps along the boundary.
+    if (ray_.turn(point(v[1]), point(v[2])) == 0) {
+      const PairVector across = step(v[1], v[2]);
+      if (ray_.turn(across, point(support_across(across, -1))) >= 0) return false;
+    }
+    return true;
+  }
+
+  /// The support s in the normal of the triangle projects to one side of each of the three half-lines from the origin
+  /// through the corners' projections; the line crosses the triangle over the side where the sign turns from - to +.
+  void push_outwards(std::array<PairId, 3>& v) {
+    for (;;) {
+      const PairVector u = step(v[0], v[1]), w = step(v[0], v[2]);
+      ++support_calls_;
+      const double error = pair_.vector_error();
+      const RoundedDirection normal = rounded_cross(pair_.approximate(u), error, pair_.approximate(w), error);
+      // The triangle's own sides lie in its plane: no arithmetic is spent on those zeros.
+      const PairVector third = step(v[1], v[2]);
+      const PairId s = support_exactly(pair_, normal, start(normal.vector, v[2]), [&](const PairVector& edge) {
+        if (is_edge(u, edge) || is_edge(w, edge) || is_edge(third, edge)) return 0;
+        return pair_.sign_determinant(edge, u, w);
+      });
+      if (same_point(s, v[0]) || same_point(s, v[1]) || same_point(s, v[2])) return;
+      if (pair_.sign_determinant(step(v[0], s), u, w) <= 0) return;
+      const std::array<int, 3> side{ray_.side(v[0], s), ray_.side(v[1], s), ray_.side(v[2], s)};
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (side[i] < 0 && side[(i + 1) % 3] > 0) {
+          v[(i + 2) % 3] = s;
+          break;
+        }
+      }
+    }
+  }
+
+  const RaySigns& ray_;
+  const PosedPair& pair_;
+  const PortalHierarchies& hierarchies_;
+  std::int64_t support_calls_ = 0;
+};
+
+}  // namespace
+
+Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies) {
+  return *PortalSearch(ray, hierarchies).run();
+}
+
+std::optional<Portal> find_line_portal(const RaySigns& ray) { return PortalSearch(ray, {}).run(); }
+
+}  // namespace pd::detail

@@ -1,0 +1,300 @@
+#include "shape/hull/polytope_storage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <numeric>
+#include <tuple>
+#include <type_traits>
+
+#include "shape/support/direction_table.hpp"
+#include "shape/support/polytope_support.hpp"
+
+namespace pd::detail {
+namespace {
+
+using Storage = ConvexPolytope::Storage;
+
+constexpr std::size_t kAlignment = 64;
+
+/// Hands out consecutive aligned arrays; without memory it only measures.
+class Block {
+ public:
+  explicit Block(std::byte* memory) : memory_(memory) {}
+
+  template <class T>
+  T* take(int count) {
+    static_assert(std::is_trivially_destructible_v<T>);
+    const std::size_t alignment = std::is_floating_point_v<T> ? kAlignment : alignof(T);
+    used_ = (used_ + alignment - 1) / alignment * alignment;
+    T* place = nullptr;
+    if (memory_ != nullptr) {
+      place = reinterpret_cast<T*>(memory_ + used_);
+      std::uninitialized_default_construct_n(place, count);
+    }
+    used_ += sizeof(T) * static_cast<std::size_t>(count);
+    return place;
+  }
+  [[nodiscard]] std::size_t used() const { return used_; }
+
+ private:
+  std::byte* memory_;
+  std::size_t used_ = 0;
+};
+
+struct Arrays {
+  Storage* storage;
+  double* x;
+  double* y;
+  double* z;
+  Vec3* facet_normals;
+  HalfEdge* half_edges;
+  std::int32_t* caller_ids;
+  std::int32_t* neighbour_offsets;
+  std::int32_t* neighbours;
+  std::int32_t* facet_offsets;
+  std::int32_t* facet_vertices;
+  std::int32_t* facet_half_edges;
+};
+
+struct Counts {
+  int vertices;
+  int padded;
+  int half_edges;
+  int facet_vertices;
+  int facets;
+};
+
+int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
+
+Arrays take_arrays(Block& block, const Counts& n) {
+  Arrays a{};
+  a.storage = block.take<Storage>(1);
+  a.x = block.take<double>(n.padded);
+  a.y = block.take<double>(n.padded);
+  a.z = block.take<double>(n.padded);
+  a.facet_normals = block.take<Vec3>(n.facets);
+  a.half_edges = block.take<HalfEdge>(n.half_edges);
+  a.caller_ids = block.take<std::int32_t>(n.vertices);
+  a.neighbour_offsets = block.take<std::int32_t>(n.vertices + 1);
+  a.neighbours = block.take<std::int32_t>(n.half_edges);
+  a.facet_offsets = block.take<std::int32_t>(n.facets + 1);
+  a.facet_vertices = block.take<std::int32_t>(n.facet_vertices);
+  a.facet_half_edges = block.take<std::int32_t>(n.facets);
+  return a;
+}
+
+/// Half-edges in the order of the loops, before they are numbered by origin.
+struct LoopEdges {
+  std::vector<std::int32_t> origin;
+  std::vector<std::int32_t> next;
+  std::vector<std::int32_t> previous;
+  std::vector<std::int32_t> twin;
+  std::vector<std::int32_t> by_origin;  ///< edges of vertex v: by_origin[first[v]] .. by_origin[first[v + 1] - 1]
+  std::vector<std::int32_t> first;
+
+  [[nodiscard]] std::int32_t target(std::int32_t e) const {
+    return origin[static_cast<std::size_t>(next[static_cast<std::size_t>(e)])];
+  }
+};
+
+/// @param rank  canonical number of each vertex position.
+LoopEdges connect(const FacetLoops& loops, const std::vector<std::int32_t>& rank) {
+  const std::size_t n = loops.vertices.size();
+  LoopEdges e;
+  e.origin.resize(n);
+  e.next.resize(n);
+  e.previous.resize(n);
+  e.twin.assign(n, -1);
+  e.by_origin.resize(n);
+  e.first.assign(rank.size() + 1, 0);
+  for (int f = 0; f < loops.size(); ++f) {
+    const std::int32_t begin = loops.offsets[static_cast<std::size_t>(f)];
+    const std::int32_t end = loops.offsets[static_cast<std::size_t>(f) + 1];
+    for (std::int32_t i = begin; i < end; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      e.origin[k] = rank[static_cast<std::size_t>(loops.vertices[k])];
+      e.next[k] = i + 1 < end ? i + 1 : begin;
+      e.previous[k] = i > begin ? i - 1 : end - 1;
+      ++e.first[static_cast<std::size_t>(e.origin[k]) + 1];
+    }
+  }
+  std::partial_sum(e.first.begin(), e.first.end(), e.first.begin());
+  std::vector<std::int32_t> place(e.first.begin(), e.first.end() - 1);
+  for (std::size_t k = 0; k < n; ++k) {
+    e.by_origin[static_cast<std::size_t>(place[static_cast<std::size_t>(e.origin[k])]++)] =
+        static_cast<std::int32_t>(k);
+  }
+  // The twin is searched from the end of lower degree: the sum of min(degree, degree) over the edges of a planar graph
+  // is O(n) (Chiba, Nishizeki, "Arboricity and subgraph listing algorithms", 1985).
+  const auto degree = [&](std::int32_t v) {
+    return e.first[static_cast<std::size_t>(v) + 1] - e.first[static_cast<std::size_t>(v)];
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t from = e.origin[k];
+    const std::int32_t to = e.target(static_cast<std::int32_t>(k));
+    if (e.twin[k] >= 0 || degree(to) > degree(from)) continue;
+    std::int32_t i = e.first[static_cast<std::size_t>(to)];
+    while (e.target(e.by_origin[static_cast<std::size_t>(i)]) != from) ++i;
+    e.twin[k] = e.by_origin[static_cast<std::size_t>(i)];
+    e.twin[static_cast<std::size_t>(e.twin[k])] = static_cast<std::int32_t>(k);
+  }
+  return e;
+}
+
+/// Numbers the half-edges by origin, counter-clockwise from the lowest neighbour, and the facets by first half-edge.
+void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
+  std::vector<std::int32_t> number(e.origin.size());
+  std::vector<std::int32_t> ordered(e.origin.size());
+  std::int32_t h = 0;
+  for (int v = 0; v < n.vertices; ++v) {
+    out.neighbour_offsets[v] = h;
+    std::int32_t lowest = e.by_origin[static_cast<std::size_t>(e.first[static_cast<std::size_t>(v)])];
+    for (std::int32_t i = e.first[static_cast<std::size_t>(v)]; i < e.first[static_cast<std::size_t>(v) + 1]; ++i) {
+      const std::int32_t candidate = e.by_origin[static_cast<std::size_t>(i)];
+      if (e.target(candidate) < e.target(lowest)) lowest = candidate;
+    }
+    std::int32_t k = lowest;
+    do {  // the facet lies to the left of k, and beyond it the reverse of the edge that enters v
+      out.neighbours[h] = e.target(k);
+      ordered[static_cast<std::size_t>(h)] = k;
+      number[static_cast<std::size_t>(k)] = h++;
+      k = e.twin[static_cast<std::size_t>(e.previous[static_cast<std::size_t>(k)])];
+    } while (k != lowest);
+  }
+  out.neighbour_offsets[n.vertices] = h;
+
+  for (std::int32_t i = 0; i < n.half_edges; ++i) out.half_edges[i].facet = -1;
+  std::int32_t facet = 0;
+  std::int32_t filled = 0;
+  for (std::int32_t i = 0; i < n.half_edges; ++i) {
+    const auto k = static_cast<std::size_t>(ordered[static_cast<std::size_t>(i)]);
+    HalfEdge& edge = out.half_edges[i];
+    edge.origin = e.origin[k];
+    edge.twin = number[static_cast<std::size_t>(e.twin[k])];
+    edge.next = number[static_cast<std::size_t>(e.next[k])];
+    if (edge.facet >= 0) continue;
+    out.facet_offsets[facet] = filled;
+    out.facet_half_edges[facet] = i;
+    std::size_t walk = k;
+    do {
+      out.half_edges[number[walk]].facet = facet;
+      out.facet_vertices[filled++] = e.origin[walk];
+      walk = static_cast<std::size_t>(e.next[walk]);
+    } while (walk != k);
+    ++facet;
+  }
+  out.facet_offsets[facet] = filled;
+}
+
+/// Adds the table of directions, in memory of its own: its size shows only when it is made.
+void add_table(Storage& s) {
+  const DirectionTable table = direction_table(s);
+  const std::size_t blocks = sizeof(ConvexPolytope::VertexBlock) * table.blocks.size();
+  const std::size_t more = sizeof(std::int32_t) * table.more.size();
+  auto* const memory = static_cast<std::byte*>(::operator new (blocks + more, std::align_val_t{kAlignment}));
+  std::memcpy(memory, table.blocks.data(), blocks);
+  std::memcpy(memory + blocks, table.more.data(), more);
+  s.table_blocks = reinterpret_cast<const ConvexPolytope::VertexBlock*>(memory);
+  s.table_more = reinterpret_cast<const std::int32_t*>(memory + blocks);
+  s.table_cells = table.cells;
+  s.memory_bytes += blocks + more;
+}
+
+void release(const Storage* storage) {
+  ::operator delete (const_cast<ConvexPolytope::VertexBlock*>(storage->table_blocks), std::align_val_t{kAlignment});
+  ::operator delete (const_cast<Storage*>(storage), std::align_val_t{kAlignment});
+}
+
+}  // namespace
+
+std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, const FacetLoops& loops,
+                                       int affine_dimension) {
+  Counts n{};
+  n.vertices = static_cast<int>(vertices.size());
+  n.padded = padded(n.vertices);
+  n.facet_vertices = static_cast<int>(loops.vertices.size());
+  n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
+  n.facets = loops.size();
+
+  Block measure(nullptr);
+  take_arrays(measure, n);
+  auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
+  Block block(memory);
+  const Arrays out = take_arrays(block, n);
+  std::shared_ptr<const Storage> shared(out.storage, release);
+
+  std::vector<std::int32_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
+    const HullVertex& p = vertices[static_cast<std::size_t>(i)];
+    const HullVertex& q = vertices[static_cast<std::size_t>(j)];
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  });
+  std::vector<std::int32_t> rank(vertices.size());
+  double max_abs = 0;
+  for (int i = 0; i < n.vertices; ++i) {
+    const std::int32_t position = order[static_cast<std::size_t>(i)];
+    const HullVertex& p = vertices[static_cast<std::size_t>(position)];
+    rank[static_cast<std::size_t>(position)] = i;
+    out.x[i] = p.x;
+    out.y[i] = p.y;
+    out.z[i] = p.z;
+    out.caller_ids[i] = p.caller_id;
+    max_abs = std::max({max_abs, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  std::fill(out.x + n.vertices, out.x + n.padded, out.x[0]);
+  std::fill(out.y + n.vertices, out.y + n.padded, out.y[0]);
+  std::fill(out.z + n.vertices, out.z + n.padded, out.z[0]);
+
+  if (affine_dimension >= 2) {
+    write_surface(connect(loops, rank), out, n);
+    for (int f = 0; f < n.facets; ++f) {
+      const std::int32_t* loop = out.facet_vertices + out.facet_offsets[f];
+      const auto corner = [&](int i) { return Vec3(out.x[loop[i]], out.y[loop[i]], out.z[loop[i]]); };
+      out.facet_normals[f] = plane_normal(corner(0), corner(1), corner(2));
+    }
+  } else {
+    out.facet_offsets[0] = 0;
+    out.neighbour_offsets[0] = 0;
+    out.neighbour_offsets[1] = affine_dimension;
+    if (affine_dimension == 1) {
+      out.neighbour_offsets[2] = 2;
+      out.neighbours[0] = 1;
+      out.neighbours[1] = 0;
+      out.half_edges[0] = {0, 1, 1, -1};
+      out.half_edges[1] = {1, 0, 0, -1};
+    }
+  }
+
+  Storage& s = *out.storage;
+  s.affine_dimension = affine_dimension;
+  s.num_vertices = n.vertices;
+  s.num_half_edges = n.half_edges;
+  s.num_facets = n.facets;
+  s.padded_size = n.padded;
+  s.max_abs_coordinate = max_abs;
+  for (int v = 0; v < n.vertices; ++v) {
+    const Vec3 point(out.x[v], out.y[v], out.z[v]);
+    s.centre += point / n.vertices;  // divided first: a sum could overflow
+    s.radius = std::max(s.radius, point.stableNorm() * (1 + 0x1p-48));
+  }
+  s.memory_bytes = block.used();
+  s.x = out.x;
+  s.y = out.y;
+  s.z = out.z;
+  s.caller_ids = out.caller_ids;
+  s.neighbour_offsets = out.neighbour_offsets;
+  s.neighbours = out.neighbours;
+  s.half_edges = out.half_edges;
+  s.facet_offsets = out.facet_offsets;
+  s.facet_vertices = out.facet_vertices;
+  s.facet_half_edges = out.facet_half_edges;
+  s.facet_normals = out.facet_normals;
+  if (n.vertices > kScanLimit) add_table(s);
+  return shared;
+}
+
+}  // namespace pd::detail

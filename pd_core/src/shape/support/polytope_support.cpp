@@ -1,0 +1,110 @@
+#include "shape/support/polytope_support.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shape/support/direction_table.hpp"
+#include "shape/support/vertex_arrays.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Facets with more vertices are left to a search.
+constexpr int kMostLevelVertices = 16;
+
+int scan(const ConvexPolytope& p, const Vec3& d) { return farthest_vertex(arrays_of(p), d.x(), d.y(), d.z()); }
+
+int better(const ConvexPolytope& p, const Vec3& d, int v, int w) {
+  if (v < 0 || w < 0) return std::max({v, w, 0});
+  return p.vertex(w).dot(d) > p.vertex(v).dot(d) ? w : v;
+}
+
+int climb(const ConvexPolytope& p, const Vec3& d, int v) {
+  double value = p.vertex(v).dot(d);
+  for (;;) {
+    int next = v;
+    double next_value = value;
+    for (const std::int32_t w : p.neighbours(v)) {
+      const double candidate = p.vertex(w).dot(d);
+      if (candidate > next_value) {
+        next_value = candidate;
+        next = w;
+      }
+    }
+    if (next == v) return v;
+    v = next;
+    value = next_value;
+  }
+}
+
+}  // namespace
+
+int support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
+  if (p.num_vertices() <= kScanLimit) return scan(p, direction);
+  Vec3 scaled;
+  const int first = scale_for_search(direction, scaled) ? farthest_in_table(p.storage(), scaled) : -1;
+  return climb(p, direction, better(p, direction, first, near));
+}
+
+int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int v, std::vector<std::int32_t>& stack) {
+  if (p.num_vertices() <= kScanLimit) return v;  // a scan has seen them all
+  const double size = direction.cwiseAbs().sum();
+  v = climb(p, direction, v);
+  stack.clear();
+  stack.push_back(v);
+  int best = v;
+  double best_value = p.vertex(v).dot(direction);
+  for (std::size_t i = 0; i < stack.size(); ++i) {
+    if (stack.size() > kScanLimit) return scan(p, direction);
+    const Vec3 from = p.vertex(stack[i]);
+    for (const std::int32_t w : p.neighbours(stack[i])) {
+      const Vec3 edge = p.vertex(w) - from;
+      // Difference, product and two sums: 4u of the products' magnitudes.
+      if (edge.dot(direction) < -8 * 0x1p-53 * edge.cwiseAbs().maxCoeff() * size) continue;
+      if (std::find(stack.begin(), stack.end(), w) != stack.end()) continue;
+      stack.push_back(w);
+      const double value = p.vertex(w).dot(direction);
+      if (value > best_value) {
+        best_value = value;
+        best = w;
+      }
+    }
+  }
+  return best;
+}
+
+int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, const std::array<int, 3>& vertices) {
+  const double* const x = p.x();
+  const double* const y = p.y();
+  const double* const z = p.z();
+  const double dx = direction.x(), dy = direction.y(), dz = direction.z();
+  // Two products of three terms, each within 3u of the sum of its terms' magnitudes, and their difference.
+  const double doubt = 8 * 0x1p-53 * p.radius() * (std::abs(dx) + std::abs(dy) + std::abs(dz));
+  std::int32_t level[kMostLevelVertices];
+  int count = 0;
+  const auto is_listed = [&](std::int32_t v) { return std::find(level, level + count, v) != level + count; };
+  for (const int v : vertices) {
+    if (!is_listed(v)) level[count++] = v;
+  }
+  int best = -1;
+  double best_value = 0;
+  for (int i = 0; i < count; ++i) {
+    const int v = level[i];
+    const double value = x[v] * dx + y[v] * dy + z[v] * dz;
+    for (const std::int32_t w : p.neighbours(v)) {
+      const double other = x[w] * dx + y[w] * dy + z[w] * dz;
+      if (other < value - doubt || is_listed(w)) continue;
+      // Another vertex of the facet that the three lie on, or a higher one.
+      if (other > value + doubt || count == kMostLevelVertices) return -1;
+      level[count++] = w;
+    }
+    if (best >= 0 && value <= best_value) continue;
+    best = v;
+    best_value = value;
+  }
+  return best;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,142 @@
+#include "bench/pairs/pair_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/agarwal_families.hpp"
+
+namespace pd::bench {
+
+namespace {
+
+using scenes::DepthClass;
+using scenes::PairFamily;
+
+struct Sizes {
+  PairFamily family;
+  std::vector<int> all;
+  std::vector<int> quick;
+};
+
+/// Boxes have 8 vertices whatever is asked for.
+const std::vector<Sizes>& known() {
+  static const std::vector<Sizes> sizes = {
+      {PairFamily::box, {8}, {8}},
+      {PairFamily::cubes, {8}, {8}},
+      {PairFamily::sphere, {8, 32, 128, 512, 2048}, {8, 32, 128}},
+      {PairFamily::needle, {32, 128, 512}, {128}},
+      {PairFamily::prism, {32, 128, 512}, {128}},
+      {PairFamily::grid, {32, 128, 512}, {128}},
+      {PairFamily::roofs, {32, 128, 512}, {32}},
+  };
+  return sizes;
+}
+
+bool holds(const std::vector<int>& values, int value) {
+  return values.empty() || std::find(values.begin(), values.end(), value) != values.end();
+}
+
+Draw aligned_cubes(DepthClass depth, std::uint64_t seed, std::uint64_t number) {
+  scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 17);
+  const auto extents = [&] {
+    return Vec3(random.integer(1, 8) / 8.0, random.integer(1, 8) / 8.0, random.integer(1, 8) / 8.0);
+  };
+  const Vec3 a = extents();
+  const Vec3 b = extents();
+  Vec3 offset = Vec3::Zero();
+  if (depth != DepthClass::deep) {
+    const double overlap = depth == DepthClass::shallow ? 1.0 / 64 : 1.0 / 8;
+    const int axis = random.integer(0, 2);
+    for (int k = 0; k < 3; ++k) {
+      // The other two axes overlap by more, so that this one is the way out.
+      const int room = static_cast<int>(8 * (a[k] + b[k])) - 1;
+      offset[k] = k == axis ? a[k] + b[k] - overlap : random.integer(-room, room) / 8.0;
+    }
+    if (random.integer(0, 1) != 0) offset[axis] = -offset[axis];
+  }
+  return {{ConvexShape(*ConvexPolytope::box(a)), ConvexShape(*ConvexPolytope::box(b))},
+          Pose(),
+          Pose::from_trusted_matrix(Mat3::Identity(), offset)};
+}
+
+Draw crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
+  const double overlap = cell.depth == DepthClass::shallow ? 0.01 : cell.depth == DepthClass::mid ? 0.1 : 1;
+  const scenes::PolytopePair pair =
+      scenes::crossed_roofs(cell.vertices, overlap, seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL);
+  return {{ConvexShape(pair.a), ConvexShape(pair.b)}, pair.pose_a, pair.pose_b};
+}
+
+}  // namespace
+
+Vec3 extreme(const ConvexShape& shape, const Mat3& rotation, const Vec3& direction) {
+  const scenes::Points points = vertices_of(shape);
+  const Vec3 local = rotation.transpose() * direction;
+  return rotation * *std::max_element(points.begin(), points.end(),
+                                      [&](const Vec3& p, const Vec3& q) { return p.dot(local) < q.dot(local); });
+}
+
+Extent extent_of(const scenes::Points& points) {
+  Vec3 low = points[0];
+  Vec3 high = points[0];
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {0.5 * (low + high), high - low};
+}
+
+Draw placed(const Bodies& bodies, double size, DepthClass depth, scenes::Random& random) {
+  const Pose a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+  const Pose b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+  const Vec3 d = random.direction();
+  Vec3 t;
+  if (depth == DepthClass::deep) {
+    t = a.apply(extent_of(vertices_of(bodies.a)).middle) - b.apply(extent_of(vertices_of(bodies.b)).middle) +
+        1e-3 * size * d;
+  } else {
+    const double share = depth == DepthClass::shallow ? 0.01 : 0.1;
+    t = extreme(bodies.a, a.rotation(), d) - extreme(bodies.b, b.rotation(), -d) - share * size * d;
+  }
+  return {bodies, a, *Pose::from_quaternion(b.quaternion_wxyz(), t)};
+}
+
+Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& families, const std::vector<int>& vertices,
+                                         bool quick) {
+  for (const std::string& name : families) {
+    const bool there = std::any_of(known().begin(), known().end(),
+                                   [&](const Sizes& s) { return scenes::to_string(s.family) == name; });
+    if (!there) {
+      return Error{ErrorCode::bad_value, "no family of this name: " + name, "--families"};
+    }
+  }
+  std::vector<Cell> cells;
+  for (const Sizes& s : known()) {
+    const std::string name(scenes::to_string(s.family));
+    if (!families.empty() && std::find(families.begin(), families.end(), name) == families.end()) continue;
+    const bool fixed = s.all.size() == 1;
+    const std::vector<int>& sizes = !vertices.empty() && !fixed ? vertices : quick ? s.quick : s.all;
+    for (const int n : sizes) {
+      if (!holds(vertices, n)) continue;
+      for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
+        cells.push_back({s.family, n, depth});
+      }
+    }
+  }
+  if (cells.empty()) return Error{ErrorCode::bad_value, "no pair has this family and size", "--vertices"};
+  return cells;
+}
+
+std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
+  if (cell.family == PairFamily::cubes) return aligned_cubes(cell.depth, seed, number);
+  if (cell.family == PairFamily::roofs) return crossed_roofs(cell, seed, number);
+  const scenes::PointPair pair = scenes::make_pair(cell.family, cell.vertices, cell.depth, seed * 1000003 + number);
+  const auto a = ConvexPolytope::from_points(pair.a);
+  const auto b = ConvexPolytope::from_points(pair.b);
+  if (!a || !b) return std::nullopt;
+  Draw d{{ConvexShape(*a), ConvexShape(*b)}, pair.pose_a, pair.pose_b};
+  if (cell.family != PairFamily::needle) return d;
+  scenes::Random random(seed + number * 0xD1B54A32D192ED03ULL);
+  return placed(d.bodies, extent_of(pair.a).size.minCoeff(), cell.depth, random);
+}
+
+}  // namespace pd::bench

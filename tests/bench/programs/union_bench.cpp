@@ -1,0 +1,133 @@
+/// @file
+/// Measures the depth of non-convex bodies: the boundary of P of two star-shaped bodies against m n (the paper gives
+/// O(m^2 n^2 alpha(mn)) for the envelope of m n triangles), the lazy exact search beside it, and the octree's cost
+/// against 1 / delta.
+///
+/// Processor time, one run: the work is deterministic and long.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "pd/compound/compound_difference.hpp"
+#include "pd/depth/scratch.hpp"
+#include "pd/shape/star_body.hpp"
+#include "scenes/non_convex.hpp"
+
+namespace {
+
+using pd::Compound;
+using pd::Pose;
+using pd::Vec3;
+namespace scenes = pd::scenes;
+
+/// Processor time of this thread in milliseconds.
+double processor_time() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+/// Exponent of y in x by least squares over the logarithms.
+double exponent(const std::vector<double>& x, const std::vector<double>& y) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]), v = std::log(y[i]);
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  const double n = static_cast<double>(x.size());
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+Compound compound_of(const scenes::Surface& surface) {
+  return pd::StarBody::from_faces(surface.vertices, surface.faces, surface.centre)->tetrahedra();
+}
+
+Compound compound_of(const scenes::PartList& parts) {
+  std::vector<Compound::Part> list;
+  for (const auto& part : parts) list.push_back({*pd::ConvexPolytope::from_points(part.points), part.pose});
+  return *Compound::from_parts(std::move(list));
+}
+
+void measure_stars(int largest, std::uint64_t seed) {
+  std::printf("star prisms against star prisms, turned\n%6s %8s %10s %10s %10s %12s %10s %12s %10s\n", "mn", "facets",
+              "built", "boundary", "vertices", "cuts", "ms", "search cuts", "search ms");
+  std::vector<double> sizes, boundary, time, search;
+  scenes::Random random(seed);
+  for (int k = 2; 64 * k * k <= largest; ++k) {
+    const Compound a = compound_of(scenes::star_prism(k, 0.5, random)),
+                   b = compound_of(scenes::star_prism(k, 0.5, random));
+    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.5, 0.1, 0.2});
+    double begin = processor_time();
+    const auto built = pd::minkowski_difference({&a, pose}, {&b, Pose()});
+    const double built_ms = processor_time() - begin;
+    pd::Scratch scratch;
+    begin = processor_time();
+    const auto answer = pd::penetration_depth(pd::PosedCompound{&a, pose}, pd::PosedCompound{&b, Pose()}, scratch);
+    const double search_ms = processor_time() - begin;
+    if (!built || !answer) continue;
+    const double mn = static_cast<double>(a.parts().size() * b.parts().size());
+    std::printf("%6.0f %8d %10lld %10zu %10zu %12lld %10.0f %12lld %10.0f\n", mn, static_cast<int>(8 * k),
+                static_cast<long long>(built->work.facets), built->facets.size(), built->vertices.size(),
+                static_cast<long long>(built->work.cuts), built_ms, static_cast<long long>(answer->work.cuts),
+                search_ms);
+    std::fflush(stdout);
+    sizes.push_back(mn);
+    boundary.push_back(static_cast<double>(built->facets.size()));
+    time.push_back(built_ms);
+    search.push_back(search_ms);
+  }
+  if (sizes.size() < 2) return;
+  std::printf(
+      "exponents in mn: boundary facets %.2f, time to build %.2f, time to search %.2f (the paper's bound: 2)\n\n",
+      exponent(sizes, boundary), exponent(sizes, time), exponent(sizes, search));
+}
+
+void measure_bracket(std::uint64_t seed) {
+  scenes::Random random(seed);
+  const std::vector<std::pair<std::string, Compound>> bodies = {{"L", compound_of(scenes::letter_l())},
+                                                                {"cross", compound_of(scenes::cross())},
+                                                                {"dumbbell", compound_of(scenes::dumbbell(12, random))},
+                                                                {"stack", compound_of(scenes::stack(6, 0.3))}};
+  std::printf("octree against 1 / delta\n%10s %10s %10s %10s %12s\n", "body", "1/delta", "cells", "ms", "gap");
+  for (const auto& [name, body] : bodies) {
+    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.2, 0.1, 0.15});
+    std::vector<double> inverse, cells;
+    for (double delta = 0.25; delta > 0.002; delta /= 2) {
+      pd::Scratch scratch;
+      pd::UnionSettings settings;
+      settings.method = pd::UnionMethod::octree;
+      settings.delta = delta;
+      const double begin = processor_time();
+      const auto answer = pd::penetration_depth(pd::PosedCompound{&body, pose},
+                                                pd::PosedCompound{&bodies[0].second, Pose()}, scratch, settings);
+      if (!answer) continue;
+      std::printf("%10s %10.0f %10lld %10.1f %12.2e\n", name.c_str(), 1 / delta,
+                  static_cast<long long>(answer->work.cells), processor_time() - begin,
+                  answer->upper / answer->lower - 1);
+      std::fflush(stdout);
+      inverse.push_back(1 / delta);
+      cells.push_back(static_cast<double>(answer->work.cells) + 1);
+    }
+    std::printf("%10s exponent of the cells in 1 / delta: %.2f\n", name.c_str(), exponent(inverse, cells));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Depth of non-convex bodies: sizes and times");
+  int largest = 4096;
+  std::uint64_t seed = 1;
+  app.add_option("--largest", largest, "Largest m n of the star-shaped bodies")->check(CLI::Range(256, 100000));
+  app.add_option("--seed", seed, "Seed of the random bodies");
+  CLI11_PARSE(app, argc, argv);
+  measure_stars(largest, seed);
+  measure_bracket(seed);
+  return 0;
+}
