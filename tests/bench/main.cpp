@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bench/agarwal/agarwal.hpp"
+#include "bench/hash/answer_hash.hpp"
 #include "bench/measure/compare.hpp"
 #include "bench/pairs/coherent.hpp"
 #include "bench/pairs/meshes.hpp"
@@ -32,6 +33,7 @@ struct Options {
   std::string folder;
   CompareSettings compare;
   AgarwalSettings agarwal;
+  HashSettings hash;
 };
 
 void add_common(CLI::App& command, Options& o) {
@@ -172,7 +174,15 @@ int main(int argc, char** argv) {
   agarwal->add_option("--out", options.agarwal.out, "folder for the table (CSV, Markdown), the points and the plots");
   agarwal->add_option("--pairs", options.agarwal.pairs, "of the exactness chapter (default: 100000, quick 2000)");
   agarwal->add_flag("--quick", options.agarwal.quick, "under a minute: smaller sizes, fewer pairs");
+  CLI::App* hash = app.add_subcommand("hash", "the bits of answers, hashed: equal on every compiler and machine");
+  hash->add_option("--pairs", options.hash.pairs, "generated pairs, each asked in about ten ways")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  hash->add_option("--seed", options.hash.seed)->capture_default_str();
+  hash->add_option("--out", options.hash.out, "writes the rows to this file");
+  hash->add_option("--check", options.hash.check, "compares them with this file");
   CLI11_PARSE(app, argc, argv);
+  if (*hash) return run_hash(options.hash);
   if (*agarwal) return run_agarwal(options.agarwal);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
   if (*coherent) return coherent_command(options);

@@ -1,5 +1,5 @@
 /// @file
-/// The shared hard cases through the front door: polytopes to the last promise, rounded and smooth bodies within the
+/// The shared hard cases through the main call: polytopes to the last promise, rounded and smooth bodies within the
 /// case's tolerance; and the regressions of tests/corpus.
 
 #include <gtest/gtest.h>

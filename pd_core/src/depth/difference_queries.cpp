@@ -30,7 +30,7 @@ DifferenceSupport polytope_support(const ConvexPolytope& a, const Pose& pose_a, 
   const PosedPair pair(a, pose_a, b, pose_b);
   const detail::RaySigns signs(pair, direction);
   const auto sign = [&](const PairVector& edge) { return signs.along(edge); };
-  const detail::PairId found = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, sign);
+  const detail::VertexPair found = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, sign);
   std::vector<std::int32_t> stack;
   DifferenceSupport support;
   support.vertex_a = detail::lowest_of_face(
@@ -77,7 +77,7 @@ Pose moved(const Pose& pose, const Vec3& translation) {
 
 ContactClass exact_class(const PosedShape& a, const PosedShape& b, const Vec3& point) {
   const PosedPair pair(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose, point);
-  const detail::PairId start{0, 0};
+  const detail::VertexPair start{0, 0};
   const detail::ExactNearest nearest = exact_nearest(pair, &start, 1);
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};
   const bool rounded = margins.a > 0 || margins.b > 0;
@@ -170,7 +170,7 @@ Expected<LineCrossing> line_in_difference(const PosedShape& a, const PosedShape&
     const std::optional<detail::Portal> portal = find_line_portal(ray);
     if (!portal) return LineCrossing();
     const auto& v = portal->corners;
-    const auto to = [&](const detail::PairId& q) {
+    const auto to = [&](const detail::VertexPair& q) {
       return pair.exact(PairVector::difference(v[0].a, v[0].b, q.a, q.b));
     };
     const Dyadic3 normal = cross(to(v[1]), to(v[2]));

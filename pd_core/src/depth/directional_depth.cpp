@@ -180,8 +180,8 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
     out.statistics.facets_visited += nearest.visited();
   } else {
     const detail::Portal portal = find_portal(ray, starts);
-    const detail::PairId& p = portal.corners[0];
-    const auto to = [&](const detail::PairId& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
+    const detail::VertexPair& p = portal.corners[0];
+    const auto to = [&](const detail::VertexPair& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
     crossing =
         crossing_of(pair, ray.exact(), PairVector::point(p.a, p.b), to(portal.corners[1]), to(portal.corners[2]));
     out.statistics.support_calls += portal.support_calls;

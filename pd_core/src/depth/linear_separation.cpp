@@ -170,7 +170,7 @@ std::vector<Site> shuffled_sites(const ConvexPolytope& a, const ConvexPolytope& 
 bool strictly_separates(const PosedPair& pair, const Vec3& n) {
   const RaySigns signs(pair, -n);
   const auto along = [&](const PairVector& edge) { return signs.along(edge); };
-  const detail::PairId nearest = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, along);
+  const detail::VertexPair nearest = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, along);
   return signs.along(PairVector::point(nearest.a, nearest.b)) < 0;
 }
 
@@ -182,7 +182,7 @@ void choose_direction(const PosedPair& pair, const std::optional<Vec3>& normal, 
     out.strict = strictly_separates(pair, *normal);
     if (out.strict) return;
   }
-  const detail::PairId start{0, 0};
+  const detail::VertexPair start{0, 0};
   const detail::ExactNearest nearest = exact_nearest(pair, &start, 1);
   const Vec3 unit = detail::ExactDirection(nearest.point).unit;
   out.direction = unit;

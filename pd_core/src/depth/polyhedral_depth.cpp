@@ -69,7 +69,7 @@ Expected<PenetrationDepth> polyhedral_depth(const PosedShape& a, const PosedShap
   // lambda = offset / (slope factor), with one factor for all rays.
   detail::PolytopeShooter::Plane best;
   Dyadic best_slope;
-  std::array<detail::PairId, 3> corners{};
+  std::array<detail::VertexPair, 3> corners{};
   int vertex = -1;
   for (int v = 0; v < unit_ball.num_vertices(); ++v) {
     shooter.shoot(unit_ball.vertex(v));

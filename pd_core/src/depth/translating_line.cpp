@@ -15,10 +15,10 @@ namespace {
 
 using detail::Dyadic;
 using detail::Dyadic3;
-using detail::PairId;
 using detail::PairVector;
 using detail::PosedPair;
 using detail::RoundedDirection;
+using detail::VertexPair;
 
 /// t = level / slope in units of |motion|; level carries the pair's homogeneous factor once more than slope > 0.
 struct Crossing {
@@ -51,11 +51,11 @@ class ShadowSearch {
   Crossing end(int sense) {
     if (left_side_ == 0 && right_side_ == 0) return end_of_segment(sense);
     // Invariant: left lies on the line or to its left, right on it or to its right, not both on it.
-    PairId left = left_, right = right_;
+    VertexPair left = left_, right = right_;
     int right_side = right_side_;
     for (;;) {
       const PairVector chord = step(right, left);
-      const PairId beyond = support_across(chord, sense);
+      const VertexPair beyond = support_across(chord, sense);
       if (sense * along_.turn(chord, step(left, beyond)) <= 0) return crossing(chord, left);
       const int beyond_side = side(beyond);
       if (beyond_side > 0 || (beyond_side == 0 && right_side != 0)) {
@@ -70,23 +70,23 @@ class ShadowSearch {
   [[nodiscard]] std::int64_t support_calls() const { return support_calls_; }
 
  private:
-  static PairVector step(const PairId& from, const PairId& to) {
+  static PairVector step(const VertexPair& from, const VertexPair& to) {
     return PairVector::difference(from.a, from.b, to.a, to.b);
   }
   static Dyadic3 negated(const Dyadic3& v) { return {-v.x, -v.y, -v.z}; }
 
-  [[nodiscard]] int side(const PairId& x) const {
+  [[nodiscard]] int side(const VertexPair& x) const {
     return dot(pair_.exact(PairVector::point(x.a, x.b)), across_).sign();
   }
 
-  PairId support(const Vec3& rounded, const Dyadic3& exact) {
+  VertexPair support(const Vec3& rounded, const Dyadic3& exact) {
     ++support_calls_;
     return support_exactly(pair_, RoundedDirection{rounded, 0x1p-50}, {-1, -1},
                            [&](const PairVector& edge) { return dot(pair_.exact(edge), exact).sign(); });
   }
 
   /// In the direction sense (d x chord): <edge, d x chord> = det(chord, edge, d).
-  PairId support_across(const PairVector& chord, int sense) {
+  VertexPair support_across(const PairVector& chord, int sense) {
     ++support_calls_;
     const RoundedDirection normal =
         detail::rounded_cross(sense * along_.scaled(), 0, pair_.approximate(chord), pair_.vector_error());
@@ -96,7 +96,7 @@ class ShadowSearch {
 
   /// Where the ray's line crosses the chord's: t <v, n> = <left, n> for n = d x chord, to which d is normal.
   /// <v, n> = <chord, v x d> > 0, because left lies to the left of right.
-  [[nodiscard]] Crossing crossing(const PairVector& chord, const PairId& left) const {
+  [[nodiscard]] Crossing crossing(const PairVector& chord, const VertexPair& left) const {
     const Dyadic3 normal = cross(direction_, pair_.exact(chord));
     return {dot(pair_.exact(PairVector::point(left.a, left.b)), normal), dot(motion_, normal)};
   }
@@ -105,7 +105,7 @@ class ShadowSearch {
   Crossing end_of_segment(int sense) {
     const Dyadic3 forwards = cross(direction_, across_);
     const Dyadic3 towards = sense > 0 ? forwards : negated(forwards);
-    const PairId last = support(detail::ExactDirection(towards).unit, towards);
+    const VertexPair last = support(detail::ExactDirection(towards).unit, towards);
     return {dot(pair_.exact(PairVector::point(last.a, last.b)), forwards), dot(motion_, forwards)};
   }
 
@@ -115,7 +115,7 @@ class ShadowSearch {
   Dyadic3 motion_;
   Dyadic3 across_;
   Vec3 rounded_across_;
-  PairId left_{}, right_{};
+  VertexPair left_{}, right_{};
   int left_side_ = 0, right_side_ = 0;
   std::int64_t support_calls_ = 0;
 };

@@ -72,7 +72,7 @@ void polytope_width(const ConvexPolytope& body, const Pose& pose, const Dyadic& 
   if (method == Method::grid) {
     grid_width(pair, margins, delta, out);
   } else if (method == Method::expansion) {
-    const detail::PairId start{0, body.num_vertices() - 1};
+    const detail::VertexPair start{0, body.num_vertices() - 1};
     const detail::ExactDepth exact = detail::exact_expansion(pair, &start, 1, std::numeric_limits<int>::max());
     fill(margins, exact.squared.numerator, exact.squared.denominator, out);
     out.normal = exact.normal->unit;

@@ -22,8 +22,8 @@ namespace {
 bool same(const Feature& x, const Feature& y) { return x.kind == y.kind && x.first == y.first && x.second == y.second; }
 
 /// Vertices of P, not far from extreme in all directions.
-std::vector<PairId> some_vertices(const ConvexPolytope& a, const ConvexPolytope& b) {
-  std::vector<PairId> ids;
+std::vector<VertexPair> some_vertices(const ConvexPolytope& a, const ConvexPolytope& b) {
+  std::vector<VertexPair> ids;
   for (int k = 0; k < 20; ++k) ids.push_back({(7 * k) % a.num_vertices(), (11 * k) % b.num_vertices()});
   return ids;
 }
@@ -34,7 +34,7 @@ class Engines {
     const PosedPair pair(a, pose_a, b, pose_b);
     const OverlayDepth overlay = overlay_depth(pair, overlay_);
     if (overlay.contact == ContactClass::separated) return;
-    const std::vector<PairId> vertices = some_vertices(a, b);
+    const std::vector<VertexPair> vertices = some_vertices(a, b);
     double depth = std::numeric_limits<double>::infinity();
     if (overlay.contact == ContactClass::overlapping) {
       const FacetPlane plane = measure_facet(pair, overlay.facet);

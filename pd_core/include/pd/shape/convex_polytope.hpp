@@ -134,8 +134,8 @@ class ConvexPolytope {
     const std::int32_t* facet_vertices = nullptr;
     const std::int32_t* facet_half_edges = nullptr;  ///< [num_facets]
     const Vec3* facet_normals = nullptr;             ///< [num_facets]
-    /// Where the search for a support begins (src/shape/direction_table.hpp): lists of vertices by cells of directions,
-    /// divided by a power of two above `radius`. Empty for small bodies.
+    /// Where the search for a support begins (src/shape/support/direction_table.hpp): lists of vertices by cells of
+    /// directions, divided by a power of two above `radius`. Empty for small bodies.
     const VertexBlock* table_blocks = nullptr;
     const std::int32_t* table_more = nullptr;  ///< [6 table_cells^2 + 1], in blocks
     std::int32_t table_cells = 0;

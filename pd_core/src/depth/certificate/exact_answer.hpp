@@ -6,7 +6,7 @@
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/certificate/support_faces.hpp"
 #include "depth/distance/gjk_exact.hpp"
-#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/depth_answer.hpp"
 
 namespace pd::detail {
 

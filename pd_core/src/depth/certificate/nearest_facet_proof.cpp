@@ -20,7 +20,7 @@ bool positive(const FacetPlane& plane) { return plane.known() && to_double(plane
 /// The plane of a triangle's three points as that of a facet of A, a facet of B or two edges, which other decisions can
 /// be read off; else by its points.
 ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
-  const PairId &p = t.v[0], &q = t.v[1], &r = t.v[2];
+  const VertexPair &p = t.v[0], &q = t.v[1], &r = t.v[2];
   ProvenFacet found;
   const auto measured = [&](const FacetOfDifference& facet) {
     found = {facet, measure_facet(pair, facet)};
@@ -57,7 +57,7 @@ ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
 }
 
 bool lies_in(const SurfaceCorners& t, const PlaneFaces& faces) {
-  return std::all_of(std::begin(t.v), std::end(t.v), [&](const PairId& p) {
+  return std::all_of(std::begin(t.v), std::end(t.v), [&](const VertexPair& p) {
     return std::binary_search(faces.on_a.begin(), faces.on_a.end(), p.a) &&
            std::binary_search(faces.on_b.begin(), faces.on_b.end(), p.b);
   });

@@ -19,7 +19,7 @@ namespace pd::detail {
 
 /// A triangle of the surface, counter-clockwise from outside.
 struct SurfaceCorners {
-  PairId v[3];
+  VertexPair v[3];
 };
 
 struct ProvenFacet {
@@ -42,14 +42,14 @@ struct ProvenFacet {
 struct ProvenSeparation {
   FacetPlane plane;
   int count = 0;
-  std::array<PairId, 3> simplex{};
+  std::array<VertexPair, 3> simplex{};
   std::array<double, 3> weights{};
 };
 
 /// Proves that the point of the simplex nearest to the origin is P's: it lies in the simplex' relative interior, and
 /// the plane normal to it supports P. Nothing where the simplex is not the right one, or double-double cannot tell.
 /// @param faces  filled with the faces in that plane.
-[[nodiscard]] std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::span<const PairId> simplex,
-                                                               PlaneFaces& faces);
+[[nodiscard]] std::optional<ProvenSeparation> prove_separation(const PosedPair& pair,
+                                                               std::span<const VertexPair> simplex, PlaneFaces& faces);
 
 }  // namespace pd::detail

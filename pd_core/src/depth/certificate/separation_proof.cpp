@@ -13,13 +13,13 @@ constexpr double kUdd = 0x1p-104;
 double norm1(const Vec3DD& v) { return std::abs(v.x.hi) + std::abs(v.y.hi) + std::abs(v.z.hi); }
 Vec3DD scaled(const Vec3DD& v, const DoubleDouble& s) { return {v.x * s, v.y * s, v.z * s}; }
 
-PairVector point(const PairId& p) { return PairVector::point(p.a, p.b); }
-PairVector edge(const PairId& p, const PairId& q) { return PairVector::difference(p.a, p.b, q.a, q.b); }
+PairVector point(const VertexPair& p) { return PairVector::point(p.a, p.b); }
+PairVector edge(const VertexPair& p, const VertexPair& q) { return PairVector::difference(p.a, p.b, q.a, q.b); }
 
 /// Outward normal = minus the nearest point, exact: of a vertex, or of a segment (times its squared length).
 class NearestSign final : public NormalSign {
  public:
-  NearestSign(const PosedPair& pair, std::span<const PairId> simplex) : pair_(pair), simplex_(simplex) {}
+  NearestSign(const PosedPair& pair, std::span<const VertexPair> simplex) : pair_(pair), simplex_(simplex) {}
 
   [[nodiscard]] int along(const PairVector& w) const override {
     const PairVector p = point(simplex_[0]);
@@ -35,7 +35,7 @@ class NearestSign final : public NormalSign {
 
  private:
   const PosedPair& pair_;
-  std::span<const PairId> simplex_;
+  std::span<const VertexPair> simplex_;
 };
 
 /// The plane normal to y through y, for a vector y known to `error` a coordinate.
@@ -54,7 +54,7 @@ FacetPlane plane_of(const Vec3DD& y, double error) {
 
 }  // namespace
 
-std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::span<const PairId> simplex,
+std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::span<const VertexPair> simplex,
                                                  PlaneFaces& faces) {
   ProvenSeparation found;
   if (simplex.empty() || simplex.size() > 3) return std::nullopt;

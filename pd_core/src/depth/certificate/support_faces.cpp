@@ -115,7 +115,7 @@ bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const 
 }
 
 bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
-                   std::span<const PairId> points, PlaneFaces& faces) {
+                   std::span<const VertexPair> points, PlaneFaces& faces) {
   const AlongNormal along(pair, plane, sign);
   faces.on_a.clear();
   faces.on_b.clear();
@@ -130,7 +130,7 @@ bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalS
     return std::find(face.begin(), face.end(), v) != face.end();
   };
   for (std::size_t round = 1; round < points.size(); ++round) {
-    for (const PairId& p : points.subspan(1)) {
+    for (const VertexPair& p : points.subspan(1)) {
       if (has(faces.on_a, p.a)) add(faces.on_b, p.b);
       if (has(faces.on_b, p.b)) add(faces.on_a, p.a);
     }

@@ -39,7 +39,7 @@ class NormalSign {
 /// @param sign    asked where the filter fails.
 /// @param points  one to three vertices of P in the plane.
 [[nodiscard]] bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
-                                 std::span<const PairId> points, PlaneFaces& faces);
+                                 std::span<const VertexPair> points, PlaneFaces& faces);
 
 /// The features that an answer reports for the face of P with these faces (facet and lowest vertex, or two edges).
 /// @param unit  outward normal of P there.

@@ -23,14 +23,14 @@ Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& f
           coordinate(translation.z(), first.z, rest.z())};
 }
 
-Vec3 point_of_a(const PosedPair& pair, const PairId* ids, const double* weights, int count) {
+Vec3 point_of_a(const PosedPair& pair, const VertexPair* ids, const double* weights, int count) {
   Vec3 rest = Vec3::Zero();
   for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_a(ids[0].a, ids[i].a));
   const Vec3DD negated = pair.approximate_dd({ids[0].a, -1, -1, -1, false});
   return world_point(pair, pair.pose_a().translation(), {-negated.x, -negated.y, -negated.z}, rest);
 }
 
-Vec3 point_of_b(const PosedPair& pair, const PairId* ids, const double* weights, int count) {
+Vec3 point_of_b(const PosedPair& pair, const VertexPair* ids, const double* weights, int count) {
   Vec3 rest = Vec3::Zero();
   for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_b(ids[0].b, ids[i].b));
   return world_point(pair, pair.pose_b().translation(), pair.approximate_dd({-1, -1, ids[0].b, -1, false}), rest);
@@ -76,13 +76,13 @@ CorePoints split_overlapping(const PosedPair& pair, const PlaneFaces& faces, con
     std::copy(next, next + count, simplex);
     std::copy(next_weights, next_weights + count, weights);
   }
-  PairId ids[3];
+  VertexPair ids[3];
   for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
   const Vec3 a = point_of_a(pair, ids, weights, count);
   return {a, a + translation};
 }
 
-CorePoints split_apart(const PosedPair& pair, const PairId* simplex, const double* weights, int count) {
+CorePoints split_apart(const PosedPair& pair, const VertexPair* simplex, const double* weights, int count) {
   return {point_of_a(pair, simplex, weights, count), point_of_b(pair, simplex, weights, count)};
 }
 

@@ -19,6 +19,7 @@ struct CorePoints {
                                            const Vec3& translation);
 
 /// The nearest points of cores that are apart or touch, from the weights of the simplex.
-[[nodiscard]] CorePoints split_apart(const PosedPair& pair, const PairId* simplex, const double* weights, int count);
+[[nodiscard]] CorePoints split_apart(const PosedPair& pair, const VertexPair* simplex, const double* weights,
+                                     int count);
 
 }  // namespace pd::detail

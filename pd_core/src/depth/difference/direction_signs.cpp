@@ -47,7 +47,7 @@ int RaySigns::turn(const PairVector& x, const PairVector& y) const {
   return determinant(pair_->exact(x), pair_->exact(y), exact_).sign();
 }
 
-int RaySigns::side(const PairId& x, const PairId& y) const {
+int RaySigns::side(const VertexPair& x, const VertexPair& y) const {
   const PairVector p = PairVector::point(x.a, x.b), q = PairVector::point(y.a, y.b);
   if (const int sign = turn(p, q)) return sign;
   const std::array<Dyadic3, 3> basis = perturbations();

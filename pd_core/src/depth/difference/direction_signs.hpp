@@ -2,8 +2,8 @@
 /// Exact signs that involve a posed pair and one direction given in doubles (a ray's, a query's).
 #pragma once
 
-#include "depth/distance/gjk_exact.hpp"
 #include "shape/posed_pair.hpp"
+#include "shape/support/vertex_pair.hpp"
 
 namespace pd::detail {
 
@@ -27,7 +27,7 @@ class RaySigns {
   ///   origin + e1 o1 + e2 o2 + e3 o3, direction d + f1 r1 + f2 r2 + f3 r3, 1 >> e1 >> e2 >> e3 >> f1 >> f2 >> f3 > 0
   /// (o1 a fixed generic vector, the others coordinate axes). Moving the origin changes the determinant by
   /// -<o, (y - x) x d>; if y - x is parallel to d, turning decides. Never 0 for two different points.
-  [[nodiscard]] int side(const PairId& x, const PairId& y) const;
+  [[nodiscard]] int side(const VertexPair& x, const VertexPair& y) const;
 
  private:
   const PosedPair* pair_;

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "depth/distance/gjk_exact.hpp"
 #include "shape/posed_pair.hpp"
 #include "shape/support/polytope_support.hpp"
+#include "shape/support/vertex_pair.hpp"
 #include "structure/exact_climb.hpp"
 
 namespace pd::detail {
@@ -31,7 +31,8 @@ inline RoundedDirection rounded_cross(const Vec3& u, double error_u, const Vec3&
 /// leave
 ///              it open.
 template <class Sign>
-PairId support_exactly(const PosedPair& pair, const RoundedDirection& direction, const PairId& near, Sign&& sign) {
+VertexPair support_exactly(const PosedPair& pair, const RoundedDirection& direction, const VertexPair& near,
+                           Sign&& sign) {
   const Vec3& n = direction.vector;
   const double size = n.cwiseAbs().sum();
   const double edge_error = pair.vector_error();

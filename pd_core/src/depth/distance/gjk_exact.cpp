@@ -52,11 +52,11 @@ std::optional<Projection> project(const Dyadic3* const* p, int count) {
 
 }  // namespace
 
-ExactNearest exact_nearest(const PosedPair& pair, const PairId* start, int count) {
-  std::array<PairId, 5> ids{};
+ExactNearest exact_nearest(const PosedPair& pair, const VertexPair* start, int count) {
+  std::array<VertexPair, 5> ids{};
   std::array<Dyadic3, 5> points;
   int size = 0;
-  const auto add = [&](PairId id) {
+  const auto add = [&](VertexPair id) {
     for (int i = 0; i < size; ++i) {
       if (ids[i].a == id.a && ids[i].b == id.b) return;
     }
@@ -112,7 +112,7 @@ ExactNearest exact_nearest(const PosedPair& pair, const PairId* start, int count
     const ExactDirection away(Dyadic3{-best.point.x, -best.point.y, -best.point.z});
     const SupportFace on_a = support_face_a(pair, away);
     const SupportFace on_b = support_face_b(pair, away);
-    const PairId next{on_a.front(), on_b.front()};
+    const VertexPair next{on_a.front(), on_b.front()};
     const Dyadic3 candidate = pair.exact(PairVector::point(next.a, next.b));
     if (dot(best.point, candidate - points[chosen[0]]).sign() >= 0) {
       result.apart = true;
@@ -120,7 +120,7 @@ ExactNearest exact_nearest(const PosedPair& pair, const PairId* start, int count
       result.scale = best.scale * pair.homogeneous_factor();
       return result;
     }
-    std::array<PairId, 4> kept_ids{};
+    std::array<VertexPair, 4> kept_ids{};
     std::array<Dyadic3, 4> kept_points;
     for (int i = 0; i < chosen_count; ++i) {
       kept_ids[i] = ids[chosen[i]];

@@ -11,24 +11,20 @@
 #include <cstdint>
 
 #include "depth/difference/exact_support.hpp"
+#include "shape/support/vertex_pair.hpp"
 
 namespace pd::detail {
-
-struct PairId {
-  std::int32_t a;
-  std::int32_t b;
-};
 
 struct ExactNearest {
   bool apart = false;  ///< the origin lies outside P
   int count = 0;       ///< size of the simplex whose relative interior holds the nearest point
-  std::array<PairId, 4> simplex{};
+  std::array<VertexPair, 4> simplex{};
   std::array<double, 4> weights{};  ///< barycentric coordinates of the nearest point, rounded
   Dyadic3 point;                    ///< nearest point times `scale` > 0 (apart only)
   Dyadic scale;
 };
 
 /// @param start  vertices of P to begin with (1 to 4), e.g. the simplex of an inexact search; not trusted.
-[[nodiscard]] ExactNearest exact_nearest(const PosedPair& pair, const PairId* start, int count);
+[[nodiscard]] ExactNearest exact_nearest(const PosedPair& pair, const VertexPair* start, int count);
 
 }  // namespace pd::detail

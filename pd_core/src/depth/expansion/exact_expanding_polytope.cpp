@@ -25,7 +25,7 @@ class Hull {
  public:
   explicit Hull(const PosedPair& pair) : pair_(pair) {}
 
-  std::vector<PairId> vertices;
+  std::vector<VertexPair> vertices;
   std::vector<Face> faces;
 
   [[nodiscard]] PairVector edge(int from, int to) const {
@@ -146,16 +146,16 @@ class Hull {
   std::vector<int> free_;
 };
 
-PairId support(const PosedPair& pair, const ExactDirection& direction) {
+VertexPair support(const PosedPair& pair, const ExactDirection& direction) {
   return {support_face_a(pair, direction).front(), support_face_b(pair, direction).front()};
 }
 
 /// Finds four affinely independent vertices of P, or shows that P is flat (false).
 bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_calls,
                       std::optional<ExactDirection>& flat) {
-  const auto independent = [&](const PairId& id) {
-    const std::vector<PairId>& v = hull.vertices;
-    const auto difference = [&](const PairId& to) { return PairVector::difference(v[0].a, v[0].b, to.a, to.b); };
+  const auto independent = [&](const VertexPair& id) {
+    const std::vector<VertexPair>& v = hull.vertices;
+    const auto difference = [&](const VertexPair& to) { return PairVector::difference(v[0].a, v[0].b, to.a, to.b); };
     if (v.empty()) return true;
     const PairVector d = difference(id);
     if (v.size() == 1) {
@@ -165,13 +165,13 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
     if (v.size() == 2) return !pair.parallel(d, difference(v[1]));
     return pair.sign_determinant(d, difference(v[1]), difference(v[2])) != 0;
   };
-  std::vector<PairId> given;
+  std::vector<VertexPair> given;
   given.swap(hull.vertices);
-  for (const PairId& id : given) {
+  for (const VertexPair& id : given) {
     if (hull.vertices.size() < 4 && independent(id)) hull.vertices.push_back(id);
   }
   while (hull.vertices.size() < 4) {
-    const std::vector<PairId>& v = hull.vertices;
+    const std::vector<VertexPair>& v = hull.vertices;
     // Directions normal to what is spanned, enough to find anything outside it.
     std::vector<Dyadic3> directions;
     const Dyadic one(1.0), zero(0.0);
@@ -190,7 +190,7 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
       for (const int sign : {1, -1}) {
         const ExactDirection direction(sign > 0 ? d : Dyadic3{-d.x, -d.y, -d.z});
         ++support_calls;
-        const PairId s = support(pair, direction);
+        const VertexPair s = support(pair, direction);
         if (independent(s)) {
           hull.vertices.push_back(s);
           found = true;
@@ -207,7 +207,7 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
 
 }  // namespace
 
-ExactDepth exact_expansion(const PosedPair& pair, const PairId* simplex, int count, int budget) {
+ExactDepth exact_expansion(const PosedPair& pair, const VertexPair* simplex, int count, int budget) {
   ExactDepth result;
   Hull hull(pair);
   hull.vertices.assign(simplex, simplex + count);
@@ -234,7 +234,7 @@ ExactDepth exact_expansion(const PosedPair& pair, const PairId* simplex, int cou
       return result;
     }
     ++result.support_calls;
-    const PairId s = support(pair, direction);
+    const VertexPair s = support(pair, direction);
     hull.vertices.push_back(s);
     const int v = static_cast<int>(hull.vertices.size()) - 1;
     if (hull.side(face, v) > 0) {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "depth/distance/gjk_exact.hpp"
-#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/depth_answer.hpp"
 
 namespace pd::detail {
 
@@ -33,6 +33,6 @@ struct ExactDepth {
 /// Requires that the origin lies in P (boundary included).
 /// @param simplex  vertices of P to begin with.
 /// @param budget   supports allowed.
-[[nodiscard]] ExactDepth exact_expansion(const PosedPair& pair, const PairId* simplex, int count, int budget);
+[[nodiscard]] ExactDepth exact_expansion(const PosedPair& pair, const VertexPair* simplex, int count, int budget);
 
 }  // namespace pd::detail

@@ -72,7 +72,7 @@ class DecompositionSearch {
   void choose_probes() {
     buffers_.probes.clear();
     probe_reach_ = 0;
-    for (const PairId& v : settings_.vertices.first(std::min(kProbes, settings_.vertices.size()))) {
+    for (const VertexPair& v : settings_.vertices.first(std::min(kProbes, settings_.vertices.size()))) {
       const Vec3 x = overlay_.overlay.b.points[static_cast<std::size_t>(v.b)] -
                      overlay_.overlay.a.points[static_cast<std::size_t>(v.a)] + offset_;
       buffers_.probes.push_back({x, v.a, v.b});

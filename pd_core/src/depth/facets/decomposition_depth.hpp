@@ -25,7 +25,7 @@ struct DecompositionBuffers {
     std::int32_t a;
     std::int32_t b;
   };
-  std::vector<PairId> vertices;  ///< for the caller's list
+  std::vector<VertexPair> vertices;  ///< for the caller's list
   std::vector<Probe> probes;
   std::vector<std::int32_t> far_from_a;  ///< by facet: a probe that shows it too far, or -1
   std::vector<std::int32_t> far_from_b;
@@ -36,7 +36,7 @@ struct DecompositionBuffers {
 
 struct DecompositionSettings {
   double upper = std::numeric_limits<double>::infinity();  ///< a bound on the depth, in the pair's scaled lengths
-  std::span<const PairId> vertices;                        ///< of P, found so far
+  std::span<const VertexPair> vertices;                    ///< of P, found so far
   std::uint64_t seed = 0;                                  ///< of the random order; no answer depends on it
   bool exactly = true;                                     ///< as for `overlay_depth`
   bool may_enumerate = false;  ///< whether all facets may be looked at where they are too few for anything better

@@ -283,7 +283,7 @@ class TiedFacetsSearch {
     const bool of_a = c.kind == Kind::facet_of_a;
     const auto loop = body(of_a).facet_vertices(of_a ? c.a : c.b);
     SurfaceCorners out;
-    for (std::size_t k = 0; k < 3; ++k) out.v[k] = of_a ? PairId{loop[k], c.b} : PairId{c.a, loop[k]};
+    for (std::size_t k = 0; k < 3; ++k) out.v[k] = of_a ? VertexPair{loop[k], c.b} : VertexPair{c.a, loop[k]};
     return out;
   }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "depth/facets/facet_selection.hpp"
-#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/depth_answer.hpp"
 #include "structure/overlay/face_sum.hpp"
 #include "structure/overlay/facet_of_difference.hpp"
 #include "structure/overlay/overlay_walk.hpp"

@@ -77,7 +77,7 @@ bool PolytopeQuery::solve_by_proof(const ExpansionResult& result) {
 
 void PolytopeQuery::solve_overlapping_exactly(const ExpansionResult& result) {
   const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  PairId seed[3];
+  VertexPair seed[3];
   for (int i = 0; i < 3; ++i) {
     const DifferenceVertex& v = buffers_.surface.vertices[buffers_.surface.face(result.face).v[i]];
     seed[i] = {v.a, v.b};
@@ -87,7 +87,8 @@ void PolytopeQuery::solve_overlapping_exactly(const ExpansionResult& result) {
 }
 
 /// The origin is known to lie in P.
-void PolytopeQuery::finish_from(const PosedPair& posed, const PairId* seed, int count, const ExactNearest* nearest) {
+void PolytopeQuery::finish_from(const PosedPair& posed, const VertexPair* seed, int count,
+                                const ExactNearest* nearest) {
   const ExactDepth exact = exact_expansion(posed, seed, count, 4 * difference_.budget());
   out_.statistics.support_calls += exact.support_calls;
   out_.statistics.facets_visited += exact.facets_visited;
@@ -135,7 +136,7 @@ void PolytopeQuery::solve_by_decomposition(ExpansionResult result) {
   const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
   out_.method = Method::decomposition;
   if (!(result.lower > 0)) {
-    const PairId any = any_vertex(result);
+    const VertexPair any = any_vertex(result);
     const ExactNearest nearest = exact_nearest(posed, &any, 1);
     if (nearest.apart) {
       finish_apart(posed, nearest, pair_.margins, out_);
@@ -171,7 +172,7 @@ void PolytopeQuery::finish_nearest(const PosedPair& posed, const OverlayDepth& f
   if (found.contact == ContactClass::overlapping) {
     finish_overlapping(posed, found.facet, pair_.margins, bracket_, buffers_.faces, out_);
   } else {
-    const PairId any{0, 0};
+    const VertexPair any{0, 0};
     const ExactNearest nearest = exact_nearest(posed, &any, 1);
     if (nearest.apart) {
       finish_apart(posed, nearest, pair_.margins, out_);
@@ -185,7 +186,7 @@ void PolytopeQuery::finish_nearest(const PosedPair& posed, const OverlayDepth& f
   count_stages(posed);
 }
 
-PairId PolytopeQuery::any_vertex(const ExpansionResult& result) const {
+VertexPair PolytopeQuery::any_vertex(const ExpansionResult& result) const {
   if (!within_range()) return {0, 0};
   const DifferenceVertex s = difference_.support(result.normal, nullptr);
   return {s.a, s.b};

@@ -38,7 +38,7 @@ class PolytopeQuery {
   // The memory of the pair: polytope_warm_start.cpp
   bool solve_from_memory();
   bool solve_apart_from_memory();
-  void remember_apart(std::span<const PairId> simplex);
+  void remember_apart(std::span<const VertexPair> simplex);
   bool supported(const DifferenceVertex (&corners)[3], const Vec3& normal, double distance, double largest,
                  ExpansionResult& result) const;
   bool hold(ExpansionResult& result);
@@ -66,13 +66,13 @@ class PolytopeQuery {
   void solve_exactly(const ExpansionResult& result);
   bool solve_by_proof(const ExpansionResult& result);
   void solve_overlapping_exactly(const ExpansionResult& result);
-  void finish_from(const PosedPair& posed, const PairId* seed, int count, const ExactNearest* nearest);
+  void finish_from(const PosedPair& posed, const VertexPair* seed, int count, const ExactNearest* nearest);
   void solve_by_overlay(double upper = std::numeric_limits<double>::infinity());
   bool prove_tied(const TiedFacets& found);
   void solve_by_decomposition(ExpansionResult result);
   void finish_nearest(const PosedPair& posed, const OverlayDepth& found);
   void tighten_upper(ExpansionResult& result);
-  [[nodiscard]] PairId any_vertex(const ExpansionResult& result) const;
+  [[nodiscard]] VertexPair any_vertex(const ExpansionResult& result) const;
   void count_stages(const PosedPair& posed);
 
   const PolytopePair& pair_;
@@ -82,7 +82,7 @@ class PolytopeQuery {
   PenetrationDepth& out_;
   PolytopeDifference difference_;
   Bracket bracket_ = Bracket::tightest;
-  PairId start_[4];
+  VertexPair start_[4];
   int start_count_ = 0;
   bool doubles_suffice_ = false;  ///< neither the tightest bracket nor another method is asked for
   bool memory_held_ = false;      ///< the surface is the one remembered, as it was

@@ -91,7 +91,7 @@ bool PolytopeQuery::solve_apart_from_memory() {
   return true;
 }
 
-void PolytopeQuery::remember_apart(std::span<const PairId> simplex) {
+void PolytopeQuery::remember_apart(std::span<const VertexPair> simplex) {
   if (!warm_) return;
   own_memory();
   WarmCertificate::State& state = warm_->state();

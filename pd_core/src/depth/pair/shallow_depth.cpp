@@ -36,7 +36,7 @@ void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& 
   PolytopeShooter shooter(posed);
   struct Ray {
     double lower;
-    std::array<PairId, 3> corners;
+    std::array<VertexPair, 3> corners;
   };
   std::vector<Ray> rays;
   rays.reserve(grid.directions.size());
@@ -57,7 +57,10 @@ void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& 
     if (ray.lower <= (1 + delta / 4) * shortest * kSlack) search.add_seed(ray.corners);
   }
   search.run();
-  search.fill(counts);
+  counts.seeds = search.seeds();
+  counts.visited = static_cast<std::int64_t>(search.visited().size());
+  counts.steps = search.steps();
+  counts.degrees = search.degrees();
 
   finish_overlapping(posed, nearest_piece(walk, search.visited()), pair.margins, settings.bracket, buffers.faces, out);
   out.method = Method::shallow;

@@ -8,8 +8,10 @@ namespace pd::detail {
 
 namespace {
 
-PairVector point(const PairId& id) { return PairVector::point(id.a, id.b); }
-PairVector step(const PairId& from, const PairId& to) { return PairVector::difference(from.a, from.b, to.a, to.b); }
+PairVector point(const VertexPair& id) { return PairVector::point(id.a, id.b); }
+PairVector step(const VertexPair& from, const VertexPair& to) {
+  return PairVector::difference(from.a, from.b, to.a, to.b);
+}
 
 /// Whether the step between two points of P that share a vertex of one body is this edge of the other, either way.
 bool is_edge(const PairVector& step, const PairVector& edge) {
@@ -20,7 +22,7 @@ bool is_edge(const PairVector& step, const PairVector& edge) {
   return step.a_to == step.a_from && same(step.b_to, step.b_from, edge.b_to, edge.b_from);
 }
 
-bool same_point(const PairId& x, const PairId& y) { return x.a == y.a && x.b == y.b; }
+bool same_point(const VertexPair& x, const VertexPair& y) { return x.a == y.a && x.b == y.b; }
 
 class PortalSearch {
  public:
@@ -38,14 +40,14 @@ class PortalSearch {
 
  private:
   /// A vertex of P that is extreme up to rounding, where hierarchies tell; else the one at hand.
-  PairId start(const Vec3& direction, const PairId& near) const {
+  VertexPair start(const Vec3& direction, const VertexPair& near) const {
     if (hierarchies_.a == nullptr) return near;
     return {hierarchies_.a->support(-(pair_.pose_a().rotation().transpose() * direction)),
             hierarchies_.b->support(pair_.pose_b().rotation().transpose() * direction)};
   }
 
   /// In the direction d x w, or against it: <edge, d x w> = det(w, edge, d).
-  PairId support_across(const PairVector& w, int sign) {
+  VertexPair support_across(const PairVector& w, int sign) {
     ++support_calls_;
     const RoundedDirection direction =
         rounded_cross(sign * ray_.scaled(), 0, pair_.approximate(w), pair_.vector_error());
@@ -56,7 +58,7 @@ class PortalSearch {
   /// A triangle of vertices of P that the line crosses. In the projection along d this is the planar portal search from
   /// v[0] through the origin: v[1] to its left, v[2] to its right, and the side between them moves outwards.
   /// False when some support shows the projection of P on one side of the origin.
-  bool enclose(std::array<PairId, 3>& v) {
+  bool enclose(std::array<VertexPair, 3>& v) {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
     const RaySigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
@@ -70,7 +72,7 @@ class PortalSearch {
     if (ray_.turn(first, point(v[1])) <= 0 || ray_.turn(first, point(v[2])) >= 0) return false;
     while (ray_.side(v[1], v[2]) < 0) {
       const PairVector across = step(v[1], v[2]);
-      const PairId s = support_across(across, -1);
+      const VertexPair s = support_across(across, -1);
       if (ray_.turn(across, point(s)) >= 0) return false;
       (ray_.side(v[0], s) > 0 ? v[1] : v[2]) = s;
     }
@@ -84,7 +86,7 @@ class PortalSearch {
 
   /// The support s in the normal of the triangle projects to one side of each of the three half-lines from the origin
   /// through the corners' projections; the line crosses the triangle over the side where the sign turns from - to +.
-  void push_outwards(std::array<PairId, 3>& v) {
+  void push_outwards(std::array<VertexPair, 3>& v) {
     for (;;) {
       const PairVector u = step(v[0], v[1]), w = step(v[0], v[2]);
       ++support_calls_;
@@ -92,7 +94,7 @@ class PortalSearch {
       const RoundedDirection normal = rounded_cross(pair_.approximate(u), error, pair_.approximate(w), error);
       // The triangle's own sides lie in its plane: no arithmetic is spent on those zeros.
       const PairVector third = step(v[1], v[2]);
-      const PairId s = support_exactly(pair_, normal, start(normal.vector, v[2]), [&](const PairVector& edge) {
+      const VertexPair s = support_exactly(pair_, normal, start(normal.vector, v[2]), [&](const PairVector& edge) {
         if (is_edge(u, edge) || is_edge(w, edge) || is_edge(third, edge)) return 0;
         return pair_.sign_determinant(edge, u, w);
       });

@@ -18,7 +18,7 @@ namespace pd::detail {
 
 struct Portal {
   /// Counter-clockwise seen against the direction; the plane through them supports P where the line leaves it.
-  std::array<PairId, 3> corners;
+  std::array<VertexPair, 3> corners;
   std::int64_t support_calls = 0;
 };
 

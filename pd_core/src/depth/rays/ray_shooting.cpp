@@ -33,7 +33,7 @@ RayShot PolytopeShooter::shoot(const Vec3& direction) {
   const Portal portal = find_portal(ray, hierarchies_);
   support_calls_ += portal.support_calls;
   corners_ = portal.corners;
-  const std::array<PairId, 3>& corner = corners_;
+  const std::array<VertexPair, 3>& corner = corners_;
   const auto to = [&](std::size_t i) {
     return pair_->exact(PairVector::difference(corner[0].a, corner[0].b, corner[i].a, corner[i].b));
   };
@@ -51,7 +51,7 @@ RayShot PolytopeShooter::shoot(const Vec3& direction) {
   return shot;
 }
 
-Vec3 crossing_on_a(const PosedPair& pair, const std::array<PairId, 3>& corners, const Vec3& direction) {
+Vec3 crossing_on_a(const PosedPair& pair, const std::array<VertexPair, 3>& corners, const Vec3& direction) {
   Vec3 x[3];
   for (std::size_t i = 0; i < 3; ++i) x[i] = pair.approximate(PairVector::point(corners[i].a, corners[i].b));
   double weights[3], total = 0;

@@ -40,7 +40,7 @@ class PolytopeShooter {
   /// Marks the last shot as the best so far.
   void keep() { kept_ = plane_; }
   /// Three vertices of P on the last shot's plane, which the ray crosses.
-  [[nodiscard]] const std::array<PairId, 3>& corners() const { return corners_; }
+  [[nodiscard]] const std::array<VertexPair, 3>& corners() const { return corners_; }
   [[nodiscard]] const Plane& kept() const { return kept_; }
   [[nodiscard]] std::int64_t support_calls() const { return support_calls_; }
   [[nodiscard]] std::int64_t shots() const { return shots_; }
@@ -52,13 +52,14 @@ class PolytopeShooter {
   PortalHierarchies hierarchies_;
   Plane plane_;
   Plane kept_;
-  std::array<PairId, 3> corners_{};
+  std::array<VertexPair, 3> corners_{};
   std::int64_t support_calls_ = 0;
   std::int64_t shots_ = 0;
 };
 
 /// The point of A whose difference from one of B is where a ray crosses the triangle of three vertices of P, rounded.
-[[nodiscard]] Vec3 crossing_on_a(const PosedPair& pair, const std::array<PairId, 3>& corners, const Vec3& direction);
+[[nodiscard]] Vec3 crossing_on_a(const PosedPair& pair, const std::array<VertexPair, 3>& corners,
+                                 const Vec3& direction);
 
 /// Shots at the difference of any two convex bodies, swept ones with their margins: a portal search in doubles, between
 /// the triangle that the ray crosses inside P and the plane that supports P beyond it.

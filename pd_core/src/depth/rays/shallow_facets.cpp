@@ -138,8 +138,8 @@ int ShallowSearch::edge_in_plane(bool of_a, int vertex, const PairVector& u, con
 
 /// A piece of the facet of P through three of its vertices: its face of A and its face of B meet the first vertex in a
 /// facet, or in an edge each.
-std::optional<OverlayPiece> ShallowSearch::piece_of(const std::array<PairId, 3>& corners) const {
-  const PairId& at = corners[0];
+std::optional<OverlayPiece> ShallowSearch::piece_of(const std::array<VertexPair, 3>& corners) const {
+  const VertexPair& at = corners[0];
   const PairVector u = PairVector::difference(at.a, at.b, corners[1].a, corners[1].b);
   const PairVector w = PairVector::difference(at.a, at.b, corners[2].a, corners[2].b);
   // The cell in which the symbolic rotation puts a facet's normal: exact signs tie on the face, the rotation parts
@@ -178,7 +178,7 @@ bool ShallowSearch::lies_in(const OverlayPiece& piece, const FacetOfDifference& 
          pair_.sign_determinant(PairVector::difference(plane.a, plane.b, facet.a, facet.b), plane.u, plane.v) == 0;
 }
 
-void ShallowSearch::add_seed(const std::array<PairId, 3>& corners) {
+void ShallowSearch::add_seed(const std::array<VertexPair, 3>& corners) {
   const std::optional<OverlayPiece> piece = piece_of(corners);
   if (!piece || !enqueue(*piece)) return;
   ++seeds_;
@@ -209,13 +209,6 @@ void ShallowSearch::run() {
       if (meets_ball(next.across)) enqueue(next.piece);
     });
   }
-}
-
-void ShallowSearch::fill(ShallowCounts& counts) const {
-  counts.seeds = seeds_;
-  counts.visited = static_cast<std::int64_t>(queue_.size());
-  counts.steps = steps_;
-  counts.degrees = degrees_;
 }
 
 FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<OverlayPiece>& pieces) {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "depth/rays/ray_shooting.hpp"
-#include "pd/depth/shallow_penetration.hpp"
 #include "structure/overlay/overlay_walk.hpp"
 
 namespace pd::detail {
@@ -25,17 +24,22 @@ class ShallowSearch {
   ShallowSearch(const OverlayWalk& walk, double radius);
 
   /// Starts at the facet that holds the triangle of a portal, with all pieces that the symbolic rotation cuts it into.
-  void add_seed(const std::array<PairId, 3>& corners);
+  void add_seed(const std::array<VertexPair, 3>& corners);
   /// Visits what can be reached inside the ball.
   void run();
 
   [[nodiscard]] const std::vector<OverlayPiece>& visited() const { return queue_; }
-  void fill(ShallowCounts& counts) const;
+  /// Different facets that a walk started from.
+  [[nodiscard]] std::int64_t seeds() const { return seeds_; }
+  /// Edges of P crossed or found to lie outside the ball.
+  [[nodiscard]] std::int64_t steps() const { return steps_; }
+  /// Arcs tried in those steps.
+  [[nodiscard]] std::int64_t degrees() const { return degrees_; }
 
  private:
   struct Edge {  ///< of P: an edge (of A or B) with a vertex of the other body
-    PairId from;
-    PairId to;
+    VertexPair from;
+    VertexPair to;
   };
   struct Neighbour {
     OverlayPiece piece;
@@ -46,7 +50,7 @@ class ShallowSearch {
   void for_each_neighbour(const OverlayPiece& piece, Visit&& visit);
   OverlayPiece follow(bool moves_a, int half_edge, int cell);
   int side(bool edge_of_a, int half_edge, int facet) const;
-  std::optional<OverlayPiece> piece_of(const std::array<PairId, 3>& corners) const;
+  std::optional<OverlayPiece> piece_of(const std::array<VertexPair, 3>& corners) const;
   int facet_in_plane(bool of_a, int vertex, const PairVector& u, const PairVector& w) const;
   int edge_in_plane(bool of_a, int vertex, const PairVector& u, const PairVector& w) const;
   bool lies_in(const OverlayPiece& piece, const FacetOfDifference& plane) const;

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "pd/shape/convex_polytope.hpp"
+#include "shape/support/vertex_pair.hpp"
 
 namespace pd::detail {
 
@@ -26,10 +27,6 @@ inline VertexArrays arrays_of(const ConvexPolytope& p) { return {p.x(), p.y(), p
 /// The lowest index among the maximisers of x[i] dx + y[i] dy + z[i] dz.
 int farthest_vertex(const VertexArrays& vertices, double dx, double dy, double dz);
 
-struct VertexPair {
-  int a;
-  int b;
-};
 /// The same for two bodies in one direction.
 VertexPair farthest_vertices(const VertexArrays& a, const VertexArrays& b, double dx, double dy, double dz);
 

@@ -1,0 +1,86 @@
+/// @file
+/// The words of a depth query: what may be asked for (DepthSettings) and what is answered (PenetrationDepth).
+///
+/// Every engine answers with the same type, so that engines are compared by running them. A moves, B stays.
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "pd/numeric/vector.hpp"
+#include "pd/shape/feature.hpp"
+
+namespace pd {
+
+enum class ContactClass : std::uint8_t {
+  separated,    ///< the origin lies outside P
+  touching,     ///< on its boundary (or P is flat and holds it)
+  overlapping,  ///< in its interior
+};
+
+enum class Method : std::uint8_t {
+  automatic,      ///< exact for (rounded) polytopes, (1 + delta) for smooth bodies
+  expansion,      ///< signed certified best-first expansion (polytopes, rounded, smooth)
+  overlay,        ///< overlay of the two normal diagrams (polytopes, rounded); of two boxes, their fifteen axes
+  decomposition,  ///< [A] section 2
+  shallow,        ///< [A] Shallow-Penetration
+  grid,           ///< [A] Approx-Separation
+};
+
+/// The protocol's words: "separated", "expansion", ...
+[[nodiscard]] std::string_view to_string(ContactClass contact);
+[[nodiscard]] std::string_view to_string(Method method);
+
+/// How tight the bracket of an exact answer is made.
+enum class Bracket : std::uint8_t {
+  certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
+  tightest,   ///< lower and upper are the exact depth rounded down and up
+};
+
+struct DepthSettings {
+  Method method = Method::automatic;
+  Bracket bracket = Bracket::tightest;
+  /// Relative error (upper <= (1 + delta) lower) where the answer is approximate; in (0, 1]. For polytopes, 0 = exact.
+  double delta = 0;
+  /// Of the random order in which the decomposition tries blocks of edges: times depend on it, answers do not.
+  std::uint64_t seed = 0;
+};
+
+struct Statistics {
+  std::int64_t support_calls = 0;   ///< supports of P (one on each body)
+  std::int64_t facets_visited = 0;  ///< facets of P (or of polytopes inside it) whose plane was evaluated
+  std::int64_t exact_signs = 0;     ///< decisions that the floating-point filter left to exact arithmetic
+  // The search for the closest lines ([A] Theorem 2.4), whose work is their sum.
+  std::int64_t pair_evaluations = 0;  ///< pairs of edges whose lines' distance was taken
+  std::int64_t block_bounds = 0;      ///< blocks of pairs of edges that were bounded together
+  std::int64_t lines_scanned = 0;     ///< edges passed over for those bounds
+};
+
+/// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B
+/// share. L below is the largest |coordinate| of b - a over the posed vertices.
+struct PenetrationDepth {
+  ContactClass contact = ContactClass::separated;
+  Method method = Method::automatic;  ///< the engine that answered
+  bool warm = false;                  ///< the certificate of an earlier frame held
+
+  double depth = 0;  ///< |translation| up to rounding; 0 unless overlapping
+  double lower = 0;  ///< certified: lower <= pi(A, B) <= upper
+  double upper = 0;
+
+  double distance = 0;  ///< 0 unless separated
+  double distance_lower = 0;
+  double distance_upper = 0;
+
+  Vec3 translation = Vec3::Zero();  ///< separates A from B exactly as stored: outside int P; |translation| <= upper
+  Vec3 normal = Vec3::UnitX();      ///< unit; translation / depth, or (witness_a - witness_b) / distance, or a way out
+  Vec3 witness_a = Vec3::Zero();    ///< point of A; translation = witness_b - witness_a up to 8 ulp of L
+  Vec3 witness_b = Vec3::Zero();
+
+  Feature feature_a;  ///< the features of the cores whose difference holds the nearest boundary point
+  Feature feature_b;
+
+  Statistics statistics;
+};
+
+}  // namespace pd
