@@ -10,6 +10,7 @@
 
 #include "depth/difference/direction_signs.hpp"
 #include "depth/difference/posed_support.hpp"
+#include "depth/distance/gjk_exact.hpp"
 #include "numeric/floating_point_guard.hpp"
 
 namespace pd {
