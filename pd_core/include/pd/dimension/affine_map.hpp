@@ -1,0 +1,38 @@
+/// @file
+/// Affine maps x -> linear x + translation, and what they do to support functions.
+#pragma once
+
+#include <Eigen/LU>
+
+#include "pd/dimension/vector.hpp"
+
+namespace pd::dimension {
+
+template <int D>
+struct AffineMap {
+  Matrix<D> linear = Matrix<D>::Identity();
+  Vector<D> translation = Vector<D>::Zero();
+
+  [[nodiscard]] Vector<D> apply(const Vector<D>& point) const { return linear * point + translation; }
+
+  /// h_{LK + t}(v) = h_K(L^T v) + <t, v>: the direction in which K is asked for the image's extreme point in v.
+  [[nodiscard]] Vector<D> pull_back(const Vector<D>& direction) const { return linear.transpose() * direction; }
+
+  /// Requires a regular `linear`.
+  [[nodiscard]] AffineMap inverse() const {
+    AffineMap r;
+    r.linear = linear.inverse();
+    r.translation = -(r.linear * translation);
+    return r;
+  }
+
+  /// First `inner`, then this map.
+  [[nodiscard]] AffineMap after(const AffineMap& inner) const {
+    AffineMap r;
+    r.linear = linear * inner.linear;
+    r.translation = apply(inner.translation);
+    return r;
+  }
+};
+
+}  // namespace pd::dimension
