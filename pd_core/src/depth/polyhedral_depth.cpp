@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "depth/difference/exact_support.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"

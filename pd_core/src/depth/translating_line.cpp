@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "depth/difference/direction_signs.hpp"
+#include "depth/difference/exact_support.hpp"
 #include "depth/difference/posed_support.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "depth/difference/exact_support.hpp"
+
 namespace pd::detail {
 
 namespace {
