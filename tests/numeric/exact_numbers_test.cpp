@@ -98,6 +98,19 @@ TEST(RootSum, ComparesExactlyWhereDoublesCannot) {
   EXPECT_LT(value.compare(Dyadic(std::nextafter(down, HUGE_VAL))), 0);
 }
 
+TEST(RootSum, ApproximatesToManyDigitsWhereAllButFewCancel) {
+  // r - sqrt(r^2 - 2 r d + d^2) = d: for every d, whatever is left of r.
+  const Dyadic r(0.07999999821186066);
+  for (int bits = 0; bits <= 200; bits += 5) {
+    const Dyadic d(std::ldexp(0.7, -bits));
+    const Dyadic root = r - d;
+    const RootSum value(r, -1, root * root * Dyadic(3.0), Dyadic(3.0));
+    const auto x = value.approximate();
+    const Dyadic error = Dyadic(x.hi) + Dyadic(x.lo) - (root.sign() > 0 ? d : r + root);
+    EXPECT_LE(std::abs(error.to_double()), RootSum::kApproximationError * d.to_double()) << bits;
+  }
+}
+
 TEST(RootSum, RoundsRationalRootsToThemselves) {
   const RootSum five(Dyadic(0.0), 1, Dyadic(25.0), Dyadic(1.0));
   EXPECT_EQ(five.round_down(), 5.0);

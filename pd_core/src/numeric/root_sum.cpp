@@ -9,6 +9,10 @@ namespace pd::detail {
 
 namespace {
 
+DoubleDouble scaled(const DoubleDouble& x, int exponent) {
+  return {std::ldexp(x.hi, exponent), std::ldexp(x.lo, exponent)};
+}
+
 int top_bit(const Dyadic& x) { return x.exponent() + static_cast<int>(msb(boost::multiprecision::abs(x.mantissa()))); }
 
 /// The k-th double after x >= 0 (before it for negative k), not below 0.
@@ -32,22 +36,29 @@ int RootSum::compare(const Dyadic& x) const {
 }
 
 DoubleDouble RootSum::approximate() const {
-  DoubleDouble root{0, 0};
-  if (numerator_.sign() != 0) {
-    // Even shifts, so that the root's shift is whole.
-    const int up = top_bit(numerator_) & ~1;
-    const int down = top_bit(denominator_) & ~1;
-    root = sqrt(to_double_double(numerator_.scaled(-up)) / to_double_double(denominator_.scaled(-down)));
-    const int shift = (up - down) / 2;
-    root = {std::ldexp(root.hi, shift), std::ldexp(root.lo, shift)};
-  }
-  return to_double_double(base_) + (sign_ > 0 ? root : -root);
+  if (numerator_.sign() == 0) return to_double_double(base_);
+  // Even shifts, so that the root's shift is whole.
+  const int up = top_bit(numerator_) & ~1;
+  const int down = top_bit(denominator_) & ~1;
+  DoubleDouble root = sqrt(to_double_double(numerator_.scaled(-up)) / to_double_double(denominator_.scaled(-down)));
+  root = scaled(sign_ > 0 ? root : -root, (up - down) / 2);
+  if (base_.sign() == 0) return root;
+  const DoubleDouble base = to_double_double(base_);
+  if (base_.sign() == sign_) return base + root;
+  // The two cancel: base + r = (base^2 - r^2) / (base - r), where nothing is lost, as the numerator is exact.
+  const Dyadic difference = base_ * base_ * denominator_ - numerator_;
+  if (difference.sign() == 0) return {0, 0};
+  const int shift = top_bit(difference);
+  const int size = std::ilogb(base.hi);
+  const DoubleDouble quotient = to_double_double(difference.scaled(-shift)) /
+                                (to_double_double(denominator_.scaled(-down)) * scaled(base - root, -size));
+  return scaled(quotient, shift - down - size);
 }
 
 double RootSum::round_down() const {
   double low = std::max(0.0, to_double(approximate()));
   std::int64_t stride = 1;
-  // The approximation is nearly always within an ulp; gallop where base and root cancel.
+  // The approximation is within an ulp, but for subnormal numbers: gallop there.
   if (compare(Dyadic(low)) < 0) {
     double high = low;
     while (low > 0 && compare(Dyadic(low)) < 0) {

@@ -10,12 +10,17 @@ namespace pd::detail {
 
 class RootSum {
  public:
+  /// Two conversions (2^-105 each), a quotient, a root, a difference without cancellation, a product and a quotient:
+  /// below 2^-100.
+  static constexpr double kApproximationError = 0x1p-98;
+
   /// base + sign * sqrt(numerator / denominator); numerator >= 0, denominator > 0, sign -1 or +1.
   RootSum(Dyadic base, int sign, Dyadic numerator, Dyadic denominator);
 
   /// Sign of (value - x), exact.
   [[nodiscard]] int compare(const Dyadic& x) const;
-  /// The value, absolute error about 2^-100 of the larger of |base| and the root.
+  /// The value, relative error below kApproximationError, however much of the base the root cancels. Parts of it below
+  /// 2^-1022 are lost. Requires that base and root lie well within the range of doubles.
   [[nodiscard]] DoubleDouble approximate() const;
   /// The largest double <= value. Requires value >= 0.
   [[nodiscard]] double round_down() const;

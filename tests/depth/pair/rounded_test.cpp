@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "oracle/judged_pair.hpp"
+#include "oracle/resting_pair.hpp"
 
 namespace pd {
 namespace {
@@ -13,17 +13,6 @@ using oracle::JudgedPair;
 using oracle::Scaled;
 using scenes::DepthClass;
 using scenes::PairFamily;
-
-/// Sign of (x - signed depth of the swept bodies) for the cores' exact verdict and the sum of the margins.
-int compare(double x, const oracle::Verdict& core, const Scaled& margins) {
-  const Scaled rest = oracle::to_scaled(x) - margins;  // x - depth = rest - core's signed depth
-  if (core.contact == ContactClass::overlapping) {
-    return rest.mantissa.sign() < 0 ? -1 : core.depth.compare(rest);
-  }
-  // Minus the distance: rest + distance.
-  if (core.contact == ContactClass::touching) return rest.mantissa.sign();
-  return rest.mantissa.sign() >= 0 ? 1 : -core.distance.compare(-rest);
-}
 
 TEST(Rounded, BracketsHoldTheCoresDepthAndTheMargins) {
   Scratch scratch;
@@ -44,7 +33,7 @@ TEST(Rounded, BracketsHoldTheCoresDepthAndTheMargins) {
         ASSERT_TRUE(a && b);
         const PenetrationDepth answer = penetration_depth({&*a, pair.a().pose}, {&*b, pair.b().pose}, scratch);
         const Scaled margins = oracle::to_scaled(margin_a) + oracle::to_scaled(margin_b);
-        const int sign = -compare(0, pair.verdict(), margins);  // of the swept bodies' signed depth
+        const int sign = -oracle::compare_with_depth(0, pair.verdict(), margins);  // of the swept bodies' signed depth
         const ContactClass expected = sign > 0   ? ContactClass::overlapping
                                       : sign < 0 ? ContactClass::separated
                                                  : ContactClass::touching;
@@ -52,12 +41,12 @@ TEST(Rounded, BracketsHoldTheCoresDepthAndTheMargins) {
         ASSERT_EQ(answer.contact, expected);
         const double allowed = 4e-15 * (extent + margin_a + margin_b);
         if (sign > 0) {
-          EXPECT_LE(compare(answer.lower, pair.verdict(), margins), 0);
-          EXPECT_GE(compare(answer.upper, pair.verdict(), margins), 0);
+          EXPECT_LE(oracle::compare_with_depth(answer.lower, pair.verdict(), margins), 0);
+          EXPECT_GE(oracle::compare_with_depth(answer.upper, pair.verdict(), margins), 0);
           EXPECT_LE(answer.upper - answer.lower, allowed);
         } else if (sign < 0) {
-          EXPECT_GE(compare(-answer.distance_lower, pair.verdict(), margins), 0);
-          EXPECT_LE(compare(-answer.distance_upper, pair.verdict(), margins), 0);
+          EXPECT_GE(oracle::compare_with_depth(-answer.distance_lower, pair.verdict(), margins), 0);
+          EXPECT_LE(oracle::compare_with_depth(-answer.distance_upper, pair.verdict(), margins), 0);
           EXPECT_LE(answer.distance_upper - answer.distance_lower, allowed);
         }
         EXPECT_NEAR(answer.normal.norm(), 1, 1e-15);
@@ -66,6 +55,25 @@ TEST(Rounded, BracketsHoldTheCoresDepthAndTheMargins) {
         EXPECT_LE((answer.witness_b - answer.witness_a - expected_gap).cwiseAbs().maxCoeff(),
                   4e-15 * extent + 4 * 0x1p-52 * world);
       }
+    }
+  }
+  std::printf("%d separated, %d touching, %d overlapping\n", classes[0], classes[1], classes[2]);
+}
+
+TEST(Rounded, AtRestWithinAHairOfContact) {
+  Scratch scratch;
+  int classes[3] = {};
+  for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+    const oracle::RestingPair rest = oracle::make_resting_pair(seed, scratch);
+    const JudgedPair pair(rest.cores, "resting seed " + std::to_string(seed));
+    const auto a = pair.a().shape->with_margin(rest.margin_a);
+    const auto b = pair.b().shape->with_margin(rest.margin_b);
+    for (const Bracket bracket : {Bracket::tightest, Bracket::certified}) {
+      DepthSettings settings;
+      settings.bracket = bracket;
+      const PenetrationDepth answer = penetration_depth({&*a, pair.a().pose}, {&*b, pair.b().pose}, scratch, settings);
+      ++classes[static_cast<int>(answer.contact)];
+      EXPECT_EQ(oracle::check_rounded(pair, rest.margin_a, rest.margin_b, answer, bracket), "") << pair.name();
     }
   }
   std::printf("%d separated, %d touching, %d overlapping\n", classes[0], classes[1], classes[2]);

@@ -43,6 +43,10 @@ bool no_longer_than(const Vec3& t, double length) {
 /// The search for one `upper`. The cap between plane and sphere is less than an ulp high but about 1e8 ulps wide, so it
 /// holds many triples: two coordinates walk near the exact translation, the third (the one with the finest ulps) is
 /// solved for. Candidates are sifted in double-double before they are proved.
+///
+/// Solving puts a candidate so close beyond the plane (2^-92 of the depth where the normal's last coordinate is 1e-6)
+/// that the error of the plane itself decides, and decides alike for all of them: the plane is taken that much farther
+/// out, where the cap has room for it.
 class TranslationSearch {
  public:
   /// Lengths are brought near 1 by a power of two.
@@ -50,6 +54,9 @@ class TranslationSearch {
       : separation_(separation), true_upper_(upper), exponent_(std::ilogb(upper)) {
     upper_ = std::ldexp(upper, -exponent_);
     depth_ = {std::ldexp(depth.hi, -exponent_), std::ldexp(depth.lo, -exponent_)};
+    const double room = to_double(DoubleDouble{upper_, 0} - depth_);
+    const double slack = std::ldexp(separation.slack(depth), -exponent_);
+    if (slack < 0.25 * room) depth_ = depth_ + DoubleDouble{slack, 0};
     const Vec3DD& unit = separation.unit();
     components_[0] = unit.x;
     components_[1] = unit.y;
@@ -154,6 +161,27 @@ class TranslationSearch {
   Vec3 translation_ = Vec3::Zero();
 };
 
+/// Without a search: the exact translation with every coordinate rounded away from zero, which reaches whatever the
+/// coordinates are. Lengthens t by three ulps at most, and one for the rounding of its length.
+double outward_translation(Separation& separation, const DoubleDouble& depth, double upper, Vec3& translation) {
+  const Vec3DD& unit = separation.unit();
+  const DoubleDouble components[3] = {unit.x, unit.y, unit.z};
+  const int exponent = std::ilogb(depth.hi);
+  const DoubleDouble near_one{std::ldexp(depth.hi, -exponent), std::ldexp(depth.lo, -exponent)};
+  // One round, as the plane is known to far less than an ulp; growing strides, so that nothing else can hang here.
+  for (double ulps = 1;; ulps *= 2) {
+    const DoubleDouble length = near_one + DoubleDouble{ulps * 0x1p-52, 0};
+    for (int i = 0; i < 3; ++i) {
+      const double x = std::ldexp((components[i] * length).hi, exponent);
+      const double away = components[i].hi > 0 ? HUGE_VAL : -HUGE_VAL;
+      translation[i] = components[i].hi == 0 ? 0 : std::nextafter(x, away);
+    }
+    if (!separation.reached(translation)) continue;
+    while (!no_longer_than(translation, upper)) upper = std::nextafter(upper, HUGE_VAL);
+    return upper;
+  }
+}
+
 }  // namespace
 
 double largest_coordinate(const PosedPair& pair) {
@@ -194,6 +222,13 @@ Separation::Separation(const PosedPair& pair, const FacetOfDifference& facet, co
   depth_error_ = (plane.distance_error * scale + 4 * kUdd * std::abs(depth_.hi)) * (1 + 4 * kU) + 0x1p-960;
 }
 
+double Separation::slack(const DoubleDouble& depth) const {
+  const bool measured = depth_error_ < std::numeric_limits<double>::infinity();
+  const double error = measured ? depth_error_ : RootSum::kApproximationError * depth.hi;
+  // |t|_1 <= sqrt(3) |t|, and |t| exceeds the depth by an ulp or two.
+  return 2 * error + 2 * depth.hi * (unit_error_ + 32 * kUdd);
+}
+
 bool Separation::reached(const Vec3& t) {
   if (depth_error_ < std::numeric_limits<double>::infinity()) {
     const DoubleDouble along = unit_.x * t.x() + unit_.y * t.y() + unit_.z * t.z();
@@ -221,21 +256,23 @@ const NearestPlane& Separation::plane() {
 
 double shortest_translation(const PosedPair& pair, Separation& separation, const DoubleDouble& depth, double upper,
                             double margin, Vec3& translation) {
-  double extent = -1;
-  // Strides grow, so that subnormal lengths, whose coordinates are coarse, end too.
-  for (double ulps = 1;; ulps *= 2) {
-    TranslationSearch search(separation, depth, upper);
-    bool found = search.at_base();
-    if (!found) {
-      if (extent < 0) extent = largest_coordinate(pair) + margin;
-      found = search.near_base(extent);
-    }
-    if (found) {
-      translation = search.translation();
-      return upper;
-    }
-    upper += ulps * (std::nextafter(upper, HUGE_VAL) - upper);
+  TranslationSearch nearest(separation, depth, upper);
+  if (nearest.at_base()) {
+    translation = nearest.translation();
+    return upper;
   }
+  const double extent = largest_coordinate(pair) + margin;
+  if (nearest.near_base(extent)) {
+    translation = nearest.translation();
+    return upper;
+  }
+  upper = std::nextafter(upper, HUGE_VAL);
+  TranslationSearch next(separation, depth, upper);
+  if (next.at_base() || next.near_base(extent)) {
+    translation = next.translation();
+    return upper;
+  }
+  return outward_translation(separation, depth, upper, translation);
 }
 
 }  // namespace pd::detail
