@@ -88,7 +88,7 @@ ContactClass exact_class(const PosedShape& a, const PosedShape& b, const Vec3& p
     return answer.contact;
   }
   if (rounded) return ContactClass::overlapping;
-  return exact_expansion(pair, nearest.simplex.data(), nearest.count, std::numeric_limits<int>::max()).contact;
+  return exact_expanding_polytope(pair, nearest.simplex.data(), nearest.count, std::numeric_limits<int>::max()).contact;
 }
 
 }  // namespace

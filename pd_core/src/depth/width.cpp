@@ -73,7 +73,7 @@ void polytope_width(const ConvexPolytope& body, const Pose& pose, const Dyadic& 
     grid_width(pair, margins, delta, out);
   } else if (method == Method::expansion) {
     const detail::VertexPair start{0, body.num_vertices() - 1};
-    const detail::ExactDepth exact = detail::exact_expansion(pair, &start, 1, std::numeric_limits<int>::max());
+    const detail::ExactDepth exact = detail::exact_expanding_polytope(pair, &start, 1, std::numeric_limits<int>::max());
     fill(margins, exact.squared.numerator, exact.squared.denominator, out);
     out.normal = exact.normal->unit;
     out.statistics.support_calls = exact.support_calls;

@@ -22,7 +22,7 @@ Vec3 random_direction(std::mt19937_64& random) {
 }
 
 /// The hull of points on a sphere round the origin; a vertex' id is its point's index.
-Cached hull_of_sphere(int points, std::mt19937_64& random, Surface& surface, std::vector<Vec3>& at) {
+Cached hull_of_sphere(int points, std::mt19937_64& random, InnerSurface& surface, std::vector<Vec3>& at) {
   surface.clear();
   const Vec3 corners[4] = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
   at.clear();
@@ -33,7 +33,7 @@ Cached hull_of_sphere(int points, std::mt19937_64& random, Surface& surface, std
   EXPECT_TRUE(surface.start_tetrahedron(1e-12));
   for (int v = 4; v < points; ++v) {
     for (int f = 0; f < surface.slots(); ++f) {
-      if (surface.key(f) == Surface::kRemoved) continue;
+      if (surface.key(f) == InnerSurface::kRemoved) continue;
       if (surface.normal(f).dot(surface.vertices[v].x - surface.vertices[surface.face(f).v[0]].x) <= 0) continue;
       EXPECT_TRUE(surface.insert(f, v));
       break;
@@ -44,7 +44,7 @@ Cached hull_of_sphere(int points, std::mt19937_64& random, Surface& surface, std
   return cached;
 }
 
-void restore(const Cached& cached, const std::vector<Vec3>& at, Surface& surface) {
+void restore(const Cached& cached, const std::vector<Vec3>& at, InnerSurface& surface) {
   surface.clear();
   for (const auto& v : cached.first) surface.vertices.push_back({at[static_cast<std::size_t>(v.a)], v.a, v.b});
   surface.restore(cached.second);
@@ -54,15 +54,15 @@ struct Shape {
   int faces = 0;
   int reflex = 0;  ///< edges
   double volume = 0;
-  double least_key = Surface::kRemoved;
+  double least_key = InnerSurface::kRemoved;
   bool closed = true;
 };
 
-Shape measure(const Surface& surface) {
+Shape measure(const InnerSurface& surface) {
   Shape out;
   std::map<std::pair<int, int>, int> edges;
   for (int f = 0; f < surface.slots(); ++f) {
-    if (surface.key(f) == Surface::kRemoved) continue;
+    if (surface.key(f) == InnerSurface::kRemoved) continue;
     const SurfaceTriangle& face = surface.face(f);
     ++out.faces;
     out.least_key = std::min(out.least_key, surface.key(f));
@@ -72,7 +72,7 @@ Shape measure(const Surface& surface) {
       ++edges[{face.v[e], face.v[(e + 1) % 3]}];
       const SurfaceTriangle& other = surface.face(face.adj[e] >> 2);
       const int h = face.adj[e] & 3;
-      out.closed &= surface.key(face.adj[e] >> 2) != Surface::kRemoved && other.adj[h] == 4 * f + e &&
+      out.closed &= surface.key(face.adj[e] >> 2) != InnerSurface::kRemoved && other.adj[h] == 4 * f + e &&
                     other.v[h] == face.v[(e + 1) % 3] && other.v[(h + 1) % 3] == face.v[e];
       const Vec3& apex = surface.vertices[other.v[(h + 2) % 3]].x;
       out.reflex += surface.normal(f).dot(apex - p) > 1e-12 ? 1 : 0;
@@ -82,8 +82,8 @@ Shape measure(const Surface& surface) {
   return out;
 }
 
-TEST(Surface, FlipsMakeAMovedSurfaceConvexAgain) {
-  Surface surface;
+TEST(InnerSurface, FlipsMakeAMovedSurfaceConvexAgain) {
+  InnerSurface surface;
   std::vector<Vec3> at;
   int moved = 0;
   int mended = 0;
@@ -94,21 +94,21 @@ TEST(Surface, FlipsMakeAMovedSurfaceConvexAgain) {
     const Shape before = measure(surface);
     ASSERT_TRUE(before.closed);
     ASSERT_EQ(before.reflex, 0);
-    surface.straighten();
+    surface.flip_reflex_edges();
     ASSERT_EQ(measure(surface).volume, before.volume) << "a convex surface needs no flip";
 
     for (Vec3& x : at) x += 0.15 * random_direction(random);
     restore(cached, at, surface);
-    const Shape crooked = measure(surface);
-    if (crooked.reflex == 0 || !(crooked.least_key > 0)) continue;
+    const Shape moved_shape = measure(surface);
+    if (moved_shape.reflex == 0 || !(moved_shape.least_key > 0)) continue;
     ++moved;
-    surface.straighten();
+    surface.flip_reflex_edges();
     const Shape straight = measure(surface);
     ASSERT_TRUE(straight.closed) << trial;
     ASSERT_EQ(straight.faces, surface.size()) << trial;
     ASSERT_GT(straight.least_key, 0) << trial;
-    ASSERT_GT(straight.volume, crooked.volume) << trial;
-    ASSERT_GE(straight.least_key, crooked.least_key) << "what encloses more is no nearer, trial " << trial;
+    ASSERT_GT(straight.volume, moved_shape.volume) << trial;
+    ASSERT_GE(straight.least_key, moved_shape.least_key) << "what encloses more is no nearer, trial " << trial;
     ASSERT_EQ(surface.key(surface.nearest()), straight.least_key) << trial;
     mended += straight.reflex == 0 ? 1 : 0;
   }
@@ -117,8 +117,8 @@ TEST(Surface, FlipsMakeAMovedSurfaceConvexAgain) {
   EXPECT_GT(10 * mended, 9 * moved);
 }
 
-TEST(Surface, RebuildsTheHullOfWhatMatters) {
-  Surface surface;
+TEST(InnerSurface, RebuildsTheHullOfWhatMatters) {
+  InnerSurface surface;
   std::vector<Vec3> at;
   for (int trial = 0; trial < 100; ++trial) {
     std::mt19937_64 random(static_cast<std::uint64_t>(trial) + 1);

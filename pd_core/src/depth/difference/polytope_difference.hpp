@@ -155,12 +155,6 @@ class PolytopeDifference {
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
   /// At least |x| for every point of P.
   [[nodiscard]] double reach() const { return reach_; }
-  /// Sine of the angle between the expected direction of the depth and those that a search begins with: about that
-  /// between the normals of nearby facets of P, fitted to what took the fewest supports for 8 to 2048 vertices.
-  [[nodiscard]] double spread() const {
-    const auto n = static_cast<unsigned>(a_.num_vertices() + b_.num_vertices());
-    return std::min(0.78, (2.8 + 0.13 * std::bit_width(n)) / std::sqrt(static_cast<double>(n)));
-  }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
   [[nodiscard]] double point_error() const { return 10.5 * kHalfUlp * reach_; }
@@ -168,10 +162,6 @@ class PolytopeDifference {
   /// vertices, in a body's frame, where the rotated direction errs by 4u |n| and the product by 3u |n| |v|, or posed,
   /// where a vertex errs by 4u sqrt(3) |v| instead.
   [[nodiscard]] double support_error() const { return 20 * kHalfUlp * reach_; }
-
-  [[nodiscard]] int budget() const {
-    return 64 + 4 * static_cast<int>(std::sqrt(static_cast<double>(a_.num_vertices() + b_.num_vertices())));
-  }
 
   static constexpr double kHalfUlp = 0x1p-53;
 

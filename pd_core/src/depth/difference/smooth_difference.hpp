@@ -39,8 +39,6 @@ class SmoothDifference {
   }
   [[nodiscard]] Vec3 centre() const;
   [[nodiscard]] double reach() const { return reach_; }
-  /// See PolytopeDifference.
-  [[nodiscard]] static constexpr double spread() { return 0.5; }
   /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach.
   [[nodiscard]] double point_error() const { return 32 * PolytopeDifference::kHalfUlp * reach_; }
   [[nodiscard]] double support_error() const { return 32 * PolytopeDifference::kHalfUlp * reach_; }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "depth/expansion/tetrahedron.hpp"
+
 namespace pd::detail {
 
 int compare(const SquaredDistance& x, const SquaredDistance& y) {
@@ -57,16 +59,14 @@ class Hull {
   void start() {
     const int order = pair_.sign_determinant(edge(0, 3), edge(0, 1), edge(0, 2));
     if (order > 0) std::swap(vertices[1], vertices[2]);
-    add_face(0, 1, 2);
-    add_face(0, 3, 1);
-    add_face(1, 3, 2);
-    add_face(2, 3, 0);
-    static constexpr std::int32_t kAdjacent[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
-    for (int f = 0; f < 4; ++f) std::copy(kAdjacent[f], kAdjacent[f] + 3, faces[f].adj);
+    for (int f = 0; f < 4; ++f) {
+      add_face(kTetrahedronFaces[f][0], kTetrahedronFaces[f][1], kTetrahedronFaces[f][2]);
+      for (int e = 0; e < 3; ++e) faces[f].adj[e] = kTetrahedronBeyond[f][e].face;
+    }
   }
 
   /// Replaces the faces strictly below vertex v, `from` among them. Exact sides of a convex surface: always a disc; no
-  /// new triangle is degenerate, since v would have to lie on the line of an edge of a face that it sees from outside.
+  /// new triangle is degenerate, since v would have to lie on the line of an edge of a face visible from it.
   void insert(int from, int v) {
     struct Visit {
       int face, edge, left;
@@ -207,7 +207,7 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
 
 }  // namespace
 
-ExactDepth exact_expansion(const PosedPair& pair, const VertexPair* simplex, int count, int budget) {
+ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex, int count, int budget) {
   ExactDepth result;
   Hull hull(pair);
   hull.vertices.assign(simplex, simplex + count);

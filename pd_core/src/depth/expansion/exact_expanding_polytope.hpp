@@ -1,5 +1,5 @@
 /// @file
-/// Best-first expansion with exact signs: the engine behind the doubles.
+/// The expanding polytope with exact signs: the engine behind the doubles.
 ///
 /// Keeps the exact convex hull of the vertices of P found so far. A face whose plane supports P exactly is a facet of
 /// P; the least of those that no other face can undercut is the depth. Decides touching against overlapping, and ranks
@@ -33,6 +33,7 @@ struct ExactDepth {
 /// Requires that the origin lies in P (boundary included).
 /// @param simplex  vertices of P to begin with.
 /// @param budget   supports allowed.
-[[nodiscard]] ExactDepth exact_expansion(const PosedPair& pair, const VertexPair* simplex, int count, int budget);
+[[nodiscard]] ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex, int count,
+                                                  int budget);
 
 }  // namespace pd::detail

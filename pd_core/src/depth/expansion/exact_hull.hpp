@@ -1,12 +1,13 @@
 /// @file
-/// The convex hull of points of P in doubles, kept by exact signs: where expansion's surface in doubles folds.
+/// The convex hull of points of P in doubles, kept by exact signs: where a surface in doubles loses its convexity.
 ///
 /// Near contact ruled bodies (cylinders, cones, against edges) leave faces as long as the bodies and 1e-8 wide.
-/// Rounding turns their planes, so that faces which see a new point by their planes are not those which see it
-/// (inner_surface.hpp), and the surface folds: the lower bound, still true, falls. Exact orientation (predicates.hpp)
-/// of the stored points keeps every step a convex hull: faces that strictly see a point outside form one disc, and no
-/// new face is degenerate, since a point in line with the disc's border lies in the plane of a face that sees it.
-/// Distances of planes are taken in double-double. A step costs some microseconds, so only folded queries come here.
+/// Rounding turns their planes, so that the faces visible from a new point by their planes are not those that are
+/// (inner_surface.hpp), and the surface loses its convexity: the lower bound, still true, falls. Exact orientation
+/// (predicates.hpp) of the stored points keeps every step a convex hull: the faces strictly visible from a point
+/// outside form one disc, and no new face is degenerate, since a point in line with the disc's border lies in the plane
+/// of a face visible from it. Distances of planes are taken in double-double. A step costs some microseconds, so only
+/// queries that lost convexity come here.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace pd::detail {
 
-class ExactSurface {
+class ExactHull {
  public:
   struct Face {
     std::int32_t v[3];    ///< counter-clockwise from outside
@@ -43,12 +44,14 @@ class ExactSurface {
     std::int32_t face;
   };
   [[nodiscard]] const Vec3& at(std::int32_t v) const { return vertices[static_cast<std::size_t>(v)].x; }
-  [[nodiscard]] bool sees(std::int32_t v, const Face& face) const;
+  [[nodiscard]] bool is_visible(const Face& face, std::int32_t v) const;
   void add_face(std::int32_t a, std::int32_t b, std::int32_t c);
 
   std::vector<Face> faces_;  ///< never reused: an entry of the heap is stale exactly when its face is dead
   std::vector<Entry> heap_;
   std::vector<std::int32_t> visible_;
 };
+
+using ExactSurface = ExactHull;
 
 }  // namespace pd::detail

@@ -2,59 +2,95 @@
 
 #include <algorithm>
 
+#include "depth/expansion/initial_simplex.hpp"
+
 namespace pd::detail {
 
-ExpansionResult folded_expansion(const SmoothDifference& difference, ExactSurface& surface, const Vec3& start,
-                                 const ExpansionGoal& goal, std::int64_t& support_calls) {
-  const double lower_error = face_error(difference);
-  const double upper_error = support_plane_error(difference);
-  ExpansionResult result;
-  double largest = 0;
-  surface.clear();
-  // Adds a support. False when its plane shows the bodies apart.
-  const auto probe = [&](const Vec3& unit) {
-    const DifferenceVertex s = difference.support(unit, nullptr);
-    ++support_calls;
-    surface.vertices.push_back(s);
-    largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
+namespace {
+
+/// The numbers are the steps of expanding_polytope.hpp.
+class HullExpansion {
+ public:
+  HullExpansion(const SmoothDifference& difference, ExactHull& hull, const ExpansionGoal& goal,
+                std::int64_t& support_calls)
+      : difference_(difference), hull_(hull), goal_(goal), support_calls_(support_calls) {}
+
+  /// 1. and 2. False when the first supports end the search.
+  bool start(const Vec3& direction) {
+    hull_.clear();
+    Vec3 directions[4];
+    surrounding_directions(direction, initial_cone_sine(difference_), directions);
+    for (const Vec3& d : directions) {
+      if (!add_support(d)) return false;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!add_support(Vec3::Unit(axis)) || !add_support(-Vec3::Unit(axis))) return false;
+    }
+    return hull_.start();
+  }
+
+  /// 3. to 9.
+  void grow() {
+    for (int step = 0; step < goal_.max_steps; ++step) {
+      // 3.
+      const int f = hull_.nearest();
+      const double distance = hull_.face(f).distance;
+      const Vec3 unit = hull_.face(f).unit_normal;
+      result_.face = f;
+      result_.lower = distance - lower_error_;
+      // 5., 6. and 7.
+      if (!add_support(unit)) return;
+      if (touches(goal_, result_.lower, result_.upper, largest_)) {
+        result_.status = ExpansionStatus::touching;
+        return;
+      }
+      if (reached(goal_, result_.lower, result_.upper, largest_)) {
+        result_.status = ExpansionStatus::certified;
+        return;
+      }
+      // 8. and 9.
+      const double height = hull_.vertices.back().x.dot(unit);
+      if (height - distance <= 4 * lower_error_ || !hull_.insert(f)) return;
+    }
+    result_.status = ExpansionStatus::over_budget;
+  }
+
+  [[nodiscard]] const ExpansionResult& result() const { return result_; }
+
+ private:
+  /// 5. and 6. False when the support's plane shows the bodies separated.
+  bool add_support(const Vec3& unit) {
+    const DifferenceVertex s = difference_.support(unit, nullptr);
+    ++support_calls_;
+    hull_.vertices.push_back(s);
+    largest_ = std::max(largest_, s.x.cwiseAbs().maxCoeff());
     const double height = s.x.dot(unit);
-    if (height + upper_error < result.upper) {
-      result.upper = height + upper_error;
-      result.normal = unit;
+    if (height + upper_error_ < result_.upper) {
+      result_.upper = height + upper_error_;
+      result_.normal = unit;
     }
-    if (height >= -upper_error - goal.touching * largest) return true;
-    result.status = ExpansionStatus::separated;
+    if (height >= -upper_error_ - goal_.touching * largest_) return true;
+    result_.status = ExpansionStatus::separated;
     return false;
-  };
-  Vec3 directions[4];
-  surrounding_directions(start, difference.spread(), directions);
-  for (const Vec3& d : directions) {
-    if (!probe(d)) return result;
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!probe(Vec3::Unit(axis)) || !probe(-Vec3::Unit(axis))) return result;
-  }
-  if (!surface.start()) return result;
-  for (;;) {
-    const int f = surface.nearest();
-    const ExactSurface::Face& face = surface.face(f);
-    const double distance = face.distance;
-    result.face = f;
-    result.lower = distance - lower_error;
-    const Vec3 unit = face.unit_normal;
-    if (!probe(unit)) return result;
-    if (result.upper <= goal.touching * largest && result.lower >= -goal.touching * largest) {
-      result.status = ExpansionStatus::touching;
-      return result;
-    }
-    if (result.lower > 0 && (result.upper - result.lower <= goal.absolute * largest ||
-                             result.upper <= (1 + goal.relative) * result.lower)) {
-      result.status = ExpansionStatus::certified;
-      return result;
-    }
-    const double height = surface.vertices.back().x.dot(unit);
-    if (height - distance <= 4 * lower_error || !surface.insert(f)) return result;
-  }
+
+  const SmoothDifference& difference_;
+  ExactHull& hull_;
+  const ExpansionGoal& goal_;
+  std::int64_t& support_calls_;
+  const double lower_error_ = face_error(difference_);
+  const double upper_error_ = support_plane_error(difference_);
+  double largest_ = 0;
+  ExpansionResult result_;
+};
+
+}  // namespace
+
+ExpansionResult expand_exact_hull(const SmoothDifference& difference, ExactHull& hull, const Vec3& start,
+                                  const ExpansionGoal& goal, std::int64_t& support_calls) {
+  HullExpansion expansion(difference, hull, goal, support_calls);
+  if (expansion.start(start)) expansion.grow();
+  return expansion.result();
 }
 
 }  // namespace pd::detail

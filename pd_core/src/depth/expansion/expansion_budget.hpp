@@ -1,5 +1,5 @@
 /// @file
-/// When best-first expansion had better be given up: where it shows that P has far more facets nearly as near as the
+/// When an expanding polytope had better be given up: where it shows that P has far more facets nearly as near as the
 /// nearest one than its bodies have vertices.
 ///
 /// What tells the two apart. Let g be the relative gap between the nearest face and the least height of a support so
@@ -27,37 +27,37 @@ class ExpansionBudget {
   /// @param vertices  N; 0 for bodies of unlimited vertices: never given up.
   explicit ExpansionBudget(int vertices) : vertices_(vertices) {}
 
-  /// After a step that found a support at `height` in the normal of the nearest face, at `distance`. Costs a comparison
-  /// but for every 16th step, and then half a nanosecond a face.
-  bool spent(int step, double distance, double height, const Surface& surface) {
+  /// Whether to give up after a step that found a support at `height` in the normal of the nearest face, at `distance`.
+  /// Costs a comparison but for every 16th step, and then half a nanosecond a face.
+  bool exhausted(int step, double distance, double height, const InnerSurface& surface) {
     lowest_ = std::min(lowest_, height);
-    return step % kEvery == 0 && step > 0 && vertices_ > 0 && hopeless(step, distance, surface);
+    return step % kEvery == 0 && step > 0 && vertices_ > 0 && many_facets_tie(step, distance, surface);
   }
 
+  /// In so many steps faces of hulls of random points have come to lie above the least height; of evenly spread ones,
+  /// all of whose facets are nearly tied, none has.
+  static int min_steps(int vertices) { return 64 + 4 * static_cast<int>(std::sqrt(static_cast<double>(vertices))); }
   /// More steps than these are left to the overlay, which needs no more than some 4 times their time then.
-  static int limit(int vertices) { return std::max(patience(vertices), 64 + vertices / 4); }
+  static int max_steps(int vertices) { return std::max(min_steps(vertices), 64 + vertices / 4); }
 
  private:
   static constexpr int kEvery = 16;
-  /// In so many steps faces of hulls of random points have come to lie above the least height; of evenly spread ones,
-  /// all of whose facets are nearly tied, none has.
-  static int patience(int vertices) { return 64 + 4 * static_cast<int>(std::sqrt(static_cast<double>(vertices))); }
   /// Faces below that the expansion may well be done with: about as many steps are left then, and small bodies run out
   /// of vertices.
-  [[nodiscard]] int few() const { return 40 + 4096 / vertices_; }
+  [[nodiscard]] int face_threshold() const { return 40 + 4096 / vertices_; }
 
-  bool hopeless(int step, double distance, const Surface& surface) {
+  bool many_facets_tie(int step, double distance, const InnerSurface& surface) {
     const int before = below_;
     below_ = 0;
     if (!(distance > 0)) return false;
     const double level = lowest_ * lowest_;
     for (int f = 0; f < surface.slots(); ++f) below_ += surface.key(f) < level;
-    if (step >= patience(vertices_) && 32 * below_ >= 31 * surface.size()) return true;
-    return below_ > few() && below_ >= before + kEvery && (lowest_ - distance) * vertices_ < distance;
+    if (step >= min_steps(vertices_) && 32 * below_ >= 31 * surface.size()) return true;
+    return below_ > face_threshold() && below_ >= before + kEvery && (lowest_ - distance) * vertices_ < distance;
   }
 
   int vertices_;
-  int below_ = std::numeric_limits<int>::max() / 2;  ///< at the last look; the first one decides nothing
+  int below_ = std::numeric_limits<int>::max() / 2;  ///< at the last check; the first one decides nothing
   double lowest_ = std::numeric_limits<double>::infinity();
 };
 

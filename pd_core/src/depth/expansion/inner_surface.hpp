@@ -1,12 +1,14 @@
 /// @file
-/// A closed triangulated surface round the origin that grows towards the boundary of P: the working set of best-first
-/// expansion.
+/// A closed triangulated surface inside P that grows towards the boundary of P: what an expanding polytope works on.
 ///
 /// Why it proves anything: the surface is closed and oriented by construction (every edge is shared by two triangles
 /// that run along it in opposite senses). If every triangle has the origin strictly behind it, each contributes a
-/// positive solid angle, so the winding number of the surface round the origin is at least 1, and the same round every
-/// point of the ball that no triangle reaches; a point with non-zero winding number lies in the convex hull of the
-/// surface. Hence that ball lies in P. Neither convexity nor exact visibility is needed.
+/// positive solid angle, so the winding number of the surface around the origin is at least 1, and the same around
+/// every point of the ball that no triangle reaches; a point with non-zero winding number lies in the convex hull of
+/// the surface. Hence that ball lies in P. Neither convexity nor exact visibility is needed.
+///
+/// By file: storage (inner_surface.cpp), insertion of a point (inner_surface_insert.cpp), repair of a surface whose
+/// points have moved (inner_surface_flips.cpp, inner_surface_rebuild.cpp).
 #pragma once
 
 #include <array>
@@ -15,7 +17,9 @@
 #include <vector>
 
 #include "depth/difference/polytope_difference.hpp"
+#include "depth/expansion/nearest_face_queue.hpp"
 #include "depth/expansion/plane_kernels.hpp"
+#include "depth/expansion/tetrahedron.hpp"
 
 namespace pd::detail {
 
@@ -28,7 +32,7 @@ struct SurfaceTriangle {
 constexpr std::int32_t next_edge(std::int32_t e) { return e == 2 ? 0 : e + 1; }
 constexpr std::int32_t last_edge(std::int32_t e) { return e == 0 ? 2 : e - 1; }
 
-class Surface {
+class InnerSurface {
  public:
   /// The key of a slot without a face.
   static constexpr double kRemoved = std::numeric_limits<double>::infinity();
@@ -89,14 +93,13 @@ class Surface {
   /// Four faces on vertices 0..3. False when their volume is not positive for certain (`flat` = 6 volumes' error
   /// bound).
   bool start_tetrahedron(double flat);
-  /// Four of the vertices that span a large volume: vertex 0 and the one farthest from it, then greedily. False when
-  /// they are flat.
-  bool find_spread_vertices(double flat, std::int32_t (&ids)[4]) const;
-  /// Four faces on those; the other vertices are dropped.
+  /// Four of the vertices that span a large volume.
+  [[nodiscard]] SpreadPoints spread_vertices() const;
+  /// Four faces on those; the other vertices are dropped. False when they are flat.
   bool start_from_spread_vertices(double flat);
   /// Flips edges along which the surface is not convex, and drops vertices that lie inside, as far as that goes. Of a
   /// restored surface only.
-  void straighten();
+  void flip_reflex_edges();
   /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
   /// four that spread far; the others are dropped. False where they are flat.
   bool rebuild(double flat);
@@ -107,14 +110,15 @@ class Surface {
   }
   /// The face with the least key, the first of several.
   [[nodiscard]] int nearest() const { return nearest_; }
-  /// Replaces the faces that see vertex `v`, face `from` among them, by a cone over their border. The surface stays
-  /// closed and oriented whatever they are. False, and nothing changed, when every face is seen, or when the border
-  /// meets itself in a vertex: rounding, or a surface that has become too crooked.
+  /// Replaces the faces visible from vertex `v`, face `from` among them, by a cone over their border. The surface stays
+  /// closed and oriented whatever they are. Returns false and leaves the surface unchanged if every face is visible, or
+  /// if the border meets itself in a vertex: rounding, or a surface too far from convex.
   bool insert(int from, int v) {
     const Vec3& x = vertices[v].x;
     return insert(from, v, x.x(), x.y(), x.z()) >= 0;
   }
-  /// The same for a vertex whose coordinates are at hand, which is one wait less: the next nearest face, or -1.
+  /// The same for a vertex whose coordinates are at hand, which shortens the chain of dependent loads: the
+  /// next nearest face, or -1.
   int insert(int from, int v, double x, double y, double z);
   /// Number of faces in use.
   [[nodiscard]] int size() const { return in_use_; }
@@ -133,11 +137,11 @@ class Surface {
   void clear_faces();
   [[nodiscard]] int first_face_below(const Vec3& x);
 
-  // straighten, step by step
+  // flip_reflex_edges, step by step
   static constexpr int kMostFlips = 4;  ///< a slot
   [[nodiscard]] bool is_reflex(int f, std::int32_t e) const;
   void flip(int f, std::int32_t e);
-  void drop_vertex(int f, int g, int third, const std::array<std::int32_t, 3>& round, std::int32_t vertex,
+  void drop_vertex(int f, int g, int third, const std::array<std::int32_t, 3>& around, std::int32_t vertex,
                    std::int32_t beyond_first, std::int32_t beyond_second);
   void set_plane(int f, const Vec3& normal, double level, double key);
   /// Two edges, each 4 * face + edge, become each other's other side.
@@ -145,11 +149,11 @@ class Surface {
 
   // insert, step by step
   bool insert_among_many(int from, int v);
-  [[nodiscard]] std::uint64_t patch_round(int from, std::uint64_t seen) const;
+  [[nodiscard]] std::uint64_t connected_visible_region(int from, std::uint64_t visible) const;
   void flood_visible(int from, const Vec3& x);
   bool trace_horizon(std::uint64_t removed);
   bool trace_horizon();
-  bool close_horizon(std::int32_t count);
+  bool link_horizon(std::int32_t count);
   int fill_with_new_slots(int v, std::uint64_t removed);
   void fill_with_free_slots(int v);
   void take_slots(int count);
@@ -159,26 +163,17 @@ class Surface {
   [[nodiscard]] bool is_removed(int f) const { return (removed_bits_[f >> 6] >> (f & 63) & 1) != 0; }
   void mark_removed(int f) { removed_bits_[f >> 6] |= std::uint64_t{1} << (f & 63); }
 
-  struct HeapEntry {
-    double key;
-    std::int32_t face;
-    std::uint32_t stamp;
-  };
-  void push_heap(int f);
-  void start_heap();
-  void find_nearest_by_heap();
-
   // The first slots_ entries are in use or free; the rest is room. Free slots and room hold infinite keys and levels,
   // so that no loop over whole blocks need ask.
-  // A young surface adds a block of slots with every vertex, whose planes are written as they are computed; later faces
-  // take free slots.
+  // In append mode every vertex adds a block of slots at the end, whose planes are written as they are computed, and
+  // there is no list of free slots yet; later faces take free slots.
   std::vector<SurfaceTriangle> triangles_;
   std::vector<double> nx_, ny_, nz_, levels_, keys_;
   std::vector<std::int32_t> free_;
   int room_ = 0;  ///< slots that the arrays hold
   int slots_ = 0;
   int in_use_ = 0;
-  bool young_ = true;
+  bool append_mode_ = true;
 
   std::vector<std::uint64_t> removed_bits_;  ///< by slot; all zero between calls
   std::vector<std::int32_t> removed_;        ///< faces that go, then the slots of those that come
@@ -188,11 +183,9 @@ class Surface {
   int horizon_count_ = 0;
   std::vector<std::int32_t> leaving_, reaching_;  ///< by vertex: the horizon edge that leaves it, that reaches it
   std::vector<double> fan_nx_, fan_ny_, fan_nz_, fan_levels_, fan_keys_;
-  int nearest_ = 0;
 
-  std::vector<HeapEntry> heap_;
-  std::vector<std::uint32_t> stamps_;  ///< counts the lives of a slot
-  bool heap_active_ = false;
+  int nearest_ = 0;
+  NearestFaceQueue queue_;  ///< active on large surfaces only
 
   struct NearVertex {
     double key;  ///< of the nearest face that uses it
@@ -205,5 +198,7 @@ class Surface {
   std::vector<std::int16_t> face_numbers_;
   std::vector<std::int16_t> vertex_numbers_;
 };
+
+using Surface = InnerSurface;
 
 }  // namespace pd::detail

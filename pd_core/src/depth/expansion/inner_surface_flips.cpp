@@ -1,3 +1,5 @@
+/// @file
+/// Reflex edges flipped: what a surface loses in convexity while its points move is won back where that is cheap.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +28,7 @@ Plane plane_through(const Vec3& p, const Vec3& q, const Vec3& r) {
 
 }  // namespace
 
-void Surface::set_plane(int f, const Vec3& normal, double level, double key) {
+void InnerSurface::set_plane(int f, const Vec3& normal, double level, double key) {
   nx_[f] = normal.x();
   ny_[f] = normal.y();
   nz_[f] = normal.z();
@@ -34,12 +36,12 @@ void Surface::set_plane(int f, const Vec3& normal, double level, double key) {
   keys_[f] = key;
 }
 
-void Surface::join(std::int32_t outside, std::int32_t edge) {
+void InnerSurface::join(std::int32_t outside, std::int32_t edge) {
   triangles_[edge >> 2].adj[edge & 3] = outside;
   triangles_[outside >> 2].adj[outside & 3] = edge;
 }
 
-void Surface::straighten() {
+void InnerSurface::flip_reflex_edges() {
   open_edges_.clear();
   for (int f = 0; f < slots_; ++f) {
     if (keys_[f] == kRemoved) continue;
@@ -57,7 +59,7 @@ void Surface::straighten() {
   nearest_ = least_key(keys_.data(), slots_);
 }
 
-bool Surface::is_reflex(int f, std::int32_t e) const {
+bool InnerSurface::is_reflex(int f, std::int32_t e) const {
   const std::int32_t beyond = triangles_[f].adj[e];
   const Vec3& apex = vertices[triangles_[beyond >> 2].v[last_edge(beyond & 3)]].x;
   return normal(f).dot(apex) > levels_[f];
@@ -65,7 +67,7 @@ bool Surface::is_reflex(int f, std::int32_t e) const {
 
 /// Two faces u v a and v u w with a reflex edge u v become u w a and w v a; where u or v has no other face but one,
 /// they and that one become a single face. Nothing happens where the new faces would not have the origin behind them.
-void Surface::flip(int f, std::int32_t e) {
+void InnerSurface::flip(int f, std::int32_t e) {
   if (keys_[f] == kRemoved || !is_reflex(f, e)) return;
   const int g = triangles_[f].adj[e] >> 2;
   const std::int32_t h = triangles_[f].adj[e] & 3;
@@ -92,18 +94,18 @@ void Surface::flip(int f, std::int32_t e) {
   for (const std::int32_t edge : {4 * f, 4 * f + 2, 4 * g, 4 * g + 1}) open_edges_.push_back(edge);
 }
 
-/// Faces f, g and `third` are all that the vertex has: the triangle round them takes their place, unless the vertex
+/// Faces f, g and `third` are all that the vertex has: the triangle around them takes their place, unless the vertex
 /// lies above it. `beyond_first`, `beyond_last`: across its first and second edge.
-void Surface::drop_vertex(int f, int g, int third, const std::array<std::int32_t, 3>& round, std::int32_t vertex,
-                          std::int32_t beyond_first, std::int32_t beyond_second) {
+void InnerSurface::drop_vertex(int f, int g, int third, const std::array<std::int32_t, 3>& around, std::int32_t vertex,
+                               std::int32_t beyond_first, std::int32_t beyond_second) {
   if (in_use_ <= 4) return;
-  const Plane plane = plane_through(vertices[round[0]].x, vertices[round[1]].x, vertices[round[2]].x);
+  const Plane plane = plane_through(vertices[around[0]].x, vertices[around[1]].x, vertices[around[2]].x);
   if (!(plane.key > 0) || plane.normal.dot(vertices[vertex].x) > plane.level) return;
   const SurfaceTriangle& last = triangles_[third];
   std::int32_t e = 0;
   while (last.v[e] == vertex || last.v[next_edge(e)] == vertex) ++e;
   const std::int32_t beyond_third = last.adj[e];
-  triangles_[f] = {{round[0], round[1], round[2]}, {}};
+  triangles_[f] = {{around[0], around[1], around[2]}, {}};
   set_plane(f, plane.normal, plane.level, plane.key);
   for (const int gone : {g, third}) keys_[gone] = levels_[gone] = kRemoved;
   in_use_ -= 2;

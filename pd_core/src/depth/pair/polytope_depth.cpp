@@ -70,7 +70,7 @@ ExpansionGoal PolytopeQuery::goal() const {
   goal.absolute = kCertifiedWidth;
   goal.relative = settings_.delta;
   goal.vertices = pair_.a->num_vertices() + pair_.b->num_vertices();
-  goal.budget = ExpansionBudget::limit(goal.vertices);
+  goal.max_steps = ExpansionBudget::max_steps(goal.vertices);
   return goal;
 }
 
@@ -107,7 +107,7 @@ ExpansionResult PolytopeQuery::expand() {
     return result;
   }
   difference_.turn(buffers_.posed);
-  Expansion<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
+  ExpandingPolytope<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
   if (restored) {
     result = expansion.resume(goal());
     out_.warm = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;

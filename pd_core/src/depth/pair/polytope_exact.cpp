@@ -5,7 +5,7 @@
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
-#include "depth/expansion/surface_bound.hpp"
+#include "depth/expansion/expanding_polytope.hpp"
 #include "depth/pair/polytope_query.hpp"
 
 namespace pd::detail {
@@ -89,7 +89,8 @@ void PolytopeQuery::solve_overlapping_exactly(const ExpansionResult& result) {
 /// The origin is known to lie in P.
 void PolytopeQuery::finish_from(const PosedPair& posed, const VertexPair* seed, int count,
                                 const ExactNearest* nearest) {
-  const ExactDepth exact = exact_expansion(posed, seed, count, 4 * difference_.budget());
+  const ExactDepth exact = exact_expanding_polytope(
+      posed, seed, count, 4 * ExpansionBudget::min_steps(pair_.a->num_vertices() + pair_.b->num_vertices()));
   out_.statistics.support_calls += exact.support_calls;
   out_.statistics.facets_visited += exact.facets_visited;
   if (!exact.complete) {
@@ -112,8 +113,8 @@ void PolytopeQuery::solve_by_overlay(double upper) {
 
 /// By supports along the normals of the surface's nearest faces.
 void PolytopeQuery::tighten_upper(ExpansionResult& result) {
-  result.upper = std::min(result.upper,
-                          least_height(difference_, buffers_.surface, buffers_.stack, out_.statistics.support_calls));
+  result.upper = std::min(result.upper, upper_bound_of_nearest_faces(difference_, buffers_.surface, buffers_.stack,
+                                                                     out_.statistics.support_calls));
 }
 
 /// Of the few pieces that may be nearest, the one that is. Those pieces and what lies beyond cover the boundary of P,
@@ -179,7 +180,7 @@ void PolytopeQuery::finish_nearest(const PosedPair& posed, const OverlayDepth& f
     } else if (found.has_facet) {
       finish_touching(posed, normal_of(posed, found.facet), nearest, pair_.margins, out_);
     } else {
-      const ExactDepth flat = exact_expansion(posed, &any, 1, std::numeric_limits<int>::max());
+      const ExactDepth flat = exact_expanding_polytope(posed, &any, 1, std::numeric_limits<int>::max());
       finish_touching(posed, *flat.normal, nearest, pair_.margins, out_);
     }
   }

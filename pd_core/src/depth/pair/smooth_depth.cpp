@@ -58,8 +58,8 @@ class SmoothQuery {
     goal.relative = delta_;
     goal.absolute = kAbsolute;
     goal.touching = kAbsolute;
-    Expansion<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
-    goal.fold = 4 * difference_.point_error();
+    ExpandingPolytope<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
+    goal.max_loss = 4 * difference_.point_error();
     ExpansionResult best = expansion.run(Vec3::Zero(), goal);
     out_.statistics.support_calls += expansion.support_calls();
     out_.statistics.facets_visited += expansion.facets_visited();
@@ -68,7 +68,7 @@ class SmoothQuery {
       for (int i = 0; i < 3; ++i) corners_[i] = buffers_.surface.vertices[face.v[i]];
     }
     if (best.status != ExpansionStatus::undecided) return best;
-    best = folded_expansion(difference_, buffers_.exact_surface, best.normal, goal, out_.statistics.support_calls);
+    best = expand_exact_hull(difference_, buffers_.exact_surface, best.normal, goal, out_.statistics.support_calls);
     if (best.face >= 0) {
       const ExactSurface::Face& face = buffers_.exact_surface.face(best.face);
       for (int i = 0; i < 3; ++i) {
