@@ -1,40 +1,10 @@
 #include "scenes/worlds.hpp"
 
-#include <cmath>
+#include "scenes/world_parts.hpp"
 
 namespace pd::scenes {
 
 namespace {
-
-/// The same numbers on every platform (the standard's distributions are not).
-class Stream {
- public:
-  explicit Stream(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 0x2545F4914F6CDD1DULL) {}
-  /// In [-1, 1).
-  double next() {
-    state_ ^= state_ << 13;
-    state_ ^= state_ >> 7;
-    state_ ^= state_ << 17;
-    return static_cast<double>(state_ >> 11) * 0x1p-52 - 1;
-  }
-  Vec3 vector() {
-    const double x = next();
-    const double y = next();
-    return {x, y, next()};
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v = vector();
-      if (v.norm() > 0.1 && v.norm() <= 1) {
-        return v.normalized();
-      }
-    }
-  }
-  Eigen::Quaterniond orientation() { return Eigen::Quaterniond(Eigen::AngleAxisd(M_PI * next(), direction())); }
-
- private:
-  std::uint64_t state_;
-};
 
 constexpr double kDensity = 700;  // wood
 
@@ -56,25 +26,7 @@ WorldBody box_hull(const Vec3& half, const Vec3& at, int colour) {
   return body;
 }
 
-WorldBody cylinder(double radius, double half_height, const Vec3& at, int colour) {
-  WorldBody body;
-  body.kind = WorldBody::Kind::cylinder;
-  body.half_extents = Vec3(radius, radius, half_height);
-  body.mass = kDensity * M_PI * radius * radius * 2 * half_height;
-  body.position = at;
-  body.colour = colour;
-  return body;
-}
-
-/// A rough stone: points on an ellipsoid's surface.
-WorldBody stone(Stream& random, double radius, int points, const Vec3& at, int colour) {
-  WorldBody body;
-  const Vec3 radii = radius * (Vec3::Ones() + 0.3 * random.vector());
-  for (int i = 0; i < points; ++i) {
-    body.points.push_back(radii.cwiseProduct(random.direction()));
-  }
-  body.mass = kDensity * 4.0 / 3 * M_PI * radii.prod();
-  body.position = at;
+WorldBody coloured(WorldBody body, int colour) {
   body.colour = colour;
   return body;
 }
@@ -106,7 +58,7 @@ World small_towers(std::uint64_t seed) {
     world.bodies.push_back(body);
   }
   for (int i = 0; i < 8; ++i) {
-    WorldBody body = cylinder(h, h, Vec3(0.03 + 4e-4 * random.next(), 4e-4 * random.next(), h + 2 * h * i), 1);
+    WorldBody body = cylinder(h, h, Vec3(0.03 + 4e-4 * random.next(), 4e-4 * random.next(), h + 2 * h * i));
     body.orientation = Eigen::AngleAxisd(M_PI * random.next(), Vec3::UnitZ());
     world.bodies.push_back(body);
   }
@@ -130,8 +82,8 @@ World deep_pile(std::uint64_t seed) {
         const Vec3 at =
             Vec3(1.45 * r * (column - 1), 1.45 * r * (row - 1), r + 1.45 * r * layer) + 0.2 * r * random.vector();
         WorldBody body = made % 3 == 0   ? box_hull(r * (Vec3::Constant(0.9) + 0.25 * random.vector()), at, 0)
-                         : made % 3 == 1 ? cylinder(0.9 * r, 0.9 * r, at, 1)
-                                         : stone(random, r, 18, at, 2);
+                         : made % 3 == 1 ? cylinder(0.9 * r, 0.9 * r, at)
+                                         : stone(random, r, 18, at);
         body.orientation = random.orientation();
         world.bodies.push_back(body);
       }
@@ -158,7 +110,7 @@ World fast_throws(std::uint64_t seed) {
   world.bodies.push_back(wall);
 
   // A long crystal turning end over end at the wall; a stone and a box that meet in front of it.
-  WorldBody crystal = stone(random, 0.16, 26, Vec3(-1.5, 0.42, 0.95), 0);
+  WorldBody crystal = coloured(stone(random, 0.16, 26, Vec3(-1.5, 0.42, 0.95)), 0);
   for (Vec3& point : crystal.points) {
     point.x() *= 2.2;
   }
@@ -172,7 +124,7 @@ World fast_throws(std::uint64_t seed) {
   left.angular_velocity = Vec3(9, -6, 11);
   world.bodies.push_back(left);
 
-  WorldBody right = stone(random, 0.2, 40, Vec3(1.25, -0.33, 0.6), 2);
+  WorldBody right = stone(random, 0.2, 40, Vec3(1.25, -0.33, 0.6));
   right.linear_velocity = Vec3(-22, 0, 1.5);
   right.angular_velocity = Vec3(-5, 8, 3);
   world.bodies.push_back(right);

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,23 +15,36 @@
 namespace pd::scenes {
 
 struct WorldBody {
-  enum class Kind { hull, box, cylinder, sphere };
+  enum class Kind { hull, box, cylinder, sphere, capsule, compound, mesh, heightfield };
   Kind kind = Kind::hull;
-  std::vector<Vec3> points = {};     ///< hull
-  Vec3 half_extents = Vec3::Zero();  ///< box; cylinder: (radius, radius, half height), axis z; sphere: (radius, ...)
-  double mass = 0;                   ///< 0: it stands still
+  std::vector<Vec3> points = {};  ///< hull; mesh; heightfield: a square grid row by row, y outermost
+  /// box; cylinder: (radius, radius, half height), axis z; sphere: (radius, ...); capsule: (radius, radius, half length
+  /// of the segment), axis z
+  Vec3 half_extents = Vec3::Zero();
+  std::vector<std::array<int, 3>> triangles = {};  ///< mesh: counter-clockwise from above
+  std::vector<WorldBody> parts = {};               ///< compound: convex bodies, posed in its frame
+  double mass = 0;                                 ///< 0: it stands still
   Vec3 position = Vec3::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Vec3 linear_velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
-  int colour = 0;     ///< class, for pictures
-  bool drawn = true;  ///< false: the floor, which the studio shows itself
+  std::optional<double> friction = {};  ///< of this body; else the world's
+  int colour = 0;                       ///< class, for pictures
+  bool drawn = true;                    ///< false: the floor, which the studio shows itself
+};
+
+/// Two bodies that share a point.
+struct WorldJoint {
+  int body_a = 0;
+  int body_b = 0;
+  Vec3 at = Vec3::Zero();  ///< in the world, at the start
 };
 
 struct World {
   std::string name;
   std::string title;  ///< a few words for captions
   std::vector<WorldBody> bodies;
+  std::vector<WorldJoint> joints = {};
   Vec3 gravity{0, 0, -9.81};
   double friction = 0.6;
   double restitution = 0;

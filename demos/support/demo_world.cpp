@@ -14,6 +14,7 @@
 #include "pd/depth/scratch.hpp"
 #include "pd/render/mesh.hpp"
 #include "pd/render/palette.hpp"
+#include "scenes/bullet/bullet_scene.hpp"
 
 namespace pd::demo {
 
@@ -45,31 +46,6 @@ class CountedSolver : public btConvexPenetrationDepthSolver {
  private:
   std::unique_ptr<btConvexPenetrationDepthSolver> solver_;
 };
-
-std::unique_ptr<btConvexShape> make_shape(const scenes::WorldBody& body) {
-  std::unique_ptr<btConvexShape> shape;
-  switch (body.kind) {
-    case scenes::WorldBody::Kind::hull: {
-      auto hull = std::make_unique<btConvexHullShape>();
-      for (const Vec3& point : body.points) {
-        hull->addPoint(to_bullet(point), false);
-      }
-      hull->setMargin(0);
-      hull->recalcLocalAabb();
-      return hull;
-    }
-    case scenes::WorldBody::Kind::box:
-      shape = std::make_unique<btBoxShape>(to_bullet(body.half_extents));
-      break;
-    case scenes::WorldBody::Kind::cylinder:
-      shape = std::make_unique<btCylinderShapeZ>(to_bullet(body.half_extents));
-      break;
-    case scenes::WorldBody::Kind::sphere:
-      return std::make_unique<btSphereShape>(static_cast<btScalar>(body.half_extents.x()));
-  }
-  shape->setMargin(0);
-  return shape;
-}
 
 }  // namespace
 
@@ -155,7 +131,7 @@ DemoWorld::DemoWorld(const scenes::World& world, SolverKind kind) : state_(std::
   s.world.getSolverInfo().m_numIterations = world.solver_iterations;
   s.world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   for (const scenes::WorldBody& plan : world.bodies) {
-    s.bullet_shapes.push_back(make_shape(plan));
+    s.bullet_shapes.push_back(scenes::convex_bullet_shape(plan, false, 0));
     btConvexShape& shape = *s.bullet_shapes.back();
     btVector3 inertia(0, 0, 0);
     if (plan.mass > 0) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "friction_anchor.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 
@@ -146,7 +147,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   if (owns_manifold_) {
     memory_->shape_a = answer->shape_a;
     memory_->shape_b = answer->shape_b;
-    replace_points(*answer, static_cast<double>(threshold), a, result);
+    replace_points(*answer, static_cast<double>(threshold), result);
   } else {
     add_points(*answer, static_cast<double>(threshold), result);
   }
@@ -155,50 +156,55 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
 void ContactAlgorithm::add_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result) {
   const ContactManifold fresh = solver_.manifold(answer, threshold);
   const btVector3 normal = to_bullet(fresh.normal);
+  const btTransform& body_a = manifold_->getBody0()->getWorldTransform();
   for (int k = 0; k < fresh.count; ++k) {
-    result->addContactPoint(normal, to_bullet(fresh.points[k].position_b),
-                            static_cast<btScalar>(-fresh.points[k].depth));
+    const btVector3 point_on_b = to_bullet(fresh.points[k].position_b);
+    const auto distance = static_cast<btScalar>(-fresh.points[k].depth);
+    const int entry = entry_near(*manifold_, body_a.invXform(point_on_b + normal * distance));
+    const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold_->getContactPoint(entry)) : FrictionAnchor();
+    add_anchored_point(*result, *manifold_, normal, point_on_b, distance, entry, anchor);
   }
 }
 
-void ContactAlgorithm::replace_points(const BulletPairAnswer& answer, double threshold,
-                                      const btCollisionObjectWrapper* a, btManifoldResult* result) {
+void ContactAlgorithm::replace_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result) {
   const ContactManifold fresh = solver_.manifold(answer, threshold);
   const btVector3 normal = to_bullet(fresh.normal);
-  const btTransform& body_a = a->getCollisionObject()->getWorldTransform();
+  const btTransform& body_a = manifold_->getBody0()->getWorldTransform();
   std::array<btVector3, 4> local_a;
   for (int k = 0; k < fresh.count; ++k) {
     const auto distance = static_cast<btScalar>(-fresh.points[k].depth);
     local_a[k] = body_a.invXform(to_bullet(fresh.points[k].position_b) + normal * distance);
   }
-  const Matching matching = match_points(*manifold_, *memory_, fresh, local_a);
+  Matching matching = match_points(*manifold_, *memory_, fresh, local_a);
   // Bullet's `addContactPoint` hands impulses, life time and user data to the new point that falls on an old one. So a
   // matched old point is moved to its heir first; that keeps Bullet's contact callbacks right, which clearing would
   // not.
+  std::array<FrictionAnchor, 4> anchors;
   for (int i = manifold_->getNumContacts() - 1; i >= 0; --i) {
     if (matching[i] < 0) {
-      manifold_->removeContactPoint(i);  // moves the last point into the gap: those behind are dealt with already
+      // Moves the last point into the gap: those behind are dealt with already.
+      const int last = manifold_->getNumContacts() - 1;
+      anchors[i] = anchors[last];
+      manifold_->removeContactPoint(i);
     } else {
-      manifold_->getContactPoint(i).m_localPointA = local_a[matching[i]];
+      btManifoldPoint& old = manifold_->getContactPoint(i);
+      anchors[i] = anchor_of(old);
+      old.m_localPointA = local_a[matching[i]];
     }
   }
   for (int k = 0; k < fresh.count; ++k) {
-    result->addContactPoint(normal, to_bullet(fresh.points[k].position_b),
-                            static_cast<btScalar>(-fresh.points[k].depth));
+    const int near = entry_near(*manifold_, local_a[k]);
+    const int entry =
+        add_anchored_point(*result, *manifold_, normal, to_bullet(fresh.points[k].position_b),
+                           static_cast<btScalar>(-fresh.points[k].depth), near, anchors[std::max(near, 0)]);
+    if (entry >= 0) {
+      memory_->points[entry].feature_id = fresh.points[k].feature_id;
+    }
   }
-  memory_->num_points = 0;
-  for (int i = 0; i < manifold_->getNumContacts(); ++i) {
+  memory_->num_points = manifold_->getNumContacts();
+  for (int i = 0; i < memory_->num_points; ++i) {
+    memory_->points[i].local_a = manifold_->getContactPoint(i).m_localPointA;
     ++manifold_->getContactPoint(i).m_lifeTime;
-    const btVector3& stored = manifold_->getContactPoint(i).m_localPointA;
-    int nearest = -1;
-    for (int k = 0; k < fresh.count; ++k) {
-      if (nearest < 0 || (stored - local_a[k]).length2() < (stored - local_a[nearest]).length2()) {
-        nearest = k;
-      }
-    }
-    if (nearest >= 0) {
-      memory_->points[memory_->num_points++] = {stored, fresh.points[nearest].feature_id};
-    }
   }
 }
 

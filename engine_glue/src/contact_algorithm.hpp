@@ -39,8 +39,7 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
   };
 
  private:
-  void replace_points(const BulletPairAnswer& answer, double threshold, const btCollisionObjectWrapper* a,
-                      btManifoldResult* result);
+  void replace_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result);
   void add_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result);
   void process_by_bullet(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
                          const btTransform& transform_b, const btDispatcherInfo& info, btScalar threshold,

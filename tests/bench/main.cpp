@@ -12,6 +12,9 @@
 #include "bench/pairs/coherent.hpp"
 #include "bench/pairs/meshes.hpp"
 #include "bench/pairs/pairs.hpp"
+#ifdef PD_BENCH_WITH_CONTACT
+#include "bench/contact/contact.hpp"
+#endif
 #ifdef PD_BENCH_WITH_RENDER
 #include "bench/plots/plots.hpp"
 #endif
@@ -138,6 +141,23 @@ int coherent_command(const Options& o) {
   return good ? 0 : 1;
 }
 
+#ifdef PD_BENCH_WITH_CONTACT
+void add_contact_options(CLI::App& command, ContactOptions& o) {
+  command.add_option("--scene,--scenes", o.scenes, "names of scenes (default: all)")->delimiter(',');
+  command.add_option("--runs", o.runs, "names of runs (default: all)")->delimiter(',');
+  command.add_option("--rates", o.rates, "steps a second (default: 60,240; quick 60)")->delimiter(',');
+  command.add_option("--settings", o.settings, "of the constraint solver")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"default", "recommended"}))
+      ->capture_default_str();
+  command.add_option("--starts", o.starts, "perturbed starts of each scene (default: 10, quick 1)");
+  command.add_option("--seconds", o.seconds, "simulated time of each run (default: the scene's own)");
+  command.add_flag("--quick", o.quick, "a few minutes: short runs from one start");
+  command.add_option("--csv", o.csv, "writes the table to this file");
+  command.add_option("--plots", o.plots, "writes pictures into this folder");
+}
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -181,7 +201,15 @@ int main(int argc, char** argv) {
   hash->add_option("--seed", options.hash.seed)->capture_default_str();
   hash->add_option("--out", options.hash.out, "writes the rows to this file");
   hash->add_option("--check", options.hash.check, "compares them with this file");
+#ifdef PD_BENCH_WITH_CONTACT
+  ContactOptions contact_options;
+  CLI::App* contact = app.add_subcommand("contact", "worlds: Bullet's ways to find contacts beside ours");
+  add_contact_options(*contact, contact_options);
+#endif
   CLI11_PARSE(app, argc, argv);
+#ifdef PD_BENCH_WITH_CONTACT
+  if (*contact) return run_contact(contact_options);
+#endif
   if (*hash) return run_hash(options.hash);
   if (*agarwal) return run_agarwal(options.agarwal);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();

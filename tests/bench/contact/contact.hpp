@@ -1,0 +1,25 @@
+/// @file
+/// `pdepth-bench contact`: worlds under Bullet's ways to find contacts and ours.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pd::bench {
+
+struct ContactOptions {
+  std::vector<std::string> scenes;                              ///< names; none: all (quick: the quick ones)
+  std::vector<std::string> runs;                                ///< names; none: all
+  std::vector<double> rates;                                    ///< steps a second; none: 60 and 240 (quick: 60)
+  std::vector<std::string> settings{"default", "recommended"};  ///< of the constraint solver
+  int starts = 0;                                               ///< perturbed starts a scene; 0: 10, quick 1
+  double seconds = 0;                                           ///< of each run; 0: the scene's own
+  bool quick = false;
+  std::string csv;
+  std::string plots;
+};
+
+/// Prints a table and its verdicts, writes the files that were asked for. @return the program's exit code.
+int run_contact(const ContactOptions& options);
+
+}  // namespace pd::bench

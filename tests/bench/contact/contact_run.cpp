@@ -1,0 +1,267 @@
+#include "bench/contact/contact_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/measure/stopwatch.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_conversion.hpp"
+#include "pd/bullet/solver_settings.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+
+namespace pd::bench {
+
+namespace {
+
+using scenes::BulletScene;
+using scenes::ContactGoal;
+using scenes::ContactScene;
+using scenes::WorldBody;
+
+/// A convex piece of a body, as measured: sharp and without margins.
+struct Piece {
+  int body;
+  ConvexShape shape;
+  Pose local;
+  Vec3 centre;
+  double radius;
+};
+
+Pose pose_of(const WorldBody& body) {
+  return Pose::from_trusted_matrix(body.orientation.toRotationMatrix(), body.position);
+}
+
+Piece piece_of(int body, ConvexShape shape, const Pose& local) {
+  Vec3 lower = Vec3::Constant(1e30);
+  Vec3 upper = -lower;
+  if (const ConvexPolytope* polytope = shape.polytope()) {
+    for (int i = 0; i < polytope->num_vertices(); ++i) {
+      lower = lower.cwiseMin(polytope->vertex(i));
+      upper = upper.cwiseMax(polytope->vertex(i));
+    }
+  } else {
+    lower = upper = Vec3::Zero();
+  }
+  const Vec3 middle = 0.5 * (lower + upper);
+  const double radius =
+      shape.polytope() != nullptr ? 0.5 * (upper - lower).norm() + shape.margin() : bounding_radius(shape);
+  return {body, std::move(shape), local, local.apply(middle), radius};
+}
+
+void collect(int index, const WorldBody& body, const Pose& local, std::vector<Piece>& pieces) {
+  if (body.kind == WorldBody::Kind::compound) {
+    for (const WorldBody& part : body.parts) {
+      collect(index, part, pose_of(part), pieces);
+    }
+  } else if (!body.triangles.empty()) {
+    // The ground under each triangle, one size deep: a body that passes through the surface is deep inside it.
+    for (const auto& triangle : body.triangles) {
+      std::vector<Vec3> points;
+      for (const int corner : triangle) {
+        points.push_back(body.points[corner]);
+        points.emplace_back(body.points[corner] - Vec3::UnitZ());
+      }
+      pieces.push_back(piece_of(index, ConvexShape(*ConvexPolytope::from_points(points)), local));
+    }
+  } else {
+    pieces.push_back(piece_of(index, *to_convex_shape(*scenes::convex_bullet_shape(body, false, 0)), local));
+  }
+}
+
+double quantile_or_zero(const std::vector<double>& values, double q) {
+  return values.empty() ? 0 : quantile(values, q);
+}
+
+class Runner {
+ public:
+  Runner(const ContactScene& scene, const ContactSetting& setting, double seconds)
+      : scene_(scene),
+        setting_(setting),
+        seconds_(seconds),
+        num_steps_(static_cast<int>(std::lround(seconds * setting.steps_per_second))),
+        bullet_(scene.world, setting.run) {
+    if (setting.recommended) {
+      apply_recommended(bullet_.world().getSolverInfo());
+    }
+    for (int i = 0; i < bullet_.num_bodies(); ++i) {
+      collect(i, scene.world.bodies[i], Pose(), pieces_);
+      starts_.push_back(to_pd(bullet_.body(i).getWorldTransform().getOrigin()));
+      weight_ += scene.world.bodies[i].mass * scene.world.gravity.norm() * scene.size;
+    }
+    start_energy_ = scenes::mechanical_energy(bullet_);
+    figures_.fall_seconds = seconds;
+    sample_every_ = std::max(1, static_cast<int>(setting.steps_per_second / 30));
+  }
+
+  [[nodiscard]] bool done() const { return done_; }
+
+  void step() {
+    const BulletSolverStatistics before = bullet_.solver().statistics();
+    const auto begin = Clock::now();
+    bullet_.step(setting_.steps_per_second);
+    const auto end = Clock::now();
+    const BulletSolverStatistics after = bullet_.solver().statistics();
+    step_ms_.push_back(1e-6 * elapsed_ns(begin, end));
+    if (after.calls > before.calls) {
+      query_ns_.push_back(static_cast<double>(after.nanoseconds - before.nanoseconds) /
+                          static_cast<double>(after.calls - before.calls));
+    }
+    ++steps_;
+    watch_motion();
+    const bool late = 4 * steps_ > 3 * num_steps_;
+    if (steps_ % sample_every_ == 0) {
+      const double deepest = deepest_penetration();
+      figures_.deepest = std::max(figures_.deepest, deepest);
+      figures_.deepest_late = late ? std::max(figures_.deepest_late, deepest) : 0;
+    }
+    if (late) {
+      count_points();
+    }
+    done_ = done_ || steps_ >= num_steps_;
+  }
+
+  [[nodiscard]] ContactFigures finish() {
+    figures_.step_p50_ms = quantile_or_zero(step_ms_, 0.5);
+    figures_.step_p99_ms = quantile_or_zero(step_ms_, 0.99);
+    figures_.step_max_ms = quantile_or_zero(step_ms_, 1);
+    figures_.query_ns = quantile_or_zero(query_ns_, 0.5);
+    figures_.tail_speed = tail_steps_ > 0 ? tail_speed_ / tail_steps_ : 0;
+    figures_.contacts = late_steps_ > 0 ? points_ / late_steps_ : 0;
+    figures_.new_points = points_ > 0 ? young_ / points_ : 0;
+    figures_.final_speed = static_cast<double>(bullet_.body(bullet_.first_moving()).getLinearVelocity().x());
+    figures_.lost = lost();
+    return figures_;
+  }
+
+ private:
+  void watch_motion() {
+    double farthest = 0;
+    double fastest = 0;
+    for (int i = 0; i < bullet_.num_bodies(); ++i) {
+      if (scene_.world.bodies[i].mass == 0) {
+        continue;
+      }
+      farthest = std::max(farthest, (to_pd(bullet_.body(i).getWorldTransform().getOrigin()) - starts_[i]).norm());
+      fastest = std::max(fastest, static_cast<double>(bullet_.body(i).getLinearVelocity().length()));
+    }
+    figures_.drift = farthest / scene_.size;
+    figures_.energy_gained = std::max(figures_.energy_gained,
+                                      (scenes::mechanical_energy(bullet_) - start_energy_) / std::max(weight_, 1e-30));
+    if (10 * steps_ > 9 * num_steps_) {
+      tail_speed_ += fastest;
+      ++tail_steps_;
+    }
+    if (scene_.goal == ContactGoal::stand && !(figures_.drift <= 0.5)) {
+      figures_.fall_seconds = steps_ / setting_.steps_per_second;
+      done_ = true;
+    }
+  }
+
+  double deepest_penetration() {
+    const std::size_t count = pieces_.size();
+    std::vector<Pose> poses;
+    std::vector<Vec3> centres;
+    for (const Piece& piece : pieces_) {
+      const Pose body = to_pd(bullet_.body(piece.body).getWorldTransform());
+      poses.push_back(
+          Pose::from_trusted_matrix(body.rotation() * piece.local.rotation(), body.apply(piece.local.translation())));
+      centres.push_back(body.apply(piece.centre));
+    }
+    double deepest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (scene_.world.bodies[pieces_[i].body].mass == 0) {
+        continue;
+      }
+      for (std::size_t j = 0; j < count; ++j) {
+        const bool fixed = scene_.world.bodies[pieces_[j].body].mass == 0;
+        const double reach = pieces_[i].radius + pieces_[j].radius;
+        if (pieces_[i].body == pieces_[j].body || (!fixed && j < i) ||
+            (centres[i] - centres[j]).squaredNorm() > reach * reach || jointed(pieces_[i].body, pieces_[j].body)) {
+          continue;
+        }
+        DepthSettings settings;
+        settings.bracket = Bracket::certified;
+        deepest = std::max(
+            deepest,
+            penetration_depth({&pieces_[i].shape, poses[i]}, {&pieces_[j].shape, poses[j]}, scratch_, settings).depth);
+      }
+    }
+    return deepest / scene_.size;
+  }
+
+  [[nodiscard]] bool jointed(int a, int b) const {
+    return std::any_of(scene_.world.joints.begin(), scene_.world.joints.end(), [&](const auto& joint) {
+      return (joint.body_a == a && joint.body_b == b) || (joint.body_a == b && joint.body_b == a);
+    });
+  }
+
+  void count_points() {
+    ++late_steps_;
+    for (int i = 0; i < bullet_.dispatcher().getNumManifolds(); ++i) {
+      const btPersistentManifold* manifold = bullet_.dispatcher().getManifoldByIndexInternal(i);
+      for (int k = 0; k < manifold->getNumContacts(); ++k) {
+        ++points_;
+        young_ += manifold->getContactPoint(k).getLifeTime() <= 1 ? 1 : 0;
+      }
+    }
+  }
+
+  [[nodiscard]] double lost() {
+    double count = 0;
+    for (int i = 0; i < bullet_.num_bodies(); ++i) {
+      const Vec3 at = to_pd(bullet_.body(i).getWorldTransform().getOrigin());
+      count += scene_.world.bodies[i].mass > 0 && !(at.z() > -2 * scene_.size && at.norm() < 1e3) ? 1 : 0;
+    }
+    return count;
+  }
+
+  const ContactScene& scene_;
+  ContactSetting setting_;
+  double seconds_;
+  int num_steps_;
+  BulletScene bullet_;
+  std::vector<Piece> pieces_;
+  std::vector<Vec3> starts_;
+  Scratch scratch_;
+  ContactFigures figures_;
+  std::vector<double> step_ms_;
+  std::vector<double> query_ns_;
+  double start_energy_ = 0;
+  double weight_ = 0;
+  double tail_speed_ = 0;
+  int tail_steps_ = 0;
+  double points_ = 0;
+  double young_ = 0;
+  int late_steps_ = 0;
+  int steps_ = 0;
+  int sample_every_ = 1;
+  bool done_ = false;
+};
+
+}  // namespace
+
+std::vector<ContactFigures> run_contact_scene(const ContactScene& scene, const std::vector<ContactSetting>& settings,
+                                              double seconds) {
+  std::vector<std::unique_ptr<Runner>> runners;
+  for (const ContactSetting& setting : settings) {
+    runners.push_back(std::make_unique<Runner>(scene, setting, seconds));
+  }
+  for (bool busy = true; busy;) {
+    busy = false;
+    for (const auto& runner : runners) {
+      if (!runner->done()) {
+        runner->step();
+        busy = true;
+      }
+    }
+  }
+  std::vector<ContactFigures> result;
+  for (const auto& runner : runners) {
+    result.push_back(runner->finish());
+  }
+  return result;
+}
+
+}  // namespace pd::bench

@@ -1,0 +1,44 @@
+/// @file
+/// One scene under several ways to find contacts, stepped in turns, with measurements that none of them makes for
+/// itself: penetration is measured by pd_core on the true poses of the outer, sharp shapes.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scenes/bullet/bullet_scene.hpp"
+#include "scenes/contact_worlds.hpp"
+
+namespace pd::bench {
+
+struct ContactSetting {
+  scenes::ContactRun run = scenes::ContactRun::pdepth;
+  double steps_per_second = 60;
+  bool recommended = false;  ///< `pd::apply_recommended`, else Bullet's defaults
+};
+
+/// What a run shows. Lengths in units of the scene's body size unless they say metres.
+struct ContactFigures {
+  double step_p50_ms = 0;
+  double step_p99_ms = 0;
+  double step_max_ms = 0;
+  double query_ns = 0;       ///< median over steps of the mean nanoseconds a depth query (ours; 0 for Bullet's)
+  double deepest = 0;        ///< largest exact penetration, sampled 30 times a second
+  double deepest_late = 0;   ///< the same over the last quarter
+  double drift = 0;          ///< largest way of a body from its start
+  double fall_seconds = 0;   ///< when a body was half a size away from its start; the whole time where none was
+  double tail_speed = 0;     ///< mean over the last tenth of the fastest body's speed; m/s
+  double final_speed = 0;    ///< of the first moving body along x at the end; m/s
+  double energy_gained = 0;  ///< largest excess over the start, in units of m g size of all bodies
+  double contacts = 0;       ///< mean over the last quarter
+  double new_points = 0;     ///< share of points younger than two steps, over the last quarter
+  double lost = 0;           ///< bodies below the ground or far away at the end
+};
+
+/// Runs the scene under every setting for `seconds`; settings share a step length. A scene whose goal is to stand ends
+/// for a setting when it has fallen. Steps are made in turns, so that disturbances of the machine meet all alike.
+[[nodiscard]] std::vector<ContactFigures> run_contact_scene(const scenes::ContactScene& scene,
+                                                            const std::vector<ContactSetting>& settings,
+                                                            double seconds);
+
+}  // namespace pd::bench
