@@ -83,7 +83,7 @@ bool round_certainly(const DoubleDouble& value, double error, double& down, doub
 ///
 /// For the rounded normal m, h_P(m) exceeds <p, n> of the nearest plane by at most |m - n| |x| over P, and both |m| - 1
 /// and |m - n| are below 2u: 2u |x| and, for the product with the length, 8u of it.
-bool fill_certified(const PosedPair& pair, const FacetOfDifference& facet, const Separation& separation,
+bool fill_certified(const PosedPair& pair, const PairVector& point, const Separation& separation,
                     PenetrationDepth& out) {
   constexpr double kU = 0x1p-53;
   const double depth = to_double(separation.depth());
@@ -91,8 +91,8 @@ bool fill_certified(const PosedPair& pair, const FacetOfDifference& facet, const
       pair.a().radius() + pair.b().radius() + (pair.pose_b().translation() - pair.pose_a().translation()).norm();
   const double slack = 16 * kU * (reach + depth) + separation.depth_error();
   if (!(depth > 4 * slack) || !(depth > 0x1p-900)) return false;
-  // A point of the facet bounds L from below; L itself costs twelve supports.
-  const double size = std::ldexp(pair.approximate(facet.point()).cwiseAbs().maxCoeff(), pair.scale_exponent());
+  // A point of P bounds L from below; L itself costs twelve supports.
+  const double size = std::ldexp(pair.approximate(point).cwiseAbs().maxCoeff(), pair.scale_exponent());
   if (!(1.5 * slack < kCertifiedWidth * size) && !(1.5 * slack < kCertifiedWidth * largest_coordinate(pair))) {
     return false;
   }
@@ -107,6 +107,43 @@ bool fill_certified(const PosedPair& pair, const FacetOfDifference& facet, const
 void set_witnesses(const CorePoints& core, const Margins& margins, PenetrationDepth& out) {
   out.witness_a = core.a - margins.a * out.normal;
   out.witness_b = core.b + margins.b * out.normal;
+}
+
+PairVector first_point(const ProvenSeparation& proof) {
+  return PairVector::point(proof.simplex[0].a, proof.simplex[0].b);
+}
+
+/// Cores apart by less than their margins: the depth is what is left of these.
+bool fill_overlapping_margins(const PosedPair& pair, const ProvenSeparation& proof, Separation& separation,
+                              const Margins& margins, Bracket bracket, PenetrationDepth& out) {
+  if (bracket == Bracket::certified && fill_certified(pair, first_point(proof), separation, out)) return true;
+  double up = 0;
+  if (!round_certainly(separation.depth(), separation.depth_error(), out.lower, up)) return false;
+  out.contact = ContactClass::overlapping;
+  out.upper = shortest_translation(pair, separation, separation.depth(), up, margins.both(), out.translation);
+  out.depth = out.upper;
+  return true;
+}
+
+/// Bodies apart for certain, in a bracket of neighbouring doubles or, where that is not asked for, of the error.
+bool fill_distance(const PosedPair& pair, const ProvenSeparation& proof, const Separation& separation, Bracket bracket,
+                   PenetrationDepth& out) {
+  const DoubleDouble distance = -separation.depth();
+  const double error = separation.depth_error();
+  double down = 0, up = 0;
+  if (!round_certainly(distance, error, down, up)) {
+    const double size = std::ldexp(pair.approximate(first_point(proof)).cwiseAbs().maxCoeff(), pair.scale_exponent());
+    const double slack = error + 0x1p-51 * distance.hi;
+    if (bracket != Bracket::certified || !(distance.hi > 0x1p-900) || !(distance.hi > 2 * slack)) return false;
+    if (!(2 * slack < kCertifiedWidth * size)) return false;
+    down = distance.hi - slack;
+    up = distance.hi + slack;
+  }
+  out.contact = ContactClass::separated;
+  out.distance_lower = down;
+  out.distance_upper = up;
+  out.distance = up;
+  return true;
 }
 
 }  // namespace
@@ -126,7 +163,7 @@ void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, c
     Separation separation(pair, facet, plane, margins.a, margins.b);
     out.normal = high(separation.unit());
     double up = 0;
-    if (bracket == Bracket::certified && fill_certified(pair, facet, separation, out)) {
+    if (bracket == Bracket::certified && fill_certified(pair, facet.point(), separation, out)) {
       // done
     } else if (round_certainly(separation.depth(), separation.depth_error(), out.lower, up)) {
       out.contact = ContactClass::overlapping;
@@ -158,32 +195,22 @@ void finish_touching(const PosedPair& pair, const ExactDirection& normal, const 
 }
 
 void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out) {
-  const Dyadic3& y = nearest.point;
-  const ExactDirection normal(Dyadic3{-y.x, -y.y, -y.z});
-  // The plane through the nearest point y / scale, normal to it.
-  finish(pair, {normal, nearest.scale, -dot(y, y)}, margins, out);
-  set_features(pair, normal, out);
+  const NearestPlane plane = exact_plane(nearest);
+  finish(pair, plane, margins, out);
+  set_features(pair, plane.normal, out);
   set_witnesses(split_apart(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count), margins, out);
 }
 
 bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces, const Margins& margins,
                   Bracket bracket, PenetrationDepth& out) {
-  const double scale = std::ldexp(1.0, pair.scale_exponent());
-  const DoubleDouble core = -DoubleDouble{proof.plane.distance.hi * scale, proof.plane.distance.lo * scale};
-  const DoubleDouble distance = core - two_sum(margins.a, margins.b);
-  const double error = proof.plane.distance_error * scale + 0x1p-100 * (core.hi + margins.both());
-  double down = 0, up = 0;
-  if (!round_certainly(distance, error, down, up)) {
-    if (bracket != Bracket::certified || !(distance.hi > 0x1p-900) || !(error < 0x1p-60 * distance.hi)) return false;
-    down = std::nextafter(distance.hi, 0.0);
-    up = std::nextafter(distance.hi, HUGE_VAL);
-  }
   clear_lengths(out);
-  out.contact = ContactClass::separated;
   out.normal = high(proof.plane.unit);
-  out.distance_lower = down;
-  out.distance_upper = up;
-  out.distance = up;
+  Separation separation(pair, proof, margins.a, margins.b);
+  if (separation.depth().hi > 0) {
+    if (!fill_overlapping_margins(pair, proof, separation, margins, bracket, out)) return false;
+  } else if (!fill_distance(pair, proof, separation, bracket, out)) {
+    return false;
+  }
   const FacetFeatures features = features_of(pair, faces, out.normal);
   out.feature_a = features.on_a;
   out.feature_b = features.on_b;

@@ -40,7 +40,7 @@ void finish_touching(const PosedPair& pair, const ExactDirection& normal, const 
 void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out);
 
 /// The same from a proof in double-double, `faces` collected with it. False, and nothing said, where that leaves the
-/// rounding of the distance open (or the margins make the bodies overlap).
+/// rounding of the distance, or of what the margins leave of it, open.
 [[nodiscard]] bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces,
                                 const Margins& margins, Bracket bracket, PenetrationDepth& out);
 

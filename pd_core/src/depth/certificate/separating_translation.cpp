@@ -207,6 +207,11 @@ NearestPlane exact_plane(const PosedPair& pair, const FacetOfDifference& facet) 
   return {std::move(normal), pair.homogeneous_factor(), std::move(level)};
 }
 
+NearestPlane exact_plane(const ExactNearest& nearest) {
+  const Dyadic3& y = nearest.point;  // times nearest.scale
+  return {ExactDirection(Dyadic3{-y.x, -y.y, -y.z}), nearest.scale, -dot(y, y)};
+}
+
 Separation::Separation(NearestPlane plane, const Dyadic& r)
     : plane_(std::move(plane)),
       radius_(r),
@@ -215,11 +220,25 @@ Separation::Separation(NearestPlane plane, const Dyadic& r)
 
 Separation::Separation(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane, double margin_a,
                        double margin_b)
-    : pair_(&pair), facet_(facet), margins_(two_sum(margin_a, margin_b)), unit_(plane.unit) {
-  const double scale = std::ldexp(1.0, pair.scale_exponent());
+    : facet_(facet) {
+  measure(pair, plane, margin_a, margin_b);
+}
+
+Separation::Separation(const PosedPair& pair, const ProvenSeparation& proof, double margin_a, double margin_b)
+    : apart_(&proof) {
+  measure(pair, proof.plane, margin_a, margin_b);
+}
+
+void Separation::measure(const PosedPair& pair, const FacetPlane& plane, double margin_a, double margin_b) {
+  pair_ = &pair;
+  margins_ = two_sum(margin_a, margin_b);
+  unit_ = plane.unit;
   unit_error_ = plane.unit_error;
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
   depth_ = scaled(plane.distance, scale) + margins_;
-  depth_error_ = (plane.distance_error * scale + 4 * kUdd * std::abs(depth_.hi)) * (1 + 4 * kU) + 0x1p-960;
+  // The sum's own error is relative to its greater part, which the other may cancel.
+  const double largest = std::max(std::abs(plane.distance.hi) * scale, margins_.hi);
+  depth_error_ = (plane.distance_error * scale + 4 * kUdd * largest) * (1 + 4 * kU) + 0x1p-960;
 }
 
 double Separation::slack(const DoubleDouble& depth) const {
@@ -248,7 +267,11 @@ bool Separation::reached(const Vec3& t) {
 
 const NearestPlane& Separation::plane() {
   if (!plane_) {
-    plane_ = exact_plane(*pair_, facet_);
+    if (apart_) {
+      plane_ = exact_plane(exact_nearest(*pair_, apart_->simplex.data(), apart_->count));
+    } else {
+      plane_ = exact_plane(*pair_, facet_);
+    }
     radius_ = Dyadic(margins_.hi) + Dyadic(margins_.lo);
   }
   return *plane_;

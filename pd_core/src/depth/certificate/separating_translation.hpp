@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "depth/certificate/facet_plane.hpp"
+#include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/difference/exact_support.hpp"
 
 namespace pd::detail {
@@ -19,6 +20,8 @@ struct NearestPlane {
 
 /// The plane of a facet of P.
 [[nodiscard]] NearestPlane exact_plane(const PosedPair& pair, const FacetOfDifference& facet);
+/// The plane through the point of P nearest to the origin, outside P, normal to it.
+[[nodiscard]] NearestPlane exact_plane(const ExactNearest& nearest);
 
 /// Where the half-space beyond the nearest plane of P, swept by a ball of radius r, begins: decides whether a
 /// translation reaches it. Double-double where that is certain, exact numbers behind it.
@@ -29,6 +32,9 @@ class Separation {
   /// The plane of a facet, made exact only where it must be. Refers to the pair. The plane must be known.
   Separation(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane, double margin_a,
              double margin_b);
+
+  /// The plane of cores that are apart, which the margins make overlap; the same.
+  Separation(const PosedPair& pair, const ProvenSeparation& proof, double margin_a, double margin_b);
 
   /// <normal, t> >= h_P(normal) + r |normal|, exactly.
   [[nodiscard]] bool reached(const Vec3& t);
@@ -49,8 +55,11 @@ class Separation {
   }
 
  private:
+  void measure(const PosedPair& pair, const FacetPlane& plane, double margin_a, double margin_b);
+
   const PosedPair* pair_ = nullptr;
   FacetOfDifference facet_;
+  const ProvenSeparation* apart_ = nullptr;  ///< instead of a facet
   DoubleDouble margins_;
   std::optional<NearestPlane> plane_;
   Dyadic radius_;

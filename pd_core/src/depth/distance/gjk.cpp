@@ -43,14 +43,22 @@ void consider_edge(Candidate& best, const DifferenceVertex* s, int i, int j) {
   consider(best, s, {i, j}, {s[j].x.dot(e) / squared, -s[i].x.dot(e) / squared});
 }
 
-void consider_triangle(Candidate& best, const DifferenceVertex* s, int i, int j, int k) {
+/// False where the origin's projection lies outside.
+bool consider_triangle(Candidate& best, const DifferenceVertex* s, int i, int j, int k) {
   const Vec3 n = (s[j].x - s[i].x).cross(s[k].x - s[i].x);
   const double squared = n.squaredNorm();
-  if (!(squared > 0)) return;
+  if (!(squared > 0)) return false;
   const double wi = n.dot(s[j].x.cross(s[k].x)) / squared;
   const double wj = n.dot(s[k].x.cross(s[i].x)) / squared;
   const double wk = n.dot(s[i].x.cross(s[j].x)) / squared;
   consider(best, s, {i, j, k}, {wi, wj, wk});
+  return wi > 0 && wj > 0 && wk > 0;
+}
+
+/// No angle at the first corner below 2^-10.
+bool is_well_shaped(const DifferenceVertex* s) {
+  const Vec3 u = s[1].x - s[0].x, v = s[2].x - s[0].x;
+  return u.cross(v).squaredNorm() > 0x1p-20 * u.squaredNorm() * v.squaredNorm();
 }
 
 /// Certain only beyond rounding: four nearly coplanar points enclose nothing.
@@ -73,7 +81,10 @@ Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&wei
     return Vec3::Zero();
   }
   Candidate best;
-  for (int i = 0; i < count; ++i) {
+  // A triangle that holds the projection holds the nearest point: bodies at rest end here. In a sliver rounding may say
+  // so, too.
+  const bool inside = count == 3 && is_well_shaped(simplex) && consider_triangle(best, simplex, 0, 1, 2);
+  for (int i = 0; i < count && !inside; ++i) {
     consider(best, simplex, {i}, {1.0});
     for (int j = i + 1; j < count; ++j) {
       consider_edge(best, simplex, i, j);

@@ -19,6 +19,7 @@ struct NearestResult {
   double lower = 0;
   double upper = 0;
   Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitX();  ///< unit; certified: the plane of `lower`, every point of P has <x, normal> <= -lower
   int count = 0;
   DifferenceVertex simplex[4];
   double weights[4];
@@ -27,6 +28,23 @@ struct NearestResult {
 /// Reduces the simplex to the face that holds its point nearest to the origin; returns that point. Weights sum to 1.
 /// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
 Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
+
+/// The direction to look for a support in: the opposite of the nearest point of the simplex, or of a triangle's plane.
+///
+/// The point errs by u times the reach, so that its direction errs by u reach / distance and the support there by
+/// u reach^2 / distance: a body on a wide floor would never be certified. A triangle's own normal knows no distance; as
+/// any unit direction gives a valid bound, it is taken wherever it is that direction but for the point's rounding.
+/// @param noise  of the point's coordinates, with something to spare: witnesses along the normal keep to it.
+inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, const Vec3& point, double length,
+                             double noise) {
+  const Vec3 toward = -point / length;
+  if (count != 3) return toward;
+  const Vec3 n = (simplex[1].x - simplex[0].x).cross(simplex[2].x - simplex[0].x);
+  const double size = n.norm();
+  if (!(size > 0)) return toward;
+  const Vec3 unit = n / (n.dot(toward) < 0 ? -size : size);
+  return (unit - toward).norm() <= std::min(0x1p-20, noise / length) ? unit : toward;
+}
 
 /// @param start     one to three vertices of P to begin with, affinely independent.
 /// @param relative  stop when upper <= (1 + relative) lower ...
@@ -41,15 +59,14 @@ NearestResult nearest_point(const Difference& difference, std::span<const Differ
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
   double best = r.point.norm();
-  // What is near the origin says little about L: look at P's far side once.
-  const DifferenceVertex far = difference.support(difference.centre(), nullptr);
-  ++support_calls;
-  double largest = std::max(start[0].x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
+  double largest = 0;
+  for (const DifferenceVertex& v : start) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+  bool seen_far_side = false;
   for (;;) {
     const double length = r.point.norm();
     r.upper = length + upper_error;
     if (!(length > 4 * lower_error)) return r;
-    const Vec3 toward = -r.point / length;
+    const Vec3 toward = search_direction(r.simplex, r.count, r.point, length, 6 * upper_error);
     DifferenceVertex s = difference.support(toward, &r.simplex[r.count - 1]);
     ++support_calls;
     largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
@@ -58,11 +75,19 @@ NearestResult nearest_point(const Difference& difference, std::span<const Differ
       r.lower = height - lower_error;
       return r.lower > 0 && (r.upper - r.lower <= absolute * largest || r.upper <= (1 + relative) * r.lower);
     };
+    if (!narrow() && !seen_far_side) {
+      // What is near the origin says little about L: look at P's far side once.
+      const DifferenceVertex far = difference.support(difference.centre(), nullptr);
+      ++support_calls;
+      largest = std::max(largest, far.x.cwiseAbs().maxCoeff());
+      seen_far_side = true;
+    }
     if (narrow()) {
       s = difference.certified_support(toward, s, stack);
       height = -s.x.dot(toward);
       if (narrow()) {
         r.certified = true;
+        r.normal = toward;
         return r;
       }
     }

@@ -172,7 +172,7 @@ bool PolytopeQuery::fill_separated(std::span<const DifferenceVertex> start) {
   for (int i = 0; i < nearest.count; ++i) start_[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
   start_count_ = nearest.count;
   if (!nearest.certified) return false;
-  out_.normal = -nearest.point.normalized();
+  out_.normal = nearest.normal;
   const double round = 4 * 0x1p-53 * (nearest.upper + margin);
   if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;
   remember_apart(std::span(start_).first(static_cast<std::size_t>(start_count_)));

@@ -152,7 +152,7 @@ class SmoothQuery {
     const double relative = margin_ > 0 ? 0.0 : delta_;
     NearestResult nearest = nearest_point(difference_, {&first, 1}, relative, 0.25 * kAbsolute, buffers_.stack,
                                           out_.statistics.support_calls);
-    Vec3 proven = -nearest.point.normalized();
+    Vec3 proven = nearest.normal;
     if (!nearest.certified) {
       const SmoothNearest near =
           smooth_nearest(difference_, first, relative, 0.25 * kAbsolute, out_.statistics.support_calls);
