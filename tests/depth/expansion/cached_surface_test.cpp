@@ -81,7 +81,7 @@ TEST(RememberedSurface, LeavesOnlyFarFacesAlone) {
             Vec3 x[3];
             for (int i = 0; i < 3; ++i) {
               const WarmCertificate::CachedVertex& v = state.vertices[static_cast<std::size_t>(face.vertex[i])];
-              x[i] = difference.turned_vertex(v.a, v.b).x;
+              x[i] = difference.posed_vertex(v.a, v.b).x;
             }
             distances.push_back(std::sqrt(squared_distance(x[0], x[1], x[2])));
           }

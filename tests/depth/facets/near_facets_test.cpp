@@ -48,7 +48,7 @@ void ask(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, c
   if (exact.contact != ContactClass::overlapping) return;
   PosedVerticesPair posed;
   PolytopeDifference difference(a, pose_a, b, pose_b);
-  difference.turn(posed);
+  difference.prepare_supports(posed);
   const double rounding = 1e-13 * difference.reach();
   const TiedFacetsSettings settings{exact.lower / slack - rounding, exact.upper * slack + rounding, kWidth};
   if (!(settings.lower > 0)) return;

@@ -11,9 +11,6 @@ namespace pd::detail {
 
 namespace {
 
-/// `Bracket::certified` less the last roundings, in units of L.
-constexpr double kCertifiedWidth = 1.8e-14;
-
 Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
 
 /// The supporting features in a direction where the cores do not overlap: at most one of them a facet, its partner a

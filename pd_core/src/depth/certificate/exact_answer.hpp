@@ -7,15 +7,12 @@
 #include "depth/certificate/support_faces.hpp"
 #include "depth/distance/gjk_exact.hpp"
 #include "pd/depth/depth_answer.hpp"
+#include "shape/margins.hpp"
 
 namespace pd::detail {
 
-/// The margins of two rounded bodies.
-struct Margins {
-  double a = 0;
-  double b = 0;
-  [[nodiscard]] double both() const { return a + b; }
-};
+/// Width of the bracket that doubles are asked for, in units of L: `Bracket::certified` less the last roundings.
+inline constexpr double kCertifiedWidth = 1.8e-14;
 
 /// Core answers, margins added: the cores overlap and the plane of `facet` is the nearest plane of a facet of P (or
 /// supports the whole of P there, with more of it than `facet` names).

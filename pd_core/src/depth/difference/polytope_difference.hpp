@@ -34,7 +34,7 @@ struct PosedVerticesPair {
 
 class PolytopeDifference {
  public:
-  /// Of supports it can `confirm` only, until `turn` is called.
+  /// Of supports it can `confirm` only, until `prepare_supports` is called.
   PolytopeDifference(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b)
       : a_(a),
         b_(b),
@@ -45,9 +45,10 @@ class PolytopeDifference {
         normal_scale_(power_of_two_below(1 / (reach_ * reach_))),
         climbs_(a.num_vertices() > kScanLimit || b.num_vertices() > kScanLimit) {}
 
-  /// Makes ready for supports. `posed` is a buffer; it must live as long as the difference.
-  void turn(PosedVerticesPair& posed) {
-    if (climbs_) return;
+  /// Transforms the vertices, where supports scan them; done once. `posed` is a buffer; it must live as long as the
+  /// difference and serve no other.
+  void prepare_supports(PosedVerticesPair& posed) {
+    if (climbs_ || posed_a_.count > 0) return;
     posed_a_ = posed.a.turn(a_, -rotation_a_);
     posed_b_ = posed.b.turn(b_, rotation_b_);
   }
@@ -96,16 +97,16 @@ class PolytopeDifference {
               ia,
               ib};
     }
-    return turned_vertex(ia, ib);
+    return posed_vertex(ia, ib);
   }
-  /// The same whether `turn` was called or not.
-  [[nodiscard]] DifferenceVertex turned_vertex(int ia, int ib) const {
+  /// The same whether `prepare_supports` was called or not.
+  [[nodiscard]] DifferenceVertex posed_vertex(int ia, int ib) const {
     return {(rotation_b_ * b_.vertex(ib) - rotation_a_ * a_.vertex(ia)) + offset_, ia, ib};
   }
 
-  /// `turned_vertex` of many pairs of ids {a, b}.
+  /// `posed_vertex` of many pairs of ids {a, b}.
   template <class Pair>
-  void turned_vertices(const Pair* pairs, int count, DifferenceVertex* out) const {
+  void posed_vertices(const Pair* pairs, int count, DifferenceVertex* out) const {
     static_assert(sizeof(Pair) == 2 * sizeof(std::int32_t));
     PosedBodies bodies{arrays_of(a_), arrays_of(b_), {}, {}, {offset_.x(), offset_.y(), offset_.z()}};
     for (int i = 0; i < 9; ++i) {
@@ -125,7 +126,7 @@ class PolytopeDifference {
     if (ia < 0) return false;
     const int ib = confirmed_support_vertex(b_, on_b, {corners[0].b, corners[1].b, corners[2].b});
     if (ib < 0) return false;
-    s = turned_vertex(ia, ib);
+    s = posed_vertex(ia, ib);
     return true;
   }
 

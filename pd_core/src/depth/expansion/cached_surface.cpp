@@ -136,7 +136,7 @@ bool nearest_remembered(const WarmCertificate::State& state, const PolytopeDiffe
     near.r[i] = place(face.vertex[2]);
   }
   DifferenceVertex vertices[3 * kMaxNear];
-  difference.turned_vertices(pairs, vertex_count, vertices);
+  difference.posed_vertices(pairs, vertex_count, vertices);
   for (int i = near.count; i < kMaxNear; ++i) near.p[i] = near.q[i] = near.r[i] = 0;
   triangle_planes(vertices[0].x.data(), {near.p, near.q, near.r}, 0, near.count,
                   {near.nx, near.ny, near.nz, near.levels, near.keys});

@@ -1,129 +1,79 @@
 #include "depth/pair/polytope_depth.hpp"
 
-#include "depth/facets/box_sat.hpp"
-#include "depth/pair/polytope_query.hpp"
+#include <algorithm>
+
+#include "depth/pair/polytope_double.hpp"
+#include "depth/pair/polytope_exact.hpp"
+#include "depth/pair/polytope_warm_start.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-constexpr int kBoxAxes = 15;
+bool answer_by_chosen_overlay(PolytopeQuery& query, PenetrationDepth& out) {
+  return query.settings.method == Method::overlay && answer_by_overlay(query, out);
+}
+
+/// An expansion that stopped early, its upper bound lowered by supports along the normals of its nearest faces.
+ExpansionResult bounded(PolytopeQuery& query, ExpansionResult surface, Statistics& statistics) {
+  if (!(surface.lower > 0)) return surface;
+  ScratchBuffers& buffers = query.buffers;
+  surface.upper = std::min(surface.upper, upper_bound_of_nearest_faces(query.with_supports(), buffers.surface,
+                                                                       buffers.stack, statistics.support_calls));
+  return surface;
+}
+
+bool answer_by_chosen_decomposition(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  return query.settings.method == Method::decomposition && surface.status != ExpansionStatus::separated &&
+         answer_by_decomposition(query, bounded(query, surface, out.statistics), out);
+}
+
+/// Where the expansion stopped because too many facets are nearly as near: among those alone, else in the way of [A].
+bool answer_among_many_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  if (surface.status != ExpansionStatus::over_budget || !(surface.lower > 0)) return false;
+  const ExpansionResult found = bounded(query, surface, out.statistics);
+  return answer_among_near_facets(query, found, out) || answer_by_decomposition(query, found, out);
+}
+
+// The order of methods. Each stage looks for itself whether it applies, and answers or passes on.
+
+using StageBeforeSearch = bool (*)(PolytopeQuery&, PenetrationDepth&);
+constexpr StageBeforeSearch kBeforeSearch[] = {
+    answer_by_chosen_overlay,          // all facets of P, where `Method::overlay` is asked for
+    answer_from_cached_faces,          // warm: a few planes of the last surface
+    answer_apart_from_cached_simplex,  // warm: from the last closest point
+    answer_boxes,                      // two boxes by their fifteen axes
+};
+
+// Then the expansion (EPA) grows a surface inside P, from the last one where that serves (`grow_surface`).
+
+using StageAfterSearch = bool (*)(PolytopeQuery&, const ExpansionResult&, PenetrationDepth&);
+constexpr StageAfterSearch kAfterSearch[] = {
+    answer_by_chosen_decomposition,  // [A] section 2, where `Method::decomposition` is asked for
+    answer_from_surface,             // the nearest face, in doubles
+    answer_among_many_facets,        // too many nearly equal facets for the expansion
+    prove_surface,                   // the nearest face proved in double-double: the tightest bracket
+    answer_by_exact_expansion,       // the same facet by exact arithmetic
+    answer_by_closest_point,         // apart, touching or in doubt: GJK in doubles, then exactly
+};
+
+void answer(PolytopeQuery& query, PenetrationDepth& out) {
+  for (const StageBeforeSearch stage : kBeforeSearch) {
+    if (stage(query, out)) return;
+  }
+  const ExpansionResult surface = grow_surface(query, out);
+  for (const StageAfterSearch stage : kAfterSearch) {
+    if (stage(query, surface, out)) return;
+  }
+}
 
 }  // namespace
 
-void PolytopeQuery::solve() {
-  const bool exactly = settings_.bracket == Bracket::tightest && settings_.delta == 0;
-  bracket_ = exactly ? Bracket::tightest : Bracket::certified;
-  if (settings_.method == Method::overlay) {
-    difference_.turn(buffers_.posed);
-    solve_by_overlay();
-    return;
-  }
-  doubles_suffice_ = !exactly && settings_.method != Method::decomposition;
-  if (doubles_suffice_ && (solve_from_memory() || solve_apart_from_memory())) return;
-  if (!exactly && settings_.method == Method::automatic && solve_boxes()) return;
-  out_.method = Method::expansion;
-  ExpansionResult result;
-  if (within_range()) {
-    result = expand();
-    remember(result);
-  }
-  if (settings_.method == Method::decomposition && result.status != ExpansionStatus::separated) {
-    solve_by_decomposition(result);
-    return;
-  }
-  switch (result.status) {
-    case ExpansionStatus::certified:
-      if (!exactly && bound_is_of_face(result)) {
-        fill_overlapping(result);
-      } else if (!solve_by_proof(result)) {
-        solve_overlapping_exactly(result);
-      }
-      return;
-    case ExpansionStatus::separated:
-      if (!fill_separated(result) || exactly) solve_exactly(result);
-      return;
-    case ExpansionStatus::over_budget:
-      if (result.lower > 0) {
-        tighten_upper(result);
-        if (!solve_among_ties(result)) solve_by_decomposition(result);
-        return;
-      }
-      [[fallthrough]];
-    default:
-      if (solve_by_proof(result)) return;
-      // A needle's first simplex may be flat to doubles although the bodies are far apart.
-      if (result.face < 0 && within_range() && fill_separated(result) && !exactly) return;
-      solve_exactly(result);
-  }
-}
-
-/// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
-/// as far from it to within the bracket.
-bool PolytopeQuery::bound_is_of_face(const ExpansionResult& result) const {
-  const Vec3 normal = buffers_.surface.normal(result.face);
-  return normal.dot(result.normal) > 0.9 * normal.norm();
-}
-
-ExpansionGoal PolytopeQuery::goal() const {
-  ExpansionGoal goal;
-  goal.absolute = kCertifiedWidth;
-  goal.relative = settings_.delta;
-  goal.vertices = pair_.a->num_vertices() + pair_.b->num_vertices();
-  goal.max_steps = ExpansionBudget::max_steps(goal.vertices);
-  return goal;
-}
-
-/// Two boxes by their axes of separation. False when that does not decide the matter.
-bool PolytopeQuery::solve_boxes() {
-  const std::optional<BoxFrame> box_a = box_frame(*pair_.a);
-  if (!box_a) return false;
-  const std::optional<BoxFrame> box_b = box_frame(*pair_.b);
-  if (!box_b || !within_range()) return false;
-  const BoxPairDepth boxes =
-      box_pair_depth(*pair_.a, *box_a, *pair_.pose_a, *pair_.b, *box_b, *pair_.pose_b, kCertifiedWidth);
-  out_.method = Method::overlay;
-  out_.statistics.facets_visited += kBoxAxes;
-  if (boxes.status == BoxPairStatus::separated) {
-    difference_.turn(buffers_.posed);
-    ExpansionResult result;
-    result.normal = boxes.normal;
-    return fill_separated(result);
-  }
-  if (boxes.status == BoxPairStatus::undecided) return false;
-  set_depth(boxes.lower, boxes.upper, boxes.normal);
-  out_.witness_a = boxes.point_a + pair_.pose_a->translation() - pair_.margins.a * boxes.normal;
-  out_.witness_b = out_.witness_a + out_.translation;
-  out_.feature_a = boxes.feature_a;
-  out_.feature_b = boxes.feature_b;
-  return true;
-}
-
-ExpansionResult PolytopeQuery::expand() {
-  ExpansionResult result;
-  const bool restored = warm_ && restore();
-  if (restored && doubles_suffice_ && hold(result)) {
-    out_.warm = memory_held_ = true;
-    return result;
-  }
-  difference_.turn(buffers_.posed);
-  ExpandingPolytope<PolytopeDifference> expansion(difference_, buffers_.surface, buffers_.stack);
-  if (restored) {
-    result = expansion.resume(goal());
-    out_.warm = result.status == ExpansionStatus::certified || result.status == ExpansionStatus::separated;
-  }
-  if (!out_.warm) {
-    const Vec3 start = warm_ ? warm_->state().direction : Vec3(Vec3::Zero());
-    result = expansion.run(start, goal());
-  }
-  out_.statistics.support_calls += expansion.support_calls();
-  out_.statistics.facets_visited += expansion.facets_visited();
-  return result;
-}
-
 void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,
                     WarmCertificate* warm, PenetrationDepth& out) {
-  PolytopeQuery(pair, settings, buffers, warm, out).solve();
+  PolytopeQuery query(pair, settings, buffers, warm);
+  answer(query, out);
+  out.statistics.exact_signs += query.exact_signs();
 }
 
 }  // namespace pd::detail

@@ -1,3 +1,5 @@
+#include "depth/pair/polytope_exact.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,8 +7,8 @@
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
-#include "depth/expansion/expanding_polytope.hpp"
-#include "depth/pair/polytope_query.hpp"
+#include "depth/pair/double_answer.hpp"
+#include "depth/pair/polytope_double.hpp"
 
 namespace pd::detail {
 
@@ -19,183 +21,170 @@ ExactDirection normal_of(const PosedPair& posed, const FacetOfDifference& facet)
   return ExactDirection(cross(posed.exact(facet.u), posed.exact(facet.v)));
 }
 
-}  // namespace
-
-void PolytopeQuery::solve_exactly(const ExpansionResult& result) {
-  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  if (start_count_ > 0) {
-    const auto proof = prove_separation(posed, std::span(start_).first(start_count_), buffers_.faces);
-    if (proof && finish_apart(posed, *proof, buffers_.faces, pair_.margins, bracket_, out_)) {
-      count_stages(posed);
-      return;
-    }
-  } else {
-    start_[0] = any_vertex(result);
-    start_count_ = 1;
-  }
-  const ExactNearest nearest = exact_nearest(posed, start_, start_count_);
-  if (nearest.apart) {
-    finish_apart(posed, nearest, pair_.margins, out_);
-  } else {
-    finish_from(posed, nearest.simplex.data(), nearest.count, &nearest);
-  }
-  count_stages(posed);
+SurfaceCorners corners_of(const InnerSurface& surface, int f) {
+  DifferenceVertex corners[3];
+  face_corners(surface, f, corners);
+  return {{{corners[0].a, corners[0].b}, {corners[1].a, corners[1].b}, {corners[2].a, corners[2].b}}};
 }
 
-/// The nearest face of the surface proved to lie in the nearest facet of P, mostly without big numbers. False where
-/// that fails.
-bool PolytopeQuery::solve_by_proof(const ExpansionResult& result) {
-  if (!(result.lower > 0) || result.face < 0) return false;
-  // Keys err by the error of a point and of the distance itself; what lies beyond is certainly farther.
-  const Surface& surface = buffers_.surface;
-  const double error = face_error(difference_);
-  const double limit = result.lower + 8 * error;
-  std::array<SurfaceCorners, kMaxNearFaces> near;
-  std::size_t count = 0;
-  const auto add = [&](int f) {
-    for (int i = 0; i < 3; ++i) {
-      const DifferenceVertex& v = surface.vertices[surface.face(f).v[i]];
-      near[count].v[i] = {v.a, v.b};
-    }
-    ++count;
-  };
-  add(result.face);
-  for (int f = 0; f < surface.slots(); ++f) {
-    if (f == result.face || !(surface.key(f) <= limit * limit)) continue;
-    if (count == near.size()) return false;
-    add(f);
-  }
-  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  const double beyond = std::ldexp(limit - 2 * error, -posed.scale_exponent());
-  const auto proven = prove_nearest_facet(posed, std::span(near).first(count), beyond, buffers_.faces);
-  if (proven) {
-    finish_overlapping(posed, proven->facet, proven->plane, buffers_.faces, pair_.margins, bracket_, out_);
-  }
-  count_stages(posed);
-  return proven.has_value();
-}
-
-void PolytopeQuery::solve_overlapping_exactly(const ExpansionResult& result) {
-  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  VertexPair seed[3];
-  for (int i = 0; i < 3; ++i) {
-    const DifferenceVertex& v = buffers_.surface.vertices[buffers_.surface.face(result.face).v[i]];
-    seed[i] = {v.a, v.b};
-  }
-  finish_from(posed, seed, 3, nullptr);
-  count_stages(posed);
-}
-
-/// The origin is known to lie in P.
-void PolytopeQuery::finish_from(const PosedPair& posed, const VertexPair* seed, int count,
-                                const ExactNearest* nearest) {
-  const ExactDepth exact = exact_expanding_polytope(
-      posed, seed, count, 4 * ExpansionBudget::min_steps(pair_.a->num_vertices() + pair_.b->num_vertices()));
-  out_.statistics.support_calls += exact.support_calls;
-  out_.statistics.facets_visited += exact.facets_visited;
-  if (!exact.complete) {
-    solve_by_overlay();
-  } else if (exact.contact == ContactClass::overlapping) {
-    finish_overlapping(posed, facet_of_direction(posed, *exact.normal), pair_.margins, bracket_, buffers_.faces, out_);
-  } else {
-    finish_touching(posed, *exact.normal, *nearest, pair_.margins, out_);
-  }
-}
-
-/// @param upper  of the cores' depth.
-void PolytopeQuery::solve_by_overlay(double upper) {
-  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  out_.method = Method::overlay;
-  const OverlayDepth overlay =
-      overlay_depth(posed, buffers_.overlay, bracket_ == Bracket::tightest, std::ldexp(upper, -posed.scale_exponent()));
-  finish_nearest(posed, overlay);
-}
-
-/// By supports along the normals of the surface's nearest faces.
-void PolytopeQuery::tighten_upper(ExpansionResult& result) {
-  result.upper = std::min(result.upper, upper_bound_of_nearest_faces(difference_, buffers_.surface, buffers_.stack,
-                                                                     out_.statistics.support_calls));
-}
-
-/// Of the few pieces that may be nearest, the one that is. Those pieces and what lies beyond cover the boundary of P,
-/// as the triangles of a surface enclose a ball: the proof is the same.
-bool PolytopeQuery::prove_tied(const TiedFacets& found) {
-  const std::vector<SurfaceCorners>& near = buffers_.tied_facets.nearest;
-  if (!(found.beyond > 0) || near.size() > kMaxNearFaces) return false;
-  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  const double beyond = std::ldexp(found.beyond, -posed.scale_exponent());
-  const auto proven = prove_nearest_facet(posed, near, beyond, buffers_.faces);
-  if (proven) {
-    finish_overlapping(posed, proven->facet, proven->plane, buffers_.faces, pair_.margins, bracket_, out_);
-  }
-  count_stages(posed);
-  return proven.has_value();
-}
-
-/// [A] section 2, under the bound that the expansion leaves and with the vertices of P that it found.
-void PolytopeQuery::solve_by_decomposition(ExpansionResult result) {
-  const PosedPair posed(*pair_.a, *pair_.pose_a, *pair_.b, *pair_.pose_b);
-  out_.method = Method::decomposition;
-  if (!(result.lower > 0)) {
-    const VertexPair any = any_vertex(result);
-    const ExactNearest nearest = exact_nearest(posed, &any, 1);
-    if (nearest.apart) {
-      finish_apart(posed, nearest, pair_.margins, out_);
-      count_stages(posed);
-      return;
-    }
-  }
-  DecompositionBuffers& buffers = buffers_.decomposition;
-  buffers.vertices.clear();
-  if (within_range()) {
-    for (const DifferenceVertex& v : buffers_.surface.vertices) buffers.vertices.push_back({v.a, v.b});
-  }
-  DecompositionSettings settings;
-  if (result.lower > 0) {
-    if (settings_.method == Method::decomposition) tighten_upper(result);
-    settings.upper = std::ldexp(result.upper, -posed.scale_exponent());
-  }
-  settings.vertices = buffers.vertices;
-  settings.seed = settings_.seed;
-  settings.exactly = bracket_ == Bracket::tightest;
-  settings.may_enumerate = settings_.method != Method::decomposition;
-  const DecompositionDepth found = decomposition_depth(posed, settings, buffers_.overlay, buffers);
-  if (found.enumerated) out_.method = Method::overlay;
-  out_.statistics.pair_evaluations += found.lines.pair_evaluations;
-  out_.statistics.block_bounds += found.lines.block_bounds;
-  out_.statistics.lines_scanned += found.lines.lines_scanned;
-  finish_nearest(posed, found.nearest);
-}
-
-void PolytopeQuery::finish_nearest(const PosedPair& posed, const OverlayDepth& found) {
-  out_.statistics.facets_visited += found.facets_visited;
-  out_.statistics.exact_signs += found.exact_comparisons;
-  if (found.contact == ContactClass::overlapping) {
-    finish_overlapping(posed, found.facet, pair_.margins, bracket_, buffers_.faces, out_);
-  } else {
-    const VertexPair any{0, 0};
-    const ExactNearest nearest = exact_nearest(posed, &any, 1);
-    if (nearest.apart) {
-      finish_apart(posed, nearest, pair_.margins, out_);
-    } else if (found.has_facet) {
-      finish_touching(posed, normal_of(posed, found.facet), nearest, pair_.margins, out_);
-    } else {
-      const ExactDepth flat = exact_expanding_polytope(posed, &any, 1, std::numeric_limits<int>::max());
-      finish_touching(posed, *flat.normal, nearest, pair_.margins, out_);
-    }
-  }
-  count_stages(posed);
-}
-
-VertexPair PolytopeQuery::any_vertex(const ExpansionResult& result) const {
-  if (!within_range()) return {0, 0};
-  const DifferenceVertex s = difference_.support(result.normal, nullptr);
+VertexPair any_vertex(PolytopeQuery& query, const ExpansionResult& surface) {
+  if (!query.within_range()) return {0, 0};
+  const DifferenceVertex s = query.with_supports().support(surface.normal, nullptr);
   return {s.a, s.b};
 }
 
-/// The finishing step itself decides one sign exactly.
-void PolytopeQuery::count_stages(const PosedPair& posed) {
-  out_.statistics.exact_signs += 1 + posed.stages().double_double + posed.stages().exact;
+/// The nearest facet proved among `near`; every other piece of the surface is `beyond` or farther (in the caller's
+/// lengths).
+bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond, PenetrationDepth& out) {
+  const PosedPair& posed = query.exact();
+  PlaneFaces& faces = query.buffers.faces;
+  const auto proven = prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()), faces);
+  if (!proven) return false;
+  finish_overlapping(posed, proven->facet, proven->plane, faces, query.pair.margins, query.bracket, out);
+  return true;
+}
+
+/// The origin is known to lie in P: in its interior, or `nearest` says where.
+void expand_exactly(PolytopeQuery& query, std::span<const VertexPair> seed, const ExactNearest* nearest,
+                    PenetrationDepth& out) {
+  const PosedPair& posed = query.exact();
+  const ExactDepth exact = exact_expanding_polytope(posed, seed.data(), static_cast<int>(seed.size()),
+                                                    4 * ExpansionBudget::min_steps(query.vertices()));
+  out.statistics.support_calls += exact.support_calls;
+  out.statistics.facets_visited += exact.facets_visited;
+  const Margins& margins = query.pair.margins;
+  if (!exact.complete) {
+    answer_by_overlay(query, out);
+  } else if (exact.contact == ContactClass::overlapping) {
+    const FacetOfDifference facet = facet_of_direction(posed, *exact.normal);
+    finish_overlapping(posed, facet, margins, query.bracket, query.buffers.faces, out);
+  } else {
+    finish_touching(posed, *exact.normal, *nearest, margins, out);
+  }
+}
+
+/// What the enumeration of facets or the decomposition has found.
+void answer_from_facet(PolytopeQuery& query, const OverlayDepth& found, PenetrationDepth& out) {
+  const PosedPair& posed = query.exact();
+  const Margins& margins = query.pair.margins;
+  out.statistics.facets_visited += found.facets_visited;
+  out.statistics.exact_signs += found.exact_comparisons;
+  if (found.contact == ContactClass::overlapping) {
+    finish_overlapping(posed, found.facet, margins, query.bracket, query.buffers.faces, out);
+    return;
+  }
+  const VertexPair any{0, 0};
+  const ExactNearest nearest = exact_nearest(posed, &any, 1);
+  if (nearest.apart) {
+    finish_apart(posed, nearest, margins, out);
+  } else if (found.has_facet) {
+    finish_touching(posed, normal_of(posed, found.facet), nearest, margins, out);
+  } else {
+    const ExactDepth flat = exact_expanding_polytope(posed, &any, 1, std::numeric_limits<int>::max());
+    finish_touching(posed, *flat.normal, nearest, margins, out);
+  }
+}
+
+}  // namespace
+
+bool answer_by_overlay(PolytopeQuery& query, PenetrationDepth& out, double upper) {
+  const PosedPair& posed = query.exact();
+  out.method = Method::overlay;
+  const bool exactly = query.bracket == Bracket::tightest;
+  const double scaled_upper = std::ldexp(upper, -posed.scale_exponent());
+  answer_from_facet(query, overlay_depth(posed, query.buffers.overlay, exactly, scaled_upper), out);
+  return true;
+}
+
+bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  const PosedPair& posed = query.exact();
+  out.method = Method::decomposition;
+  if (!(surface.lower > 0)) {
+    const VertexPair any = any_vertex(query, surface);
+    const ExactNearest nearest = exact_nearest(posed, &any, 1);
+    if (nearest.apart) {
+      finish_apart(posed, nearest, query.pair.margins, out);
+      return true;
+    }
+  }
+  DecompositionBuffers& buffers = query.buffers.decomposition;
+  buffers.vertices.clear();
+  if (query.within_range()) {
+    for (const DifferenceVertex& v : query.buffers.surface.vertices) buffers.vertices.push_back({v.a, v.b});
+  }
+  DecompositionSettings settings;
+  if (surface.lower > 0) settings.upper = std::ldexp(surface.upper, -posed.scale_exponent());
+  settings.vertices = buffers.vertices;
+  settings.seed = query.settings.seed;
+  settings.exactly = query.bracket == Bracket::tightest;
+  settings.may_enumerate = query.settings.method != Method::decomposition;
+  const DecompositionDepth found = decomposition_depth(posed, settings, query.buffers.overlay, buffers);
+  if (found.enumerated) out.method = Method::overlay;
+  out.statistics.pair_evaluations += found.lines.pair_evaluations;
+  out.statistics.block_bounds += found.lines.block_bounds;
+  out.statistics.lines_scanned += found.lines.lines_scanned;
+  answer_from_facet(query, found.nearest, out);
+  return true;
+}
+
+bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  if (!(surface.lower > 0) || surface.face < 0) return false;
+  // Keys err by the error of a point and of the distance itself; what lies beyond is certainly farther.
+  const InnerSurface& faces = query.buffers.surface;
+  const double error = face_error(query.difference);
+  const double limit = surface.lower + 8 * error;
+  std::array<SurfaceCorners, kMaxNearFaces> near;
+  std::size_t count = 0;
+  near[count++] = corners_of(faces, surface.face);
+  for (int f = 0; f < faces.slots(); ++f) {
+    if (f == surface.face || !(faces.key(f) <= limit * limit)) continue;
+    if (count == near.size()) return false;
+    near[count++] = corners_of(faces, f);
+  }
+  return prove_among(query, std::span(near).first(count), limit - 2 * error, out);
+}
+
+bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out) {
+  const std::vector<SurfaceCorners>& near = query.buffers.tied_facets.nearest;
+  if (!(beyond > 0) || near.size() > kMaxNearFaces) return false;
+  return prove_among(query, near, beyond, out);
+}
+
+bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  if (surface.status != ExpansionStatus::certified) return false;
+  expand_exactly(query, corners_of(query.buffers.surface, surface.face).v, nullptr, out);
+  return true;
+}
+
+bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  std::array<VertexPair, 4> start;
+  std::size_t count = 0;
+  // Also where a slender body's first simplex is flat to doubles: the bodies may be far apart.
+  const bool in_doubles = surface.status == ExpansionStatus::separated || (surface.face < 0 && query.within_range());
+  if (in_doubles) {
+    const DifferenceVertex first = query.with_supports().support(surface.normal, nullptr);
+    const NearestResult nearest = closest_point(query, {&first, 1}, out.statistics);
+    if (answer_apart(query, nearest, out) && query.bracket == Bracket::certified) return true;
+    for (; count < static_cast<std::size_t>(nearest.count); ++count) {
+      start[count] = {nearest.simplex[count].a, nearest.simplex[count].b};
+    }
+  } else {
+    start[count++] = any_vertex(query, surface);
+  }
+  const PosedPair& posed = query.exact();
+  const Margins& margins = query.pair.margins;
+  if (in_doubles) {
+    PlaneFaces& faces = query.buffers.faces;
+    const auto proof = prove_separation(posed, std::span(start).first(count), faces);
+    if (proof && finish_apart(posed, *proof, faces, margins, query.bracket, out)) return true;
+  }
+  const ExactNearest nearest = exact_nearest(posed, start.data(), static_cast<int>(count));
+  if (nearest.apart) {
+    finish_apart(posed, nearest, margins, out);
+  } else {
+    expand_exactly(query, std::span(nearest.simplex).first(static_cast<std::size_t>(nearest.count)), &nearest, out);
+  }
+  return true;
 }
 
 }  // namespace pd::detail

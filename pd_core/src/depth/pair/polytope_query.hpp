@@ -1,91 +1,60 @@
 /// @file
-/// One query about two posed polytopes, and the ways in which it may be answered.
+/// What the stages of one query about two posed polytopes share. Nothing here passes from one stage to the next: what a
+/// search has found is handed on as a value (polytope_depth.cpp).
 #pragma once
 
-#include <limits>
-#include <span>
+#include <optional>
 
-#include "depth/distance/gjk_exact.hpp"
-#include "depth/expansion/expanding_polytope.hpp"
-#include "depth/facets/near_facets.hpp"
+#include "depth/difference/polytope_difference.hpp"
 #include "depth/pair/polytope_depth.hpp"
+#include "shape/posed_pair.hpp"
 
 namespace pd::detail {
 
-/// Width of the bracket that doubles are asked for, in units of L: `Bracket::certified` less the last roundings.
-inline constexpr double kCertifiedWidth = 1.8e-14;
-
 class PolytopeQuery {
  public:
-  PolytopeQuery(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers, WarmCertificate* warm,
-                PenetrationDepth& out)
-      : pair_(pair),
-        settings_(settings),
-        buffers_(buffers),
-        warm_(warm),
-        out_(out),
-        difference_(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b) {}
+  PolytopeQuery(const PolytopePair& asked_pair, const DepthSettings& asked, ScratchBuffers& scratch,
+                WarmCertificate* certificate)
+      : pair(asked_pair),
+        settings(asked),
+        buffers(scratch),
+        warm(certificate),
+        bracket(asked.delta == 0 ? asked.bracket : Bracket::certified),
+        difference(*asked_pair.a, *asked_pair.pose_a, *asked_pair.b, *asked_pair.pose_b) {}
 
-  void solve();
+  const PolytopePair& pair;
+  const DepthSettings& settings;
+  ScratchBuffers& buffers;
+  WarmCertificate* const warm;  ///< or nullptr
+  const Bracket bracket;        ///< what the answer needs: an approximate one is never rounded exactly
+  PolytopeDifference difference;
+
+  /// The difference, ready for supports: the vertices are transformed on first use.
+  const PolytopeDifference& with_supports() {
+    difference.prepare_supports(buffers.posed);
+    return difference;
+  }
+
+  /// The pair for exact signs, made on first use.
+  const PosedPair& exact() {
+    if (!exact_) exact_.emplace(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b);
+    return *exact_;
+  }
+  /// Decisions that exact arithmetic took; the answer itself counts as one.
+  [[nodiscard]] std::int64_t exact_signs() const {
+    return exact_ ? 1 + exact_->stages().double_double + exact_->stages().exact : 0;
+  }
+
+  /// Whether doubles with error bounds may answer alone.
+  [[nodiscard]] bool doubles_suffice() const {
+    return bracket == Bracket::certified && settings.method != Method::decomposition;
+  }
+  [[nodiscard]] int vertices() const { return pair.a->num_vertices() + pair.b->num_vertices(); }
+  /// Sizes outside this range are left to the exact stages, which rescale.
+  [[nodiscard]] bool within_range() const { return difference.reach() > 0x1p-100 && difference.reach() < 0x1p100; }
 
  private:
-  // The order of methods: polytope_depth.cpp
-  [[nodiscard]] ExpansionGoal goal() const;
-  [[nodiscard]] bool bound_is_of_face(const ExpansionResult& result) const;
-  bool solve_boxes();
-  ExpansionResult expand();
-
-  // The memory of the pair: polytope_warm_start.cpp
-  bool solve_from_memory();
-  bool solve_apart_from_memory();
-  void remember_apart(std::span<const VertexPair> simplex);
-  bool supported(const DifferenceVertex (&corners)[3], const Vec3& normal, double distance, double largest,
-                 ExpansionResult& result) const;
-  bool hold(ExpansionResult& result);
-  [[nodiscard]] bool is_memory_of_this_pair() const;
-  void own_memory();
-  bool restore();
-  void remember(const ExpansionResult& result);
-  /// Sizes outside this range are left to the exact engines, which rescale.
-  [[nodiscard]] bool within_range() const { return difference_.reach() > 0x1p-100 && difference_.reach() < 0x1p100; }
-
-  // Answers from doubles: polytope_double.cpp
-  void set_depth(double lower, double upper, const Vec3& normal);
-  void fill_overlapping(const ExpansionResult& result);
-  void fill_overlapping(const DifferenceVertex (&corners)[3], const double (&weights)[3]);
-  bool fill_separated(const ExpansionResult& result);
-  bool fill_separated(std::span<const DifferenceVertex> start);
-  bool solve_among_ties(const ExpansionResult& result);
-  void fill_tied(const TiedFacets& found);
-  void corners_of(int f, DifferenceVertex (&corners)[3]) const;
-  void face_below_origin(int f, const Vec3& normal, DifferenceVertex (&corners)[3], double (&weights)[3]) const;
-  void fill_witnesses(const DifferenceVertex* corners, const double* weights, int count);
-  void pair_features();
-
-  // Exact answers: polytope_exact.cpp
-  void solve_exactly(const ExpansionResult& result);
-  bool solve_by_proof(const ExpansionResult& result);
-  void solve_overlapping_exactly(const ExpansionResult& result);
-  void finish_from(const PosedPair& posed, const VertexPair* seed, int count, const ExactNearest* nearest);
-  void solve_by_overlay(double upper = std::numeric_limits<double>::infinity());
-  bool prove_tied(const TiedFacets& found);
-  void solve_by_decomposition(ExpansionResult result);
-  void finish_nearest(const PosedPair& posed, const OverlayDepth& found);
-  void tighten_upper(ExpansionResult& result);
-  [[nodiscard]] VertexPair any_vertex(const ExpansionResult& result) const;
-  void count_stages(const PosedPair& posed);
-
-  const PolytopePair& pair_;
-  const DepthSettings& settings_;
-  ScratchBuffers& buffers_;
-  WarmCertificate* warm_;
-  PenetrationDepth& out_;
-  PolytopeDifference difference_;
-  Bracket bracket_ = Bracket::tightest;
-  VertexPair start_[4];
-  int start_count_ = 0;
-  bool doubles_suffice_ = false;  ///< neither the tightest bracket nor another method is asked for
-  bool memory_held_ = false;      ///< the surface is the one remembered, as it was
+  std::optional<PosedPair> exact_;
 };
 
 }  // namespace pd::detail

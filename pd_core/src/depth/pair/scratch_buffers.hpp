@@ -15,7 +15,7 @@
 namespace pd::detail {
 
 struct ScratchBuffers {
-  Surface surface;
+  InnerSurface surface;
   ExactSurface exact_surface;
   PosedVerticesPair posed;
   std::vector<std::int32_t> stack;

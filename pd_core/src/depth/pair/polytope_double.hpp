@@ -1,0 +1,38 @@
+/// @file
+/// The stages of a query that answer in doubles with error bounds. Each returns whether it has answered; where not,
+/// what it wrote to `out` besides the statistics is overwritten by the stage that does.
+#pragma once
+
+#include <span>
+
+#include "depth/distance/gjk.hpp"
+#include "depth/expansion/expanding_polytope.hpp"
+#include "depth/pair/polytope_query.hpp"
+
+namespace pd::detail {
+
+/// Width of the bracket that doubles are asked for, as the goal of an expansion.
+[[nodiscard]] ExpansionGoal expansion_goal(const PolytopeQuery& query);
+
+/// Two boxes by their fifteen axes of separation (facets/box_sat.hpp).
+bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
+
+/// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start
+/// from. The faces are left in the scratch (`buffers.surface`). Sizes out of range give `undecided` without a face.
+[[nodiscard]] ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out);
+
+/// The surface's nearest face, where its bracket is as narrow as asked.
+bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+
+/// Of the facets of P between the bounds that an expansion leaves, the nearest (facets/near_facets.hpp); for the
+/// tightest bracket it is proved.
+bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+
+/// The point of P closest to the origin, from vertices of P that may be near it.
+[[nodiscard]] NearestResult closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start,
+                                          Statistics& statistics);
+
+/// Cores that are apart: separated, or overlapping by their margins. The simplex is saved in the warm certificate.
+bool answer_apart(PolytopeQuery& query, const NearestResult& nearest, PenetrationDepth& out);
+
+}  // namespace pd::detail

@@ -1,0 +1,35 @@
+/// @file
+/// The warm certificate of a pair of polytopes: what a query may take from it, and what it saves for the next one.
+///
+/// Whatever the certificate holds is ids and bounds; planes and points are computed from the present poses, so that an
+/// answer is proved as if there had been no certificate.
+#pragma once
+
+#include "depth/distance/gjk.hpp"
+#include "depth/expansion/expanding_polytope.hpp"
+#include "depth/pair/polytope_query.hpp"
+
+namespace pd::detail {
+
+/// Most frames of a slowly moving pair: the nearest face of the saved surface is still a supporting plane of P.
+/// Computes a few planes and asks the neighbours of that face's vertices (expansion/cached_surface.hpp).
+bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out);
+
+/// Bodies that were apart: the closest point of P is looked for from the vertices around the last one.
+bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& out);
+
+/// Puts the saved surface at the present poses, into the scratch. False when there is none for this pair.
+[[nodiscard]] bool restore_surface(PolytopeQuery& query);
+/// Whether the restored surface answers as it stands.
+[[nodiscard]] bool certify_restored_surface(PolytopeQuery& query, ExpansionResult& result, Statistics& statistics);
+/// Where the depth was expected last, or zero.
+[[nodiscard]] Vec3 warm_direction(const PolytopeQuery& query);
+
+/// The surface has grown, or is new.
+void save_surface(PolytopeQuery& query, const ExpansionResult& result);
+/// The restored surface held as it was: saves how far its planes are now, for `answer_from_cached_faces`.
+void save_reference(PolytopeQuery& query, const ExpansionResult& result);
+/// The simplex of P that holds its closest point.
+void save_simplex(PolytopeQuery& query, const NearestResult& nearest);
+
+}  // namespace pd::detail
