@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "depth/certificate/facet_plane.hpp"
+#include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "scenes/agarwal_families.hpp"
 #include "scenes/shape_families.hpp"
