@@ -1,0 +1,35 @@
+/// @file
+/// The width of a body, the least of its directional widths, within 1 + epsilon ([M] Theorem 3).
+///
+/// The width is the distance from the origin to the boundary of K + (-K). [M] takes Dudley's halfspaces of an
+/// epsilon-approximation of K + (-K) and returns the one nearest to the origin. Departure: the halfspaces are those of
+/// the facets of a polytope that grows inside K + (-K), the facet nearest to the origin first, each queried by its
+/// normal; it ends as soon as the least width met and the nearest facet agree, so that most directions are never
+/// refined where the body is not equally wide everywhere. On a ball it grows to O(1 / epsilon^((d-1)/2)) vertices,
+/// Dudley's number.
+#pragma once
+
+#include "pd/dimension/directional_width.hpp"
+
+namespace pd::dimension {
+
+template <int D>
+struct ApproximateWidth {
+  double width = 0;           ///< = upper
+  double lower = 0;           ///< of the exact width, certified by points of the body
+  double upper = 0;           ///< the width of the whole body along `direction`; upper <= (1 + epsilon) lower
+  Vector<D> direction;        ///< of length 1
+  std::int64_t facets = 0;    ///< of the growing polytope, in all
+  std::int64_t vertices = 0;  ///< of it
+  QueryCounters queries;
+  StructureSize structure;
+};
+
+/// @param epsilon  in (0, 1); at least 4e-7 with the kernel backend.
+/// @return ErrorCode::bad_value ("epsilon").
+/// The structure of the backend is built for epsilon / (2 (1 + epsilon)); bounds up to rounding (1e-9, relative).
+template <int D>
+[[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
+                                                              Backend backend = Backend::kernel);
+
+}  // namespace pd::dimension

@@ -1,0 +1,121 @@
+#include "pd/dimension/approximate_width.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "dimension/radial_hull.hpp"
+#include "dimension/validate.hpp"
+#include "numeric/floating_point_guard.hpp"
+
+namespace pd::dimension {
+
+namespace {
+
+/// What rounding may take from the bounds in a frame where the body is about a unit ball.
+constexpr double kRoom = 1e-10;
+
+/// The polytope inside K + (-K), in the frame in which K holds the unit ball and so K + (-K) the ball of radius 2.
+template <int D>
+class WidthSearch {
+ public:
+  WidthSearch(const Body<D>& body, const DirectionalWidth<D>& structure, double stop)
+      : body_(body), structure_(structure), to_unit_(body.sandwich().fattening()), stop_(stop), hull_(1) {}
+
+  ApproximateWidth<D> run() {
+    push(0, static_cast<std::int32_t>(hull_.facets().size()));
+    double least = std::numeric_limits<double>::infinity();
+    for (;;) {
+      std::pop_heap(open_.begin(), open_.end());
+      const Facet nearest = open_.back();
+      open_.pop_back();
+      if (!hull_.alive(nearest.facet)) continue;
+      result_.lower = nearest.distance;
+      if (least <= (1 + stop_) * nearest.distance) break;
+      const Vector<D> normal = hull_.facets()[nearest.facet].normal;
+      const Vector<D> direction = to_unit_.pull_back(normal);
+      const DirectionalWidthAnswer<D> answer = structure_.width(direction, result_.queries);
+      if (answer.width < least) {
+        least = answer.width;
+        result_.direction = direction;
+      }
+      if (least <= (1 + stop_) * nearest.distance) break;
+      const Vector<D> reach = to_unit_.linear * (answer.most.point - answer.least.point);
+      grow(reach, nearest);
+    }
+    finish();
+    return result_;
+  }
+
+ private:
+  struct Facet {
+    double distance;
+    std::int32_t facet;
+    friend bool operator<(const Facet& a, const Facet& b) {
+      return a.distance != b.distance ? a.distance > b.distance : a.facet > b.facet;
+    }
+  };
+
+  /// The plane <normal, z> = 1 of the frame, as a distance in the body's own metric.
+  void push(std::int32_t first, std::int32_t last) {
+    for (std::int32_t f = first; f < last; ++f) {
+      if (!hull_.alive(f)) continue;
+      open_.push_back({1 / to_unit_.pull_back(hull_.facets()[f].normal).norm(), f});
+      std::push_heap(open_.begin(), open_.end());
+    }
+  }
+
+  /// K + (-K) is symmetric: the point and its mirror image.
+  void grow(const Vector<D>& reach, const Facet& nearest) {
+    const auto before = static_cast<std::int32_t>(hull_.facets().size());
+    // `reach` is beyond this facet, since its width is more than (1 + stop) times the facet's distance.
+    bool grown = hull_.insert(reach, nearest.facet);
+    std::int64_t visited = 0;
+    const Vector<D> mirrored = -reach;
+    const std::int32_t behind = hull_.locate(mirrored, before - 1, visited);
+    if (hull_.gauge(behind, mirrored) > 1 + stop_ / 4) grown = hull_.insert(mirrored, behind) || grown;
+    // Rounding keeps the point out: a little nearer to the origin it is a point of K + (-K), too.
+    for (double shrink = 0x1p-36; !grown; shrink *= 64) grown = hull_.insert((1 - shrink) * reach, nearest.facet);
+    push(before, static_cast<std::int32_t>(hull_.facets().size()));
+  }
+
+  void finish() {
+    result_.direction.normalize();
+    result_.upper = body_.support(result_.direction).value + body_.support(-result_.direction).value;
+    result_.lower = std::min(result_.lower * (1 - kRoom), result_.upper);
+    result_.upper *= 1 + kRoom;
+    result_.width = result_.upper;
+    result_.facets = static_cast<std::int64_t>(hull_.facets().size());
+    result_.vertices = static_cast<std::int64_t>(hull_.vertices().size());
+    result_.structure = structure_.size();
+  }
+
+  const Body<D>& body_;
+  const DirectionalWidth<D>& structure_;
+  AffineMap<D> to_unit_;
+  double stop_;
+  detail::RadialHull<D> hull_;
+  std::vector<Facet> open_;
+  ApproximateWidth<D> result_;
+};
+
+}  // namespace
+
+template <int D>
+Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon, Backend backend) {
+  const pd::detail::FloatingPointGuard guard;
+  if (const auto error = detail::check_epsilon(epsilon)) return *error;
+  // (1 + epsilon / 2) / (1 - epsilon / (2 (1 + epsilon))) = 1 + epsilon; a hair less for rounding.
+  const double share = epsilon * (1 - 1e-4);
+  const Expected<DirectionalWidth<D>> structure = DirectionalWidth<D>::build(body, share / (2 * (1 + share)), backend);
+  if (!structure) return structure.error();
+  return WidthSearch<D>(body, *structure, share / 2).run();
+}
+
+template Expected<ApproximateWidth<2>> approximate_width<2>(const Body<2>&, double, Backend);
+template Expected<ApproximateWidth<3>> approximate_width<3>(const Body<3>&, double, Backend);
+template Expected<ApproximateWidth<4>> approximate_width<4>(const Body<4>&, double, Backend);
+template Expected<ApproximateWidth<5>> approximate_width<5>(const Body<5>&, double, Backend);
+
+}  // namespace pd::dimension

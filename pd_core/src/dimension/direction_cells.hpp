@@ -1,0 +1,70 @@
+/// @file
+/// A grid on the faces of the cube about the origin: which cell a direction falls into, in O(1).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "pd/dimension/vector.hpp"
+
+namespace pd::dimension::detail {
+
+template <int D>
+class DirectionCells {
+ public:
+  /// About `cells` cells in all, at least one a face of the cube.
+  explicit DirectionCells(double cells)
+      : along_(std::max<std::int64_t>(
+            1, static_cast<std::int64_t>(std::round(std::pow(cells / (2 * D), 1.0 / (D - 1)))))) {}
+
+  [[nodiscard]] std::int64_t size() const {
+    std::int64_t r = 2 * D;
+    for (int k = 1; k < D; ++k) r *= along_;
+    return r;
+  }
+
+  /// Of a nonzero direction.
+  [[nodiscard]] std::int64_t cell(const Vector<D>& direction) const {
+    int axis = 0;
+    for (int k = 1; k < D; ++k) {
+      if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
+    }
+    const double half = 0.5 * static_cast<double>(along_);
+    const double scale = half / std::abs(direction[axis]);
+    std::int64_t cell = 2 * axis + (direction[axis] > 0 ? 1 : 0);
+    for (int k = 0; k < D; ++k) {
+      if (k == axis) continue;
+      // A direction that is zero or not a number has no place; any will do.
+      const double at = direction[k] * scale + half;
+      const std::int64_t i = at >= 0 ? std::min(static_cast<std::int64_t>(at), along_ - 1) : 0;
+      cell = cell * along_ + i;
+    }
+    return cell;
+  }
+
+  /// The middle of a cell, of length 1 to sqrt(D).
+  [[nodiscard]] Vector<D> middle(std::int64_t cell) const {
+    std::int64_t steps[D];
+    for (int k = D - 1; k > 0; --k) {
+      steps[k] = cell % along_;
+      cell /= along_;
+    }
+    Vector<D> r;
+    const int axis = static_cast<int>(cell / 2);
+    int next = 1;
+    for (int k = 0; k < D; ++k) {
+      if (k == axis) {
+        r[k] = (cell & 1) != 0 ? 1 : -1;
+      } else {
+        r[k] = (2 * static_cast<double>(steps[next++]) + 1) / static_cast<double>(along_) - 1;
+      }
+    }
+    return r;
+  }
+
+ private:
+  std::int64_t along_;
+};
+
+}  // namespace pd::dimension::detail

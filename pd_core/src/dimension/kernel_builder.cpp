@@ -1,0 +1,163 @@
+#include "dimension/kernel_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pd::dimension::detail {
+
+namespace {
+
+constexpr std::size_t kFirstBlock = 4096;
+constexpr std::size_t kLastBlock = 65536;
+constexpr double kMostCells = 2e5;
+
+/// 1 / (1 - epsilon) with room for the roundings of gauges.
+double limit_of(double epsilon) { return 1 / (1 - std::max(epsilon, kLeastEpsilon) * (1 - 1e-4)); }
+
+/// Inside the unit ball shrunk by the limit, so that no vertex of the start is a vertex of conv(kernel): the hull of
+/// both, blown up by the limit, holds the unit ball.
+double start_radius(double epsilon) { return 0.5 * (1 - epsilon); }
+
+double cells_of(double epsilon, int dimension) {
+  return std::min(kMostCells, 64 + 4 * std::pow(std::max(epsilon, kLeastEpsilon), -0.5 * (dimension - 1)));
+}
+
+}  // namespace
+
+template <int D>
+KernelBuilder<D>::KernelBuilder(const AffineMap<D>& to_unit, double epsilon)
+    : to_unit_(to_unit),
+      centre_(-(to_unit.linear.inverse() * to_unit.translation)),
+      limit_(limit_of(epsilon)),
+      hull_(start_radius(epsilon)),
+      cells_(cells_of(epsilon, D)),
+      hints_(static_cast<std::size_t>(cells_.size()), 0),
+      next_block_(kFirstBlock) {}
+
+template <int D>
+void KernelBuilder<D>::add(std::span<const Vector<D>> chunk, std::int64_t index) {
+  while (!chunk.empty()) {
+    const std::size_t size = std::min(next_block_, chunk.size());
+    add_block(chunk.first(size), index);
+    chunk = chunk.subspan(size);
+    index += static_cast<std::int64_t>(size);
+    next_block_ = std::min(2 * next_block_, kLastBlock);
+  }
+}
+
+template <int D>
+void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t index) {
+  // A point this near is in no need of its cone: its gauge is at most |p| over the nearest plane's distance.
+  const double near = limit_ * hull_.inner_radius() * (1 - 1e-9);
+  const double near_squared = near * near;
+  lists_.resize(hull_.facets().size());
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const Vector<D> unit = to_unit_.linear * (block[i] - centre_);
+    if (unit.squaredNorm() <= near_squared) continue;
+    std::int32_t& hint = hints_[static_cast<std::size_t>(cells_.cell(unit))];
+    hint = hull_.locate(unit, hint, cones_visited_);
+    if (hull_.gauge(hint, unit) <= limit_) continue;
+    waiting_.push_back({block[i], unit, index + static_cast<std::int64_t>(i)});
+    next_.push_back(-1);
+    assign(static_cast<std::int32_t>(waiting_.size()) - 1, hint);
+  }
+  drain();
+  waiting_.clear();
+  next_.clear();
+}
+
+/// Puts waiting point i into the list of its cone, or drops it.
+template <int D>
+void KernelBuilder<D>::assign(std::int32_t i, std::int32_t start) {
+  const Vector<D>& unit = waiting_[i].unit;
+  const std::int32_t f = hull_.locate(unit, start, cones_visited_);
+  const double gauge = hull_.gauge(f, unit);
+  if (gauge <= limit_) return;
+  List& list = lists_[f];
+  next_[i] = list.head;
+  list.head = i;
+  if (list.farthest < 0 || gauge > list.gauge ||
+      (gauge == list.gauge && waiting_[i].index < waiting_[list.farthest].index)) {
+    list.farthest = i;
+    list.gauge = gauge;
+    // A point on a ridge may go to a facet beside those that an insertion made: every list is queued where it grows.
+    heap_.push_back({gauge, f});
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+}
+
+/// Inserts the farthest point of all, again and again, until no list is left.
+template <int D>
+void KernelBuilder<D>::drain() {
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Waiting top = heap_.back();
+    heap_.pop_back();
+    if (!hull_.alive(top.facet) || lists_[top.facet].head < 0) continue;
+    const std::int32_t chosen = lists_[top.facet].farthest;
+    const bool entered = enter(waiting_[chosen], top.facet);
+    lists_.resize(hull_.facets().size());
+    if (!entered) {
+      // It joins the kernel without a place in the hull; the rest of its list tries on.
+      List list;
+      std::swap(list, lists_[static_cast<std::size_t>(top.facet)]);
+      for (std::int32_t i = list.head; i >= 0;) {
+        const std::int32_t after = next_[i];
+        if (i != chosen) assign(i, top.facet);
+        i = after;
+      }
+      continue;
+    }
+    for (const std::int32_t f : hull_.removed()) {
+      const std::int32_t head = lists_[f].head;
+      lists_[f] = {};
+      for (std::int32_t i = head; i >= 0;) {
+        const std::int32_t after = next_[i];
+        if (i != chosen) assign(i, f);
+        i = after;
+      }
+    }
+  }
+}
+
+/// A point that rounding keeps out of the hull enters a little nearer to the origin, which is a point of conv(kernel),
+/// too. False when even that fails.
+template <int D>
+bool KernelBuilder<D>::enter(const Point& p, std::int32_t f) {
+  const auto id = static_cast<std::int32_t>(kernel_.size());
+  kernel_.push_back(p);
+  for (const double shrink : {0.0, 0x1p-36, 0x1p-30}) {
+    const Vector<D> at = (1 - shrink) * p.unit;
+    if (!hull_.insert(at, f)) continue;
+    vertex_owner_.push_back(id);
+    return true;
+  }
+  unplaced_.push_back(id);
+  return false;
+}
+
+template <int D>
+std::vector<typename KernelBuilder<D>::Point> KernelBuilder<D>::chosen() const {
+  std::vector<char> used(kernel_.size(), 0);
+  for (const auto& f : hull_.facets()) {
+    if (f.successor >= 0) continue;
+    for (const std::int32_t v : f.vertex) {
+      if (kernel_of_vertex(v) >= 0) used[static_cast<std::size_t>(kernel_of_vertex(v))] = 1;
+    }
+  }
+  for (const std::int32_t i : unplaced_) used[i] = 1;
+  std::vector<Point> r;
+  for (std::size_t i = 0; i < kernel_.size(); ++i) {
+    if (used[i] != 0) r.push_back(kernel_[i]);
+  }
+  std::sort(r.begin(), r.end(), [](const Point& a, const Point& b) { return a.index < b.index; });
+  return r;
+}
+
+template class KernelBuilder<2>;
+template class KernelBuilder<3>;
+template class KernelBuilder<4>;
+template class KernelBuilder<5>;
+
+}  // namespace pd::dimension::detail

@@ -1,0 +1,151 @@
+#include "dimension/kernel_structure.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "dimension/equal_planes.hpp"
+#include "dimension/halfspace_body.hpp"
+
+namespace pd::dimension::detail {
+
+template <int D>
+KernelStructure<D>::KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes,
+                                    std::vector<std::array<std::int32_t, 2>> links)
+    : from_unit_(to_unit.inverse()), nodes_(std::move(nodes)), cells_(static_cast<double>(nodes_.size())) {
+  std::sort(links.begin(), links.end());
+  links.erase(std::unique(links.begin(), links.end()), links.end());
+  first_link_.assign(nodes_.size() + 1, 0);
+  for (const auto& [from, to] : links) {
+    ++first_link_[from + 1];
+    links_.push_back(to);
+  }
+  std::partial_sum(first_link_.begin(), first_link_.end(), first_link_.begin());
+  QueryCounters ignored;
+  std::int32_t last = 0;
+  for (std::int64_t c = 0; c < cells_.size(); ++c) {
+    last = climb(last, cells_.middle(c), ignored);
+    starts_.push_back(last);
+  }
+}
+
+template <int D>
+std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::of_kernel(const KernelBuilder<D>& builder) {
+  const RadialHull<D>& hull = builder.hull();
+  std::vector<std::int32_t> node_of(hull.vertices().size(), -1);
+  std::vector<Node> nodes;
+  std::vector<std::array<std::int32_t, 2>> links;
+  for (const auto& f : hull.facets()) {
+    if (f.successor >= 0) continue;
+    for (const std::int32_t v : f.vertex) {
+      if (node_of[v] >= 0) continue;
+      node_of[v] = static_cast<std::int32_t>(nodes.size());
+      const auto& p = builder.kernel()[builder.kernel_of_vertex(v)];
+      nodes.push_back({p.unit, p.point, p.index});
+    }
+    for (const std::int32_t v : f.vertex) {
+      for (const std::int32_t w : f.vertex) {
+        if (v != w) links.push_back({node_of[v], node_of[w]});
+      }
+    }
+  }
+  const std::shared_ptr<KernelStructure> r(new KernelStructure(builder.to_unit(), std::move(nodes), std::move(links)));
+  for (const std::int32_t i : builder.unplaced()) {
+    const auto& p = builder.kernel()[i];
+    r->loose_.push_back({p.unit, p.point, p.index});
+  }
+  return r;
+}
+
+template <int D>
+std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::build(const Body<D>& body, double epsilon) {
+  const Sandwich<D>& sandwich = body.sandwich();
+  if (body.representation() == Representation::points) {
+    KernelBuilder<D> builder(sandwich.fattening(), epsilon);
+    builder.add(body.points(), 0);
+    return of_kernel(builder);
+  }
+  std::vector<Vector<D>> polar = polar_points<D>(body.halfspaces(), sandwich);
+  for (Vector<D>& q : polar) q *= sandwich.ratio;
+  KernelBuilder<D> builder({}, epsilon);
+  builder.add(polar, 0);
+  const RadialHull<D>& hull = builder.hull();
+  const std::vector<std::int32_t> same = merge_equal_planes(hull);
+  std::vector<std::int32_t> node_of(hull.facets().size(), -1);
+  std::vector<Node> nodes;
+  std::vector<std::array<std::int32_t, 2>> links;
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(hull.facets().size()); ++f) {
+    if (!hull.alive(f) || same[f] != f) continue;
+    node_of[f] = static_cast<std::int32_t>(nodes.size());
+    const Vector<D> unit = sandwich.ratio / builder.limit() * hull.facets()[f].normal;
+    nodes.push_back({unit, sandwich.centre + sandwich.axes * unit, -1});
+  }
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(hull.facets().size()); ++f) {
+    if (!hull.alive(f)) continue;
+    for (const std::int32_t g : hull.facets()[f].neighbour) {
+      const std::int32_t a = node_of[same[f]], b = node_of[same[g]];
+      if (a != b) links.push_back({a, b});
+    }
+  }
+  return std::shared_ptr<const KernelStructure>(
+      new KernelStructure(sandwich.fattening(), std::move(nodes), std::move(links)));
+}
+
+template <int D>
+std::int32_t KernelStructure<D>::climb(std::int32_t start, const Vector<D>& unit_direction,
+                                       QueryCounters& counters) const {
+  std::int32_t at = start;
+  double value = unit_direction.dot(nodes_[at].unit);
+  std::int64_t steps = 1, products = 1;
+  for (;;) {
+    std::int32_t best = at;
+    for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
+      const double other = unit_direction.dot(nodes_[links_[l]].unit);
+      if (other > value) {
+        value = other;
+        best = links_[l];
+      }
+    }
+    products += first_link_[at + 1] - first_link_[at];
+    if (best == at) break;
+    at = best;
+    ++steps;
+  }
+  counters.nodes += steps;
+  counters.dot_products += products;
+  counters.deepest = std::max(counters.deepest, steps);
+  return at;
+}
+
+template <int D>
+SupportPoint<D> KernelStructure<D>::support(const Vector<D>& direction, QueryCounters& counters) const {
+  ++counters.queries;
+  const Vector<D> unit = from_unit_.pull_back(direction);
+  const Node& node = nodes_[extreme_node(unit, counters)];
+  SupportPoint<D> best{node.point, direction.dot(node.point), node.index};
+  for (const Node& other : loose_) {
+    const double value = direction.dot(other.point);
+    if (value > best.value) best = {other.point, value, other.index};
+  }
+  return best;
+}
+
+template <int D>
+StructureSize KernelStructure<D>::size() const {
+  StructureSize r;
+  r.points = r.nodes = static_cast<std::int64_t>(nodes_.size());
+  r.links = static_cast<std::int64_t>(links_.size());
+  for (std::size_t v = 0; v < nodes_.size(); ++v) {
+    r.max_out_degree = std::max<std::int64_t>(r.max_out_degree, first_link_[v + 1] - first_link_[v]);
+  }
+  r.depth = 1;
+  r.bytes = static_cast<std::int64_t>(nodes_.size() * sizeof(Node) +
+                                      (links_.size() + first_link_.size() + starts_.size()) * sizeof(std::int32_t));
+  return r;
+}
+
+template class KernelStructure<2>;
+template class KernelStructure<3>;
+template class KernelStructure<4>;
+template class KernelStructure<5>;
+
+}  // namespace pd::dimension::detail

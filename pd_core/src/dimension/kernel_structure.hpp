@@ -1,0 +1,56 @@
+/// @file
+/// The kernel backend of directional width queries: vertices of a small polytope, its graph, and a table of directions.
+///
+/// Points: the vertices of the kernel's hull. Halfspaces: the vertices of the intersection of the few halfspaces that
+/// an epsilon-kernel of the polar body keeps, drawn towards the centre until they lie in the body ([M] Lemma 16). A
+/// query starts at the vertex that is extreme in the middle of its direction's cell, and climbs the graph.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dimension/direction_cells.hpp"
+#include "dimension/kernel_builder.hpp"
+#include "pd/dimension/directional_width.hpp"
+
+namespace pd::dimension::detail {
+
+template <int D>
+class KernelStructure : public WidthStructure<D> {
+ public:
+  /// `epsilon` below `kLeastEpsilon` is taken as that.
+  static std::shared_ptr<const KernelStructure> build(const Body<D>& body, double epsilon);
+  /// The vertices of the hull that a builder has grown.
+  static std::shared_ptr<const KernelStructure> of_kernel(const KernelBuilder<D>& builder);
+
+  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override;
+  [[nodiscard]] StructureSize size() const override;
+
+  struct Node {
+    Vector<D> unit;   ///< in the frame in which the body is fat
+    Vector<D> point;  ///< in the body's own
+    std::int64_t index;
+  };
+  [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
+  /// A node that no neighbour is beyond, for a direction of the frame.
+  std::int32_t extreme_node(const Vector<D>& unit_direction, QueryCounters& counters) const {
+    return climb(starts_[cells_.cell(unit_direction)], unit_direction, counters);
+  }
+
+ private:
+  std::int32_t climb(std::int32_t start, const Vector<D>& unit_direction, QueryCounters& counters) const;
+
+  KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes, std::vector<std::array<std::int32_t, 2>> links);
+
+  AffineMap<D> from_unit_;
+  std::vector<Node> nodes_;
+  std::vector<Node> loose_;  ///< kernel points that rounding keeps out of the hull: scanned
+  std::vector<std::int32_t> first_link_;
+  std::vector<std::int32_t> links_;
+  DirectionCells<D> cells_;
+  std::vector<std::int32_t> starts_;
+};
+
+}  // namespace pd::dimension::detail
