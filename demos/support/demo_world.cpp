@@ -87,11 +87,21 @@ std::string_view describe(SolverKind kind) {
   return "";
 }
 
+namespace {
+
+BulletSolverSettings settings_for(SolverKind kind) {
+  BulletSolverSettings settings;
+  settings.delta = kind == SolverKind::approximate ? kApproximateDelta : 0;
+  return settings;
+}
+
+}  // namespace
+
 struct DemoWorld::State {
   State(const scenes::World& description, SolverKind solver_kind_in)
       : plan(description),
         kind(solver_kind_in),
-        solver(BulletSolverSettings{kind == SolverKind::approximate ? kApproximateDelta : 0, nullptr, 4096}),
+        solver(settings_for(kind)),
         bullet_solver(kind == SolverKind::bullet_minkowski ? std::unique_ptr<btConvexPenetrationDepthSolver>(
                                                                  std::make_unique<btMinkowskiPenetrationDepthSolver>())
                                                            : std::make_unique<btGjkEpaPenetrationDepthSolver>()),

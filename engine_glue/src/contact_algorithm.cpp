@@ -1,15 +1,19 @@
 #include "contact_algorithm.hpp"
 
+#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include <algorithm>
+#include <typeinfo>
 
 #include "friction_anchor.hpp"
+#include "installation.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "solver_core.hpp"
 
 namespace pd::detail {
 
@@ -38,6 +42,16 @@ bool boxes_apart(const btConvexShape& a, const btTransform& pose_a, const btConv
     }
   }
   return false;
+}
+
+/// How far apart two surfaces may be for a contact, as in Bullet's own algorithms: the breaking threshold and what a
+/// closest-point query asks for beyond it. Contact tests have results of their own, which take every point that they
+/// are given; Bullet's algorithm for two spheres gives them those within the query's threshold alone.
+btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentManifold& manifold, const btConvexShape& a,
+                           const btConvexShape& b) {
+  const btScalar asked = result.m_closestPointDistanceThreshold;
+  const bool spheres = a.getShapeType() == SPHERE_SHAPE_PROXYTYPE && b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+  return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
 }
 
 /// New point for each old one: -1 where none.
@@ -92,12 +106,12 @@ Matching match_points(const btPersistentManifold& manifold, const PairMemory& me
 }  // namespace
 
 ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                                   const btCollisionObjectWrapper* b, BulletPenetrationDepthSolver& solver)
-    : btActivatingCollisionAlgorithm(info, a, b), solver_(solver), manifold_(info.m_manifold) {}
+                                   const btCollisionObjectWrapper* b, const Installation& installation)
+    : btActivatingCollisionAlgorithm(info, a, b), installation_(installation), manifold_(info.m_manifold) {}
 
 ContactAlgorithm::~ContactAlgorithm() {
   if (owns_manifold_) {
-    solver_.pairs().remove(manifold_);
+    installation_.core().pairs.remove(manifold_);
     m_dispatcher->releaseManifold(manifold_);
   }
 }
@@ -111,50 +125,76 @@ void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
 btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                                              const btCollisionObjectWrapper* a,
                                                                              const btCollisionObjectWrapper* b) {
+  const auto& takes_pair = installation.core().settings.takes_pair;
+  if (takes_pair && installation.dispatcher() != nullptr &&
+      !takes_pair(*a->getCollisionObject(), *b->getCollisionObject())) {
+    const int type_a = a->getCollisionShape()->getShapeType();
+    const int type_b = b->getCollisionShape()->getShapeType();
+    btCollisionConfiguration* configuration = installation.dispatcher()->getCollisionConfiguration();
+    btCollisionAlgorithmCreateFunc* own = for_closest_points
+                                              ? configuration->getClosestPointsAlgorithmCreateFunc(type_a, type_b)
+                                              : configuration->getCollisionAlgorithmCreateFunc(type_a, type_b);
+    return own->CreateCollisionAlgorithm(info, a, b);
+  }
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
-  return new (memory) ContactAlgorithm(info, a, b, solver);
+  return new (memory) ContactAlgorithm(info, a, b, installation);
+}
+
+void ContactAlgorithm::take_manifold(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
+  manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
+  owns_manifold_ = true;
+  memory_ = std::make_unique<PairMemory>();
+  installation_.core().pairs.add(manifold_, memory_.get());
 }
 
 void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         const btDispatcherInfo& info, btManifoldResult* result) {
-  if (manifold_ == nullptr) {
-    manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
-    owns_manifold_ = true;
-    memory_ = std::make_unique<PairMemory>();
-    solver_.pairs().add(manifold_, memory_.get());
+  SolverCore& core = installation_.core();
+  const bool first = manifold_ == nullptr;
+  if (first) {
+    take_manifold(a, b);
   }
   result->setPersistentManifold(manifold_);
 
   const btConvexShape& shape_a = convex_shape(a);
   const btConvexShape& shape_b = convex_shape(b);
-  // As Bullet's own algorithm: a closest-point query reaches farther, by the margins too.
-  btScalar threshold = manifold_->getContactBreakingThreshold();
-  if (result->m_closestPointDistanceThreshold > 0) {
-    threshold += result->m_closestPointDistanceThreshold + shape_a.getMargin() + shape_b.getMargin();
-  }
-  if (boxes_apart(shape_a, a->getWorldTransform(), shape_b, b->getWorldTransform(), threshold)) {
+  const btTransform& pose_a = a->getWorldTransform();
+  const btTransform& pose_b = b->getWorldTransform();
+  const btScalar threshold = reach_of_contacts(*result, *manifold_, shape_a, shape_b);
+  if (boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
     if (owns_manifold_) {
       manifold_->clearManifold();
     }
     return;
   }
-  const auto answer = solver_.query(shape_a, a->getWorldTransform(), shape_b, b->getWorldTransform(),
-                                    memory_ ? &memory_->warm : nullptr);
-  if (!answer) {
-    process_by_bullet(shape_a, a->getWorldTransform(), shape_b, b->getWorldTransform(), info, threshold, result);
+  if (core.closed()) {
+    btGjkEpaPenetrationDepthSolver epa;
+    process_by_bullet(epa, shape_a, pose_a, shape_b, pose_b, info, result);
     return;
   }
+  auto buffers = core.buffers.lease();
+  PairAnswer answer;
+  // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
+  const std::uint64_t stamp = first ? 0 : installation_.stamp();
+  const auto outcome =
+      core.answer(shape_a, pose_a, shape_b, pose_b, BoxCorners::sharp, stamp,
+                  memory_ ? memory_->shapes : buffers->recent, memory_ ? &memory_->warm : nullptr, *buffers, answer);
+  if (outcome == SolverCore::Outcome::unsupported) {
+    process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
+    return;
+  }
+  ContactManifold fresh;
+  if (outcome == SolverCore::Outcome::answered) {
+    fresh = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold), buffers->manifold);
+  }
   if (owns_manifold_) {
-    memory_->shape_a = answer->shape_a;
-    memory_->shape_b = answer->shape_b;
-    replace_points(*answer, static_cast<double>(threshold), result);
+    replace_points(fresh, result);
   } else {
-    add_points(*answer, static_cast<double>(threshold), result);
+    add_points(fresh, result);
   }
 }
 
-void ContactAlgorithm::add_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result) {
-  const ContactManifold fresh = solver_.manifold(answer, threshold);
+void ContactAlgorithm::add_points(const ContactManifold& fresh, btManifoldResult* result) {
   const btVector3 normal = to_bullet(fresh.normal);
   const btTransform& body_a = manifold_->getBody0()->getWorldTransform();
   for (int k = 0; k < fresh.count; ++k) {
@@ -166,8 +206,7 @@ void ContactAlgorithm::add_points(const BulletPairAnswer& answer, double thresho
   }
 }
 
-void ContactAlgorithm::replace_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result) {
-  const ContactManifold fresh = solver_.manifold(answer, threshold);
+void ContactAlgorithm::replace_points(const ContactManifold& fresh, btManifoldResult* result) {
   const btVector3 normal = to_bullet(fresh.normal);
   const btTransform& body_a = manifold_->getBody0()->getWorldTransform();
   std::array<btVector3, 4> local_a;
@@ -206,16 +245,25 @@ void ContactAlgorithm::replace_points(const BulletPairAnswer& answer, double thr
     memory_->points[i].local_a = manifold_->getContactPoint(i).m_localPointA;
     ++manifold_->getContactPoint(i).m_lifeTime;
   }
+  // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.
+  if (gContactProcessedCallback != nullptr) {
+    for (int i = manifold_->getNumContacts() - 1; i >= 0; --i) {
+      gContactProcessedCallback(manifold_->getContactPoint(i), const_cast<btCollisionObject*>(manifold_->getBody0()),
+                                const_cast<btCollisionObject*>(manifold_->getBody1()));
+    }
+  }
 }
 
-void ContactAlgorithm::process_by_bullet(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
+void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a,
+                                         const btTransform& transform_a, const btConvexShape& b,
                                          const btTransform& transform_b, const btDispatcherInfo& info,
-                                         btScalar threshold, btManifoldResult* result) {
+                                         btManifoldResult* result) {
   if (is_finite(transform_a) && is_finite(transform_b)) {
     btVoronoiSimplexSolver simplex;
-    btGjkPairDetector detector(&a, &b, &simplex, solver_.settings().fallback);
+    btGjkPairDetector detector(&a, &b, &simplex, &solver);
     btGjkPairDetector::ClosestPointInput input;
-    const btScalar reach = a.getMargin() + b.getMargin() + threshold;
+    const btScalar reach = a.getMargin() + b.getMargin() + manifold_->getContactBreakingThreshold() +
+                           result->m_closestPointDistanceThreshold;
     input.m_maximumDistanceSquared = reach * reach;
     input.m_transformA = transform_a;
     input.m_transformB = transform_b;
@@ -228,18 +276,19 @@ void ContactAlgorithm::process_by_bullet(const btConvexShape& a, const btTransfo
 
 btScalar ContactAlgorithm::calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo&,
                                                  btManifoldResult*) {
-  if (!a->getCollisionShape()->isConvex() || !b->getCollisionShape()->isConvex()) {
+  SolverCore& core = installation_.core();
+  if (core.closed() || !a->getCollisionShape()->isConvex() || !b->getCollisionShape()->isConvex()) {
     return btScalar(1);
   }
-  const auto shape_a = solver_.cache().find_or_convert(*static_cast<btConvexShape*>(a->getCollisionShape()));
-  const auto shape_b = solver_.cache().find_or_convert(*static_cast<btConvexShape*>(b->getCollisionShape()));
+  const auto shape_a = core.cache.find_or_convert(*static_cast<btConvexShape*>(a->getCollisionShape()));
+  const auto shape_b = core.cache.find_or_convert(*static_cast<btConvexShape*>(b->getCollisionShape()));
   if (!shape_a || !shape_b) {
     return btScalar(1);
   }
-  Scratch scratch;
+  auto buffers = core.buffers.lease();
   const auto impact = time_of_impact(
       moving_shape(*shape_a, a->getWorldTransform(), a->getInterpolationWorldTransform(), 1),
-      moving_shape(*shape_b, b->getWorldTransform(), b->getInterpolationWorldTransform(), 1), 1, scratch);
+      moving_shape(*shape_b, b->getWorldTransform(), b->getInterpolationWorldTransform(), 1), 1, buffers->scratch);
   return impact.hit ? static_cast<btScalar>(impact.time) : btScalar(1);
 }
 

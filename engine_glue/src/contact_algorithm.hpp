@@ -6,12 +6,17 @@
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/NarrowPhaseCollision/btConvexPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "pair_registry.hpp"
-#include "pd/bullet/penetration_depth_solver.hpp"
+#include "pd/contact/manifold.hpp"
 
 namespace pd::detail {
+
+class Installation;
+class SolverCore;
+struct PairAnswer;
 
 /// Bullet's own algorithm finds one point a step and needs several steps for a face; this one has up to four from the
 /// first step. Impulses go from last step's points to this step's by feature, else by place, so that the constraint
@@ -19,7 +24,7 @@ namespace pd::detail {
 class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
  public:
   ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                   const btCollisionObjectWrapper* b, BulletPenetrationDepthSolver& solver);
+                   const btCollisionObjectWrapper* b, const Installation& installation);
   ~ContactAlgorithm() override;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
@@ -31,21 +36,24 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
   struct CreateFunc : public btCollisionAlgorithmCreateFunc {
-    explicit CreateFunc(BulletPenetrationDepthSolver& s) : solver(s) {}
+    /// `closest`: stands in the dispatcher's table of closest points, else in that of contacts
+    CreateFunc(const Installation& i, bool closest) : installation(i), for_closest_points(closest) {}
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
                                                    const btCollisionObjectWrapper* b) override;
-    BulletPenetrationDepthSolver& solver;
+    const Installation& installation;
+    bool for_closest_points;
   };
 
  private:
-  void replace_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result);
-  void add_points(const BulletPairAnswer& answer, double threshold, btManifoldResult* result);
-  void process_by_bullet(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
-                         const btTransform& transform_b, const btDispatcherInfo& info, btScalar threshold,
+  void take_manifold(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b);
+  void replace_points(const ContactManifold& fresh, btManifoldResult* result);
+  void add_points(const ContactManifold& fresh, btManifoldResult* result);
+  void process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a, const btTransform& transform_a,
+                         const btConvexShape& b, const btTransform& transform_b, const btDispatcherInfo& info,
                          btManifoldResult* result);
 
-  BulletPenetrationDepthSolver& solver_;
+  const Installation& installation_;
   btPersistentManifold* manifold_;
   bool owns_manifold_ = false;
   std::unique_ptr<PairMemory> memory_;  ///< of pairs with a manifold of their own

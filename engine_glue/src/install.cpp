@@ -3,20 +3,44 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+
+#include "installation.hpp"
+#include "solver_core.hpp"
 
 namespace pd {
 
-void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
-  btCollisionAlgorithmCreateFunc* create =
-      contacts == BulletContacts::one_shot ? solver.one_shot_create_func() : solver.persistent_create_func();
+namespace {
+
+template <class Visit>
+void for_each_convex_pair(Visit&& visit) {
   for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
     for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
       if (btBroadphaseProxy::isConvex(i) && btBroadphaseProxy::isConvex(j)) {
-        dispatcher.registerCollisionCreateFunc(i, j, create);
-        dispatcher.registerClosestPointsCreateFunc(i, j, create);
+        visit(i, j);
       }
     }
   }
+}
+
+/// Pairs lose their algorithms and get new ones, from the dispatcher's present tables, at the next step.
+void renew_pairs(btCollisionWorld& world) {
+  btOverlappingPairCache* cache = world.getPairCache();
+  btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
+  for (int i = 0; i < pairs.size(); ++i) {
+    cache->cleanOverlappingPair(pairs[i], world.getDispatcher());
+  }
+}
+
+}  // namespace
+
+void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
+  detail::Installation& installation = solver.core().installation(&dispatcher);
+  const bool whole = contacts == BulletContacts::one_shot;
+  for_each_convex_pair([&](int i, int j) {
+    dispatcher.registerCollisionCreateFunc(i, j, whole ? installation.one_shot(false) : installation.persistent());
+    dispatcher.registerClosestPointsCreateFunc(i, j, whole ? installation.one_shot(true) : installation.persistent());
+  });
 }
 
 bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
@@ -25,18 +49,41 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
     return false;
   }
   install(*dispatcher, solver, contacts);
-  btOverlappingPairCache* cache = world.getPairCache();
-  btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
-  for (int i = 0; i < pairs.size(); ++i) {
-    cache->cleanOverlappingPair(pairs[i], dispatcher);
+  if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
+    btActionInterface* action = solver.core().installation(dispatcher).step_action();
+    dynamics->removeAction(action);  // of an earlier installation, if there was one
+    dynamics->addAction(action);
   }
+  renew_pairs(world);
   return true;
 }
 
-void install(btDefaultCollisionConfiguration& configuration, BulletPenetrationDepthSolver& solver) {
-  static_cast<btConvexConvexAlgorithm::CreateFunc*>(
-      configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE))
-      ->m_pdSolver = &solver;
+bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
+  auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
+  detail::Installation* installation = solver.core().find_installation(dispatcher);
+  if (dispatcher == nullptr || installation == nullptr) {
+    return false;
+  }
+  btCollisionConfiguration* configuration = dispatcher->getCollisionConfiguration();
+  for_each_convex_pair([&](int i, int j) {
+    dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
+    dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
+  });
+  if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
+    dynamics->removeAction(installation->step_action());
+  }
+  renew_pairs(world);
+  return true;
+}
+
+bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolver& solver) {
+  auto* general = dynamic_cast<btConvexConvexAlgorithm::CreateFunc*>(
+      configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE));
+  if (general == nullptr) {
+    return false;
+  }
+  general->m_pdSolver = solver.core().installation(nullptr).depth_solver();
+  return true;
 }
 
 }  // namespace pd

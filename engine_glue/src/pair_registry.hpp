@@ -10,8 +10,8 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "cached_shape.hpp"
 #include "pd/depth/warm_certificate.hpp"
-#include "pd/shape/convex_shape.hpp"
 
 class btPersistentManifold;
 
@@ -25,9 +25,9 @@ struct RememberedPoint {
 
 struct PairMemory {
   WarmCertificate warm;
-  /// Held so that the certificate's shapes stay where they are.
-  std::shared_ptr<const ConvexShape> shape_a;
-  std::shared_ptr<const ConvexShape> shape_b;
+  /// Held so that the certificate's shapes stay where they are, and so that a pair looks nothing up that has not
+  /// changed.
+  std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
 };

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cached_shape.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 
@@ -15,11 +16,15 @@ struct RollbackStepper::Part {
   btCollisionObject* body;
   const btConvexShape* bullet_shape;
   btTransform local;  ///< of the piece in the body
-  std::shared_ptr<const ConvexShape> shape;
+  std::shared_ptr<detail::CachedShape> cached;
   double radius;  ///< about the body's origin
   btTransform start;
 
   [[nodiscard]] btTransform present() const { return body->getWorldTransform() * local; }
+  /// As the contact algorithm takes it: two boxes are sharp.
+  [[nodiscard]] const ConvexShape& shape_beside(const Part& other) const {
+    return cached->sharp && other.cached->sharp ? *cached->sharp : *cached->body;
+  }
 };
 
 struct RollbackStepper::Impact {
@@ -63,9 +68,10 @@ void RollbackStepper::collect_parts() {
       }
     } else if (shape->isConvex()) {
       const auto* convex = static_cast<const btConvexShape*>(shape);
-      if (auto body = solver_.cache().find_or_convert(*convex)) {
-        const double radius = to_pd(local.getOrigin()).norm() + bounding_radius(*body);
-        parts_.push_back({object, convex, local, std::move(body), radius, local});
+      if (auto cached = solver_.cache().find(*convex, 0); cached->body) {
+        const double radius =
+            to_pd(local.getOrigin()).norm() + bounding_radius(cached->sharp ? *cached->sharp : *cached->body);
+        parts_.push_back({object, convex, local, std::move(cached), radius, local});
       }
     }
   };
@@ -97,8 +103,8 @@ bool RollbackStepper::earliest_impact(double duration, Impact& impact) {
                                                            b.body->getBroadphaseHandle())) {
         continue;
       }
-      const MovingShape moving_a = detail::moving_shape(*a.shape, a.start, a.present(), duration);
-      const MovingShape moving_b = detail::moving_shape(*b.shape, b.start, b.present(), duration);
+      const MovingShape moving_a = detail::moving_shape(a.shape_beside(b), a.start, a.present(), duration);
+      const MovingShape moving_b = detail::moving_shape(b.shape_beside(a), b.start, b.present(), duration);
       const double travel = (moving_a.motion.linear_velocity - moving_b.motion.linear_velocity).norm() * duration;
       const double apart = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
       if (apart > travel + a.radius + b.radius) {
@@ -123,8 +129,8 @@ bool RollbackStepper::earliest_impact(double duration, Impact& impact) {
 FirstContact RollbackStepper::advance_to(const Impact& impact, const BulletSnapshot& start, double duration,
                                          RollbackReport& report) {
   const auto measure = [&] {
-    return penetration_depth({impact.a->shape.get(), to_pd(impact.a->present())},
-                             {impact.b->shape.get(), to_pd(impact.b->present())}, scratch_);
+    return penetration_depth({&impact.a->shape_beside(*impact.b), to_pd(impact.a->present())},
+                             {&impact.b->shape_beside(*impact.a), to_pd(impact.b->present())}, scratch_);
   };
   FirstContact result;
   result.body_a = impact.a->body;

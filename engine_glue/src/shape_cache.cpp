@@ -1,49 +1,87 @@
 #include "pd/bullet/shape_cache.hpp"
 
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+
 #include <algorithm>
 #include <mutex>
 
+#include "cached_shape.hpp"
+
 namespace pd {
+
+namespace {
+
+std::shared_ptr<detail::CachedShape> convert(const btConvexShape& shape) {
+  auto result = std::make_shared<detail::CachedShape>();
+  result->source = &shape;
+  auto body = to_convex_shape(shape);
+  if (!body) {
+    result->refusal = body.error();
+    return result;
+  }
+  result->body = std::make_shared<const ConvexShape>(std::move(body).value());
+  if (shape.getShapeType() == BOX_SHAPE_PROXYTYPE) {
+    auto sharp = to_sharp_box(static_cast<const btBoxShape&>(shape));
+    result->sharp = sharp ? std::make_shared<const ConvexShape>(std::move(sharp).value()) : result->body;
+  }
+  return result;
+}
+
+}  // namespace
 
 BulletShapeCache::BulletShapeCache(std::size_t capacity) : capacity_(std::max<std::size_t>(capacity, 1)) {}
 
 std::shared_ptr<const ConvexShape> BulletShapeCache::find_or_convert(const btConvexShape& shape) {
-  const auto convert = [&]() -> std::shared_ptr<const ConvexShape> {
-    conversions_.fetch_add(1, std::memory_order_relaxed);
-    auto body = to_convex_shape(shape);
-    return body ? std::make_shared<const ConvexShape>(std::move(body).value()) : nullptr;
-  };
+  return find(shape, 0)->body;
+}
+
+std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape& shape, std::uint64_t stamp) {
   if (shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
-    return convert();
+    conversions_.fetch_add(1, std::memory_order_relaxed);
+    return convert(shape);
   }
-  const std::uint64_t fingerprint = shape_fingerprint(shape);
+  const std::uint64_t signature = shape_signature(shape);
   const std::uint64_t now = clock_.fetch_add(1, std::memory_order_relaxed);
+  std::shared_ptr<detail::CachedShape> known;
   {
     const std::shared_lock lock(mutex_);
     const auto found = entries_.find(&shape);
-    if (found != entries_.end() && found->second.fingerprint == fingerprint) {
-      found->second.last_use.store(now, std::memory_order_relaxed);
-      return found->second.body;
+    if (found != entries_.end() && found->second->signature == signature) {
+      known = found->second;
+      known->last_use.store(now, std::memory_order_relaxed);
+      if (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp) {
+        return known;
+      }
     }
+  }
+  const std::uint64_t fingerprint = shape_fingerprint(shape);
+  if (known && known->fingerprint == fingerprint) {
+    known->compared.store(stamp, std::memory_order_relaxed);
+    return known;
   }
   // Converted outside the lock: readers of other shapes go on. Two threads may convert the same shape; both get equal
   // bodies.
-  auto body = convert();
+  conversions_.fetch_add(1, std::memory_order_relaxed);
+  auto entry = convert(shape);
+  entry->fingerprint = fingerprint;
+  entry->signature = signature;
+  entry->compared.store(stamp, std::memory_order_relaxed);
+  entry->last_use.store(now, std::memory_order_relaxed);
   const std::unique_lock lock(mutex_);
   const auto present = entries_.find(&shape);
   if (present != entries_.end()) {
-    if (present->second.fingerprint == fingerprint) {
-      return present->second.body;  // another thread was first: one body for all, so that warm pairs recognise it
+    if (present->second->fingerprint == fingerprint && present->second->signature == signature) {
+      return present->second;  // another thread was first: one body for all, so that warm pairs recognise it
     }
     entries_.erase(present);
   }
   if (entries_.size() >= capacity_) {
     entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
-      return a.second.last_use.load(std::memory_order_relaxed) < b.second.last_use.load(std::memory_order_relaxed);
+      return a.second->last_use.load(std::memory_order_relaxed) < b.second->last_use.load(std::memory_order_relaxed);
     }));
   }
-  entries_.try_emplace(&shape, fingerprint, body, now);
-  return body;
+  entries_.emplace(&shape, entry);
+  return entry;
 }
 
 void BulletShapeCache::forget(const btCollisionShape* shape) {

@@ -347,4 +347,53 @@ std::uint64_t shape_fingerprint(const btConvexShape& shape) {
   return hash.value();
 }
 
+std::uint64_t shape_signature(const btConvexShape& shape) {
+  Fingerprint hash;
+  const int type = shape.getShapeType();
+  hash.add(static_cast<std::uint64_t>(type));
+  hash.add(bullet_margin(shape));
+  switch (type) {
+    case CONVEX_HULL_SHAPE_PROXYTYPE: {
+      const auto& hull = static_cast<const btConvexHullShape&>(shape);
+      hash.add(static_cast<std::uint64_t>(hull.getNumPoints()));
+      hash.add(std::bit_cast<std::uintptr_t>(hull.getUnscaledPoints()));
+      hash.add(hull.getLocalScalingNV());
+      break;
+    }
+    case CONVEX_POINT_CLOUD_SHAPE_PROXYTYPE: {
+      const auto& cloud = static_cast<const btConvexPointCloudShape&>(shape);
+      hash.add(static_cast<std::uint64_t>(cloud.getNumPoints()));
+      hash.add(std::bit_cast<std::uintptr_t>(cloud.getUnscaledPoints()));
+      hash.add(cloud.getLocalScalingNV());
+      break;
+    }
+    case BOX_SHAPE_PROXYTYPE:
+    case BOX_2D_SHAPE_PROXYTYPE:
+    case SPHERE_SHAPE_PROXYTYPE:
+    case CAPSULE_SHAPE_PROXYTYPE:
+    case CYLINDER_SHAPE_PROXYTYPE:
+      hash.add(static_cast<const btConvexInternalShape&>(shape).getImplicitShapeDimensions());
+      break;
+    default:
+      hash.add(shape.getLocalScaling());
+      break;
+  }
+  return hash.value();
+}
+
+Expected<ConvexShape> to_sharp_box(const btBoxShape& shape) {
+  const btVector3 half = shape.getHalfExtentsWithMargin();
+  auto polytope = ConvexPolytope::box(to_pd(half));
+  if (polytope) {
+    return ConvexShape(std::move(polytope).value());
+  }
+  // A box without extent on some axis is a rectangle, a segment or a point.
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    points.push_back(to_pd(
+        btVector3((i & 1) ? half.x() : -half.x(), (i & 2) ? half.y() : -half.y(), (i & 4) ? half.z() : -half.z())));
+  }
+  return swept_hull(shape, points, 0);
+}
+
 }  // namespace pd

@@ -1,57 +1,126 @@
 /// @file
-/// A pool of query buffers: as many as there were threads inside a call at once.
+/// What a thread inside a call works with: query buffers, converted triangles, the shapes it met last, its counters.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/scratch.hpp"
+#include "triangle_cache.hpp"
 
 namespace pd::detail {
+
+/// Written by the thread that holds the buffers, read by anyone: no thread waits for another to count.
+class Counter {
+ public:
+  void add(std::int64_t n = 1) { value_.store(value_.load(std::memory_order_relaxed) + n, std::memory_order_relaxed); }
+  [[nodiscard]] std::int64_t read() const { return value_.load(std::memory_order_relaxed); }
+  void reset() { value_.store(0, std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::int64_t> value_{0};
+};
+
+struct SolverCounters {
+  Counter calls, overlapping, touching, separated, warm, unsupported, fallback, refused_poses, support_calls,
+      nanoseconds;
+  template <class Visit>
+  void for_each(Visit&& visit) {
+    for (Counter* counter : {&calls, &overlapping, &touching, &separated, &warm, &unsupported, &fallback,
+                             &refused_poses, &support_calls, &nanoseconds}) {
+      visit(*counter);
+    }
+  }
+};
 
 struct ThreadBuffers {
   Scratch scratch;
   ManifoldScratch manifold;
+  TriangleCache triangles;
+  SolverCounters counters;
+  unsigned queries = 0;  ///< for sampling the clock
+  /// The shapes of the last pair without a memory of its own: a hull on a mesh meets one triangle after another.
+  std::array<std::shared_ptr<CachedShape>, 2> recent;
 };
 
+/// A pool of buffers: as many as there were threads inside a call at once. Taking and giving back is one exchange of a
+/// pointer each as long as no more than kSlots threads are inside calls.
 class ThreadBufferPool {
  public:
   /// Gives the buffers back at the end of its scope.
   class Lease {
    public:
-    Lease(ThreadBufferPool& pool, std::unique_ptr<ThreadBuffers> buffers) : pool_(pool), buffers_(std::move(buffers)) {}
-    ~Lease() { pool_.give_back(std::move(buffers_)); }
+    Lease(ThreadBufferPool& pool, ThreadBuffers* buffers) : pool_(pool), buffers_(buffers) {}
+    ~Lease() { pool_.give_back(buffers_); }
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;
-    ThreadBuffers* operator->() { return buffers_.get(); }
+    ThreadBuffers* operator->() { return buffers_; }
+    ThreadBuffers& operator*() { return *buffers_; }
 
    private:
     ThreadBufferPool& pool_;
-    std::unique_ptr<ThreadBuffers> buffers_;
+    ThreadBuffers* buffers_;
   };
 
   Lease lease() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!idle_.empty()) {
-        auto buffers = std::move(idle_.back());
-        idle_.pop_back();
-        return {*this, std::move(buffers)};
+    for (std::atomic<ThreadBuffers*>& slot : idle_) {
+      if (slot.load(std::memory_order_relaxed) != nullptr) {
+        if (ThreadBuffers* buffers = slot.exchange(nullptr, std::memory_order_acquire)) {
+          return {*this, buffers};
+        }
       }
     }
-    return {*this, std::make_unique<ThreadBuffers>()};
+    const std::lock_guard lock(mutex_);
+    if (!overflow_.empty()) {
+      ThreadBuffers* buffers = overflow_.back();
+      overflow_.pop_back();
+      return {*this, buffers};
+    }
+    all_.push_back(std::make_unique<ThreadBuffers>());
+    return {*this, all_.back().get()};
+  }
+
+  /// Every buffer there is, those in use included: for counters.
+  template <class Visit>
+  void for_each(Visit&& visit) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& buffers : all_) {
+      visit(*buffers);
+    }
+  }
+
+  /// Frees all of them. Requires: no thread is inside a call.
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    for (auto& slot : idle_) {
+      slot.store(nullptr, std::memory_order_relaxed);
+    }
+    overflow_.clear();
+    all_.clear();
   }
 
  private:
-  void give_back(std::unique_ptr<ThreadBuffers> buffers) {
+  static constexpr std::size_t kSlots = 16;
+
+  void give_back(ThreadBuffers* buffers) {
+    for (std::atomic<ThreadBuffers*>& slot : idle_) {
+      ThreadBuffers* empty = nullptr;
+      if (slot.compare_exchange_strong(empty, buffers, std::memory_order_release, std::memory_order_relaxed)) {
+        return;
+      }
+    }
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(buffers));
+    overflow_.push_back(buffers);
   }
 
+  std::array<std::atomic<ThreadBuffers*>, kSlots> idle_{};
   std::mutex mutex_;
-  std::vector<std::unique_ptr<ThreadBuffers>> idle_;
+  std::vector<ThreadBuffers*> overflow_;
+  std::vector<std::unique_ptr<ThreadBuffers>> all_;
 };
 
 }  // namespace pd::detail

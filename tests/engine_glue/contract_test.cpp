@@ -208,29 +208,40 @@ TEST_F(TwoBoxes, NotFiniteIsNoAnswer) {
   EXPECT_EQ(solver.statistics().refused_poses, 1);
 }
 
-TEST(Fallback, IsAskedOnlyWhereGivenAndCounted) {
+/// Bullet's EPA with a count.
+class CountedEpa : public btGjkEpaPenetrationDepthSolver {
+ public:
+  int calls = 0;
+  bool calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
+                    const btTransform& pose_a, const btTransform& pose_b, btVector3& v, btVector3& witness_a,
+                    btVector3& witness_b, btIDebugDraw* draw) override {
+    ++calls;
+    return btGjkEpaPenetrationDepthSolver::calcPenDepth(simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
+  }
+};
+
+TEST(Fallback, IsBulletsOwnUnlessAnotherIsGiven) {
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
   const btScalar radii[2] = {1, btScalar(0.5)};
   const btMultiSphereShape unequal(centres, radii, 2);
   const btSphereShape sphere(1);
-
-  pd::BulletPenetrationDepthSolver alone;
-  btVoronoiSimplexSolver simplex;
-  btVector3 v(0, 0, 0);
-  btVector3 a;
-  btVector3 b;
-  EXPECT_FALSE(alone.calcPenDepth(simplex, &unequal, &sphere, at(0, 0, 0), at(0, btScalar(1.5), 0), v, a, b, nullptr));
-  EXPECT_EQ(v.length2(), 0);
-  EXPECT_EQ(alone.statistics().unsupported, 1);
-  EXPECT_EQ(alone.statistics().fallback, 0);
-
-  btGjkEpaPenetrationDepthSolver epa;
-  pd::BulletSolverSettings settings;
-  settings.fallback = &epa;
-  pd::BulletPenetrationDepthSolver solver(settings);
-  EXPECT_TRUE(solver.calcPenDepth(simplex, &unequal, &sphere, at(0, 0, 0), at(0, btScalar(1.5), 0), v, a, b, nullptr));
-  EXPECT_EQ(solver.statistics().fallback, 1);
-  EXPECT_NEAR(static_cast<double>((b - a).length()), 0.5, 1e-2);
+  CountedEpa epa;
+  for (CountedEpa* given : {static_cast<CountedEpa*>(nullptr), &epa}) {
+    pd::BulletSolverSettings settings;
+    settings.warning = nullptr;
+    settings.fallback = given;
+    pd::BulletPenetrationDepthSolver solver(settings);
+    btVoronoiSimplexSolver simplex;
+    btVector3 v(0, 0, 0);
+    btVector3 a;
+    btVector3 b;
+    EXPECT_TRUE(
+        solver.calcPenDepth(simplex, &unequal, &sphere, at(0, 0, 0), at(0, btScalar(1.5), 0), v, a, b, nullptr));
+    EXPECT_EQ(solver.statistics().unsupported, 1);
+    EXPECT_EQ(solver.statistics().fallback, 1);
+    EXPECT_NEAR(static_cast<double>((b - a).length()), 0.5, 1e-2);
+  }
+  EXPECT_EQ(epa.calls, 1);
 }
 
 btTransform random_pose(std::mt19937& random, double reach) {

@@ -6,7 +6,7 @@
 #include <pd/bullet/install.hpp>
 
 int main() {
-  pd::BulletPenetrationDepthSolver solver;  // outlives the world, as shapes and bodies do
+  pd::BulletPenetrationDepthSolver solver;  // if it dies first, Bullet's own EPA goes on
   btBoxShape table(btVector3(1, 1, 1)), die(btVector3(0.1f, 0.1f, 0.1f));
   btRigidBody below(0, nullptr, &table), above(1, nullptr, &die, btVector3(0.01f, 0.01f, 0.01f));
   above.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 1.09f, 0)));

@@ -2,9 +2,9 @@
 /// The one line that hands a Bullet world's contacts to pdepth.
 #pragma once
 
+#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
-#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 
 #include "pd/bullet/penetration_depth_solver.hpp"
 
@@ -23,18 +23,36 @@ enum class BulletContacts {
 /// in the plane's direction, which is exact up to rounding), soft bodies, ray and sweep queries (`convexSweepTest`; use
 /// `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the host registers later win.
 ///
+/// How shapes and their margins are taken ("inside" as in shape_conversion.hpp):
+///
+/// | pair | one_shot | persistent |
+/// |---|---|---|
+/// | btBoxShape, btBoxShape | sharp, full half extents, as Bullet's own box/box algorithm | rounded: half extents less
+/// the margin, plus a ball of it | | btBoxShape, anything else; cylinders | rounded by the margin, which lies inside |
+/// the same | | hulls, point clouds, triangles, cones | rounded by the margin, which lies outside | the same | |
+/// spheres, capsules | exact; the margin is the radius | the same |
+///
+/// A world that steps (btDynamicsWorld) gets an action (`addAction`) that tells the solver when a step has ended;
+/// shapes are compared with what they were converted from once a step (shape_cache.hpp).
+///
 /// @return false, and nothing changed, where the world's dispatcher is not a btCollisionDispatcher.
-/// Requires: the solver outlives the world.
 bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 
-/// The same for a dispatcher that has no world yet.
+/// The same for a dispatcher that has no world yet. Its shapes are compared at every pair.
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
+
+/// Gives every pair of convex shapes back to the algorithms of the dispatcher's own configuration (not to create
+/// functions that the host had registered before). Contacts are found again at the next step.
+/// @return false, and nothing changed, where the solver is not installed in this world's dispatcher.
+bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver);
 
 /// Only exchanges the penetration solver of Bullet's convex-convex algorithm, before a dispatcher is made from the
 /// configuration: for hosts that build their world elsewhere. Pairs with an algorithm of their own (box/box,
 /// sphere/sphere, sphere/triangle) do not ask it.
-void install(btDefaultCollisionConfiguration& configuration, BulletPenetrationDepthSolver& solver);
+/// @return false, and nothing changed, where the configuration answers pairs of hulls by an algorithm that is not
+/// Bullet's.
+bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolver& solver);
 
 }  // namespace pd

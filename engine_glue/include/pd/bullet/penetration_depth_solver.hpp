@@ -8,8 +8,10 @@
 #include <BulletCollision/NarrowPhaseCollision/btConvexPenetrationDepthSolver.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "pd/bullet/shape_cache.hpp"
 #include "pd/contact/manifold.hpp"
@@ -17,25 +19,34 @@
 #include "pd/depth/scratch.hpp"
 
 class btCollisionAlgorithm;
+class btCollisionObject;
 struct btCollisionAlgorithmCreateFunc;
 
 namespace pd {
 
 namespace detail {
 class PairRegistry;
-class ThreadBufferPool;
+class SolverCore;
 }  // namespace detail
 
 struct BulletSolverSettings {
   /// 0: exact for polyhedral, sphere, capsule and swept shapes, 1e-6 relative for cylinders and cones. Else the
   /// relative error (1 + delta) for all, in (0, 1].
   double delta = 0;
-  /// Asked for shapes that have no exact form (`to_convex_shape` refuses them), e.g. a btGjkEpaPenetrationDepthSolver;
-  /// must outlive the solver and be safe on the dispatcher's threads. nullptr: such pairs get no depth (Bullet keeps
-  /// the shallow contacts that its own distance query finds). Either way they are counted.
+  /// Asked for shapes that have no exact form (`to_convex_shape` refuses them as unsupported); must outlive the solver
+  /// and be safe on the dispatcher's threads. nullptr: Bullet's own EPA. Either way such pairs are counted.
   btConvexPenetrationDepthSolver* fallback = nullptr;
+  /// Told once for each Bullet type without exact form, in one line, from the thread that met it first. Empty: silence.
+  std::function<void(const std::string&)> warning = print_warning;
+  /// Which pairs of objects the contact algorithm takes, asked when a pair gets its algorithm; the others get the
+  /// algorithm of the dispatcher's own configuration. Empty: all. Pairs that have an algorithm keep it until they part,
+  /// or until `install` is called again.
+  std::function<bool(const btCollisionObject&, const btCollisionObject&)> takes_pair;
   /// Entries of the shape cache.
   std::size_t cache_capacity = 4096;
+
+  /// Writes the line to stderr.
+  static void print_warning(const std::string& line);
 };
 
 /// What a solver has done so far.
@@ -49,7 +60,9 @@ struct BulletSolverStatistics {
   std::int64_t fallback = 0;       ///< of those, the ones that the fallback solver answered
   std::int64_t refused_poses = 0;  ///< pairs with a transform that is not finite or out of range
   std::int64_t support_calls = 0;  ///< supports of the Minkowski difference, over all answers
-  std::int64_t nanoseconds = 0;    ///< spent in depth queries, over all threads
+  /// Spent in pairs, from the look-up of their shapes to their answer, over all threads; from a sample of one pair
+  /// in 16.
+  std::int64_t nanoseconds = 0;
 };
 
 /// One answer about two Bullet shapes, with the bodies that it was made for.
@@ -61,8 +74,9 @@ struct BulletPairAnswer {
   Pose pose_b;
 };
 
-/// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: buffers come from a pool, counters are atomic, the shape
-/// cache is shared. Must outlive every world that it is installed in (`pd::install`).
+/// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: each thread inside a call has buffers and counters of
+/// its own, the shape cache is shared. May be destroyed before the worlds that it is installed in: their pairs are then
+/// answered by Bullet's own EPA (a few hundred bytes stay behind for them until the program ends).
 class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver {
  public:
   explicit BulletPenetrationDepthSolver(const BulletSolverSettings& settings = {});
@@ -75,15 +89,15 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
   ///   normal, which Bullet takes where the two points coincide.
   /// - separated: false; wA and wB the nearest points of the cores (Bullet adds the margins itself), v the unit normal
   ///   in world axes.
-  /// - no answer (no exact form and no fallback, or a transform that is not finite): false and v = 0, which Bullet
-  /// reads
-  ///   as "nothing found".
+  /// - no answer (a shape that is no body, such as a hull without points, or a transform that is not finite): false and
+  ///   v = 0, which Bullet reads as "nothing found".
   bool calcPenDepth(btSimplexSolverInterface& simplex_solver, const btConvexShape* a, const btConvexShape* b,
                     const btTransform& transform_a, const btTransform& transform_b, btVector3& v, btVector3& witness_a,
                     btVector3& witness_b, btIDebugDraw* debug_draw) override;
 
-  /// The full answer for two posed Bullet shapes, in the frame of the transforms; empty where a shape has no exact form
-  /// or a transform is not finite. `warm`: the memory of this pair, or nullptr.
+  /// The full answer for two posed Bullet shapes as the contact algorithm sees them (two btBoxShapes sharp, see
+  /// install.hpp), in the frame of the transforms; empty where a shape has no exact form or a transform is not finite.
+  /// `warm`: the memory of this pair, or nullptr.
   [[nodiscard]] std::optional<BulletPairAnswer> query(const btConvexShape& a, const btTransform& transform_a,
                                                       const btConvexShape& b, const btTransform& transform_b,
                                                       WarmCertificate* warm = nullptr);
@@ -91,8 +105,8 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
   /// Contact points for an answer of `query` (`contact_manifold`).
   [[nodiscard]] ContactManifold manifold(const BulletPairAnswer& answer, double breaking_threshold);
 
-  [[nodiscard]] const BulletSolverSettings& settings() const { return settings_; }
-  [[nodiscard]] BulletShapeCache& cache() { return cache_; }
+  [[nodiscard]] const BulletSolverSettings& settings() const;
+  [[nodiscard]] BulletShapeCache& cache();
 
   /// A consistent reading only while no thread is inside a call.
   [[nodiscard]] BulletSolverStatistics statistics() const;
@@ -104,22 +118,11 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
   [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent_create_func();
 
   /// For the contact algorithm and for snapshots.
-  [[nodiscard]] detail::PairRegistry& pairs() { return *pairs_; }
+  [[nodiscard]] detail::PairRegistry& pairs();
+  [[nodiscard]] detail::SolverCore& core() { return *core_; }
 
  private:
-  struct Counters;
-  struct CreateFuncs;
-
-  bool answer_by_fallback(btSimplexSolverInterface& simplex_solver, const btConvexShape* a, const btConvexShape* b,
-                          const btTransform& transform_a, const btTransform& transform_b, btVector3& v,
-                          btVector3& witness_a, btVector3& witness_b, btIDebugDraw* debug_draw);
-
-  BulletSolverSettings settings_;
-  BulletShapeCache cache_;
-  std::unique_ptr<Counters> counters_;
-  std::unique_ptr<detail::ThreadBufferPool> buffers_;
-  std::unique_ptr<detail::PairRegistry> pairs_;
-  std::unique_ptr<CreateFuncs> create_funcs_;
+  std::unique_ptr<detail::SolverCore> core_;
 };
 
 }  // namespace pd

@@ -1,10 +1,15 @@
 /// @file
 /// Bullet shapes converted once: a bounded table from shape to convex body, read by every thread of the dispatcher.
 ///
-/// Bullet tells nobody when a shape is scaled, edited or freed (and its address used again). So every look-up compares
-/// the shape's present fingerprint with that of its entry (`shape_fingerprint`: type, margin, scaling, every point) and
+/// Bullet tells nobody when a shape is scaled, edited or freed (and its address used again). So a look-up compares the
+/// shape's present fingerprint with that of its entry (`shape_fingerprint`: type, margin, scaling, every point) and
 /// converts afresh when they differ; a shape that died is never read, and its entry leaves when the table is full
 /// (least recently used first) or by `forget`.
+///
+/// In a dynamics world that steps, all points are compared once a step and shape; further look-ups of the same step
+/// compare what takes no time: type, margin, scaling, sizes, the number of points and where they lie
+/// (`shape_signature`). A point that is moved in place between two steps is so noticed at the next step. Where nobody
+/// tells of steps (a dispatcher without a dynamics world, this class alone) every look-up compares all points.
 #pragma once
 
 #include <atomic>
@@ -17,6 +22,10 @@
 
 namespace pd {
 
+namespace detail {
+struct CachedShape;
+}
+
 class BulletShapeCache {
  public:
   /// @param capacity  entries kept, at least 1.
@@ -27,6 +36,10 @@ class BulletShapeCache {
   /// Safe from any number of threads, as long as the shape itself is not changed meanwhile (Bullet asks the same). The
   /// triangles that Bullet makes on the stack for meshes and heightfields are converted without an entry.
   [[nodiscard]] std::shared_ptr<const ConvexShape> find_or_convert(const btConvexShape& shape);
+
+  /// The entry of `shape`. `stamp`: a number that belongs to one step of one world, 0 where no step is known; an entry
+  /// that was compared under this stamp is given out by its signature alone.
+  [[nodiscard]] std::shared_ptr<detail::CachedShape> find(const btConvexShape& shape, std::uint64_t stamp);
 
   /// Drops the entry of a shape, if there is one; the shape itself is not read.
   void forget(const btCollisionShape* shape);
@@ -39,17 +52,10 @@ class BulletShapeCache {
   [[nodiscard]] std::int64_t conversions() const { return conversions_.load(std::memory_order_relaxed); }
 
  private:
-  struct Entry {
-    Entry(std::uint64_t print, std::shared_ptr<const ConvexShape> converted, std::uint64_t now)
-        : fingerprint(print), body(std::move(converted)), last_use(now) {}
-    std::uint64_t fingerprint;
-    std::shared_ptr<const ConvexShape> body;  ///< null: known to have none
-    std::atomic<std::uint64_t> last_use;
-  };
-
   const std::size_t capacity_;
   mutable std::shared_mutex mutex_;
-  std::unordered_map<const btCollisionShape*, Entry> entries_;  // looked up only; never iterated into a result
+  std::unordered_map<const btCollisionShape*, std::shared_ptr<detail::CachedShape>>
+      entries_;  // looked up only; never iterated into a result
   std::atomic<std::uint64_t> clock_{0};
   std::atomic<std::int64_t> conversions_{0};
 };

@@ -30,6 +30,8 @@
 #include "pd/numeric/expected.hpp"
 #include "pd/shape/convex_shape.hpp"
 
+class btBoxShape;
+
 namespace pd {
 
 /// The body that Bullet means by `shape`, in the shape's frame, in the world's unit of length.
@@ -42,5 +44,12 @@ namespace pd {
 /// point. Two shapes of different content agree by chance with probability 2^-64.
 /// Time O(points): less than one of the dozens of support calls that Bullet's own solver makes on the same shape.
 [[nodiscard]] std::uint64_t shape_fingerprint(const btConvexShape& shape);
+
+/// A number that changes with the type, margin, scaling, sizes, the number of points and their address, but not with
+/// the points themselves. Time O(1).
+[[nodiscard]] std::uint64_t shape_signature(const btConvexShape& shape);
+
+/// A box as Bullet's own box/box algorithm takes it: sharp, of the full half extents, whatever its margin.
+[[nodiscard]] Expected<ConvexShape> to_sharp_box(const btBoxShape& shape);
 
 }  // namespace pd

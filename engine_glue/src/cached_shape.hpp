@@ -1,0 +1,27 @@
+/// @file
+/// An entry of the shape cache: what a Bullet shape was converted to, and when it was last compared.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "pd/numeric/expected.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd::detail {
+
+struct CachedShape {
+  const btCollisionShape* source = nullptr;  ///< compared, never read
+  std::uint64_t fingerprint = 0;
+  std::uint64_t signature = 0;
+  std::shared_ptr<const ConvexShape> body;   ///< null: the shape has none
+  std::shared_ptr<const ConvexShape> sharp;  ///< of a btBoxShape: as a partner of another one
+  Error refusal{ErrorCode::unsupported, {}, {}};
+  std::atomic<std::uint64_t> last_use{0};
+  std::atomic<std::uint64_t> compared{0};  ///< the stamp under which all points were last compared
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,28 @@
+#include "installation.hpp"
+
+#include "solver_core.hpp"
+
+namespace pd::detail {
+
+Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
+    : core_(core),
+      dispatcher_(dispatcher),
+      depth_solver_(*this),
+      step_action_(*this),
+      contacts_(*this, false),
+      closest_(*this, true),
+      persistent_(&depth_solver_) {}
+
+bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a,
+                                             const btConvexShape* b, const btTransform& pose_a,
+                                             const btTransform& pose_b, btVector3& v, btVector3& witness_a,
+                                             btVector3& witness_b, btIDebugDraw* draw) {
+  return installation_.core().calc_pen_depth(installation_.stamp(), simplex, a, b, pose_a, pose_b, v, witness_a,
+                                             witness_b, draw);
+}
+
+void Installation::StepAction::updateAction(btCollisionWorld*, btScalar) {
+  installation_.stamp_.store(installation_.core().next_stamp(), std::memory_order_relaxed);
+}
+
+}  // namespace pd::detail

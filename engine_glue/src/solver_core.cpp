@@ -1,0 +1,166 @@
+#include "solver_core.hpp"
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+#include <chrono>
+
+#include "installation.hpp"
+#include "pd/bullet/scalar.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// One query in this many reads the clock: two readings cost a tenth of a short query.
+constexpr unsigned kClockSample = 16;
+
+bool in_range(const btTransform& pose) {
+  return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
+}
+
+}  // namespace
+
+SolverCore::SolverCore(const BulletSolverSettings& chosen) : settings(chosen), cache(chosen.cache_capacity) {}
+SolverCore::~SolverCore() = default;
+
+CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
+                              ThreadBuffers& held) {
+  if (shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+    known = held.triangles.find(static_cast<const btTriangleShape&>(shape),
+                                [&](const btTriangleShape& triangle) { return cache.find(triangle, stamp); });
+    return *known;
+  }
+  const bool current = stamp != 0 && known && known->source == &shape &&
+                       known->compared.load(std::memory_order_relaxed) == stamp &&
+                       known->signature == shape_signature(shape);
+  if (!current) {
+    known = cache.find(shape, stamp);
+  }
+  return *known;
+}
+
+SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
+                                       const btTransform& pose_b, BoxCorners corners, std::uint64_t stamp,
+                                       std::array<std::shared_ptr<CachedShape>, 2>& shapes, WarmCertificate* warm,
+                                       ThreadBuffers& held, PairAnswer& out) {
+  SolverCounters& counters = held.counters;
+  counters.calls.add();
+  const bool sampled = held.queries++ % kClockSample == 0;
+  const auto start = sampled ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+  const CachedShape& found_a = find(a, stamp, shapes[0], held);
+  const CachedShape& found_b = find(b, stamp, shapes[1], held);
+  if (!found_a.body || !found_b.body) {
+    counters.unsupported.add();
+    const bool refuse_a = !found_a.body && found_a.refusal.code != ErrorCode::unsupported;
+    const bool refuse_b = !found_b.body && found_b.refusal.code != ErrorCode::unsupported;
+    warn(found_a.body ? b : a, found_a.body ? found_b.refusal : found_a.refusal);
+    return refuse_a || refuse_b ? Outcome::refused : Outcome::unsupported;
+  }
+  if (!in_range(pose_a) || !in_range(pose_b)) {
+    counters.refused_poses.add();
+    return Outcome::refused;
+  }
+  const bool sharp = corners == BoxCorners::sharp && found_a.sharp && found_b.sharp;
+  out.a = {(sharp ? found_a.sharp : found_a.body).get(), to_pd(pose_a)};
+  out.b = {(sharp ? found_b.sharp : found_b.body).get(), to_pd(pose_b)};
+  DepthSettings depth_settings;
+  depth_settings.delta = settings.delta;
+  depth_settings.bracket = Bracket::certified;  // Bullet rounds to its own scalar anyway
+  out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, warm);
+  counters.support_calls.add(out.depth.statistics.support_calls);
+  switch (out.depth.contact) {
+    case ContactClass::overlapping:
+      counters.overlapping.add();
+      break;
+    case ContactClass::touching:
+      counters.touching.add();
+      break;
+    case ContactClass::separated:
+      counters.separated.add();
+      break;
+  }
+  if (out.depth.warm) {
+    counters.warm.add();
+  }
+  if (sampled) {
+    const auto spent = std::chrono::steady_clock::now() - start;
+    counters.nanoseconds.add(kClockSample * std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count());
+  }
+  return Outcome::answered;
+}
+
+void SolverCore::warn(const btConvexShape& shape, const Error& refusal) {
+  const std::uint64_t bit = std::uint64_t{1} << (shape.getShapeType() & 63);
+  if ((warned_.fetch_or(bit, std::memory_order_relaxed) & bit) != 0 || !settings.warning) {
+    return;
+  }
+  settings.warning(
+      "pdepth: " + refusal.where + ": " + refusal.message +
+      (refusal.code == ErrorCode::unsupported ? ". Bullet's own solver answers for it." : ". No contacts."));
+}
+
+bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
+                                const btConvexShape* b, const btTransform& pose_a, const btTransform& pose_b,
+                                btVector3& v, btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw) {
+  if (closed()) {
+    return epa_.calcPenDepth(simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
+  }
+  auto held = buffers.lease();
+  PairAnswer found;
+  // Rounded corners: Bullet's detector takes its cores and adds the margins itself.
+  switch (answer(*a, pose_a, *b, pose_b, BoxCorners::rounded, stamp, held->recent, nullptr, *held, found)) {
+    case Outcome::answered:
+      break;
+    case Outcome::refused:
+      v.setZero();
+      return false;
+    case Outcome::unsupported:
+      v.setZero();
+      if (!is_finite(pose_a) || !is_finite(pose_b)) {
+        return false;
+      }
+      held->counters.fallback.add();
+      return fallback().calcPenDepth(simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
+  }
+  const PenetrationDepth& depth = found.depth;
+  v = to_bullet(depth.normal);
+  if (depth.contact != ContactClass::separated) {
+    witness_a = to_bullet(depth.witness_a);
+    witness_b = to_bullet(depth.witness_b);
+    return true;
+  }
+  // From the surfaces back to Bullet's cores: A's surface faces -normal, B's faces +normal.
+  witness_a = to_bullet(depth.witness_a + static_cast<double>(a->getMarginNonVirtual()) * depth.normal);
+  witness_b = to_bullet(depth.witness_b - static_cast<double>(b->getMarginNonVirtual()) * depth.normal);
+  return false;
+}
+
+Installation* SolverCore::find_installation(const btCollisionDispatcher* dispatcher) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& installation : installations_) {
+    if (installation->dispatcher() == dispatcher) {
+      return installation.get();
+    }
+  }
+  return nullptr;
+}
+
+Installation& SolverCore::installation(btCollisionDispatcher* dispatcher) {
+  if (Installation* known = find_installation(dispatcher)) {
+    return *known;
+  }
+  const std::lock_guard lock(mutex_);
+  installed_ = true;
+  installations_.push_back(std::make_unique<Installation>(*this, dispatcher));
+  return *installations_.back();
+}
+
+void SolverCore::close() {
+  closed_.store(true, std::memory_order_relaxed);
+  settings.fallback = nullptr;
+  settings.takes_pair = nullptr;
+  cache.clear();
+  buffers.clear();
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,93 @@
+/// @file
+/// What stands behind a BulletPenetrationDepthSolver. It outlives the solver where it was installed: dispatchers keep
+/// pointers to its create functions, and Bullet has no way to take them back from a dispatcher that may be gone.
+#pragma once
+
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "pair_registry.hpp"
+#include "pd/bullet/penetration_depth_solver.hpp"
+#include "thread_buffers.hpp"
+
+class btCollisionDispatcher;
+
+namespace pd::detail {
+
+class Installation;
+
+/// One answer, with the bodies that it was made for. Valid while the buffers of the call are held, and until the pair's
+/// memory meets other shapes.
+struct PairAnswer {
+  PenetrationDepth depth;
+  PosedShape a;
+  PosedShape b;
+};
+
+/// How two shapes are taken.
+enum class BoxCorners {
+  rounded,  ///< as Bullet's GJK sees every shape: core and margin
+  sharp     ///< two btBoxShapes without their margins, as Bullet's own box/box algorithm takes them
+};
+
+class SolverCore {
+ public:
+  explicit SolverCore(const BulletSolverSettings& settings);
+  ~SolverCore();
+
+  /// What a query came to.
+  enum class Outcome { answered, unsupported, refused };
+
+  /// @param stamp   of this step of this world (`BulletShapeCache::find`), 0: unknown
+  /// @param shapes  of this pair, as found earlier: the pair's memory, or the buffers' last ones
+  /// @param warm    of this pair, or nullptr
+  Outcome answer(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b, const btTransform& pose_b,
+                 BoxCorners corners, std::uint64_t stamp, std::array<std::shared_ptr<CachedShape>, 2>& shapes,
+                 WarmCertificate* warm, ThreadBuffers& buffers, PairAnswer& answer);
+
+  /// Bullet's call with a step's stamp.
+  bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
+                      const btConvexShape* b, const btTransform& pose_a, const btTransform& pose_b, btVector3& v,
+                      btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw);
+
+  /// The solver for shapes without exact form.
+  [[nodiscard]] btConvexPenetrationDepthSolver& fallback() { return settings.fallback ? *settings.fallback : epa_; }
+
+  /// A number that no step of any world had before.
+  [[nodiscard]] std::uint64_t next_stamp() { return 1 + stamps_.fetch_add(1, std::memory_order_relaxed); }
+
+  /// The installation of a dispatcher, made where there is none; nullptr: the one of no dispatcher.
+  Installation& installation(btCollisionDispatcher* dispatcher);
+  /// The installation of a dispatcher, or nullptr.
+  Installation* find_installation(const btCollisionDispatcher* dispatcher);
+  [[nodiscard]] bool installed() const { return installed_; }
+
+  /// The solver is gone: from now on Bullet's EPA answers.
+  void close();
+  [[nodiscard]] bool closed() const { return closed_.load(std::memory_order_relaxed); }
+
+  BulletSolverSettings settings;
+  BulletShapeCache cache;
+  ThreadBufferPool buffers;
+  PairRegistry pairs;
+
+ private:
+  CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
+                    ThreadBuffers& buffers);
+  void warn(const btConvexShape& shape, const Error& refusal);
+
+  btGjkEpaPenetrationDepthSolver epa_;
+  std::atomic<std::uint64_t> stamps_{0};
+  std::atomic<std::uint64_t> warned_{0};  ///< a bit for each Bullet type
+  std::atomic<bool> closed_{false};
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Installation>> installations_;
+  bool installed_ = false;
+};
+
+}  // namespace pd::detail
