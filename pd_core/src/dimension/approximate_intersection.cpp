@@ -1,0 +1,171 @@
+#include "pd/dimension/approximate_intersection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "dimension/composed_node.hpp"
+#include "dimension/origin_frame.hpp"
+#include "dimension/origin_search.hpp"
+
+namespace pd::dimension {
+
+namespace {
+
+using detail::EllipsoidBounds;
+using detail::Point;
+using detail::SupportBody;
+
+/// The differences x_1 - x_i of points of k bodies, and behind them the bodies' own residuals; for one body x_1 - point.
+/// O lies here exactly when the bodies have a common point (the body holds the point).
+template <int D, int N>
+class Meeting final : public SupportBody<N> {
+ public:
+  Meeting(std::span<const ComposedBody<D>> bodies, const Vector<D>& point) : bodies_(bodies), point_(point) {
+    differences_ = D * std::max<Eigen::Index>(1, static_cast<Eigen::Index>(bodies.size()) - 1);
+    size_ = differences_;
+    for (const ComposedBody<D>& body : bodies) {
+      size_ += body.equations();
+      error_ = std::max(error_, body.epsilon());
+      consistent_ = consistent_ && body.node().consistent;
+      magnitude_ += body.node().magnitude;
+    }
+    magnitude_ += point.cwiseAbs().maxCoeff();
+  }
+
+  [[nodiscard]] Point<N> support(const Point<N>& direction) const override {
+    Point<N> r = Point<N>::Zero(size_);
+    Vector<D> first_direction = Vector<D>::Zero();
+    for (Eigen::Index i = 0; i < differences_; i += D) first_direction += direction.template segment<D>(i);
+    const double* u = direction.data() + differences_;
+    double* residuals = r.data() + differences_;
+    Vector<D> first;
+    bodies_[0].node().support(first_direction, u, first, residuals, counters_);
+    if (bodies_.size() == 1) r.template head<D>() = first - point_;
+    for (std::size_t i = 1; i < bodies_.size(); ++i) {
+      u += bodies_[i - 1].equations();
+      residuals += bodies_[i - 1].equations();
+      const Eigen::Index slot = D * static_cast<Eigen::Index>(i - 1);
+      Vector<D> other;
+      bodies_[i].node().support(-direction.template segment<D>(slot), u, other, residuals, counters_);
+      r.template segment<D>(slot) = first - other;
+    }
+    return r;
+  }
+
+  [[nodiscard]] double relative_error() const override { return error_; }
+  [[nodiscard]] bool consistent() const override { return consistent_; }
+  [[nodiscard]] double magnitude() const override { return magnitude_; }
+
+  [[nodiscard]] EllipsoidBounds<N> bounds() const override {
+    using Entry = Eigen::Matrix<double, N, D, Eigen::DontAlign, detail::kMaxRows<N>, D>;
+    const double count = static_cast<double>(bodies_.size());
+    EllipsoidBounds<N> r{Point<N>::Zero(size_), detail::SquareMatrix<N>::Zero(size_, size_),
+                         detail::SquareMatrix<N>::Zero(size_, size_)};
+    Eigen::Index residual = differences_;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Entry entry = Entry::Zero(size_, D);
+      for (Eigen::Index slot = 0; slot < differences_; slot += D) {
+        if (i == 0 || slot == D * static_cast<Eigen::Index>(i - 1)) {
+          entry.template middleRows<D>(slot) = (i == 0 ? 1.0 : -1.0) * Matrix<D>::Identity();
+        }
+      }
+      const EllipsoidBounds<N> part = bodies_[i].node().template bounds<N>(entry, residual);
+      residual += bodies_[i].equations();
+      r.center += part.center;
+      r.inner += part.inner;
+      r.outer += count * part.outer;
+    }
+    if (bodies_.size() == 1) r.center.template head<D>() -= point_;
+    return r;
+  }
+
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  [[nodiscard]] const QueryCounters& counters() const { return counters_; }
+
+ private:
+  std::span<const ComposedBody<D>> bodies_;
+  Vector<D> point_;
+  Eigen::Index differences_ = 0;
+  Eigen::Index size_ = 0;
+  double error_ = 0;
+  double magnitude_ = 0;
+  bool consistent_ = true;
+  mutable QueryCounters counters_;
+};
+
+template <int D, int N>
+Expected<IntersectionAnswer> locate(const Meeting<D, N>& meeting, double epsilon, IntersectionSearch search) {
+  const bool ternary = search == IntersectionSearch::nested_ternary;
+  if (ternary && !meeting.consistent()) {
+    const double fatness = detail::OriginFrame<N>(meeting).inner_radius();
+    const double allowed = detail::ternary_oracle_error(epsilon, static_cast<int>(meeting.size()), fatness);
+    if (!(meeting.relative_error() <= allowed)) {
+      return Error{ErrorCode::bad_value,
+                   "the nested ternary search over macbeath structures needs them at epsilon " +
+                       std::to_string(allowed) + " or below",
+                   "epsilon"};
+    }
+  }
+  const auto method = ternary ? detail::OriginMethod::nested_ternary : detail::OriginMethod::cutting_planes;
+  const detail::OriginAnswer<N> found = detail::locate_origin<N>(meeting, {epsilon, method});
+  if (!found.decided) {
+    return Error{ErrorCode::out_of_range,
+                 "the bodies are too far from the origin, or too slender, for this epsilon in double precision; move "
+                 "them near the origin or take a larger epsilon",
+                 "epsilon"};
+  }
+  return IntersectionAnswer{found.contains, found.supports, found.cuts, meeting.counters()};
+}
+
+template <int D>
+Expected<IntersectionAnswer> meet(std::span<const ComposedBody<D>> bodies, const Vector<D>& point, double epsilon,
+                                  IntersectionSearch search) {
+  if (!(epsilon > 0 && epsilon < 1)) return Error{ErrorCode::bad_value, "epsilon must lie in (0, 1)", "epsilon"};
+  for (const ComposedBody<D>& body : bodies) {
+    if (body.epsilon() > epsilon / 4) {
+      return Error{ErrorCode::bad_value,
+                   "the bodies are preprocessed at epsilon " + std::to_string(body.epsilon()) +
+                       "; this query needs a quarter of its own epsilon",
+                   "epsilon"};
+    }
+  }
+  const Meeting<D, Eigen::Dynamic> lifted(bodies, point);
+  if (lifted.size() > detail::kMaxLiftedDimension) {
+    return Error{ErrorCode::limit_exceeded,
+                 "the bodies take " + std::to_string(lifted.size()) + " coordinates; at most " +
+                     std::to_string(detail::kMaxLiftedDimension) + " are allowed",
+                 ""};
+  }
+  if (lifted.size() == D) return locate(Meeting<D, D>(bodies, point), epsilon, search);
+  return locate(lifted, epsilon, search);
+}
+
+}  // namespace
+
+template <int D>
+Expected<IntersectionAnswer> approximate_intersection(std::span<const ComposedBody<D>> bodies, double epsilon,
+                                                      IntersectionSearch search) {
+  if (bodies.size() < 2) return Error{ErrorCode::bad_value, "at least two bodies are needed", ""};
+  return meet<D>(bodies, Vector<D>::Zero(), epsilon, search);
+}
+
+template <int D>
+Expected<IntersectionAnswer> approximate_membership(const ComposedBody<D>& body, const Vector<D>& point, double epsilon,
+                                                    IntersectionSearch search) {
+  if (!point.allFinite()) return Error{ErrorCode::non_finite, "the point is not finite", "point"};
+  return meet<D>(std::span(&body, 1), point, epsilon, search);
+}
+
+#define PD_INSTANTIATE(D)                                                                                     \
+  template Expected<IntersectionAnswer> approximate_intersection<D>(std::span<const ComposedBody<D>>, double, \
+                                                                    IntersectionSearch);                      \
+  template Expected<IntersectionAnswer> approximate_membership<D>(const ComposedBody<D>&, const Vector<D>&,   \
+                                                                  double, IntersectionSearch);
+PD_INSTANTIATE(2)
+PD_INSTANTIATE(3)
+PD_INSTANTIATE(4)
+PD_INSTANTIATE(5)
+#undef PD_INSTANTIATE
+
+}  // namespace pd::dimension

@@ -1,0 +1,41 @@
+/// @file
+/// The tree behind a ComposedBody, and its supports and ellipsoids in the space with one coordinate more for every equation.
+///
+/// A node of E equations stands for a body in R^(D + E): its value x, then the residuals of its intersections. An
+/// intersection of parts has the value of its first part and the residuals x_1 - x_i, i >= 2. The point of a hull lies on one
+/// part; the residuals of the others are zero there, so that a mixture with all residuals zero is one of points whose own
+/// residuals are zero.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "dimension/support_body.hpp"
+#include "pd/dimension/composed_body.hpp"
+
+namespace pd::dimension::detail {
+
+enum class ComposedKind { leaf, sum, hull, intersection };
+
+template <int D>
+struct ComposedNode {
+  ComposedKind kind = ComposedKind::leaf;
+  std::optional<DirectionalWidth<D>> body;  ///< of a leaf
+  AffineMap<D> map;                         ///< of a leaf
+  std::vector<ComposedBody<D>> parts;       ///< of the others
+  int equations = 0;
+  double epsilon = 0;
+  double magnitude = 0;    ///< largest |coordinate| in the parts, or larger
+  bool consistent = true;  ///< every leaf answers from one fixed set
+
+  /// Supports in the direction (v, u): writes the value and the residuals, returns <v, value> + <u, residuals>.
+  double support(const Vector<D>& v, const double* u, Vector<D>& value, double* residuals, QueryCounters& counters) const;
+
+  /// The ellipsoids of the image under (value, residuals) -> entry * value + residuals at the coordinates from
+  /// `first_residual` on.
+  template <int N>
+  [[nodiscard]] EllipsoidBounds<N> bounds(const Eigen::Matrix<double, N, D, Eigen::DontAlign, kMaxRows<N>, D>& entry,
+                                          Eigen::Index first_residual) const;
+};
+
+}  // namespace pd::dimension::detail
