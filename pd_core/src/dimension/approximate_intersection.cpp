@@ -16,8 +16,8 @@ using detail::EllipsoidBounds;
 using detail::Point;
 using detail::SupportBody;
 
-/// The differences x_1 - x_i of points of k bodies, and behind them the bodies' own residuals; for one body x_1 - point.
-/// O lies here exactly when the bodies have a common point (the body holds the point).
+/// The differences x_1 - x_i of points of k bodies, and behind them the bodies' own residuals; for one body x_1 -
+/// point. O lies here exactly when the bodies have a common point (the body holds the point).
 template <int D, int N>
 class Meeting final : public SupportBody<N> {
  public:
@@ -157,11 +157,11 @@ Expected<IntersectionAnswer> approximate_membership(const ComposedBody<D>& body,
   return meet<D>(std::span(&body, 1), point, epsilon, search);
 }
 
-#define PD_INSTANTIATE(D)                                                                                     \
-  template Expected<IntersectionAnswer> approximate_intersection<D>(std::span<const ComposedBody<D>>, double, \
-                                                                    IntersectionSearch);                      \
-  template Expected<IntersectionAnswer> approximate_membership<D>(const ComposedBody<D>&, const Vector<D>&,   \
-                                                                  double, IntersectionSearch);
+#define PD_INSTANTIATE(D)                                                                                           \
+  template Expected<IntersectionAnswer> approximate_intersection<D>(std::span<const ComposedBody<D>>, double,       \
+                                                                    IntersectionSearch);                            \
+  template Expected<IntersectionAnswer> approximate_membership<D>(const ComposedBody<D>&, const Vector<D>&, double, \
+                                                                  IntersectionSearch);
 PD_INSTANTIATE(2)
 PD_INSTANTIATE(3)
 PD_INSTANTIATE(4)

@@ -64,7 +64,8 @@ double ComposedNode<D>::support(const Vector<D>& v, const double* u, Vector<D>& 
       }
       return best;
     }
-    case ComposedKind::intersection: break;
+    case ComposedKind::intersection:
+      break;
   }
   const auto others = parts.size() - 1;
   Vector<D> first_direction = v;
@@ -117,7 +118,8 @@ EllipsoidBounds<N> ComposedNode<D>::bounds(const Eigen::Matrix<double, N, D, Eig
     }
     return r;
   }
-  Eigen::Index slot = first_residual + (kind == ComposedKind::intersection ? D * static_cast<Eigen::Index>(parts.size() - 1) : 0);
+  Eigen::Index slot =
+      first_residual + (kind == ComposedKind::intersection ? D * static_cast<Eigen::Index>(parts.size() - 1) : 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Entry part_entry = entry;
     if (kind == ComposedKind::intersection) {
@@ -131,8 +133,8 @@ EllipsoidBounds<N> ComposedNode<D>::bounds(const Eigen::Matrix<double, N, D, Eig
     const EllipsoidBounds<N> part = parts[i].node().template bounds<N>(part_entry, slot);
     slot += parts[i].node().equations;
     r.center += part.center;
-    r.inner += part.inner;           // sum sqrt(v' inner_i v) >= sqrt(v' (sum inner_i) v)
-    r.outer += count * part.outer;   // sum sqrt(v' outer_i v) <= sqrt(count v' (sum outer_i) v)
+    r.inner += part.inner;          // sum sqrt(v' inner_i v) >= sqrt(v' (sum inner_i) v)
+    r.outer += count * part.outer;  // sum sqrt(v' outer_i v) <= sqrt(count v' (sum outer_i) v)
   }
   return r;
 }
@@ -220,13 +222,13 @@ SupportPoint<D> ComposedBody<D>::support(const Vector<D>& direction, QueryCounte
   return r;
 }
 
-#define PD_INSTANTIATE(D)                                                                                            \
-  template class ComposedBody<D>;                                                                                    \
-  namespace detail {                                                                                                 \
-  template struct ComposedNode<D>;                                                                                   \
-  template EllipsoidBounds<D> ComposedNode<D>::bounds<D>(const Eigen::Matrix<double, D, D, Eigen::DontAlign, D, D>&, \
-                                                         Eigen::Index) const;                                        \
-  template EllipsoidBounds<Eigen::Dynamic> ComposedNode<D>::bounds<Eigen::Dynamic>(                                  \
+#define PD_INSTANTIATE(D)                                                                                             \
+  template class ComposedBody<D>;                                                                                     \
+  namespace detail {                                                                                                  \
+  template struct ComposedNode<D>;                                                                                    \
+  template EllipsoidBounds<D> ComposedNode<D>::bounds<D>(const Eigen::Matrix<double, D, D, Eigen::DontAlign, D, D>&,  \
+                                                         Eigen::Index) const;                                         \
+  template EllipsoidBounds<Eigen::Dynamic> ComposedNode<D>::bounds<Eigen::Dynamic>(                                   \
       const Eigen::Matrix<double, Eigen::Dynamic, D, Eigen::DontAlign, kMaxLiftedDimension, D>&, Eigen::Index) const; \
   }
 PD_INSTANTIATE(2)

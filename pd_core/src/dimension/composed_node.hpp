@@ -1,10 +1,11 @@
 /// @file
-/// The tree behind a ComposedBody, and its supports and ellipsoids in the space with one coordinate more for every equation.
+/// The tree behind a ComposedBody, and its supports and ellipsoids in the space with one coordinate more for every
+/// equation.
 ///
 /// A node of E equations stands for a body in R^(D + E): its value x, then the residuals of its intersections. An
-/// intersection of parts has the value of its first part and the residuals x_1 - x_i, i >= 2. The point of a hull lies on one
-/// part; the residuals of the others are zero there, so that a mixture with all residuals zero is one of points whose own
-/// residuals are zero.
+/// intersection of parts has the value of its first part and the residuals x_1 - x_i, i >= 2. The point of a hull lies
+/// on one part; the residuals of the others are zero there, so that a mixture with all residuals zero is one of points
+/// whose own residuals are zero.
 #pragma once
 
 #include <optional>
@@ -29,7 +30,8 @@ struct ComposedNode {
   bool consistent = true;  ///< every leaf answers from one fixed set
 
   /// Supports in the direction (v, u): writes the value and the residuals, returns <v, value> + <u, residuals>.
-  double support(const Vector<D>& v, const double* u, Vector<D>& value, double* residuals, QueryCounters& counters) const;
+  double support(const Vector<D>& v, const double* u, Vector<D>& value, double* residuals,
+                 QueryCounters& counters) const;
 
   /// The ellipsoids of the image under (value, residuals) -> entry * value + residuals at the coordinates from
   /// `first_residual` on.

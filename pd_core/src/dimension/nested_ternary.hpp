@@ -1,8 +1,9 @@
 /// @file
 /// [M] section 3.1: a convex function minimised by trisection, one variable inside the other (Lemmas 14 and 15).
 ///
-/// A level of Lemma 14 whose function is known to within e ends within 7 e of the minimum, plus what the length at which it
-/// stops costs; with that length chosen as e / slope each level multiplies the error by 8. [M] hides the factor in O(epsilon).
+/// A level of Lemma 14 whose function is known to within e ends within 7 e of the minimum, plus what the length at
+/// which it stops costs; with that length chosen as e / slope each level multiplies the error by 8. [M] hides the
+/// factor in O(epsilon).
 #pragma once
 
 #include <algorithm>

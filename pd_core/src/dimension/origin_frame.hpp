@@ -9,7 +9,8 @@
 
 namespace pd::dimension::detail {
 
-/// x = root * y. The origin stays where it is; a direction u of the frame is the direction root^-T u of the body's space.
+/// x = root * y. The origin stays where it is; a direction u of the frame is the direction root^-T u of the body's
+/// space.
 template <int N>
 class OriginFrame {
  public:
@@ -30,8 +31,8 @@ class OriginFrame {
     inner_radius_ = 1 / std::sqrt(inverse_squared);
     // A solve by a triangular matrix has the backward error of a few products a row; the norm of the inverse bounds it.
     const double size = static_cast<double>(n);
-    rounding_ = 16 * size * std::numeric_limits<double>::epsilon() *
-                (1 + std::sqrt(root_squared * size) * body.magnitude());
+    rounding_ =
+        16 * size * std::numeric_limits<double>::epsilon() * (1 + std::sqrt(root_squared * size) * body.magnitude());
   }
 
   /// The support point in a direction of the frame, in the frame. Counts.
@@ -49,7 +50,7 @@ class OriginFrame {
     return v;
   }
 
-  [[nodiscard]] const Point<N>& center() const { return center_; }  ///< the body lies in the unit ball about it
+  [[nodiscard]] const Point<N>& center() const { return center_; }     ///< the body lies in the unit ball about it
   [[nodiscard]] double inner_radius() const { return inner_radius_; }  ///< and holds the ball of this radius about it
   /// Bounds the error of <support(u), u> for unit u.
   [[nodiscard]] double rounding() const { return rounding_; }

@@ -49,8 +49,8 @@ Probe<N> probe(const OriginFrame<N>& frame, const Growth& growth, const Point<N>
   return {Kind::grown, high + growth.used * (high - low)};
 }
 
-/// GJK: the point of the simplex nearest to O, until the simplex holds O or a direction separates. @return false where it
-/// came to no end within its steps or doubles no longer tell its points apart.
+/// GJK: the point of the simplex nearest to O, until the simplex holds O or a direction separates. @return false where
+/// it came to no end within its steps or doubles no longer tell its points apart.
 template <int N>
 bool descend(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>& answer) {
   LeastNormSimplex<N> simplex(frame.center());
@@ -83,13 +83,14 @@ template <int N>
 void cut_directions(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>& answer) {
   const Eigen::Index size = frame.center().size();
   const double n = static_cast<double>(size);
-  // h' + least * w' changes by at most this much a unit of u, and unit directions within `radius` of a separating one separate.
+  // h' + least * w' changes by at most this much a unit of u, and unit directions within `radius` of a separating one
+  // separate.
   const double slope = frame.center().norm() + 1 + 2 * growth.least;
   const double radius = std::min(0.5, 0.5 * growth.separable / slope);
   Point<N> u = Point<N>::Zero(size);
   SquareMatrix<N> shape = SquareMatrix<N>::Identity(size, size) * 2.25;  // holds the unit ball grown by `radius`
-  double log_volume = n * std::log(1.5);  // of the ellipsoid over the unit ball's
-  Point<N> cut = frame.center();          // in K: separating directions have <centre, u> < 0
+  double log_volume = n * std::log(1.5);                                 // of the ellipsoid over the unit ball's
+  Point<N> cut = frame.center();  // in K: separating directions have <centre, u> < 0
   double beyond = 0;
   while (log_volume > n * std::log(radius)) {
     const Point<N> image = shape * cut;

@@ -1,9 +1,10 @@
 /// @file
-/// A convex body of R^N as the searches of [M] see it: one support point a direction, and two ellipsoids about one centre.
+/// A convex body of R^N as the searches of [M] see it: one support point a direction, and two ellipsoids about one
+/// centre.
 ///
 /// [M] Arya, da Fonseca, Mount, "Approximate convex intersection detection with applications to width and Minkowski
-/// sums", 2018. Everything there reaches a body through approximate directional widths and its fattening (Lemmas 5 and 10); these
-/// are the two halves of this interface.
+/// sums", 2018. Everything there reaches a body through approximate directional widths and its fattening (Lemmas 5 and
+/// 10); these are the two halves of this interface.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +12,8 @@
 
 namespace pd::dimension::detail {
 
-/// Largest N of a space that is only known at run time: intersections are met in a product of spaces (`lifted_body.hpp`).
+/// Largest N of a space that is only known at run time: intersections are met in a product of spaces
+/// (`lifted_body.hpp`).
 inline constexpr int kMaxLiftedDimension = 40;
 
 template <int N>
@@ -22,8 +24,8 @@ using Point = Eigen::Matrix<double, N, 1, Eigen::DontAlign, kMaxRows<N>, 1>;
 template <int N>
 using SquareMatrix = Eigen::Matrix<double, N, N, Eigen::DontAlign, kMaxRows<N>, kMaxRows<N>>;
 
-/// K between two ellipsoids: for every v, <c, v> + sqrt(v' inner v) <= h_K(v) <= <c, v> + sqrt(v' outer v). Both matrices
-/// are symmetric and positive definite.
+/// K between two ellipsoids: for every v, <c, v> + sqrt(v' inner v) <= h_K(v) <= <c, v> + sqrt(v' outer v). Both
+/// matrices are symmetric and positive definite.
 template <int N>
 struct EllipsoidBounds {
   Point<N> center;

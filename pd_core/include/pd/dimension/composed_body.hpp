@@ -1,14 +1,14 @@
 /// @file
-/// Bodies made of preprocessed ones: affine images, Minkowski sums, hulls of unions, intersections ([M] section 1.4). None is
-/// built: a composition answers supports from those of its parts.
+/// Bodies made of preprocessed ones: affine images, Minkowski sums, hulls of unions, intersections ([M] section 1.4).
+/// None is built: a composition answers supports from those of its parts.
 ///
 /// h_{LK + t}(v) = h_K(L^T v) + <t, v>;  h_{A + B} = h_A + h_B;  h_{hull(A, B)} = max(h_A, h_B). An intersection has no
-/// such formula. It is met by equations: a point of A and one of B, and the condition that they are one. Those equations are further
-/// coordinates; with them every composition has supports, of a body in R^(d + equations) of which the points with all
-/// these coordinates zero are the composed body.
+/// such formula. It is met by equations: a point of A and one of B, and the condition that they are one. Those
+/// equations are further coordinates; with them every composition has supports, of a body in R^(d + equations) of which
+/// the points with all these coordinates zero are the composed body.
 ///
-/// The error of a composition is that of its parts: A, grown by epsilon, is composed of its parts, each grown by epsilon
-/// of its own width. For sums that is the growth of the sum, for hulls it is no more.
+/// The error of a composition is that of its parts: A, grown by epsilon, is composed of its parts, each grown by
+/// epsilon of its own width. For sums that is the growth of the sum, for hulls it is no more.
 #pragma once
 
 #include <memory>

@@ -1,0 +1,155 @@
+/// @file
+/// One layer of the Macbeath hierarchy: regions whose shadows cover all directions, and a tree of cells that proves it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "dimension/macbeath_region.hpp"
+
+namespace pd::dimension::detail {
+
+/// Scales of a region's ellipsoid: a new region enters outside all core shadows; cover shadows hold cells and queries.
+/// A cell about a core direction shrinks into the cover shadow, so subdivision ends.
+inline constexpr double kCoreScale = 0.45;
+inline constexpr double kCoverScale = 0.9;
+
+/// A box on a face of the cube [-1, 1]^D: v[axis] = sign, the other coordinates in low .. low + side.
+template <int D>
+struct DirectionBox {
+  int axis;
+  double sign;
+  Vector<D> low;  ///< low[axis] = sign
+  double side;
+
+  [[nodiscard]] Vector<D> corner(int k) const {
+    Vector<D> r = low;
+    for (int i = 0, bit = 0; i < D; ++i) {
+      if (i == axis) continue;
+      if ((k >> bit++) & 1) r[i] += side;
+    }
+    return r;
+  }
+  [[nodiscard]] Vector<D> middle() const {
+    Vector<D> r = low;
+    for (int i = 0; i < D; ++i) r[i] += i == axis ? 0 : 0.5 * side;
+    return r;
+  }
+  [[nodiscard]] DirectionBox child(int k) const {
+    DirectionBox r = *this;
+    r.side = 0.5 * side;
+    for (int i = 0, bit = 0; i < D; ++i) {
+      if (i == axis) continue;
+      if ((k >> bit++) & 1) r.low[i] += r.side;
+    }
+    return r;
+  }
+  static constexpr int kCorners = 1 << (D - 1);
+};
+
+template <int D>
+DirectionBox<D> cube_face(int face) {
+  DirectionBox<D> r{face / 2, face % 2 != 0 ? 1.0 : -1.0, Vector<D>::Constant(-1), 2};
+  r.low[r.axis] = r.sign;
+  return r;
+}
+
+template <int D>
+bool covers(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
+  for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
+    if (!cone.contains(box.corner(k))) return false;  // the cone is convex: corners decide
+  }
+  return true;
+}
+
+/// The cone's section with the plane of a face of the cube: in its coordinates y an ellipse
+/// (y - center)' form (y - center) <= 1, or nothing, or something unbounded.
+template <int D>
+class ShadowSection {
+ public:
+  ShadowSection(const ShadowCone<D>& cone, const DirectionBox<D>& face) : cone_(cone) {
+    using Plane = Eigen::Matrix<double, D - 1, D - 1, Eigen::DontAlign>;
+    if (cone.everything) return;
+    // v' form v over v = (y, sign) is f + 2 <q, y> - y' P y.
+    Plane p;
+    Vector<D - 1> q;
+    for (int i = 0, row = 0; i < D; ++i) {
+      if (i == face.axis) continue;
+      q[row] = face.sign * cone.form(i, face.axis);
+      for (int j = 0, column = 0; j < D; ++j) {
+        if (j != face.axis) p(row, column++) = -cone.form(i, j);
+      }
+      ++row;
+    }
+    Plane lower = p;  // Cholesky, as the test of definiteness, too
+    for (int k = 0; k < D - 1; ++k) {
+      for (int i = k; i < D - 1; ++i) {
+        for (int j = 0; j < k; ++j) lower(i, k) -= lower(i, j) * lower(k, j);
+        if (i == k && !(lower(k, k) > 1e-9 * p(k, k))) return;  // unbounded, or too flat to be sure
+        lower(i, k) = i == k ? std::sqrt(lower(k, k)) : lower(i, k) / lower(k, k);
+      }
+    }
+    const auto solve = [&](Vector<D - 1> x) {
+      for (int i = 0; i < D - 1; ++i) {
+        for (int k = 0; k < i; ++k) x[i] -= lower(i, k) * x[k];
+        x[i] /= lower(i, i);
+      }
+      for (int i = D - 2; i >= 0; --i) {
+        for (int k = i + 1; k < D - 1; ++k) x[i] -= lower(k, i) * x[k];
+        x[i] /= lower(i, i);
+      }
+      return x;
+    };
+    center_ = solve(q);
+    const double constant = cone.form(face.axis, face.axis);
+    const double height = constant + q.dot(center_);
+    Vector<D> along = face.low;
+    for (int i = 0, row = 0; i < D; ++i) {
+      if (i != face.axis) along[i] = center_[row++];
+    }
+    if (height < -1e-9 * (std::abs(constant) + std::abs(q.dot(center_))) || !(cone.axis.dot(along) > 0)) {
+      kind_ = Kind::empty;
+      return;
+    }
+    kind_ = Kind::ellipse;
+    const double scale = std::max(height, 1e-9 * std::abs(constant)) * (1 + 1e-9);  // rounding errs on the larger side
+    form_ = p / scale;
+    for (int i = 0; i < D - 1; ++i) {
+      extent_[i] = std::sqrt(solve(Vector<D - 1>::Unit(i))[i] * scale);
+      width_ += std::sqrt(form_(i, i));
+    }
+  }
+
+  /// False only where no direction of the box, on this face, is in the cone.
+  [[nodiscard]] bool may_meet(const DirectionBox<D>& box) const {
+    if (kind_ == Kind::empty) return false;
+    if (kind_ == Kind::unbounded) return cone_.everything || in_ball(box);
+    const double half = 0.5 * box.side;
+    Vector<D - 1> away;
+    for (int i = 0, row = 0; i < D; ++i) {
+      if (i == box.axis) continue;
+      away[row] = box.low[i] + half - center_[row];
+      if (std::abs(away[row]) > half + extent_[row]) return false;
+      ++row;
+    }
+    return std::sqrt(away.dot(form_ * away)) <= 1 + half * width_;
+  }
+
+ private:
+  /// Bounds over the ball about the box's middle: (m + r)' form (m + r) <= m' form m + 2 |r| |form m| + |r|^2 |axis|^2.
+  [[nodiscard]] bool in_ball(const DirectionBox<D>& box) const {
+    const Vector<D> middle = box.middle();
+    const double radius = 0.5 * box.side * std::sqrt(static_cast<double>(D - 1));
+    if (cone_.axis.dot(middle) + radius * cone_.axis.norm() <= 0) return false;
+    const Vector<D> image = cone_.form * middle;
+    return middle.dot(image) + 2 * radius * image.norm() + radius * radius * cone_.axis.squaredNorm() >= 0;
+  }
+
+  ShadowCone<D> cone_;
+  enum class Kind { unbounded, empty, ellipse } kind_ = Kind::unbounded;
+  Vector<D - 1> center_, extent_;
+  Eigen::Matrix<double, D - 1, D - 1, Eigen::DontAlign> form_;
+  double width_ = 0;  ///< of the box [-1, 1]^(D-1) in the ellipse's norm, at most
+};
+
+}  // namespace pd::dimension::detail

@@ -1,0 +1,275 @@
+#include "dimension/macbeath_hierarchy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "dimension/macbeath_cover.hpp"
+
+namespace pd::dimension::detail {
+
+namespace {
+
+template <int D>
+struct HierarchyNode {
+  ShadowCone<D> shadow;      ///< of the cover scale
+  std::int32_t point;        ///< q of the region
+  std::int32_t first_child;  ///< among the links
+  std::int32_t children;
+};
+
+template <int D>
+class MacbeathHierarchy final : public WidthStructure<D> {
+ public:
+  std::vector<HierarchyNode<D>> nodes;
+  std::vector<std::int32_t> links;
+  std::vector<SupportPoint<D>> points;  ///< as given, in K's space
+  std::int64_t layers = 0;
+  std::int64_t max_out_degree = 0;
+  Matrix<D> pull_back;  ///< directions of K's space to directions of the frame
+
+  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override {
+    const Vector<D> v = pull_back * direction;
+    const std::int32_t leaf = descend(v / v.cwiseAbs().maxCoeff(), counters);
+    SupportPoint<D> r = points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(leaf)].point)];
+    r.value = direction.dot(r.point);
+    return r;
+  }
+
+  /// The node of the last layer built so far that shadows v.
+  [[nodiscard]] std::int32_t descend(const Vector<D>& v, QueryCounters& counters) const {
+    ++counters.queries;
+    std::int64_t path = 0;
+    std::int32_t at = -1;
+    const auto step = [&](auto begin, auto end) {
+      // The cells promise a child; what rounding does at a shadow's rim, the least form miss mends within 1e-12.
+      std::int32_t best = *begin;
+      double least_miss = std::numeric_limits<double>::infinity();
+      for (auto i = begin; i != end; ++i) {
+        ++path;
+        const ShadowCone<D>& shadow = nodes[static_cast<std::size_t>(*i)].shadow;
+        if (shadow.contains(v)) {
+          best = *i;
+          break;
+        }
+        const double along = shadow.axis.dot(v);
+        if (!(along > 0)) continue;
+        const double miss = -v.dot(shadow.form * v) / (along * along);
+        if (miss < least_miss) {
+          least_miss = miss;
+          best = *i;
+        }
+      }
+      at = best;
+    };
+    step(root_ids.begin(), root_ids.end());
+    while (nodes[static_cast<std::size_t>(at)].children > 0) {
+      const HierarchyNode<D>& node = nodes[static_cast<std::size_t>(at)];
+      const auto first = links.begin() + node.first_child;
+      step(first, first + node.children);
+    }
+    counters.nodes += path;
+    counters.dot_products += path * (D + 1);
+    counters.deepest = std::max(counters.deepest, path);
+    return at;
+  }
+
+  [[nodiscard]] StructureSize size() const override {
+    StructureSize r;
+    r.points = static_cast<std::int64_t>(points.size());
+    r.nodes = static_cast<std::int64_t>(nodes.size());
+    r.links = static_cast<std::int64_t>(links.size());
+    r.max_out_degree = max_out_degree;
+    r.depth = layers;
+    r.bytes = static_cast<std::int64_t>(nodes.size() * sizeof(HierarchyNode<D>) + links.size() * sizeof(std::int32_t) +
+                                        points.size() * sizeof(SupportPoint<D>));
+    return r;
+  }
+
+  std::vector<std::int32_t> root_ids;
+};
+
+/// Builds one layer after the other.
+template <int D>
+class HierarchyBuilder {
+ public:
+  HierarchyBuilder(PolarBody<D> polar, MacbeathHierarchy<D>& hierarchy)
+      : polar_(std::move(polar)), hierarchy_(hierarchy) {}
+
+  /// @return false where the nodes exceed their limit.
+  bool add_layer(double delta) {
+    delta_ = delta;
+    first_ = static_cast<std::int32_t>(hierarchy_.nodes.size());
+    cores_.clear();
+    next_neighbours_.clear();
+    cells_.assign(2 * D, 0);
+    for (int face = 0; face < 2 * D; ++face) {
+      face_ = cube_face<D>(face);
+      sections_.clear();
+      std::vector<std::int32_t> near(cores_.size());
+      std::iota(near.begin(), near.end(), first_);
+      for (const std::int32_t id : near) {
+        sections_.emplace_back(hierarchy_.nodes[static_cast<std::size_t>(id)].shadow, face_);
+      }
+      if (!cover(static_cast<std::size_t>(face), face_, near, cores_.size())) return false;
+    }
+    link_parents();
+    neighbours_ = std::move(next_neighbours_);
+    previous_first_ = first_;
+    ++hierarchy_.layers;
+    return true;
+  }
+
+ private:
+  /// Subdivides the cell until every part lies in one cover shadow; regions enter where a middle is in no core shadow.
+  /// @param near  nodes of this layer before `seen` that may meet the cell
+  bool cover(std::size_t cell, const DirectionBox<D>& box, const std::vector<std::int32_t>& outer, std::size_t seen) {
+    std::vector<std::int32_t> near;
+    const auto consider = [&](std::int32_t id) {
+      if (sections_[static_cast<std::size_t>(id - first_)].may_meet(box)) near.push_back(id);
+    };
+    for (const std::int32_t id : outer) consider(id);
+    for (std::size_t k = seen; k < cores_.size(); ++k) consider(first_ + static_cast<std::int32_t>(k));
+    for (const std::int32_t id : near) {
+      if (covers(hierarchy_.nodes[static_cast<std::size_t>(id)].shadow, box)) return settle(cell, id);
+    }
+    const Vector<D> middle = box.middle();
+    const bool held = std::any_of(near.begin(), near.end(), [&](std::int32_t id) {
+      return cores_[static_cast<std::size_t>(id - first_)].contains(middle);
+    });
+    if (!held) {
+      const std::int32_t id = insert(middle);
+      if (id < 0) return false;
+      near.push_back(id);
+      if (covers(hierarchy_.nodes[static_cast<std::size_t>(id)].shadow, box)) return settle(cell, id);
+    }
+    const std::size_t first_child = cells_.size();
+    if (first_child > kMaxCells) return false;
+    cells_.resize(first_child + DirectionBox<D>::kCorners, 0);
+    cells_[cell] = static_cast<std::int64_t>(first_child);
+    const std::size_t known = cores_.size();
+    for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
+      if (!cover(first_child + static_cast<std::size_t>(k), box.child(k), near, known)) return false;
+    }
+    return true;
+  }
+
+  bool settle(std::size_t cell, std::int32_t id) {
+    cells_[cell] = -1 - static_cast<std::int64_t>(id);
+    return true;
+  }
+
+  std::int32_t insert(const Vector<D>& v) {
+    const auto id = static_cast<std::int32_t>(hierarchy_.nodes.size());
+    if (id >= kMaxMacbeathNodes) return -1;
+    const std::vector<std::int32_t>& candidates = parent_list(v);
+    const MacbeathRegion<D> region = polar_.region(v, delta_, candidates);
+    hierarchy_.nodes.push_back({region.shadow(kCoverScale), region.point, 0, 0});
+    cores_.push_back(region.shadow(kCoreScale));
+    sections_.emplace_back(hierarchy_.nodes.back().shadow, face_);
+    next_neighbours_.push_back(polar_.neighbours(region, candidates));
+    return id;
+  }
+
+  const std::vector<std::int32_t>& parent_list(const Vector<D>& v) {
+    if (hierarchy_.layers == 0) {
+      if (all_.empty()) {
+        all_.resize(polar_.points().size());
+        std::iota(all_.begin(), all_.end(), 0);
+      }
+      return all_;
+    }
+    QueryCounters unused;
+    return neighbours_[static_cast<std::size_t>(hierarchy_.descend(v, unused) - previous_first_)];
+  }
+
+  /// Links every node of the layer above to the nodes whose cells may meet its shadow.
+  void link_parents() {
+    if (hierarchy_.layers == 0) {
+      hierarchy_.root_ids.resize(hierarchy_.nodes.size());
+      std::iota(hierarchy_.root_ids.begin(), hierarchy_.root_ids.end(), 0);
+      return;
+    }
+    std::vector<std::int32_t> mark(hierarchy_.nodes.size() - static_cast<std::size_t>(first_), -1);
+    for (std::int32_t parent = previous_first_; parent < first_; ++parent) {
+      HierarchyNode<D>& node = hierarchy_.nodes[static_cast<std::size_t>(parent)];
+      node.first_child = static_cast<std::int32_t>(hierarchy_.links.size());
+      for (int face = 0; face < 2 * D; ++face) {
+        const DirectionBox<D> box = cube_face<D>(face);
+        collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, mark);
+      }
+      node.children = static_cast<std::int32_t>(hierarchy_.links.size()) - node.first_child;
+      hierarchy_.max_out_degree = std::max<std::int64_t>(hierarchy_.max_out_degree, node.children);
+    }
+  }
+
+  void collect(std::size_t cell, const DirectionBox<D>& box, const ShadowSection<D>& shadow, std::int32_t parent,
+               std::vector<std::int32_t>& mark) {
+    if (!shadow.may_meet(box)) return;
+    const std::int64_t content = cells_[cell];
+    if (content < 0) {
+      const auto id = static_cast<std::int32_t>(-1 - content);
+      std::int32_t& seen = mark[static_cast<std::size_t>(id - first_)];
+      if (seen == parent) return;
+      seen = parent;
+      hierarchy_.links.push_back(id);
+      return;
+    }
+    for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
+      collect(static_cast<std::size_t>(content) + static_cast<std::size_t>(k), box.child(k), shadow, parent, mark);
+    }
+  }
+
+  static constexpr std::size_t kMaxCells = 200'000'000;
+
+  PolarBody<D> polar_;
+  MacbeathHierarchy<D>& hierarchy_;
+  double delta_ = 0;
+  std::int32_t first_ = 0;
+  std::int32_t previous_first_ = 0;
+  std::vector<ShadowCone<D>> cores_;        ///< of the layer's nodes
+  DirectionBox<D> face_{};                  ///< that is being covered
+  std::vector<ShadowSection<D>> sections_;  ///< of the layer's cover shadows with it
+  std::vector<std::int64_t> cells_;         ///< the first of its 2^(D-1) parts, or -1 - node
+  std::vector<std::vector<std::int32_t>> neighbours_, next_neighbours_;  ///< per node of the layers above and now
+  std::vector<std::int32_t> all_;
+};
+
+}  // namespace
+
+template <int D>
+Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
+                                                                      const AffineMap<D>& frame, double epsilon) {
+  auto hierarchy = std::make_unique<MacbeathHierarchy<D>>();
+  hierarchy->points = points;
+  hierarchy->pull_back = frame.linear.inverse().transpose();
+  std::vector<Vector<D>> fat;
+  for (const SupportPoint<D>& p : points) fat.push_back(frame.apply(p.point));
+  HierarchyBuilder<D> builder(PolarBody<D>(std::move(fat)), *hierarchy);
+  // Leaves lose (1 + cover scale) delta of h (macbeath_region.hpp).
+  constexpr double kFirst = 0.5;
+  const double last = std::min(kFirst, epsilon / (1 + kCoverScale));
+  const int steps = static_cast<int>(std::ceil(std::log2(kFirst / last)));
+  for (int i = 0; i <= steps; ++i) {
+    const double delta = i == steps ? last : std::ldexp(kFirst, -i);
+    if (!builder.add_layer(delta)) {
+      return Error{ErrorCode::limit_exceeded,
+                   "the hierarchy of Macbeath regions takes more than 4000000 nodes at this epsilon; take a larger one",
+                   "epsilon"};
+    }
+  }
+  return Expected<std::unique_ptr<WidthStructure<D>>>(std::unique_ptr<WidthStructure<D>>(std::move(hierarchy)));
+}
+
+#define PD_INSTANTIATE(D)                                                            \
+  template Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy<D>( \
+      const std::vector<SupportPoint<D>>&, const AffineMap<D>&, double);
+PD_INSTANTIATE(2)
+PD_INSTANTIATE(3)
+PD_INSTANTIATE(4)
+PD_INSTANTIATE(5)
+#undef PD_INSTANTIATE
+
+}  // namespace pd::dimension::detail

@@ -1,0 +1,37 @@
+/// @file
+/// The hierarchy of Macbeath regions of [M] (Lemma 5; Arya, da Fonseca, Mount, "Near-optimal epsilon-kernel
+/// construction and related problems", 2017): approximate directional widths by a descent through O(log(1 / epsilon))
+/// layers.
+///
+/// Layer i holds regions centred on the boundary of (1 - delta_i) K*, delta_i falling geometrically to the leaves'. A
+/// region enters when its direction lies in the core shadow of none before it (so that regions shrunk further are
+/// disjoint: [M]'s packing); the layer ends when the cells of an adaptive grid of directions each lie in one cover
+/// shadow: every direction is covered, for certain. A parent links to the children whose cells meet its shadow. A query
+/// goes from region to child, each of them shadowing the direction, and returns the leaf's point.
+///
+/// Departures from [M]: built on a kernel by scans of it, once, instead of bootstrapping, so the time to build is no
+/// 1 / epsilon^((d-1)/2 + alpha); numbers of nodes, degrees and visits are measured (`pdepth-bench arya`).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "dimension/macbeath_region.hpp"
+#include "pd/dimension/directional_width.hpp"
+
+namespace pd::dimension::detail {
+
+/// Nodes at most: where a body and an epsilon need more, the hierarchy is refused.
+inline constexpr std::int64_t kMaxMacbeathNodes = 4'000'000;
+
+/// @param points   of K, extreme or not; K is their hull
+/// @param frame    maps C of K's sandwich to the unit ball: O inside, K fat
+/// @param epsilon  in (0, 1): supports fall short of h by at most epsilon h, h measured from the frame's O, so by
+/// epsilon width_K at most.
+/// @return limit_exceeded ("epsilon").
+template <int D>
+[[nodiscard]] Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(
+    const std::vector<SupportPoint<D>>& points, const AffineMap<D>& frame, double epsilon);
+
+}  // namespace pd::dimension::detail

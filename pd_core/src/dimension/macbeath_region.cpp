@@ -1,0 +1,133 @@
+#include "dimension/macbeath_region.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace pd::dimension::detail {
+
+namespace {
+
+/// Ellipsoids through Khachiyan's ascent are taken once they are within this factor of the optimal d, squared.
+constexpr double kRoundness = 1.25;
+
+template <int D>
+double square(const Matrix<D>& m, const Vector<D>& v) {
+  return v.dot(m * v);
+}
+
+}  // namespace
+
+template <int D>
+ShadowCone<D> MacbeathRegion<D>::shadow(double c) const {
+  // The ray t v meets {x + z : z' A z <= c^2} where (v'Ax)^2 >= v'Av (x'Ax - c^2).
+  ShadowCone<D> r;
+  r.axis = ellipsoid * center;
+  const double beyond = center.dot(r.axis) - c * c;
+  r.everything = beyond <= 0;
+  r.form = r.axis * r.axis.transpose() - beyond * ellipsoid;
+  return r;
+}
+
+template <int D>
+std::int32_t PolarBody<D>::extreme(const Vector<D>& v) const {
+  std::int32_t best = 0;
+  double reach = v.dot(points_[0]);
+  for (std::size_t i = 1; i < points_.size(); ++i) {
+    const double at = v.dot(points_[i]);
+    if (at > reach) {
+      reach = at;
+      best = static_cast<std::int32_t>(i);
+    }
+  }
+  return best;
+}
+
+template <int D>
+MacbeathRegion<D> PolarBody<D>::region(const Vector<D>& v, double delta,
+                                       std::span<const std::int32_t> candidates) const {
+  MacbeathRegion<D> r;
+  r.point = extreme(v);
+  r.center = v * ((1 - delta) / v.dot(points_[r.point]));
+  const Vector<D>& x = r.center;
+  // The largest ellipsoid in the slabs |<a, z>| <= 1 is polar to the smallest one about the points a = p / (1 - <p, x>)
+  // and -a: its weights by Khachiyan's ascent (see enclosing_ellipsoid.hpp), on the candidates.
+  const auto slab = [&](std::int32_t p) -> Vector<D> { return points_[p] / (1 - points_[p].dot(x)); };
+  // The start: D points, each the farthest in a direction orthogonal to those before (Kumar and Yildirim).
+  Matrix<D> moment = Matrix<D>::Zero();
+  Matrix<D> basis = Matrix<D>::Zero();
+  for (int k = 0; k < D; ++k) {
+    Vector<D> direction = Vector<D>::Zero();
+    for (int i = 0; i < D; ++i) {
+      const Vector<D> rest = Vector<D>::Unit(i) - basis * basis.row(i).transpose();
+      if (rest.squaredNorm() > direction.squaredNorm()) direction = rest;
+    }
+    Vector<D> far = Vector<D>::Zero();
+    double most = -1;
+    for (const std::int32_t p : candidates) {
+      const Vector<D> a = slab(p);
+      const double at = std::abs(a.dot(direction));
+      if (at > most) {
+        most = at;
+        far = a;
+      }
+    }
+    moment += far * far.transpose() / D;
+    Vector<D> rest = far - basis * (basis.transpose() * far);
+    rest -= basis * (basis.transpose() * rest);
+    basis.col(k) = rest / rest.norm();
+  }
+  Matrix<D> inverse = moment.inverse();
+  constexpr int kSteps = 60;
+  for (int step = 0; step < kSteps; ++step) {
+    double most = 0;
+    Vector<D> far = Vector<D>::Zero();
+    for (const std::int32_t p : candidates) {
+      const Vector<D> a = slab(p);
+      const double at = square<D>(inverse, a);
+      if (at > most) {
+        most = at;
+        far = a;
+      }
+    }
+    if (most <= kRoundness * D) break;
+    const double share = (most / D - 1) / (most - 1);
+    moment = (1 - share) * moment + share * far * far.transpose();
+    inverse = moment.inverse();
+  }
+  double most = 0;  // whatever the weights: E = {z : z' moment z <= 1 / most} lies in every slab
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Vector<D> a = slab(static_cast<std::int32_t>(p));
+    most = std::max(most, square<D>(inverse, a));
+  }
+  r.ellipsoid = moment * most;
+  return r;
+}
+
+template <int D>
+std::vector<std::int32_t> PolarBody<D>::neighbours(const MacbeathRegion<D>& region,
+                                                   std::span<const std::int32_t> candidates) const {
+  // A deeper region in the shadow is centred at s (x + z), z in the ellipsoid, 1 <= s <= <q, hit> / ..., and reaches at
+  // most twice as far as this region's slabs do, which end within sqrt(roundness d) of the ellipsoid.
+  const double reach = 1 + 2.5 * std::sqrt(kRoundness * D);
+  const Matrix<D> inverse = region.ellipsoid.inverse();
+  const double depth = region.center.dot(points_[region.point]);  // 1 - delta
+  std::vector<std::int32_t> r;
+  for (const std::int32_t p : candidates) {
+    const double along = points_[p].dot(region.center);
+    const double outwards = std::max(along, along / std::max(depth, 0.25));
+    if (outwards + reach * std::sqrt(square<D>(inverse, points_[p])) >= 1) r.push_back(p);
+  }
+  return r;
+}
+
+#define PD_INSTANTIATE(D)            \
+  template struct MacbeathRegion<D>; \
+  template class PolarBody<D>;
+PD_INSTANTIATE(2)
+PD_INSTANTIATE(3)
+PD_INSTANTIATE(4)
+PD_INSTANTIATE(5)
+#undef PD_INSTANTIATE
+
+}  // namespace pd::dimension::detail

@@ -1,0 +1,62 @@
+/// @file
+/// Macbeath regions of a polar body, each as an ellipsoid and the cone of directions that it shadows from O.
+///
+/// K* = {x : <p, x> <= 1 for all points p of K}, so that h_K(v) = 1 / (length of v's ray in K*). The Macbeath region of
+/// x in K* is M(x) = K* intersected with its reflection in x: x + {z : |<p, z>| <= 1 - <p, x> for all p}. An ellipsoid
+/// about x inside it, scaled by c, keeps every y in it at <q, y> >= 1 - (1 + c)(1 - <q, x>) for each q, and inside
+/// K*. So if q is the point whose facet the ray through x hits, x = (1 - delta) times the hit, every v through the
+/// ellipsoid has <q, v> >= (1 - (1 + c) delta) h_K(v).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pd/dimension/vector.hpp"
+
+namespace pd::dimension::detail {
+
+/// {v : v' form v >= 0, <axis, v> > 0}: the directions whose rays meet an ellipsoid that does not hold O, a convex
+/// cone; all directions where it does.
+template <int D>
+struct ShadowCone {
+  Matrix<D> form;
+  Vector<D> axis;
+  bool everything = false;
+
+  [[nodiscard]] bool contains(const Vector<D>& v) const {
+    return everything || (axis.dot(v) > 0 && v.dot(form * v) >= 0);
+  }
+};
+
+template <int D>
+struct MacbeathRegion {
+  std::int32_t point;   ///< q: the point of K whose facet of K* the ray through x hits
+  Vector<D> center;     ///< x
+  Matrix<D> ellipsoid;  ///< {x + z : z' ellipsoid z <= 1} lies in M(x), certified against every point
+
+  /// Of the region's ellipsoid scaled by c < 1.
+  [[nodiscard]] ShadowCone<D> shadow(double c) const;
+};
+
+/// The points of K that regions are cut from. O lies inside K.
+template <int D>
+class PolarBody {
+ public:
+  explicit PolarBody(std::vector<Vector<D>> points) : points_(std::move(points)) {}
+
+  [[nodiscard]] std::int32_t extreme(const Vector<D>& v) const;
+  /// The region at (1 - delta) times the end of v's ray.
+  /// @param candidates  points that may bound it: a start; every point is checked before the end
+  [[nodiscard]] MacbeathRegion<D> region(const Vector<D>& v, double delta,
+                                         std::span<const std::int32_t> candidates) const;
+  /// The points that can bound the regions between this one and the boundary, in its shadow.
+  [[nodiscard]] std::vector<std::int32_t> neighbours(const MacbeathRegion<D>& region,
+                                                     std::span<const std::int32_t> candidates) const;
+  [[nodiscard]] const std::vector<Vector<D>>& points() const { return points_; }
+
+ private:
+  std::vector<Vector<D>> points_;
+};
+
+}  // namespace pd::dimension::detail
