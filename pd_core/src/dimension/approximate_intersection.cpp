@@ -60,8 +60,7 @@ class Meeting final : public SupportBody<N> {
   [[nodiscard]] EllipsoidBounds<N> bounds() const override {
     using Entry = Eigen::Matrix<double, N, D, Eigen::DontAlign, detail::kMaxRows<N>, D>;
     const double count = static_cast<double>(bodies_.size());
-    EllipsoidBounds<N> r{Point<N>::Zero(size_), detail::SquareMatrix<N>::Zero(size_, size_),
-                         detail::SquareMatrix<N>::Zero(size_, size_)};
+    EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size_);
     Eigen::Index residual = differences_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Entry entry = Entry::Zero(size_, D);
@@ -73,8 +72,8 @@ class Meeting final : public SupportBody<N> {
       const EllipsoidBounds<N> part = bodies_[i].node().template bounds<N>(entry, residual);
       residual += bodies_[i].equations();
       r.center += part.center;
-      r.inner += part.inner;
-      r.outer += count * part.outer;
+      detail::add_to_root<N>(r.inner, 1, part.inner);
+      detail::add_to_root<N>(r.outer, std::sqrt(count), part.outer);
     }
     if (bodies_.size() == 1) r.center.template head<D>() -= point_;
     return r;

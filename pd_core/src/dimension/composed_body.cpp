@@ -14,15 +14,6 @@ namespace pd::dimension {
 
 namespace detail {
 
-namespace {
-
-template <int N>
-EllipsoidBounds<N> zero_bounds(Eigen::Index size) {
-  return {Point<N>::Zero(size), SquareMatrix<N>::Zero(size, size), SquareMatrix<N>::Zero(size, size)};
-}
-
-}  // namespace
-
 template <int D>
 double ComposedNode<D>::support(const Vector<D>& v, const double* u, Vector<D>& value, double* residuals,
                                 QueryCounters& counters) const {
@@ -94,17 +85,17 @@ EllipsoidBounds<N> ComposedNode<D>::bounds(const Eigen::Matrix<double, N, D, Eig
     const Sandwich<D>& sandwich = body->sandwich();
     const Matrix<D> linear = map.linear * sandwich.axes;
     const Entry axes = entry * linear;
-    EllipsoidBounds<N> r = zero_bounds<N>(size);
+    EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size);
     r.center = entry * map.apply(sandwich.centre);
-    r.inner = axes * axes.transpose();
-    r.outer = sandwich.ratio * sandwich.ratio * r.inner;
+    add_to_root<N>(r.inner, 1, axes);
+    r.outer = sandwich.ratio * r.inner;
     return r;
   }
   const double count = static_cast<double>(parts.size());
-  EllipsoidBounds<N> r = zero_bounds<N>(size);
+  EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size);
   if (kind == ComposedKind::hull) {
-    // With c the mean of the parts' centres: h(v) - <c, v> is at least the mean of the parts', and at most
-    // |<c_i - c, v>| + sqrt(v' outer_i v) <= sqrt(2 v' ((c_i - c)(c_i - c)' + outer_i) v) for some i.
+    // With c the mean of the parts' centres: h(v) - <c, v> is at least the mean of |inner_i^T v|, and at most
+    // |<c_i - c, v>| + |outer_i^T v| for some i, whose square is at most 2 (<c_i - c, v>^2 + |outer_i^T v|^2).
     std::vector<EllipsoidBounds<N>> each;
     for (const ComposedBody<D>& part : parts) {
       each.push_back(part.node().template bounds<N>(entry, first_residual));
@@ -113,8 +104,9 @@ EllipsoidBounds<N> ComposedNode<D>::bounds(const Eigen::Matrix<double, N, D, Eig
     }
     for (const EllipsoidBounds<N>& part : each) {
       const Point<N> aside = part.center - r.center;
-      r.inner += part.inner / (count * count);
-      r.outer += 2 * (part.outer + aside * aside.transpose());
+      add_to_root<N>(r.inner, 1 / count, part.inner);
+      add_to_root<N>(r.outer, std::sqrt(2.0), part.outer);
+      add_to_root<N>(r.outer, std::sqrt(2.0), aside);
     }
     return r;
   }
@@ -133,8 +125,9 @@ EllipsoidBounds<N> ComposedNode<D>::bounds(const Eigen::Matrix<double, N, D, Eig
     const EllipsoidBounds<N> part = parts[i].node().template bounds<N>(part_entry, slot);
     slot += parts[i].node().equations;
     r.center += part.center;
-    r.inner += part.inner;          // sum sqrt(v' inner_i v) >= sqrt(v' (sum inner_i) v)
-    r.outer += count * part.outer;  // sum sqrt(v' outer_i v) <= sqrt(count v' (sum outer_i) v)
+    // Sums of roots are at least the root of the sum of squares, and at most sqrt(count) times that.
+    add_to_root<N>(r.inner, 1, part.inner);
+    add_to_root<N>(r.outer, std::sqrt(count), part.outer);
   }
   return r;
 }
@@ -175,10 +168,12 @@ Expected<ComposedBody<D>> ComposedBody<D>::make(int kind, std::vector<ComposedBo
   if (parts.size() == 1) return parts[0];
   auto node = std::make_shared<detail::ComposedNode<D>>();
   node->kind = static_cast<detail::ComposedKind>(kind);
+  node->radial = node->kind == detail::ComposedKind::sum;
   std::size_t equations = node->kind == detail::ComposedKind::intersection ? D * (parts.size() - 1) : 0;
   for (const ComposedBody& part : parts) {
     equations += static_cast<std::size_t>(part.equations());
     node->epsilon = std::max(node->epsilon, part.epsilon());
+    node->radial = node->radial && part.node().radial;
     node->consistent = node->consistent && part.node().consistent;
     node->magnitude += part.node().magnitude;
   }

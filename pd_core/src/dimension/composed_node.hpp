@@ -26,7 +26,10 @@ struct ComposedNode {
   std::vector<ComposedBody<D>> parts;       ///< of the others
   int equations = 0;
   double epsilon = 0;
-  double magnitude = 0;    ///< largest |coordinate| in the parts, or larger
+  double magnitude = 0;  ///< largest |coordinate| in the parts, or larger
+  /// A leaf's supports fall short by at most epsilon of h about the centre of its sandwich (the contract of the
+  /// backends), and so do those of sums, about the sum of the centres; of hulls only by epsilon of the width.
+  bool radial = true;
   bool consistent = true;  ///< every leaf answers from one fixed set
 
   /// Supports in the direction (v, u): writes the value and the residuals, returns <v, value> + <u, residuals>.

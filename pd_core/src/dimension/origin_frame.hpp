@@ -17,15 +17,14 @@ class OriginFrame {
   explicit OriginFrame(const SupportBody<N>& body) : body_(body) {
     const EllipsoidBounds<N> bounds = body.bounds();
     const Eigen::Index n = bounds.center.size();
-    root_ = cholesky(bounds.outer);
+    root_ = bounds.outer;
     center_ = solve(bounds.center);
     // The inner ellipsoid in the frame is the image of a ball by root^-1 inner_root, and holds the ball whose radius is
     // one over the norm of that map's inverse.
-    const SquareMatrix<N> inner_root = cholesky(bounds.inner);
     double inverse_squared = 0;
     double root_squared = 0;
     for (Eigen::Index k = 0; k < n; ++k) {
-      inverse_squared += solve_lower(inner_root, Point<N>(root_.col(k))).squaredNorm();
+      inverse_squared += solve_lower(bounds.inner, Point<N>(root_.col(k))).squaredNorm();
       root_squared += solve(Point<N>(Point<N>::Unit(n, k))).squaredNorm();
     }
     inner_radius_ = 1 / std::sqrt(inverse_squared);
@@ -57,16 +56,6 @@ class OriginFrame {
   [[nodiscard]] std::int64_t supports() const { return supports_; }
 
  private:
-  static SquareMatrix<N> cholesky(const SquareMatrix<N>& matrix) {
-    SquareMatrix<N> lower = matrix;
-    for (Eigen::Index k = 0; k < lower.rows(); ++k) {
-      for (Eigen::Index i = k; i < lower.rows(); ++i) {
-        for (Eigen::Index j = 0; j < k; ++j) lower(i, k) -= lower(i, j) * lower(k, j);
-        lower(i, k) = i == k ? std::sqrt(lower(k, k)) : lower(i, k) / lower(k, k);
-      }
-    }
-    return lower;
-  }
   static Point<N> solve_lower(const SquareMatrix<N>& lower, Point<N> x) {
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       for (Eigen::Index k = 0; k < i; ++k) x(i) -= lower(i, k) * x(k);

@@ -24,14 +24,40 @@ using Point = Eigen::Matrix<double, N, 1, Eigen::DontAlign, kMaxRows<N>, 1>;
 template <int N>
 using SquareMatrix = Eigen::Matrix<double, N, N, Eigen::DontAlign, kMaxRows<N>, kMaxRows<N>>;
 
-/// K between two ellipsoids: for every v, <c, v> + sqrt(v' inner v) <= h_K(v) <= <c, v> + sqrt(v' outer v). Both
-/// matrices are symmetric and positive definite.
+/// K between two ellipsoids: for every v, <c, v> + |inner^T v| <= h_K(v) <= <c, v> + |outer^T v|. Both roots are lower
+/// triangular. Roots, not the matrices inner inner^T: those would square the body's aspect.
 template <int N>
 struct EllipsoidBounds {
   Point<N> center;
   SquareMatrix<N> inner;
   SquareMatrix<N> outer;
+
+  static EllipsoidBounds zero(Eigen::Index size) {
+    return {Point<N>::Zero(size), SquareMatrix<N>::Zero(size, size), SquareMatrix<N>::Zero(size, size)};
+  }
 };
+
+/// Makes root root^T + scale^2 more more^T of root root^T: the rows of [root, scale more] orthogonalised, twice each.
+template <int N, class More>
+void add_to_root(SquareMatrix<N>& root, double scale, const More& more) {
+  const Eigen::Index n = root.rows();
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows<N>, 2 * kMaxRows<N>>;
+  Rows q(n, n + more.cols());
+  q.leftCols(n) = root;
+  q.rightCols(more.cols()) = scale * more;
+  root.setZero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (int turn = 0; turn < 2; ++turn) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const double part = q.row(j).dot(q.row(i));
+        root(i, j) += part;
+        q.row(i) -= part * q.row(j);
+      }
+    }
+    root(i, i) = q.row(i).norm();
+    if (root(i, i) > 0) q.row(i) /= root(i, i);
+  }
+}
 
 /// Supports of a convex body K of R^N, within an error relative to the directional width.
 template <int N>
