@@ -163,7 +163,7 @@ ContactScene compounds(std::uint64_t perturbation) {
     body.parts.push_back(box(Vec3(0.5, 0.12, 0.12), Vec3(0, 0, 0)));
     body.parts.push_back(box(Vec3(0.12, 0.12, 0.3), Vec3(tee ? 0.0 : 0.38, 0, 0.42)));
     body.mass = 20;
-    body.position = Vec3(0.4 * random.next(), 0.4 * random.next(), 1 + 1.4 * i);
+    body.position = Vec3(0.4 * random.next(), 0.4 * random.next(), 1 + 1.8 * i);
     body.orientation = random.orientation();
     scene.world.bodies.push_back(body);
   }
