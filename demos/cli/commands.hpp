@@ -19,6 +19,7 @@ using Action = std::function<int()>;
 
 void add_depth_command(CLI::App& app, Action& action);
 void add_query_command(CLI::App& app, Action& action);
+void add_simplify_command(CLI::App& app, Action& action);
 void add_demo_command(CLI::App& app, Action& action);
 
 }  // namespace pd::cli

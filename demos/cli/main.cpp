@@ -15,6 +15,7 @@ constexpr const char* kFooter = R"(Examples:
   pdepth query lines.jsonl --threads 4 > answers.jsonl
   echo '{"id":1,"query":"depth","a":{"type":"box","half_extents":[1,1,1]},
          "b":{"type":"sphere","radius":1},"pose_b":{"translation":[1.5,0,0]}}' | tr -d '\n' | pdepth query
+  pdepth simplify scan.ply --epsilon 1e-3 -o hull.obj
   pdepth demo stacking --out frames
 
 Exit codes:
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
   pd::cli::Action action;
   pd::cli::add_depth_command(app, action);
   pd::cli::add_query_command(app, action);
+  pd::cli::add_simplify_command(app, action);
   pd::cli::add_demo_command(app, action);
   try {
     app.parse(argc, argv);

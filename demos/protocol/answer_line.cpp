@@ -25,12 +25,12 @@ constexpr std::array kQueries{
     QueryEntry{"hierarchy", answer_hierarchy},
     QueryEntry{"decomposition", answer_decomposition},
     QueryEntry{"polygon_depth", refuse_unsupported_query},
-    QueryEntry{"approx_directional_width", refuse_unsupported_query},
+    QueryEntry{"approx_directional_width", answer_approx_directional_width},
     QueryEntry{"approx_intersect", refuse_unsupported_query},
     QueryEntry{"approx_minkowski_sum", refuse_unsupported_query},
-    QueryEntry{"approx_width", refuse_unsupported_query},
-    QueryEntry{"approximate", refuse_unsupported_query},
-    QueryEntry{"epsilon_kernel", refuse_unsupported_query},
+    QueryEntry{"approx_width", answer_approx_width},
+    QueryEntry{"approximate", answer_approximate},
+    QueryEntry{"epsilon_kernel", answer_epsilon_kernel},
     QueryEntry{"approx_membership", refuse_unsupported_query},
 };
 

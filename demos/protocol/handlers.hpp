@@ -35,6 +35,10 @@ void answer_decomposition(const Node& line, Session& session, JsonWriter& answer
 void answer_minkowski_difference(const Node& line, Session& session, JsonWriter& answer);
 void answer_width(const Node& line, Session& session, JsonWriter& answer);
 void answer_hierarchy(const Node& line, Session& session, JsonWriter& answer);
+void answer_approx_directional_width(const Node& line, Session& session, JsonWriter& answer);
+void answer_approx_width(const Node& line, Session& session, JsonWriter& answer);
+void answer_approximate(const Node& line, Session& session, JsonWriter& answer);
+void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answer);
 [[noreturn]] void refuse_unsupported_query(const Node& line, Session& session, JsonWriter& answer);
 
 }  // namespace pd::query

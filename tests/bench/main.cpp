@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bench/agarwal/agarwal.hpp"
+#include "bench/arya/arya.hpp"
 #include "bench/hash/answer_hash.hpp"
 #include "bench/measure/compare.hpp"
 #include "bench/pairs/coherent.hpp"
@@ -36,6 +37,7 @@ struct Options {
   std::string folder;
   CompareSettings compare;
   AgarwalSettings agarwal;
+  AryaSettings arya;
   HashSettings hash;
 };
 
@@ -194,6 +196,11 @@ int main(int argc, char** argv) {
   agarwal->add_option("--out", options.agarwal.out, "folder for the table (CSV, Markdown), the points and the plots");
   agarwal->add_option("--pairs", options.agarwal.pairs, "of the exactness chapter (default: 100000, quick 2000)");
   agarwal->add_flag("--quick", options.agarwal.quick, "under a minute: smaller sizes, fewer pairs");
+  CLI::App* arya = app.add_subcommand("arya", "the bounds of Arya, da Fonseca and Mount 2018, claim by claim");
+  arya->add_option("--seed", options.arya.seed, "seed of the clouds")->capture_default_str();
+  arya->add_option("--chapters", options.arya.chapters, arya_chapters())->delimiter(',');
+  arya->add_option("--out", options.arya.out, "folder for the table (CSV, Markdown), the points and the plots");
+  arya->add_flag("--full", options.arya.full, "up to 1e7 points; otherwise under a minute");
   CLI::App* hash = app.add_subcommand("hash", "the bits of answers, hashed: equal on every compiler and machine");
   hash->add_option("--pairs", options.hash.pairs, "generated pairs, each asked in about ten ways")
       ->check(CLI::PositiveNumber)
@@ -212,6 +219,7 @@ int main(int argc, char** argv) {
 #endif
   if (*hash) return run_hash(options.hash);
   if (*agarwal) return run_agarwal(options.agarwal);
+  if (*arya) return run_arya(options.arya);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);

@@ -1,0 +1,150 @@
+/// @file
+/// `pdepth simplify SCAN -o HULL.obj`: a dense scan in, a convex hull of few vertices with a stated error out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "mesh/mesh_file.hpp"
+#include "pd/dimension/approximate_body.hpp"
+#include "pd/shape/convex_polytope.hpp"
+#include "protocol/limits.hpp"
+#include "protocol/pair_reader.hpp"
+#include "support/refusal.hpp"
+#ifdef PDEPTH_WITH_DEMOS
+#include "support/simplify_picture.hpp"
+#endif
+
+namespace pd::cli {
+
+namespace {
+
+constexpr const char* kFooter = R"(The result is convex, and lies on one side of the scan's convex hull:
+  outer  encloses every point; along no direction does it stick out by more than epsilon / 2 of the scan's extent
+  inner  is enclosed, its vertices are points of the scan; every extent is at least (1 - epsilon) of the scan's
+
+Examples:
+  pdepth simplify scan.ply --epsilon 1e-3 -o hull.obj
+  pdepth simplify scan.stl --epsilon 0.02 --side inner -o inside.obj --picture before_after.png)";
+
+struct SimplifyArguments {
+  std::string input;
+  std::string output;
+  std::string side = "outer";
+  std::string picture;
+  double epsilon = 1e-3;
+};
+
+constexpr std::int64_t kMostPoints = 200'000'000;
+
+/// How far the scan sticks out of the hull (outer) or the hull out of the scan's extent: measured, as a check on what
+/// is promised, along the hull's facet normals.
+struct Excess {
+  double scan_outside = 0;  ///< of the scan's points beyond a facet
+  double largest_gap = 0;   ///< between a facet and the scan's nearest point below it
+};
+
+Excess measure(const ConvexPolytope& hull, const std::vector<Vec3>& points) {
+  Excess r;
+  for (int f = 0; f < hull.num_facets(); ++f) {
+    const Vec3& normal = hull.facet_normal(f);
+    const double offset = normal.dot(hull.vertex(hull.facet_vertices(f)[0]));
+    double most = -1e300;
+    for (const Vec3& p : points) most = std::max(most, normal.dot(p));
+    r.scan_outside = std::max(r.scan_outside, most - offset);
+    r.largest_gap = std::max(r.largest_gap, offset - most);
+  }
+  return r;
+}
+
+bool write_obj(const ConvexPolytope& hull, const SimplifyArguments& arguments) {
+  std::FILE* file = std::fopen(arguments.output.c_str(), "w");
+  if (file == nullptr) return false;
+  fmt::print(file, "# convex hull of {}, {}, epsilon {}\n", arguments.input, arguments.side, arguments.epsilon);
+  for (int v = 0; v < hull.num_vertices(); ++v) {
+    const Vec3 p = hull.vertex(v);
+    fmt::print(file, "v {} {} {}\n", p.x(), p.y(), p.z());
+  }
+  for (int f = 0; f < hull.num_facets(); ++f) {
+    fmt::print(file, "f");
+    for (const std::int32_t v : hull.facet_vertices(f)) fmt::print(file, " {}", v + 1);
+    fmt::print(file, "\n");
+  }
+  const bool written = std::ferror(file) == 0;
+  return std::fclose(file) == 0 && written;
+}
+
+/// The checks over all facets and points are for the eye: a sample of the points where there are many.
+std::vector<Vec3> sample(const std::vector<Vec3>& points, std::size_t most) {
+  if (points.size() <= most) return points;
+  std::vector<Vec3> r;
+  for (std::size_t i = 0; i < most; ++i) r.push_back(points[i * points.size() / most]);
+  return r;
+}
+
+int run_simplify(const SimplifyArguments& arguments) {
+  try {
+    const query::MeshPoints scan = query::read_mesh_points(arguments.input, kMostPoints, query::kMaxMeshBytes);
+    const query::Stopwatch watch;
+    std::vector<dimension::Vector<3>> points(scan.points.begin(), scan.points.end());
+    const auto body = dimension::Body<3>::from_points(std::move(points));
+    if (!body)
+      query::refuse(to_string(body.error().code), arguments.input + ": " + body.error().message, body.error().where);
+    const dimension::Side side = arguments.side == "inner" ? dimension::Side::inner : dimension::Side::outer;
+    const auto small =
+        dimension::approximate_body<3>(*body, arguments.epsilon, dimension::Representation::points, side);
+    if (!small) query::refuse(to_string(small.error().code), "--epsilon: " + small.error().message, "");
+    const std::vector<Vec3> vertices(small->points.begin(), small->points.end());
+    const auto hull = ConvexPolytope::from_points(vertices);
+    if (!hull) query::refuse(to_string(hull.error().code), hull.error().message, hull.error().where);
+    const double milliseconds = static_cast<double>(watch.nanoseconds()) / 1e6;
+    if (!write_obj(*hull, arguments)) {
+      fmt::print(stderr, "pdepth: {} cannot be written\n", arguments.output);
+      return kFailed;
+    }
+    constexpr std::size_t kChecked = 200'000;
+    const Excess excess = measure(*hull, sample(scan.points, kChecked));
+    fmt::print("scan      {}  ({} points)\n", arguments.input, scan.points.size());
+    fmt::print("hull      {}  ({} vertices, {} facets, {:.1f} ms)\n", arguments.output, hull->num_vertices(),
+               hull->num_facets(), milliseconds);
+    fmt::print("side      {}, epsilon {}\n", arguments.side, arguments.epsilon);
+    fmt::print(
+        "measured  along the hull's facets{}: points stick out by at most {:.3g}, facets stand off by at most {:.3g}\n",
+        scan.points.size() > kChecked ? " (a sample of the points)" : "", excess.scan_outside, excess.largest_gap);
+    if (arguments.picture.empty()) return kDone;
+#ifdef PDEPTH_WITH_DEMOS
+    return demo::write_simplify_picture(scan.points, *hull, arguments.side, arguments.epsilon, arguments.picture);
+#else
+    fmt::print(stderr, "pdepth: {}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)\n",
+               arguments.picture);
+    return kBadUsage;
+#endif
+  } catch (const query::Refusal& refusal) {
+    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    return kBadUsage;
+  }
+}
+
+}  // namespace
+
+void add_simplify_command(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<SimplifyArguments>();
+  CLI::App* command = app.add_subcommand("simplify", "A small convex hull of a dense scan, with a stated error");
+  command->footer(kFooter);
+  command->add_option("SCAN", arguments->input, "Points or mesh: PLY, OBJ, STL, OFF or glTF")->required();
+  command->add_option("-o,--output", arguments->output, "The hull, as OBJ")->required();
+  command->add_option("--epsilon", arguments->epsilon, "Error, relative to the scan's extent, in [1e-6, 1)")
+      ->capture_default_str();
+  command->add_option("--side", arguments->side, "Encloses the scan, or is enclosed by it")
+      ->check(CLI::IsMember({"outer", "inner"}))
+      ->capture_default_str();
+  command->add_option("--picture", arguments->picture, "Draw scan and hull side by side as a PNG");
+  command->callback([arguments, &action] { action = [arguments] { return run_simplify(*arguments); }; });
+}
+
+}  // namespace pd::cli

@@ -1,0 +1,36 @@
+/// @file
+/// `pdepth-bench arya`: the bounds of [M] measured, claim by claim, and ratios to peers in one run.
+///
+/// [M] Arya, da Fonseca, Mount, "Approximate convex intersection detection with applications to width and Minkowski
+/// sums", 2018.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/measure/claims.hpp"
+
+namespace pd::bench {
+
+struct AryaSettings {
+  bool full = false;  ///< the sizes of the paper's table; otherwise under a minute
+  std::uint64_t seed = 1;
+  std::string out;                    ///< folder for arya.csv, arya_points.csv, arya.md and the plots; or empty
+  std::vector<std::string> chapters;  ///< names of chapters; empty = all
+};
+
+/// Sizes of kernels and of their structures against (1/epsilon)^((d-1)/2); work of queries.
+void measure_arya_sizes(const AryaSettings& settings, ClaimTable& table);
+/// Promises on random and adversarial bodies: one error beyond epsilon is a wrong answer.
+void measure_arya_promises(const AryaSettings& settings, ClaimTable& table);
+/// Kernels of many points against plain passes of dot products; enclosing ellipsoids.
+void measure_arya_kernels(const AryaSettings& settings, ClaimTable& table);
+/// Width against Qhull's hull of the same points.
+void measure_arya_width(const AryaSettings& settings, ClaimTable& table);
+
+/// @return the exit code, as `run_agarwal`.
+int run_arya(const AryaSettings& settings);
+[[nodiscard]] std::string arya_chapters();
+
+}  // namespace pd::bench

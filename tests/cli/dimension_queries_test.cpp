@@ -1,0 +1,163 @@
+// Queries of any dimension through the line protocol: answers against hand-made bodies, refusals by name.
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/protocol_lines.hpp"
+
+namespace pd::test {
+namespace {
+
+const std::string kSquare = R"({"points":[[0,0],[2,0],[2,1],[0,1],[1,0.5]]})";
+const std::string kCube4 = [] {
+  std::string text = R"({"points":[)";
+  for (int s = 0; s < 16; ++s) {
+    text += s > 0 ? ",[" : "[";
+    for (int k = 0; k < 4; ++k) text += std::string(k > 0 ? "," : "") + ((s >> k & 1) != 0 ? "1" : "-1");
+    text += "]";
+  }
+  return text + "]}";
+}();
+const std::string kSquareHalfspaces = R"({"halfspaces":[[1,0,2],[-1,0,0],[0,1,1],[0,-1,0],[1,1,9]]})";
+
+std::string line(const std::string& query, const std::string& body, const std::string& more) {
+  return R"({"id":7,"query":")" + query + R"(","a":)" + body + "," + more + "}";
+}
+
+TEST(DimensionQueries, DirectionalWidths) {
+  for (const char* method : {"kernel", "exact"}) {
+    const Json a =
+        answer(line("approx_directional_width", kSquare,
+                    R"("epsilon":0.01,"directions":[[3,0],[0,1],[1,1]],"method":")" + std::string(method) + "\""));
+    ASSERT_EQ(code_of(a), "") << a;
+    EXPECT_NEAR(a["widths"][0].get<double>(), 2, 0.02);
+    EXPECT_NEAR(a["widths"][1].get<double>(), 1, 0.01);
+    EXPECT_NEAR(a["widths"][2].get<double>(), 3 / std::sqrt(2.0), 0.03);
+    EXPECT_EQ(a["pairs"][2], Json::parse("[2,0]"));
+  }
+  // A body of halfspaces has no points to name: the pairs are coordinates.
+  const Json a = answer(line("approx_directional_width", kSquareHalfspaces, R"("epsilon":0.01,"directions":[[1,1]])"));
+  ASSERT_EQ(code_of(a), "") << a;
+  EXPECT_NEAR(a["widths"][0].get<double>(), 3 / std::sqrt(2.0), 0.03);
+  EXPECT_EQ(a["pairs"][0][0].size(), 2u);
+}
+
+TEST(DimensionQueries, WidthOfACubeInFourDimensionsAndOfItsImage) {
+  const Json a = answer(line("approx_width", kCube4, R"("epsilon":0.01)"));
+  ASSERT_EQ(code_of(a), "") << a;
+  EXPECT_NEAR(a["width"].get<double>(), 2, 0.02);
+  EXPECT_LE(a["lower"].get<double>(), 2);
+  const std::string image =
+      kSquare.substr(0, kSquare.size() - 1) + R"(,"affine":{"matrix":[[1,0],[0,0.1]],"translation":[5,5]}})";
+  const Json b = answer(line("approx_width", image, R"("epsilon":0.001,"backend":"exact")"));
+  ASSERT_EQ(code_of(b), "") << b;
+  EXPECT_NEAR(b["width"].get<double>(), 0.1, 1e-4);
+}
+
+TEST(DimensionQueries, ApproximationsInEitherRepresentation) {
+  const Json h = answer(line("approximate", kSquare, R"("epsilon":0.01,"representation":"halfspaces")"));
+  ASSERT_EQ(code_of(h), "") << h;
+  EXPECT_EQ(h["halfspaces"].size(), 4u);
+  // Outer: no corner is cut off.
+  for (const Json& row : h["halfspaces"]) {
+    for (const double x : {0.0, 2.0}) {
+      for (const double y : {0.0, 1.0})
+        EXPECT_LE(row[0].get<double>() * x + row[1].get<double>() * y, row[2].get<double>());
+    }
+  }
+  const Json p =
+      answer(line("approximate", kSquareHalfspaces, R"("epsilon":0.01,"representation":"points","side":"inner")"));
+  ASSERT_EQ(code_of(p), "") << p;
+  for (const Json& row : p["points"]) {
+    EXPECT_LE(row[0].get<double>(), 2);
+    EXPECT_GE(row[1].get<double>(), 0);
+  }
+}
+
+class PointsFiles : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    for (const auto& path : {text_, npy_}) std::filesystem::remove(path);
+  }
+  const std::filesystem::path text_ = std::filesystem::temp_directory_path() / "pdepth_points_test.txt";
+  const std::filesystem::path npy_ = std::filesystem::temp_directory_path() / "pdepth_points_test.npy";
+};
+
+TEST_F(PointsFiles, TextAndNumpyGiveTheSameKernel) {
+  constexpr int kPoints = 1000;
+  std::ofstream text(text_);
+  std::ofstream npy(npy_, std::ios::binary);
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1000, 3), }";
+  header.resize(117, ' ');
+  header += '\n';
+  npy << "\x93NUMPY" << '\x01' << '\0' << static_cast<char>(header.size()) << '\0' << header;
+  text << "# x y z\n";
+  for (int i = 0; i < kPoints; ++i) {
+    const double p[3] = {i % 10 * 1.0, i / 10 % 10 * 1.0, i / 100 * 1.0};
+    text << p[0] << ", " << p[1] << " " << p[2] << "\n";
+    npy.write(reinterpret_cast<const char*>(p), sizeof(p));
+  }
+  text.close();
+  npy.close();
+  const auto kernel = [&](const std::filesystem::path& path) {
+    return answer(line("epsilon_kernel", R"({"points_file":")" + path.string() + "\"}", R"("epsilon":0.01)"));
+  };
+  const Json a = kernel(text_), b = kernel(npy_);
+  ASSERT_EQ(code_of(a), "") << a;
+  EXPECT_EQ(a["indices"], b["indices"]);
+  for (const int corner : {0, 9, 90, 99, 900, 909, 990, 999}) {
+    EXPECT_NE(std::find(a["indices"].begin(), a["indices"].end(), corner), a["indices"].end()) << corner;
+  }
+  const std::string wide = line("approx_width", R"({"points_file":")" + npy_.string() + "\"}", R"("epsilon":0.01)");
+  EXPECT_NEAR(answer(wide)["width"].get<double>(), 9, 0.09);
+  query::Limits limits;
+  limits.files = false;
+  EXPECT_EQ(code_of(answer(wide, limits)), "unsupported");
+}
+
+TEST_F(PointsFiles, RefusesBadFiles) {
+  const std::string missing = line("epsilon_kernel", R"({"points_file":"/nowhere/x.npy"})", R"("epsilon":0.1)");
+  EXPECT_EQ(code_of(answer(missing)), "unreadable_file");
+  EXPECT_EQ(where_of(answer(missing)), "a.points_file");
+  const std::string named = line("epsilon_kernel", R"({"points_file":")" + text_.string() + "\"}", R"("epsilon":0.1)");
+  std::ofstream(text_) << "1 2\n3 4 5\n";
+  EXPECT_EQ(code_of(answer(named)), "unreadable_file");
+  std::ofstream(text_) << "1 2\n3 four\n";
+  EXPECT_EQ(code_of(answer(named)), "unreadable_file");
+  std::ofstream(text_) << "1 2\n3 nan\n5 6\n1 1\n";
+  EXPECT_EQ(code_of(answer(named)), "non_finite");
+  std::ofstream(text_) << "1\n2\n";
+  EXPECT_EQ(code_of(answer(named)), "out_of_range");
+  std::ofstream(npy_) << "\x93NUMPY";
+  EXPECT_EQ(code_of(answer(line("epsilon_kernel", R"({"points_file":")" + npy_.string() + "\"}", R"("epsilon":0.1)"))),
+            "unreadable_file");
+}
+
+TEST(DimensionQueries, RefuseByName) {
+  const auto code = [](const std::string& body, const std::string& more) {
+    return code_of(answer(line("approx_width", body, more)));
+  };
+  EXPECT_EQ(code(kSquare, R"("epsilon":0)"), "bad_value");
+  EXPECT_EQ(code(kSquare, R"("epsilon":1)"), "bad_value");
+  EXPECT_EQ(code(kSquare, R"("epsilon":"nan")"), "non_finite");
+  EXPECT_EQ(code(kSquare, R"("backend":"kernel")"), "missing_field");
+  EXPECT_EQ(code(kSquare, R"("epsilon":0.1,"backend":"oracle")"), "bad_value");
+  EXPECT_EQ(code(kSquare, R"("epsilon":0.1,"delta":1)"), "bad_value");
+  EXPECT_EQ(code(R"({"points":[[0],[1]]})", R"("epsilon":0.1)"), "out_of_range");
+  EXPECT_EQ(code(R"({"points":[[0,0,0,0,0,0]]})", R"("epsilon":0.1)"), "out_of_range");
+  EXPECT_EQ(code(R"({"points":[[0,0],[1,1],[2,2],[3,3]]})", R"("epsilon":0.1)"), "not_full_dimensional");
+  EXPECT_EQ(code(R"({"points":[[0,0],[1,1]]})", R"("epsilon":0.1)"), "too_few_points");
+  EXPECT_EQ(code(R"({"points":[[0,0],[1,1,1]]})", R"("epsilon":0.1)"), "bad_value");
+  EXPECT_EQ(code(R"({"points":[[0,0],[1,"inf"],[1,0]]})", R"("epsilon":0.1)"), "non_finite");
+  EXPECT_EQ(code(R"({"halfspaces":[[1,0,1],[0,1,1],[-1,0,1]]})", R"("epsilon":0.1)"), "unbounded");
+  EXPECT_EQ(code(R"({"halfspaces":[[1,0,-1],[0,1,1],[-1,0,-1],[0,-1,1]]})", R"("epsilon":0.1)"), "bad_value");
+  EXPECT_EQ(code(R"({"points":[[0,0],[1,0],[0,1]],"affine":{"matrix":[[1,1],[1,1]]}})", R"("epsilon":0.1)"),
+            "bad_value");
+  EXPECT_EQ(code(R"({"points":[[0,0],[1,0],[0,1]],"halfspaces":[]})", R"("epsilon":0.1)"), "bad_value");
+  EXPECT_EQ(code_of(answer(line("epsilon_kernel", kSquareHalfspaces, R"("epsilon":0.1)"))), "unsupported");
+}
+
+}  // namespace
+}  // namespace pd::test
