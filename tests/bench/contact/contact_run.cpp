@@ -79,7 +79,6 @@ class Runner {
   Runner(const ContactScene& scene, const ContactSetting& setting, double seconds)
       : scene_(scene),
         setting_(setting),
-        seconds_(seconds),
         num_steps_(static_cast<int>(std::lround(seconds * setting.steps_per_second))),
         bullet_(scene.world, setting.run) {
     if (setting.recommended) {
@@ -219,7 +218,6 @@ class Runner {
 
   const ContactScene& scene_;
   ContactSetting setting_;
-  double seconds_;
   int num_steps_;
   BulletScene bullet_;
   std::vector<Piece> pieces_;
