@@ -4,14 +4,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "pd/render/composition.hpp"
 #include "pd/render/video.hpp"
 #include "protocol/pair_reader.hpp"
 #include "scenes/shape_families.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
+#include "support/search_picture.hpp"
 
 namespace pd::demo {
 
@@ -110,6 +114,68 @@ int answer_and_draw(const Bodies& bodies, const DemoOptions& options, const std:
   return code;
 }
 
+/// Every step of the search, a second each for few of them.
+int write_search_film(const query::SearchFile& search, const SearchPictures& pictures, render::Renderer& renderer,
+                      render::Size size, const std::filesystem::path& file) {
+  auto opened = render::VideoWriter::open(file, size);
+  if (!opened) return report_failure(opened.error());
+  render::VideoWriter film = std::move(opened).value();
+  note_interrupts();
+  const int total = static_cast<int>(search.steps.size());
+  const int repeats = std::clamp(600 / total, 2, 30);
+  Progress progress("film", total);
+  for (int i = 0; i < total && !interrupted(); ++i) {
+    const auto step = static_cast<std::size_t>(i);
+    auto drawn = pictures.draw(step, renderer);
+    if (!drawn) return report_failure(drawn.error());
+    const render::Panel panel[] = {{std::move(drawn).value(), pictures.heading(step)}};
+    const render::Image frame = render::side_by_side(panel, "", "", size);
+    for (int k = 0; k < repeats; ++k) {
+      if (const auto added = film.add(frame); !added) return report_failure(added.error());
+    }
+    progress.show(i + 1);
+  }
+  if (const auto closed = film.finish(); !closed) return report_failure(closed.error());
+  fmt::print("film      {}\n", file.string());
+  return interrupted() ? kDemoInterrupted : kDemoDone;
+}
+
+/// The steps of a recorded search as a strip of frames.
+int draw_search(const query::SearchFile& search, const DemoOptions& options, const std::filesystem::path& folder) {
+  if (search.steps.empty()) {
+    fmt::print(stderr, "pdepth: {} holds no steps: no polytope was expanded for that pair\n", options.trace);
+    return kDemoBadUsage;
+  }
+  auto created = render::Renderer::create();
+  if (!created) return report_failure(created.error());
+  render::Renderer renderer = std::move(created).value();
+  // Three frames to a row: narrower than the film.
+  const SearchPictures pictures(search, {std::min(options.width, options.height * 4 / 3), options.height});
+  std::vector<render::Panel> frames;
+  for (const std::size_t step : steps_to_show(search.steps.size())) {
+    auto drawn = pictures.draw(step, renderer);
+    if (!drawn) return report_failure(drawn.error());
+    frames.push_back({std::move(drawn).value(), pictures.heading(step)});
+  }
+  const SearchEnd* const last = search.ends.empty() ? nullptr : &search.ends.back();
+  const std::string title = last == nullptr
+                                ? fmt::format("A search of {} steps", search.steps.size())
+                                : fmt::format("A search of {} steps: {}", search.steps.size(), last->outcome);
+  const std::filesystem::path picture = folder / "search_strip.png";
+  if (const auto written = render::write_png(render::film_strip(frames, title), picture); !written) {
+    return report_failure(written.error());
+  }
+  fmt::print("{} steps\n", search.steps.size());
+  for (const SearchEnd& end : search.ends) {
+    fmt::print("{:<10}{}: {} to {}\n", end.arithmetic, end.outcome, end.lower, end.upper);
+  }
+  fmt::print("picture   {}\n", picture.string());
+  if (!options.video) return kDemoDone;
+  const render::Size size{options.width, options.height};
+  return write_search_film(search, SearchPictures(search, render::panel_size(size, 1)), renderer, size,
+                           folder / "search.mp4");
+}
+
 }  // namespace
 
 int run_difference(const DemoOptions& options) {
@@ -117,13 +183,20 @@ int run_difference(const DemoOptions& options) {
     fmt::print(stderr, "pdepth: the demo difference takes two meshes, or none\n");
     return kDemoBadUsage;
   }
+  if (!options.trace.empty() && !options.inputs.empty()) {
+    fmt::print(stderr, "pdepth: a trace names its bodies itself: give meshes or --trace, not both\n");
+    return kDemoBadUsage;
+  }
   try {
-    const Bodies bodies = options.inputs.empty() ? own_pair() : read_pair(options.inputs);
+    std::optional<query::SearchFile> search;
+    if (!options.trace.empty()) search.emplace(query::read_search_file(options.trace));
     const auto folder = open_output_folder(options, "difference");
     if (!folder) {
       fmt::print(stderr, "pdepth: {}\n", folder.error().message);
       return kDemoBadUsage;
     }
+    if (search) return draw_search(*search, options, *folder);
+    const Bodies bodies = options.inputs.empty() ? own_pair() : read_pair(options.inputs);
     return answer_and_draw(bodies, options, *folder);
   } catch (const query::Refusal& refusal) {
     fmt::print(stderr, "pdepth: {}\n", refusal.message);

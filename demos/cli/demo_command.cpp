@@ -81,7 +81,8 @@ void add_demo_command(CLI::App& app, Action& action) {
   command->footer(demo_list() + R"(
 Examples:
   pdepth demo stacking --steps 240 --video --out stacking
-  pdepth demo difference a.obj b.obj --size 1920x1080)");
+  pdepth demo difference a.obj b.obj --size 1920x1080
+  pdepth demo difference --trace search.jsonl)");
   command->add_option("NAME", arguments->name, "Which demo; without it they are listed");
   command->add_option("FILES", options.inputs, "Meshes, for the demos that take some");
   command->add_option("--steps", options.steps, "Steps of the simulation; 0 = the demo's own choice")
@@ -92,6 +93,7 @@ Examples:
   command->add_option("--solver", options.solver, "The solver shown first")
       ->check(CLI::IsMember({"exact", "approx", "bullet-epa", "bullet-minkowski"}));
   command->add_option("--seed", options.seed, "Seed of what is random")->capture_default_str();
+  command->add_option("--trace", options.trace, "A search that `pdepth depth --trace` wrote, drawn (difference)");
   command->add_flag("--video", options.video, "Also write an H.264 film (needs ffmpeg)");
   command->add_flag("--force", options.force, "Replace files that are already there");
   command->callback([arguments, &action] { action = [arguments] { return run_demo(*arguments); }; });

@@ -4,12 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "protocol/pair_reader.hpp"
+#include "protocol/search_file.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
 #endif
@@ -34,6 +36,7 @@ struct DepthArguments {
   std::string pose_b;
   std::string method = "auto";
   std::string picture;
+  std::string trace;
   bool json = false;
 };
 
@@ -173,6 +176,26 @@ int draw_picture(const DepthArguments& arguments, const query::Pair& pair, const
 #endif
 }
 
+/// @return whether the file is complete.
+bool write_trace(const std::string& file, const query::SearchRecorder& recorder) {
+  std::FILE* const out = std::fopen(file.c_str(), "wb");
+  bool written = out != nullptr;
+  if (out != nullptr) {
+    const std::string& lines = recorder.lines();
+    written = std::fwrite(lines.data(), 1, lines.size(), out) == lines.size();
+    written = std::fclose(out) == 0 && written;
+  }
+  if (!written) {
+    fmt::print(stderr, "pdepth: {} cannot be written\n", file);
+    return false;
+  }
+  if (recorder.steps() == 0) {
+    fmt::print(stderr, "pdepth: no polytope was expanded, so {} holds no steps (--method expansion forces one)\n",
+               file);
+  }
+  return true;
+}
+
 int run_depth(const DepthArguments& arguments) {
   try {
     const query::Limits limits{.max_vertices = 50'000'000};
@@ -180,11 +203,17 @@ int run_depth(const DepthArguments& arguments) {
                            query::load_mesh_shape(arguments.file_b, limits), parse_pose(arguments.pose_a, "--pose-a"),
                            parse_pose(arguments.pose_b, "--pose-b")};
     Scratch scratch;
+    query::SearchRecorder recorder(pair, arguments.method);
+    if (!arguments.trace.empty()) observe_searches(scratch, &recorder);
     const query::Stopwatch watch;
     const PenetrationDepth result =
         penetration_depth(pair.posed_a(), pair.posed_b(), scratch,
                           {.method = parse_method(arguments.method), .bracket = Bracket::tightest});
     const std::int64_t nanoseconds = watch.nanoseconds();
+    if (!arguments.trace.empty()) {
+      recorder.add_answer(result, pair, nanoseconds);
+      if (!write_trace(arguments.trace, recorder)) return kFailed;
+    }
     if (arguments.json) {
       std::string out;
       query::JsonWriter writer(out);
@@ -216,6 +245,8 @@ void add_depth_command(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"auto", "expansion", "overlay"}))
       ->capture_default_str();
   command->add_option("--picture", arguments->picture, "Draw the pair and its Minkowski difference as a PNG");
+  command->add_option("--trace", arguments->trace,
+                      "Write the search step by step, as JSON lines (`pdepth demo difference --trace` draws them)");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");
   command->callback([arguments, &action] { action = [arguments] { return run_depth(*arguments); }; });
 }

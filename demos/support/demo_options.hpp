@@ -26,6 +26,8 @@ struct DemoOptions {
   bool video = false;
   /// Replace files that are already there; without it a folder that holds any is refused.
   bool force = false;
+  /// A search to draw, as `pdepth depth --trace` writes it (difference). Empty: none.
+  std::string trace;
   /// Files to work on, for the demos that take some (difference: two meshes).
   std::vector<std::string> inputs;
 };

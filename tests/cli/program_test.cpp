@@ -143,6 +143,30 @@ TEST_F(Program, DifferenceDemoDrawsAnyTwoMeshes) {
   EXPECT_TRUE(read("pair.png").starts_with("\x89PNG"));
 }
 
+TEST_F(Program, DepthTracesItsSearch) {
+  const Outcome traced = run("depth cube.obj spike.off --trace search.jsonl");
+  EXPECT_EQ(traced.status, 0) << traced.err;
+  EXPECT_EQ(traced.err, "");
+  const std::string lines = read("search.jsonl");
+  EXPECT_EQ(lines.rfind("{\"query\":\"depth\"", 0), 0U);
+  EXPECT_NE(lines.find("\n{\"step\":0,"), std::string::npos);
+  EXPECT_NE(lines.find("\n{\"end\":"), std::string::npos);
+  EXPECT_NE(lines.find("\n{\"answer\":{"), std::string::npos);
+  EXPECT_EQ(run("depth cube.obj spike.off --trace /no/such/folder/x").status, 1);
+  const Outcome none = run("depth cube.obj spike.off --method overlay --trace none.jsonl");
+  EXPECT_EQ(none.status, 0);
+  EXPECT_NE(none.err.find("no polytope was expanded"), std::string::npos);
+
+  if (run("demo").out.find("difference") == std::string::npos) GTEST_SKIP() << "this build has no demos";
+  EXPECT_EQ(run("demo difference cube.obj spike.off --trace search.jsonl").status, 2);
+  EXPECT_EQ(run("demo difference --trace missing.jsonl").status, 2);
+  EXPECT_EQ(run("demo difference --trace none.jsonl --out nothing").status, 2);
+  const Outcome drawn = run("demo difference --trace search.jsonl --out drawn --size 320x180");
+  if (drawn.status == 1) GTEST_SKIP() << "no off-screen graphics here: " << drawn.err;
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_GT(std::filesystem::file_size(folder_ / "drawn" / "search_strip.png"), 10'000U);
+}
+
 TEST_F(Program, DepthTakesEveryKindOfPose) {
   for (const char* pose : {"0,0,1", "0,0,1,1,0,0,0", "0,0,1,1,0,0,0,1,0,0,0,1"}) {
     const Outcome result = run(std::string("depth cube.obj cube.obj --json --pose-b ") + pose);

@@ -119,7 +119,9 @@ PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scr
                                    const DepthSettings& settings, WarmCertificate* warm) {
   const detail::FloatingPointGuard guard;
   PenetrationDepth out;
-  if (in_canonical_order(a, b)) {
+  const bool in_order = in_canonical_order(a, b);
+  scratch.buffers().surface.watch.mirrored = !in_order;
+  if (in_order) {
     solve(a, b, settings, scratch.buffers(), warm, out);
   } else {
     solve(b, a, settings, scratch.buffers(), warm, out);

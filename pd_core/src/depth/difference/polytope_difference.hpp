@@ -24,7 +24,7 @@ struct DifferenceVertex {
   std::int32_t a;  ///< vertex of A, -1 for smooth bodies
   std::int32_t b;
 };
-static_assert(sizeof(DifferenceVertex) == 4 * sizeof(double));  // Surface reads coordinates with this stride
+static_assert(sizeof(DifferenceVertex) == 4 * sizeof(double));  // InnerSurface reads coordinates with this stride
 
 /// The vertices of both bodies at their poses, where they are few enough to be scanned.
 struct PosedVerticesPair {

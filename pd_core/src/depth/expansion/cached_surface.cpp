@@ -49,7 +49,7 @@ struct NearFaces {
 
 }  // namespace
 
-void set_reference(WarmCertificate::State& state, Surface& surface, const PolytopeDifference& difference) {
+void set_reference(WarmCertificate::State& state, InnerSurface& surface, const PolytopeDifference& difference) {
   WarmCertificate::Reference& r = state.reference;
   if (!r.a || !r.a->same_storage(difference.a())) r.a = difference.a();
   if (!r.b || !r.b->same_storage(difference.b())) r.b = difference.b();

@@ -36,7 +36,7 @@ struct RememberedFace {
 };
 
 /// What is remembered of a surface whose faces all have the origin behind them: `state.faces` are its slots.
-void set_reference(WarmCertificate::State& state, Surface& surface, const PolytopeDifference& difference);
+void set_reference(WarmCertificate::State& state, InnerSurface& surface, const PolytopeDifference& difference);
 
 /// False where the movement is too large, too many faces may be near, or one of them shows the origin in front: the
 /// surface must be restored. Time O(faces remembered / 4 + faces near).

@@ -150,6 +150,25 @@ VertexPair support(const PosedPair& pair, const ExactDirection& direction) {
   return {support_face_a(pair, direction).front(), support_face_b(pair, direction).front()};
 }
 
+/// @param scale  lengths of the pair's own are the caller's over this.
+void report(const SearchWatch& watch, const PosedPair& pair, const Hull& hull, int number, int nearest,
+            const ExactDirection& direction, double upper, const VertexPair& support, double scale) {
+  SurfaceSnapshot snapshot;
+  const auto place = [&](const VertexPair& id) {
+    const Vec3DD x = pair.approximate_dd(PairVector::point(id.a, id.b));
+    return Vec3(scale * to_double(x.x), scale * to_double(x.y), scale * to_double(x.z));
+  };
+  for (const VertexPair& id : hull.vertices) snapshot.points.push_back(place(id));
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const Face& face = hull.faces[f];
+    if (!face.alive) continue;
+    if (static_cast<int>(f) == nearest) snapshot.nearest = static_cast<int>(snapshot.faces.size());
+    snapshot.faces.push_back({{face.v[0], face.v[1], face.v[2]}, {-1, -1, -1}, Vec3::Zero(), scale * face.lower});
+  }
+  report_step(watch, kExactArithmetic, number, snapshot, scale * hull.faces[nearest].lower, scale * upper,
+              direction.unit, place(support));
+}
+
 /// Finds four affinely independent vertices of P, or shows that P is flat (false).
 bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_calls,
                       std::optional<ExactDirection>& flat) {
@@ -205,60 +224,98 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
   return true;
 }
 
+/// The nearest face that is not known to support P, -1 when all are.
+int nearest_candidate(const Hull& hull) {
+  int nearest = -1;
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const Face& face = hull.faces[f];
+    if (face.alive && !face.facet && (nearest < 0 || face.lower < hull.faces[nearest].lower)) {
+      nearest = static_cast<int>(f);
+    }
+  }
+  return nearest;
+}
+
+/// Takes a facet of P into account. True where its plane passes through the origin: touching (the origin is known to
+/// lie in P, so never beyond it).
+bool rank_facet(const PosedPair& pair, const Hull& hull, const Face& facet, const Dyadic3& normal,
+                const ExactDirection& direction, ExactDepth& result) {
+  const Dyadic height = dot(normal, pair.exact(hull.point(facet.v[0])));
+  if (height.sign() <= 0) {
+    result.contact = ContactClass::touching;
+    result.normal = direction;
+    return true;
+  }
+  const SquaredDistance squared{height * height,
+                                dot(normal, normal) * pair.homogeneous_factor() * pair.homogeneous_factor()};
+  if (!result.normal || compare(squared, result.squared) < 0) {
+    result.normal = direction;
+    result.squared = squared;
+  }
+  return false;
+}
+
+void report_outcome(const SearchWatch& watch, const ExactDepth& result, double lower, double upper) {
+  ExpansionResult end;
+  end.status = !result.complete                              ? ExpansionStatus::over_budget
+               : result.contact == ContactClass::overlapping ? ExpansionStatus::certified
+                                                             : ExpansionStatus::touching;
+  end.lower = end.status == ExpansionStatus::touching ? 0 : lower;
+  end.upper = end.status == ExpansionStatus::touching ? 0 : upper;
+  if (result.normal) end.normal = result.normal->unit;
+  report_end(watch, kExactArithmetic, end);
+}
+
 }  // namespace
 
-ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex, int count, int budget) {
+ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex, int count, int budget,
+                                    const SearchWatch& watch) {
   ExactDepth result;
   Hull hull(pair);
+  // 1. and 2.
   hull.vertices.assign(simplex, simplex + count);
   if (!full_dimensional(pair, hull, result.support_calls, result.normal)) return result;  // flat: at most touching
   result.normal.reset();
   hull.start();
 
+  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  bool touching = false;
+  double best_lower = 0;
   double best_upper = std::numeric_limits<double>::infinity();
-  for (;;) {
-    int nearest = -1;
-    for (std::size_t f = 0; f < hull.faces.size(); ++f) {
-      const Face& face = hull.faces[f];
-      if (face.alive && !face.facet && (nearest < 0 || face.lower < hull.faces[nearest].lower)) {
-        nearest = static_cast<int>(f);
-      }
-    }
+  // Each pass inserts a vertex of P or finds a face to be a facet for good.
+  for (int step = 0;; ++step) {
+    // 3.
+    const int nearest = nearest_candidate(hull);
     if (nearest < 0 || hull.faces[nearest].lower > best_upper) break;
     ++result.facets_visited;
     Face& face = hull.faces[nearest];
     const Dyadic3 normal = hull.exact_normal(face);
     const ExactDirection direction(normal);
-    if (result.support_calls >= budget) {
-      result.complete = false;
-      return result;
-    }
+    result.complete = result.support_calls < budget;
+    if (!result.complete) break;
+    // 5.
     ++result.support_calls;
     const VertexPair s = support(pair, direction);
+    if (watch) report(watch, pair, hull, step, nearest, direction, best_upper, s, scale);
     hull.vertices.push_back(s);
     const int v = static_cast<int>(hull.vertices.size()) - 1;
+    // 9.
     if (hull.side(face, v) > 0) {
       hull.insert(nearest, v);
       continue;
     }
+    // 7.
     hull.vertices.pop_back();
     face.facet = true;
-    const Dyadic height = dot(normal, pair.exact(hull.point(face.v[0])));
-    if (height.sign() <= 0) {
-      // A supporting plane through the origin (the origin is known to lie in P, so never beyond it).
-      result.contact = ContactClass::touching;
-      result.normal = direction;
-      return result;
+    touching = rank_facet(pair, hull, face, normal, direction, result);
+    if (touching) break;
+    if (face.upper < best_upper) {
+      best_lower = face.lower;
+      best_upper = face.upper;
     }
-    const SquaredDistance squared{height * height,
-                                  dot(normal, normal) * pair.homogeneous_factor() * pair.homogeneous_factor()};
-    if (!result.normal || compare(squared, result.squared) < 0) {
-      result.normal = direction;
-      result.squared = squared;
-    }
-    best_upper = std::min(best_upper, face.upper);
   }
-  result.contact = ContactClass::overlapping;
+  if (result.complete && !touching) result.contact = ContactClass::overlapping;
+  if (watch) report_outcome(watch, result, scale * best_lower, scale * best_upper);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "depth/distance/gjk_exact.hpp"
+#include "depth/expansion/search_report.hpp"
 #include "pd/depth/depth_answer.hpp"
 
 namespace pd::detail {
@@ -34,6 +35,6 @@ struct ExactDepth {
 /// @param simplex  vertices of P to begin with.
 /// @param budget   supports allowed.
 [[nodiscard]] ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex, int count,
-                                                  int budget);
+                                                  int budget, const SearchWatch& watch = {});
 
 }  // namespace pd::detail

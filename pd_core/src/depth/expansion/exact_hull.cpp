@@ -60,6 +60,14 @@ bool ExactHull::start() {
 }
 
 bool ExactHull::insert(int from) {
+  const bool inserted = insert_vertex(from);
+  if constexpr (kValidate) {
+    if (inserted) validate_after_insertion(*this, true, checked_insertions_);
+  }
+  return inserted;
+}
+
+bool ExactHull::insert_vertex(int from) {
   const auto v = static_cast<std::int32_t>(vertices.size()) - 1;
   const auto face_at = [&](std::int32_t f) -> Face& { return faces_[static_cast<std::size_t>(f)]; };
   if (!is_visible(face_at(from), v)) return false;
@@ -107,6 +115,44 @@ int ExactHull::nearest() {
     heap_.pop_back();
   }
   return heap_.front().face;
+}
+
+int ExactHull::size() const {
+  return static_cast<int>(std::count_if(faces_.begin(), faces_.end(), [](const Face& f) { return f.alive; }));
+}
+
+void ExactHull::snapshot(SurfaceSnapshot& out) const {
+  out.clear();
+  for (const DifferenceVertex& v : vertices) out.points.push_back(v.x);
+  std::vector<std::int32_t>& number = out.numbers;
+  number.assign(faces_.size(), -1);
+  std::int32_t count = 0;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    if (faces_[f].alive) number[f] = count++;
+  }
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const Face& from = faces_[f];
+    if (!from.alive) continue;
+    SurfaceSnapshot::Face to{{from.v[0], from.v[1], from.v[2]}, {-1, -1, -1}, from.unit_normal, from.distance};
+    for (int e = 0; e < 3; ++e) {
+      const auto g = static_cast<std::size_t>(from.adj[e]);
+      if (g >= faces_.size() || !faces_[g].alive) continue;
+      // The edge of the neighbour that begins where this one ends.
+      const std::int32_t* const first = faces_[g].v;
+      const auto edge = static_cast<std::int32_t>(std::find(first, first + 3, from.v[(e + 1) % 3]) - first);
+      to.adj[e] = 4 * number[g] + edge;
+    }
+    if (out.nearest < 0 || to.distance < out.faces[static_cast<std::size_t>(out.nearest)].distance) {
+      out.nearest = static_cast<int>(out.faces.size());
+    }
+    out.faces.push_back(to);
+  }
+}
+
+std::optional<SurfaceFault> ExactHull::validate() const {
+  SurfaceSnapshot all;
+  snapshot(all);
+  return find_fault(all, true);
 }
 
 }  // namespace pd::detail

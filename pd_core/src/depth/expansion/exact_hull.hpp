@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "depth/difference/polytope_difference.hpp"
+#include "depth/expansion/surface_check.hpp"
 
 namespace pd::detail {
 
@@ -37,6 +38,15 @@ class ExactHull {
   /// The face whose plane is nearest (signed).
   [[nodiscard]] int nearest();
   [[nodiscard]] const Face& face(int f) const { return faces_[static_cast<std::size_t>(f)]; }
+  /// Number of faces ever made, those no longer alive among them.
+  [[nodiscard]] int slots() const { return static_cast<int>(faces_.size()); }
+  /// Number of faces alive. Time O(slots).
+  [[nodiscard]] int size() const;
+
+  /// The faces in use, numbered without gaps, and all vertices.
+  void snapshot(SurfaceSnapshot& out) const;
+  /// The first invariant that is broken (surface_check.hpp), exact convexity among them, or nothing.
+  [[nodiscard]] std::optional<SurfaceFault> validate() const;
 
  private:
   struct Entry {
@@ -45,13 +55,13 @@ class ExactHull {
   };
   [[nodiscard]] const Vec3& at(std::int32_t v) const { return vertices[static_cast<std::size_t>(v)].x; }
   [[nodiscard]] bool is_visible(const Face& face, std::int32_t v) const;
+  bool insert_vertex(int from);
   void add_face(std::int32_t a, std::int32_t b, std::int32_t c);
 
   std::vector<Face> faces_;  ///< never reused: an entry of the heap is stale exactly when its face is dead
   std::vector<Entry> heap_;
   std::vector<std::int32_t> visible_;
+  unsigned checked_insertions_ = 0;  ///< see validate_after_insertion
 };
-
-using ExactSurface = ExactHull;
 
 }  // namespace pd::detail

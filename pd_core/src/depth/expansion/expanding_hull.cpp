@@ -12,8 +12,8 @@ namespace {
 class HullExpansion {
  public:
   HullExpansion(const SmoothDifference& difference, ExactHull& hull, const ExpansionGoal& goal,
-                std::int64_t& support_calls)
-      : difference_(difference), hull_(hull), goal_(goal), support_calls_(support_calls) {}
+                std::int64_t& support_calls, const SearchWatch& watch)
+      : difference_(difference), hull_(hull), goal_(goal), support_calls_(support_calls), watch_(watch) {}
 
   /// 1. and 2. False when the first supports end the search.
   bool start(const Vec3& direction) {
@@ -40,6 +40,7 @@ class HullExpansion {
       result_.lower = distance - lower_error_;
       // 5., 6. and 7.
       if (!add_support(unit)) return;
+      if (watch_) report_step(watch_, kExactHullArithmetic, step, hull_, result_, unit, hull_.vertices.back().x);
       if (touches(goal_, result_.lower, result_.upper, largest_)) {
         result_.status = ExpansionStatus::touching;
         return;
@@ -78,6 +79,7 @@ class HullExpansion {
   ExactHull& hull_;
   const ExpansionGoal& goal_;
   std::int64_t& support_calls_;
+  const SearchWatch& watch_;
   const double lower_error_ = face_error(difference_);
   const double upper_error_ = support_plane_error(difference_);
   double largest_ = 0;
@@ -87,9 +89,10 @@ class HullExpansion {
 }  // namespace
 
 ExpansionResult expand_exact_hull(const SmoothDifference& difference, ExactHull& hull, const Vec3& start,
-                                  const ExpansionGoal& goal, std::int64_t& support_calls) {
-  HullExpansion expansion(difference, hull, goal, support_calls);
+                                  const ExpansionGoal& goal, std::int64_t& support_calls, const SearchWatch& watch) {
+  HullExpansion expansion(difference, hull, goal, support_calls, watch);
   if (expansion.start(start)) expansion.grow();
+  if (watch) report_end(watch, kExactHullArithmetic, expansion.result());
   return expansion.result();
 }
 

@@ -7,6 +7,7 @@
 #include "depth/difference/smooth_difference.hpp"
 #include "depth/expansion/exact_hull.hpp"
 #include "depth/expansion/expansion_goal.hpp"
+#include "depth/expansion/search_report.hpp"
 
 namespace pd::detail {
 
@@ -16,6 +17,7 @@ namespace pd::detail {
 /// Ends: each pass adds a point more than 4 errors outside the hull, so that far from all points before it, of which a
 /// body of radius R has no more than (R / error)^3; `goal.max_steps` bounds the passes besides.
 ExpansionResult expand_exact_hull(const SmoothDifference& difference, ExactHull& hull, const Vec3& start,
-                                  const ExpansionGoal& goal, std::int64_t& support_calls);
+                                  const ExpansionGoal& goal, std::int64_t& support_calls,
+                                  const SearchWatch& watch = {});
 
 }  // namespace pd::detail

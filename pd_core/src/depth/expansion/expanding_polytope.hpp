@@ -67,11 +67,11 @@ class ExpandingPolytope {
     // 2.
     ExpansionResult result;
     Probe probe{*this, result};
-    if (InitialSimplex(surface_, flat_volume(), probe).find(direction, initial_cone_sine(difference_)) !=
-        InitialSimplex<Probe>::Outcome::found) {
-      return result;
-    }
-    return grow(goal, result);
+    const bool found = InitialSimplex(surface_, flat_volume(), probe).find(direction, initial_cone_sine(difference_)) ==
+                       InitialSimplex<Probe>::Outcome::found;
+    if (found) result = grow(goal, result);
+    if (surface_.watch) report_end(surface_.watch, kDoubleArithmetic, result);
+    return result;
   }
 
   /// From the surface as it is (its vertices just recomputed): the warm certificate. Where its points have moved so
@@ -81,9 +81,10 @@ class ExpandingPolytope {
     convex.max_loss = 4 * lower_error();
     convex.loss_from = -std::numeric_limits<double>::infinity();
     if (surface_.size() <= kMostFlipped) surface_.flip_reflex_edges();
-    const ExpansionResult result = grow(convex, ExpansionResult{});
-    if (result.status != ExpansionStatus::undecided || !surface_.rebuild(flat_volume())) return result;
-    return grow(goal, result);
+    ExpansionResult result = grow(convex, ExpansionResult{});
+    if (result.status == ExpansionStatus::undecided && surface_.rebuild(flat_volume())) result = grow(goal, result);
+    if (surface_.watch) report_end(surface_.watch, kDoubleArithmetic, result);
+    return result;
   }
 
  private:
@@ -135,7 +136,7 @@ class ExpandingPolytope {
       // 3.
       ++facets_visited_;
       const double key = surface_.key(f);
-      const double distance = key >= 0 ? std::sqrt(key) : -std::sqrt(-key);
+      const double distance = signed_root(key);
       result.lower = distance - error;
       result.face = f;
       // 4.
@@ -149,6 +150,8 @@ class ExpandingPolytope {
       ++support_calls_;
       const Vec3 unit = normal / std::sqrt(squared);
       double height = s.x.dot(unit);
+      if (surface_.watch) [[unlikely]]
+        report_step(surface_.watch, kDoubleArithmetic, step, surface_, result, unit, s.x);
       // 6. and 7.
       if (height + bound_error() < result.upper && decide(goal, largest, unit, s, height, result)) return result;
       // 8.

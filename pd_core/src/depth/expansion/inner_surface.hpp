@@ -12,13 +12,17 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "depth/difference/polytope_difference.hpp"
 #include "depth/expansion/nearest_face_queue.hpp"
 #include "depth/expansion/plane_kernels.hpp"
+#include "depth/expansion/search_report.hpp"
+#include "depth/expansion/surface_check.hpp"
 #include "depth/expansion/tetrahedron.hpp"
 
 namespace pd::detail {
@@ -27,6 +31,9 @@ struct SurfaceTriangle {
   std::int32_t v[3];    ///< counter-clockwise from outside
   std::int32_t adj[3];  ///< across the edge v[i] -> v[i + 1]: 4 * triangle + its edge
 };
+
+/// The distance of which a key is sign * square.
+inline double signed_root(double key) { return key >= 0 ? std::sqrt(key) : -std::sqrt(-key); }
 
 /// The edges of a triangle after and before edge e.
 constexpr std::int32_t next_edge(std::int32_t e) { return e == 2 ? 0 : e + 1; }
@@ -38,6 +45,7 @@ class InnerSurface {
   static constexpr double kRemoved = std::numeric_limits<double>::infinity();
 
   std::vector<DifferenceVertex> vertices;
+  SearchWatch watch;  ///< of the expansions on this surface
 
   [[nodiscard]] const SurfaceTriangle& face(int f) const { return triangles_[f]; }
   /// Cross product of two edges, outward, any length.
@@ -124,6 +132,11 @@ class InnerSurface {
   [[nodiscard]] int size() const { return in_use_; }
   [[nodiscard]] int slots() const { return slots_; }
 
+  /// The faces in use, numbered without gaps in the order of their slots, and all vertices.
+  void snapshot(SurfaceSnapshot& out) const;
+  /// The first invariant that is broken (surface_check.hpp), or nothing. Convexity is not promised.
+  [[nodiscard]] std::optional<SurfaceFault> validate() const;
+
  private:
   [[nodiscard]] std::int16_t renumbered(std::int32_t adjacent) const {
     return static_cast<std::int16_t>(4 * face_numbers_[adjacent >> 2] + (adjacent & 3));
@@ -148,6 +161,7 @@ class InnerSurface {
   void join(std::int32_t outside, std::int32_t edge);
 
   // insert, step by step
+  int insert_vertex(int from, int v, double x, double y, double z);
   bool insert_among_many(int from, int v);
   [[nodiscard]] std::uint64_t connected_visible_region(int from, std::uint64_t visible) const;
   void flood_visible(int from, const Vec3& x);
@@ -185,7 +199,8 @@ class InnerSurface {
   std::vector<double> fan_nx_, fan_ny_, fan_nz_, fan_levels_, fan_keys_;
 
   int nearest_ = 0;
-  NearestFaceQueue queue_;  ///< active on large surfaces only
+  NearestFaceQueue queue_;           ///< active on large surfaces only
+  unsigned checked_insertions_ = 0;  ///< see validate_after_insertion
 
   struct NearVertex {
     double key;  ///< of the nearest face that uses it
@@ -198,7 +213,5 @@ class InnerSurface {
   std::vector<std::int16_t> face_numbers_;
   std::vector<std::int16_t> vertex_numbers_;
 };
-
-using Surface = InnerSurface;
 
 }  // namespace pd::detail

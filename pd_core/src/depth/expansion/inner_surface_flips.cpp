@@ -57,6 +57,7 @@ void InnerSurface::flip_reflex_edges() {
     flip(edge >> 2, edge & 3);
   }
   nearest_ = least_key(keys_.data(), slots_);
+  if constexpr (kValidate) validate_after_insertion(*this, false, checked_insertions_);
 }
 
 bool InnerSurface::is_reflex(int f, std::int32_t e) const {

@@ -2,9 +2,8 @@
 /// Insertion of a point: the faces visible from it go, and a cone over the border of that region, the horizon, takes
 /// their place.
 ///
-/// 1. Find the visible faces: on small surfaces by testing all planes at once, on large ones by a flood from a face
-/// that
-///    is visible.
+/// 1. Find the visible faces: on small surfaces by testing all planes at once, on large ones by a flood from a visible
+///    face.
 /// 2. Collect the horizon: the edges between a face that goes and a face that stays. Each vertex may have one horizon
 ///    edge that leaves it and one that reaches it, or else the surface would not stay a surface.
 /// 3. Make a face for every horizon edge and the point, in slots at the end or in free ones, with their planes.
@@ -30,7 +29,7 @@ constexpr int kFewSlots = 64;
 
 }  // namespace
 
-int InnerSurface::insert(int from, int v, double x, double y, double z) {
+PD_INLINE int InnerSurface::insert_vertex(int from, int v, double x, double y, double z) {
   // A horizon has at most three edges for every face that goes.
   if (3 * slots_ + kPlaneBlock > room_ || vertices.size() > leaving_.size()) {
     reserve(3 * slots_);
@@ -51,6 +50,14 @@ int InnerSurface::insert(int from, int v, double x, double y, double z) {
   for (; removed != 0; removed &= removed - 1) removed_[removed_count_++] = std::countr_zero(removed);
   fill_with_free_slots(v);
   return nearest_;
+}
+
+int InnerSurface::insert(int from, int v, double x, double y, double z) {
+  const int nearest = insert_vertex(from, v, x, y, z);
+  if constexpr (kValidate) {
+    if (nearest >= 0) validate_after_insertion(*this, false, checked_insertions_);
+  }
+  return nearest;
 }
 
 bool InnerSurface::insert_among_many(int from, int v) {

@@ -12,7 +12,7 @@ namespace pd::detail {
 namespace {
 
 /// Vertices of the other body that the surface uses, each once. Returns their number.
-std::size_t choose_vertices(const Surface& surface, bool of_a, std::array<std::int32_t, kMaskProbes>& chosen) {
+std::size_t choose_vertices(const InnerSurface& surface, bool of_a, std::array<std::int32_t, kMaskProbes>& chosen) {
   std::size_t count = 0;
   for (const DifferenceVertex& v : surface.vertices) {
     const std::int32_t vertex = of_a ? v.a : v.b;
@@ -26,8 +26,8 @@ std::size_t choose_vertices(const Surface& surface, bool of_a, std::array<std::i
 
 /// Single precision errs by less than 32 of its u where both terms have length 1 at most, with what a matrix that is a
 /// rotation only up to rounding adds to a normal's length.
-void mark_far_facets(const BodySide& body, const PolytopeDifference& difference, const Surface& surface, double upper,
-                     NearArcs& out) {
+void mark_far_facets(const BodySide& body, const PolytopeDifference& difference, const InnerSurface& surface,
+                     double upper, NearArcs& out) {
   const Mat3 turn = normal_matrix(body.own_pose);
   const double stretch = std::sqrt(1 + (turn.transpose() * turn - Mat3::Identity()).norm());
   // The cofactors times the matrix are its determinant.
@@ -72,8 +72,8 @@ void keep_edges(const ConvexPolytope& body, NearArcs& out) {
 
 }  // namespace
 
-void find_near_arcs(const BodySide& body, const PolytopeDifference& difference, const Surface& surface, double upper,
-                    NearArcs& out) {
+void find_near_arcs(const BodySide& body, const PolytopeDifference& difference, const InnerSurface& surface,
+                    double upper, NearArcs& out) {
   mark_far_facets(body, difference, surface, upper, out);
   keep_edges(body.own, out);
 }

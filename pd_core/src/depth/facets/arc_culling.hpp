@@ -35,7 +35,7 @@ struct BodySide {
 /// @param surface  whose vertices of P are tried, the first ones found first: those stand far apart. Not empty.
 /// @param upper    the bound, divided by the difference's reach; positive.
 /// Requires bodies with facets. Time O(n).
-void find_near_arcs(const BodySide& body, const PolytopeDifference& difference, const Surface& surface, double upper,
-                    NearArcs& out);
+void find_near_arcs(const BodySide& body, const PolytopeDifference& difference, const InnerSurface& surface,
+                    double upper, NearArcs& out);
 
 }  // namespace pd::detail

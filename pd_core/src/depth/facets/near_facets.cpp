@@ -33,8 +33,8 @@ constexpr std::int64_t kPairsPerEdge = 256;
 class TiedFacetsSearch {
  public:
   TiedFacetsSearch(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
-                   const PolytopeDifference& difference, const Surface& surface, const TiedFacetsSettings& settings,
-                   std::vector<std::int32_t>& stack, TiedFacetsBuffers& buffers)
+                   const PolytopeDifference& difference, const InnerSurface& surface,
+                   const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack, TiedFacetsBuffers& buffers)
       : a_(a),
         b_(b),
         pose_a_(pose_a),
@@ -372,7 +372,7 @@ class TiedFacetsSearch {
   const Pose& pose_a_;
   const Pose& pose_b_;
   const PolytopeDifference& difference_;
-  const Surface& surface_;
+  const InnerSurface& surface_;
   const TiedFacetsSettings& settings_;
   std::vector<std::int32_t>& stack_;
   TiedFacetsBuffers& buffers_;
@@ -388,7 +388,7 @@ class TiedFacetsSearch {
 }  // namespace
 
 TiedFacets nearest_tied_facet(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
-                              const PolytopeDifference& difference, const Surface& surface,
+                              const PolytopeDifference& difference, const InnerSurface& surface,
                               const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack,
                               TiedFacetsBuffers& buffers) {
   return TiedFacetsSearch(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers).run();

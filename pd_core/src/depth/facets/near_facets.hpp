@@ -89,7 +89,7 @@ struct TiedFacetsSettings {
 /// narrow the bracket enough. Time O(n) and 0.4 ns a pair of edges left, of which there may be 256 (m + n) for m and n
 /// edges.
 TiedFacets nearest_tied_facet(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
-                              const PolytopeDifference& difference, const Surface& surface,
+                              const PolytopeDifference& difference, const InnerSurface& surface,
                               const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack,
                               TiedFacetsBuffers& buffers);
 

@@ -48,8 +48,9 @@ bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, dou
 void expand_exactly(PolytopeQuery& query, std::span<const VertexPair> seed, const ExactNearest* nearest,
                     PenetrationDepth& out) {
   const PosedPair& posed = query.exact();
-  const ExactDepth exact = exact_expanding_polytope(posed, seed.data(), static_cast<int>(seed.size()),
-                                                    4 * ExpansionBudget::min_steps(query.vertices()));
+  const ExactDepth exact =
+      exact_expanding_polytope(posed, seed.data(), static_cast<int>(seed.size()),
+                               4 * ExpansionBudget::min_steps(query.vertices()), query.buffers.surface.watch);
   out.statistics.support_calls += exact.support_calls;
   out.statistics.facets_visited += exact.facets_visited;
   const Margins& margins = query.pair.margins;

@@ -16,7 +16,7 @@ namespace pd::detail {
 
 struct ScratchBuffers {
   InnerSurface surface;
-  ExactSurface exact_surface;
+  ExactHull exact_hull;
   PosedVerticesPair posed;
   std::vector<std::int32_t> stack;
   std::vector<PointPair> points;

@@ -68,11 +68,12 @@ class SmoothQuery {
       for (int i = 0; i < 3; ++i) corners_[i] = buffers_.surface.vertices[face.v[i]];
     }
     if (best.status != ExpansionStatus::undecided) return best;
-    best = expand_exact_hull(difference_, buffers_.exact_surface, best.normal, goal, out_.statistics.support_calls);
+    best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
+                             buffers_.surface.watch);
     if (best.face >= 0) {
-      const ExactSurface::Face& face = buffers_.exact_surface.face(best.face);
+      const ExactHull::Face& face = buffers_.exact_hull.face(best.face);
       for (int i = 0; i < 3; ++i) {
-        corners_[i] = buffers_.exact_surface.vertices[static_cast<std::size_t>(face.v[i])];
+        corners_[i] = buffers_.exact_hull.vertices[static_cast<std::size_t>(face.v[i])];
       }
     }
     return best;
