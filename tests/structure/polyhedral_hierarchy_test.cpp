@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <vector>
 
 #include "scenes/shape_families.hpp"
 
@@ -74,6 +76,80 @@ TEST(PolyhedralHierarchy, HeightsAreLogarithmic) {
     std::int64_t products = 0;
     for (int i = 0; i < 200; ++i) (void)inner.support(random.direction(), &products);
     EXPECT_LT(static_cast<double>(products) / 200, 12 * std::log2(n)) << n;
+  }
+}
+
+TEST(PolyhedralHierarchy, StarsAndPointersRebuildEveryLevel) {
+  // From the coarsest level's triangles back: a star comes in where the triangles that its vertex created go.
+  scenes::Random random(19);
+  for (const auto& points :
+       {scenes::sphere_hull(300, random), scenes::prism(60), scenes::integer_points(300, 5, random)}) {
+    const ConvexPolytope body = hull(points);
+    for (const HierarchyKind kind : {HierarchyKind::inner, HierarchyKind::outer}) {
+      const PolyhedralHierarchy h = *PolyhedralHierarchy::build(body, kind);
+      const int elements = kind == HierarchyKind::inner ? body.num_vertices() : body.num_facets();
+      std::vector<std::vector<int>> created(static_cast<std::size_t>(elements));
+      std::set<int> present;
+      for (int f = 0; f < h.num_faces(); ++f) {
+        if (h.creator(f) >= 0) created[static_cast<std::size_t>(h.creator(f))].push_back(f);
+      }
+      for (const std::int32_t v : h.coarsest()) {
+        for (const auto& s : h.star(v)) present.insert(s.face);
+      }
+      std::size_t total = 0;
+      for (int level = static_cast<int>(h.levels().size()) - 2; level >= 0; --level) {
+        for (int v = 0; v < elements; ++v) {
+          if (h.last_level(v) != level) continue;
+          const auto star = h.star(v);
+          total += star.size();
+          EXPECT_LE(star.size(), static_cast<std::size_t>(PolyhedralHierarchy::kMaxDegree));
+          ASSERT_EQ(created[static_cast<std::size_t>(v)].size() + 2, star.size());
+          for (const int f : created[static_cast<std::size_t>(v)]) ASSERT_EQ(present.erase(f), 1);
+          for (std::size_t k = 0; k < star.size(); ++k) {
+            auto corners = h.face(star[k].face);
+            const auto at = std::find(corners.begin(), corners.end(), v);
+            ASSERT_NE(at, corners.end());
+            std::rotate(corners.begin(), at, corners.end());
+            EXPECT_EQ(corners[1], star[k].neighbour);
+            EXPECT_EQ(corners[2], star[(k + 1) % star.size()].neighbour);
+            ASSERT_TRUE(present.insert(star[k].face).second);
+          }
+        }
+      }
+      // Level 0 is the body's own triangles.
+      for (const int f : present) EXPECT_EQ(h.creator(f), -1);
+      EXPECT_EQ(present.size(), 2 * static_cast<std::size_t>(elements) - 4);
+      EXPECT_LE(total, 9 * static_cast<std::size_t>(elements));
+      EXPECT_LE(h.memory_bytes(), 600 * static_cast<std::size_t>(elements) + 4096);
+    }
+  }
+}
+
+TEST(PolyhedralHierarchy, SupportsOfEveryLevelWhateverTheDegrees) {
+  scenes::Random random(20);
+  // The apex of the pyramid has every other vertex for a neighbour.
+  scenes::Points pyramid{{0, 0, 1}};
+  for (int i = 0; i < 2000; ++i) {
+    const scenes::Turn t = scenes::turn(i / 2000.0);
+    pyramid.emplace_back(t.cosine, t.sine, 0);
+  }
+  for (const auto& points : {pyramid, scenes::sphere_hull(500, random), scenes::roof(400, {}, random)}) {
+    const ConvexPolytope body = hull(points);
+    const PolyhedralHierarchy h = *PolyhedralHierarchy::build(body, HierarchyKind::inner);
+    for (int level = 0; level < static_cast<int>(h.levels().size()); ++level) {
+      for (int i = 0; i < 20; ++i) {
+        const Vec3 d = random.direction();
+        double most = -HUGE_VAL;
+        for (int v = 0; v < body.num_vertices(); ++v) {
+          if (h.last_level(v) >= level) most = std::max(most, body.vertex(v).dot(d));
+        }
+        std::int64_t products = 0;
+        const int found = h.support(d, &products, level);
+        EXPECT_GE(h.last_level(found), level);
+        EXPECT_NEAR(body.vertex(found).dot(d), most, 1e-14 * body.radius());
+        EXPECT_LT(products, 600);
+      }
+    }
   }
 }
 

@@ -5,7 +5,9 @@
 #include <optional>
 #include <span>
 
+#include "depth/certificate/support_faces.hpp"
 #include "depth/pair/scratch_buffers.hpp"
+#include "depth/rays/hierarchy_descent.hpp"
 #include "depth/rays/portal.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -92,7 +94,7 @@ class NearestCrossing {
   std::int64_t visited_ = 0;
 };
 
-void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, DirectionalDepth& out) {
+void fill_depth(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, DirectionalDepth& out) {
   // offset carries the pair's homogeneous factor once more than slope; times |d| it is a length.
   const Dyadic denominator = c.slope * pair.homogeneous_factor();
   const detail::RootSum exact(Dyadic(0.0), 1, c.offset * c.offset * dot(direction, direction),
@@ -100,11 +102,71 @@ void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, Di
   out.lower = exact.round_down();
   out.upper = exact.round_up(out.lower);
   out.depth = std::clamp(detail::to_double(exact.approximate()), out.lower, out.upper);
+}
+
+void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, DirectionalDepth& out) {
+  fill_depth(pair, direction, c, out);
   const ExactDirection normal(c.normal);
   out.normal = normal.unit;
   const detail::FacetOfDifference facet = facet_of_direction(pair, normal);
   out.feature_a = facet.on_a;
   out.feature_b = facet.on_b;
+}
+
+/// Every vertex of a body that is level with v: along edges, from v on. Time of the order of the face and its degrees.
+template <class Level>
+detail::SupportFace face_at(const ConvexPolytope& body, int v, Level&& level) {
+  detail::SupportFace face{v};
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    for (const std::int32_t w : body.neighbours(face[i])) {
+      if (std::find(face.begin(), face.end(), w) == face.end() && level(face[i], w)) face.push_back(w);
+    }
+  }
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
+using Corners = std::array<detail::VertexPair, 3>;
+
+Crossing crossing_of(const PosedPair& pair, const Dyadic3& direction, const Corners& corners) {
+  const detail::VertexPair& p = corners[0];
+  const auto to = [&](const detail::VertexPair& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
+  return crossing_of(pair, direction, PairVector::point(p.a, p.b), to(corners[1]), to(corners[2]));
+}
+
+/// [D] Compute-Depth-3D. False where the origin is not inside P: then only the counts are filled.
+bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHierarchies& hierarchies,
+             DirectionalDepth& out) {
+  std::array<Crossing, 2> crossings;
+  std::array<Corners, 2> corners{};
+  for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
+    const detail::RaySigns ray(pair, way == 0 ? direction : Vec3(-direction));
+    const detail::HierarchyDescentResult result = descend_hierarchies(ray, {hierarchies.a}, {hierarchies.b});
+    out.descent.steps += result.steps;
+    out.descent.certificate += result.certificate;
+    out.descent.caps += result.caps;
+    out.descent.repairs += result.repairs;
+    if (!result.crosses) return false;
+    corners[way] = *result.corners;
+    crossings[way] = crossing_of(pair, ray.exact(), corners[way]);
+    if (crossings[way].offset.sign() <= 0) return false;
+  }
+  out.contact = ContactClass::overlapping;
+  fill_depth(pair, detail::to_dyadic(direction), crossings[0], out);
+  const ExactDirection normal(crossings[0].normal);
+  out.normal = normal.unit;
+  const auto level = [&](const PairVector& edge) {
+    const Vec3 e = pair.approximate(edge);
+    if (std::abs(e.dot(normal.unit)) > 16 * (pair.vector_error() + 0x1p-50 * e.cwiseAbs().sum())) return false;
+    return dot(pair.exact(edge), normal.exact).sign() == 0;
+  };
+  const detail::PlaneFaces faces{
+      face_at(pair.a(), corners[0][0].a, [&](int v, int w) { return level(PairVector::edge_a(v, w)); }),
+      face_at(pair.b(), corners[0][0].b, [&](int v, int w) { return level(PairVector::edge_b(v, w)); })};
+  const detail::FacetFeatures features = features_of(pair, faces, normal.unit);
+  out.feature_a = features.on_a;
+  out.feature_b = features.on_b;
+  return true;
 }
 
 /// Swept and smooth bodies: a portal search in doubles.
@@ -139,20 +201,22 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
     return Error{ErrorCode::unsupported, "this method is for polytopes without a margin; portal answers for all", ""};
   }
 
-  detail::PortalHierarchies starts;
-  std::optional<PolyhedralHierarchy> built[2];
-  if (method == DirectionalMethod::hierarchy && hierarchies != nullptr) starts = {hierarchies->a, hierarchies->b};
-  if (method == DirectionalMethod::hierarchy && hierarchies == nullptr) {
+  DirectionalDepth out;
+  if (method == DirectionalMethod::hierarchy) {
+    std::optional<PolyhedralHierarchy> built[2];
     for (const int side : {0, 1}) {
+      if (hierarchies != nullptr) break;
       Expected<PolyhedralHierarchy> hierarchy =
           PolyhedralHierarchy::build(side == 0 ? *polytope_a : *polytope_b, HierarchyKind::inner);
       if (!hierarchy) return hierarchy.error();
       built[side] = *std::move(hierarchy);
     }
-    starts = {&*built[0], &*built[1]};
+    const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
+    if (descend(pair, direction, hierarchies ? *hierarchies : DirectionalHierarchies{&*built[0], &*built[1]}, out)) {
+      out.statistics.exact_signs += pair.stages().double_double + pair.stages().exact;
+      return out;
+    }
   }
-
-  DirectionalDepth out;
   // The class alone: a factor of two of the depth is enough, and the class is exact in any case.
   DepthSettings roughly;
   roughly.delta = 1;
@@ -179,11 +243,8 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
     crossing = nearest.best();
     out.statistics.facets_visited += nearest.visited();
   } else {
-    const detail::Portal portal = find_portal(ray, starts);
-    const detail::VertexPair& p = portal.corners[0];
-    const auto to = [&](const detail::VertexPair& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
-    crossing =
-        crossing_of(pair, ray.exact(), PairVector::point(p.a, p.b), to(portal.corners[1]), to(portal.corners[2]));
+    const detail::Portal portal = find_portal(ray);
+    crossing = crossing_of(pair, ray.exact(), portal.corners);
     out.statistics.support_calls += portal.support_calls;
   }
   fill(pair, ray.exact(), crossing, out);

@@ -18,7 +18,7 @@ class Scratch;
 enum class DirectionalMethod : std::uint8_t {
   portal,     ///< a triangle of vertices of P across the ray, pushed outwards: about 1.3 supports per doubling of n
               ///< (measured)
-  hierarchy,  ///< the same with supports from the bodies' inner hierarchies: O(log n) each ([D] Lemma 5.4); polytopes
+  hierarchy,  ///< the inner hierarchies of both bodies descended together, O(log n log m) ([D] Theorem 5.6); polytopes
   overlay,    ///< every facet of P; polytopes
 };
 
@@ -26,6 +26,14 @@ enum class DirectionalMethod : std::uint8_t {
 struct DirectionalHierarchies {
   const PolyhedralHierarchy* a;
   const PolyhedralHierarchy* b;
+};
+
+/// What a descent of two hierarchies did; zero for other methods.
+struct DescentCounts {
+  std::int64_t steps = 0;        ///< vertices evaluated and signs asked for, O(log n log m)
+  std::int64_t certificate = 0;  ///< edges at the final vertices that were checked: their degrees
+  std::int64_t caps = 0;         ///< vertices of either body that came in beyond a plane, with their neighbours
+  std::int64_t repairs = 0;      ///< vertices that rounding hid from the descent, and the final check found
 };
 
 struct DirectionalDepth {
@@ -37,6 +45,7 @@ struct DirectionalDepth {
   Feature feature_a;
   Feature feature_b;
   Statistics statistics;
+  DescentCounts descent;
 };
 
 /// Directional depth of two posed bodies.
@@ -51,8 +60,9 @@ struct DirectionalDepth {
 /// @return ErrorCode::zero_direction or non_finite ("direction"); unsupported for another method than portal when a
 /// shape is smooth or has a margin; not_full_dimensional for hierarchies of flat bodies.
 ///
-/// Departure: [D] Theorem 5.6 descends both hierarchies in step and needs O(log n log m) in the worst case; the portal
-/// search asks O(log) supports by measurement only, so that with hierarchies its cost is O(log^2) measured, not proved.
+/// By hierarchy the class comes out of two descents, along the ray and against it, where the bodies overlap; the exact
+/// classification of touching and separated bodies is that of `penetration_depth`. Departures from [D]:
+/// src/depth/rays/hierarchy_descent.hpp.
 [[nodiscard]] Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedShape& b,
                                                            const Vec3& direction, Scratch& scratch,
                                                            DirectionalMethod method = DirectionalMethod::portal,

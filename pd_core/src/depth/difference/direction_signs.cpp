@@ -68,4 +68,21 @@ int RaySigns::side(const VertexPair& x, const VertexPair& y) const {
   return 0;
 }
 
+int RaySigns::side_of_far(const Vec3& g, const VertexPair& y) const {
+  const PairVector point = PairVector::point(y.a, y.b);
+  const Vec3 p = pair_->approximate(point);
+  const Vec3 across = scaled_.cross(g);  // <across, y> = det(d, g, y) = det(g, y, d)
+  const double value = p.dot(across);
+  const double size = norm1(scaled_) * norm1(g), e = pair_->vector_error();
+  if (std::abs(value) > size * (8 * kU * norm1(p) + 3 * e) * (1 + 16 * kU) + 0x1p-900) {
+    return value > 0 ? 1 : -1;
+  }
+  const Dyadic3 far = to_dyadic(g);
+  if (const int sign = determinant(far, pair_->exact(point), exact_).sign()) return sign;
+  for (const Dyadic3& o : perturbations()) {
+    if (const int sign = determinant(far, o, exact_).sign()) return -sign;
+  }
+  return 0;
+}
+
 }  // namespace pd::detail

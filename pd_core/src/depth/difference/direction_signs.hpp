@@ -28,6 +28,9 @@ class RaySigns {
   /// (o1 a fixed generic vector, the others coordinate axes). Moving the origin changes the determinant by
   /// -<o, (y - x) x d>; if y - x is parallel to d, turning decides. Never 0 for two different points.
   [[nodiscard]] int side(const VertexPair& x, const VertexPair& y) const;
+  /// `side(M g, y)` for M beyond all bounds: the sign of det(g, y, d), and of det(g, y - o, d) where that is 0.
+  /// Requires g not parallel to d. Never 0.
+  [[nodiscard]] int side_of_far(const Vec3& g, const VertexPair& y) const;
 
  private:
   const PosedPair* pair_;

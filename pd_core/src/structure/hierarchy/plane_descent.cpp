@@ -46,16 +46,19 @@ void PlaneDescent::enter(int vertex) {
   at_ = hierarchy_.polytope().vertex(vertex);
   level_ = hierarchy_.last_level(vertex);
   const auto star = hierarchy_.star(vertex);
-  // Every step points down in the shadow: its boundary leaves `vertex` along the first and the last by angle.
+  // Every step points down in the shadow, or is level: its boundary leaves `vertex` along the first and the last by
+  // angle. What rises does so by rounding only: neighbours in one contact plane.
   std::array<std::size_t, 2> spokes{0, 0};
   std::array<Shadow, 2> best{};
   for (std::size_t k = 0; k < star.size(); ++k) {
-    const Shadow s = shadow(star[k].neighbour);
-    if (k == 0 || s.along * best[0].up - s.up * best[0].along > 0) {
+    Shadow s = shadow(star[k].neighbour);
+    s.up = std::min(s.up, 0.0);
+    const auto turn = [&](const Shadow& other) { return s.along * other.up - s.up * other.along; };
+    if (k == 0 || turn(best[0]) > 0 || (turn(best[0]) == 0 && s.along < best[0].along)) {
       best[0] = s;
       spokes[0] = k;
     }
-    if (k == 0 || s.along * best[1].up - s.up * best[1].along < 0) {
+    if (k == 0 || turn(best[1]) < 0 || (turn(best[1]) == 0 && s.along > best[1].along)) {
       best[1] = s;
       spokes[1] = k;
     }

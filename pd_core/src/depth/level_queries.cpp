@@ -1,0 +1,73 @@
+#include "pd/depth/level_queries.hpp"
+
+#include <cmath>
+
+#include "depth/rays/hierarchy_descent.hpp"
+#include "numeric/floating_point_guard.hpp"
+#include "numeric/root_sum.hpp"
+
+namespace pd {
+
+namespace {
+
+using detail::Dyadic;
+using detail::Dyadic3;
+
+struct Rounded {
+  double lower, upper;
+};
+
+/// t |d| where the origin's line along d meets the plane of the corners; of either sign.
+Rounded time_of(const detail::PosedPair& pair, const Dyadic3& d, const std::array<detail::VertexPair, 3>& c) {
+  const auto to = [&](std::size_t i) {
+    return pair.exact(detail::PairVector::difference(c[0].a, c[0].b, c[i].a, c[i].b));
+  };
+  const Dyadic3 normal = cross(to(1), to(2));
+  const Dyadic offset = dot(pair.exact(detail::PairVector::point(c[0].a, c[0].b)), normal);
+  const Dyadic slope = dot(d, normal) * pair.homogeneous_factor();
+  if (offset.sign() == 0) return {0, 0};
+  const detail::RootSum size(Dyadic(0.0), 1, offset * offset * dot(d, d), slope * slope);
+  const double lower = size.round_down(), upper = size.round_up(lower);
+  return offset.sign() > 0 ? Rounded{lower, upper} : Rounded{-upper, -lower};
+}
+
+}  // namespace
+
+Expected<LevelCrossing> crossing_of_level(const PolyhedralHierarchy& hierarchy, int level, const ConvexPolytope& small,
+                                          const Vec3& direction) {
+  const detail::FloatingPointGuard guard;
+  if (hierarchy.kind() != HierarchyKind::inner) {
+    return Error{ErrorCode::unsupported, "levels of an inner hierarchy are asked for", "hierarchy"};
+  }
+  if (level < 0 || level >= static_cast<int>(hierarchy.levels().size())) {
+    return Error{ErrorCode::out_of_range, "levels run from 0 to levels().size() - 1", "level"};
+  }
+  if (small.num_vertices() > PolyhedralHierarchy::kMaxDegree + 1) {
+    return Error{ErrorCode::limit_exceeded, "the small body has at most 9 vertices", "small"};
+  }
+  if (!direction.allFinite()) {
+    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
+  }
+  if (direction.isZero(0)) {
+    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
+  }
+  const Pose still;
+  const detail::PosedPair pair(small, still, hierarchy.polytope(), still);
+  LevelCrossing out;
+  std::array<Rounded, 2> times{};
+  for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
+    const detail::RaySigns ray(pair, way == 0 ? direction : Vec3(-direction));
+    const auto found = descend_hierarchies(ray, {}, {&hierarchy, level});
+    out.steps += found.steps;
+    if (!found.crosses) return out;
+    times[way] = time_of(pair, ray.exact(), *found.corners);
+  }
+  out.meets = true;
+  out.leave_lower = times[0].lower;
+  out.leave_upper = times[0].upper;
+  out.enter_lower = -times[1].upper;
+  out.enter_upper = -times[1].lower;
+  return out;
+}
+
+}  // namespace pd
