@@ -1,0 +1,61 @@
+/// @file
+/// A double with a bound on its absolute error: the filter in front of dyadic numbers. One template computes an
+/// expression in both, and the dyadic one is asked only where the bound leaves the sign open.
+#pragma once
+
+#include <cmath>
+
+#include "numeric/dyadic.hpp"
+
+namespace pd::detail {
+
+/// |true value - value| <= error. Where something overflows the error is no longer finite and no sign is claimed.
+struct Estimate {
+  double value = 0;
+  double error = 0;
+
+  Estimate() = default;
+  Estimate(double exact) : value(exact) {}  // NOLINT(google-explicit-constructor): doubles are exact
+  Estimate(double v, double e) : value(v), error(e) {}
+
+  /// 1 or -1 where it is certain, 0 where it is not (or where the value is exactly 0).
+  [[nodiscard]] int certain_sign() const { return value > error ? 1 : (-value > error ? -1 : 0); }
+  [[nodiscard]] bool is_zero() const { return value == 0 && error == 0; }
+};
+
+namespace estimate {
+/// Above half an ulp, relative: covers the rounding of a result and, with kSlack, those of the bound itself.
+inline constexpr double kRounding = 0x1.0000000001p-53;
+inline constexpr double kSlack = 1 + 0x1p-48;
+/// Above what a product can lose by underflow.
+inline constexpr double kUnderflow = 0x1p-1070;
+}  // namespace estimate
+
+inline Estimate operator-(const Estimate& a) { return {-a.value, a.error}; }
+inline Estimate operator+(const Estimate& a, const Estimate& b) {
+  const double v = a.value + b.value;
+  return {v, (a.error + b.error + estimate::kRounding * std::abs(v)) * estimate::kSlack};
+}
+inline Estimate operator-(const Estimate& a, const Estimate& b) {
+  const double v = a.value - b.value;
+  return {v, (a.error + b.error + estimate::kRounding * std::abs(v)) * estimate::kSlack};
+}
+inline Estimate operator*(const Estimate& a, const Estimate& b) {
+  if (a.is_zero() || b.is_zero()) return {};  // axis-parallel edges: no big number is asked for their exact zeros
+  const double v = a.value * b.value;
+  return {v, (std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error +
+              estimate::kRounding * std::abs(v)) *
+                     estimate::kSlack +
+                 estimate::kUnderflow};
+}
+
+/// The sign of an expression. `expression.template operator()<N>()` computes it in the number type N.
+template <class Expression>
+int exact_sign(const Expression& expression) {
+  const Estimate estimate = expression.template operator()<Estimate>();
+  const int sign = estimate.certain_sign();
+  if (sign != 0 || estimate.is_zero()) return sign;
+  return expression.template operator()<Dyadic>().sign();
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,33 @@
+/// @file
+/// The edge of R = P + (-Q) that a line leaves R through, found in P and Q at once ([D] section 3).
+#pragma once
+
+#include <optional>
+
+#include "pd/planar/convex_depth.hpp"
+#include "planar/convex_signs.hpp"
+
+namespace pd::detail {
+
+/// One edge of R that faces along d, and where y lies.
+struct ExitEdge {
+  DifferenceEdge parts;
+  PolygonEdge edge;
+  bool grazes = false;  ///< the line only touches R
+};
+
+/// For the line through y along d; empty where it misses R. Of two edges that meet on the line the first
+/// counter-clockwise, but at the last corner of a grazed R the last.
+[[nodiscard]] std::optional<ExitEdge> find_exit(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y,
+                                                const Point2& d, std::int64_t& probes);
+
+/// y + t d lies on the edge's line for t = numerator / denominator, denominator > 0.
+template <class N>
+std::array<N, 2> crossing_time(const ConvexPolygon& p, const ConvexPolygon& q, const ExitEdge& exit, const Point2& y,
+                               const Point2& d) {
+  const auto u = vector_of<N>(exit.edge);
+  const auto x = offset_of<N>(p.vertex(exit.parts.vertex_p), q.vertex(exit.parts.vertex_q), y);
+  return {x[0] * u[1] - x[1] * u[0], N(d[0]) * u[1] - N(d[1]) * u[0]};
+}
+
+}  // namespace pd::detail
