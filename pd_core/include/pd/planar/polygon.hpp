@@ -1,0 +1,63 @@
+/// @file
+/// A polygon with holes, checked once: simple rings that do not meet, every hole inside the outer ring.
+///
+/// The polygon is the closed region between its rings. Rings come in either orientation, their first point not
+/// repeated; duplicate and collinear vertices are merged. Rings that cross, touch or fold back are refused with the
+/// edges at fault, decided on the stored numbers exactly.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pd/numeric/expected.hpp"
+
+namespace pd {
+
+/// A point or vector of the plane.
+using Point2 = std::array<double, 2>;
+
+class Polygon {
+ public:
+  /// A vertex as the caller numbered it: ring -1 is the outer one, ring h >= 0 is `holes[h]`.
+  struct VertexId {
+    std::int32_t ring;
+    std::int32_t index;
+    friend bool operator==(const VertexId&, const VertexId&) = default;
+  };
+
+  /// Checks and normalises. Time O(n log n).
+  /// @return ErrorCode::non_finite, out_of_range (above 1e300), too_few_points (fewer than 3 distinct points in a
+  /// ring),
+  ///         not_full_dimensional (a ring on one line), or bad_value for a ring that crosses or touches itself or
+  ///         another one, folds back, or is no hole of the outer ring. `where` names the edge by its first point:
+  ///         "outer[3]", "holes[0][2]".
+  static Expected<Polygon> from_rings(std::span<const Point2> outer, std::span<const std::vector<Point2>> holes = {});
+
+  [[nodiscard]] int num_vertices() const { return static_cast<int>(points_.size()); }
+  [[nodiscard]] int num_rings() const { return static_cast<int>(ring_start_.size()) - 1; }
+  /// All vertices, ring after ring: the outer one counter-clockwise, then the holes clockwise (the interior is on the
+  /// left of every edge), each from its lexicographically least vertex; holes in the order of those.
+  [[nodiscard]] std::span<const Point2> points() const { return points_; }
+  [[nodiscard]] int ring_begin(int ring) const { return ring_start_[static_cast<std::size_t>(ring)]; }
+  [[nodiscard]] int ring_end(int ring) const { return ring_start_[static_cast<std::size_t>(ring) + 1]; }
+  [[nodiscard]] const Point2& point(int vertex) const { return points_[static_cast<std::size_t>(vertex)]; }
+  /// Neighbours along the ring.
+  [[nodiscard]] int next(int vertex) const { return next_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] int previous(int vertex) const { return previous_[static_cast<std::size_t>(vertex)]; }
+  /// 1: convex corner of the interior, -1: reflex. Never 0.
+  [[nodiscard]] int turn(int vertex) const { return turn_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] VertexId caller_id(int vertex) const { return caller_id_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] bool convex() const { return convex_; }
+
+ private:
+  std::vector<Point2> points_;
+  std::vector<std::int32_t> ring_start_, next_, previous_;
+  std::vector<std::int8_t> turn_;
+  std::vector<VertexId> caller_id_;
+  bool convex_ = false;
+};
+
+}  // namespace pd

@@ -1,0 +1,102 @@
+/// @file
+/// How deep two polygons are inside each other, along a direction and over all directions, and how one of them gets
+/// away.
+///
+/// P is fixed, Q placed at y (every point of Q plus y) and Q MOVES. The forbidden placements are R = P + (-Q),
+/// regularised: the interior of the closure of {y : int P meets int (Q + y)}. A slot of zero width is no way out. Then
+///   sigma_d(y) = min {t >= 0 : y + t d/|d| not in R},     sigma(y) = min over d: the distance from y to the boundary
+///   of R.
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993, sections 2 and 4.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "pd/numeric/expected.hpp"
+#include "pd/planar/polygon.hpp"
+
+namespace pd {
+
+/// Where a placement lies: in R, on its boundary, or outside its closure. Exact.
+enum class PlanarContact { overlapping, touching, separated };
+[[nodiscard]] std::string_view to_string(PlanarContact contact);
+
+enum class PolygonMethod {
+  automatic,      ///< implicit where P or Q is convex, else explicit_sums
+  implicit,       ///< [D] Theorem 4.4: arcs of -Q as index ranges; needs a convex P or Q
+  explicit_sums,  ///< the union of all sums of two triangles, edge by edge
+};
+
+/// What of P and Q holds the answer: a vertex or an edge (from that vertex on), as the caller numbered it.
+struct PlanarFeature {
+  Polygon::VertexId p, q;
+  bool p_edge = false, q_edge = false;
+};
+
+struct PolygonDepth {
+  PlanarContact contact = PlanarContact::separated;
+  /// The exact depth lies in [lower, upper], neighbouring doubles or one; depth is upper. All 0 unless overlapping.
+  double depth = 0, lower = 0, upper = 0;
+  Point2 translation = {0, 0};  ///< of Q, rounded; its length is the depth up to 4 ulp
+  /// Unit: the translation's direction; when touching, a direction in which Q leaves P; {0, 0} when separated and when
+  /// no boundary is in the way.
+  Point2 normal = {0, 0};
+  std::optional<PlanarFeature> feature;
+};
+
+/// How far to go along a direction.
+enum class Leave {
+  first_exit,  ///< sigma_d: until the interiors are disjoint
+  straight,    ///< from where Q can go on along the direction for ever
+  escape,      ///< until some motion leads from there to infinity: the unbounded face of the complement of R is reached
+};
+
+/// The boundary of R, prepared for any number of placements.
+class PolygonDifference {
+ public:
+  /// @return ErrorCode::unsupported for the implicit method where neither is convex.
+  /// Time O((n + k) log^2 m) for the implicit method, k the pairs of a part of P's boundary and a triangle of P that Q,
+  /// slid along the one, meets; O(s^2) at worst for s sums of the explicit one. Space O(n + m), and O(s).
+  static Expected<PolygonDifference> of(const Polygon& p, const Polygon& q,
+                                        PolygonMethod method = PolygonMethod::automatic);
+
+  [[nodiscard]] PlanarContact contact(const Point2& placement) const;
+  /// sigma. Requires a finite placement.
+  [[nodiscard]] PolygonDepth depth(const Point2& placement) const;
+  /// sigma_d, or how far to leave for good. Requires finite numbers and a direction that is not 0.
+  [[nodiscard]] PolygonDepth depth_along(const Point2& placement, const Point2& direction,
+                                         Leave leave = Leave::first_exit) const;
+  /// The least translation in any direction that brings Q into the unbounded face.
+  [[nodiscard]] PolygonDepth escape_depth(const Point2& placement) const;
+
+  struct Statistics {
+    std::int64_t sums;           ///< convex sums whose union R is
+    std::int64_t stretches;      ///< implicit pieces of the boundary: displaced edges and arcs
+    std::int64_t arcs;           ///< stretches that are arcs of Q or P
+    std::int64_t reflex_points;  ///< at most 6 sums - 12 for 3 or more sums ([D] Fact 4.2), implicit method
+    std::int64_t loops;          ///< closed curves of the boundary: 1 + holes of R
+    std::int64_t pairs;          ///< pieces and sums that were intersected
+    std::int64_t locations;      ///< points located in a convex sum for it
+    std::int64_t memory_bytes;
+    bool implicit;
+  };
+  [[nodiscard]] Statistics statistics() const;
+
+  /// A curve of the boundary for drawing, rounded; loop 0 is the outer one.
+  struct Curve {
+    int loop;
+    bool arc;
+    std::vector<Point2> points;
+  };
+  [[nodiscard]] std::vector<Curve> boundary_curves() const;
+  /// The slots of zero width, rounded: segments along which two sums abut and none lies over them.
+  [[nodiscard]] std::vector<std::array<Point2, 2>> slots() const;
+
+ private:
+  struct State;
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace pd

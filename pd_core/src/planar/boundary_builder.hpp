@@ -1,0 +1,47 @@
+/// @file
+/// The steps that make a SumBoundary.
+#pragma once
+
+#include "planar/arc_cover.hpp"
+#include "planar/box_tree.hpp"
+#include "planar/sum_boundary.hpp"
+
+namespace pd::detail {
+
+class BoundaryBuilder {
+ public:
+  BoundaryBuilder(SumBoundary& boundary, const Polygon& p, const Polygon& q) : r_(boundary), p_(p), q_(q) {}
+
+  void build_implicit();
+  void build_explicit();
+
+ private:
+  void add_arc_candidates(int vertex);
+  void add_edge_candidates();
+  [[nodiscard]] int candidate_at(int sum, int edge) const;
+  void flood(const Candidate& candidate, int triangle, ArcCover& cutter, CandidateCover& cover);
+  [[nodiscard]] bool may_meet(const Triangle& triangle) const;
+  void reach_of(const Candidate& candidate);
+  void keep(const Candidate& candidate, const CandidateCover& cover);
+  void compact();
+
+  SumBoundary& r_;
+  const Polygon& p_;
+  const Polygon& q_;
+  Triangulation triangulation_;
+  std::vector<std::int32_t> seen_;  ///< per triangle: the candidate that met it last
+  std::vector<std::int32_t> queue_;
+  Box2 q_box_;
+
+  /// Where Q lies while it slides along a candidate: within an interval along each of three directions.
+  struct Reach {
+    std::array<Point2, 3> direction;
+    std::array<double, 3> low, high;
+  };
+  Reach reach_;
+};
+
+/// Links the stretches of a boundary into loops and numbers them, the outer one 0. @return how many there are.
+int link_loops(const SumBoundary& boundary, std::vector<Stretch>& stretches, std::int64_t& reflex_points);
+
+}  // namespace pd::detail

@@ -1,0 +1,62 @@
+/// @file
+/// Rays, nearest points and classes of placements over the boundary of R, every comparison decided exactly.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pd/planar/polygon_depth.hpp"
+#include "planar/box_tree.hpp"
+#include "planar/sum_boundary.hpp"
+
+namespace pd::detail {
+
+/// A point of the boundary: where a ray meets an edge of it, or its point nearest to a placement.
+struct BoundaryPoint {
+  std::int32_t stretch = -1;
+  int edge = 0;
+  Place at;  ///< on the edge
+};
+
+/// A number that is not negative, as a root: sqrt(numerator / denominator).
+struct SquaredLength {
+  Dyadic numerator = 0;
+  Dyadic denominator = 1.0;
+};
+
+class BoundaryQuery {
+ public:
+  explicit BoundaryQuery(const SumBoundary& boundary);
+
+  /// A placement as a point of R's plane.
+  [[nodiscard]] static SumPoint point(const Point2& placement) { return {placement, {0, 0}}; }
+
+  /// `touched`: where it lies on the boundary.
+  [[nodiscard]] PlanarContact contact(const Point2& y, std::optional<BoundaryPoint>* touched = nullptr) const;
+  /// The nearest point of the boundary (of loop 0 alone); among equals the one that is least by its coordinates.
+  [[nodiscard]] std::optional<BoundaryPoint> nearest(const Point2& y, bool outer_only) const;
+  /// The first point of the boundary (of loop 0 alone) on the ray from y.
+  [[nodiscard]] std::optional<BoundaryPoint> first_on_ray(const Point2& y, const Point2& d, bool outer_only) const;
+  /// Where the ray from y leaves R for good, as a place on the ray; nothing where it never is in R.
+  [[nodiscard]] std::optional<Place> last_exit(const Point2& y, const Point2& d) const;
+  /// For a placement outside R: does it lie in the unbounded face, or on its boundary?
+  [[nodiscard]] bool in_unbounded_face(const Point2& y) const;
+
+  [[nodiscard]] Span span_of(const BoundaryPoint& x) const;
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return stretch_tree_.memory_bytes() + sum_tree_.memory_bytes() + slot_tree_.memory_bytes();
+  }
+
+ private:
+  struct Hit;
+  struct RaySearch;
+  struct NearestSearch;
+
+  [[nodiscard]] bool generic_first_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& hit) const;
+  [[nodiscard]] std::optional<BoundaryPoint> touch(const Point2& y, bool outer_only) const;
+
+  const SumBoundary& boundary_;
+  BoxTree stretch_tree_, sum_tree_, slot_tree_;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,238 @@
+// Polygon depth: analytic cases, every method against an oracle that tries everything, laws, degenerate input.
+#include "pd/planar/polygon_depth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+
+#include "planar/polygon_oracle.hpp"
+
+namespace {
+
+using pd::Leave;
+using pd::PlanarContact;
+using pd::Point2;
+using pd::Polygon;
+using pd::PolygonDepth;
+using pd::PolygonDifference;
+using pd::PolygonMethod;
+
+Polygon polygon(const oracle::Rings& rings) {
+  const std::vector<std::vector<Point2>> holes(rings.begin() + 1, rings.end());
+  auto made = Polygon::from_rings(rings[0], holes);
+  EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message);
+  return *made;
+}
+
+oracle::Rings square(double low, double high) { return {{{low, low}, {high, low}, {high, high}, {low, high}}}; }
+oracle::Rings frame() {
+  oracle::Rings rings = square(0, 10);
+  rings.push_back({{3, 3}, {3, 7}, {7, 7}, {7, 3}});
+  return rings;
+}
+
+/// Small whole coordinates: collinear, parallel and touching pieces come up all the time.
+class SmallPolygons {
+ public:
+  explicit SmallPolygons(unsigned seed) : bits_(seed) {}
+  int whole(int low, int high) { return low + static_cast<int>(bits_() % static_cast<unsigned>(high - low + 1)); }
+  double eighths(int low, int high) { return whole(8 * low, 8 * high) / 8.0; }
+
+  oracle::Rings simple(int most, int grid, bool holes) {
+    for (;;) {
+      oracle::Rings rings = {ring(whole(3, most), grid)};
+      if (!Polygon::from_rings(rings[0])) continue;
+      for (int tries = 0; holes && tries < 20; ++tries) {
+        oracle::Rings with = rings;
+        with.push_back(ring(whole(3, 4), grid));
+        if (Polygon::from_rings(with[0], std::vector<std::vector<Point2>>(with.begin() + 1, with.end()))) rings = with;
+      }
+      return rings;
+    }
+  }
+  oracle::Rings convex(int most, int grid) {
+    for (;;) {
+      oracle::Rings rings = {ring(whole(3, most), grid)};
+      const auto made = Polygon::from_rings(rings[0]);
+      if (made && made->convex()) return rings;
+    }
+  }
+
+ private:
+  std::vector<oracle::Vec> ring(int size, int grid) {
+    std::vector<oracle::Vec> points;
+    for (int i = 0; i < size; ++i) points.push_back({double(whole(0, grid)), double(whole(0, grid))});
+    return points;
+  }
+  std::mt19937 bits_;
+};
+
+void expect_near(double value, const PolygonDepth& answer, const std::string& what) {
+  EXPECT_NEAR(answer.depth, value, 1e-8) << what;
+  EXPECT_LE(answer.lower, answer.upper);
+  EXPECT_TRUE(answer.upper == answer.lower || answer.upper == std::nextafter(answer.lower, 1e300)) << what;
+  EXPECT_NEAR(std::hypot(answer.translation[0], answer.translation[1]), answer.depth, 1e-15 * (1 + answer.depth))
+      << what;
+}
+
+std::string text(const oracle::Rings& rings) {
+  std::string s;
+  for (const auto& ring : rings) {
+    s += "[";
+    for (const auto& x : ring) s += "[" + std::to_string(int(x[0])) + "," + std::to_string(int(x[1])) + "],";
+    s += "] ";
+  }
+  return s;
+}
+
+/// One pair, several placements, every question, against the oracle. @return the number of answers compared.
+int judge(const oracle::Rings& p, const oracle::Rings& q, SmallPolygons& next, PolygonMethod method, int placements) {
+  const PolygonDifference r = *PolygonDifference::of(polygon(p), polygon(q), method);
+  const oracle::PolygonOracle truth(p, q);
+  int answers = 0;
+  for (int i = 0; i < placements; ++i) {
+    const Point2 y = {next.eighths(-2, 6), next.eighths(-2, 6)};
+    const Point2 d = {double(next.whole(-3, 3)), double(next.whole(1, 3))};
+    const std::string what = "p " + text(p) + " q " + text(q) + " y " + std::to_string(y[0]) + "," +
+                             std::to_string(y[1]) + " d " + std::to_string(d[0]) + "," + std::to_string(d[1]);
+    const PolygonDepth deep = r.depth(y);
+    EXPECT_EQ(to_string(deep.contact), truth.contact(y)) << what;
+    expect_near(deep.contact == PlanarContact::overlapping ? truth.depth(y) : 0, deep, "depth " + what);
+    expect_near(truth.depth_along(y, d), r.depth_along(y, d), "along " + what);
+    expect_near(truth.straight_exit(y, d), r.depth_along(y, d, Leave::straight), "straight " + what);
+    answers += 4;
+  }
+  return answers;
+}
+
+int cases(int usual) {
+  const char* wanted = std::getenv("PD_PLANAR_CASES");  // the million-case runs
+  return wanted == nullptr ? usual : std::atoi(wanted);
+}
+
+TEST(PolygonDepth, SquareInASquare) {
+  const auto r = *PolygonDifference::of(polygon(square(0, 4)), polygon(square(0, 2)));
+  // Q + (1, 1) lies in the middle of the left and lower half: the forbidden placements are the open square (-2, 4)^2.
+  const PolygonDepth a = r.depth({0.5, 1});
+  EXPECT_EQ(a.contact, PlanarContact::overlapping);
+  EXPECT_EQ(a.depth, 2.5);
+  EXPECT_EQ(a.translation, (Point2{-2.5, 0}));
+  EXPECT_EQ(r.depth_along({1, 1}, {3, 4}).depth, 3.75);
+  EXPECT_EQ(r.contact({4, 1}), PlanarContact::touching);
+  EXPECT_EQ(r.depth({4, 1}).normal, (Point2{1, 0}));
+  EXPECT_EQ(r.contact({std::nextafter(4.0, 5.0), 1}), PlanarContact::separated);
+}
+
+TEST(PolygonDepth, AHoleIsAWayOutThatEscapesNowhere) {
+  const auto r = *PolygonDifference::of(polygon(frame()), polygon(square(0, 1)));
+  EXPECT_EQ(r.statistics().loops, 2);
+  EXPECT_EQ(r.contact({4, 4}), PlanarContact::separated);  // in the hole
+  const PolygonDepth in = r.depth({2.25, 4});
+  EXPECT_EQ(in.depth, 0.75);
+  EXPECT_EQ(in.translation, (Point2{0.75, 0}));
+  EXPECT_EQ(r.escape_depth({2.25, 4}).depth, 3.25);
+  EXPECT_EQ(r.depth_along({2.25, 4}, {1, 0}).depth, 0.75);
+  EXPECT_EQ(r.depth_along({2.25, 4}, {1, 0}, Leave::escape).depth, 7.75);
+  EXPECT_EQ(r.depth_along({2.25, 4}, {1, 0}, Leave::straight).depth, 7.75);
+  EXPECT_EQ(r.escape_depth({4, 4}).depth, 5);
+  EXPECT_EQ(r.escape_depth({11, 4}).depth, 0);
+}
+
+TEST(PolygonDepth, ASlotOfZeroWidthIsNoWayOut) {
+  oracle::Rings rings = square(0, 10);
+  rings.push_back({{3, 3}, {3, 7}, {5, 7}, {5, 3}});
+  // A square of 2 fits the hole along a segment of placements, one of 3 does not fit; of 1 fits with room.
+  const auto r = *PolygonDifference::of(polygon(rings), polygon(square(0, 2)));
+  EXPECT_EQ(r.statistics().loops, 1);
+  EXPECT_EQ(r.contact({3, 4}), PlanarContact::overlapping);
+  EXPECT_EQ(r.depth({3, 4}).depth, 5);
+  EXPECT_FALSE(r.slots().empty());
+  for (const auto& slot : r.slots()) EXPECT_EQ(slot[0][0], 3);
+  EXPECT_TRUE(PolygonDifference::of(polygon(rings), polygon(square(0, 3)))->slots().empty());
+  EXPECT_EQ(PolygonDifference::of(polygon(rings), polygon(square(0, 1)))->statistics().loops, 2);
+}
+
+TEST(PolygonDepth, ImplicitAgainstTheOracle) {
+  SmallPolygons next(20261122);
+  int answers = 0;
+  for (int i = 0; i < cases(300); ++i) {
+    const int grid = next.whole(3, 7);
+    answers +=
+        judge(next.simple(7, grid, i % 3 == 0), next.convex(5, next.whole(1, grid)), next, PolygonMethod::implicit, 3);
+    if (HasFailure()) break;
+  }
+  RecordProperty("answers", answers);
+}
+
+TEST(PolygonDepth, ExplicitAgainstTheOracle) {
+  SmallPolygons next(7);
+  for (int i = 0; i < cases(120) && !HasFailure(); ++i) {
+    const int grid = next.whole(3, 6);
+    judge(next.simple(6, grid, i % 3 == 0), next.simple(6, next.whole(2, grid), false), next,
+          PolygonMethod::explicit_sums, 2);
+  }
+}
+
+TEST(PolygonDepth, TheConvexOneMayBeEither) {
+  SmallPolygons next(11);
+  for (int i = 0; i < cases(100) && !HasFailure(); ++i) {
+    judge(next.convex(5, 5), next.simple(6, 5, i % 2 == 0), next, PolygonMethod::automatic, 2);
+  }
+}
+
+TEST(PolygonDepth, MethodsGiveTheSameBits) {
+  SmallPolygons next(3);
+  for (int i = 0; i < 10 * cases(300); ++i) {
+    const int grid = next.whole(3, 12);
+    const Polygon p = polygon(next.simple(9, grid, i % 2 == 0)), q = polygon(next.convex(6, next.whole(1, grid)));
+    const auto a = *PolygonDifference::of(p, q, PolygonMethod::implicit);
+    const auto b = *PolygonDifference::of(p, q, PolygonMethod::explicit_sums);
+    const auto s = a.statistics();
+    if (s.sums >= 3) ASSERT_LE(s.reflex_points, 6 * s.sums - 12);
+    for (int k = 0; k < 4; ++k) {
+      const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)}, d = {next.eighths(-3, 3), next.eighths(1, 2)};
+      for (const auto& [x, z] : {std::pair{a.depth(y), b.depth(y)},
+                                 {a.depth_along(y, d), b.depth_along(y, d)},
+                                 {a.depth_along(y, d, Leave::straight), b.depth_along(y, d, Leave::straight)}}) {
+        ASSERT_EQ(x.contact, z.contact);
+        ASSERT_EQ(x.lower, z.lower);
+        ASSERT_EQ(x.upper, z.upper);
+        ASSERT_EQ(x.translation, z.translation);
+      }
+    }
+  }
+}
+
+TEST(PolygonDepth, ScalesByPowersOfTwoKeepEveryBit) {
+  SmallPolygons next(5);
+  for (const double scale : {0x1p-600, 0x1p-30, 0x1p900}) {
+    for (int i = 0; i < 30; ++i) {
+      oracle::Rings p = next.simple(8, 9, true), q = next.convex(5, 4);
+      const auto before = *PolygonDifference::of(polygon(p), polygon(q));
+      for (auto* rings : {&p, &q}) {
+        for (auto& ring : *rings) {
+          for (auto& x : ring) x = {x[0] * scale, x[1] * scale};
+        }
+      }
+      const auto after = *PolygonDifference::of(polygon(p), polygon(q));
+      const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)};
+      const PolygonDepth a = before.depth(y), b = after.depth({y[0] * scale, y[1] * scale});
+      ASSERT_EQ(a.contact, b.contact);
+      ASSERT_EQ(a.lower * scale, b.lower);
+      ASSERT_EQ(a.upper * scale, b.upper);
+    }
+  }
+}
+
+TEST(PolygonDepth, NeitherConvexIsRefusedByTheImplicitMethod) {
+  const Polygon f = polygon(frame());
+  const auto r = PolygonDifference::of(f, f, PolygonMethod::implicit);
+  ASSERT_FALSE(r.has_value());
+  EXPECT_EQ(r.error().code, pd::ErrorCode::unsupported);
+  EXPECT_EQ(PolygonDifference::of(f, f)->depth({0, 0}).depth, 10);
+}
+
+}  // namespace
