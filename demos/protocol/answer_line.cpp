@@ -24,7 +24,7 @@ constexpr std::array kQueries{
     QueryEntry{"contact_manifold", answer_contact_manifold},
     QueryEntry{"hierarchy", answer_hierarchy},
     QueryEntry{"decomposition", answer_decomposition},
-    QueryEntry{"polygon_depth", refuse_unsupported_query},
+    QueryEntry{"polygon_depth", answer_polygon_depth},
     QueryEntry{"approx_directional_width", answer_approx_directional_width},
     QueryEntry{"approx_intersect", refuse_unsupported_query},
     QueryEntry{"approx_minkowski_sum", refuse_unsupported_query},

@@ -39,6 +39,7 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
 void answer_approx_width(const Node& line, Session& session, JsonWriter& answer);
 void answer_approximate(const Node& line, Session& session, JsonWriter& answer);
 void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answer);
+void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer);
 [[noreturn]] void refuse_unsupported_query(const Node& line, Session& session, JsonWriter& answer);
 
 }  // namespace pd::query

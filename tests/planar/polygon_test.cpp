@@ -52,11 +52,11 @@ TEST(Polygon, NamedRefusals) {
   expect_refused({{0, 0}, {4, 4}, {4, 0}, {0, 4}}, {}, ErrorCode::bad_value, "outer[0]");          // crosses
   expect_refused({{0, 0}, {4, 0}, {6, 0}, {4, 0}, {4, 4}}, {}, ErrorCode::bad_value, "outer[2]");  // folds back
   expect_refused({{0, 0}, {4, 0}, {2, 2}, {4, 4}, {0, 4}, {2, 2}}, {}, ErrorCode::bad_value,
-                 "outer[5]");                                                                   // touches itself
+                 "outer[1]");                                                                   // touches itself
   expect_refused(kSquare, {{{11, 1}, {12, 1}, {12, 2}}}, ErrorCode::bad_value, "holes[0][0]");  // outside
   expect_refused(kSquare, {{{-3, 1}, {-2, 1}, {-2, 2}}}, ErrorCode::bad_value, "holes[0][0]");
   expect_refused(kSquare, {{{8, 1}, {12, 1}, {12, 2}}}, ErrorCode::bad_value, "outer[1]");  // crosses the outer ring
-  expect_refused(kSquare, {{{1, 1}, {5, 1}, {5, 5}}, {{4, 2}, {8, 2}, {8, 4}}}, ErrorCode::bad_value, "holes[0][1]");
+  expect_refused(kSquare, {{{1, 1}, {5, 1}, {5, 5}}, {{4, 2}, {8, 2}, {8, 4}}}, ErrorCode::bad_value, "holes[1][0]");
   expect_refused(kSquare, {{{1, 1}, {9, 1}, {9, 9}, {1, 9}}, {{2, 2}, {3, 2}, {3, 3}}}, ErrorCode::bad_value,
                  "holes[1][0]");
   expect_refused(kSquare, {{{1, 1}, {nan, 1}, {9, 9}}}, ErrorCode::non_finite, "holes[0][1]");

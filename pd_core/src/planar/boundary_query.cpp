@@ -118,9 +118,10 @@ PlanarContact BoundaryQuery::contact(const Point2& y, std::optional<BoundaryPoin
 struct BoundaryQuery::Hit {
   BoundaryPoint point;
   Span span;
+  bool crossing;  ///< of the ray with the edge's line; otherwise a point of an edge that lies along the ray
   template <class N>
   [[nodiscard]] Fraction<N> along(const Span& ray) const {
-    if (point.at.kind == Place::Kind::line) {
+    if (crossing) {
       return fraction<N>(ray, Place{Place::Kind::line, span.s, span.d});
     }
     const Homogeneous<N> x = point_at<N>(span, point.at);
@@ -170,17 +171,17 @@ struct BoundaryQuery::RaySearch {
     const Place crossing{Place::Kind::line, ray.s, ray.d};
     if (cross_sign(part.span.d, ray.d) != 0) {
       if (compare_places(part.span, part.from, crossing) <= 0 && compare_places(part.span, crossing, part.to) <= 0) {
-        offer({{index, edge, crossing}, part.span});
+        offer({{index, edge, crossing}, part.span, true});
       }
       return;
     }
     if (side_of(part.span.s, part.span.d, ray.s) != 0) return;
     const Place here{Place::Kind::point, ray.s, {}};
     if (compare_places(part.span, part.from, here) <= 0 && compare_places(part.span, here, part.to) <= 0) {
-      offer({{index, edge, here}, part.span});
+      offer({{index, edge, here}, part.span, false});
     }
-    offer({{index, edge, part.from}, part.span});
-    offer({{index, edge, part.to}, part.span});
+    offer({{index, edge, part.from}, part.span, false});
+    offer({{index, edge, part.to}, part.span, false});
   }
 };
 

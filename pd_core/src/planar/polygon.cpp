@@ -99,9 +99,9 @@ std::string describe(const detail::RingFault& fault, const std::string& edge, co
     case Kind::touching:
       return "the rings touch at " + edge + " and " + other + "; they may not share a point";
     case Kind::hole_outside:
-      return "the hole of " + edge + " lies outside the outer ring";
+      return "the hole of " + edge + " lies outside the outer ring or reaches out of it";
     case Kind::hole_in_hole:
-      return "the hole of " + edge + " lies in the hole of " + other;
+      return "the hole of " + edge + " starts inside the hole of " + other + "; holes must be apart";
   }
   return {};
 }

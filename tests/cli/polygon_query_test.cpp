@@ -1,0 +1,72 @@
+/// @file
+/// The query `polygon_depth`.
+#include "protocol_lines.hpp"
+
+namespace pd::test {
+namespace {
+
+constexpr const char* kFrame = R"({"outer":[[0,0],[10,0],[10,10],[0,10]],"holes":[[[3,3],[7,3],[7,7],[3,7]]]})";
+constexpr const char* kUnitSquare = R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})";
+
+std::string line(const std::string& p, const std::string& q, const std::string& more) {
+  return R"({"id":1,"query":"polygon_depth","p":)" + p + R"(,"q":)" + q + (more.empty() ? "" : ",") + more + "}";
+}
+
+TEST(PolygonQuery, DepthOverAllDirections) {
+  const Json reply = answer(line(kFrame, kUnitSquare, ""));
+  EXPECT_EQ(reply.at("class"), "overlapping");
+  EXPECT_EQ(reply.at("depth"), 1.0);
+  EXPECT_EQ(reply.at("lower"), 1.0);
+  EXPECT_EQ(reply.at("upper"), 1.0);
+  EXPECT_EQ(reply.at("translation"), Json::parse("[-1.0,0.0]"));
+  EXPECT_EQ(reply.at("method"), "implicit");
+  EXPECT_EQ(reply.at("stats").at("holes"), 1);
+  EXPECT_EQ(reply.at("feature").at("p").at("ring"), "outer");
+}
+
+TEST(PolygonQuery, AlongADirection) {
+  const Json reply = answer(line(kFrame, kUnitSquare, R"("direction":[3,0])"));
+  EXPECT_EQ(reply.at("depth"), 10.0);  // along the lower edge, past the hole
+  EXPECT_EQ(reply.at("normal"), Json::parse("[1.0,0.0]"));
+}
+
+TEST(PolygonQuery, ListsOfPlacementsAndDirections) {
+  const Json many = answer(line(kFrame, kUnitSquare, R"("placements":[[2.25,4],[4,4],[-1,0]],"direction":[3,0])"));
+  EXPECT_EQ(many.at("classes"), Json::parse(R"(["overlapping","separated","touching"])"));
+  EXPECT_EQ(many.at("depths"), Json::parse("[0.75,0.0,0.0]"));
+  const Json away = answer(line(kFrame, kUnitSquare, R"("placements":[[2.25,4],[4,4]],"complete":"escape")"));
+  EXPECT_EQ(away.at("depths"), Json::parse("[3.25,5.0]"));
+  const Json straight =
+      answer(line(kFrame, kUnitSquare, R"("placements":[[2.25,4]],"complete":true,"direction_set":[[1,0],[0,1]])"));
+  EXPECT_EQ(straight.at("depths"), Json::parse("[7.75,6.0]"));
+}
+
+TEST(PolygonQuery, SlotsAreListedAndNoWayOut) {
+  const Json reply = answer(line(R"({"outer":[[0,0],[10,0],[10,10],[0,10]],"holes":[[[3,3],[4,3],[4,7],[3,7]]]})",
+                                 kUnitSquare, R"("placements":[[3,4]],"slots":true)"));
+  EXPECT_EQ(reply.at("classes").at(0), "overlapping");
+  EXPECT_EQ(reply.at("depths").at(0), 4.0);
+  EXPECT_FALSE(reply.at("slots").empty());
+}
+
+TEST(PolygonQuery, Refusals) {
+  const auto refused = [](const std::string& text, const char* code, const char* where) {
+    const Json reply = answer(text);
+    ASSERT_TRUE(reply.contains("error")) << text;
+    EXPECT_EQ(reply.at("error").at("code"), code) << reply;
+    EXPECT_EQ(reply.at("error").at("where"), where) << reply;
+  };
+  refused(line(R"({"outer":[[0,0],[4,4],[4,0],[0,4]]})", kUnitSquare, ""), "bad_value", "p.outer[0]");
+  refused(line(R"({"outer":[[0,0],[4,4]]})", kUnitSquare, ""), "too_few_points", "p.outer");
+  refused(line(kUnitSquare, R"({"outer":[[0,0],[4,0],[0,4]],"holes":[[[5,5],[6,5],[6,6]]]})", ""), "bad_value",
+          "q.holes[0][0]");
+  refused(line(kUnitSquare, R"({"outer":[[0,0],["nan",0],[0,4]]})", ""), "non_finite", "q.outer[1][0]");
+  refused(line(kUnitSquare, kUnitSquare, R"("direction":[0,0])"), "zero_direction", "direction");
+  refused(line(kUnitSquare, kUnitSquare, R"("complete":true)"), "missing_field", "");
+  refused(line(kFrame, kFrame, R"("method":"implicit")"), "unsupported", "method");
+  refused(line(kFrame, kFrame, R"("method":"fast")"), "bad_value", "method");
+  refused(R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[1,0],[0,1]]}})", "missing_field", "q");
+}
+
+}  // namespace
+}  // namespace pd::test
