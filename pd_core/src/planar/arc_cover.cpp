@@ -70,10 +70,11 @@ void ArcCover::cut_arc(CandidateCover& cover) {
       high = std::min(high, b);
     }
   }
-  if (low >= high) return search(0, count, cover);
+  if (low > high || high == 0 || low == count) return search(0, count, cover);
+  // Where low == high the directions along which U reaches no farther lie in the cone of one vertex, between two edges.
   if (low > 0) search(0, low, cover);
   if (high < count) search(high, count, cover);
-  if (tie) {  // edges on one line with an edge of the other sum are the outermost of these
+  if (tie && low < high) {  // edges on one line with an edge of the other sum are the outermost of these
     cut_edge(low, cover);
     if (high - 1 > low) cut_edge(high - 1, cover);
   }
