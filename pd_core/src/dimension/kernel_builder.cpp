@@ -65,6 +65,11 @@ void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t 
   drain();
   waiting_.clear();
   next_.clear();
+  if (static_cast<std::int64_t>(hull_.facets().size()) > 2 * hull_.num_facets()) {
+    const std::vector<std::int32_t> renumbered = hull_.compact();
+    for (std::int32_t& hint : hints_) hint = renumbered[static_cast<std::size_t>(hint)];
+    lists_.clear();
+  }
 }
 
 /// Puts waiting point i into the list of its cone, or drops it.

@@ -224,6 +224,32 @@ void RadialHull<D>::link_cone() {
 }
 
 template <int D>
+std::vector<std::int32_t> RadialHull<D>::compact() {
+  std::vector<std::int32_t> renumbered(facets_.size(), -1);
+  std::int32_t next = 0;
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (facets_[f].successor < 0) renumbered[f] = next++;
+  }
+  // Successors are younger than what they succeed.
+  for (std::size_t f = facets_.size(); f-- > 0;) {
+    if (facets_[f].successor >= 0) renumbered[f] = renumbered[static_cast<std::size_t>(facets_[f].successor)];
+  }
+  std::vector<Facet> living;
+  living.reserve(static_cast<std::size_t>(next));
+  for (const Facet& f : facets_) {
+    if (f.successor >= 0) continue;
+    living.push_back(f);
+    for (std::int32_t& g : living.back().neighbour) g = renumbered[static_cast<std::size_t>(g)];
+  }
+  facets_ = std::move(living);
+  visible_.assign(facets_.size(), 0);
+  cone_of_.assign(facets_.size(), {});
+  removed_.clear();
+  added_.clear();
+  return renumbered;
+}
+
+template <int D>
 double RadialHull<D>::inner_radius() const {
   double largest = 0;
   for (const Facet& f : facets_) {

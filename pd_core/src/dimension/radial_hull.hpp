@@ -50,6 +50,10 @@ class RadialHull {
   [[nodiscard]] const std::vector<std::int32_t>& removed() const { return removed_; }
   [[nodiscard]] const std::vector<std::int32_t>& added() const { return added_; }
 
+  /// Drops dead facets, which take memory and the nearest cache. Returns each old facet's new number; of a dead one,
+  /// that of a living facet that took over a part of its cone.
+  std::vector<std::int32_t> compact();
+
   /// Distance of the nearest facet plane from the origin.
   [[nodiscard]] double inner_radius() const;
 
