@@ -2,10 +2,13 @@
 /// The program from outside: exit codes, text for people, JSON for programs.
 #include <sys/wait.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "protocol_lines.hpp"
 
@@ -173,6 +176,53 @@ TEST_F(Program, DepthTakesEveryKindOfPose) {
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(Json::parse(result.out).at("depth"), 1.0) << pose;
   }
+}
+
+TEST_F(Program, SimplifyEnclosesTheScanOrIsEnclosed) {
+  std::string cloud;
+  std::vector<std::array<double, 3>> points;
+  for (int i = 0; i < 2000; ++i) {
+    const double z = (2 * i + 1) / 2000.0 - 1, r = std::sqrt(1 - z * z), a = 2.4 * i;
+    points.push_back({3 * r * std::cos(a), r * std::sin(a), z});
+    std::ostringstream line;
+    line.precision(17);
+    line << "v " << points.back()[0] << " " << points.back()[1] << " " << points.back()[2] << "\n";
+    cloud += line.str();
+  }
+  write("cloud.obj", cloud);
+  const auto hull = [&](const std::string& name) {
+    std::vector<std::array<double, 3>> vertices;
+    std::istringstream text(read(name));
+    for (std::string word; text >> word;) {
+      if (word == "v") {
+        vertices.emplace_back();
+        text >> vertices.back()[0] >> vertices.back()[1] >> vertices.back()[2];
+      }
+    }
+    return vertices;
+  };
+  const auto extent = [](const std::vector<std::array<double, 3>>& of, double x, double y, double z) {
+    double most = -1e300;
+    for (const auto& p : of) most = std::max(most, x * p[0] + y * p[1] + z * p[2]);
+    return most;
+  };
+  const Outcome outer = run("simplify cloud.obj --epsilon 0.05 -o outer.obj");
+  ASSERT_EQ(outer.status, 0) << outer.err;
+  ASSERT_EQ(run("simplify cloud.obj --epsilon 0.05 --side inner -o inner.obj").status, 0);
+  const auto around = hull("outer.obj"), within = hull("inner.obj");
+  EXPECT_LT(around.size(), 200u);
+  EXPECT_LT(within.size(), 120u);
+  for (int i = 0; i < 500; ++i) {
+    const double x = std::sin(1.0 + i), y = std::sin(2.0 + 1.7 * i), z = std::sin(0.3 + 2.3 * i);
+    const double width = extent(points, x, y, z) + extent(points, -x, -y, -z);
+    EXPECT_GE(extent(around, x, y, z), extent(points, x, y, z));
+    EXPECT_LE(extent(around, x, y, z), extent(points, x, y, z) + 0.025 * width);
+    EXPECT_LE(extent(within, x, y, z), extent(points, x, y, z));
+    EXPECT_GE(extent(within, x, y, z) + extent(within, -x, -y, -z), 0.95 * width);
+  }
+  EXPECT_EQ(run("simplify missing.ply -o x.obj").status, 2);
+  EXPECT_EQ(run("simplify cloud.obj --epsilon 2 -o x.obj").status, 2);
+  EXPECT_EQ(run("simplify cloud.obj -o nowhere/x.obj").status, 1);
 }
 
 }  // namespace
