@@ -8,6 +8,7 @@
 
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/arya/arya.hpp"
+#include "bench/dobkin/dobkin.hpp"
 #include "bench/hash/answer_hash.hpp"
 #include "bench/measure/compare.hpp"
 #include "bench/pairs/coherent.hpp"
@@ -38,6 +39,7 @@ struct Options {
   CompareSettings compare;
   AgarwalSettings agarwal;
   AryaSettings arya;
+  DobkinSettings dobkin;
   HashSettings hash;
 };
 
@@ -201,6 +203,12 @@ int main(int argc, char** argv) {
   arya->add_option("--chapters", options.arya.chapters, arya_chapters())->delimiter(',');
   arya->add_option("--out", options.arya.out, "folder for the table (CSV, Markdown), the points and the plots");
   arya->add_flag("--full", options.arya.full, "up to 1e7 points; otherwise under a minute");
+  CLI::App* dobkin =
+      app.add_subcommand("dobkin", "the bounds of Dobkin, Hershberger, Kirkpatrick and Suri 1993, claim by claim");
+  dobkin->add_option("--seed", options.dobkin.seed, "seed of bodies and directions")->capture_default_str();
+  dobkin->add_option("--chapters", options.dobkin.chapters, dobkin_chapters())->delimiter(',');
+  dobkin->add_option("--out", options.dobkin.out, "folder for the table (CSV, Markdown) and the points");
+  dobkin->add_flag("--full", options.dobkin.full, "up to 2^20 vertices; otherwise under a minute");
   CLI::App* hash = app.add_subcommand("hash", "the bits of answers, hashed: equal on every compiler and machine");
   hash->add_option("--pairs", options.hash.pairs, "generated pairs, each asked in about ten ways")
       ->check(CLI::PositiveNumber)
@@ -220,6 +228,7 @@ int main(int argc, char** argv) {
   if (*hash) return run_hash(options.hash);
   if (*agarwal) return run_agarwal(options.agarwal);
   if (*arya) return run_arya(options.arya);
+  if (*dobkin) return run_dobkin(options.dobkin);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);

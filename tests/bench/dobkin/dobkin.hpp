@@ -1,0 +1,32 @@
+/// @file
+/// `pdepth-bench dobkin`: the bounds of [D] measured, claim by claim.
+///
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/measure/claims.hpp"
+
+namespace pd::bench {
+
+struct DobkinSettings {
+  bool full = false;  ///< up to 2^20 vertices; otherwise under a minute
+  std::uint64_t seed = 1;
+  std::string out;                    ///< folder for dobkin.csv, dobkin_points.csv and dobkin.md; or empty
+  std::vector<std::string> chapters;  ///< names of chapters; empty = all
+};
+
+/// Counted steps of the descent of two hierarchies, the worst direction searched for, answers against the portal
+/// search.
+void measure_hierarchy(const DobkinSettings& settings, ClaimTable& table);
+/// Probes of the search in two convex polygons; work of the medial axis; answers against the scan of all edges.
+void measure_convex_polygons(const DobkinSettings& settings, ClaimTable& table);
+
+/// @return the exit code, as `run_agarwal`.
+int run_dobkin(const DobkinSettings& settings);
+[[nodiscard]] std::string dobkin_chapters();
+
+}  // namespace pd::bench
