@@ -15,7 +15,6 @@ render::Chart chart_of(const std::vector<ContactRow>& rows, double rate, const s
                        const std::string& label, double ContactFigures::*field) {
   render::Chart chart;
   chart.title = fmt::format("{}: {:.0f} Hz, {} settings", label, rate, setting);
-  chart.x_label = "scene";
   chart.y_label = label;
   chart.y_scale = render::Scale::logarithmic;
   std::vector<std::string> names;
@@ -23,7 +22,8 @@ render::Chart chart_of(const std::vector<ContactRow>& rows, double rate, const s
     if (row.steps_per_second != rate || row.setting != setting) continue;
     if (names.empty() || names.back() != row.scene) {
       names.push_back(row.scene);
-      chart.subtitle += fmt::format("{}{} {}", names.size() > 1 ? ", " : "", names.size(), row.scene);
+      std::string& line = names.size() <= 10 ? chart.subtitle : chart.x_label;  // as much as a line holds
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", names.size(), row.scene);
     }
     auto series =
         std::find_if(chart.series.begin(), chart.series.end(), [&](const auto& s) { return s.name == row.run; });
