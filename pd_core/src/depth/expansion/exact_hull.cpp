@@ -21,6 +21,7 @@ void ExactHull::clear() {
   vertices.clear();
   faces_.clear();
   heap_.clear();
+  if constexpr (kValidate) checked_insertions_ = 0;
 }
 
 bool ExactHull::is_visible(const Face& f, std::int32_t v) const {

@@ -58,6 +58,7 @@ void InnerSurface::clear_faces() {
   slots_ = 0;
   in_use_ = 0;
   append_mode_ = true;
+  if constexpr (kValidate) checked_insertions_ = 0;  // the same checks in every search
 }
 
 void InnerSurface::reserve(int count) {
