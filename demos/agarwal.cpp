@@ -26,11 +26,8 @@ constexpr std::array kPictures{
 }  // namespace
 
 int run_agarwal(const DemoOptions& options) {
-  const auto folder = open_output_folder(options, "agarwal");
-  if (!folder) {
-    fmt::print(stderr, "pdepth: {}\n", folder.error().message);
-    return kDemoBadUsage;
-  }
+  std::filesystem::path folder;
+  if (const int code = open_output_folder(options, "agarwal", folder); code != kDemoDone) return code;
   auto created = render::Renderer::create();
   if (!created) return report_failure(created.error());
   render::Renderer renderer = std::move(created).value();
@@ -39,7 +36,7 @@ int run_agarwal(const DemoOptions& options) {
     if (interrupted()) return kDemoInterrupted;
     const auto image = picture.draw(renderer, {options.width, options.height});
     if (!image) return report_failure(image.error());
-    const auto written = render::write_png(*image, *folder / fmt::format("{}.png", picture.name));
+    const auto written = render::write_png(*image, folder / fmt::format("{}.png", picture.name));
     if (!written) return report_failure(written.error());
     fmt::print("picture   {}\n", written->string());
   }

@@ -190,14 +190,11 @@ int run_difference(const DemoOptions& options) {
   try {
     std::optional<query::SearchFile> search;
     if (!options.trace.empty()) search.emplace(query::read_search_file(options.trace));
-    const auto folder = open_output_folder(options, "difference");
-    if (!folder) {
-      fmt::print(stderr, "pdepth: {}\n", folder.error().message);
-      return kDemoBadUsage;
-    }
-    if (search) return draw_search(*search, options, *folder);
+    std::filesystem::path folder;
+    if (const int code = open_output_folder(options, "difference", folder); code != kDemoDone) return code;
+    if (search) return draw_search(*search, options, folder);
     const Bodies bodies = options.inputs.empty() ? own_pair() : read_pair(options.inputs);
-    return answer_and_draw(bodies, options, *folder);
+    return answer_and_draw(bodies, options, folder);
   } catch (const query::Refusal& refusal) {
     fmt::print(stderr, "pdepth: {}\n", refusal.message);
     return kDemoBadUsage;

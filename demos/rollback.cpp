@@ -19,19 +19,17 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/scratch.hpp"
-#include "pd/render/annotation.hpp"
 #include "pd/render/composition.hpp"
 #include "pd/render/renderer.hpp"
-#include "pd/render/video.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
+#include "support/duel.hpp"
 
 namespace pd::demo {
 
 namespace {
 
-constexpr int kFramesPerSecond = 30;
 /// Frames of the film for one step (slow motion), and for a step in which a contact was taken back.
 constexpr int kFramesPerStep = 2;
 constexpr int kFramesPerImpact = 15;
@@ -113,17 +111,12 @@ MovingShape moving(DemoWorld& world, int i, const btTransform& start, const btTr
   return result;
 }
 
-/// Pictures of one moment of a world.
-class Stage {
+/// Pictures of the two bodies of one impact from nearby.
+class CloseUp {
  public:
-  Stage(render::Renderer& renderer, const scenes::World& plan, render::Size whole, int panels)
-      : renderer_(renderer), size_(render::panel_size(whole, panels)) {
-    view_.include(plan.view_lower);
-    view_.include(plan.view_upper);
-    camera_ = render::frame_box(view_, size_, {-102, 14});
-  }
+  CloseUp(render::Renderer& renderer, render::Size whole) : renderer_(renderer), size_(render::panel_size(whole, 3)) {}
 
-  /// A camera that sees the two bodies of an impact from nearby, through all of the step.
+  /// A camera that sees both bodies through all of the step.
   void look_at(const Impact& impact) {
     view_ = render::Box();
     for (const MovingShape* body : {&impact.moving_a, &impact.moving_b}) {
@@ -138,7 +131,6 @@ class Stage {
     camera_ = render::frame_box(view_, size_, {-102, 13}, {0.05, 0.05, 0.06, 0.06});
   }
 
-  /// Grid and shadows are those of the stage, whatever is on it.
   Expected<render::Image> draw(render::Scene scene) {
     scene.focus = view_;
     return renderer_.draw(scene, camera_, size_);
@@ -181,9 +173,9 @@ render::Scene moment(DemoWorld& world, const Impact& impact, double time, bool c
 }
 
 /// Before, at and after the contact, in one picture.
-Expected<std::filesystem::path> draw_triptych(DemoWorld& world, const Impact& impact, int number, Stage& stage,
+Expected<std::filesystem::path> draw_triptych(DemoWorld& world, const Impact& impact, int number, CloseUp& close_up,
                                               render::Size whole, const std::filesystem::path& folder) {
-  stage.look_at(impact);
+  close_up.look_at(impact);
   const double first = impact.verdicts[0].time;
   struct Moment {
     double time;
@@ -195,7 +187,7 @@ Expected<std::filesystem::path> draw_triptych(DemoWorld& world, const Impact& im
                             {impact.step, fmt::format("end of the plain step, {}", time_text(impact.step)), false}};
   std::vector<render::Panel> panels;
   for (const Moment& m : moments) {
-    auto drawn = stage.draw(moment(world, impact, m.time, m.disc));
+    auto drawn = close_up.draw(moment(world, impact, m.time, m.disc));
     if (!drawn) {
       return drawn.error();
     }
@@ -334,27 +326,16 @@ void advance(DemoWorld& world, RollbackStepper& stepper, double step, Course& co
   }
 }
 
-/// One world's half of a film frame.
-Expected<render::Panel> draw_half(DemoWorld& world, const Measurement& now, const std::vector<double>& depths,
-                                  double full_scale, const std::string& heading, const std::string& status,
-                                  Stage& stage) {
-  render::Scene scene = world.picture(now, kShownDepth);
+/// One of the two worlds at the end of a step.
+Half half_of(DemoWorld& world, const Measurement& now, const std::vector<double>& depths, double full_scale,
+             const std::string& heading, const std::string& status) {
+  Half half{world.picture(now, kShownDepth), now.deepest, heading, status, {}};
   if (now.deepest > kShownDepth) {
     const PenetrationDepth& answer = now.deepest_answer;
-    scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
+    half.scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
   }
-  auto drawn = stage.draw(scene);
-  if (!drawn) {
-    return drawn.error();
-  }
-  render::Panel panel{std::move(drawn).value(), heading};
-  render::Annotation words;
-  words.status = status;
-  words.headlines = {{length_text(now.deepest), "deepest penetration",
-                      now.deepest > kShownDepth ? render::palette::kTrouble : render::palette::kGood}};
-  words.sparkline = {depths, depths.size() - 1, "deepest penetration", full_scale, length_text(full_scale)};
-  render::annotate(panel.image, words);
-  return panel;
+  half.curve = {depths, depths.size() - 1, "deepest penetration", full_scale, length_text(full_scale)};
+  return half;
 }
 
 /// Runs both worlds, drawing as they go. @return how many frames there are.
@@ -365,26 +346,23 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
   DemoWorld guarded(plan, SolverKind::exact);
   RollbackStepper stepper(guarded.bullet(), guarded.solver());
   const render::Size whole{options.width, options.height};
-  Stage stage(renderer, plan, whole, 2);
-  Stage close_up(renderer, plan, whole, 3);
-  std::optional<render::VideoWriter> film;
-  if (options.video) {
-    auto opened = render::VideoWriter::open(folder / "rollback.mp4", whole, kFramesPerSecond);
-    if (!opened) {
-      return opened.error();
-    }
-    film = std::move(opened).value();
+  CloseUp close_up(renderer, whole);
+  DuelPlan duel{folder,     "rollback",  plan.title,   "below: penetration at the end of the step", whole, {},
+                {-102, 14}, kShownDepth, options.video};
+  duel.view.include(plan.view_lower);
+  duel.view.include(plan.view_upper);
+  auto opened = DuelFilm::open(duel, renderer);
+  if (!opened) {
+    return opened.error();
   }
+  DuelFilm film = std::move(opened).value();
   CsvFile csv(folder / "rollback.csv",
               "step,time_s,plain_deepest_m,rollback_deepest_m,plain_kinetic_energy_J,rollback_kinetic_energy_J");
   // The scale of the sparkline stays put: the smallest thrown body.
   const double full_scale = 0.3;
-  std::filesystem::create_directories(folder / "frames");
   Progress progress("rollback", steps);
   std::vector<double> plain_depths;
   std::vector<double> guarded_depths;
-  std::vector<render::Panel> strip;
-  int frames = 0;
   for (int i = 0; i <= steps && !interrupted(); ++i) {
     const std::size_t known = course.impacts.size();
     if (i > 0) {
@@ -399,32 +377,20 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
     guarded_depths.push_back(right.deepest);
     csv.row({static_cast<double>(i), i * step, left.deepest, right.deepest, left.kinetic_energy, right.kinetic_energy});
     const std::string status = fmt::format("{:.1f} ms   step {}", 1e3 * i * step, i);
-    auto first = draw_half(plain, left, plain_depths, full_scale, "plain steps", status, stage);
-    if (!first) {
-      return first.error();
-    }
-    auto second = draw_half(guarded, right, guarded_depths, full_scale, "taken back to first contact", status, stage);
-    if (!second) {
-      return second.error();
-    }
-    const render::Panel panels[] = {std::move(first).value(), std::move(second).value()};
+    const Half first = half_of(plain, left, plain_depths, full_scale, "plain steps", status);
+    const Half second = half_of(guarded, right, guarded_depths, full_scale, "taken back to first contact", status);
     const std::string said = fmt::format("penetration at the end of the step {} / {}", length_text(left.deepest),
                                          length_text(right.deepest));
-    const render::Image picture = render::side_by_side(panels, plan.title, said, whole);
-    const auto written = render::write_png(picture, folder / "frames" / fmt::format("rollback_{:04d}.png", i));
-    if (!written) {
-      return written.error();
-    }
     const bool telling = course.impacts.size() > known || left.deepest > 10 * kShownDepth;
-    for (int k = 0; film && k < (telling ? kFramesPerImpact : kFramesPerStep); ++k) {
-      const auto added = film->add(picture);
-      if (!added) {
-        return added.error();
-      }
+    const auto added = film.add_frame(first, second, said, telling ? kFramesPerImpact : kFramesPerStep);
+    if (!added) {
+      return added.error();
     }
-    ++frames;
-    if ((telling || i == 0) && strip.size() < 6) {
-      strip.push_back({render::side_by_side(panels, "", said, whole), fmt::format("{:.0f} ms", 1e3 * i * step)});
+    if ((telling || i == 0) && film.num_moments() < 6) {
+      const auto kept = film.add_moment(first, second, fmt::format("{:.0f} ms", 1e3 * i * step));
+      if (!kept) {
+        return kept.error();
+      }
     }
     for (std::size_t k = known; k < course.impacts.size(); ++k) {
       const auto triptych = draw_triptych(guarded, course.impacts[k], static_cast<int>(k) + 1, close_up, whole, folder);
@@ -437,17 +403,7 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
     }
     progress.show(i);
   }
-  const auto strip_written = render::write_png(render::film_strip(strip, plan.title), folder / "rollback_strip.png");
-  if (!strip_written) {
-    return strip_written.error();
-  }
-  if (film) {
-    const auto finished = film->finish();
-    if (!finished) {
-      return finished.error();
-    }
-  }
-  return frames;
+  return film.finish();
 }
 
 }  // namespace
@@ -459,11 +415,8 @@ int run_rollback(const DemoOptions& options) {
     report_failure(kind.error());
     return kDemoBadUsage;
   }
-  const auto folder = open_output_folder(options, "rollback");
-  if (!folder) {
-    report_failure(folder.error());
-    return kDemoBadUsage;
-  }
+  std::filesystem::path folder;
+  if (const int code = open_output_folder(options, "rollback", folder); code != kDemoDone) return code;
   auto renderer = render::Renderer::create();
   if (!renderer) {
     return report_failure(renderer.error());
@@ -473,12 +426,12 @@ int run_rollback(const DemoOptions& options) {
   const scenes::World plan = scenes::fast_throws(options.seed);
   Course course;
   const auto frames =
-      run_course(plan, *kind, options.steps > 0 ? options.steps : plan.steps, options, *folder, device, course);
+      run_course(plan, *kind, options.steps > 0 ? options.steps : plan.steps, options, folder, device, course);
   if (!frames) {
     return report_failure(frames.error());
   }
   print_headline(course);
-  fmt::print("Pictures, figures and films: {}\n", folder->string());
+  fmt::print("Pictures, figures and films: {}\n", folder.string());
   return interrupted() ? kDemoInterrupted : kDemoDone;
 }
 

@@ -10,20 +10,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "pd/render/annotation.hpp"
-#include "pd/render/chart.hpp"
-#include "pd/render/composition.hpp"
 #include "pd/render/renderer.hpp"
-#include "pd/render/video.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
+#include "support/duel.hpp"
 
 namespace pd::demo {
 
 namespace {
 
-constexpr int kFramesPerSecond = 30;
 /// When the frames of the strip are taken, as shares of the whole: most happens at the start.
 constexpr std::array<double, 6> kTellingShares{0, 0.06, 0.14, 0.3, 0.6, 1};
 /// Depths below this are not worth an arrow.
@@ -118,38 +114,26 @@ std::string statement(const Run& run, std::size_t step) {
   const std::string depth = fmt::format("penetration {} / {}", length_text(first.deepest), length_text(second.deepest));
   return run.plan.should_stand ? fmt::format("{}      moved from the start {} / {}", depth, length_text(first.drift),
                                              length_text(second.drift))
-                               : fmt::format("{}      kinetic energy {:.2g} / {:.2g} µJ", depth,
-                                             1e6 * first.kinetic_energy, 1e6 * second.kinetic_energy);
+                               : fmt::format("{}      kinetic energy {} / {}", depth, energy_text(first.kinetic_energy),
+                                             energy_text(second.kinetic_energy));
 }
 
-Expected<render::Image> draw_frame(const Run& run, std::size_t frame, render::Renderer& renderer,
-                                   const render::Camera& camera, render::Size whole, double full_scale,
-                                   const std::string& title) {
+/// One of the two worlds at one of its frames.
+Half half_of(const Contender& contender, const Run& run, std::size_t frame, double full_scale) {
   const std::size_t step = run.frame_steps[frame];
-  std::vector<render::Panel> panels;
-  for (const auto& contender : run.contenders) {
-    const Measurement& now = contender->history[step];
-    const render::Size size = render::panel_size(whole, static_cast<int>(run.contenders.size()));
-    auto drawn = renderer.draw(contender->frames[frame], camera, size);
-    if (!drawn) {
-      return drawn.error();
-    }
-    render::Panel panel{std::move(drawn).value(), std::string(describe(contender->kind))};
-    render::Annotation words;
-    words.status = fmt::format("{:.2f} s   step {}", static_cast<double>(step) / run.plan.steps_per_second, step);
-    words.headlines = {{length_text(now.deepest), "deepest penetration",
-                        now.deepest > kShownDepth ? render::palette::kTrouble : render::palette::kGood}};
-    for (const Measurement& m : contender->history) {
-      words.sparkline.values.push_back(m.deepest);
-    }
-    words.sparkline.now = step;
-    words.sparkline.meaning = "deepest penetration";
-    words.sparkline.full_scale = full_scale;
-    words.sparkline.full_scale_text = length_text(full_scale);
-    render::annotate(panel.image, words);
-    panels.push_back(std::move(panel));
+  Half half;
+  half.scene = contender.frames[frame];
+  half.depth = contender.history[step].deepest;
+  half.heading = std::string(describe(contender.kind));
+  half.status = fmt::format("{:.2f} s   step {}", static_cast<double>(step) / run.plan.steps_per_second, step);
+  for (const Measurement& m : contender.history) {
+    half.curve.values.push_back(m.deepest);
   }
-  return render::side_by_side(panels, title, statement(run, step), whole);
+  half.curve.now = step;
+  half.curve.meaning = "deepest penetration";
+  half.curve.full_scale = full_scale;
+  half.curve.full_scale_text = length_text(full_scale);
+  return half;
 }
 
 /// Steps both worlds together and keeps what each frame will show.
@@ -182,72 +166,50 @@ void simulate(Run& run, int steps) {
 
 Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::filesystem::path& folder,
                        render::Renderer& renderer) {
-  const render::Size whole{options.width, options.height};
-  const render::Size panel = render::panel_size(whole, static_cast<int>(run.contenders.size()));
-  render::Box view;
-  view.include(run.plan.view_lower);
-  view.include(run.plan.view_upper);
-  const render::Camera camera = render::frame_box(view, panel, {-62, 16});
+  DuelPlan plan{folder,
+                run.plan.name,
+                run.plan.title,
+                "below: deepest penetration of any two bodies",
+                {options.width, options.height},
+                {},
+                {-62, 16},
+                kShownDepth,
+                options.video};
+  plan.view.include(run.plan.view_lower);
+  plan.view.include(run.plan.view_upper);
+  auto opened = DuelFilm::open(plan, renderer);
+  if (!opened) {
+    return opened.error();
+  }
+  DuelFilm film = std::move(opened).value();
   double full_scale = 1e-4;
   for (const auto& contender : run.contenders) {
     full_scale = std::max(full_scale, contender->deepest());
   }
-  std::optional<render::VideoWriter> film;
-  if (options.video) {
-    auto opened = render::VideoWriter::open(folder / (run.plan.name + ".mp4"), whole, kFramesPerSecond);
-    if (!opened) {
-      return opened.error();
-    }
-    film = std::move(opened).value();
-  }
   const int frames = static_cast<int>(run.frame_steps.size());
-  std::vector<render::Panel> strip;
-  std::array<int, 6> telling{};
-  for (int i = 0; i < 6; ++i) {
+  std::array<int, kTellingShares.size()> telling{};
+  for (std::size_t i = 0; i < telling.size(); ++i) {
     telling[i] = static_cast<int>(kTellingShares[i] * (frames - 1));
   }
   Progress progress(run.plan.name + ": drawing", frames);
-  std::filesystem::create_directories(folder / "frames");
   for (int i = 0; i < frames && !interrupted(); ++i) {
-    auto drawn = draw_frame(run, static_cast<std::size_t>(i), renderer, camera, whole, full_scale, run.plan.title);
-    if (!drawn) {
-      return drawn.error();
-    }
-    const render::Image picture = std::move(drawn).value();
-    const auto written = render::write_png(picture, folder / "frames" / fmt::format("{}_{:04d}.png", run.plan.name, i));
-    if (!written) {
-      return written.error();
-    }
-    if (film) {
-      const auto added = film->add(picture);
-      if (!added) {
-        return added.error();
-      }
+    const auto frame = static_cast<std::size_t>(i);
+    const Half left = half_of(*run.contenders[0], run, frame, full_scale);
+    const Half right = half_of(*run.contenders[1], run, frame, full_scale);
+    const auto added = film.add_frame(left, right, statement(run, run.frame_steps[frame]));
+    if (!added) {
+      return added.error();
     }
     if (std::find(telling.begin(), telling.end(), i) != telling.end()) {
-      const double seconds = static_cast<double>(run.frame_steps[i]) / run.plan.steps_per_second;
-      auto untitled = draw_frame(run, static_cast<std::size_t>(i), renderer, camera, whole, full_scale, "");
-      if (!untitled) {
-        return untitled.error();
+      const double seconds = static_cast<double>(run.frame_steps[frame]) / run.plan.steps_per_second;
+      const auto kept = film.add_moment(left, right, fmt::format("{:.2f} s", seconds));
+      if (!kept) {
+        return kept.error();
       }
-      strip.push_back({std::move(untitled).value(), fmt::format("{:.2f} s", seconds)});
     }
     progress.show(i + 1);
   }
-  if (!strip.empty()) {
-    const auto written =
-        render::write_png(render::film_strip(strip, run.plan.title), folder / (run.plan.name + "_strip.png"));
-    if (!written) {
-      return written.error();
-    }
-  }
-  if (film) {
-    const auto finished = film->finish();
-    if (!finished) {
-      return finished.error();
-    }
-  }
-  return frames;
+  return film.finish();
 }
 
 void print_headline(const Run& run) {
@@ -274,11 +236,8 @@ int run_stacking(const DemoOptions& options) {
   // The rival of a pdepth solver is Bullet's EPA; Bullet's solvers are shown against the exact one.
   const bool ours = *first == SolverKind::exact || *first == SolverKind::approximate;
   const SolverKind second = ours ? SolverKind::bullet_epa : SolverKind::exact;
-  const auto folder = open_output_folder(options, "stacking");
-  if (!folder) {
-    report_failure(folder.error());
-    return kDemoBadUsage;
-  }
+  std::filesystem::path folder;
+  if (const int code = open_output_folder(options, "stacking", folder); code != kDemoDone) return code;
   auto renderer = render::Renderer::create();
   if (!renderer) {
     return report_failure(renderer.error());
@@ -292,22 +251,22 @@ int run_stacking(const DemoOptions& options) {
     run.contenders.push_back(std::make_unique<Contender>(plan, *first));
     run.contenders.push_back(std::make_unique<Contender>(plan, second));
     simulate(run, options.steps > 0 ? options.steps : plan.steps);
-    write_csv(run, *folder);
+    write_csv(run, folder);
     figures.push_back(summary(run));
-    if (!write_text(*folder / "stacking.json", figures.dump(2) + "\n")) {
-      return report_failure({ErrorCode::bad_value, "stacking.json cannot be written", folder->string()});
+    if (!write_text(folder / "stacking.json", figures.dump(2) + "\n")) {
+      return report_failure({ErrorCode::bad_value, "stacking.json cannot be written", folder.string()});
     }
-    const auto drawn = draw_run(run, options, *folder, device);
+    const auto drawn = draw_run(run, options, folder, device);
     if (!drawn) {
       return report_failure(drawn.error());
     }
     print_headline(run);
     if (interrupted()) {
-      fmt::print(stderr, "pdepth: stopped; what was done is in {}\n", folder->string());
+      fmt::print(stderr, "pdepth: stopped; what was done is in {}\n", folder.string());
       return kDemoInterrupted;
     }
   }
-  fmt::print("Pictures, figures and films: {}\n", folder->string());
+  fmt::print("Pictures, figures and films: {}\n", folder.string());
   return kDemoDone;
 }
 

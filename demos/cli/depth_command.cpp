@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +38,7 @@ struct DepthArguments {
   std::string pose_a;
   std::string pose_b;
   std::string method = "auto";
+  double delta = 0.25;
   std::string picture;
   std::string trace;
   bool json = false;
@@ -75,10 +79,30 @@ Pose parse_pose(const std::string& text, const std::string& option) {
   return *pose;
 }
 
+constexpr Method kMethods[] = {Method::automatic,     Method::expansion, Method::overlay,
+                               Method::decomposition, Method::shallow,   Method::grid};
+
+std::vector<std::string> method_words() {
+  std::vector<std::string> words;
+  for (const Method method : kMethods) words.emplace_back(to_string(method));
+  return words;
+}
+
+/// Requires one of `method_words`.
 Method parse_method(const std::string& word) {
-  if (word == "expansion") return Method::expansion;
-  if (word == "overlay") return Method::overlay;
-  return Method::automatic;
+  return *std::find_if(std::begin(kMethods), std::end(kMethods), [&](Method m) { return to_string(m) == word; });
+}
+
+/// The exact methods are within every delta.
+DepthSettings settings_of(const DepthArguments& arguments) {
+  DepthSettings settings{.method = parse_method(arguments.method)};
+  if (settings.method == Method::grid || settings.method == Method::shallow) settings.delta = arguments.delta;
+  return settings;
+}
+
+/// The command writes one format, whatever the file is called.
+std::string refuse_other_pictures(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".png" ? "" : file + ": pictures are written as PNG: name it *.png";
 }
 
 // ---- words for people --------------------------------------------------------------------------------------------
@@ -206,9 +230,7 @@ int run_depth(const DepthArguments& arguments) {
     query::SearchRecorder recorder(pair, arguments.method);
     if (!arguments.trace.empty()) observe_searches(scratch, &recorder);
     const query::Stopwatch watch;
-    const PenetrationDepth result =
-        penetration_depth(pair.posed_a(), pair.posed_b(), scratch,
-                          {.method = parse_method(arguments.method), .bracket = Bracket::tightest});
+    const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, settings_of(arguments));
     const std::int64_t nanoseconds = watch.nanoseconds();
     if (!arguments.trace.empty()) {
       recorder.add_answer(result, pair, nanoseconds);
@@ -242,9 +264,13 @@ void add_depth_command(CLI::App& app, Action& action) {
   command->add_option("--pose-a", arguments->pose_a, "Where A stands [the identity]");
   command->add_option("--pose-b", arguments->pose_b, "Where B stands [the identity]");
   command->add_option("--method", arguments->method, "Engine")
-      ->check(CLI::IsMember({"auto", "expansion", "overlay"}))
+      ->check(CLI::IsMember(method_words()))
       ->capture_default_str();
-  command->add_option("--picture", arguments->picture, "Draw the pair and its Minkowski difference as a PNG");
+  command->add_option("--delta", arguments->delta, "grid: relative error; shallow: balance of rays and facets")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  command->add_option("--picture", arguments->picture, "Draw the pair and its Minkowski difference as a PNG")
+      ->check(refuse_other_pictures, "FILE.png");
   command->add_option("--trace", arguments->trace,
                       "Write the search step by step, as JSON lines (`pdepth demo difference --trace` draws them)");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");

@@ -21,23 +21,25 @@ void on_interrupt(int signal) {
 
 }  // namespace
 
-Expected<std::filesystem::path> open_output_folder(const DemoOptions& options, std::string_view demo) {
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path("pdepth_out") / std::string(demo) : options.out;
+int open_output_folder(const DemoOptions& options, std::string_view demo, std::filesystem::path& folder) {
+  folder = options.out.empty() ? std::filesystem::path("pdepth_out") / std::string(demo) : options.out;
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) {
-    return Error{ErrorCode::bad_value, folder.string() + " cannot be made: " + failure.message(), "--out"};
+    fmt::print(stderr, "pdepth: --out: {} cannot be made: {}\n", folder.string(), failure.message());
+    return kDemoFailed;
   }
   const bool empty = std::filesystem::is_empty(folder, failure);
   if (failure) {
-    return Error{ErrorCode::bad_value, folder.string() + " cannot be read: " + failure.message(), "--out"};
+    fmt::print(stderr, "pdepth: --out: {} cannot be read: {}\n", folder.string(), failure.message());
+    return kDemoFailed;
   }
   if (!empty && !options.force) {
-    return Error{ErrorCode::bad_value,
-                 folder.string() + " holds files already: name another folder, or replace them with --force", "--out"};
+    fmt::print(stderr, "pdepth: --out: {} holds files already: name another folder, or replace them with --force\n",
+               folder.string());
+    return kDemoBadUsage;
   }
-  return folder;
+  return kDemoDone;
 }
 
 void note_interrupts() {
@@ -112,26 +114,38 @@ bool write_text(const std::filesystem::path& path, std::string_view text) {
   return std::fclose(file) == 0 && written;
 }
 
+namespace {
+
+struct Unit {
+  double size;
+  const char* name;
+};
+
+/// Three digits of a value in a unit.
+std::string three_digits(double value, const Unit& unit) {
+  const double scaled = value / unit.size;
+  const int digits = std::abs(scaled) >= 100 ? 0 : std::abs(scaled) >= 10 ? 1 : std::abs(scaled) >= 1 ? 2 : 3;
+  return fmt::format("{:.{}f} {}", scaled, digits, unit.name);
+}
+
+}  // namespace
+
 std::string length_text(double metres) {
-  struct Unit {
-    double size;
-    const char* name;
-  };
   const double magnitude = std::abs(metres);
-  if (magnitude < 5e-10) {
-    return "0 mm";
-  }
-  Unit unit{1, "m"};
-  if (magnitude < 1e-5) {
-    unit = {1e-6, "µm"};
-  } else if (magnitude < 0.1) {
-    unit = {1e-3, "mm"};
-  } else if (magnitude < 1) {
-    unit = {1e-2, "cm"};
-  }
-  const double value = metres / unit.size;
-  const int digits = std::abs(value) >= 100 ? 0 : std::abs(value) >= 10 ? 1 : std::abs(value) >= 1 ? 2 : 3;
-  return fmt::format("{:.{}f} {}", value, digits, unit.name);
+  if (magnitude < 5e-10) return "0 mm";
+  if (magnitude < 1e-5) return three_digits(metres, {1e-6, "µm"});
+  if (magnitude < 0.1) return three_digits(metres, {1e-3, "mm"});
+  if (magnitude < 1) return three_digits(metres, {1e-2, "cm"});
+  return three_digits(metres, {1, "m"});
+}
+
+std::string energy_text(double joules) {
+  const double magnitude = std::abs(joules);
+  if (magnitude < 5e-10) return "0 J";
+  if (magnitude < 1e-3) return three_digits(joules, {1e-6, "µJ"});
+  if (magnitude < 1) return three_digits(joules, {1e-3, "mJ"});
+  if (magnitude < 1e3) return three_digits(joules, {1, "J"});
+  return three_digits(joules, {1e3, "kJ"});
 }
 
 int report_failure(const Error& error) {

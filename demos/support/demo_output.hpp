@@ -14,9 +14,10 @@
 
 namespace pd::demo {
 
-/// Makes the demo's folder ("pdepth_out/NAME" unless told otherwise).
-/// @return its path; ErrorCode::bad_value where it cannot be made, or holds files and `options.force` is not set.
-[[nodiscard]] Expected<std::filesystem::path> open_output_folder(const DemoOptions& options, std::string_view demo);
+/// Makes the demo's folder ("pdepth_out/NAME" unless told otherwise) and says on stderr why it could not.
+/// @return kDemoDone; kDemoFailed where it cannot be made or read; kDemoBadUsage where it holds files and
+/// `options.force` is not set.
+[[nodiscard]] int open_output_folder(const DemoOptions& options, std::string_view demo, std::filesystem::path& folder);
 
 /// From now on Ctrl-C and SIGTERM are only noted; a second one ends the program.
 void note_interrupts();
@@ -58,8 +59,11 @@ class CsvFile {
 /// @return false where the file cannot be written.
 bool write_text(const std::filesystem::path& path, std::string_view text);
 
-/// A length with a fitting unit and three digits: "1.24 mm", "0.31 um".
+/// A length with a fitting unit and three digits: "1.24 mm", "0.310 µm".
 [[nodiscard]] std::string length_text(double metres);
+
+/// An energy with a fitting unit and three digits: "7.03 mJ", "1.60 µJ".
+[[nodiscard]] std::string energy_text(double joules);
 
 /// Says on stderr what went wrong. @return kDemoFailed.
 int report_failure(const Error& error);

@@ -9,7 +9,9 @@
 #include <chrono>
 
 #include "pd/bullet/install.hpp"
+#include "pd/bullet/pair_answer.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_cache.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/render/mesh.hpp"

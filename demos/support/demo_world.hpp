@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pd/bullet/penetration_depth_solver.hpp"
+#include "pd/depth/depth_answer.hpp"
 #include "pd/numeric/expected.hpp"
 #include "pd/render/scene.hpp"
 #include "scenes/worlds.hpp"

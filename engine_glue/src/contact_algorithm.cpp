@@ -125,9 +125,9 @@ void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
 btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                                              const btCollisionObjectWrapper* a,
                                                                              const btCollisionObjectWrapper* b) {
-  const auto& takes_pair = installation.core().settings.takes_pair;
-  if (takes_pair && installation.dispatcher() != nullptr &&
-      !takes_pair(*a->getCollisionObject(), *b->getCollisionObject())) {
+  const BulletSolverSettings& settings = installation.core().settings;
+  if (settings.takes_pair && installation.dispatcher() != nullptr &&
+      !settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user)) {
     const int type_a = a->getCollisionShape()->getShapeType();
     const int type_b = b->getCollisionShape()->getShapeType();
     btCollisionConfiguration* configuration = installation.dispatcher()->getCollisionConfiguration();

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "installation.hpp"
+#include "pd/bullet/pair_answer.hpp"
 #include "solver_core.hpp"
 
 namespace pd {
@@ -19,15 +20,16 @@ void keep_for_ever(std::unique_ptr<detail::SolverCore> core) {
 
 }  // namespace
 
-void BulletSolverSettings::print_warning(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+void BulletSolverSettings::print_warning(const char* line, void* /*user*/) { std::fprintf(stderr, "%s\n", line); }
 
 BulletPenetrationDepthSolver::BulletPenetrationDepthSolver(const BulletSolverSettings& settings)
-    : core_(std::make_unique<detail::SolverCore>(settings)) {}
+    : core_(new detail::SolverCore(settings)) {}
 
 BulletPenetrationDepthSolver::~BulletPenetrationDepthSolver() {
-  if (core_->installed()) {
-    core_->close();
-    keep_for_ever(std::move(core_));
+  std::unique_ptr<detail::SolverCore> core(core_);
+  if (core->installed()) {
+    core->close();
+    keep_for_ever(std::move(core));
   }
 }
 

@@ -8,6 +8,8 @@
 #include "cached_shape.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_cache.hpp"
+#include "pd/contact/time_of_impact.hpp"
 
 namespace pd {
 

@@ -94,9 +94,10 @@ void SolverCore::warn(const btConvexShape& shape, const Error& refusal) {
   if ((warned_.fetch_or(bit, std::memory_order_relaxed) & bit) != 0 || !settings.warning) {
     return;
   }
-  settings.warning(
+  const std::string line =
       "pdepth: " + refusal.where + ": " + refusal.message +
-      (refusal.code == ErrorCode::unsupported ? ". Bullet's own solver answers for it." : ". No contacts."));
+      (refusal.code == ErrorCode::unsupported ? ". Bullet's own solver answers for it." : ". No contacts.");
+  settings.warning(line.c_str(), settings.user);
 }
 
 bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,

@@ -13,6 +13,7 @@
 
 #include "pair_registry.hpp"
 #include "pd/bullet/penetration_depth_solver.hpp"
+#include "pd/bullet/shape_cache.hpp"
 #include "thread_buffers.hpp"
 
 class btCollisionDispatcher;

@@ -5,9 +5,28 @@ include(CMakePackageConfigHelpers)
 set(PD_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/pdepth)
 set(PD_CMAKE_SOURCE_DIR ${CMAKE_CURRENT_LIST_DIR})
 
+# pd_add_library(<target> <sources>...): static, or with BUILD_SHARED_LIBS shared: then its file carries the version under which
+# binaries stay compatible (0.x: the minor one) and exports namespace pd alone, without pd::detail. The archive
+# <target>_internals holds the same objects for tests of internals; without BUILD_SHARED_LIBS it is the library itself.
+function(pd_add_library target)
+  if(NOT BUILD_SHARED_LIBS)
+    add_library(${target} STATIC ${ARGN})
+    add_library(${target}_internals ALIAS ${target})
+    return()
+  endif()
+  add_library(${target} SHARED ${ARGN})
+  set(exports ${PD_CMAKE_SOURCE_DIR}/exports.map)
+  set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} DEFINE_SYMBOL ""
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LINK_DEPENDS ${exports})
+  target_link_options(${target} PRIVATE LINKER:--version-script=${exports} LINKER:--no-undefined)
+  add_library(${target}_internals STATIC $<TARGET_OBJECTS:${target}>)
+  target_link_libraries(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
+  target_include_directories(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
+endfunction()
+
 # pd_install_component(<target> PC_NAME <name> PC_REQUIRES <modules> DESCRIPTION <text> [PC_LIBS <flags>])
 #
-# The libraries are static, so what they need privately stands under Requires and Libs too: `pkg-config --libs` without
+# Static libraries need what they use privately, too: it stands under Requires and Libs, since `pkg-config --libs` without
 # --static has to be enough.
 function(pd_install_component target)
   cmake_parse_arguments(arg "" "PC_NAME;PC_REQUIRES;PC_LIBS;DESCRIPTION" "" ${ARGN})
@@ -17,7 +36,8 @@ function(pd_install_component target)
   endif()
   get_target_property(library ${target} OUTPUT_NAME)
 
-  install(TARGETS ${target} EXPORT pdepth-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component})
+  install(TARGETS ${target} EXPORT pdepth-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${component} FILES_MATCHING PATTERN "*.hpp")
   install(EXPORT pdepth-${component} NAMESPACE pdepth:: FILE pdepth-${component}-targets.cmake
           DESTINATION ${PD_INSTALL_CMAKEDIR} COMPONENT ${component})

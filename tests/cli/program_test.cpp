@@ -225,5 +225,24 @@ TEST_F(Program, SimplifyEnclosesTheScanOrIsEnclosed) {
   EXPECT_EQ(run("simplify cloud.obj -o nowhere/x.obj").status, 1);
 }
 
+TEST_F(Program, EveryMethodAnswersThePairOfPolytopes) {
+  for (const char* method : {"auto", "expansion", "overlay", "decomposition", "shallow", "grid"}) {
+    const Outcome outcome = run(std::string("depth cube.obj spike.off --json --method ") + method);
+    EXPECT_EQ(outcome.status, 0) << method << ": " << outcome.err;
+    const auto answer = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(answer["class"], "overlapping") << method;
+    EXPECT_LE(double(answer["lower"]), 0.5 * (1 + 0x1p-40)) << method;
+    EXPECT_GE(double(answer["upper"]), 0.5 * (1 - 0x1p-40)) << method;
+  }
+  EXPECT_EQ(run("depth cube.obj spike.off --method guess").status, 2);
+}
+
+TEST_F(Program, PicturesAreNamedForWhatTheyAre) {
+  const Outcome outcome = run("depth cube.obj spike.off --picture pair.jpg");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("*.png"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pair.jpg"));
+}
+
 }  // namespace
 }  // namespace pd::test

@@ -101,6 +101,15 @@ TEST_F(Demos, OutputIsNotOverwrittenUnasked) {
   EXPECT_TRUE(fs::exists(folder_ / "mine.txt"));
 }
 
+TEST_F(Demos, AFolderThatCannotBeMadeIsNoBadUsage) {
+  // README's table: 1, the work could not be finished (output that cannot be written).
+  fs::create_directories(folder_.parent_path());
+  std::ofstream(folder_) << "a file stands where the folder should be";
+  EXPECT_EQ(run("stacking --steps 8"), 1);
+  EXPECT_EQ(run("agarwal"), 1);
+  fs::remove(folder_);
+}
+
 TEST_F(Demos, InterruptLeavesWhatIsDone) {
   const pid_t child = fork();
   if (child == 0) {

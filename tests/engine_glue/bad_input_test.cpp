@@ -6,6 +6,8 @@
 
 #include "engine_glue/bullet_world.hpp"
 #include "pd/bullet/install.hpp"
+#include "pd/bullet/pair_answer.hpp"
+#include "pd/bullet/shape_cache.hpp"
 #include "scenes/bullet/bullet_scene.hpp"
 #include "scenes/contact_worlds.hpp"
 
@@ -25,7 +27,8 @@ class Neighbour : public ::testing::Test {
   }
   BulletSolverSettings quiet() {
     BulletSolverSettings settings;
-    settings.warning = [this](const std::string& line) { warnings.push_back(line); };
+    settings.warning = [](const char* line, void* user) { static_cast<Neighbour*>(user)->warnings.emplace_back(line); };
+    settings.user = this;
     return settings;
   }
   void expect_rest(int steps = 60) {

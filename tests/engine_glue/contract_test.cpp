@@ -13,8 +13,10 @@
 #include <random>
 #include <thread>
 
+#include "pd/bullet/pair_answer.hpp"
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_cache.hpp"
 
 namespace {
 

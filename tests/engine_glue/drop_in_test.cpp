@@ -215,9 +215,11 @@ TEST(DropIn, ForeignConfigurationsAreRefused) {
 TEST(DropIn, PairsThatAreOptedOutGoToBullet) {
   const btCollisionObject* excluded = nullptr;
   BulletSolverSettings settings;
-  settings.takes_pair = [&](const btCollisionObject& a, const btCollisionObject& b) {
-    return &a != excluded && &b != excluded;
+  settings.takes_pair = [](const btCollisionObject& a, const btCollisionObject& b, void* user) {
+    const auto* one = *static_cast<const btCollisionObject* const*>(user);
+    return &a != one && &b != one;
   };
+  settings.user = &excluded;
   BulletPenetrationDepthSolver solver(settings);
   BulletWorld scene;
   install(scene.world(), solver);
@@ -239,7 +241,10 @@ TEST(DropIn, PairsThatAreOptedOutGoToBullet) {
 TEST(DropIn, ShapesWithoutExactFormGoToBulletWithOneWarning) {
   std::vector<std::string> lines;
   BulletSolverSettings settings;
-  settings.warning = [&](const std::string& line) { lines.push_back(line); };
+  settings.warning = [](const char* line, void* user) {
+    static_cast<std::vector<std::string>*>(user)->emplace_back(line);
+  };
+  settings.user = &lines;
   BulletPenetrationDepthSolver solver(settings);
   BulletWorld scene;
   install(scene.world(), solver);

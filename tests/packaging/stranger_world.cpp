@@ -20,7 +20,7 @@ int main() {
 
   world.addRigidBody(&below);
   world.addRigidBody(&above);
-  for (int step = 0; step < 240; ++step) world.stepSimulation(1.0f / 240);
+  for (int step = 0; step < 240; ++step) world.stepSimulation(1.0f / 240, 0);
   std::printf("%lld exact answers, the die rests at %.2f\n", static_cast<long long>(solver.statistics().calls),
               double(above.getWorldTransform().getOrigin().y()));
 }

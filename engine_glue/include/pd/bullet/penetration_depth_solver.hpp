@@ -7,22 +7,20 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btConvexPenetrationDepthSolver.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
-#include <string>
-
-#include "pd/bullet/shape_cache.hpp"
-#include "pd/contact/manifold.hpp"
-#include "pd/depth/penetration_depth.hpp"
-#include "pd/depth/scratch.hpp"
 
 class btCollisionAlgorithm;
 class btCollisionObject;
 struct btCollisionAlgorithmCreateFunc;
 
 namespace pd {
+
+class BulletShapeCache;
+class WarmCertificate;
+struct BulletPairAnswer;
+struct ContactManifold;
 
 namespace detail {
 class PairRegistry;
@@ -36,17 +34,20 @@ struct BulletSolverSettings {
   /// Asked for shapes that have no exact form (`to_convex_shape` refuses them as unsupported); must outlive the solver
   /// and be safe on the dispatcher's threads. nullptr: Bullet's own EPA. Either way such pairs are counted.
   btConvexPenetrationDepthSolver* fallback = nullptr;
-  /// Told once for each Bullet type without exact form, in one line, from the thread that met it first. Empty: silence.
-  std::function<void(const std::string&)> warning = print_warning;
+  /// Told once for each Bullet type without exact form, in one line, from the thread that met it first. nullptr:
+  /// silence.
+  void (*warning)(const char* line, void* user) = print_warning;
   /// Which pairs of objects the contact algorithm takes, asked when a pair gets its algorithm; the others get the
-  /// algorithm of the dispatcher's own configuration. Empty: all. Pairs that have an algorithm keep it until they part,
-  /// or until `install` is called again.
-  std::function<bool(const btCollisionObject&, const btCollisionObject&)> takes_pair;
+  /// algorithm of the dispatcher's own configuration. nullptr: all. Pairs that have an algorithm keep it until they
+  /// part, or until `install` is called again.
+  bool (*takes_pair)(const btCollisionObject& a, const btCollisionObject& b, void* user) = nullptr;
+  /// Handed to both.
+  void* user = nullptr;
   /// Entries of the shape cache.
   std::size_t cache_capacity = 4096;
 
   /// Writes the line to stderr.
-  static void print_warning(const std::string& line);
+  static void print_warning(const char* line, void* user);
 };
 
 /// What a solver has done so far.
@@ -63,15 +64,6 @@ struct BulletSolverStatistics {
   /// Spent in pairs, from the look-up of their shapes to their answer, over all threads; from a sample of one pair
   /// in 16.
   std::int64_t nanoseconds = 0;
-};
-
-/// One answer about two Bullet shapes, with the bodies that it was made for.
-struct BulletPairAnswer {
-  PenetrationDepth depth;
-  std::shared_ptr<const ConvexShape> shape_a;
-  std::shared_ptr<const ConvexShape> shape_b;
-  Pose pose_a;
-  Pose pose_b;
 };
 
 /// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: each thread inside a call has buffers and counters of
@@ -122,7 +114,7 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
   [[nodiscard]] detail::SolverCore& core() { return *core_; }
 
  private:
-  std::unique_ptr<detail::SolverCore> core_;
+  detail::SolverCore* core_;  ///< owned
 };
 
 }  // namespace pd

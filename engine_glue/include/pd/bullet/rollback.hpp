@@ -11,6 +11,8 @@
 
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/snapshot.hpp"
+#include "pd/depth/depth_answer.hpp"
+#include "pd/depth/scratch.hpp"
 
 namespace pd {
 
