@@ -26,12 +26,12 @@ constexpr std::array kQueries{
     QueryEntry{"decomposition", answer_decomposition},
     QueryEntry{"polygon_depth", answer_polygon_depth},
     QueryEntry{"approx_directional_width", answer_approx_directional_width},
-    QueryEntry{"approx_intersect", refuse_unsupported_query},
-    QueryEntry{"approx_minkowski_sum", refuse_unsupported_query},
+    QueryEntry{"approx_intersect", answer_approx_intersect},
+    QueryEntry{"approx_minkowski_sum", answer_approx_minkowski_sum},
     QueryEntry{"approx_width", answer_approx_width},
     QueryEntry{"approximate", answer_approximate},
     QueryEntry{"epsilon_kernel", answer_epsilon_kernel},
-    QueryEntry{"approx_membership", refuse_unsupported_query},
+    QueryEntry{"approx_membership", answer_approx_membership},
 };
 
 std::string error_answer(std::string_view id_text, const Refusal& refusal) {
@@ -62,10 +62,6 @@ Handler find_handler(const Node& line) {
 }  // namespace
 
 std::span<const QueryEntry> queries() { return kQueries; }
-
-void refuse_unsupported_query(const Node& line, Session& /*session*/, JsonWriter& /*answer*/) {
-  line.at("query").refuse("unsupported", "this query is not answered yet");
-}
 
 std::string answer_line(std::string_view line, Session& session) {
   ParsedLine parsed;

@@ -20,7 +20,7 @@ struct QueryEntry {
   Handler handler;
 };
 
-/// Every query that the protocol names. Those without an engine yet answer `unsupported`.
+/// Every query that the protocol names.
 [[nodiscard]] std::span<const QueryEntry> queries();
 
 void answer_depth(const Node& line, Session& session, JsonWriter& answer);
@@ -36,10 +36,12 @@ void answer_minkowski_difference(const Node& line, Session& session, JsonWriter&
 void answer_width(const Node& line, Session& session, JsonWriter& answer);
 void answer_hierarchy(const Node& line, Session& session, JsonWriter& answer);
 void answer_approx_directional_width(const Node& line, Session& session, JsonWriter& answer);
+void answer_approx_intersect(const Node& line, Session& session, JsonWriter& answer);
+void answer_approx_membership(const Node& line, Session& session, JsonWriter& answer);
+void answer_approx_minkowski_sum(const Node& line, Session& session, JsonWriter& answer);
 void answer_approx_width(const Node& line, Session& session, JsonWriter& answer);
 void answer_approximate(const Node& line, Session& session, JsonWriter& answer);
 void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answer);
 void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer);
-[[noreturn]] void refuse_unsupported_query(const Node& line, Session& session, JsonWriter& answer);
 
 }  // namespace pd::query

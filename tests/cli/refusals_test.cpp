@@ -39,12 +39,6 @@ TEST(Refusals, Queries) {
   });
 }
 
-TEST(Refusals, QueriesOfLaterWork) {
-  for (const char* name : {"approx_intersect", "approx_minkowski_sum", "approx_membership"}) {
-    expect_refusals({{R"({"id":1,"query":")" + std::string(name) + "\"}", "unsupported", "query"}});
-  }
-}
-
 TEST(Refusals, UnknownKeys) {
   expect_refusals({
       {with_more(R"("colour":"red")"), "bad_value", "colour"},

@@ -1,7 +1,10 @@
 #include "pd/dimension/directional_width.hpp"
 
+#include <utility>
+
 #include "dimension/cone_structure.hpp"
 #include "dimension/kernel_structure.hpp"
+#include "dimension/macbeath_structure.hpp"
 #include "dimension/validate.hpp"
 #include "numeric/floating_point_guard.hpp"
 
@@ -25,8 +28,12 @@ Expected<DirectionalWidth<D>> DirectionalWidth<D>::build(const Body<D>& body, do
       }
       r.structure_ = detail::KernelStructure<D>::build(body, epsilon);
       break;
-    case Backend::macbeath:
-      return Error{ErrorCode::unsupported, "the macbeath backend is not built yet", "method"};
+    case Backend::macbeath: {
+      auto structure = detail::macbeath_structure<D>(body, epsilon);
+      if (!structure) return structure.error();
+      r.structure_ = std::move(structure).value();
+      break;
+    }
   }
   return r;
 }

@@ -1,0 +1,192 @@
+/// @file
+/// Queries about several bodies of any dimension, and bodies composed of them: intersection, Minkowski sum, membership.
+#include <array>
+#include <optional>
+
+#include "pd/dimension/approximate_intersection.hpp"
+#include "pd/dimension/approximate_minkowski_sum.hpp"
+#include "protocol/dimension_body.hpp"
+#include "protocol/handlers.hpp"
+#include "protocol/pair_reader.hpp"
+
+namespace pd::query {
+
+namespace {
+
+using dimension::Backend;
+using dimension::ComposedBody;
+using dimension::DirectionalWidth;
+using dimension::Representation;
+using dimension::Side;
+using dimension::Vector;
+
+constexpr int kMaxNesting = 8;
+constexpr std::string_view kCompositions[] = {"sum_of", "hull_of", "intersection_of"};
+
+/// The list of a composed body, and which it is; nothing for a body of points or halfspaces.
+struct Composition {
+  int kind;
+  Node parts;
+};
+
+std::optional<Composition> find_composition(const Node& body) {
+  require_object(body);
+  for (int kind = 0; kind < 3; ++kind) {
+    const auto parts = body.find(kCompositions[kind]);
+    if (!parts) continue;
+    allow_only(body, {kCompositions[kind]});
+    require_array(*parts, "a list of bodies");
+    if (parts->size() == 0) parts->refuse("bad_value", "an empty list of bodies; at least one is needed");
+    return Composition{kind, *parts};
+  }
+  return std::nullopt;
+}
+
+int composed_dimension(const Node& body, const Limits& limits, int nesting = 0) {
+  if (nesting > kMaxNesting) body.refuse("limit_exceeded", "bodies nest at most 8 deep");
+  const auto composition = find_composition(body);
+  if (!composition) return read_dimension(body, limits);
+  const Node first = composition->parts.element(0);
+  return composed_dimension(first, limits, nesting + 1);
+}
+
+/// What the structures inside are built with.
+struct Preparation {
+  double epsilon;
+  Backend backend;
+};
+
+template <int D>
+ComposedBody<D> read_composed(const Node& body, const Limits& limits, const Preparation& preparation, int nesting = 0) {
+  if (nesting > kMaxNesting) body.refuse("limit_exceeded", "bodies nest at most 8 deep");
+  const auto composition = find_composition(body);
+  if (!composition) {
+    if (read_dimension(body, limits) != D) {
+      body.refuse("bad_value", "bodies of one query live in one dimension, here " + std::to_string(D));
+    }
+    const auto structure =
+        DirectionalWidth<D>::build(read_dimension_body<D>(body, limits), preparation.epsilon, preparation.backend);
+    if (!structure) body.refuse(structure.error());
+    Expected<ComposedBody<D>> leaf = ComposedBody<D>::of(*structure);
+    if (!leaf) body.refuse(leaf.error());
+    return *std::move(leaf);
+  }
+  std::vector<ComposedBody<D>> parts;
+  for (std::size_t i = 0; i < composition->parts.size(); ++i) {
+    parts.push_back(read_composed<D>(composition->parts.element(i), limits, preparation, nesting + 1));
+  }
+  Expected<ComposedBody<D>> made = composition->kind == 0   ? ComposedBody<D>::sum_of(std::move(parts))
+                                   : composition->kind == 1 ? ComposedBody<D>::hull_of(std::move(parts))
+                                                            : ComposedBody<D>::intersection_of(std::move(parts));
+  if (!made) body.refuse(made.error());
+  return *std::move(made);
+}
+
+/// "a" and "b", which may be a list.
+template <int D>
+std::vector<ComposedBody<D>> read_all(const Node& line, const Limits& limits, const Preparation& preparation) {
+  std::vector<ComposedBody<D>> bodies = {read_composed<D>(line.at("a"), limits, preparation)};
+  const Node b = line.at("b");
+  if (!b.json().is_array()) {
+    bodies.push_back(read_composed<D>(b, limits, preparation));
+    return bodies;
+  }
+  if (b.size() == 0) b.refuse("bad_value", "an empty list of bodies; at least one is needed");
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    bodies.push_back(read_composed<D>(b.element(i), limits, preparation));
+  }
+  return bodies;
+}
+
+void write_work(const dimension::QueryCounters& counters, JsonWriter& answer) {
+  answer.key("queries").integer(counters.queries).key("nodes_visited").integer(counters.nodes);
+  answer.key("dot_products").integer(counters.dot_products);
+}
+
+}  // namespace
+
+void answer_approx_intersect(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "b", "epsilon", "backend"});
+  const double epsilon = read_epsilon(line);
+  const Backend backend = read_backend(line);
+  for_dimension(composed_dimension(line.at("a"), session.limits), [&]<int D>() {
+    const Stopwatch watch;
+    const auto bodies = read_all<D>(line, session.limits, {epsilon / 4, backend});
+    const std::int64_t prepared = watch.nanoseconds();
+    const auto found = dimension::approximate_intersection<D>(bodies, epsilon);
+    if (!found) line.refuse(found.error());
+    const std::int64_t nanoseconds = watch.nanoseconds() - prepared;
+    answer.key("intersect").boolean(found->intersect);
+    answer.key("stats").begin_object();
+    answer.key("support_calls").integer(found->support_calls).key("cuts").integer(found->cuts);
+    write_work(found->counters, answer);
+    answer.key("build_nanoseconds").integer(prepared).key("nanoseconds").integer(nanoseconds).end_object();
+  });
+}
+
+void answer_approx_membership(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "epsilon", "points", "backend"});
+  const double epsilon = read_epsilon(line);
+  const Backend backend = read_backend(line);
+  const Node a = line.at("a");
+  for_dimension(composed_dimension(a, session.limits), [&]<int D>() {
+    const Node nodes = line.at("points");
+    require_array(nodes, "an array of points");
+    std::vector<Vector<D>> points;
+    for (std::size_t i = 0; i < nodes.size(); ++i) points.push_back(read_row<D>(nodes.element(i)));
+    const Stopwatch watch;
+    const ComposedBody<D> body = read_composed<D>(a, session.limits, {epsilon / 4, backend});
+    const std::int64_t prepared = watch.nanoseconds();
+    std::int64_t supports = 0;
+    answer.key("inside").begin_array();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto found = dimension::approximate_membership<D>(body, points[i], epsilon);
+      if (!found) nodes.element(i).refuse(found.error());
+      answer.boolean(found->intersect);
+      supports += found->support_calls;
+    }
+    const std::int64_t nanoseconds = watch.nanoseconds() - prepared;
+    answer.end_array().key("stats").begin_object();
+    answer.key("support_calls").integer(supports);
+    answer.key("build_nanoseconds").integer(prepared).key("nanoseconds").integer(nanoseconds).end_object();
+  });
+}
+
+void answer_approx_minkowski_sum(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "b", "epsilon", "representation", "side", "backend"});
+  const double epsilon = read_epsilon(line);
+  const Backend backend = read_backend(line);
+  const Representation representation = read_representation(line);
+  Side side = Side::outer;
+  if (const auto node = line.find("side")) {
+    const std::string word = read_string(*node);
+    if (word != "inner" && word != "outer") node->refuse("bad_value", "unknown side; known: inner, outer");
+    if (word == "inner") side = Side::inner;
+  }
+  for_dimension(composed_dimension(line.at("a"), session.limits), [&]<int D>() {
+    const Stopwatch watch;
+    // A quarter of epsilon for sums. Hulls ask for more, by the shape of the whole, which is known once it stands.
+    double share = epsilon / 4;
+    Expected<dimension::ApproximateSum<D>> sum = Error{ErrorCode::bad_value, "", ""};
+    for (int attempt = 0; attempt < 3 && !sum; ++attempt, share /= 8) {
+      const auto whole = ComposedBody<D>::sum_of(read_all<D>(line, session.limits, {share, backend}));
+      if (!whole) line.refuse(whole.error());
+      sum = dimension::approximate_minkowski_sum<D>(*whole, epsilon, representation, side);
+      if (!sum && !(sum.error().code == ErrorCode::bad_value && epsilon >= 1e-6)) break;
+    }
+    if (!sum) line.refuse(sum.error());
+    const std::int64_t nanoseconds = watch.nanoseconds();
+    answer.key(representation == Representation::points ? "points" : "halfspaces").begin_array();
+    for (const Vector<D>& p : sum->body.points) write_row<D>(p, answer);
+    for (const dimension::Halfspace<D>& h : sum->body.halfspaces) write_halfspace<D>(h, answer);
+    answer.end_array();
+    answer.key("side").string(side == Side::outer ? "outer" : "inner");
+    answer.key("stats").begin_object();
+    answer.key("support_calls").integer(sum->support_calls);
+    answer.key("vertices").integer(sum->vertices).key("facets").integer(sum->facets);
+    write_work(sum->counters, answer);
+    answer.key("nanoseconds").integer(nanoseconds).end_object();
+  });
+}
+
+}  // namespace pd::query

@@ -1,0 +1,17 @@
+/// @file
+/// The macbeath backend of directional width queries: the hierarchy of Macbeath regions over a kernel.
+#pragma once
+
+#include <memory>
+
+#include "pd/dimension/directional_width.hpp"
+
+namespace pd::dimension::detail {
+
+/// @param epsilon  in [2e-7, 1): half of it goes into the kernel, half into the hierarchy.
+/// @return bad_value, limit_exceeded ("epsilon").
+template <int D>
+[[nodiscard]] Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body,
+                                                                                    double epsilon);
+
+}  // namespace pd::dimension::detail
