@@ -6,7 +6,7 @@ namespace pd {
 
 void apply_recommended(btContactSolverInfo& info) {
   info.m_numIterations = 30;
-  info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS;
 }
 
 }  // namespace pd

@@ -374,6 +374,7 @@ TEST(DropIn, RecommendedSettings) {
   apply_recommended(info);
   EXPECT_EQ(info.m_numIterations, 30);
   EXPECT_NE(info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS, 0);
+  EXPECT_NE(info.m_solverMode & SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS, 0);
   EXPECT_NE(info.m_solverMode & SOLVER_USE_WARMSTARTING, 0);  // what was on stays on
 }
 
