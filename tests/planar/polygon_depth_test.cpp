@@ -207,6 +207,15 @@ TEST(PolygonDepth, MethodsGiveTheSameBits) {
   }
 }
 
+// A corner of the boundary touches another piece of it in its middle: the face behind is one of its own.
+TEST(PolygonDepth, APinchPartsTwoFaces) {
+  const oracle::Rings p = {{{1, 2}, {4, 0}, {6, 8}, {4, 2}, {3, 4}, {5, 7}}};
+  const oracle::Rings q = {{{0, 0}, {1, 1}, {1, 2}}};
+  for (const PolygonMethod method : {PolygonMethod::implicit, PolygonMethod::explicit_sums}) {
+    EXPECT_EQ(PolygonDifference::of(polygon(p), polygon(q), method)->statistics().loops, 2);
+  }
+}
+
 // The arc at (7, 11) dips into the sum of one triangle on both sides of a vertex of its own that lies outside.
 TEST(PolygonDepth, AnArcCoveredOnBothSidesOfAVertex) {
   const oracle::Rings p = {{{11, 0}, {6, 1}, {0, 7}, {3, 7}, {7, 11}, {5, 7}, {7, 1}, {9, 1}}};

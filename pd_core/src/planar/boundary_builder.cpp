@@ -202,6 +202,7 @@ void BoundaryBuilder::compact() {
     }
   }
   r_.candidates_ = std::move(kept);
+  r_.stretches_ = split_where_touched(r_, r_.stretches_);
   r_.stretches_.shrink_to_fit();
   r_.counts_.sums = static_cast<std::int64_t>(r_.sums_.size());
   r_.num_loops_ = link_loops(r_, r_.stretches_, r_.counts_.reflex_points);

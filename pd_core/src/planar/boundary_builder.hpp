@@ -41,6 +41,10 @@ class BoundaryBuilder {
   Reach reach_;
 };
 
+/// The stretches, split where a point of one lies inside another.
+[[nodiscard]] std::vector<Stretch> split_where_touched(const SumBoundary& boundary,
+                                                       const std::vector<Stretch>& stretches);
+
 /// Links the stretches of a boundary into loops and numbers them, the outer one 0. @return how many there are.
 int link_loops(const SumBoundary& boundary, std::vector<Stretch>& stretches, std::int64_t& reflex_points);
 
