@@ -13,8 +13,6 @@
 
 namespace pd {
 
-enum class PlanarContact : std::uint8_t { separated, touching, overlapping };
-
 /// An edge of R: made of an edge of P, of -Q, or of both where they are parallel; -1 for what has no part in it. The
 /// vertices are those that the edge of the other polygon slides on.
 struct DifferenceEdge {

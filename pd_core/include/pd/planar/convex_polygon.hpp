@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "pd/numeric/expected.hpp"
+#include "pd/planar/contact.hpp"
 
 namespace pd {
-
-/// A point or vector of the plane.
-using Point2 = std::array<double, 2>;
 
 /// Immutable: the vertices counter-clockwise from the lexicographically least, no three on a line.
 class ConvexPolygon {

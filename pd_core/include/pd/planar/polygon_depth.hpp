@@ -15,13 +15,10 @@
 #include <vector>
 
 #include "pd/numeric/expected.hpp"
+#include "pd/planar/contact.hpp"
 #include "pd/planar/polygon.hpp"
 
 namespace pd {
-
-/// Where a placement lies: in R, on its boundary, or outside its closure. Exact.
-enum class PlanarContact { overlapping, touching, separated };
-[[nodiscard]] std::string_view to_string(PlanarContact contact);
 
 enum class PolygonMethod {
   automatic,      ///< implicit where P or Q is convex, else explicit_sums
