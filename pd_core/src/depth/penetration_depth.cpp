@@ -109,7 +109,7 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
   } else if (polytope_a && polytope_b) {
     detail::polytope_depth({polytope_a, polytope_b, &a.pose, &b.pose, margins}, settings, buffers, warm, out);
   } else {
-    detail::smooth_depth(a, b, settings, buffers, out);
+    detail::smooth_depth(a, b, settings, buffers, out, warm);
   }
 }
 

@@ -23,6 +23,16 @@ std::optional<Error> refuse_size(double value, const std::string& name, bool zer
   return std::nullopt;
 }
 
+/// Sizes of curved bodies, whose supports are formulas: brought near 1 they must stay numbers.
+std::optional<Error> refuse_curved_size(double value, const std::string& name) {
+  if (auto refused = refuse_size(value, name)) return refused;
+  if (value >= kMinCurvedSize && value <= kMaxCurvedSize) return std::nullopt;
+  return Error{ErrorCode::out_of_range,
+               number_text(value) + " is not a size of a curved body, which lies in [" + number_text(kMinCurvedSize) +
+                   ", " + number_text(kMaxCurvedSize) + "]",
+               name};
+}
+
 std::optional<Error> refuse_axial(double radius, double half_height, int axis, bool zero_height_allowed) {
   if (auto refused = refuse_size(radius, "radius")) return refused;
   if (auto refused = refuse_size(half_height, "half_height", zero_height_allowed)) return refused;
@@ -44,7 +54,7 @@ Expected<ConvexShape> ConvexShape::sphere(double radius) {
 
 Expected<ConvexShape> ConvexShape::ellipsoid(const Vec3& radii) {
   for (int i = 0; i < 3; ++i) {
-    if (auto refused = refuse_size(radii[i], detail::indexed("radii", i))) return *std::move(refused);
+    if (auto refused = refuse_curved_size(radii[i], detail::indexed("radii", i))) return *std::move(refused);
   }
   return ConvexShape(Core(Ellipsoid{radii}), 0);
 }
@@ -60,11 +70,15 @@ Expected<ConvexShape> ConvexShape::capsule(double radius, double half_height, in
 }
 
 Expected<ConvexShape> ConvexShape::cylinder(double radius, double half_height, int axis) {
+  if (auto refused = refuse_curved_size(radius, "radius")) return *std::move(refused);
+  if (auto refused = refuse_curved_size(half_height, "half_height")) return *std::move(refused);
   if (auto refused = refuse_axial(radius, half_height, axis, false)) return *std::move(refused);
   return ConvexShape(Core(Cylinder{radius, half_height, axis}), 0);
 }
 
 Expected<ConvexShape> ConvexShape::cone(double radius, double half_height, int axis) {
+  if (auto refused = refuse_curved_size(radius, "radius")) return *std::move(refused);
+  if (auto refused = refuse_curved_size(half_height, "half_height")) return *std::move(refused);
   if (auto refused = refuse_axial(radius, half_height, axis, false)) return *std::move(refused);
   return ConvexShape(Core(Cone{radius, half_height, axis}), 0);
 }

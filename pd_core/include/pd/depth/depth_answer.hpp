@@ -63,6 +63,9 @@ struct PenetrationDepth {
   ContactClass contact = ContactClass::separated;
   Method method = Method::automatic;  ///< the engine that answered
   bool warm = false;                  ///< the certificate of an earlier frame held
+  /// False: rounding, or a budget of operations, ended the search with a bracket that is certified but wider than
+  /// asked.
+  bool bracket_reached = true;
 
   double depth = 0;  ///< |translation| up to rounding; 0 unless overlapping
   double lower = 0;  ///< certified: lower <= pi(A, B) <= upper

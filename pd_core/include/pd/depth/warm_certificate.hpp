@@ -9,6 +9,7 @@
 
 #include "pd/numeric/vector.hpp"
 #include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/convex_shape.hpp"
 
 namespace pd {
 
@@ -50,6 +51,14 @@ class WarmCertificate {
     std::vector<float> distances;
     std::vector<float> spreads;
   };
+  /// Of bodies apart, one of them smooth: points of the cores whose differences surround the nearest point of P, each
+  /// in its body's frame.
+  struct SmoothPoints {
+    std::optional<ConvexShape> a, b;  ///< the very shapes: points of others lie anywhere
+    Vec3 on_a[3];
+    Vec3 on_b[3];
+    int count = 0;
+  };
   /// For the engines.
   struct State {
     /// The shapes by content, not by address: the same calls give the same bits wherever memory lies.
@@ -64,6 +73,7 @@ class WarmCertificate {
     // Of bodies apart: the vertices of P round its point nearest to the origin.
     CachedVertex apart[3];
     int apart_count = 0;
+    SmoothPoints smooth;
   };
   [[nodiscard]] State& state() { return state_; }
 

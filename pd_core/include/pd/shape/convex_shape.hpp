@@ -15,6 +15,11 @@
 
 namespace pd {
 
+/// Radii and half heights of ellipsoids, cylinders and cones lie between these: queries about them bring a pair to size
+/// 1 by a power of two, and give the same bits times that power anywhere in between.
+inline constexpr double kMinCurvedSize = 0x1p-900;
+inline constexpr double kMaxCurvedSize = 0x1p900;
+
 /// {x : sum (x_i / radii_i)^2 <= 1}.
 struct Ellipsoid {
   Vec3 radii;
@@ -44,7 +49,8 @@ class ConvexShape {
       : core_(std::move(polytope)) {}
 
   /// Factories refuse sizes that are not finite (`non_finite`), not positive (`bad_value`) or above kMaxCoordinate
-  /// (`out_of_range`); `where` names the parameter ("radius", "radii[1]", "half_height", "axis").
+  /// (curved ones: outside [kMinCurvedSize, kMaxCurvedSize]) (`out_of_range`); `where` names the parameter ("radius",
+  /// "radii[1]", "half_height", "axis").
   static Expected<ConvexShape> sphere(double radius);
   static Expected<ConvexShape> ellipsoid(const Vec3& radii);
   static Expected<ConvexShape> capsule(double radius, double half_height, int axis);

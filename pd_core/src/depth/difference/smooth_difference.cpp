@@ -70,9 +70,14 @@ SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std
 }
 
 DifferenceVertex SmoothDifference::support(const Vec3& direction, const DifferenceVertex*) const {
-  const Vec3 pa = a_.rotation * support_point(*a_.core, -(a_.rotation.transpose() * direction));
-  const Vec3 pb = b_.rotation * support_point(*b_.core, b_.rotation.transpose() * direction) + offset_;
-  points_.push_back({pa, pb});
+  return vertex(support_point(*a_.core, -(a_.rotation.transpose() * direction)),
+                support_point(*b_.core, b_.rotation.transpose() * direction));
+}
+
+DifferenceVertex SmoothDifference::vertex(const Vec3& local_a, const Vec3& local_b) const {
+  const Vec3 pa = a_.rotation * local_a;
+  const Vec3 pb = b_.rotation * local_b + offset_;
+  points_.push_back({pa, pb, local_a, local_b});
   const auto index = static_cast<std::int32_t>(points_.size() - 1);
   return {pb - pa, index, index};
 }

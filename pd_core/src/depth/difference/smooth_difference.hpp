@@ -13,6 +13,8 @@ namespace pd::detail {
 struct PointPair {
   Vec3 a;
   Vec3 b;
+  Vec3 local_a = Vec3::Zero();  ///< in the bodies' frames
+  Vec3 local_b = Vec3::Zero();
 };
 
 /// The same interface as PolytopeDifference; the "ids" of a support are its index in `points`.
@@ -21,6 +23,8 @@ class SmoothDifference {
   /// @param points  buffer, grown by one a support; relative to the translation of A.
   SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points);
 
+  /// The difference of two points of the cores, each in its body's frame.
+  [[nodiscard]] DifferenceVertex vertex(const Vec3& local_a, const Vec3& local_b) const;
   [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const;
   /// A formula is within its error of the maximum wherever it is asked.
   [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {

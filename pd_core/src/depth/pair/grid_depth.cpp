@@ -33,6 +33,7 @@ void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& 
     out.witness_a = crossing_on_a(posed, shooter.corners(), out.normal) - pair.margins.a * out.normal;
     out.witness_b = out.witness_a + out.translation;
   }
+  out.bracket_reached = found.reached;
   out.lower = std::min(out.lower, (found.lower + pair.margins.a + pair.margins.b) * (1 - 0x1p-50));
   out.statistics.support_calls = cores.statistics.support_calls + shooter.support_calls();
   out.statistics.facets_visited = cores.statistics.facets_visited + shooter.shots();
@@ -56,6 +57,7 @@ void smooth_grid(const PosedShape& a, const PosedShape& b, double delta, const D
   shooter.shoot(found.normal);
   out = PenetrationDepth();
   out.contact = ContactClass::overlapping;
+  out.bracket_reached = found.reached;
   out.lower = found.lower;
   out.depth = found.upper;
   out.upper = found.upper * (1 + 0x1p-50);

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "depth/difference/barycentric.hpp"
 #include "depth/distance/gjk_double_double.hpp"
 #include "depth/expansion/expanding_hull.hpp"
 #include "depth/expansion/expanding_polytope.hpp"
+#include "depth/pair/inscribed_balls.hpp"
+#include "depth/pair/scaled_shape.hpp"
+#include "pd/depth/warm_certificate.hpp"
 
 namespace pd::detail {
 
@@ -19,17 +24,27 @@ constexpr double kAbsolute = 1e-12;  ///< of L: where a bracket, and `touching`,
 class SmoothQuery {
  public:
   SmoothQuery(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
-              PenetrationDepth& out)
+              PenetrationDepth& out, WarmCertificate* warm)
       : a_(a),
         b_(b),
         buffers_(buffers),
         out_(out),
         difference_(a, b, buffers.points),
         delta_(settings.delta > 0 ? settings.delta : kDefaultDelta),
-        margin_(a.shape->margin() + b.shape->margin()) {}
+        margin_(a.shape->margin() + b.shape->margin()),
+        warm_(warm) {}
 
   void solve() {
     out_.method = Method::expansion;
+    buffers_.surface.clear();
+    if (!solve_apart_from_memory() && !solve_by_inscribed_balls()) solve_by_expansion();
+    const double lower = out_.contact == ContactClass::overlapping ? out_.lower : out_.distance_lower;
+    const double upper = out_.contact == ContactClass::overlapping ? out_.upper : out_.distance_upper;
+    out_.bracket_reached = upper <= (1 + delta_) * lower * (1 + 0x1p-48);
+  }
+
+ private:
+  void solve_by_expansion() {
     const ExpansionResult core = expand();
     switch (core.status) {
       case ExpansionStatus::separated:
@@ -51,13 +66,13 @@ class SmoothQuery {
     }
   }
 
- private:
   ExpansionResult expand() {
     ExpansionGoal goal;
     // With margins the error relative to core depth + margins is smaller still.
     goal.relative = delta_;
     goal.absolute = kAbsolute;
     goal.touching = kAbsolute;
+    goal.max_steps = kMaxSmoothSteps;
     ExpandingPolytope<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
     goal.max_loss = 4 * difference_.point_error();
     ExpansionResult best = expansion.run(Vec3::Zero(), goal);
@@ -67,6 +82,7 @@ class SmoothQuery {
       const SurfaceTriangle& face = buffers_.surface.face(best.face);
       for (int i = 0; i < 3; ++i) corners_[i] = buffers_.surface.vertices[face.v[i]];
     }
+    if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
     if (best.status != ExpansionStatus::undecided) return best;
     best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
                              buffers_.surface.watch);
@@ -79,11 +95,78 @@ class SmoothQuery {
     return best;
   }
 
+  /// A search that was ended has bounds from below only, but for those that looked decisive: any support is one.
+  void tighten_upper(ExpansionResult& best) const {
+    WayOut out = thinnest_axis();
+    if (best.face >= 0) {
+      const Vec3 unit = buffers_.surface.normal(best.face).normalized();
+      const double height = difference_.support(unit, nullptr).x.dot(unit) + support_plane_error(difference_);
+      if (height < out.upper) out = {unit, height};
+    }
+    if (out.upper < best.upper) {
+      best.upper = out.upper;
+      best.normal = out.normal;
+    }
+  }
+
   /// Largest |coordinate| that the search has seen: L from below.
   double size() const {
     double largest = 0;
     for (const DifferenceVertex& v : buffers_.surface.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     return std::max(largest, 0x1p-1000);
+  }
+
+  bool solve_by_inscribed_balls() {
+    const auto balls = inscribed_balls_depth(a_, b_, difference_, out_.statistics.support_calls);
+    if (!balls || !(balls->upper <= (1 + delta_) * balls->lower)) return false;
+    out_.contact = ContactClass::overlapping;
+    set_depth(balls->lower + margin_, balls->upper + margin_, balls->normal);
+    out_.witness_a = balls->on_a - a_.shape->margin() * out_.normal;
+    out_.witness_b = out_.witness_a + out_.translation;
+    return true;
+  }
+
+  /// Where the cores were apart, the points round the nearest one of P are there still, or nearly. False, and nothing
+  /// said, where they overlap now, or rounding or the class of touching bodies are at stake.
+  bool solve_apart_from_memory() {
+    if (!warm_ || warm_->state().smooth.count == 0) return false;
+    WarmCertificate::SmoothPoints& last = warm_->state().smooth;
+    const int count = std::exchange(last.count, 0);
+    if (!same_shape(*last.a, *a_.shape) || !same_shape(*last.b, *b_.shape)) return false;
+    DifferenceVertex start[3];
+    for (int i = 0; i < count; ++i) start[i] = difference_.vertex(last.on_a[i], last.on_b[i]);
+    const NearestResult nearest =
+        nearest_point(difference_, std::span(start).first(static_cast<std::size_t>(count)), margin_ > 0 ? 0.0 : delta_,
+                      0.25 * kAbsolute, buffers_.stack, out_.statistics.support_calls);
+    if (!nearest.certified) return false;
+    const double unclear = 2 * kAbsolute * difference_.reach();
+    if (nearest.lower - margin_ <= unclear && nearest.upper - margin_ >= -unclear) return false;
+    answer_apart(nearest, nearest.normal, {nearest.normal, -nearest.lower});
+    out_.warm = true;
+    return true;
+  }
+
+  static bool same_shape(const ConvexShape& x, const ConvexShape& y) {
+    if (x.core().index() != y.core().index()) return false;
+    if (x.polytope()) return x.polytope()->same_storage(*y.polytope());
+    if (const auto* e = std::get_if<Ellipsoid>(&x.core())) return e->radii == std::get<Ellipsoid>(y.core()).radii;
+    const auto same = [](const auto& p, const auto& q) {
+      return p.radius == q.radius && p.half_height == q.half_height && p.axis == q.axis;
+    };
+    if (const auto* c = std::get_if<Cylinder>(&x.core())) return same(*c, std::get<Cylinder>(y.core()));
+    return same(std::get<Cone>(x.core()), std::get<Cone>(y.core()));
+  }
+
+  void remember_apart(const NearestResult& nearest) {
+    if (!warm_ || nearest.count > 3) return;
+    WarmCertificate::SmoothPoints& memory = warm_->state().smooth;
+    if (!memory.a || !same_shape(*memory.a, *a_.shape)) memory.a = *a_.shape;
+    if (!memory.b || !same_shape(*memory.b, *b_.shape)) memory.b = *b_.shape;
+    memory.count = nearest.count;
+    for (int i = 0; i < nearest.count; ++i) {
+      memory.on_a[i] = difference_.points(nearest.simplex[i]).local_a;
+      memory.on_b[i] = difference_.points(nearest.simplex[i]).local_b;
+    }
   }
 
   void fill_overlapping(const ExpansionResult& core) {
@@ -113,9 +196,8 @@ class SmoothQuery {
       b += w * difference_.points(corners[i]).b;
       total += w;
     }
-    // Points are relative to the translation of A.
-    out_.witness_a = a / total + a_.pose.translation() - a_.shape->margin() * out_.normal;
-    out_.witness_b = b / total + a_.pose.translation() + b_.shape->margin() * out_.normal;
+    out_.witness_a = a / total - a_.shape->margin() * out_.normal;
+    out_.witness_b = b / total + b_.shape->margin() * out_.normal;
   }
 
   struct WayOut {
@@ -131,7 +213,7 @@ class SmoothQuery {
       const Mat3 rotation = body->pose.nearest_rotation();
       for (int axis = 0; axis < 6; ++axis) {
         const Vec3 n = axis < 3 ? Vec3(rotation.col(axis)) : Vec3(-rotation.col(axis - 3));
-        const double h = difference_.support(n, nullptr).x.dot(n) + difference_.support_error();
+        const double h = difference_.support(n, nullptr).x.dot(n) + support_plane_error(difference_);
         if (h < best.upper) best = {n, std::max(0.0, h)};
       }
     }
@@ -160,9 +242,16 @@ class SmoothQuery {
       nearest = near.nearest;
       proven = near.normal;
     }
-    const double touching = kAbsolute * std::max(size(), nearest.point.cwiseAbs().maxCoeff());
+    // The cores' signed distance is at most h(normal), certified by the expansion where they are not apart.
     const bool directed = nearest.lower > 0;
-    const Vec3 normal = directed ? proven : core.normal;
+    WayOut out{directed ? proven : core.normal, directed ? -nearest.lower : std::max(0.0, core.upper)};
+    answer_apart(nearest, out.normal, out);
+  }
+
+  /// From the bracket of the cores' distance. `normal` is its direction; `out` leads out where margins overlap.
+  void answer_apart(const NearestResult& nearest, const Vec3& normal, WayOut out) {
+    const double touching = kAbsolute * std::max(size(), nearest.point.cwiseAbs().maxCoeff());
+    if (nearest.lower > 0) remember_apart(nearest);
     const double round = 4 * 0x1p-53 * (nearest.upper + margin_);
     const double distance_lower = std::max(0.0, nearest.lower) - margin_ - round;
     const double distance_upper = nearest.upper - margin_ + round;
@@ -180,8 +269,6 @@ class SmoothQuery {
       return;
     }
     out_.contact = ContactClass::overlapping;
-    // The cores' signed distance is at most h(normal), certified by the expansion where they are not apart.
-    WayOut out{normal, directed ? -nearest.lower : std::max(0.0, core.upper)};
     if (!std::isfinite(out.upper)) out = thinnest_axis();
     set_depth(margin_ - nearest.upper, margin_ + out.upper, out.normal);
     set_witnesses(nearest.simplex, nearest.weights, nearest.count);
@@ -195,14 +282,39 @@ class SmoothQuery {
   SmoothDifference difference_;
   double delta_;
   double margin_;
+  WarmCertificate* warm_;
   DifferenceVertex corners_[3];  ///< of the nearest face
 };
 
 }  // namespace
 
+namespace {
+
+/// Points of an answer are relative to the translation of A until here.
+void move_witnesses(const Vec3& translation_a, PenetrationDepth& out) {
+  out.witness_a += translation_a;
+  out.witness_b += translation_a;
+}
+
+}  // namespace
+
 void smooth_depth(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
-                  PenetrationDepth& out) {
-  SmoothQuery(a, b, settings, buffers, out).solve();
+                  PenetrationDepth& out, WarmCertificate* warm) {
+  const int exponent = extreme_exponent(a, b);
+  if (exponent == 0) {
+    SmoothQuery(a, b, settings, buffers, out, warm).solve();
+    move_witnesses(a.pose.translation(), out);
+    return;
+  }
+  // A at the origin: what is far away may be small.
+  const ConvexShape scaled_a = scaled(*a.shape, -exponent), scaled_b = scaled(*b.shape, -exponent);
+  Vec3 offset = b.pose.translation() - a.pose.translation();
+  for (double& x : offset.reshaped()) x = std::ldexp(x, -exponent);
+  const PosedShape near_a{&scaled_a, Pose::from_trusted_matrix(a.pose.rotation(), Vec3::Zero())};
+  const PosedShape near_b{&scaled_b, Pose::from_trusted_matrix(b.pose.rotation(), offset)};
+  SmoothQuery(near_a, near_b, settings, buffers, out, nullptr).solve();
+  scale_answer(out, exponent);
+  move_witnesses(a.pose.translation(), out);
 }
 
 }  // namespace pd::detail

@@ -7,14 +7,23 @@
 
 namespace pd::detail {
 
+/// Supports of one expansion. Two near-balls tied to 1e-4 need as many; each takes about a microsecond.
+inline constexpr int kMaxSmoothSteps = 16384;
+
 /// Expansion over analytic supports, stopped at upper <= (1 + delta) lower or upper - lower <= 1e-12 L; no curved shape
 /// is tessellated.
+///
+/// Sizes far from 1 are scaled by a power of two first. Bodies that nearly have one distance in all directions are
+/// answered from the balls in them; where that is not narrow enough either, the search ends after kMaxSmoothSteps
+/// supports with the bracket reached so far (`bracket_reached` false): some 20 ms.
 ///
 /// It ends: each step either adds a support that rises above the nearest face by more than rounding, and strictly
 /// convex pieces then halve the face's angle, or finds the face within rounding of the surface. Where rounding folds
 /// the surface before the bracket is reached, the search starts again from another direction; the narrowest certified
 /// bracket stands.
+///
+/// @param warm  where cores are apart, the points round the last nearest one are where the next search begins.
 void smooth_depth(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
-                  PenetrationDepth& out);
+                  PenetrationDepth& out, WarmCertificate* warm = nullptr);
 
 }  // namespace pd::detail

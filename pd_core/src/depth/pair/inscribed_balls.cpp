@@ -1,0 +1,87 @@
+#include "depth/pair/inscribed_balls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pd::detail {
+
+namespace {
+
+struct Ball {
+  Vec3 centre = Vec3::Zero();
+  double radius = -1;  ///< negative: none at hand
+};
+
+struct InscribedBall {
+  Ball operator()(const ConvexPolytope& p) const { return p.num_vertices() == 1 ? Ball{p.vertex(0), 0} : Ball{}; }
+  Ball operator()(const Ellipsoid& e) const { return {Vec3::Zero(), e.radii.minCoeff()}; }
+  Ball operator()(const Cylinder& c) const { return {Vec3::Zero(), std::min(c.radius, c.half_height)}; }
+  /// It touches the base and the mantle: r h / (r + sqrt(r^2 + h^2)) for the radius r and the height h.
+  Ball operator()(const Cone& c) const {
+    const double height = 2 * c.half_height;
+    const double slant = std::sqrt(c.radius * c.radius + height * height);
+    Ball ball;
+    ball.radius = c.radius * (height / (c.radius + slant));
+    ball.centre[c.axis] = ball.radius - c.half_height;
+    return ball;
+  }
+};
+
+int axis_of_revolution(const ConvexShape::Core& core) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&core)) return cylinder->axis;
+  if (const auto* cone = std::get_if<Cone>(&core)) return cone->axis;
+  return -1;
+}
+
+}  // namespace
+
+std::optional<InscribedBallsDepth> inscribed_balls_depth(const PosedShape& a, const PosedShape& b,
+                                                         const SmoothDifference& difference,
+                                                         std::int64_t& support_calls) {
+  const Ball ball_a = std::visit(InscribedBall{}, a.shape->core());
+  const Ball ball_b = std::visit(InscribedBall{}, b.shape->core());
+  if (ball_a.radius < 0 || ball_b.radius < 0) return std::nullopt;
+  const Mat3 rotation_a = a.shape->polytope() ? a.pose.rotation() : a.pose.nearest_rotation();
+  const Mat3 rotation_b = b.shape->polytope() ? b.pose.rotation() : b.pose.nearest_rotation();
+  const Vec3 centre_a = rotation_a * ball_a.centre;
+  const Vec3 centre_b = rotation_b * ball_b.centre + (b.pose.translation() - a.pose.translation());
+  const Vec3 apart = centre_b - centre_a;
+  InscribedBallsDepth out;
+  // The centres err as points do, the radii by the rounding of their formula.
+  out.lower = ball_a.radius + ball_b.radius - apart.norm() - difference.point_error();
+  if (!(out.lower > 0)) return std::nullopt;
+  out.upper = std::numeric_limits<double>::infinity();
+  const double error = support_plane_error(difference);
+  const auto try_along = [&](const Vec3& direction) {
+    const double length = direction.norm();
+    if (!(length > 0)) return;
+    const Vec3 unit = direction / length;
+    ++support_calls;
+    const double height = difference.support(unit, nullptr).x.dot(unit) + error;
+    if (height < out.upper) {
+      out.upper = height;
+      out.normal = unit;
+    }
+  };
+  // The origin is nearest to the boundary on the side away from the centre of P's ball.
+  try_along(-apart);
+  for (const Mat3* rotation : {&rotation_a, &rotation_b}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      try_along(rotation->col(axis));
+      try_along(-rotation->col(axis));
+    }
+  }
+  const int axis_a = axis_of_revolution(a.shape->core()), axis_b = axis_of_revolution(b.shape->core());
+  if (axis_a >= 0 && axis_b >= 0) {
+    const Vec3 across = rotation_a.col(axis_a).cross(rotation_b.col(axis_b));
+    try_along(across);
+    try_along(-across);
+  }
+  out.lower = std::min(out.lower, out.upper);
+  out.on_a = centre_a - ball_a.radius * out.normal;
+  out.on_b = centre_b + ball_b.radius * out.normal;
+  return out;
+}
+
+}  // namespace pd::detail

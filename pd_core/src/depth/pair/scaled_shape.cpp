@@ -1,0 +1,78 @@
+#include "depth/pair/scaled_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pd::detail {
+
+namespace {
+
+/// Between 2^-kRoom and 2^kRoom eighth powers of the size are ordinary numbers.
+constexpr int kRoom = 100;
+
+struct Size {
+  double operator()(const ConvexPolytope& p) const { return p.radius(); }
+  double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
+  double operator()(const Cylinder& c) const { return std::max(c.radius, c.half_height); }
+  double operator()(const Cone& c) const { return std::max(c.radius, c.half_height); }
+};
+
+double curved(double size, int exponent) { return std::max(std::ldexp(size, exponent), kMinCurvedSize); }
+
+struct Scaled {
+  int exponent;
+
+  ConvexShape operator()(const ConvexPolytope& p) const {
+    std::vector<Vec3> points;
+    for (int v = 0; v < p.num_vertices(); ++v) {
+      const Vec3 x = p.vertex(v);
+      points.emplace_back(std::ldexp(x.x(), exponent), std::ldexp(x.y(), exponent), std::ldexp(x.z(), exponent));
+    }
+    return *ConvexPolytope::from_points(points);
+  }
+  ConvexShape operator()(const Ellipsoid& e) const {
+    return *ConvexShape::ellipsoid(
+        {curved(e.radii.x(), exponent), curved(e.radii.y(), exponent), curved(e.radii.z(), exponent)});
+  }
+  ConvexShape operator()(const Cylinder& c) const {
+    return *ConvexShape::cylinder(curved(c.radius, exponent), curved(c.half_height, exponent), c.axis);
+  }
+  ConvexShape operator()(const Cone& c) const {
+    return *ConvexShape::cone(curved(c.radius, exponent), curved(c.half_height, exponent), c.axis);
+  }
+};
+
+}  // namespace
+
+int extreme_exponent(const PosedShape& a, const PosedShape& b) {
+  const double bodies = std::max(
+      {std::visit(Size{}, a.shape->core()), std::visit(Size{}, b.shape->core()), a.shape->margin(), b.shape->margin()});
+  const double size = std::max(bodies, (b.pose.translation() - a.pose.translation()).cwiseAbs().maxCoeff());
+  const int exponent = std::ilogb(size);
+  return std::abs(exponent) > kRoom ? exponent : 0;
+}
+
+ConvexShape scaled(const ConvexShape& shape, int exponent) {
+  const ConvexShape core = std::visit(Scaled{exponent}, shape.core());
+  return *core.with_margin(std::ldexp(shape.margin(), exponent));
+}
+
+void scale_answer(PenetrationDepth& answer, int exponent) {
+  const auto down = [&](double& x) {
+    const double scaled = std::ldexp(x, exponent);
+    x = std::ldexp(scaled, -exponent) > x ? std::nextafter(scaled, 0.0) : scaled;
+  };
+  const auto up = [&](double& x) {
+    const double scaled = std::ldexp(x, exponent);
+    x = std::ldexp(scaled, -exponent) < x ? std::nextafter(scaled, HUGE_VAL) : scaled;
+  };
+  down(answer.lower);
+  down(answer.distance_lower);
+  for (double* x : {&answer.depth, &answer.upper, &answer.distance, &answer.distance_upper}) up(*x);
+  for (Vec3* v : {&answer.translation, &answer.witness_a, &answer.witness_b}) {
+    for (double& x : v->reshaped()) x = std::ldexp(x, exponent);
+  }
+}
+
+}  // namespace pd::detail
