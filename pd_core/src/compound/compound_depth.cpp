@@ -8,6 +8,7 @@
 #include "compound/octree_depth.hpp"
 #include "compound/part_pairs.hpp"
 #include "compound/union_boundary.hpp"
+#include "depth/pair/canonical_order.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/number_text.hpp"
 #include "numeric/root_sum.hpp"
@@ -21,7 +22,7 @@ namespace {
 using detail::DifferenceFacet;
 using detail::Dyadic;
 using detail::Dyadic3;
-using detail::PairsVerdict;
+using detail::PairsResult;
 using detail::PartDifferences;
 using detail::RootSum;
 using detail::UncoveredBoundary;
@@ -184,23 +185,23 @@ Expected<ContactClass> class_of_touching(FacetsAnswer& answer, std::optional<Unc
 }
 
 /// The pairs' answer, for unions whose interiors are disjoint.
-void take_pair(const PairsVerdict& verdict, UnionDepth& out) {
-  static_cast<PenetrationDepth&>(out) = verdict.nearest;
-  out.part_a = verdict.part_a;
-  out.part_b = verdict.part_b;
+void take_pair(const PairsResult& pairs, UnionDepth& out) {
+  static_cast<PenetrationDepth&>(out) = pairs.nearest;
+  out.part_a = pairs.part_a;
+  out.part_b = pairs.part_b;
 }
 
 Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
   UnionDepth out;
   out.exact = true;
-  const PairsVerdict verdict = judge_pairs(pair, scratch, settings.delta, out.work);
-  take_pair(verdict, out);
-  if (verdict.contact == ContactClass::separated) return out;
+  const PairsResult pairs = classify_pairs(pair, scratch, settings.delta, out.work);
+  take_pair(pairs, out);
+  if (pairs.contact == ContactClass::separated) return out;
   const bool convex = pair.a.size() == 1 && pair.b.size() == 1;
   if (convex && settings.method == UnionMethod::automatic) return out;
   FacetsAnswer answer(pair, settings, out.work);
-  double known_lower = verdict.nearest.lower;
-  if (verdict.contact == ContactClass::touching) {
+  double known_lower = pairs.nearest.lower;
+  if (pairs.contact == ContactClass::touching) {
     std::optional<UncoveredBoundary::Spot> spot;
     const Expected<ContactClass> contact = class_of_touching(answer, spot);
     if (!contact) return contact.error();
@@ -240,23 +241,18 @@ Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompou
                  ""};
   }
   // A pair is solved in one order, whichever way it was asked.
-  const bool turned = pair.turn_to_canonical_order();
+  const bool exchanged = pair.exchange_to_canonical_order();
   const bool facets =
       settings.method == UnionMethod::facets || (settings.method == UnionMethod::automatic && pair.polytopes);
   Expected<UnionDepth> solved = facets ? solve_by_facets(pair, scratch, settings)
                                        : Expected<UnionDepth>(detail::solve_by_octree(pair, scratch, settings));
   if (!solved) return solved.error();
   UnionDepth out = std::move(solved).value();
-  if (turned) {
-    out.translation = -out.translation;
-    out.normal = -out.normal;
-    std::swap(out.witness_a, out.witness_b);
-    std::swap(out.feature_a, out.feature_b);
+  if (exchanged) {
+    detail::exchange_bodies(out);
     std::swap(out.part_a, out.part_b);
   }
-  // No negative zeros: people read the numbers.
-  out.translation.array() += 0.0;
-  out.normal.array() += 0.0;
+  detail::clear_negative_zeros(out);
   return out;
 }
 
@@ -276,8 +272,8 @@ Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const 
     return Error{ErrorCode::unsupported, "directional depth is for polytopes without a margin", ""};
   }
   UnionDirectionalDepth out;
-  const PairsVerdict verdict = judge_pairs(*pair, scratch, settings.delta, out.work);
-  out.contact = verdict.contact;
+  const PairsResult pairs = classify_pairs(*pair, scratch, settings.delta, out.work);
+  out.contact = pairs.contact;
   FacetsAnswer answer(*pair, settings, out.work);
   if (out.contact == ContactClass::touching) {
     std::optional<UncoveredBoundary::Spot> spot;

@@ -17,7 +17,7 @@ namespace pd::detail {
 namespace {
 
 /// Pairs up to this many are tried together where none covers a cell alone.
-constexpr std::size_t kFew = 12;
+constexpr std::size_t kMaxTriedTogether = 12;
 
 double length_above(const Vec3& t) {
   const Dyadic3 exact = to_dyadic(t);
@@ -55,7 +55,7 @@ class Octree {
     }
   }
 
-  void run(const PairsVerdict& deepest) {
+  void run(const PairsResult& deepest) {
     const double exit = pair_.box_exit();
     build_differences(exit);
     start_from_boxes();
@@ -178,7 +178,7 @@ class Octree {
 
   /// Covered by the union of the P_ij that meet it: its centre is inside and no free piece of their boundary meets it.
   bool covered_by_few(const Cell& cell) {
-    if (!boundary_ || cell.pairs.size() < 2 || cell.pairs.size() > kFew) return false;
+    if (!boundary_ || cell.pairs.size() < 2 || cell.pairs.size() > kMaxTriedTogether) return false;
     std::vector<std::size_t> pieces;
     for (const std::int32_t p : cell.pairs) {
       const std::ptrdiff_t piece = pairs_[static_cast<std::size_t>(p)].piece;
@@ -288,13 +288,13 @@ class Octree {
 
 UnionDepth solve_by_octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
   UnionDepth out;
-  const PairsVerdict verdict = judge_pairs(pair, scratch, std::min(settings.delta, 1e-6), out.work);
-  static_cast<PenetrationDepth&>(out) = verdict.nearest;
-  out.part_a = verdict.part_a;
-  out.part_b = verdict.part_b;
-  if (verdict.contact != ContactClass::overlapping) return out;
+  const PairsResult pairs = classify_pairs(pair, scratch, std::min(settings.delta, 1e-6), out.work);
+  static_cast<PenetrationDepth&>(out) = pairs.nearest;
+  out.part_a = pairs.part_a;
+  out.part_b = pairs.part_b;
+  if (pairs.contact != ContactClass::overlapping) return out;
   if (pair.a.size() == 1 && pair.b.size() == 1) return out;  // one convex pair: its own answer
-  Octree(pair, scratch, settings, out).run(verdict);
+  Octree(pair, scratch, settings, out).run(pairs);
   return out;
 }
 

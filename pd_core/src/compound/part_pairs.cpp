@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "depth/pair/canonical_order.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace pd::detail {
@@ -38,50 +39,11 @@ double box_gap(const Box& a, const Box& b) {
   return largest <= 0 ? largest : gap.cwiseMax(Vec3::Zero()).stableNorm() * (1 - 0x1p-40);
 }
 
-int compare(double x, double y) { return (x > y) - (x < y); }
-
-int compare(const Vec3& x, const Vec3& y) {
-  for (int i = 0; i < 3; ++i) {
-    if (const int c = compare(x[i], y[i])) return c;
-  }
-  return 0;
-}
-
-/// Compares the numbers that describe two shapes: vertices, or the sizes of curved cores.
-int compare(const ConvexShape& x, const ConvexShape& y) {
-  if (x.core().index() != y.core().index()) return x.core().index() < y.core().index() ? -1 : 1;
-  if (const int c = compare(x.margin(), y.margin())) return c;
-  if (x.polytope()) {
-    const ConvexPolytope &p = *x.polytope(), &q = *y.polytope();
-    if (p.num_vertices() != q.num_vertices()) return p.num_vertices() < q.num_vertices() ? -1 : 1;
-    for (int v = 0; v < p.num_vertices(); ++v) {
-      if (const int c = compare(p.vertex(v), q.vertex(v))) return c;
-    }
-    return 0;
-  }
-  const auto sizes = [](const ConvexShape& shape) -> Vec3 {
-    if (const auto* e = std::get_if<Ellipsoid>(&shape.core())) return e->radii;
-    if (const auto* c = std::get_if<Cylinder>(&shape.core())) return {c->radius, c->half_height, double(c->axis)};
-    const Cone& cone = std::get<Cone>(shape.core());
-    return {cone.radius, cone.half_height, double(cone.axis)};
-  };
-  return compare(sizes(x), sizes(y));
-}
-
-int compare(const PosedShape& x, const PosedShape& y) {
-  if (const int c = compare(*x.shape, *y.shape)) return c;
-  if (const int c = compare(x.pose.translation(), y.pose.translation())) return c;
-  for (int i = 0; i < 3; ++i) {
-    if (const int c = compare(Vec3(x.pose.rotation().col(i)), Vec3(y.pose.rotation().col(i)))) return c;
-  }
-  return 0;
-}
-
 }  // namespace
 
-bool UnionPair::turn_to_canonical_order() {
-  int order = compare(static_cast<double>(a.size()), static_cast<double>(b.size()));
-  for (std::size_t i = 0; order == 0 && i < a.size(); ++i) order = compare(a[i], b[i]);
+bool UnionPair::exchange_to_canonical_order() {
+  int order = a.size() < b.size() ? -1 : static_cast<int>(a.size() > b.size());
+  for (std::size_t i = 0; order == 0 && i < a.size(); ++i) order = compare_bodies(a[i], b[i]);
   if (order <= 0) return false;
   std::swap(a, b);
   std::swap(boxes_a, boxes_b);
@@ -142,7 +104,7 @@ int UnionPair::scale_exponent() const {
   return size > 0x1p100 || size < 0x1p-100 ? std::ilogb(std::max(size, std::numeric_limits<double>::min())) : 0;
 }
 
-PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work) {
+PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work) {
   struct Candidate {
     double gap;
     std::int32_t a, b;
@@ -159,12 +121,12 @@ PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, 
     const double gx = std::max(x.gap, 0.0), gy = std::max(y.gap, 0.0);
     return gx != gy ? gx < gy : (x.a != y.a ? x.a < y.a : x.b < y.b);
   });
-  PairsVerdict verdict;
+  PairsResult result;
   Statistics statistics;
   bool first = true;
   for (const Candidate& candidate : candidates) {
-    if (!first && (verdict.contact != ContactClass::separated ? candidate.gap > 0
-                                                              : candidate.gap > verdict.nearest.distance_upper)) {
+    if (!first && (result.contact != ContactClass::separated ? candidate.gap > 0
+                                                             : candidate.gap > result.nearest.distance_upper)) {
       break;
     }
     ++work.pairs;
@@ -176,26 +138,26 @@ PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, 
     statistics.support_calls += answer.statistics.support_calls;
     statistics.facets_visited += answer.statistics.facets_visited;
     statistics.exact_signs += answer.statistics.exact_signs;
-    const bool better = first || answer.contact > verdict.contact ||
-                        (answer.contact == verdict.contact &&
-                         (answer.contact == ContactClass::overlapping ? answer.lower > verdict.nearest.lower
-                                                                      : answer.distance < verdict.nearest.distance));
+    const bool better = first || answer.contact > result.contact ||
+                        (answer.contact == result.contact &&
+                         (answer.contact == ContactClass::overlapping ? answer.lower > result.nearest.lower
+                                                                      : answer.distance < result.nearest.distance));
     if (better) {
-      verdict.contact = answer.contact;
-      verdict.nearest = answer;
-      verdict.part_a = candidate.a;
-      verdict.part_b = candidate.b;
+      result.contact = answer.contact;
+      result.nearest = answer;
+      result.part_a = candidate.a;
+      result.part_b = candidate.b;
     }
     first = false;
   }
-  const PosedShape &a = pair.a[static_cast<std::size_t>(verdict.part_a)],
-                   &b = pair.b[static_cast<std::size_t>(verdict.part_b)];
+  const PosedShape &a = pair.a[static_cast<std::size_t>(result.part_a)],
+                   &b = pair.b[static_cast<std::size_t>(result.part_b)];
   DepthSettings settings;
   settings.bracket = Bracket::tightest;
   if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
-  verdict.nearest = penetration_depth(a, b, scratch, settings);
-  verdict.nearest.statistics = statistics;
-  return verdict;
+  result.nearest = penetration_depth(a, b, scratch, settings);
+  result.nearest.statistics = statistics;
+  return result;
 }
 
 }  // namespace pd::detail

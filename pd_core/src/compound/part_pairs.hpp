@@ -24,14 +24,14 @@ struct UnionPair {
   static Expected<UnionPair> pose(const PosedCompound& a, const PosedCompound& b);
   /// Orders the two bodies by content, so that an answer does not depend on which was named first. True when they were
   /// exchanged.
-  bool turn_to_canonical_order();
+  bool exchange_to_canonical_order();
   /// An upper bound of the depth: the least axis-parallel move that takes the boxes of the unions apart.
   [[nodiscard]] double box_exit() const;
   /// 2^k near `size` where products of lengths could leave the range of doubles, else 0.
   [[nodiscard]] int scale_exponent() const;
 };
 
-struct PairsVerdict {
+struct PairsResult {
   ContactClass contact = ContactClass::separated;  ///< of the pair that is deepest in contact
   PenetrationDepth nearest;  ///< the answer of the deepest, or the first touching, or the nearest pair
   std::int32_t part_a = 0;
@@ -39,6 +39,6 @@ struct PairsVerdict {
 };
 
 /// Asks every pair of parts whose boxes allow a say. Ties go to the first pair.
-[[nodiscard]] PairsVerdict judge_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work);
+[[nodiscard]] PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work);
 
 }  // namespace pd::detail

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "depth/certificate/exact_answer.hpp"
-#include "depth/pair/polytope_depth.hpp"
+#include "depth/pair/core_class.hpp"
 #include "depth/pair/scratch_buffers.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -95,13 +95,10 @@ Expected<ApproximateSeparation> approximate_separation(const PosedShape& a, cons
     }
   }
 
-  // [A] tests first whether the bodies meet: here a rough depth of the cores, whose class is exact.
+  // [A] tests first whether the bodies meet: here by a coarse depth of the cores, whose class is exact.
   const detail::PolytopePair pair{polytope_a, polytope_b, &a.pose, &b.pose, {a.shape->margin(), b.shape->margin()}};
   ApproximateSeparation out;
-  PenetrationDepth cores;
-  DepthSettings roughly;
-  roughly.delta = 1;
-  polytope_depth({pair.a, pair.b, pair.pose_a, pair.pose_b, {}}, roughly, scratch.buffers(), nullptr, cores);
+  const PenetrationDepth cores = coarse_core_depth(pair, scratch.buffers());
   if (cores.contact == ContactClass::overlapping) {
     shoot_all(pair, *grid, hierarchies, scratch.buffers(), out);
   } else {

@@ -12,6 +12,7 @@
 
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "pd/depth/warm_certificate.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd::detail {
@@ -56,7 +57,7 @@ TEST(RememberedSurface, LeavesOnlyFarFacesAlone) {
         for (int k = 0; k < 4; ++k) {
           (void)penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &certificate);
         }
-        const WarmCertificate::State& state = certificate.state();
+        const WarmState& state = certificate.state();
         ASSERT_GT(state.reference.clearance, 0);
         // The pair's canonical order may be the other one.
         const bool swapped = !state.reference.a->same_storage(*shape_a.polytope());
@@ -77,10 +78,10 @@ TEST(RememberedSurface, LeavesOnlyFarFacesAlone) {
             continue;
           }
           std::vector<double> distances;
-          for (const WarmCertificate::CachedFace& face : state.faces) {
+          for (const CachedFace& face : state.faces) {
             Vec3 x[3];
             for (int i = 0; i < 3; ++i) {
-              const WarmCertificate::CachedVertex& v = state.vertices[static_cast<std::size_t>(face.vertex[i])];
+              const VertexPair& v = state.vertices[static_cast<std::size_t>(face.vertex[i])];
               x[i] = difference.posed_vertex(v.a, v.b).x;
             }
             distances.push_back(std::sqrt(squared_distance(x[0], x[1], x[2])));

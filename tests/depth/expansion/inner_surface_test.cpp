@@ -9,12 +9,12 @@
 #include <random>
 #include <utility>
 
-#include "pd/depth/warm_certificate.hpp"
+#include "depth/expansion/cached_surface.hpp"
 
 namespace pd::detail {
 namespace {
 
-using Cached = std::pair<std::vector<WarmCertificate::CachedVertex>, std::vector<WarmCertificate::CachedFace>>;
+using Cached = std::pair<std::vector<VertexPair>, std::vector<CachedFace>>;
 
 Vec3 random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "depth/expansion/cached_surface.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/depth/warm_certificate.hpp"

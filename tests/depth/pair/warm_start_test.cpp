@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "depth/expansion/cached_surface.hpp"
 #include "oracle/judged_pair.hpp"
 #include "pd/depth/warm_certificate.hpp"
 

@@ -32,7 +32,7 @@ struct Movement {
   double turn;
 };
 
-Movement movement(const WarmCertificate::Reference& since, const PolytopeDifference& now) {
+Movement movement(const WarmReference& since, const PolytopeDifference& now) {
   const Mat3 turn_a = now.rotation_a() - since.rotation_a;
   const Mat3 turn_b = now.rotation_b() - since.rotation_b;
   const Vec3 base =
@@ -49,8 +49,8 @@ struct NearFaces {
 
 }  // namespace
 
-void set_reference(WarmCertificate::State& state, InnerSurface& surface, const PolytopeDifference& difference) {
-  WarmCertificate::Reference& r = state.reference;
+void set_reference(WarmState& state, InnerSurface& surface, const PolytopeDifference& difference) {
+  WarmReference& r = state.reference;
   if (!r.a || !r.a->same_storage(difference.a())) r.a = difference.a();
   if (!r.b || !r.b->same_storage(difference.b())) r.b = difference.b();
   r.rotation_a = difference.rotation_a();
@@ -67,7 +67,7 @@ void set_reference(WarmCertificate::State& state, InnerSurface& surface, const P
   const Vec3 base_a = difference.a().vertex(r.base.a);
   const Vec3 base_b = difference.b().vertex(r.base.b);
   for (std::size_t i = 0; i < state.vertices.size(); ++i) {
-    const WarmCertificate::CachedVertex& v = state.vertices[i];
+    const VertexPair& v = state.vertices[i];
     spreads[i] =
         2 * ((difference.a().vertex(v.a) - base_a).squaredNorm() + (difference.b().vertex(v.b) - base_b).squaredNorm());
   }
@@ -94,9 +94,8 @@ void set_reference(WarmCertificate::State& state, InnerSurface& surface, const P
   r.clearance = std::sqrt(std::max(clearance, nearest)) - kFloatSlack * reach;
 }
 
-bool nearest_remembered(const WarmCertificate::State& state, const PolytopeDifference& difference,
-                        RememberedFace& out) {
-  const WarmCertificate::Reference& r = state.reference;
+bool nearest_remembered(const WarmState& state, const PolytopeDifference& difference, RememberedFace& out) {
+  const WarmReference& r = state.reference;
   if (!(r.clearance > 0)) return false;
   const Movement moved = movement(r, difference);
   if (!(moved.base + moved.turn * r.widest < r.clearance)) return false;
@@ -120,7 +119,7 @@ bool nearest_remembered(const WarmCertificate::State& state, const PolytopeDiffe
 
   std::int8_t places[kMaxRememberedVertices];
   std::fill(std::begin(places), std::end(places), std::int8_t{-1});
-  WarmCertificate::CachedVertex pairs[3 * kMaxNear];
+  VertexPair pairs[3 * kMaxNear];
   int vertex_count = 0;
   const auto place = [&](std::int16_t id) {
     if (places[id] < 0) {
@@ -130,7 +129,7 @@ bool nearest_remembered(const WarmCertificate::State& state, const PolytopeDiffe
     return places[id];
   };
   for (int i = 0; i < near.count; ++i) {
-    const WarmCertificate::CachedFace& face = state.faces[static_cast<std::size_t>(near.faces[i])];
+    const CachedFace& face = state.faces[static_cast<std::size_t>(near.faces[i])];
     near.p[i] = place(face.vertex[0]);
     near.q[i] = place(face.vertex[1]);
     near.r[i] = place(face.vertex[2]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "depth/pair/core_class.hpp"
 #include "depth/pair/smooth_depth.hpp"
 
 namespace pd::detail {
@@ -10,10 +11,7 @@ namespace {
 
 void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& settings, ScratchBuffers& buffers,
                    PenetrationDepth& out) {
-  DepthSettings roughly;
-  roughly.delta = 1;
-  PenetrationDepth cores;
-  polytope_depth({pair.a, pair.b, pair.pose_a, pair.pose_b, {}}, roughly, buffers, nullptr, cores);
+  const PenetrationDepth cores = coarse_core_depth(pair, buffers);
   if (cores.contact != ContactClass::overlapping) {
     DepthSettings exactly;
     exactly.bracket = settings.bracket;
@@ -25,7 +23,8 @@ void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& 
   const CellSearchResult found = CellSearch(shooter, delta, 20).run();
   finish_overlapping(posed, facet_of_direction(posed, ExactDirection(shooter.kept().normal)), pair.margins,
                      settings.bracket, buffers.faces, out);
-  // Among planes that doubles do not tell apart the foot may lie on another one's facet: the ray finds it.
+  // Among planes that doubles cannot distinguish, the projection of the origin may lie on another one's facet: the ray
+  // finds it.
   const PolytopeShooter::Plane best = shooter.kept();
   shooter.shoot(out.normal);
   const Dyadic3 turned = cross(best.normal, shooter.plane().normal);
@@ -42,9 +41,9 @@ void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& 
 
 void smooth_grid(const PosedShape& a, const PosedShape& b, double delta, const DepthSettings& settings,
                  ScratchBuffers& buffers, PenetrationDepth& out) {
-  DepthSettings roughly;
-  roughly.delta = 1;
-  smooth_depth(a, b, roughly, buffers, out);
+  DepthSettings coarse;
+  coarse.delta = 1;
+  smooth_depth(a, b, coarse, buffers, out);
   if (out.contact != ContactClass::overlapping || !(out.lower > 0)) {
     out = PenetrationDepth();
     smooth_depth(a, b, settings, buffers, out);

@@ -4,7 +4,10 @@
 
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/pair/scratch_buffers.hpp"
-#include "pd/depth/warm_certificate.hpp"
+
+namespace pd {
+class WarmCertificate;
+}
 
 namespace pd::detail {
 

@@ -8,6 +8,7 @@
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
+#include "pd/depth/warm_certificate.hpp"
 
 namespace pd::detail {
 
@@ -17,15 +18,15 @@ namespace {
 constexpr int kLongestPause = 15;
 
 /// As far as numbers tell: ids are in range, and whatever they lead to is computed from the present poses.
-bool is_of_pair(const WarmCertificate::State& state, const PolytopePair& pair) {
+bool is_of_pair(const WarmState& state, const PolytopePair& pair) {
   return state.vertices_a == pair.a->num_vertices() && state.vertices_b == pair.b->num_vertices() &&
          state.radius_a == pair.a->radius() && state.radius_b == pair.b->radius();
 }
 
 /// Cleared, unless it is this pair's already.
-WarmCertificate::State& bind_to_pair(WarmCertificate& warm, const PolytopePair& pair) {
+WarmState& bind_to_pair(WarmCertificate& warm, const PolytopePair& pair) {
   if (!is_of_pair(warm.state(), pair)) warm.clear();
-  WarmCertificate::State& state = warm.state();
+  WarmState& state = warm.state();
   state.vertices_a = pair.a->num_vertices();
   state.vertices_b = pair.b->num_vertices();
   state.radius_a = pair.a->radius();
@@ -53,8 +54,8 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
 
 bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
   if (!query.warm || !query.doubles_suffice()) return false;
-  const WarmCertificate::State& state = query.warm->state();
-  WarmCertificate::Reference& since = query.warm->state().reference;
+  const WarmState& state = query.warm->state();
+  WarmReference& since = query.warm->state().reference;
   if (!(since.clearance > 0) || !query.within_range()) return false;
   if (!since.a->same_storage(*query.pair.a) || !since.b->same_storage(*query.pair.b)) return false;
   RememberedFace near;
@@ -77,7 +78,7 @@ bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
 
 bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& out) {
   if (!query.warm || !query.doubles_suffice()) return false;
-  WarmCertificate::State& state = query.warm->state();
+  WarmState& state = query.warm->state();
   if (state.apart_count == 0 || !query.within_range()) return false;
   const int count = std::exchange(state.apart_count, 0);
   if (!is_of_pair(state, query.pair)) return false;
@@ -94,7 +95,7 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
 
 bool restore_surface(PolytopeQuery& query) {
   if (!is_of_pair(query.warm->state(), query.pair)) query.warm->clear();
-  const WarmCertificate::State& state = query.warm->state();
+  const WarmState& state = query.warm->state();
   if (state.faces.empty()) return false;
   InnerSurface& surface = query.buffers.surface;
   surface.clear();
@@ -126,7 +127,7 @@ Vec3 warm_direction(const PolytopeQuery& query) {
 
 void save_surface(PolytopeQuery& query, const ExpansionResult& result) {
   if (!query.warm) return;
-  WarmCertificate::State& state = bind_to_pair(*query.warm, query.pair);
+  WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.direction = result.normal;
   state.reference.clearance = 0;
   state.vertices.clear();
@@ -141,7 +142,7 @@ void save_surface(PolytopeQuery& query, const ExpansionResult& result) {
 }
 
 void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
-  WarmCertificate::State& state = query.warm->state();
+  WarmState& state = query.warm->state();
   state.direction = result.normal;
   state.reference.clearance = 0;
   // Where frames differ so much that the surface grew or the last reference was of no use, the next one would not be,
@@ -155,7 +156,7 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
 
 void save_simplex(PolytopeQuery& query, const NearestResult& nearest) {
   if (!query.warm) return;
-  WarmCertificate::State& state = bind_to_pair(*query.warm, query.pair);
+  WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.apart_count = nearest.count;
   for (int i = 0; i < nearest.count; ++i) state.apart[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
 }

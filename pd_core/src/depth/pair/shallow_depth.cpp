@@ -6,26 +6,20 @@
 #include <limits>
 #include <vector>
 
+#include "depth/pair/core_class.hpp"
 #include "depth/rays/shallow_facets.hpp"
-#include "numeric/floating_point_guard.hpp"
-#include "pd/depth/scratch.hpp"
 
-namespace pd {
-
-namespace detail {
+namespace pd::detail {
 
 void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& grid, const DepthSettings& settings,
                    ScratchBuffers& buffers, PenetrationDepth& out, ShallowCounts& counts) {
-  DepthSettings roughly;
-  roughly.delta = 1;
-  PenetrationDepth cores;
-  polytope_depth({pair.a, pair.b, pair.pose_a, pair.pose_b, {}}, roughly, buffers, nullptr, cores);
+  const PenetrationDepth cores = coarse_core_depth(pair, buffers);
   const bool thin = pair.a->affine_dimension() < 2 || pair.b->affine_dimension() < 2;
   if (cores.contact != ContactClass::overlapping || thin) {
-    DepthSettings exactly;
-    exactly.bracket = settings.bracket;
-    exactly.method = thin ? Method::overlay : Method::automatic;
-    polytope_depth(pair, exactly, buffers, nullptr, out);
+    DepthSettings exact;
+    exact.bracket = settings.bracket;
+    exact.method = thin ? Method::overlay : Method::automatic;
+    polytope_depth(pair, exact, buffers, nullptr, out);
     counts.visited = out.statistics.facets_visited;
     out.method = Method::shallow;
     return;
@@ -69,29 +63,4 @@ void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& 
   out.statistics.exact_signs = cores.statistics.exact_signs + posed.stages().double_double + posed.stages().exact;
 }
 
-}  // namespace detail
-
-Expected<ShallowPenetration> shallow_penetration(const PosedShape& a, const PosedShape& b, Scratch& scratch,
-                                                 double delta, Bracket bracket, std::int64_t max_directions) {
-  const detail::FloatingPointGuard guard;
-  if (!(delta > 0 && delta <= 1)) return Error{ErrorCode::bad_value, "delta must lie in (0, 1]", "delta"};
-  const ConvexPolytope* const polytope_a = a.shape->polytope();
-  const ConvexPolytope* const polytope_b = b.shape->polytope();
-  if (!polytope_a || !polytope_b) {
-    return Error{ErrorCode::unsupported, "the facets near the origin are those of polytopes (with or without margins)",
-                 ""};
-  }
-  const Expected<DirectionGrid> grid =
-      direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere, max_directions);
-  if (!grid) return grid.error();
-  ShallowPenetration result;
-  DepthSettings settings;
-  settings.bracket = bracket;
-  detail::shallow_depth({polytope_a, polytope_b, &a.pose, &b.pose, {a.shape->margin(), b.shape->margin()}}, delta,
-                        *grid, settings, scratch.buffers(), result.answer, result.counts);
-  result.answer.translation.array() += 0.0;
-  result.answer.normal.array() += 0.0;
-  return result;
-}
-
-}  // namespace pd
+}  // namespace pd::detail

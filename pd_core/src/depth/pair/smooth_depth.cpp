@@ -130,7 +130,7 @@ class SmoothQuery {
   /// said, where they overlap now, or rounding or the class of touching bodies are at stake.
   bool solve_apart_from_memory() {
     if (!warm_ || warm_->state().smooth.count == 0) return false;
-    WarmCertificate::SmoothPoints& last = warm_->state().smooth;
+    WarmSmoothPoints& last = warm_->state().smooth;
     const int count = std::exchange(last.count, 0);
     if (!same_shape(*last.a, *a_.shape) || !same_shape(*last.b, *b_.shape)) return false;
     DifferenceVertex start[3];
@@ -159,7 +159,7 @@ class SmoothQuery {
 
   void remember_apart(const NearestResult& nearest) {
     if (!warm_ || nearest.count > 3) return;
-    WarmCertificate::SmoothPoints& memory = warm_->state().smooth;
+    WarmSmoothPoints& memory = warm_->state().smooth;
     if (!memory.a || !same_shape(*memory.a, *a_.shape)) memory.a = *a_.shape;
     if (!memory.b || !same_shape(*memory.b, *b_.shape)) memory.b = *b_.shape;
     memory.count = nearest.count;
