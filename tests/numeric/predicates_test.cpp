@@ -158,7 +158,52 @@ TEST(Predicates, PermutationsTurnTheSign) {
   EXPECT_EQ(orient3d(d, b, c, a), -sign);
 }
 
+/// Four points that are coplanar but for rounding.
+std::array<Vec3, 4> nearly_coplanar(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto point = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const Vec3 a = point(), b = point(), c = point();
+  return {a, b, c, a + uniform(random) * (b - a) + uniform(random) * (c - a)};
+}
+
+TEST(Predicates, CyclesKeepTheSign) {
+  std::mt19937_64 random(5);
+  int nonzero = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto [a, b, c, d] = nearly_coplanar(random);
+    const int sign = orient3d(a, b, c, d);
+    nonzero += sign != 0;
+    EXPECT_EQ(orient3d(b, c, a, d), sign);
+    EXPECT_EQ(orient3d(c, a, b, d), sign);
+    EXPECT_EQ(orient3d(b, c, d, a), -sign);
+    EXPECT_EQ(orient3d(c, d, a, b), sign);
+    const auto flat = [](const Vec3& p) { return std::array<double, 2>{p.x(), p.y()}; };
+    const std::array<double, 2> p = flat(a), q = flat(b), r = flat(0.5 * (a + b));  // collinear but for rounding
+    EXPECT_EQ(orient2d(q, r, p), orient2d(p, q, r));
+    EXPECT_EQ(orient2d(r, p, q), orient2d(p, q, r));
+    EXPECT_EQ(orient2d(q, p, r), -orient2d(p, q, r));
+  }
+  EXPECT_GT(nonzero, 500);
+}
+
+TEST(Predicates, PowersOfTwoKeepTheSign) {
+  std::mt19937_64 random(6);
+  for (int i = 0; i < 1000; ++i) {
+    const auto [a, b, c, d] = nearly_coplanar(random);
+    for (const double scale : {0x1p-900, 0x1p-300, 0x1p60, 0x1p1000}) {
+      EXPECT_EQ(orient3d(scale * a, scale * b, scale * c, scale * d), orient3d(a, b, c, d));
+    }
+  }
+}
+
 TEST(Predicates, Incidence) {
+  const Vec3 p(0.1, 0.7, -0.3), q(0.4, 0.2, 0.9), r(-0.5, 0.6, 0.8);
+  for (const auto& [a, b, c, d] :
+       {std::array{p, p, q, r}, std::array{p, q, p, r}, std::array{p, q, r, p}, std::array{q, p, r, r}}) {
+    EXPECT_EQ(orient3d(a, b, c, d), 0);
+  }
+  EXPECT_EQ(orient2d({0.1, 0.7}, {0.1, 0.7}, {0.3, 0.2}), 0);
+
   EXPECT_TRUE(collinear({0, 0, 0}, {0.1, 0.2, 0.3}, {0.2, 0.4, 0.6}));
   EXPECT_FALSE(collinear({0, 0, 0}, {0.1, 0.2, 0.3}, {0.2, 0.4, std::nextafter(0.6, 1)}));
   EXPECT_TRUE(collinear({1, 2, 3}, {1, 2, 3}, {4, 5, 6}));

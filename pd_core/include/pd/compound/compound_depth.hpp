@@ -13,6 +13,9 @@
 /// the nearest first, until one is left uncovered (the explicit construction of [A] section 4 takes all of them: O(m^3
 /// n^3) cuts and O(m^3 n^3) pieces; here only those near the answer are touched). Swept and curved parts are answered
 /// by an octree over translations, certified to (1 + delta).
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +39,7 @@ struct UnionSettings {
   UnionMethod method = UnionMethod::automatic;
   /// The bracket of the octree closes to upper <= (1 + delta) lower; in (0, 1].
   double delta = 1e-2;
-  /// Cells of the octree with sides below this length are not parted further: there the bracket stays as it is
+  /// Cells of the octree with sides below this length are not split further: there the bracket stays as it is
   /// (`closed` tells). 0: 2^-20 of the size of P.
   double resolution = 0;
   /// Facets of P_ij that may be built; more are refused.

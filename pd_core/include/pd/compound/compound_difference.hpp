@@ -9,6 +9,8 @@
 /// cover it whole first, so that a facet buried in P costs one or two cuts.
 ///
 /// A star-shaped body's difference is star-shaped about c_B - c_A, so that this boundary is the radial envelope itself.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include <cstdint>

@@ -11,6 +11,8 @@
 /// Departures: the answer is the translation to the nearest of those planes, never longer than the paper's shortest
 /// ray; the grid's radius is arccos(1 / (1 + delta)), not sqrt(delta) (`direction_grid.hpp`); a shot is a portal
 /// search (`directional_depth.hpp`), whose O(log^2 (m + n)) with hierarchies is measured, not proved.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include <cstdint>

@@ -8,6 +8,8 @@
 /// 0.6 / delta directions, the kernel's exact width is the lower bound, and the extents of all points along the
 /// kernel's thinnest normals, a few at a time, the upper one; what those passes meet joins the kernel, until the two
 /// agree. The result is certified whatever the points are; the number of passes is measured, not proved.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include <cstdint>

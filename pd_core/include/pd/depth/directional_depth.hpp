@@ -3,6 +3,9 @@
 ///
 /// With the origin inside P = B + (-A) this is where the ray from the origin along d leaves P ([A] section 3, Delta(u);
 /// [D] for translations); 0 when the bodies do not overlap.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993.
 #pragma once
 
 #include <cstdint>

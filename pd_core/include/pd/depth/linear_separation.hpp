@@ -7,6 +7,9 @@
 /// its vertices the planes through three of the points, its only predicate the exact orientation of four of them.
 ///
 /// Seidel, "Small-dimensional linear programming and convex hulls made easy", 1991.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,8 @@
 ///
 /// Combinatorics exact on the stored numbers and poses: two points are one vertex, and pieces of one plane one facet,
 /// exactly when they are so in real arithmetic. From the overlay of the two normal diagrams ([A] section 2).
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,8 @@
 /// The unit ball is any convex polytope Q with the origin inside, symmetric or not; the length of t is its gauge, the
 /// least lambda with t in lambda Q. The largest lambda Q inside P = B + (-A) touches the boundary of P with a vertex,
 /// and its vertices move on rays from the origin: one ray a vertex of Q, the least lambda.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"

@@ -11,6 +11,8 @@
 /// vertical. The search starts from the facet that the ray u hits: on the great arc from the nearest point's direction
 /// v to u the boundary stays within pi / cos(angle), inside the ball, so that the two facets are connected in it, and
 /// Theorem 3.5 holds. (`tests/depth/shallow_test.cpp` keeps the slab.)
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"

@@ -8,6 +8,9 @@
 ///
 /// Departure: [D] descends a hierarchy of P in O(log n); P is not at hand here, and the chord search asks for O(log)
 /// supports by measurement only.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,8 @@
 ///
 /// width(P) = pi(P, P) ([A] Proposition 2.1), so that every depth engine computes it. For many points without a hull,
 /// see `approximate_width.hpp`.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"

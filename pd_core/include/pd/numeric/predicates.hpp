@@ -4,6 +4,16 @@
 /// Stages: 1. doubles with a running error bound, 2. double-double with an error bound (orient3d), 3. expansions, exact
 /// while no product can over- or underflow, 4. dyadic numbers, exact always. [S] Shewchuk, "Adaptive precision
 /// floating-point arithmetic and fast robust geometric predicates", 1997.
+///
+/// Laws, each with its test in tests/numeric/predicates_test.cpp:
+/// 1. antisymmetry: an exchange of two points negates the sign (PermutationsTurnTheSign);
+/// 2. invariance: even permutations keep it, so orient2d(a, b, c) = orient2d(b, c, a) and orient3d(a, b, c, d) =
+///    orient3d(b, c, a, d), while orient3d(b, c, d, a) = -orient3d(a, b, c, d) (CyclesKeepTheSign);
+/// 3. a point given twice makes the sign 0 (Incidence);
+/// 4. multiplication of all coordinates by a power of two keeps it, as long as none over- or underflows
+///    (PowersOfTwoKeepTheSign);
+/// 5. range of exactness: all finite doubles, subnormal ones included (AgreeWithRationalsAtAnyMagnitude).
+/// None of the laws holds for the sign of a rounded determinant.
 #pragma once
 
 #include <array>

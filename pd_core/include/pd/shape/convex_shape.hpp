@@ -3,6 +3,8 @@
 ///
 /// A sphere is a point with a margin, a capsule a segment with a margin; they need no code of their own, and their
 /// depth is exact: the core's signed distance less the two margins ([A] section 1 on Minkowski sums).
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include <string_view>

@@ -3,6 +3,8 @@
 ///
 /// The body is {c + s (x - c) : x on the surface, 0 <= s <= 1}: the union of the tetrahedra over its faces with the
 /// apex c, which abut and do not overlap ([A], remark at the end of section 4).
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
 #include <array>
