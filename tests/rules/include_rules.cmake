@@ -33,8 +33,8 @@ set(folders_under_certificate difference distance certificate)
 set(folders_under_facets difference distance expansion certificate facets)
 set(folders_under_rays difference rays)
 set(folders_under_pair ${depth_folders})
-# What machinery may know of the public headers: words and memory, no queries.
-set(depth_words pd/depth/depth_answer.hpp pd/depth/search_observer.hpp pd/depth/scratch.hpp pd/depth/warm_certificate.hpp)
+# What machinery may know of the public headers: the words of an answer, no queries.
+set(depth_words pd/depth/depth_answer.hpp pd/depth/search_observer.hpp)
 # Old names of headers that moved.
 set(forwarding pd_core/include/pd/depth/union_of_parts.hpp pd_core/include/pd/depth/union_difference.hpp)
 

@@ -43,16 +43,16 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
     ++result.work.pairs;
     result.work.facets += static_cast<std::int64_t>(piece.facets.size());
   }
-  detail::UncoveredBoundary boundary(*differences);
+  detail::UnionBoundary boundary(*differences);
   std::vector<Vec3> corners;
-  const bool complete = boundary.visit_all([&](const detail::UncoveredBoundary::Spot& spot) {
+  const bool complete = boundary.visit_all([&](const detail::UnionBoundary::BoundaryPoint& where) {
     if (static_cast<std::int64_t>(result.facets.size()) == max_facets) return false;
-    const detail::PartDifference& piece = differences->pieces()[spot.piece];
-    const detail::DifferenceFacet& facet = piece.facets[spot.facet];
-    result.facets.push_back({differences->planes().normal(spot.polygon.plane).normalized(), piece.part_a, piece.part_b,
+    const detail::PartDifference& piece = differences->pieces()[where.piece];
+    const detail::DifferenceFacet& facet = piece.facets[where.facet];
+    result.facets.push_back({differences->planes().normal(where.polygon.plane).normalized(), piece.part_a, piece.part_b,
                              facet.on_a, facet.on_b, static_cast<std::int32_t>(corners.size()),
-                             static_cast<std::int32_t>(spot.polygon.corners.size())});
-    for (const Vec3& x : spot.polygon.corners) {
+                             static_cast<std::int32_t>(where.polygon.corners.size())});
+    for (const Vec3& x : where.polygon.corners) {
       Vec3 y;
       for (int i = 0; i < 3; ++i) y[i] = std::ldexp(x[i], exponent) + 0.0;
       corners.push_back(y);

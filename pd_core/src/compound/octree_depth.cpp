@@ -9,6 +9,7 @@
 
 #include "compound/union_boundary.hpp"
 #include "numeric/root_sum.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/scratch.hpp"
 
@@ -18,12 +19,6 @@ namespace {
 
 /// Pairs up to this many are tried together where none covers a cell alone.
 constexpr std::size_t kMaxTriedTogether = 12;
-
-double length_above(const Vec3& t) {
-  const Dyadic3 exact = to_dyadic(t);
-  const RootSum length(Dyadic(0.0), 1, dot(exact, exact), Dyadic(1.0));
-  return length.round_up(length.round_down());
-}
 
 /// One pair of parts; `piece` is its P_ij among the built differences, -1 when it was not built or is flat.
 struct PartPair {
@@ -110,7 +105,7 @@ class Octree {
     // Cells reach past the ball by the diagonal of the first cube.
     auto built = PartDifferences::build(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
                                         std::ldexp(2 * reach, -exponent), settings_.max_facets);
-    if (!built) return;  // then cells are covered by one part or parted
+    if (!built) return;  // then cells are covered by one part or split
     differences_.emplace(*std::move(built));
     boundary_.emplace(*differences_);
     for (std::size_t k = 0; k < differences_->pieces().size(); ++k) {
@@ -132,7 +127,7 @@ class Octree {
   PenetrationDepth moved_answer(std::int32_t p, const Vec3& t, double& slack) {
     const PosedShape& a = part_a(p);
     const Vec3 translation = a.pose.translation() + t;
-    slack = 2 * 0x1p-53 * translation.cwiseAbs().sum();
+    slack = 2 * kUnitRoundoff * translation.cwiseAbs().sum();
     const Pose pose = a.pose.is_quaternion() ? *Pose::from_quaternion(a.pose.quaternion_wxyz(), translation)
                                              : Pose::from_trusted_matrix(a.pose.rotation(), translation);
     DepthSettings rough;
@@ -225,7 +220,7 @@ class Octree {
   }
 
   void accept(const Vec3& t) {
-    const double length = length_above(t);
+    const double length = length_rounded_up(t);
     if (length < upper_) {
       upper_ = length;
       translation_ = t;
@@ -279,7 +274,7 @@ class Octree {
   UnionDepth& out_;
   std::vector<PartPair> pairs_;
   std::optional<PartDifferences> differences_;
-  std::optional<UncoveredBoundary> boundary_;
+  std::optional<UnionBoundary> boundary_;
   double upper_ = HUGE_VAL;
   Vec3 translation_ = Vec3::Zero();
 };

@@ -11,20 +11,15 @@
 #include "pd/numeric/expected.hpp"
 #include "pd/shape/convex_shape.hpp"
 #include "pd/shape/feature.hpp"
+#include "shape/support/vertex_pair.hpp"
 
 namespace pd::detail {
-
-/// b - a as vertex ids of two parts.
-struct DifferenceCorner {
-  std::int32_t a;
-  std::int32_t b;
-};
 
 struct DifferenceFacet {
   PlanePolygon polygon;
   Feature on_a;
   Feature on_b;
-  std::vector<DifferenceCorner> corners;  ///< of the loop, as the polygon's
+  std::vector<VertexPair> corners;  ///< of the loop, as the polygon's
 };
 
 /// One P_ij: the points inside every facet's plane.

@@ -75,7 +75,7 @@ Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePol
   }
   inner.update(planes);
   outer.update(planes);
-  return Cut::parted;
+  return Cut::split;
 }
 
 bool contains_point(const PlaneSet& planes, const PlanePolygon& polygon, const Vec3& x) {
@@ -112,9 +112,9 @@ bool seems_inside(const PlanePolygon& polygon, const Vec3& normal, const Vec3& x
 
 NearestFeature nearest_feature(const PlaneSet& planes, const PlanePolygon& polygon) {
   const Vec3 normal = planes.normal(polygon.plane) * planes.inverse_length(polygon.plane);
-  const Vec3 foot = normal * (planes.offset(polygon.plane) * planes.inverse_length(polygon.plane));
+  const Vec3 projection = normal * (planes.offset(polygon.plane) * planes.inverse_length(polygon.plane));
   const std::size_t n = polygon.corners.size();
-  if (seems_inside(polygon, normal, foot)) return {foot};
+  if (seems_inside(polygon, normal, projection)) return {projection};
   NearestFeature best{polygon.corners[0], 0, 0};
   double least = HUGE_VAL;
   for (std::size_t i = 0; i < n; ++i) {
@@ -163,12 +163,12 @@ ExactNearestPoint exact_nearest_point(const PlaneSet& planes, const PlanePolygon
     }
     return true;
   };
-  const auto accept = [&](PlaneSet::ExactPoint x, bool foot) {
+  const auto accept = [&](PlaneSet::ExactPoint x, bool projection) {
     if (!proved(x)) return false;
-    result = {std::move(x), foot};
+    result = {std::move(x), projection};
     return true;
   };
-  const auto foot = [&] {
+  const auto projection = [&] {
     const Dyadic3 normal = planes.exact_normal(polygon.plane);
     return PlaneSet::ExactPoint{normal * planes.exact_offset(polygon.plane), dot(normal, normal)};
   };
@@ -179,7 +179,7 @@ ExactNearestPoint exact_nearest_point(const PlaneSet& planes, const PlanePolygon
   if (guess.corner < 0 && guess.edge >= 0 && accept(of_edge(static_cast<std::size_t>(guess.edge)), false)) {
     return result;
   }
-  if (accept(foot(), true)) return result;
+  if (accept(projection(), true)) return result;
   for (std::size_t i = 0; i < n; ++i) {
     if (accept(of_edge(i), false)) return result;
   }

@@ -25,10 +25,10 @@ struct PlanePolygon {
 enum class Cut : std::uint8_t {
   inside,   ///< all of the polygon lies in the closed halfspace
   outside,  ///< none of its relative interior lies in the halfspace
-  parted,
+  split,
 };
 
-/// Cuts a polygon by the halfspace of `side`. Only when `parted` are the two parts written; each has a nonempty
+/// Cuts a polygon by the halfspace of `side`. Only when `split` are the two parts written; each has a nonempty
 /// relative interior. A polygon in the plane itself is `inside`.
 [[nodiscard]] Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner,
                       PlanePolygon& outer);
@@ -41,7 +41,7 @@ enum class Cut : std::uint8_t {
 /// The same exactly.
 struct ExactNearestPoint {
   PlaneSet::ExactPoint point;  ///< denominator > 0
-  bool foot;                   ///< the foot of the perpendicular on the polygon's plane
+  bool projection;             ///< it is the projection of the origin on the polygon's plane
 };
 /// Time O(corners) where doubles guess the nearest edge or corner right, squared else; exact arithmetic throughout.
 [[nodiscard]] ExactNearestPoint exact_nearest_point(const PlaneSet& planes, const PlanePolygon& polygon);

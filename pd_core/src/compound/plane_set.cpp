@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/quotient.hpp"
 #include "numeric/root_sum.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-constexpr double kU = 0x1p-53;
 constexpr double kUnderflow = 0x1p-900;
 
 using Integer = PlaneSet::Integer;
@@ -54,17 +55,7 @@ RoundedMeet meet_rounded(const Vec3& f, double df, const Vec3& q, double dq, con
   return m;
 }
 
-int top_bit(const Integer& x) { return static_cast<int>(boost::multiprecision::msb(boost::multiprecision::abs(x))); }
-
 }  // namespace
-
-double quotient(const Dyadic& numerator, const Dyadic& denominator) {
-  if (numerator.sign() == 0) return 0;
-  const int above = top_bit(numerator.mantissa()) + numerator.exponent();
-  const int below = top_bit(denominator.mantissa()) + denominator.exponent();
-  const DoubleDouble ratio = to_double_double(numerator.scaled(-above)) / to_double_double(denominator.scaled(-below));
-  return std::ldexp(to_double(ratio), above - below);
-}
 
 Side PlaneSet::add(const Dyadic3& normal, const Dyadic& offset) {
   const std::array<Dyadic, 4> given{normal.x, normal.y, normal.z, offset.scaled(-scale_exponent_)};
@@ -126,7 +117,7 @@ int PlaneSet::sign_at_meet(Side f, Side q, Side r, Side h) const {
     const double value = ph.normal.dot(m.v) - ph.offset * m.determinant;
     const double size = ph.normal.cwiseAbs().dot(m.v_size) + std::abs(ph.offset) * m.determinant_size;
     // Four coefficients within 2u each (8u), and at most nine roundings on the way of a term.
-    if (std::abs(value) > 24 * kU * size + kUnderflow) return (value > 0 ? 1 : -1) * turned;
+    if (std::abs(value) > 24 * kUnitRoundoff * size + kUnderflow) return (value > 0 ? 1 : -1) * turned;
   }
   ++exact_signs_;
   const Meet m = meet_exactly(pf.exact, pq.exact, pr.exact);
@@ -139,7 +130,7 @@ int PlaneSet::sign_at_point(Side h, const Vec3& x) const {
   const Plane& p = planes_[index(h)];
   const double value = p.normal.dot(x) - p.offset;
   const double size = p.normal.cwiseAbs().dot(x.cwiseAbs()) + std::abs(p.offset);
-  if (std::abs(value) > 8 * kU * size + kUnderflow) return (value > 0 ? 1 : -1) * h.orientation();
+  if (std::abs(value) > 8 * kUnitRoundoff * size + kUnderflow) return (value > 0 ? 1 : -1) * h.orientation();
   ++exact_signs_;
   return (dot(exact_normal(h), to_dyadic(x)) - exact_offset(h)).sign();
 }
@@ -159,11 +150,12 @@ PlaneSet::ExactPoint PlaneSet::exact_meet(Side f, Side q, Side r) const {
 PlaneSet::Point PlaneSet::meet(Side f, Side q, Side r) const {
   const Plane &pf = planes_[index(f)], &pq = planes_[index(q)], &pr = planes_[index(r)];
   const RoundedMeet m = meet_rounded(pf.normal, pf.offset, pq.normal, pq.offset, pr.normal, pr.offset);
-  const double slack = 24 * kU * m.determinant_size + kUnderflow;
+  const double slack = 24 * kUnitRoundoff * m.determinant_size + kUnderflow;
   if (std::abs(m.determinant) > 2 * slack) {
     const double least = std::abs(m.determinant) - slack;
     const Vec3 x = m.v / m.determinant;
-    const Vec3 error = (24 * kU * m.v_size + x.cwiseAbs() * slack).array() / least + 4 * kU * x.cwiseAbs().array();
+    const Vec3 error = (24 * kUnitRoundoff * m.v_size + x.cwiseAbs() * slack).array() / least +
+                       4 * kUnitRoundoff * x.cwiseAbs().array();
     // Flat crossings are worth exact arithmetic, so that bounds stay near the rounding of the input.
     if (error.maxCoeff() <= 0x1p-46 * (1 + x.cwiseAbs().maxCoeff())) return {x, error.maxCoeff()};
   }
@@ -171,7 +163,7 @@ PlaneSet::Point PlaneSet::meet(Side f, Side q, Side r) const {
   const Dyadic below = Dyadic::from_integer(e.determinant, 0);
   const auto coordinate = [&](std::size_t i) { return quotient(Dyadic::from_integer(e.v[i], 0), below); };
   const Vec3 x(coordinate(0), coordinate(1), coordinate(2));
-  return {x, 2 * kU * x.cwiseAbs().maxCoeff() + kUnderflow};
+  return {x, 2 * kUnitRoundoff * x.cwiseAbs().maxCoeff() + kUnderflow};
 }
 
 }  // namespace pd::detail

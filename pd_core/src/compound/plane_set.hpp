@@ -42,9 +42,6 @@ struct RayParameter {
   }
 };
 
-/// numerator / denominator in doubles, within 2^-100 and a rounding, whatever the exponents of the two.
-[[nodiscard]] double quotient(const Dyadic& numerator, const Dyadic& denominator);
-
 class PlaneSet {
  public:
   using Integer = Dyadic::Integer;

@@ -4,42 +4,20 @@
 #include <cmath>
 #include <utility>
 
-#include "numeric/root_sum.hpp"
-
 namespace pd::detail {
 
-namespace {
-
-/// Squared distance of a plane from the origin as a rational.
-struct Squared {
-  Dyadic numerator;
-  Dyadic denominator;
-};
-Squared squared_distance(const PlaneSet::ExactPoint& point) {
-  return {dot(point.numerator, point.numerator), point.denominator * point.denominator};
-}
-Vec3 rounded(const PlaneSet::ExactPoint& point) {
-  const auto coordinate = [&](const Dyadic& x) { return quotient(x, point.denominator); };
-  return {coordinate(point.numerator.x), coordinate(point.numerator.y), coordinate(point.numerator.z)};
-}
-int compare(const Squared& x, const Squared& y) {
-  return (x.numerator * y.denominator - y.numerator * x.denominator).sign();
-}
-
-}  // namespace
-
-UncoveredBoundary::UncoveredBoundary(const PartDifferences& differences)
+UnionBoundary::UnionBoundary(const PartDifferences& differences)
     : differences_(differences), planes_(differences.planes()) {
   for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
 }
 
-UncoveredBoundary::Taken UncoveredBoundary::own(std::size_t piece) const {
-  Taken taken((differences_.pieces().size() + 63) / 64, 0);
-  taken[piece / 64] |= std::uint64_t{1} << (piece % 64);
-  return taken;
+UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
+  ClippedSet clipped((differences_.pieces().size() + 63) / 64, 0);
+  clipped[piece / 64] |= std::uint64_t{1} << (piece % 64);
+  return clipped;
 }
 
-bool UncoveredBoundary::cut_away(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once) {
+bool UnionBoundary::subtract(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once) {
   const PartDifference& piece = differences_.pieces()[k];
   rest_.clear();
   for (const DifferenceFacet& f : piece.facets) {
@@ -56,7 +34,7 @@ bool UncoveredBoundary::cut_away(const PlanePolygon& polygon, std::size_t own, s
         return false;
       case Cut::inside:
         break;
-      case Cut::parted:
+      case Cut::split:
         rest_.push_back(std::move(outer));
         left = std::move(inner);
         break;
@@ -66,12 +44,12 @@ bool UncoveredBoundary::cut_away(const PlanePolygon& polygon, std::size_t own, s
   return true;
 }
 
-std::ptrdiff_t UncoveredBoundary::covering(const Vec3& x, const Taken& taken, double tolerance) const {
+std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped, double tolerance) const {
   const std::vector<PartDifference>& pieces = differences_.pieces();
   std::ptrdiff_t best = -1;
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    if (has(taken, k)) continue;
+    if (has(clipped, k)) continue;
     const Box& box = boxes_[k];
     if (box.low.x() - x.x() > tolerance || x.x() - box.high.x() > tolerance || box.low.y() - x.y() > tolerance ||
         x.y() - box.high.y() > tolerance || box.low.z() - x.z() > tolerance || x.z() - box.high.z() > tolerance) {
@@ -92,7 +70,7 @@ std::ptrdiff_t UncoveredBoundary::covering(const Vec3& x, const Taken& taken, do
   return best;
 }
 
-bool UncoveredBoundary::swallowed(const PlanePolygon& polygon) {
+bool UnionBoundary::contained_in_recent(const PlanePolygon& polygon) {
   const double slack = 2 * polygon.error + 0x1p-44 * differences_.extent();
   for (std::size_t i = 0; i < recent_.size(); ++i) {
     const std::size_t k = recent_[i];
@@ -113,103 +91,13 @@ bool UncoveredBoundary::swallowed(const PlanePolygon& polygon) {
   return false;
 }
 
-void UncoveredBoundary::remember(std::size_t k) {
+void UnionBoundary::mark_recent(std::size_t k) {
   if (std::find(recent_.begin(), recent_.end(), k) != recent_.end()) return;
   if (recent_.size() == kRecent) recent_.pop_back();
   recent_.insert(recent_.begin(), k);
 }
 
-UncoveredBoundary::Nearest UncoveredBoundary::nearest(double known_lower) {
-  struct Waiting {
-    double key;  ///< no point of the polygon is nearer
-    std::int64_t order;
-    Cell cell;
-  };
-  const auto later = [](const Waiting& x, const Waiting& y) {
-    return x.key != y.key ? x.key > y.key : x.order > y.order;
-  };
-  std::vector<Waiting> queue;  // a heap
-  const auto push = [&](Waiting waiting) {
-    queue.push_back(std::move(waiting));
-    std::push_heap(queue.begin(), queue.end(), later);
-  };
-  const double scale = differences_.extent();
-  std::int64_t order = 0;
-
-  std::optional<Nearest> best;
-  Squared best_squared;
-  double best_key = HUGE_VAL;  // distance of the best spot, at most this
-
-  const auto wait = [&](Cell cell) {
-    PlanePolygon& polygon = cell.spot.polygon;
-    double farthest = 0;
-    for (const Vec3& x : polygon.corners) farthest = std::max(farthest, x.squaredNorm());
-    if (std::sqrt(farthest) < known_lower - 4 * polygon.error - 0x1p-48 * scale) return;
-    cell.spot.x = nearest_point(planes_, polygon);
-    const double distance = cell.spot.x.norm();
-    const double key = std::max(known_lower, distance - 4 * polygon.error - 0x1p-50 * scale);
-    if (key >= best_key || swallowed(polygon)) return;
-    push({key, order++, std::move(cell)});
-  };
-  const std::vector<PartDifference>& pieces = differences_.pieces();
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f)
-      wait({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, own(k)});
-  }
-
-  while (!queue.empty()) {
-    std::pop_heap(queue.begin(), queue.end(), later);
-    Waiting top = std::move(queue.back());
-    queue.pop_back();
-    if (best && top.key >= best_key) break;
-    ++counts_.polygons;
-    Cell& cell = top.cell;
-    if (swallowed(cell.spot.polygon)) continue;
-    // Ties are told apart exactly, so that the lower bound is the depth itself.
-    std::optional<ExactNearestPoint> exact;
-    if (best) {
-      exact = exact_nearest_point(planes_, cell.spot.polygon);
-      if (compare(squared_distance(exact->point), best_squared) >= 0) continue;
-    }
-    const double tolerance = 8 * cell.spot.polygon.error + 0x1p-44 * scale;
-    const std::ptrdiff_t k = covering(cell.spot.x, cell.taken, tolerance);
-    if (k >= 0) {
-      const auto index = static_cast<std::size_t>(k);
-      remember(index);
-      cell.taken[index / 64] |= std::uint64_t{1} << (index % 64);
-      if (!cut_away(cell.spot.polygon, cell.spot.piece, index, false)) {
-        push(std::move(top));
-        continue;
-      }
-      std::vector<PlanePolygon> rest = std::move(rest_);
-      for (PlanePolygon& part : rest)
-        wait({{cell.spot.piece, cell.spot.facet, std::move(part), Vec3::Zero()}, cell.taken});
-      continue;
-    }
-    if (!exact) exact = exact_nearest_point(planes_, cell.spot.polygon);
-    const Vec3 x = rounded(exact->point);
-    if ((x - cell.spot.x).cwiseAbs().maxCoeff() > tolerance / 4) {
-      // A flat crossing misled the doubles: asked again at the right point.
-      cell.spot.x = x;
-      top.key = std::max(top.key, x.norm() * (1 - 0x1p-48));
-      push(std::move(top));
-      continue;
-    }
-    Squared squared = squared_distance(exact->point);
-    Nearest found;
-    found.spot = std::move(cell.spot);
-    found.foot = exact->foot;
-    found.spot.x = x;
-    found.lower = RootSum(Dyadic(0.0), 1, squared.numerator, squared.denominator).round_down();
-    best_key = found.lower;
-    best_squared = std::move(squared);
-    best = std::move(found);
-  }
-  best->lower = std::max(known_lower, best->lower);
-  return *std::move(best);
-}
-
-std::optional<UncoveredBoundary::Spot> UncoveredBoundary::at(const Vec3& x, bool& held) {
+std::optional<UnionBoundary::BoundaryPoint> UnionBoundary::at(const Vec3& x, bool& held) {
   const std::vector<PartDifference>& pieces = differences_.pieces();
   std::vector<std::size_t> holding;  // the closed P_k that hold x: all that matter near it
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -229,7 +117,7 @@ std::optional<UncoveredBoundary::Spot> UncoveredBoundary::at(const Vec3& x, bool
         std::vector<PlanePolygon> next;
         for (PlanePolygon& polygon : polygons) {
           ++counts_.polygons;
-          if (!cut_away(polygon, own, k, false)) {
+          if (!subtract(polygon, own, k, false)) {
             next.push_back(std::move(polygon));
             continue;
           }
@@ -239,13 +127,13 @@ std::optional<UncoveredBoundary::Spot> UncoveredBoundary::at(const Vec3& x, bool
         }
         polygons = std::move(next);
       }
-      if (!polygons.empty()) return Spot{own, f, std::move(polygons.front()), x};
+      if (!polygons.empty()) return BoundaryPoint{own, f, std::move(polygons.front()), x};
     }
   }
   return std::nullopt;
 }
 
-bool UncoveredBoundary::visit_all(const Visitor& visitor) {
+bool UnionBoundary::visit_all(const Visitor& visitor) {
   const std::vector<PartDifference>& pieces = differences_.pieces();
   std::vector<Cell> open;
   for (std::size_t own_piece = 0; own_piece < pieces.size(); ++own_piece) {
@@ -255,22 +143,22 @@ bool UncoveredBoundary::visit_all(const Visitor& visitor) {
         Cell cell = std::move(open.back());
         open.pop_back();
         ++counts_.polygons;
-        if (swallowed(cell.spot.polygon)) continue;
-        if (part_one(cell, open)) continue;
-        if (!visitor(cell.spot)) return false;
+        if (contained_in_recent(cell.where.polygon)) continue;
+        if (split_one(cell, open)) continue;
+        if (!visitor(cell.where)) return false;
       }
     }
   }
   return true;
 }
 
-bool UncoveredBoundary::part_one(Cell& cell, std::vector<Cell>& open) {
-  const PlanePolygon& polygon = cell.spot.polygon;
-  const auto part_by = [&](std::size_t k) {
-    cell.taken[k / 64] |= std::uint64_t{1} << (k % 64);
-    if (!cut_away(polygon, cell.spot.piece, k, true)) return false;
+bool UnionBoundary::split_one(Cell& cell, std::vector<Cell>& open) {
+  const PlanePolygon& polygon = cell.where.polygon;
+  const auto split_by = [&](std::size_t k) {
+    cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
+    if (!subtract(polygon, cell.where.piece, k, true)) return false;
     for (PlanePolygon& part : rest_)
-      open.push_back({{cell.spot.piece, cell.spot.facet, std::move(part), Vec3::Zero()}, cell.taken});
+      open.push_back({{cell.where.piece, cell.where.facet, std::move(part), Vec3::Zero()}, cell.clipped});
     return true;
   };
   // The one that holds the middle best covers most of it.
@@ -282,20 +170,20 @@ bool UncoveredBoundary::part_one(Cell& cell, std::vector<Cell>& open) {
     high = high.cwiseMax(x);
   }
   middle /= static_cast<double>(polygon.corners.size());
-  for (std::ptrdiff_t k = covering(middle, cell.taken, 0); k >= 0; k = covering(middle, cell.taken, 0)) {
-    remember(static_cast<std::size_t>(k));
-    if (part_by(static_cast<std::size_t>(k))) return true;
+  for (std::ptrdiff_t k = covering(middle, cell.clipped, 0); k >= 0; k = covering(middle, cell.clipped, 0)) {
+    mark_recent(static_cast<std::size_t>(k));
+    if (split_by(static_cast<std::size_t>(k))) return true;
   }
   const double slack = 2 * polygon.error;
   for (std::size_t k = 0; k < boxes_.size(); ++k) {
-    if (has(cell.taken, k)) continue;
+    if (has(cell.clipped, k)) continue;
     if ((boxes_[k].low - high).maxCoeff() > slack || (low - boxes_[k].high).maxCoeff() > slack) continue;
-    if (part_by(k)) return true;
+    if (split_by(k)) return true;
   }
   return false;
 }
 
-bool UncoveredBoundary::free_piece_near(const Vec3& low, const Vec3& high, const std::vector<std::size_t>& among) {
+bool UnionBoundary::free_piece_near(const Vec3& low, const Vec3& high, const std::vector<std::size_t>& among) {
   const auto meets = [&](const PlanePolygon& polygon) {
     Vec3 least = polygon.corners[0], most = least;
     for (const Vec3& x : polygon.corners) {
@@ -313,7 +201,7 @@ bool UncoveredBoundary::free_piece_near(const Vec3& low, const Vec3& high, const
         if (k == own) continue;
         std::vector<PlanePolygon> next;
         for (PlanePolygon& polygon : polygons) {
-          if (!cut_away(polygon, own, k, false)) {
+          if (!subtract(polygon, own, k, false)) {
             next.push_back(std::move(polygon));
             continue;
           }
@@ -329,7 +217,7 @@ bool UncoveredBoundary::free_piece_near(const Vec3& low, const Vec3& high, const
   return false;
 }
 
-bool UncoveredBoundary::outside_all(const Vec3& x) const {
+bool UnionBoundary::outside_all(const Vec3& x) const {
   for (const PartDifference& piece : differences_.pieces()) {
     if ((piece.low - x).maxCoeff() > 0 || (x - piece.high).maxCoeff() > 0) continue;
     if (std::all_of(piece.facets.begin(), piece.facets.end(),
@@ -340,14 +228,14 @@ bool UncoveredBoundary::outside_all(const Vec3& x) const {
   return true;
 }
 
-Vec3 UncoveredBoundary::free_placement(const Spot& spot) const {
-  const Vec3& x = spot.x;
+Vec3 UnionBoundary::free_placement(const BoundaryPoint& where) const {
+  const Vec3& x = where.x;
   // The polygon is uncovered about x, so that its points there are boundary points.
-  if (contains_point(planes_, spot.polygon, x) || outside_all(x)) return x;
-  const Vec3 normal = planes_.normal(spot.polygon.plane) * planes_.inverse_length(spot.polygon.plane);
+  if (contains_point(planes_, where.polygon, x) || outside_all(x)) return x;
+  const Vec3 normal = planes_.normal(where.polygon.plane) * planes_.inverse_length(where.polygon.plane);
   Vec3 centre = Vec3::Zero();
-  for (const Vec3& corner : spot.polygon.corners) centre += corner;
-  centre /= static_cast<double>(spot.polygon.corners.size());
+  for (const Vec3& corner : where.polygon.corners) centre += corner;
+  centre /= static_cast<double>(where.polygon.corners.size());
   const Vec3 inwards = centre - x;
   const double length = inwards.norm();
   const Vec3 along = length > 0 ? Vec3(inwards / length) : Vec3::Zero();

@@ -6,8 +6,8 @@
 /// sides: it is no part of the boundary, and no way out.
 ///
 /// Searches are best first: facets wait in the order of their distance from the origin (or of the ray's parameter); the
-/// first is asked which P_k hold its nearest point; one of them is cut away, exactly, and what is left goes back in the
-/// queue. A polygon whose nearest point is held by nothing ends the search. Each cut takes one P_k off a polygon's list
+/// first is asked which P_k hold its nearest point; one of them is subtracted, exactly, and what is left goes back in
+/// the queue. A polygon whose nearest point no P_k holds ends the search. Each cut takes one P_k off a polygon's list
 /// for good, so that every search ends.
 #pragma once
 
@@ -20,17 +20,17 @@
 
 namespace pd::detail {
 
-class UncoveredBoundary {
+class UnionBoundary {
  public:
   /// Refers to the differences.
-  explicit UncoveredBoundary(const PartDifferences& differences);
+  explicit UnionBoundary(const PartDifferences& differences);
 
-  /// Where in the union's boundary an answer lies.
-  struct Spot {
+  /// A point of the union's boundary, and the facet that it lies on.
+  struct BoundaryPoint {
     std::size_t piece = 0;
     std::size_t facet = 0;
-    PlanePolygon polygon;   ///< part of that facet, uncovered about the spot
-    Vec3 x = Vec3::Zero();  ///< the spot, in doubles (inside lengths)
+    PlanePolygon polygon;   ///< part of that facet, uncovered around the point
+    Vec3 x = Vec3::Zero();  ///< in doubles (inside lengths)
   };
 
   /// The boundary point nearest to the origin and a lower bound of its distance; nothing when `known_lower` is above
@@ -38,26 +38,26 @@ class UncoveredBoundary {
   /// within the distance sought to be there.
   /// @param known_lower  no boundary point is nearer: what lies inside that ball is not looked at.
   struct Nearest {
-    Spot spot;
-    double lower = 0;   ///< the distance itself, rounded down
-    bool foot = false;  ///< the nearest point is the foot of the perpendicular on the facet's plane, exactly
+    BoundaryPoint where;
+    double lower = 0;         ///< the distance itself, rounded down
+    bool projection = false;  ///< that point is the projection of the origin on the facet's plane, exactly
   };
   [[nodiscard]] Nearest nearest(double known_lower);
 
   /// Whether a point (inside lengths, as stored) lies on the boundary, exactly. `held` tells whether a closed P_k holds
   /// it: held and not on the boundary is inside.
-  [[nodiscard]] std::optional<Spot> at(const Vec3& x, bool& held);
+  [[nodiscard]] std::optional<BoundaryPoint> at(const Vec3& x, bool& held);
 
   /// The least t >= 0 for which t d lies on the boundary, exact; nothing when the ray meets none.
   struct Hit {
-    Spot spot;
+    BoundaryPoint where;
     RayParameter t;
   };
   /// @param direction  `exact` rounded; its largest |coordinate| in [1, 2).
   [[nodiscard]] std::optional<Hit> along(const Vec3& direction, const Dyadic3& exact);
 
   /// Every piece of the boundary once, in the order of P_k and facets. Returns false when stopped.
-  using Visitor = std::function<bool(const Spot&)>;
+  using Visitor = std::function<bool(const BoundaryPoint&)>;
   bool visit_all(const Visitor& visitor);
 
   /// Whether an uncovered part of the boundary of the union of these P_k may meet a box (inside lengths); false is
@@ -66,36 +66,38 @@ class UncoveredBoundary {
 
   /// Whether x (inside lengths, as stored) lies outside every closed P_k, exactly.
   [[nodiscard]] bool outside_all(const Vec3& x) const;
-  /// A triple of doubles outside int(union), exactly, within a few ulp of a spot that was found.
-  [[nodiscard]] Vec3 free_placement(const Spot& spot) const;
+  /// A triple of doubles outside int(union), exactly, within a few ulp of a boundary point that was found.
+  [[nodiscard]] Vec3 free_placement(const BoundaryPoint& where) const;
 
   struct Counts {
-    std::int64_t polygons = 0;  ///< taken from the queue
-    std::int64_t cuts = 0;      ///< P_k taken off a polygon
+    std::int64_t polygons = 0;  ///< clipped from the queue
+    std::int64_t cuts = 0;      ///< P_k subtracted from a polygon
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
-  using Taken = std::vector<std::uint64_t>;  ///< a bit for each P_k that was cut away (or is the polygon's own)
+  class NearestSearch;
+  using ClippedSet = std::vector<std::uint64_t>;  ///< a bit for each P_k that was subtracted (or is the polygon's own)
   struct Cell {
-    Spot spot;
-    Taken taken;
+    BoundaryPoint where;
+    ClippedSet clipped;
   };
 
-  [[nodiscard]] Taken own(std::size_t piece) const;
-  static bool has(const Taken& taken, std::size_t k) { return (taken[k / 64] >> (k % 64) & 1) != 0; }
+  [[nodiscard]] ClippedSet own(std::size_t piece) const;
+  static bool has(const ClippedSet& clipped, std::size_t k) { return (clipped[k / 64] >> (k % 64) & 1) != 0; }
 
   /// Cuts P_k off a polygon of P_own. False when it covers none of it; else `rest_` holds what is left.
   /// @param once  of two facets that lie in one plane and look the same way, the later gives way.
-  bool cut_away(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once);
-  /// The deepest P_k, not taken yet, that holds x within the tolerance; -1: none.
-  [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const Taken& taken, double tolerance) const;
+  bool subtract(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once);
+  /// The deepest P_k, not subtracted yet, that holds x within the tolerance; -1: none.
+  [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const ClippedSet& clipped, double tolerance) const;
 
   /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
-  bool part_one(Cell& cell, std::vector<Cell>& open);
-  /// Whether a P_k that lately covered something holds all of a polygon in its interior, for certain.
-  bool swallowed(const PlanePolygon& polygon);
-  void remember(std::size_t k);
+  bool split_one(Cell& cell, std::vector<Cell>& open);
+  /// Whether a P_k that covered something recently contains all of a polygon in its interior, for certain.
+  bool contained_in_recent(const PlanePolygon& polygon);
+  /// Puts a P_k that covered something in front of those asked first.
+  void mark_recent(std::size_t k);
   static constexpr std::size_t kRecent = 12;
 
   const PartDifferences& differences_;

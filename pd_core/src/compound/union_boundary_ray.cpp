@@ -1,11 +1,12 @@
 /// @file
-/// The first uncovered point along a ray: `UncoveredBoundary::along`.
+/// The first uncovered point along a ray: `UnionBoundary::along`.
 #include <algorithm>
 #include <cmath>
 #include <queue>
 #include <utility>
 
 #include "compound/union_boundary.hpp"
+#include "numeric/quotient.hpp"
 
 namespace pd::detail {
 
@@ -85,7 +86,7 @@ class RayMeeting {
 
 }  // namespace
 
-std::optional<UncoveredBoundary::Hit> UncoveredBoundary::along(const Vec3& direction, const Dyadic3& exact) {
+std::optional<UnionBoundary::Hit> UnionBoundary::along(const Vec3& direction, const Dyadic3& exact) {
   struct Waiting {
     RayParameter t;
     std::int64_t order;
@@ -99,7 +100,7 @@ std::optional<UncoveredBoundary::Hit> UncoveredBoundary::along(const Vec3& direc
   const RayMeeting ray(planes_, exact, direction.normalized());
   std::int64_t order = 0;
   const auto wait = [&](Cell cell) {
-    if (auto t = ray.least(cell.spot.polygon)) queue.push({*std::move(t), order++, std::move(cell)});
+    if (auto t = ray.least(cell.where.polygon)) queue.push({*std::move(t), order++, std::move(cell)});
   };
   const std::vector<PartDifference>& pieces = differences_.pieces();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -123,18 +124,18 @@ std::optional<UncoveredBoundary::Hit> UncoveredBoundary::along(const Vec3& direc
     const Vec3 x = t * direction;
     bool again = false;
     for (std::size_t k = 0; k < pieces.size() && !again; ++k) {
-      if (has(top.cell.taken, k) || !holds(pieces[k], top.t, x)) continue;
-      top.cell.taken[k / 64] |= std::uint64_t{1} << (k % 64);
-      if (!cut_away(top.cell.spot.polygon, top.cell.spot.piece, k, false)) continue;
+      if (has(top.cell.clipped, k) || !holds(pieces[k], top.t, x)) continue;
+      top.cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
+      if (!subtract(top.cell.where.polygon, top.cell.where.piece, k, false)) continue;
       again = true;
       std::vector<PlanePolygon> rest = std::move(rest_);
       for (PlanePolygon& part : rest) {
-        wait({{top.cell.spot.piece, top.cell.spot.facet, std::move(part), Vec3::Zero()}, top.cell.taken});
+        wait({{top.cell.where.piece, top.cell.where.facet, std::move(part), Vec3::Zero()}, top.cell.clipped});
       }
     }
     if (again) continue;
-    top.cell.spot.x = x;
-    return Hit{std::move(top.cell.spot), std::move(top.t)};
+    top.cell.where.x = x;
+    return Hit{std::move(top.cell.where), std::move(top.t)};
   }
   return std::nullopt;
 }

@@ -49,7 +49,7 @@ void shoot_all(const detail::PolytopePair& pair, const DirectionGrid& grid,
   }
   PenetrationDepth nearest;
   const detail::ExactDirection normal(shooter.kept().normal);
-  finish_overlapping(posed, facet_of_direction(posed, normal), pair.margins, Bracket::tightest, buffers.faces, nearest);
+  answer_overlapping(posed, facet_of_direction(posed, normal), pair.margins, Bracket::tightest, buffers.faces, nearest);
   take(nearest, out);
   // Directions are unit up to 2 ulp.
   const double core = grid.cosine * least_lower * (1 - 0x1p-50);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/depth/width.hpp"
 #include "pd/structure/direction_grid.hpp"
@@ -112,7 +113,7 @@ class WidthSearch {
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const detail::Extremes& e = extremes[k];
       // Three products and two sums of at most the largest coordinate each, twice; the direction's own length; a sum.
-      const double extent = (e.most - e.least + 16 * 0x1p-53 * largest_) * (1 + 0x1p-49);
+      const double extent = (e.most - e.least + 16 * detail::kUnitRoundoff * largest_) * (1 + 0x1p-49);
       if (extent < result_.upper) {
         result_.upper = extent;
         result_.normal = directions[k];

@@ -7,13 +7,14 @@
 
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/difference/direction_signs.hpp"
-#include "depth/difference/posed_support.hpp"
+#include "depth/difference/exact_support.hpp"
 #include "depth/difference/smooth_difference.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
 #include "depth/rays/portal.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace pd {
@@ -28,7 +29,7 @@ using detail::PosedPair;
 DifferenceSupport polytope_support(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
                                    const Pose& pose_b, double margin, const Vec3& direction) {
   const PosedPair pair(a, pose_a, b, pose_b);
-  const detail::RaySigns signs(pair, direction);
+  const detail::DirectionSigns signs(pair, direction);
   const auto sign = [&](const PairVector& edge) { return signs.along(edge); };
   const detail::VertexPair found = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, sign);
   std::vector<std::int32_t> stack;
@@ -78,13 +79,13 @@ Pose moved(const Pose& pose, const Vec3& translation) {
 ContactClass exact_class(const PosedShape& a, const PosedShape& b, const Vec3& point) {
   const PosedPair pair(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose, point);
   const detail::VertexPair start{0, 0};
-  const detail::ExactNearest nearest = exact_nearest(pair, &start, 1);
+  const detail::ExactClosestPoint nearest = exact_closest_point(pair, &start, 1);
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};
   const bool rounded = margins.a > 0 || margins.b > 0;
   if (nearest.apart) {
     if (!rounded) return ContactClass::separated;
     PenetrationDepth answer;
-    finish_apart(pair, nearest, margins, answer);
+    answer_separated(pair, nearest, margins, answer);
     return answer.contact;
   }
   if (rounded) return ContactClass::overlapping;
@@ -133,7 +134,7 @@ Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape
     const PenetrationDepth answer = penetration_depth({a.shape, moved(a.pose, sum)}, b, scratch, roughly);
     if (exact || !polytopes) return answer.contact;
     // The move was rounded: the signed depth changes by at most as much.
-    const double slack = 2 * 0x1p-53 * sum.cwiseAbs().sum();
+    const double slack = 2 * detail::kUnitRoundoff * sum.cwiseAbs().sum();
     if (answer.contact == ContactClass::overlapping && answer.lower > slack) return answer.contact;
     if (answer.contact == ContactClass::separated && answer.distance_lower > slack) return answer.contact;
   } else if (!polytopes) {
@@ -166,7 +167,7 @@ Expected<LineCrossing> line_in_difference(const PosedShape& a, const PosedShape&
   LineCrossing crossing;
   Dyadic levels[2], slopes[2];
   for (const double sense : {1.0, -1.0}) {
-    const detail::RaySigns ray(pair, sense * direction);
+    const detail::DirectionSigns ray(pair, sense * direction);
     const std::optional<detail::Portal> portal = find_line_portal(ray);
     if (!portal) return LineCrossing();
     const auto& v = portal->corners;

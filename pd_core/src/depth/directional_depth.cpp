@@ -44,7 +44,7 @@ Crossing crossing_of(const PosedPair& pair, const Dyadic3& direction, const Pair
 /// The least crossing over every facet of P that faces along the ray.
 class NearestCrossing {
  public:
-  NearestCrossing(const detail::OverlayWalk& walk, const detail::RaySigns& ray)
+  NearestCrossing(const detail::OverlayWalk& walk, const detail::DirectionSigns& ray)
       : walk_(walk), pair_(walk.pair()), ray_(ray) {}
 
   void consume(std::span<const detail::OverlayPiece> pieces) {
@@ -87,7 +87,7 @@ class NearestCrossing {
 
   const detail::OverlayWalk& walk_;
   const PosedPair& pair_;
-  const detail::RaySigns& ray_;
+  const detail::DirectionSigns& ray_;
   Crossing best_;
   double upper_ = HUGE_VAL;
   bool found_ = false;
@@ -140,7 +140,7 @@ bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHier
   std::array<Crossing, 2> crossings;
   std::array<Corners, 2> corners{};
   for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
-    const detail::RaySigns ray(pair, way == 0 ? direction : Vec3(-direction));
+    const detail::DirectionSigns ray(pair, way == 0 ? direction : Vec3(-direction));
     const detail::HierarchyDescentResult result = descend_hierarchies(ray, {hierarchies.a}, {hierarchies.b});
     out.descent.steps += result.steps;
     out.descent.certificate += result.certificate;
@@ -160,7 +160,7 @@ bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHier
     if (std::abs(e.dot(normal.unit)) > 16 * (pair.vector_error() + 0x1p-50 * e.cwiseAbs().sum())) return false;
     return dot(pair.exact(edge), normal.exact).sign() == 0;
   };
-  const detail::PlaneFaces faces{
+  const detail::SupportFaces faces{
       face_at(pair.a(), corners[0][0].a, [&](int v, int w) { return level(PairVector::edge_a(v, w)); }),
       face_at(pair.b(), corners[0][0].b, [&](int v, int w) { return level(PairVector::edge_b(v, w)); })};
   const detail::FacetFeatures features = features_of(pair, faces, normal.unit);
@@ -231,7 +231,7 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
   }
 
   const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
-  const detail::RaySigns ray(pair, direction);
+  const detail::DirectionSigns ray(pair, direction);
   Crossing crossing;
   if (method == DirectionalMethod::overlay) {
     detail::OverlayWalk walk(pair, scratch.buffers().overlay.overlay);

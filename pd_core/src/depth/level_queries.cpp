@@ -56,7 +56,7 @@ Expected<LevelCrossing> crossing_of_level(const PolyhedralHierarchy& hierarchy, 
   LevelCrossing out;
   std::array<Rounded, 2> times{};
   for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
-    const detail::RaySigns ray(pair, way == 0 ? direction : Vec3(-direction));
+    const detail::DirectionSigns ray(pair, way == 0 ? direction : Vec3(-direction));
     const auto found = descend_hierarchies(ray, {}, {&hierarchy, level});
     out.steps += found.steps;
     if (!found.crosses) return out;

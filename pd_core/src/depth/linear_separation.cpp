@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "depth/difference/direction_signs.hpp"
-#include "depth/difference/posed_support.hpp"
+#include "depth/difference/exact_support.hpp"
 #include "depth/distance/gjk_exact.hpp"
 #include "numeric/floating_point_guard.hpp"
 
@@ -17,10 +17,10 @@ namespace pd {
 
 namespace {
 
+using detail::DirectionSigns;
 using detail::Dyadic3;
 using detail::PairVector;
 using detail::PosedPair;
-using detail::RaySigns;
 
 /// A vertex of A or of B.
 struct Site {
@@ -146,7 +146,7 @@ class FlatSearch {
 
   const PosedPair& pair_;
   int dimension_;
-  RaySigns along_;
+  DirectionSigns along_;
   std::span<const Site> sites_;
   std::int64_t tests_ = 0;
 };
@@ -169,7 +169,7 @@ std::vector<Site> shuffled_sites(const ConvexPolytope& a, const ConvexPolytope& 
 
 /// Whether max <n, a> < min <n, b>, exactly.
 bool strictly_separates(const PosedPair& pair, const Vec3& n) {
-  const RaySigns signs(pair, -n);
+  const DirectionSigns signs(pair, -n);
   const auto along = [&](const PairVector& edge) { return signs.along(edge); };
   const detail::VertexPair nearest = support_exactly(pair, {signs.scaled(), 0}, {-1, -1}, along);
   return signs.along(PairVector::point(nearest.a, nearest.b)) < 0;
@@ -184,7 +184,7 @@ void choose_direction(const PosedPair& pair, const std::optional<Vec3>& normal, 
     if (out.strict) return;
   }
   const detail::VertexPair start{0, 0};
-  const detail::ExactNearest nearest = exact_nearest(pair, &start, 1);
+  const detail::ExactClosestPoint nearest = exact_closest_point(pair, &start, 1);
   const Vec3 unit = detail::ExactDirection(nearest.point).unit;
   out.direction = unit;
   out.strict = strictly_separates(pair, unit);
@@ -252,11 +252,11 @@ LinearSeparation linear_separation(const ConvexPolytope& a, const Pose& pose_a, 
     out.contact = ContactClass::touching;
     if (dimension == 3) {
       const Vec3 across = pair.approximate(first.vector).cross(pair.approximate(second.vector));
-      axis =
-          choose_axis(across, [&](int i) { return RaySigns(pair, Vec3::Unit(i)).turn(first.vector, second.vector); });
+      axis = choose_axis(across,
+                         [&](int i) { return DirectionSigns(pair, Vec3::Unit(i)).turn(first.vector, second.vector); });
     } else if (dimension == 2) {
       axis = choose_axis(pair.approximate(first.vector),
-                         [&](int i) { return RaySigns(pair, Vec3::Unit(i)).along(first.vector); });
+                         [&](int i) { return DirectionSigns(pair, Vec3::Unit(i)).along(first.vector); });
     }
   }
   if (out.contact == ContactClass::touching && normal) out.direction = *normal;

@@ -42,7 +42,7 @@ Vec3 position(const PosedPair& pair, const DifferencePoint& p) {
 Vec3 unit_normal(const PosedPair& pair, const FacetOfDifference& facet) {
   const detail::Vec3DD n = detail::cross(pair.approximate_dd(facet.u), pair.approximate_dd(facet.v));
   const Vec3 rounded(detail::to_double(n.x), detail::to_double(n.y), detail::to_double(n.z));
-  // Scaled first: the square of a needle's normal may underflow.
+  // Scaled first: the square of a slender body's normal may underflow.
   return (rounded / rounded.cwiseAbs().maxCoeff()).normalized();
 }
 

@@ -6,7 +6,6 @@
 
 #include "depth/difference/direction_signs.hpp"
 #include "depth/difference/exact_support.hpp"
-#include "depth/difference/posed_support.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 
@@ -111,7 +110,7 @@ class ShadowSearch {
   }
 
   const PosedPair& pair_;
-  detail::RaySigns along_;
+  detail::DirectionSigns along_;
   Dyadic3 direction_;
   Dyadic3 motion_;
   Dyadic3 across_;

@@ -49,8 +49,8 @@ Vec3 normal_of_flat(const PosedPair& pair) {
 void grid_width(const PosedPair& pair, const Dyadic& margins, double delta, Width& out) {
   detail::PolytopeShooter shooter(pair);
   constexpr std::size_t kHalfTheFaces = 10;
-  const detail::CellSearchResult found =
-      detail::CellSearch(shooter, delta > 0 ? delta : detail::kDefaultGridDelta, kHalfTheFaces).run();
+  const detail::DirectionRefinementResult found =
+      detail::DirectionRefinement(shooter, delta > 0 ? delta : detail::kDefaultGridDelta, kHalfTheFaces).run();
   const detail::PolytopeShooter::Plane& plane = shooter.kept();
   const Dyadic& factor = pair.homogeneous_factor();
   fill(margins, plane.offset * plane.offset, dot(plane.normal, plane.normal) * factor * factor, out);

@@ -6,6 +6,7 @@
 
 #include "numeric/dyadic.hpp"
 #include "numeric/expansion.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd {
 namespace {
@@ -19,8 +20,8 @@ using detail::sum;
 // Filter bounds: (3 + 16u)u and (7 + 56u)u times the permanent ([S] section 4.2 and 4.3, u = 2^-53), rounded up to
 // cover the roundings of bound and permanent themselves. kUnderflow covers what underflows while every difference is at
 // most kLargestFiltered: at most 2^-1074 for a product, times a third factor, and a few of them.
-constexpr double kBound2d = 4 * 0x1p-53;
-constexpr double kBound3d = 8 * 0x1p-53;
+constexpr double kBound2d = 4 * detail::kUnitRoundoff;
+constexpr double kBound3d = 8 * detail::kUnitRoundoff;
 constexpr double kUnderflow = 0x1p-700;
 // Differences are exact in double-double. Two levels of products (5u^2 each) and three of sums (3u^2 each) on
 // magnitudes that the permanent bounds give 19u^2(1 + O(u)) of it; the bound leaves room for the permanent's own

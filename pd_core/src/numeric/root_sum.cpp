@@ -104,4 +104,10 @@ Vec3DD unit_double_double(const Dyadic3& v) {
   return {scaled.x / length, scaled.y / length, scaled.z / length};
 }
 
+double length_rounded_up(const Vec3& v) {
+  const Dyadic3 exact = to_dyadic(v);
+  const RootSum length(Dyadic(0.0), 1, dot(exact, exact), Dyadic(1.0));
+  return length.round_up(length.round_down());
+}
+
 }  // namespace pd::detail

@@ -42,4 +42,7 @@ class RootSum {
 /// v / |v| in double-double, whatever the exponents of v. Requires v != 0.
 [[nodiscard]] Vec3DD unit_double_double(const Dyadic3& v);
 
+/// |v| rounded up, exactly.
+[[nodiscard]] double length_rounded_up(const Vec3& v);
+
 }  // namespace pd::detail

@@ -8,6 +8,7 @@
 #include "numeric/double_double.hpp"
 #include "numeric/dyadic.hpp"
 #include "numeric/number_text.hpp"
+#include "numeric/quotient.hpp"
 #include "numeric/root_sum.hpp"
 
 namespace pd {
@@ -42,11 +43,6 @@ std::array<Dyadic, 9> exact_rotation(const Pose& pose, Dyadic& denominator) {
   return r;
 }
 
-double quotient(const Dyadic& numerator, const Dyadic& denominator) {
-  if (denominator == Dyadic(1.0)) return numerator.to_double();
-  return detail::to_double(detail::to_double_double(numerator) / detail::to_double_double(denominator));
-}
-
 /// R t_inner + t_outer.
 Vec3 composed_translation(const Pose& outer, const Pose& inner) {
   Dyadic denominator;
@@ -57,7 +53,7 @@ Vec3 composed_translation(const Pose& outer, const Pose& inner) {
     for (int j = 0; j < 3; ++j) {
       sum = sum + r[static_cast<std::size_t>(3 * i + j)] * Dyadic(inner.translation()[j]);
     }
-    t[i] = quotient(sum, denominator);
+    t[i] = detail::quotient(sum, denominator);
   }
   return t;
 }
@@ -71,7 +67,7 @@ Mat3 composed_rotation(const Pose& outer, const Pose& inner) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const Dyadic sum = p[3 * i] * q[j] + p[3 * i + 1] * q[3 + j] + p[3 * i + 2] * q[6 + j];
-      product(static_cast<int>(i), static_cast<int>(j)) = quotient(sum, denominator);
+      product(static_cast<int>(i), static_cast<int>(j)) = detail::quotient(sum, denominator);
     }
   }
   return product;

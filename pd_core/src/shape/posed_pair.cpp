@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
 
-constexpr double kU = 0x1p-53;  ///< half an ulp of 1
 /// Loss by underflow inside a scaled double or double-double evaluation; far below every rounding term that matters.
 constexpr double kUnderflow = 0x1p-900;
 
@@ -131,7 +132,7 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
   // 5u^2).
   const double size = 2 * reach(a, body_a_.rotation_dd, scale) + 2 * reach(b, body_b_.rotation_dd, scale) + offset_size;
-  vector_error_ = 8 * kU * size + kUnderflow;
+  vector_error_ = 8 * kUnitRoundoff * size + kUnderflow;
   vector_error_dd_ = 32 * 0x1p-103 * size + kUnderflow;
 }
 
@@ -197,7 +198,7 @@ double determinant_error(double u, double v, double w, double e, double relative
   u += 3 * e;
   v += 3 * e;
   w += 3 * e;
-  return (relative * u * v * w + e * (v * w + u * w + u * v)) * (1 + 16 * kU) + kUnderflow;
+  return (relative * u * v * w + e * (v * w + u * w + u * v)) * (1 + 16 * kUnitRoundoff) + kUnderflow;
 }
 
 double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
@@ -210,7 +211,7 @@ int PosedPair::sign_determinant(const PairVector& u, const PairVector& v, const 
   {
     const Vec3 x = approximate(u), y = approximate(v), z = approximate(w);
     const double value = x.dot(y.cross(z));
-    if (std::abs(value) > determinant_error(norm1(x), norm1(y), norm1(z), vector_error_, 8 * kU)) {
+    if (std::abs(value) > determinant_error(norm1(x), norm1(y), norm1(z), vector_error_, 8 * kUnitRoundoff)) {
       ++stages_.filtered;
       return sign(value);
     }
@@ -233,7 +234,8 @@ int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {
     const Vec3 x = approximate(u), y = approximate(v);
     const double a = norm1(x) + 3 * vector_error_, b = norm1(y) + 3 * vector_error_;
     const double value = x.dot(y);
-    if (std::abs(value) > (4 * kU * a * b + vector_error_ * (a + b)) * (1 + 16 * kU) + kUnderflow) {
+    if (std::abs(value) >
+        (4 * kUnitRoundoff * a * b + vector_error_ * (a + b)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
       ++stages_.filtered;
       return sign(value);
     }
@@ -242,7 +244,8 @@ int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {
     const Vec3DD x = approximate_dd(u), y = approximate_dd(v);
     const double a = norm1(high(x)) + 3 * vector_error_dd_, b = norm1(high(y)) + 3 * vector_error_dd_;
     const double value = dot(x, y).hi;
-    if (std::abs(value) > (16 * 0x1p-104 * a * b + vector_error_dd_ * (a + b)) * (1 + 16 * kU) + kUnderflow) {
+    if (std::abs(value) >
+        (16 * 0x1p-104 * a * b + vector_error_dd_ * (a + b)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
       ++stages_.double_double;
       return sign(value);
     }
@@ -255,7 +258,8 @@ bool PosedPair::parallel(const PairVector& u, const PairVector& v) const {
   const Vec3 x = approximate(u), y = approximate(v);
   const double a = norm1(x) + 3 * vector_error_, b = norm1(y) + 3 * vector_error_;
   const Vec3 c = x.cross(y);
-  if (c.cwiseAbs().maxCoeff() > (4 * kU * a * b + vector_error_ * (a + b)) * (1 + 16 * kU) + kUnderflow) {
+  if (c.cwiseAbs().maxCoeff() >
+      (4 * kUnitRoundoff * a * b + vector_error_ * (a + b)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
     ++stages_.filtered;
     return false;
   }

@@ -50,12 +50,12 @@ void ask(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, c
   PolytopeDifference difference(a, pose_a, b, pose_b);
   difference.prepare_supports(posed);
   const double rounding = 1e-13 * difference.reach();
-  const TiedFacetsSettings settings{exact.lower / slack - rounding, exact.upper * slack + rounding, kWidth};
+  const NearFacetsSettings settings{exact.lower / slack - rounding, exact.upper * slack + rounding, kWidth};
   if (!(settings.lower > 0)) return;
   const Surface surface = some_surface(difference);
   std::vector<std::int32_t> stack;
-  TiedFacetsBuffers buffers;
-  const TiedFacets found = nearest_tied_facet(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers);
+  NearFacetsBuffers buffers;
+  const NearFacets found = nearest_of_near_facets(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers);
   ++tally.asked;
   if (!found.certified) return;
   ++tally.certified;
@@ -65,9 +65,9 @@ void ask(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, c
   EXPECT_NEAR(found.normal.norm(), 1, 1e-15);
 }
 
-class TiedFacetsOfFamilies : public ::testing::TestWithParam<PairFamily> {};
+class NearFacetsOfFamilies : public ::testing::TestWithParam<PairFamily> {};
 
-TEST_P(TiedFacetsOfFamilies, BracketsHoldTheExactDepth) {
+TEST_P(NearFacetsOfFamilies, BracketsHoldTheExactDepth) {
   Tally tally;
   for (const double slack : {1.0, 1.02, 2.0}) {
     for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
@@ -95,14 +95,14 @@ TEST_P(TiedFacetsOfFamilies, BracketsHoldTheExactDepth) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TiedFacetsOfFamilies,
+INSTANTIATE_TEST_SUITE_P(All, NearFacetsOfFamilies,
                          ::testing::Values(PairFamily::box, PairFamily::cubes, PairFamily::sphere, PairFamily::needle,
                                            PairFamily::prism, PairFamily::grid, PairFamily::patch, PairFamily::roofs,
                                            PairFamily::tilted_roofs, PairFamily::slivers, PairFamily::polygons,
                                            PairFamily::segments),
                          [](const auto& family) { return std::string(scenes::to_string(family.param)); });
 
-TEST(TiedFacets, QuadraticFamiliesAreDecidedWithoutATree) {
+TEST(NearFacets, QuadraticFamiliesAreDecidedWithoutATree) {
   for (const scenes::AgarwalFamily family : scenes::agarwal_families()) {
     SCOPED_TRACE(std::string(scenes::to_string(family)));
     Tally tally;
@@ -116,9 +116,9 @@ TEST(TiedFacets, QuadraticFamiliesAreDecidedWithoutATree) {
   }
 }
 
-class TiedFacetsOfRoofs : public ::testing::TestWithParam<Bracket> {};
+class NearFacetsOfRoofs : public ::testing::TestWithParam<Bracket> {};
 
-TEST_P(TiedFacetsOfRoofs, KeepEveryPromiseWithoutATree) {
+TEST_P(NearFacetsOfRoofs, KeepEveryPromiseWithoutATree) {
   Scratch scratch;
   const auto points = [](const ConvexPolytope& body) {
     scenes::Points out;
@@ -149,12 +149,12 @@ TEST_P(TiedFacetsOfRoofs, KeepEveryPromiseWithoutATree) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, TiedFacetsOfRoofs, ::testing::Values(Bracket::certified, Bracket::tightest),
+INSTANTIATE_TEST_SUITE_P(Both, NearFacetsOfRoofs, ::testing::Values(Bracket::certified, Bracket::tightest),
                          [](const auto& bracket) {
                            return std::string(bracket.param == Bracket::certified ? "certified" : "tightest");
                          });
 
-TEST(TiedFacets, AnswersDoNotDependOnWhatTheBuffersHeld) {
+TEST(NearFacets, AnswersDoNotDependOnWhatTheBuffersHeld) {
   const auto answer = [](Scratch& scratch) {
     const scenes::PolytopePair pair = scenes::crossed_roofs(80, 1, 3);
     const ConvexShape a(pair.a), b(pair.b);
@@ -198,16 +198,16 @@ TEST(LineLanes, KeepExactlyTheLinesWithinTheRadius) {
 }
 
 TEST(LineLanes, SetABitForEachProbeBeyondANormalsLevel) {
-  ProbeArrays probes;
+  ProbeArrays test_points;
   for (std::size_t k = 0; k < kMaskProbes; ++k) {
-    probes.x[k] = static_cast<float>(k);
-    probes.y[k] = -1;
-    probes.z[k] = 0;
+    test_points.x[k] = static_cast<float>(k);
+    test_points.y[k] = -1;
+    test_points.z[k] = 0;
   }
   const double normals[6] = {1, 0, 0, 0, 1, 0};
   const float levels[2] = {kMaskProbes - 1.5F, -0.5F};
   std::uint32_t masks[2];
-  probes_beyond(normals, 2, probes, levels, masks);
+  probes_beyond(normals, 2, test_points, levels, masks);
   EXPECT_EQ(masks[0], std::uint32_t{1} << (kMaskProbes - 1));
   EXPECT_EQ(masks[1], 0U);
 }

@@ -6,6 +6,7 @@
 #include "depth/certificate/separating_translation.hpp"
 #include "depth/certificate/witness_points.hpp"
 #include "numeric/root_sum.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
@@ -16,7 +17,7 @@ Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
 /// The supporting features in a direction where the cores do not overlap: at most one of them a facet, its partner a
 /// vertex.
 void set_features(const PosedPair& pair, const ExactDirection& normal, PenetrationDepth& out) {
-  const PlaneFaces faces{support_face_a(pair, normal), support_face_b(pair, normal)};
+  const SupportFaces faces{support_face_a(pair, normal), support_face_b(pair, normal)};
   const FacetFeatures features = features_of(pair, faces, normal.unit);
   out.feature_a = features.on_a;
   out.feature_b = features.on_b;
@@ -82,11 +83,10 @@ bool round_certainly(const DoubleDouble& value, double error, double& down, doub
 /// and |m - n| are below 2u: 2u |x| and, for the product with the length, 8u of it.
 bool fill_certified(const PosedPair& pair, const PairVector& point, const Separation& separation,
                     PenetrationDepth& out) {
-  constexpr double kU = 0x1p-53;
   const double depth = to_double(separation.depth());
   const double reach =
       pair.a().radius() + pair.b().radius() + (pair.pose_b().translation() - pair.pose_a().translation()).norm();
-  const double slack = 16 * kU * (reach + depth) + separation.depth_error();
+  const double slack = 16 * kUnitRoundoff * (reach + depth) + separation.depth_error();
   if (!(depth > 4 * slack) || !(depth > 0x1p-900)) return false;
   // A point of P bounds L from below; L itself costs twelve supports.
   const double size = std::ldexp(pair.approximate(point).cwiseAbs().maxCoeff(), pair.scale_exponent());
@@ -94,7 +94,7 @@ bool fill_certified(const PosedPair& pair, const PairVector& point, const Separa
     return false;
   }
   out.contact = ContactClass::overlapping;
-  out.lower = depth * (1 - 4 * kU) - separation.depth_error();
+  out.lower = depth * (1 - 4 * kUnitRoundoff) - separation.depth_error();
   out.depth = depth + 0.5 * slack;
   out.upper = depth + slack;
   out.translation = out.depth * out.normal;
@@ -145,16 +145,16 @@ bool fill_distance(const PosedPair& pair, const ProvenSeparation& proof, const S
 
 }  // namespace
 
-void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
-                        PlaneFaces& faces, PenetrationDepth& out) {
+void answer_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
+                        SupportFaces& faces, PenetrationDepth& out) {
   const FacetPlane plane = measure_facet(pair, facet);
   [[maybe_unused]] const bool supporting = collect_faces(pair, facet, plane, faces);
   assert(supporting);
-  finish_overlapping(pair, facet, plane, faces, margins, bracket, out);
+  answer_overlapping(pair, facet, plane, faces, margins, bracket, out);
 }
 
-void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
-                        const PlaneFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out) {
+void answer_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
+                        const SupportFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out) {
   clear_lengths(out);
   if (plane.known()) {
     Separation separation(pair, facet, plane, margins.a, margins.b);
@@ -179,27 +179,29 @@ void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, c
   out.feature_a = features.on_a;
   out.feature_b = features.on_b;
   const Vec3 core_translation = out.translation - margins.both() * out.normal;
-  set_witnesses(split_overlapping(pair, faces, out.normal, core_translation), margins, out);
+  set_witnesses(witness_points_overlapping(pair, faces, out.normal, core_translation), margins, out);
 }
 
-void finish_touching(const PosedPair& pair, const ExactDirection& normal, const ExactNearest& nearest,
+void answer_touching(const PosedPair& pair, const ExactDirection& normal, const ExactClosestPoint& nearest,
                      const Margins& margins, PenetrationDepth& out) {
   finish(pair, {normal, Dyadic(1.0), Dyadic()}, margins, out);
   set_features(pair, normal, out);
-  CorePoints core = split_apart(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count);
+  CorePoints core = witness_points_separated(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count);
   core.b = core.a;  // one point, computed on A
   set_witnesses(core, margins, out);
 }
 
-void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out) {
+void answer_separated(const PosedPair& pair, const ExactClosestPoint& nearest, const Margins& margins,
+                      PenetrationDepth& out) {
   const NearestPlane plane = exact_plane(nearest);
   finish(pair, plane, margins, out);
   set_features(pair, plane.normal, out);
-  set_witnesses(split_apart(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count), margins, out);
+  set_witnesses(witness_points_separated(pair, nearest.simplex.data(), nearest.weights.data(), nearest.count), margins,
+                out);
 }
 
-bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces, const Margins& margins,
-                  Bracket bracket, PenetrationDepth& out) {
+bool answer_separated(const PosedPair& pair, const ProvenSeparation& proof, const SupportFaces& faces,
+                      const Margins& margins, Bracket bracket, PenetrationDepth& out) {
   clear_lengths(out);
   out.normal = high(proof.plane.unit);
   Separation separation(pair, proof, margins.a, margins.b);
@@ -211,7 +213,7 @@ bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const Pl
   const FacetFeatures features = features_of(pair, faces, out.normal);
   out.feature_a = features.on_a;
   out.feature_b = features.on_b;
-  set_witnesses(split_apart(pair, proof.simplex.data(), proof.weights.data(), proof.count), margins, out);
+  set_witnesses(witness_points_separated(pair, proof.simplex.data(), proof.weights.data(), proof.count), margins, out);
   return true;
 }
 

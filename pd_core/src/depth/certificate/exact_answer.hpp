@@ -22,23 +22,24 @@ inline constexpr double kCertifiedWidth = 1.8e-14;
 /// double, its translation is not) upper is the next double. Certified: upper - lower <= 2e-14 L. Decided in
 /// double-double where its error bound allows, then exactly; allocates in exact arithmetic only.
 /// @param faces  a buffer.
-void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
-                        PlaneFaces& faces, PenetrationDepth& out);
+void answer_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const Margins& margins, Bracket bracket,
+                        SupportFaces& faces, PenetrationDepth& out);
 /// The same with `faces` collected and `plane` measured before.
-void finish_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
-                        const PlaneFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out);
+void answer_overlapping(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
+                        const SupportFaces& faces, const Margins& margins, Bracket bracket, PenetrationDepth& out);
 
 /// The cores touch: a supporting plane with this normal passes through the origin, and `nearest` holds the origin.
 /// Touching without margins, else overlapping by them.
-void finish_touching(const PosedPair& pair, const ExactDirection& normal, const ExactNearest& nearest,
+void answer_touching(const PosedPair& pair, const ExactDirection& normal, const ExactClosestPoint& nearest,
                      const Margins& margins, PenetrationDepth& out);
 
 /// The cores are apart: separated, touching or overlapping by the margins, decided exactly.
-void finish_apart(const PosedPair& pair, const ExactNearest& nearest, const Margins& margins, PenetrationDepth& out);
+void answer_separated(const PosedPair& pair, const ExactClosestPoint& nearest, const Margins& margins,
+                      PenetrationDepth& out);
 
-/// The same from a proof in double-double, `faces` collected with it. False, and nothing said, where that leaves the
-/// rounding of the distance, or of what the margins leave of it, open.
-[[nodiscard]] bool finish_apart(const PosedPair& pair, const ProvenSeparation& proof, const PlaneFaces& faces,
-                                const Margins& margins, Bracket bracket, PenetrationDepth& out);
+/// The same from a proof in double-double, `faces` collected with it. Returns false, for another engine to answer,
+/// where that leaves the rounding of the distance, or of what the margins leave of it, open.
+[[nodiscard]] bool answer_separated(const PosedPair& pair, const ProvenSeparation& proof, const SupportFaces& faces,
+                                    const Margins& margins, Bracket bracket, PenetrationDepth& out);
 
 }  // namespace pd::detail

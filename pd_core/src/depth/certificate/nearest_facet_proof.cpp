@@ -56,7 +56,7 @@ ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
   return found;
 }
 
-bool lies_in(const SurfaceCorners& t, const PlaneFaces& faces) {
+bool lies_in(const SurfaceCorners& t, const SupportFaces& faces) {
   return std::all_of(std::begin(t.v), std::end(t.v), [&](const VertexPair& p) {
     return std::binary_search(faces.on_a.begin(), faces.on_a.end(), p.a) &&
            std::binary_search(faces.on_b.begin(), faces.on_b.end(), p.b);
@@ -66,7 +66,7 @@ bool lies_in(const SurfaceCorners& t, const PlaneFaces& faces) {
 }  // namespace
 
 std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<const SurfaceCorners> near,
-                                               double beyond, PlaneFaces& faces) {
+                                               double beyond, SupportFaces& faces) {
   if (near.empty()) return std::nullopt;
   ProvenFacet best = classify(pair, near.front());
   // Each round either ends or goes on with a plane that is certainly nearer.
@@ -75,13 +75,13 @@ std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<
     bool nearer = false;
     for (std::size_t i = 0; i < near.size() && !nearer; ++i) {
       if (i == chosen || lies_in(near[i], faces)) continue;
-      const ProvenFacet rival = classify(pair, near[i]);
-      if (!positive(rival.plane)) return std::nullopt;
-      const double gap = to_double(rival.plane.distance - best.plane.distance);
-      const double error = (rival.plane.distance_error + best.plane.distance_error) * (1 + 0x1p-40);
+      const ProvenFacet other = classify(pair, near[i]);
+      if (!positive(other.plane)) return std::nullopt;
+      const double gap = to_double(other.plane.distance - best.plane.distance);
+      const double error = (other.plane.distance_error + best.plane.distance_error) * (1 + 0x1p-40);
       if (std::abs(gap) <= error) return std::nullopt;
       if (gap < 0) {
-        best = rival;
+        best = other;
         chosen = i;
         nearer = true;
       }

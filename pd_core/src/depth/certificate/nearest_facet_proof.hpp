@@ -35,7 +35,7 @@ struct ProvenFacet {
 /// @return nothing where double-double cannot tell, or no triangle lies in a facet: exact arithmetic must.
 [[nodiscard]] std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair,
                                                              std::span<const SurfaceCorners> near, double beyond,
-                                                             PlaneFaces& faces);
+                                                             SupportFaces& faces);
 
 /// Cores that are apart: the plane through P's point nearest to the origin, normal to it (distance negative), and that
 /// point as a combination of vertices of P.
@@ -50,6 +50,7 @@ struct ProvenSeparation {
 /// the plane normal to it supports P. Nothing where the simplex is not the right one, or double-double cannot tell.
 /// @param faces  filled with the faces in that plane.
 [[nodiscard]] std::optional<ProvenSeparation> prove_separation(const PosedPair& pair,
-                                                               std::span<const VertexPair> simplex, PlaneFaces& faces);
+                                                               std::span<const VertexPair> simplex,
+                                                               SupportFaces& faces);
 
 }  // namespace pd::detail

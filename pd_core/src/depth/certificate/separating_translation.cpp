@@ -6,13 +6,13 @@
 
 #include "numeric/expansion.hpp"
 #include "numeric/root_sum.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "shape/support/polytope_support.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-constexpr double kU = 0x1p-53;
 constexpr double kUdd = 0x1p-104;
 
 DoubleDouble scaled(const DoubleDouble& x, double power_of_two) { return {x.hi * power_of_two, x.lo * power_of_two}; }
@@ -207,7 +207,7 @@ NearestPlane exact_plane(const PosedPair& pair, const FacetOfDifference& facet) 
   return {std::move(normal), pair.homogeneous_factor(), std::move(level)};
 }
 
-NearestPlane exact_plane(const ExactNearest& nearest) {
+NearestPlane exact_plane(const ExactClosestPoint& nearest) {
   const Dyadic3& y = nearest.point;  // times nearest.scale
   return {ExactDirection(Dyadic3{-y.x, -y.y, -y.z}), nearest.scale, -dot(y, y)};
 }
@@ -238,7 +238,7 @@ void Separation::measure(const PosedPair& pair, const FacetPlane& plane, double 
   depth_ = scaled(plane.distance, scale) + margins_;
   // The sum's own error is relative to its greater part, which the other may cancel.
   const double largest = std::max(std::abs(plane.distance.hi) * scale, margins_.hi);
-  depth_error_ = (plane.distance_error * scale + 4 * kUdd * largest) * (1 + 4 * kU) + 0x1p-960;
+  depth_error_ = (plane.distance_error * scale + 4 * kUdd * largest) * (1 + 4 * kUnitRoundoff) + 0x1p-960;
 }
 
 double Separation::slack(const DoubleDouble& depth) const {
@@ -253,7 +253,7 @@ bool Separation::reached(const Vec3& t) {
     const DoubleDouble along = unit_.x * t.x() + unit_.y * t.y() + unit_.z * t.z();
     const double size = std::abs(t.x()) + std::abs(t.y()) + std::abs(t.z());
     const double error =
-        (depth_error_ + size * (unit_error_ + 16 * kUdd) + 4 * kUdd * std::abs(depth_.hi)) * (1 + 16 * kU);
+        (depth_error_ + size * (unit_error_ + 16 * kUdd) + 4 * kUdd * std::abs(depth_.hi)) * (1 + 16 * kUnitRoundoff);
     const double gap = to_double(along - depth_);
     if (gap > error) return true;
     if (gap < -error) return false;
@@ -268,7 +268,7 @@ bool Separation::reached(const Vec3& t) {
 const NearestPlane& Separation::plane() {
   if (!plane_) {
     if (apart_) {
-      plane_ = exact_plane(exact_nearest(*pair_, apart_->simplex.data(), apart_->count));
+      plane_ = exact_plane(exact_closest_point(*pair_, apart_->simplex.data(), apart_->count));
     } else {
       plane_ = exact_plane(*pair_, facet_);
     }

@@ -21,7 +21,7 @@ struct NearestPlane {
 /// The plane of a facet of P.
 [[nodiscard]] NearestPlane exact_plane(const PosedPair& pair, const FacetOfDifference& facet);
 /// The plane through the point of P nearest to the origin, outside P, normal to it.
-[[nodiscard]] NearestPlane exact_plane(const ExactNearest& nearest);
+[[nodiscard]] NearestPlane exact_plane(const ExactClosestPoint& nearest);
 
 /// Where the half-space beyond the nearest plane of P, swept by a ball of radius r, begins: decides whether a
 /// translation reaches it. Double-double where that is certain, exact numbers behind it.

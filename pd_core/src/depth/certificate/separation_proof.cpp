@@ -2,12 +2,12 @@
 #include <cmath>
 
 #include "depth/certificate/nearest_facet_proof.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-constexpr double kU = 0x1p-53;
 constexpr double kUdd = 0x1p-104;
 
 double norm1(const Vec3DD& v) { return std::abs(v.x.hi) + std::abs(v.y.hi) + std::abs(v.z.hi); }
@@ -47,15 +47,15 @@ FacetPlane plane_of(const Vec3DD& y, double error) {
   const DoubleDouble root = sqrt(squared);
   plane.unit = {-(y.x / root), -(y.y / root), -(y.z / root)};
   plane.distance = -root;
-  plane.distance_error = (2 * error + 64 * kUdd * length) * (1 + 16 * kU);
-  plane.unit_error = (4 * error / length + 64 * kUdd) * (1 + 16 * kU);
+  plane.distance_error = (2 * error + 64 * kUdd * length) * (1 + 16 * kUnitRoundoff);
+  plane.unit_error = (4 * error / length + 64 * kUdd) * (1 + 16 * kUnitRoundoff);
   return plane;
 }
 
 }  // namespace
 
 std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::span<const VertexPair> simplex,
-                                                 PlaneFaces& faces) {
+                                                 SupportFaces& faces) {
   ProvenSeparation found;
   if (simplex.empty() || simplex.size() > 3) return std::nullopt;
   found.count = static_cast<int>(simplex.size());
@@ -74,10 +74,10 @@ std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::spa
     found.weights = {1 - to_double(t), to_double(t), 0};
     // y = p - v <p, v> / <v, v>: a projection along v, which turns by at most e / |v| a coordinate of v.
     const double size = norm1(v);
-    const double shortest = std::sqrt(squared.hi) * (1 - 8 * kU);
+    const double shortest = std::sqrt(squared.hi) * (1 - 8 * kUnitRoundoff);
     if (!(shortest > 16 * e)) return std::nullopt;
     const double error = 4 * e + 8 * norm1(p) * (e / shortest) + 64 * kUdd * (norm1(p) + size * std::abs(to_double(t)));
-    found.plane = plane_of(p + scaled(v, t), error * (1 + 16 * kU));
+    found.plane = plane_of(p + scaled(v, t), error * (1 + 16 * kUnitRoundoff));
   } else {
     const PairVector du = edge(simplex[0], simplex[1]), dv = edge(simplex[0], simplex[2]);
     FacetOfDifference facet{{}, {}, du, dv, simplex[0].a, simplex[0].b};
@@ -97,7 +97,7 @@ std::optional<ProvenSeparation> prove_separation(const PosedPair& pair, std::spa
     for (int i = 0; i < 3; ++i) area[i] = dot(found.plane.unit, cross(x[(i + 1) % 3], x[(i + 2) % 3]));
     const double sense = facet.u.a_to == du.a_to && facet.u.b_to == du.b_to ? 1 : -1;
     const double error =
-        (largest * largest * (3 * found.plane.unit_error + 64 * kUdd) + 8 * e * largest) * (1 + 16 * kU);
+        (largest * largest * (3 * found.plane.unit_error + 64 * kUdd) + 8 * e * largest) * (1 + 16 * kUnitRoundoff);
     double total = 0;
     for (int i = 0; i < 3; ++i) {
       const double value = sense * to_double(area[i]);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 class FacetSign final : public NormalSign {
  public:
@@ -29,8 +29,8 @@ class AlongNormal {
     if (!filtered_) return;
     unit_ = {plane.unit.x.hi, plane.unit.y.hi, plane.unit.z.hi};
     // The unit normal's own error and its rounding, products and sums; then the edge's error against |unit|_1 <= 2.
-    relative_ = plane.unit_error + 8 * kU;
-    absolute_ = 2 * pair.vector_error() * (1 + 16 * kU);
+    relative_ = plane.unit_error + 8 * kUnitRoundoff;
+    absolute_ = 2 * pair.vector_error() * (1 + 16 * kUnitRoundoff);
   }
 
   [[nodiscard]] int operator()(const PairVector& edge) const {
@@ -38,7 +38,7 @@ class AlongNormal {
       const Vec3 e = pair_.approximate(edge);
       const double value = e.dot(unit_);
       const double size = std::abs(e.x()) + std::abs(e.y()) + std::abs(e.z());
-      if (std::abs(value) > (relative_ * size + absolute_) * (1 + 16 * kU)) return value > 0 ? 1 : -1;
+      if (std::abs(value) > (relative_ * size + absolute_) * (1 + 16 * kUnitRoundoff)) return value > 0 ? 1 : -1;
     }
     return sign_.along(edge);
   }
@@ -105,7 +105,8 @@ int facet_holding(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, 
   return -1;
 }
 
-bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane, PlaneFaces& faces) {
+bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
+                   SupportFaces& faces) {
   const FacetSign sign(pair, facet);
   const AlongNormal along(pair, plane, sign);
   return collect(
@@ -115,7 +116,7 @@ bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const 
 }
 
 bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
-                   std::span<const VertexPair> points, PlaneFaces& faces) {
+                   std::span<const VertexPair> points, SupportFaces& faces) {
   const AlongNormal along(pair, plane, sign);
   faces.on_a.clear();
   faces.on_b.clear();
@@ -141,7 +142,7 @@ bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalS
              pair.a(), [&](int from, int to) { return -along(PairVector::edge_a(from, to)); }, faces.on_a);
 }
 
-FacetFeatures features_of(const PosedPair& pair, const PlaneFaces& faces, const Vec3& unit) {
+FacetFeatures features_of(const PosedPair& pair, const SupportFaces& faces, const Vec3& unit) {
   FacetFeatures f{feature_of(pair.a(), faces.on_a, pair.pose_a().rotation(), -unit),
                   feature_of(pair.b(), faces.on_b, pair.pose_b().rotation(), unit)};
   // A facet's partner is a vertex, also where more of the other body lies in its plane.

@@ -12,7 +12,7 @@
 namespace pd::detail {
 
 /// Every vertex of each body that lies exactly on its side's supporting plane, ascending. Grown on first use.
-struct PlaneFaces {
+struct SupportFaces {
   SupportFace on_a;
   SupportFace on_b;
 };
@@ -26,7 +26,7 @@ struct PlaneFaces {
 /// @return whether the plane supports P exactly: by convexity no other edges need be asked than those that leave the
 ///         faces. The faces are complete only then.
 [[nodiscard]] bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
-                                 PlaneFaces& faces);
+                                 SupportFaces& faces);
 
 /// The exact sign of <edge, normal> for a normal that is not that of a facet.
 class NormalSign {
@@ -39,7 +39,7 @@ class NormalSign {
 /// @param sign    asked where the filter fails.
 /// @param points  one to three vertices of P in the plane.
 [[nodiscard]] bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
-                                 std::span<const VertexPair> points, PlaneFaces& faces);
+                                 std::span<const VertexPair> points, SupportFaces& faces);
 
 /// The features that an answer reports for the face of P with these faces (facet and lowest vertex, or two edges).
 /// @param unit  outward normal of P there.
@@ -47,6 +47,6 @@ struct FacetFeatures {
   Feature on_a;
   Feature on_b;
 };
-[[nodiscard]] FacetFeatures features_of(const PosedPair& pair, const PlaneFaces& faces, const Vec3& unit);
+[[nodiscard]] FacetFeatures features_of(const PosedPair& pair, const SupportFaces& faces, const Vec3& unit);
 
 }  // namespace pd::detail

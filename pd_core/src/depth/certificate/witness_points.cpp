@@ -38,11 +38,12 @@ Vec3 point_of_b(const PosedPair& pair, const VertexPair* ids, const double* weig
 
 }  // namespace
 
-/// The convex
-/// combination of their vertices' differences nearest to it, found in the facet's plane (Gilbert, Johnson, Keerthi on
-/// two polygons). Parallel facets and edges need no case of their own.
-CorePoints split_overlapping(const PosedPair& pair, const PlaneFaces& faces, const Vec3& unit,
-                             const Vec3& translation) {
+/// The faces on_a and on_b lie in one supporting plane of P, and so does the translation, up to rounding: it is the
+/// difference of two of their points. Those are read off the convex combination of the vertices' differences that is
+/// closest to it, found in the facet's plane (Gilbert, Johnson, Keerthi on two polygons). Parallel facets and edges
+/// need no case of their own.
+CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces& faces, const Vec3& unit,
+                                      const Vec3& translation) {
   const SupportFace& on_a = faces.on_a;
   const SupportFace& on_b = faces.on_b;
   const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
@@ -70,7 +71,7 @@ CorePoints split_overlapping(const PosedPair& pair, const PlaneFaces& faces, con
     int next_count = count;
     std::copy(simplex, simplex + count, next);
     next[next_count++] = difference(extreme(on_a, -point, edge_a), extreme(on_b, -point, edge_b));
-    point = nearest_of_simplex(next, next_count, next_weights, true);
+    point = closest_point_on_simplex(next, next_count, next_weights, true);
     if (!(point.squaredNorm() < best)) break;
     count = next_count;
     std::copy(next, next + count, simplex);
@@ -82,7 +83,8 @@ CorePoints split_overlapping(const PosedPair& pair, const PlaneFaces& faces, con
   return {a, a + translation};
 }
 
-CorePoints split_apart(const PosedPair& pair, const VertexPair* simplex, const double* weights, int count) {
+CorePoints witness_points_separated(const PosedPair& pair, const VertexPair* simplex, const double* weights,
+                                    int count) {
   return {point_of_a(pair, simplex, weights, count), point_of_b(pair, simplex, weights, count)};
 }
 

@@ -15,11 +15,11 @@ struct CorePoints {
 
 /// The point of the nearest facet at the core's translation, split into a point of A's face and one of B's.
 /// @param unit  the facet's outward unit normal.
-[[nodiscard]] CorePoints split_overlapping(const PosedPair& pair, const PlaneFaces& faces, const Vec3& unit,
-                                           const Vec3& translation);
+[[nodiscard]] CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces& faces, const Vec3& unit,
+                                                    const Vec3& translation);
 
 /// The nearest points of cores that are apart or touch, from the weights of the simplex.
-[[nodiscard]] CorePoints split_apart(const PosedPair& pair, const VertexPair* simplex, const double* weights,
-                                     int count);
+[[nodiscard]] CorePoints witness_points_separated(const PosedPair& pair, const VertexPair* simplex,
+                                                  const double* weights, int count);
 
 }  // namespace pd::detail

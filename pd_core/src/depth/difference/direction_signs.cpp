@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 double norm1(const Vec3& v) { return v.cwiseAbs().sum(); }
 
@@ -20,34 +20,36 @@ std::array<Dyadic3, 3> perturbations() {
 
 }  // namespace
 
-RaySigns::RaySigns(const PosedPair& pair, const Vec3& direction) : pair_(&pair), exact_(to_dyadic(direction)) {
+DirectionSigns::DirectionSigns(const PosedPair& pair, const Vec3& direction)
+    : pair_(&pair), exact_(to_dyadic(direction)) {
   const int exponent = std::ilogb(direction.cwiseAbs().maxCoeff());
   for (int i = 0; i < 3; ++i) scaled_[i] = std::ldexp(direction[i], -exponent);
 }
 
-int RaySigns::along(const PairVector& x) const {
+int DirectionSigns::along(const PairVector& x) const {
   const Vec3 p = pair_->approximate(x);
   const double value = p.dot(scaled_);
   const double e = pair_->vector_error();
   // Coordinates of the direction that underflow in scaling lose less than 2^-1000 of its length.
-  if (std::abs(value) > (4 * kU * norm1(p) + 3 * e) * norm1(scaled_) * (1 + 16 * kU) + 0x1p-900) {
+  if (std::abs(value) > (4 * kUnitRoundoff * norm1(p) + 3 * e) * norm1(scaled_) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
     return value > 0 ? 1 : -1;
   }
   return dot(pair_->exact(x), exact_).sign();
 }
 
-int RaySigns::turn(const PairVector& x, const PairVector& y) const {
+int DirectionSigns::turn(const PairVector& x, const PairVector& y) const {
   const Vec3 p = pair_->approximate(x), q = pair_->approximate(y);
   const double value = p.cross(q).dot(scaled_);
   const double e = pair_->vector_error();
   const double a = norm1(p) + 3 * e, b = norm1(q) + 3 * e;
-  if (std::abs(value) > (8 * kU * a * b + e * (a + b)) * norm1(scaled_) * (1 + 16 * kU) + 0x1p-900) {
+  if (std::abs(value) >
+      (8 * kUnitRoundoff * a * b + e * (a + b)) * norm1(scaled_) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
     return value > 0 ? 1 : -1;
   }
   return determinant(pair_->exact(x), pair_->exact(y), exact_).sign();
 }
 
-int RaySigns::side(const VertexPair& x, const VertexPair& y) const {
+int DirectionSigns::side(const VertexPair& x, const VertexPair& y) const {
   const PairVector p = PairVector::point(x.a, x.b), q = PairVector::point(y.a, y.b);
   if (const int sign = turn(p, q)) return sign;
   const std::array<Dyadic3, 3> basis = perturbations();
@@ -68,13 +70,13 @@ int RaySigns::side(const VertexPair& x, const VertexPair& y) const {
   return 0;
 }
 
-int RaySigns::side_of_far(const Vec3& g, const VertexPair& y) const {
+int DirectionSigns::side_of_far(const Vec3& g, const VertexPair& y) const {
   const PairVector point = PairVector::point(y.a, y.b);
   const Vec3 p = pair_->approximate(point);
   const Vec3 across = scaled_.cross(g);  // <across, y> = det(d, g, y) = det(g, y, d)
   const double value = p.dot(across);
   const double size = norm1(scaled_) * norm1(g), e = pair_->vector_error();
-  if (std::abs(value) > size * (8 * kU * norm1(p) + 3 * e) * (1 + 16 * kU) + 0x1p-900) {
+  if (std::abs(value) > size * (8 * kUnitRoundoff * norm1(p) + 3 * e) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
     return value > 0 ? 1 : -1;
   }
   const Dyadic3 far = to_dyadic(g);

@@ -7,10 +7,10 @@
 
 namespace pd::detail {
 
-class RaySigns {
+class DirectionSigns {
  public:
   /// Requires a finite direction other than zero.
-  RaySigns(const PosedPair& pair, const Vec3& direction);
+  DirectionSigns(const PosedPair& pair, const Vec3& direction);
 
   [[nodiscard]] const PosedPair& pair() const { return *pair_; }
   /// The direction times a power of two, largest |coordinate| in [1, 2).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -27,7 +29,7 @@ SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const Exa
   for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
   // The local direction errs by 12u per coordinate (unit 4u, rotation 4u, product 3u), the dot product by 3u |v|: twice
   // 32u covers both values that are compared.
-  const double slack = 64 * 0x1p-53 * body.radius();
+  const double slack = 64 * kUnitRoundoff * body.radius();
   SupportFace face;
   for (int v = 0; v < n; ++v) {
     if (body.vertex(v).dot(local) < best - slack) continue;

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "numeric/instruction_sets.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/support/direction_table.hpp"
@@ -49,8 +50,8 @@ class PolytopeDifference {
   /// difference and serve no other.
   void prepare_supports(PosedVerticesPair& posed) {
     if (climbs_ || posed_a_.count > 0) return;
-    posed_a_ = posed.a.turn(a_, -rotation_a_);
-    posed_b_ = posed.b.turn(b_, rotation_b_);
+    posed_a_ = posed.a.transform(a_, -rotation_a_);
+    posed_b_ = posed.b.transform(b_, rotation_b_);
   }
 
   /// A point of P that maximises <x, direction>, found from a vertex already at hand (`near`, or nullptr).
@@ -158,13 +159,11 @@ class PolytopeDifference {
   [[nodiscard]] double reach() const { return reach_; }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
-  [[nodiscard]] double point_error() const { return 10.5 * kHalfUlp * reach_; }
+  [[nodiscard]] double point_error() const { return 10.5 * kUnitRoundoff * reach_; }
   /// h_P(n) / |n| exceeds <s, n> / |n| of a certified support s by at most this: twice the error of comparing two
   /// vertices, in a body's frame, where the rotated direction errs by 4u |n| and the product by 3u |n| |v|, or posed,
   /// where a vertex errs by 4u sqrt(3) |v| instead.
-  [[nodiscard]] double support_error() const { return 20 * kHalfUlp * reach_; }
-
-  static constexpr double kHalfUlp = 0x1p-53;
+  [[nodiscard]] double support_error() const { return 20 * kUnitRoundoff * reach_; }
 
  private:
   /// `x` without its mantissa: a factor that rounds nothing.
@@ -191,12 +190,12 @@ class PolytopeDifference {
 /// A face's distance errs by that of its points, of a product of three terms, and of a root and a quotient.
 template <class Difference>
 double face_error(const Difference& difference) {
-  return difference.point_error() + 8 * 0x1p-53 * difference.reach();
+  return difference.point_error() + 8 * kUnitRoundoff * difference.reach();
 }
 /// <s, unit> bounds h_P(unit) up to the errors of s, of the support, of the product and of |unit|.
 template <class Difference>
 double support_plane_error(const Difference& difference) {
-  return difference.point_error() + difference.support_error() + 8 * 0x1p-53 * difference.reach();
+  return difference.point_error() + difference.support_error() + 8 * kUnitRoundoff * difference.reach();
 }
 
 }  // namespace pd::detail

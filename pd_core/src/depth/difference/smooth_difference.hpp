@@ -44,8 +44,8 @@ class SmoothDifference {
   [[nodiscard]] Vec3 centre() const;
   [[nodiscard]] double reach() const { return reach_; }
   /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach.
-  [[nodiscard]] double point_error() const { return 32 * PolytopeDifference::kHalfUlp * reach_; }
-  [[nodiscard]] double support_error() const { return 32 * PolytopeDifference::kHalfUlp * reach_; }
+  [[nodiscard]] double point_error() const { return 32 * kUnitRoundoff * reach_; }
+  [[nodiscard]] double support_error() const { return 32 * kUnitRoundoff * reach_; }
 
  private:
   struct Body {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -26,7 +28,7 @@ void consider(Candidate& best, const DifferenceVertex* simplex, std::initializer
     c.weights[k++] = w;
     total += w;
   }
-  // Whatever rounding did to the weights of a sliver, the point is a convex combination: it lies in P.
+  // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination: it lies in P.
   for (int i = 0; i < c.count; ++i) {
     c.weights[i] /= total;
     c.point += c.weights[i] * simplex[c.members[i]].x;
@@ -65,7 +67,7 @@ bool is_well_shaped(const DifferenceVertex* s) {
 bool inside_tetrahedron(const DifferenceVertex* s) {
   double size = 0;
   for (int i = 0; i < 4; ++i) size = std::max(size, s[i].x.cwiseAbs().maxCoeff());
-  const double noise = 256 * 0x1p-53 * size * size * size;
+  const double noise = 256 * kUnitRoundoff * size * size * size;
   const double volume = (s[1].x - s[0].x).cross(s[2].x - s[0].x).dot(s[3].x - s[0].x);
   const double side = volume < 0 ? -1 : 1;
   const auto inside = [&](double v) { return side * v > noise; };
@@ -75,14 +77,14 @@ bool inside_tetrahedron(const DifferenceVertex* s) {
 
 }  // namespace
 
-Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
+Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
   if (count == 4 && !planar && inside_tetrahedron(simplex)) {
     weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
     return Vec3::Zero();
   }
   Candidate best;
-  // A triangle that holds the projection holds the nearest point: bodies at rest end here. In a sliver rounding may say
-  // so, too.
+  // A triangle that holds the projection holds the nearest point: bodies at rest end here. In a slender one
+  // rounding may say so, too.
   const bool inside = count == 3 && is_well_shaped(simplex) && consider_triangle(best, simplex, 0, 1, 2);
   for (int i = 0; i < count && !inside; ++i) {
     consider(best, simplex, {i}, {1.0});

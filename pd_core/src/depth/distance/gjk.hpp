@@ -14,7 +14,7 @@
 
 namespace pd::detail {
 
-struct NearestResult {
+struct ClosestPoint {
   bool certified = false;  ///< the bracket is as narrow as asked and lower > 0
   double lower = 0;
   double upper = 0;
@@ -27,7 +27,7 @@ struct NearestResult {
 
 /// Reduces the simplex to the face that holds its point nearest to the origin; returns that point. Weights sum to 1.
 /// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
-Vec3 nearest_of_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
+Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
 
 /// The direction to look for a support in: the opposite of the nearest point of the simplex, or of a triangle's plane.
 ///
@@ -50,12 +50,12 @@ inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, co
 /// @param relative  stop when upper <= (1 + relative) lower ...
 /// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
 template <class Difference>
-NearestResult nearest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
-                            double absolute, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
-  NearestResult r;
+ClosestPoint closest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
+                           double absolute, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
+  ClosestPoint r;
   for (const DifferenceVertex& v : start) r.simplex[r.count++] = v;
-  r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
-  const double rounding = 8 * PolytopeDifference::kHalfUlp * difference.reach();
+  r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
+  const double rounding = 8 * kUnitRoundoff * difference.reach();
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
   double best = r.point.norm();
@@ -94,11 +94,11 @@ NearestResult nearest_point(const Difference& difference, std::span<const Differ
     for (int i = 0; i < r.count; ++i) {
       if (r.simplex[i].a == s.a && r.simplex[i].b == s.b) return r;  // nothing new: rounding has the last word
     }
-    const NearestResult last = r;
+    const ClosestPoint last = r;
     r.simplex[r.count++] = s;
-    r.point = nearest_of_simplex(r.simplex, r.count, r.weights);
+    r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
     if (r.count == 4) return r;
-    if (!(r.point.norm() < best)) return last;  // a sliver of nearly equal supports has lost its nearest point
+    if (!(r.point.norm() < best)) return last;  // nearly equal supports: rounding has lost the closest point
     best = r.point.norm();
   }
 }

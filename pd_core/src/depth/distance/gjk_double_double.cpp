@@ -16,7 +16,7 @@ Vec3 rounded(const Vec3DD& v) { return {to_double(v.x), to_double(v.y), to_doubl
 bool less(const DoubleDouble& a, const DoubleDouble& b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
 
 /// The nearest point of a simplex' affine hull, where it lies in the relative interior.
-struct Foot {
+struct ClosestOfFace {
   DoubleDouble squared{std::numeric_limits<double>::infinity(), 0};
   Vec3DD point;
   int members[4] = {0, 0, 0, 0};
@@ -28,22 +28,22 @@ class Simplex {
  public:
   explicit Simplex(const DifferenceVertex& first) {
     vertices_[0] = first;
-    foot_.count = 1;
-    foot_.weights[0] = 1;
-    foot_.point = widened(first.x);
-    foot_.squared = dot(foot_.point, foot_.point);
+    closest_.count = 1;
+    closest_.weights[0] = 1;
+    closest_.point = widened(first.x);
+    closest_.squared = dot(closest_.point, closest_.point);
   }
 
-  [[nodiscard]] const Foot& foot() const { return foot_; }
+  [[nodiscard]] const ClosestOfFace& closest() const { return closest_; }
   [[nodiscard]] const DifferenceVertex& vertex(int i) const { return vertices_[i]; }
 
   /// Adds a vertex and keeps the face nearest to the origin. False when none with the new vertex is nearer.
   bool add(const DifferenceVertex& s) {
-    const int count = foot_.count;
+    const int count = closest_.count;
     vertices_[count] = s;
     for (int i = 0; i <= count; ++i) x_[i] = widened(vertices_[i].x);
-    Foot best;
-    best.squared = foot_.squared;
+    ClosestOfFace best;
+    best.squared = closest_.squared;
     consider_vertex(best, count);
     for (int i = 0; i < count; ++i) {
       consider_edge(best, i, count);
@@ -52,25 +52,25 @@ class Simplex {
     if (count == 3) consider_inside(best);
     if (best.count == 0) return false;
     for (int i = 0; i < best.count; ++i) vertices_[i] = vertices_[best.members[i]];
-    foot_ = best;
+    closest_ = best;
     return true;
   }
 
  private:
-  void take(Foot& best, const Foot& foot) const {
-    if (less(foot.squared, best.squared)) best = foot;
+  void take(ClosestOfFace& best, const ClosestOfFace& closest) const {
+    if (less(closest.squared, best.squared)) best = closest;
   }
-  void consider_vertex(Foot& best, int i) const { take(best, {dot(x_[i], x_[i]), x_[i], {i}, {1}, 1}); }
-  void consider_edge(Foot& best, int i, int j) const {
+  void consider_vertex(ClosestOfFace& best, int i) const { take(best, {dot(x_[i], x_[i]), x_[i], {i}, {1}, 1}); }
+  void consider_edge(ClosestOfFace& best, int i, int j) const {
     const Vec3DD e = x_[j] - x_[i];
     const DoubleDouble squared = dot(e, e);
     if (!(squared.hi > 0)) return;
     const double wi = to_double(dot(x_[j], e) / squared), wj = -to_double(dot(x_[i], e) / squared);
     if (!(wi > 0 && wj > 0)) return;
-    const Vec3DD foot = scaled(cross(e, cross(x_[i], e)), DoubleDouble{1, 0} / squared);
-    take(best, {dot(foot, foot), foot, {i, j}, {wi, wj}, 2});
+    const Vec3DD closest = scaled(cross(e, cross(x_[i], e)), DoubleDouble{1, 0} / squared);
+    take(best, {dot(closest, closest), closest, {i, j}, {wi, wj}, 2});
   }
-  void consider_triangle(Foot& best, int i, int j, int k) const {
+  void consider_triangle(ClosestOfFace& best, int i, int j, int k) const {
     const Vec3DD n = cross(x_[j] - x_[i], x_[k] - x_[i]);
     const DoubleDouble squared = dot(n, n);
     if (!(squared.hi > 0)) return;
@@ -78,14 +78,14 @@ class Simplex {
     const double wj = to_double(dot(n, cross(x_[k], x_[i])) / squared);
     const double wk = to_double(dot(n, cross(x_[i], x_[j])) / squared);
     if (!(wi > 0 && wj > 0 && wk > 0)) return;
-    const Vec3DD foot = scaled(n, dot(n, x_[i]) / squared);
-    take(best, {dot(foot, foot), foot, {i, j, k}, {wi, wj, wk}, 3});
+    const Vec3DD closest = scaled(n, dot(n, x_[i]) / squared);
+    take(best, {dot(closest, closest), closest, {i, j, k}, {wi, wj, wk}, 3});
   }
   /// The origin in the tetrahedron: its weights are the volumes that it spans with the faces, all of one sign.
-  void consider_inside(Foot& best) const {
+  void consider_inside(ClosestOfFace& best) const {
     const DoubleDouble volumes[4] = {dot(x_[1], cross(x_[2], x_[3])), -dot(x_[0], cross(x_[2], x_[3])),
                                      dot(x_[0], cross(x_[1], x_[3])), -dot(x_[0], cross(x_[1], x_[2]))};
-    Foot inside{{0, 0}, widened(Vec3::Zero()), {0, 1, 2, 3}, {}, 4};
+    ClosestOfFace inside{{0, 0}, widened(Vec3::Zero()), {0, 1, 2, 3}, {}, 4};
     for (int i = 0; i < 4; ++i) {
       inside.weights[i] = std::abs(to_double(volumes[i]));
       if (!(inside.weights[i] > 0) || (volumes[i].hi > 0) != (volumes[0].hi > 0)) return;
@@ -95,37 +95,37 @@ class Simplex {
 
   DifferenceVertex vertices_[4];
   Vec3DD x_[4];
-  Foot foot_;
+  ClosestOfFace closest_;
 };
 
 }  // namespace
 
-SmoothNearest smooth_nearest(const SmoothDifference& difference, const DifferenceVertex& first, double relative,
-                             double absolute, std::int64_t& support_calls) {
-  const double rounding = 8 * PolytopeDifference::kHalfUlp * difference.reach();
+ClosestPointWithNormal closest_point_double_double(const SmoothDifference& difference, const DifferenceVertex& first,
+                                                   double relative, double absolute, std::int64_t& support_calls) {
+  const double rounding = 8 * kUnitRoundoff * difference.reach();
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
   const DifferenceVertex far = difference.support(difference.centre(), nullptr);
   ++support_calls;
   double largest = std::max(first.x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
   Simplex simplex(first);
-  SmoothNearest out;
-  NearestResult& r = out.nearest;
+  ClosestPointWithNormal out;
+  ClosestPoint& r = out.nearest;
   r.upper = std::numeric_limits<double>::infinity();
   r.lower = -r.upper;
   out.normal = Vec3::UnitX();
   for (;;) {
-    const Foot& foot = simplex.foot();
-    const double length = to_double(sqrt(foot.squared));
-    // Each foot is nearer than the last.
+    const ClosestOfFace& closest = simplex.closest();
+    const double length = to_double(sqrt(closest.squared));
+    // Each closest is nearer than the last.
     r.upper = length + upper_error;
-    r.point = rounded(foot.point);
-    r.count = foot.count;
+    r.point = rounded(closest.point);
+    r.count = closest.count;
     double total = 0;
-    for (int i = 0; i < foot.count; ++i) total += foot.weights[i];
-    for (int i = 0; i < foot.count; ++i) {
+    for (int i = 0; i < closest.count; ++i) total += closest.weights[i];
+    for (int i = 0; i < closest.count; ++i) {
       r.simplex[i] = simplex.vertex(i);
-      r.weights[i] = foot.weights[i] / total;
+      r.weights[i] = closest.weights[i] / total;
     }
     if (!(length > lower_error)) return out;
     const Vec3 toward = -r.point.normalized();

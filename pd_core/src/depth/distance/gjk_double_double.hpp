@@ -13,16 +13,16 @@
 
 namespace pd::detail {
 
-struct SmoothNearest {
-  NearestResult nearest;  ///< `point`, `simplex`, `weights` of `upper`
-  Vec3 normal;            ///< unit; the plane of `lower`: every point of P has <x, normal> <= -lower
+struct ClosestPointWithNormal {
+  ClosestPoint nearest;  ///< `point`, `simplex`, `weights` of `upper`
+  Vec3 normal;           ///< unit; the plane of `lower`: every point of P has <x, normal> <= -lower
 };
 
 /// @param first     a vertex of P to begin with.
 /// @param relative  stop when upper <= (1 + relative) lower ...
 /// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
 /// `certified` is false where P holds the origin within rounding, or rounding left the bracket wider than asked.
-SmoothNearest smooth_nearest(const SmoothDifference& difference, const DifferenceVertex& first, double relative,
-                             double absolute, std::int64_t& support_calls);
+ClosestPointWithNormal closest_point_double_double(const SmoothDifference& difference, const DifferenceVertex& first,
+                                                   double relative, double absolute, std::int64_t& support_calls);
 
 }  // namespace pd::detail

@@ -1,6 +1,8 @@
 #include "depth/distance/gjk_exact.hpp"
 
+#include <bit>
 #include <optional>
+#include <utility>
 
 namespace pd::detail {
 
@@ -50,88 +52,115 @@ std::optional<Projection> project(const Dyadic3* const* p, int count) {
   return r;
 }
 
-}  // namespace
+/// Up to four vertices of P and one more, without repetition.
+class Simplex {
+ public:
+  explicit Simplex(const PosedPair& pair) : pair_(pair) {}
 
-ExactNearest exact_nearest(const PosedPair& pair, const VertexPair* start, int count) {
-  std::array<VertexPair, 5> ids{};
-  std::array<Dyadic3, 5> points;
-  int size = 0;
-  const auto add = [&](VertexPair id) {
-    for (int i = 0; i < size; ++i) {
-      if (ids[i].a == id.a && ids[i].b == id.b) return;
+  void add(const VertexPair& id) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (ids_[i].a == id.a && ids_[i].b == id.b) return;
     }
-    ids[size] = id;
-    points[size] = pair.exact(PairVector::point(id.a, id.b));
-    ++size;
-  };
-  for (int i = 0; i < count; ++i) add(start[i]);
+    ids_[size_] = id;
+    points_[size_] = pair_.exact(PairVector::point(id.a, id.b));
+    ++size_;
+  }
 
-  for (;;) {
-    // The nearest point of the at most five points' hull is that of a face of one to four of them, in its relative
-    // interior, which no other point undercuts.
-    Projection best;
-    std::array<int, 4> chosen{};
-    int chosen_count = 0;
-    for (int subset_size = 1; subset_size <= 4 && chosen_count == 0; ++subset_size) {
-      for (unsigned mask = 1; mask < (1u << size) && chosen_count == 0; ++mask) {
-        if (__builtin_popcount(mask) != subset_size) continue;
-        const Dyadic3* subset[4] = {};
-        std::array<int, 4> members{};
-        int k = 0;
-        for (int i = 0; i < size; ++i) {
-          if (mask >> i & 1u) {
-            members[k] = i;
-            subset[k++] = &points[i];
-          }
-        }
-        const std::optional<Projection> projection = project(subset, k);
-        if (!projection) continue;
-        bool optimal = true;
-        for (int i = 0; i < size && optimal; ++i) {
-          optimal = (mask >> i & 1u) || dot(projection->point, points[i] - *subset[0]).sign() >= 0;
-        }
-        if (optimal) {
-          best = *projection;
-          chosen = members;
-          chosen_count = k;
-        }
+  /// A face of the simplex and the point closest to the origin in its relative interior.
+  struct Face {
+    Projection closest;
+    std::array<std::size_t, 4> members{};
+    std::size_t count = 0;
+  };
+
+  /// The face whose closest point is that of the whole hull: no other point lies before the plane across it.
+  [[nodiscard]] Face closest_face() const {
+    for (int wanted = 1; wanted <= 4; ++wanted) {
+      for (unsigned mask = 1; mask < (1U << size_); ++mask) {
+        if (std::popcount(mask) != wanted) continue;
+        if (std::optional<Face> face = closest_in(mask)) return *std::move(face);
       }
     }
+    return {};
+  }
 
-    ExactNearest result;
-    result.count = chosen_count;
-    for (int i = 0; i < chosen_count; ++i) {
-      result.simplex[i] = ids[chosen[i]];
-      // Ratios of big numbers: bring both to the same exponent before rounding.
-      const int shift = best.scale.exponent() + static_cast<int>(msb(best.scale.mantissa()));
-      result.weights[i] = best.weights[i].scaled(-shift).to_double() / best.scale.scaled(-shift).to_double();
+  void reduce_to(const Face& face) {
+    // Members ascend, so that no point is overwritten before it is moved.
+    for (std::size_t i = 0; i < face.count; ++i) {
+      ids_[i] = ids_[face.members[i]];
+      if (i != face.members[i]) points_[i] = std::move(points_[face.members[i]]);
     }
-    const bool zero = best.point.x.sign() == 0 && best.point.y.sign() == 0 && best.point.z.sign() == 0;
-    if (zero) return result;
+    size_ = face.count;
+  }
 
-    const ExactDirection away(Dyadic3{-best.point.x, -best.point.y, -best.point.z});
-    const SupportFace on_a = support_face_a(pair, away);
-    const SupportFace on_b = support_face_b(pair, away);
-    const VertexPair next{on_a.front(), on_b.front()};
+  [[nodiscard]] const VertexPair& id(std::size_t i) const { return ids_[i]; }
+  [[nodiscard]] const Dyadic3& point(std::size_t i) const { return points_[i]; }
+
+ private:
+  [[nodiscard]] std::optional<Face> closest_in(unsigned mask) const {
+    Face face;
+    const Dyadic3* chosen[4] = {};
+    for (std::size_t i = 0; i < size_; ++i) {
+      if ((mask >> i & 1U) == 0) continue;
+      face.members[face.count] = i;
+      chosen[face.count++] = &points_[i];
+    }
+    std::optional<Projection> projection = project(chosen, static_cast<int>(face.count));
+    if (!projection) return std::nullopt;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if ((mask >> i & 1U) == 0 && dot(projection->point, points_[i] - *chosen[0]).sign() < 0) return std::nullopt;
+    }
+    face.closest = *std::move(projection);
+    return face;
+  }
+
+  const PosedPair& pair_;
+  std::array<VertexPair, 5> ids_{};
+  std::array<Dyadic3, 5> points_;
+  std::size_t size_ = 0;
+};
+
+/// The simplex that the search ended with and where the closest point lies in it.
+ExactClosestPoint result_of(const Simplex& simplex, const Simplex::Face& face) {
+  ExactClosestPoint result;
+  result.count = static_cast<int>(face.count);
+  // Ratios of big numbers: both are brought to the same exponent before rounding.
+  const Dyadic& scale = face.closest.scale;
+  const int shift = scale.exponent() + static_cast<int>(msb(scale.mantissa()));
+  for (std::size_t i = 0; i < face.count; ++i) {
+    result.simplex[i] = simplex.id(face.members[i]);
+    result.weights[i] = face.closest.weights[i].scaled(-shift).to_double() / scale.scaled(-shift).to_double();
+  }
+  return result;
+}
+
+}  // namespace
+
+ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start, int count) {
+  Simplex simplex(pair);
+  for (int i = 0; i < count; ++i) simplex.add(start[i]);
+  // The distance falls strictly at each step among finitely many simplices, so this ends.
+  for (;;) {
+    // 1. The closest point of the simplex, and the face that holds it.
+    const Simplex::Face face = simplex.closest_face();
+    const Dyadic3& y = face.closest.point;
+    if (y.x.sign() == 0 && y.y.sign() == 0 && y.z.sign() == 0) return result_of(simplex, face);
+
+    // 2. A vertex of P farthest towards the origin.
+    const ExactDirection toward(Dyadic3{-y.x, -y.y, -y.z});
+    const VertexPair next{support_face_a(pair, toward).front(), support_face_b(pair, toward).front()};
     const Dyadic3 candidate = pair.exact(PairVector::point(next.a, next.b));
-    if (dot(best.point, candidate - points[chosen[0]]).sign() >= 0) {
+
+    // 3. None beyond the plane through the closest point: P lies behind it.
+    if (dot(y, candidate - simplex.point(face.members[0])).sign() >= 0) {
+      ExactClosestPoint result = result_of(simplex, face);
       result.apart = true;
-      result.point = best.point;
-      result.scale = best.scale * pair.homogeneous_factor();
+      result.point = y;
+      result.scale = face.closest.scale * pair.homogeneous_factor();
       return result;
     }
-    std::array<VertexPair, 4> kept_ids{};
-    std::array<Dyadic3, 4> kept_points;
-    for (int i = 0; i < chosen_count; ++i) {
-      kept_ids[i] = ids[chosen[i]];
-      kept_points[i] = points[chosen[i]];
-    }
-    size = 0;
-    for (int i = 0; i < chosen_count; ++i) {
-      ids[size] = kept_ids[i];
-      points[size++] = kept_points[i];
-    }
-    add(next);
+    simplex.reduce_to(face);
+    simplex.add(next);
   }
 }
 

@@ -15,7 +15,7 @@
 
 namespace pd::detail {
 
-struct ExactNearest {
+struct ExactClosestPoint {
   bool apart = false;  ///< the origin lies outside P
   int count = 0;       ///< size of the simplex whose relative interior holds the nearest point
   std::array<VertexPair, 4> simplex{};
@@ -25,6 +25,6 @@ struct ExactNearest {
 };
 
 /// @param start  vertices of P to begin with (1 to 4), e.g. the simplex of an inexact search; not trusted.
-[[nodiscard]] ExactNearest exact_nearest(const PosedPair& pair, const VertexPair* start, int count);
+[[nodiscard]] ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start, int count);
 
 }  // namespace pd::detail

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "depth/difference/barycentric.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
@@ -162,7 +163,7 @@ bool nearest_remembered(const WarmState& state, const PolytopeDifference& differ
     return std::min({out.weights[0], out.weights[1], out.weights[2]}) >= 0;
   };
   if (take(nearest)) return true;
-  const double level = out.distance + 64 * 0x1p-53 * difference.reach();
+  const double level = out.distance + 64 * kUnitRoundoff * difference.reach();
   for (int i = 0; i < near.count; ++i) {
     if (i != nearest && near.keys[i] <= level * level && take(i)) return true;
   }

@@ -8,10 +8,6 @@
 
 namespace pd::detail {
 
-int compare(const SquaredDistance& x, const SquaredDistance& y) {
-  return (x.numerator * y.denominator - y.numerator * x.denominator).sign();
-}
-
 namespace {
 
 struct Face {
@@ -246,8 +242,8 @@ bool rank_facet(const PosedPair& pair, const Hull& hull, const Face& facet, cons
     result.normal = direction;
     return true;
   }
-  const SquaredDistance squared{height * height,
-                                dot(normal, normal) * pair.homogeneous_factor() * pair.homogeneous_factor()};
+  const SquaredRatio squared{height * height,
+                             dot(normal, normal) * pair.homogeneous_factor() * pair.homogeneous_factor()};
   if (!result.normal || compare(squared, result.squared) < 0) {
     result.normal = direction;
     result.squared = squared;

@@ -16,23 +16,16 @@
 
 #include "depth/distance/gjk_exact.hpp"
 #include "depth/expansion/search_report.hpp"
+#include "numeric/quotient.hpp"
 #include "pd/depth/depth_answer.hpp"
 
 namespace pd::detail {
-
-/// |distance of a plane from the origin| squared = numerator / denominator, unscaled.
-struct SquaredDistance {
-  Dyadic numerator;
-  Dyadic denominator;
-};
-/// Sign of x - y.
-[[nodiscard]] int compare(const SquaredDistance& x, const SquaredDistance& y);
 
 struct ExactDepth {
   ContactClass contact = ContactClass::touching;
   bool complete = true;                  ///< false: the budget ran out before the nearest facet was certain
   std::optional<ExactDirection> normal;  ///< of the nearest facet of P (overlapping), or a supporting normal (touching)
-  SquaredDistance squared;               ///< overlapping only
+  SquaredRatio squared;                  ///< overlapping only
   std::int64_t support_calls = 0;
   std::int64_t facets_visited = 0;
 };

@@ -39,6 +39,7 @@
 #include "depth/expansion/expansion_goal.hpp"
 #include "depth/expansion/initial_simplex.hpp"
 #include "depth/expansion/inner_surface.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
@@ -211,7 +212,9 @@ class ExpandingPolytope {
   double lower_error() const { return face_error(difference_); }
   double bound_error() const { return support_plane_error(difference_); }
   /// Error bound of six volumes.
-  double flat_volume() const { return 64 * 0x1p-53 * difference_.reach() * difference_.reach() * difference_.reach(); }
+  double flat_volume() const {
+    return 64 * kUnitRoundoff * difference_.reach() * difference_.reach() * difference_.reach();
+  }
 
   /// Larger surfaces that lost their convexity are rebuilt, which makes them smaller: measured on coherent frames.
   static constexpr int kMostFlipped = 40;

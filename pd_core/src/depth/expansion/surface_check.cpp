@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "numeric/double_double.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "pd/numeric/predicates.hpp"
 
 namespace pd::detail {
@@ -95,7 +96,7 @@ class Check {
     return two_product(x.x(), y.x()) + two_product(x.y(), y.y()) + two_product(x.z(), y.z());
   }
   /// Of a distance computed from stored points, see `face_error`.
-  [[nodiscard]] double rounding() const { return 8 * 0x1p-53 * radius_; }
+  [[nodiscard]] double rounding() const { return 8 * kUnitRoundoff * radius_; }
 
   const SurfaceSnapshot& surface_;
   double radius_ = 0;

@@ -35,13 +35,13 @@ void mark_far_facets(const BodySide& body, const PolytopeDifference& difference,
   const double sign = body.is_a ? -1 : 1;
   std::array<std::int32_t, kMaskProbes> chosen;
   const std::size_t count = choose_vertices(surface, !body.is_a, chosen);
-  ProbeArrays probes;
+  ProbeArrays test_points;
   for (std::size_t k = 0; k < kMaskProbes; ++k) {
     const Vec3 posed = body.other_pose.rotation() * body.other.vertex(chosen[k < count ? k : 0]);
     const Vec3 x = turn.transpose() * (difference.offset() - sign * posed) * (sign / difference.reach());
-    probes.x[k] = static_cast<float>(x.x());
-    probes.y[k] = static_cast<float>(x.y());
-    probes.z[k] = static_cast<float>(x.z());
+    test_points.x[k] = static_cast<float>(x.x());
+    test_points.y[k] = static_cast<float>(x.y());
+    test_points.z[k] = static_cast<float>(x.z());
   }
   const int facets = body.own.num_facets();
   out.far.resize(static_cast<std::size_t>(facets));
@@ -51,7 +51,7 @@ void mark_far_facets(const BodySide& body, const PolytopeDifference& difference,
     const double height = growth * body.own.vertex(body.own.facet_vertices(f)[0]).dot(body.own.facet_normal(f));
     out.levels[static_cast<std::size_t>(f)] = static_cast<float>(level - height);
   }
-  probes_beyond(body.own.facet_normal(0).data(), facets, probes, out.levels.data(), out.far.data());
+  probes_beyond(body.own.facet_normal(0).data(), facets, test_points, out.levels.data(), out.far.data());
 }
 
 void keep_edges(const ConvexPolytope& body, NearArcs& out) {

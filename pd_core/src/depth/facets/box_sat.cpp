@@ -4,17 +4,17 @@
 #include <cmath>
 
 #include "depth/facets/box_sat_kernels.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-constexpr double kUlp = 0x1p-53;
 /// The cross product of two generators turns by at most this over the sine of their angle: each errs by 3u of its
 /// length, the product by 4u.
-constexpr double kTurn = 12 * kUlp;
+constexpr double kTurn = 12 * kUnitRoundoff;
 /// Sines below this are rounding.
-constexpr double kParallelSine = 8 * kUlp;
+constexpr double kParallelSine = 8 * kUnitRoundoff;
 /// |column of R| <= 1 + 1e-6 (Pose), and the rounding of the half extents.
 constexpr double kLongest = 1 + 0x1p-19;
 
@@ -37,7 +37,7 @@ class BoxPair {
   BoxPairDepth solve(double width) {
     BoxPairDepth out;
     // Generators and centre err by 12u of the reach together, the sum of seven products by 8u.
-    const double rounding = 20 * kUlp * reach_;
+    const double rounding = 20 * kUnitRoundoff * reach_;
     const double c[3] = {centre_.x(), centre_.y(), centre_.z()};
     const NearestBoxAxis nearest = nearest_box_axis(of_a_, of_b_, c, {kTurn * reach_, kParallelSine});
     Vec3 u, v;
@@ -106,7 +106,7 @@ class BoxPair {
   /// Finds a in A and b in B with b - a = distance * normal. False where the winner does not hold that point.
   bool place_witness(int axis, double distance, BoxPairDepth& out) const {
     const Vec3 x = distance * out.normal;
-    const double slack = 64 * kUlp * reach_;
+    const double slack = 64 * kUnitRoundoff * reach_;
     const int block = axis / 4, lane = axis % 4;
     const int va = farthest(of_a_, out.normal, -1), vb = farthest(of_b_, out.normal, 1);
     if (block >= 2) {
@@ -150,7 +150,7 @@ class BoxPair {
   bool vertex_on_facet(const BoxGenerators& of, const Vec3& centre, int farthest_id, const Vec3& normal,
                        Try&& fits) const {
     if (fits(vertex(of, centre, farthest_id), farthest_id)) return true;
-    const double level = 16 * kUlp * reach_;
+    const double level = 16 * kUnitRoundoff * reach_;
     int loose = 0;
     for (int k = 0; k < 3; ++k) loose |= std::abs(generator(of, k).dot(normal)) <= level ? bit(k) : 0;
     for (int v = 0; v < 8; ++v) {

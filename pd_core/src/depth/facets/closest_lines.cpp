@@ -4,13 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/arc_crossing.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 /// Largest product of the sizes of two nodes that is tried pair by pair.
 constexpr std::int64_t kLeafPairs = 16;
@@ -87,7 +86,7 @@ class DualTree {
   }
 
   /// r, a little enlarged, in the trees' lengths.
-  [[nodiscard]] double radius() const { return search_.upper() / unit_ * (1 + 8 * kU); }
+  [[nodiscard]] double radius() const { return search_.upper() / unit_ * (1 + 8 * kUnitRoundoff); }
 
   static double cosine(const Line6& b, const Line6& a) { return b[0] * a[3] + b[1] * a[4] + b[2] * a[5]; }
 
@@ -101,13 +100,14 @@ class DualTree {
         const double least = std::abs(dot(u, v)) - rounding_;
         const double t = cosine(u, v);
         const double most = r * r * (std::max(0.0, 1 - t * t) + 4 * rounding_);
-        if (least > 0 && least * least > most * (1 + 8 * kU)) continue;
+        if (least > 0 && least * least > most * (1 + 8 * kUnitRoundoff)) continue;
         const Range distance = measure(i, j);
         if (distance.lower > r) continue;
         const std::optional<OverlayPiece> piece = edge_crossing(walk_, a_.half_edge(j), b_.half_edge(i));
         if (!piece) continue;
         if (distance.lower > 0) {
-          search_.offer(*piece, distance.lower * unit_ * (1 - 2 * kU), distance.upper * unit_ * (1 + 2 * kU));
+          search_.offer(*piece, distance.lower * unit_ * (1 - 2 * kUnitRoundoff),
+                        distance.upper * unit_ * (1 + 2 * kUnitRoundoff));
         } else {
           search_.consume(std::span<const OverlayPiece>(&*piece, 1));
         }
@@ -129,12 +129,12 @@ class DualTree {
     const Vec3 n = Vec3(u[0], u[1], u[2]).cross(Vec3(v[3], v[4], v[5]));
     const double sine = n.norm();
     // A coordinate of n errs by 2 sqrt(2) kDirectionError and the rounding of two products of at most 1.
-    const double phi = (8 * LineTree::kDirectionError + 16 * kU) / sine;
+    const double phi = (8 * LineTree::kDirectionError + 16 * kUnitRoundoff) / sine;
     if (!(phi < 0.1)) return {0, std::numeric_limits<double>::infinity()};
     const Vec3 w = b_.point(i) - a_.point(j);
     const double distance = std::abs(w.dot(n)) / sine;
     const double tangential = w.cross(n).norm() / sine;
-    const double error = 1.01 * phi * (tangential + phi * distance) + 2 * LineTree::kPointError + 16 * kU;
+    const double error = 1.01 * phi * (tangential + phi * distance) + 2 * LineTree::kPointError + 16 * kUnitRoundoff;
     return {distance - error, distance + error};
   }
 

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "depth/facets/facet_enumeration.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 /// So many vertices of P are tried against each facet: the first ones found stand far apart.
 constexpr std::size_t kProbes = 32;
@@ -30,8 +29,8 @@ class DecompositionSearch {
     translation.translated = true;
     offset_ = pair.approximate(translation);
     const double error = pair.vector_error();
-    reach_ = (overlay.overlay.a.reach + overlay.overlay.b.reach + norm1(offset_) + 3 * error) * (1 + 8 * kU);
-    point_error_ = (3 * error + 2 * kU * reach_) * (1 + 8 * kU);
+    reach_ = (overlay.overlay.a.reach + overlay.overlay.b.reach + norm1(offset_) + 3 * error) * (1 + 8 * kUnitRoundoff);
+    point_error_ = (3 * error + 2 * kUnitRoundoff * reach_) * (1 + 8 * kUnitRoundoff);
     choose_probes();
   }
 
@@ -70,12 +69,12 @@ class DecompositionSearch {
   [[nodiscard]] const PosedDiagram& diagram(bool of_a) const { return of_a ? overlay_.overlay.a : overlay_.overlay.b; }
 
   void choose_probes() {
-    buffers_.probes.clear();
+    buffers_.test_points.clear();
     probe_reach_ = 0;
     for (const VertexPair& v : settings_.vertices.first(std::min(kProbes, settings_.vertices.size()))) {
       const Vec3 x = overlay_.overlay.b.points[static_cast<std::size_t>(v.b)] -
                      overlay_.overlay.a.points[static_cast<std::size_t>(v.a)] + offset_;
-      buffers_.probes.push_back({x, v.a, v.b});
+      buffers_.test_points.push_back({x, v.a, v.b});
       probe_reach_ = std::max(probe_reach_, norm1(x));
     }
   }
@@ -86,16 +85,16 @@ class DecompositionSearch {
     const Vec3 n(f.normal[0], f.normal[1], f.normal[2]);
     return of_a ? Vec3(-n) : n;
   }
-  /// A probe above this product with a facet's normal shows its plane to be farther than the bound.
+  /// A test point above this product with a facet's normal shows its plane to be farther than the bound.
   [[nodiscard]] double far_level(bool of_a, int facet, const Vec3& n) const {
     const double normal_error = diagram(of_a).normal_errors[static_cast<std::size_t>(facet)];
     const double n1 = norm1(n);
     const double product_error = (probe_reach_ * normal_error + n1 * point_error_ + 3 * point_error_ * normal_error +
-                                  4 * kU * probe_reach_ * n1) *
-                                     (1 + 16 * kU) +
+                                  4 * kUnitRoundoff * probe_reach_ * n1) *
+                                     (1 + 16 * kUnitRoundoff) +
                                  0x1p-900;
-    const double longest = std::sqrt(n.squaredNorm()) * (1 + 8 * kU) + 2 * normal_error;
-    return (search_.upper() * longest + product_error) * (1 + 8 * kU);
+    const double longest = std::sqrt(n.squaredNorm()) * (1 + 8 * kUnitRoundoff) + 2 * normal_error;
+    return (search_.upper() * longest + product_error) * (1 + 8 * kUnitRoundoff);
   }
 
   [[nodiscard]] std::vector<std::int32_t>& far_from(bool of_a) const {
@@ -105,17 +104,17 @@ class DecompositionSearch {
   void mark_far_facets(bool of_a) {
     const int count = body(of_a).num_facets();
     far_from(of_a).assign(static_cast<std::size_t>(count), -1);
-    if (buffers_.probes.empty()) return;
-    const int probes = static_cast<int>(buffers_.probes.size());
+    if (buffers_.test_points.empty()) return;
+    const int test_points = static_cast<int>(buffers_.test_points.size());
     int last = 0;  // neighbours in number are often neighbours in space
     for (int f = 0; f < count; ++f) {
       const Vec3 n = normal(of_a, f);
       const double level = far_level(of_a, f, n);
-      if (!(probe(last).x.dot(n) > level)) {
+      if (!(test_point(last).x.dot(n) > level)) {
         last = 0;
-        double best = probe(0).x.dot(n);
-        for (int k = 1; k < probes; ++k) {
-          const double value = probe(k).x.dot(n);
+        double best = test_point(0).x.dot(n);
+        for (int k = 1; k < test_points; ++k) {
+          const double value = test_point(k).x.dot(n);
           if (value > best) {
             best = value;
             last = k;
@@ -127,8 +126,8 @@ class DecompositionSearch {
     }
   }
 
-  [[nodiscard]] const DecompositionBuffers::Probe& probe(int k) const {
-    return buffers_.probes[static_cast<std::size_t>(k)];
+  [[nodiscard]] const DecompositionBuffers::TestPoint& test_point(int k) const {
+    return buffers_.test_points[static_cast<std::size_t>(k)];
   }
 
   /// [A] step 1, for the facets of one body.
@@ -145,9 +144,9 @@ class DecompositionSearch {
 
   /// Where the climb to the vertex of the other body that is extreme against a facet begins.
   [[nodiscard]] int start(bool of_a, int facet, int otherwise) const {
-    if (buffers_.probes.empty()) return otherwise;
+    if (buffers_.test_points.empty()) return otherwise;
     const Vec3 n = normal(of_a, facet);
-    const auto best = std::max_element(buffers_.probes.begin(), buffers_.probes.end(),
+    const auto best = std::max_element(buffers_.test_points.begin(), buffers_.test_points.end(),
                                        [&](const auto& x, const auto& y) { return x.x.dot(n) < y.x.dot(n); });
     return of_a ? best->b : best->a;
   }
@@ -172,7 +171,7 @@ class DecompositionSearch {
     return at;
   }
 
-  /// The edges whose arcs no probe shows to be too far from end to end.
+  /// The edges whose arcs no test point shows to be too far from end to end.
   void gather_edges(bool of_a) {
     const ConvexPolytope& own = body(of_a);
     std::vector<std::int32_t>& edges = of_a ? buffers_.edges_a : buffers_.edges_b;
@@ -191,7 +190,7 @@ class DecompositionSearch {
     if (at_f == at_g) return true;
     const Vec3 m = normal(of_a, f), n = normal(of_a, g);
     const double level_m = far_level(of_a, f, m), level_n = far_level(of_a, g, n);
-    return std::any_of(buffers_.probes.begin(), buffers_.probes.end(),
+    return std::any_of(buffers_.test_points.begin(), buffers_.test_points.end(),
                        [&](const auto& p) { return p.x.dot(m) > level_m && p.x.dot(n) > level_n; });
   }
 

@@ -20,16 +20,16 @@
 namespace pd::detail {
 
 struct DecompositionBuffers {
-  struct Probe {
+  struct TestPoint {
     Vec3 x;
     std::int32_t a;
     std::int32_t b;
   };
   std::vector<VertexPair> vertices;  ///< for the caller's list
-  std::vector<Probe> probes;
-  std::vector<std::int32_t> far_from_a;  ///< by facet: a probe that shows it too far, or -1
+  std::vector<TestPoint> test_points;
+  std::vector<std::int32_t> far_from_a;  ///< by facet: a test point that shows it too far, or -1
   std::vector<std::int32_t> far_from_b;
-  std::vector<std::int32_t> edges_a;  ///< that no probe shows too far, as half-edges
+  std::vector<std::int32_t> edges_a;  ///< that no test point shows too far, as half-edges
   std::vector<std::int32_t> edges_b;
   ClosestLinesBuffers lines;
 };

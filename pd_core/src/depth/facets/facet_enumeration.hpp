@@ -1,6 +1,6 @@
 /// @file
 /// What every engine that enumerates facets of P does with one: its plane bounded in doubles, the class of the contact
-/// decided exactly, the nearest handed to `NearestFacet`.
+/// decided exactly, the nearest handed to `FacetSelection`.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <span>
 
 #include "depth/facets/facet_selection.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/face_sum.hpp"
 #include "structure/overlay/overlay_walk.hpp"
 
@@ -25,19 +26,20 @@ class PlaneSearch {
     translation.translated = true;
     offset_ = pair_.approximate(translation);
     const double error = pair_.vector_error();
-    reach_ = (a_.reach + b_.reach + norm1(offset_) + 3 * error) * (1 + 8 * kU);
-    point_error_ = (3 * error + 2 * kU * reach_) * (1 + 8 * kU);
+    reach_ = (a_.reach + b_.reach + norm1(offset_) + 3 * error) * (1 + 8 * kUnitRoundoff);
+    point_error_ = (3 * error + 2 * kUnitRoundoff * reach_) * (1 + 8 * kUnitRoundoff);
     // For edges x, y and n = x x y the error of n is e (|x| + |y| + 2e) + 3u |x||y| per coordinate (1-norms), and that
     // of <point, n> is reach error(n) + |n|_1 (error(point) + 4u reach) + 3 error(n) error(point). With 2 reach
     // error(n) for the length of n, all of it is a polynomial in |x| and |y| whose coefficients belong to the pair.
     const double edge_error = std::max(a_.edge_error, b_.edge_error);
     const double per_normal_error = 3 * reach_ + 3 * point_error_;
-    constant_ = (2 * edge_error * edge_error * per_normal_error) * (1 + 16 * kU) + 0x1p-900;
-    linear_ = edge_error * per_normal_error * (1 + 16 * kU);
-    bilinear_ = (3 * kU * per_normal_error + point_error_ + 4 * kU * reach_) * (1 + 16 * kU);
+    constant_ = (2 * edge_error * edge_error * per_normal_error) * (1 + 16 * kUnitRoundoff) + 0x1p-900;
+    linear_ = edge_error * per_normal_error * (1 + 16 * kUnitRoundoff);
+    bilinear_ =
+        (3 * kUnitRoundoff * per_normal_error + point_error_ + 4 * kUnitRoundoff * reach_) * (1 + 16 * kUnitRoundoff);
     // |vector|_1 of an edge is its size less this, rounded up.
-    size_a_ = a_.edge_size * (1 - 4 * kU);
-    size_b_ = b_.edge_size * (1 - 4 * kU);
+    size_a_ = a_.edge_size * (1 - 4 * kUnitRoundoff);
+    size_b_ = b_.edge_size * (1 - 4 * kUnitRoundoff);
     square_upper();
   }
 
@@ -71,7 +73,6 @@ class PlaneSearch {
   }
 
  private:
-  static constexpr double kU = 0x1p-53;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   static double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
@@ -90,7 +91,7 @@ class PlaneSearch {
                              double relative) {
     return (point_norm1 * normal_error + normal_norm1 * point_error + 3 * point_error * normal_error +
             relative * point_norm1 * normal_norm1) *
-           (1 + 16 * kU);
+           (1 + 16 * kUnitRoundoff);
   }
 
   /// Whether an edge-edge plane is certainly farther than the nearest one, by one comparison of squares.
@@ -135,7 +136,7 @@ class PlaneSearch {
                             x.vector[0] * y.vector[1] - x.vector[1] * y.vector[0]);
         const double e = std::max(a_.edge_error, b_.edge_error);
         const double sx = x.size - size_b_, sy = y.size - size_a_;
-        plane.normal_error = (e * (sx + sy + 2 * e) + 3 * kU * sx * sy) * (1 + 8 * kU);
+        plane.normal_error = (e * (sx + sy + 2 * e) + 3 * kUnitRoundoff * sx * sy) * (1 + 8 * kUnitRoundoff);
         va = pair_.a().half_edge(piece.a).origin;
         vb = pair_.b().half_edge(piece.b).origin;
       }
@@ -143,18 +144,18 @@ class PlaneSearch {
     const Vec3 point = b_.points[static_cast<std::size_t>(vb)] - a_.points[static_cast<std::size_t>(va)] + offset_;
     plane.offset = point.dot(plane.normal);
     plane.offset_error =
-        offset_error(norm1(point), norm1(plane.normal), point_error_, plane.normal_error, 4 * kU) + 0x1p-900;
+        offset_error(norm1(point), norm1(plane.normal), point_error_, plane.normal_error, 4 * kUnitRoundoff) + 0x1p-900;
     return plane;
   }
 
   bool consider(const OverlayPiece& piece, const Plane& plane) {
     const double length = std::sqrt(plane.normal.squaredNorm());
-    const double longest = length * (1 + 8 * kU) + 2 * plane.normal_error;
-    const double shortest = length * (1 - 8 * kU) - 2 * plane.normal_error;
+    const double longest = length * (1 + 8 * kUnitRoundoff) + 2 * plane.normal_error;
+    const double shortest = length * (1 - 8 * kUnitRoundoff) - 2 * plane.normal_error;
     if (plane.offset > plane.offset_error && shortest > 0) {
       if (zero_) return true;
-      nearest_.offer(piece, (plane.offset - plane.offset_error) * (1 - 4 * kU) / longest,
-                     (plane.offset + plane.offset_error) * (1 + 4 * kU) / shortest);
+      nearest_.offer(piece, (plane.offset - plane.offset_error) * (1 - 4 * kUnitRoundoff) / longest,
+                     (plane.offset + plane.offset_error) * (1 + 4 * kUnitRoundoff) / shortest);
       square_upper();
       return true;
     }
@@ -176,14 +177,15 @@ class PlaneSearch {
       return true;
     }
     if (zero_) return true;
-    const double upper = shortest > 0 ? (plane.offset + plane.offset_error) * (1 + 4 * kU) / shortest : kInfinity;
+    const double upper =
+        shortest > 0 ? (plane.offset + plane.offset_error) * (1 + 4 * kUnitRoundoff) / shortest : kInfinity;
     nearest_.offer(piece, 0, std::max(upper, 0.0));
     square_upper();
     return true;
   }
 
   /// Below the reach, as the error polynomial of `far_edges` requires.
-  void square_upper() { upper_squared_ = upper() <= reach_ ? upper() * upper() * (1 + 64 * kU) : kInfinity; }
+  void square_upper() { upper_squared_ = upper() <= reach_ ? upper() * upper() * (1 + 64 * kUnitRoundoff) : kInfinity; }
 
   const OverlayWalk& walk_;
   const PosedPair& pair_;
@@ -197,7 +199,7 @@ class PlaneSearch {
   double bilinear_;
   double size_a_;
   double size_b_;
-  NearestFacet nearest_;
+  FacetSelection nearest_;
   double upper_squared_ = kInfinity;
   bool outside_ = false;
   bool zero_ = false;

@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/face_sum.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 std::array<std::int32_t, 5> rank(const PosedPair& pair, const OverlayPiece& piece) {
   const FacetOfDifference f = facet_of(pair, piece);
@@ -26,14 +25,14 @@ int compare_rank(const PosedPair& pair, const OverlayPiece& x, const OverlayPiec
   return order < 0 ? -1 : order > 0 ? 1 : 0;
 }
 
-void NearestFacet::compact() {
+void FacetSelection::compact() {
   std::erase_if(*candidates_, [&](const FacetCandidate& c) { return c.lower > upper_; });
   limit_ = std::max<std::size_t>(64, 2 * candidates_->size());
 }
 
-std::optional<OverlayPiece> NearestFacet::winner(bool exactly) {
+std::optional<OverlayPiece> FacetSelection::winner(bool exactly) {
   compact();
-  if (candidates_->size() > 1) part_in_double_double();
+  if (candidates_->size() > 1) compare_in_double_double();
   if (candidates_->empty()) return std::nullopt;
   if (candidates_->size() == 1) return candidates_->front().piece;
 
@@ -46,8 +45,9 @@ std::optional<OverlayPiece> NearestFacet::winner(bool exactly) {
   std::sort(candidates_->begin(), candidates_->end(),
             [&](const FacetCandidate& x, const FacetCandidate& y) { return compare_rank(pair, x.piece, y.piece) < 0; });
   if (candidates_->empty()) return std::nullopt;
-  // Planes known to the full width of double-double that face clearly apart, and still tie, are equally good: either
-  // foot of the origin lies in P up to rounding. Of nearly parallel ones only the nearest holds its own foot.
+  // Planes known to the full width of double-double that face clearly apart, and still tie, are equally good: the
+  // projection of the origin on either lies in P up to rounding. Of nearly parallel ones only the nearest holds its
+  // own.
   const double equal = 1024 * pair.vector_error_dd();
   const auto as_good = [&](const FacetCandidate& x, const FacetCandidate& y) {
     return x.error + y.error <= equal && (x.unit - y.unit).squaredNorm() > 0x1p-40;
@@ -67,7 +67,7 @@ std::optional<OverlayPiece> NearestFacet::winner(bool exactly) {
   return best->piece;
 }
 
-void NearestFacet::part_in_double_double() {
+void FacetSelection::compare_in_double_double() {
   const FacetCandidate* best = nullptr;
   for (FacetCandidate& c : *candidates_) {
     const FacetPlane plane = measure_facet(walk_->pair(), facet_of(walk_->pair(), c.piece));
@@ -80,7 +80,7 @@ void NearestFacet::part_in_double_double() {
   if (best == nullptr) return;
   const FacetCandidate nearest = *best;
   std::erase_if(*candidates_, [&](const FacetCandidate& c) {
-    return known(c) && to_double(c.distance - nearest.distance) > (c.error + nearest.error) * (1 + 4 * kU);
+    return known(c) && to_double(c.distance - nearest.distance) > (c.error + nearest.error) * (1 + 4 * kUnitRoundoff);
   });
 }
 

@@ -3,9 +3,9 @@
 /// over facets ends with.
 ///
 /// Whatever is certainly farther than the nearest plane so far is dropped at once. What is left at the end, nearly
-/// always one facet or the few that tie, is compared in double-double, and what double-double cannot part either as
-/// exact fractions (or not at all where a certified bracket is enough: its width is some 1e-30 there). The winner does
-/// not depend on the order of the offers: of equals the one with the least rank.
+/// always one facet or the few that tie, is compared in double-double, and what double-double cannot distinguish either
+/// as exact fractions (or not at all where a certified bracket is enough: its width is some 1e-30 there). The winner
+/// does not depend on the order of the offers: of equals the one with the least rank.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ struct FacetCandidate {
 /// Grown on first use.
 using FacetCandidates = std::vector<FacetCandidate>;
 
-class NearestFacet {
+class FacetSelection {
  public:
   /// Refers to all of them. `walk` answers which piece stands for a whole facet; it need not have run.
   /// @param upper  a bound on the depth from elsewhere, in the pair's scaled lengths: a facet certainly farther is not
   ///               wanted.
-  NearestFacet(const OverlayWalk& walk, FacetCandidates& candidates,
-               double upper = std::numeric_limits<double>::infinity())
+  FacetSelection(const OverlayWalk& walk, FacetCandidates& candidates,
+                 double upper = std::numeric_limits<double>::infinity())
       : walk_(&walk), candidates_(&candidates), upper_(upper) {
     candidates.clear();
   }
@@ -56,7 +56,8 @@ class NearestFacet {
 
   /// The nearest facet; nothing when none was offered. Of facets at equal distances the first by (kind: facet of A,
   /// facet of B, edges; ids of A; ids of B).
-  /// @param exactly  whether all facets that double-double cannot part are compared as fractions; else only those that
+  /// @param exactly  whether all facets that double-double cannot distinguish are compared as fractions; else only
+  /// those that
   ///                 are nearly parallel, the others count as equal.
   [[nodiscard]] std::optional<OverlayPiece> winner(bool exactly);
 
@@ -65,7 +66,7 @@ class NearestFacet {
 
  private:
   void compact();
-  void part_in_double_double();
+  void compare_in_double_double();
 
   const OverlayWalk* walk_;
   FacetCandidates* candidates_;

@@ -4,14 +4,14 @@
 
 namespace pd::detail {
 
-PD_CLONES void probes_beyond(const double* normals, int count, const ProbeArrays& probes, const float* levels,
+PD_CLONES void probes_beyond(const double* normals, int count, const ProbeArrays& test_points, const float* levels,
                              std::uint32_t* masks) {
   constexpr int kRows = kMaskProbes / kFloats;
   Floats x[kRows], y[kRows], z[kRows];
   for (int r = 0; r < kRows; ++r) {
-    load(x[r], probes.x.data() + kFloats * r);
-    load(y[r], probes.y.data() + kFloats * r);
-    load(z[r], probes.z.data() + kFloats * r);
+    load(x[r], test_points.x.data() + kFloats * r);
+    load(y[r], test_points.y.data() + kFloats * r);
+    load(z[r], test_points.z.data() + kFloats * r);
   }
   for (int i = 0; i < count; ++i) {
     const float nx = static_cast<float>(normals[3 * i]);

@@ -18,8 +18,8 @@ struct ProbeArrays {
   std::array<float, kMaskProbes> x, y, z;
 };
 
-/// Bit k of masks[i]: <probe k, normal i> > levels[i] in single precision. `normals` has stride 3.
-void probes_beyond(const double* normals, int count, const ProbeArrays& probes, const float* levels,
+/// Bit k of masks[i]: <test point k, normal i> > levels[i] in single precision. `normals` has stride 3.
+void probes_beyond(const double* normals, int count, const ProbeArrays& test_points, const float* levels,
                    std::uint32_t* masks);
 
 /// Lines as arrays of Pluecker coordinates, (m', d') for those of A, padded to a multiple of kLineBlock.

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/overlay_walk.hpp"
 
 namespace pd::detail {
@@ -59,10 +60,10 @@ class LineTree {
 
   /// |error| of each coordinate of a line's direction: an edge is the difference of stored points (u of each
   /// coordinate), turned (u for the matrix, 3u for products and sums, all of |edge|), and divided by its length (4u).
-  static constexpr double kDirectionError = 16 * 0x1p-53;
+  static constexpr double kDirectionError = 16 * kUnitRoundoff;
   /// |error| of each coordinate of the difference of two points of lines: each is turned (5u of its length), moved, and
   /// the sum is at most 1.
-  static constexpr double kPointError = 16 * 0x1p-53;
+  static constexpr double kPointError = 16 * kUnitRoundoff;
 
   void clear();
   /// The edges are half-edges, one for each edge. Time O(k).

@@ -6,35 +6,35 @@
 #include <limits>
 #include <tuple>
 
+#include "numeric/unit_roundoff.hpp"
 #include "shape/normal_matrix.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-using Edge = TiedFacetsBuffers::Edge;
-using Candidate = TiedFacetsBuffers::Candidate;
-using Kind = TiedFacetsBuffers::Kind;
+using Edge = NearFacetsBuffers::Edge;
+using Candidate = NearFacetsBuffers::Candidate;
+using Kind = NearFacetsBuffers::Kind;
 
-constexpr double kU = 0x1p-53;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// |error| of each coordinate of an edge's direction: as of LineTree's.
-constexpr double kDirectionError = 16 * kU;
+constexpr double kDirectionError = 16 * kUnitRoundoff;
 /// |error| of a unit direction's product with a facet's normal, turned by a rounded matrix: below 100u.
 constexpr double kSideError = 0x1p-46;
 /// |n - exact| of a facet's unit normal: a few u as it is stored, 6u a coordinate for the turn, 4u for the length.
-constexpr double kNormalError = 24 * kU;
+constexpr double kNormalError = 24 * kUnitRoundoff;
 /// Two edges whose sine is below this are parallel up to rounding.
 constexpr double kParallel = 0x1p-40;
 /// Pairs of edges, for each edge of both bodies, that may be tried; beyond that the overlay is cheaper.
 constexpr std::int64_t kPairsPerEdge = 256;
 
-class TiedFacetsSearch {
+class NearFacetsSearch {
  public:
-  TiedFacetsSearch(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
+  NearFacetsSearch(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
                    const PolytopeDifference& difference, const InnerSurface& surface,
-                   const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack, TiedFacetsBuffers& buffers)
+                   const NearFacetsSettings& settings, std::vector<std::int32_t>& stack, NearFacetsBuffers& buffers)
       : a_(a),
         b_(b),
         pose_a_(pose_a),
@@ -48,7 +48,7 @@ class TiedFacetsSearch {
         radius_(settings.upper / reach_),
         known_(settings.lower / reach_) {}
 
-  TiedFacets run() {
+  NearFacets run() {
     if (a_.affine_dimension() != 3 || b_.affine_dimension() != 3) return out_;
     buffers_.candidates.clear();
     for (const DifferenceVertex& v : surface_.vertices) see(v);
@@ -74,7 +74,7 @@ class TiedFacetsSearch {
   [[nodiscard]] const Pose& pose(bool of_a) const { return of_a ? pose_a_ : pose_b_; }
   [[nodiscard]] NearArcs& arcs(bool of_a) const { return of_a ? buffers_.near_a : buffers_.near_b; }
 
-  /// [A] step 1 for the facets of one body that no probe shows too far. False when there are too many.
+  /// [A] step 1 for the facets of one body that no test point shows too far. False when there are too many.
   bool measure_facets(bool of_a, std::int64_t edges) {
     const std::vector<std::uint32_t>& far = arcs(of_a).far;
     const auto near = std::count(far.begin(), far.end(), 0U);
@@ -136,7 +136,8 @@ class TiedFacetsSearch {
 
   // ---- [A] step 2 -------------------------------------------------------------------------------------------------
 
-  /// False where two edges are too nearly parallel for doubles and for slivers.
+  /// False where two edges are too nearly parallel for doubles, and what their near-degenerate parallelograms hide is
+  /// too much.
   bool try_pairs() {
     const std::size_t count = buffers_.edges_a.size();
     if (count == 0 || buffers_.edges_b.empty()) return true;
@@ -188,16 +189,16 @@ class TiedFacetsSearch {
     const Vec3 across = b.direction.cross(a.direction);
     const double sine = across.norm();
     if (sine < kParallel) {
-      if (sliver_distance(a, b) > radius_) return true;
-      slivers_ += (sine + 2 * kDirectionError) * std::min(a.length, b.length);
-      return slivers_ <= kSliverShare * settings_.width;
+      if (distance_of_degenerate(a, b) > radius_) return true;
+      hidden_ += (sine + 2 * kDirectionError) * std::min(a.length, b.length);
+      return hidden_ <= kHiddenShare * settings_.width;
     }
     // The normal errs by an angle of at most phi, by which the distance errs as closest_lines.cpp derives.
-    const double phi = (8 * kDirectionError + 16 * kU) / sine;
+    const double phi = (8 * kDirectionError + 16 * kUnitRoundoff) / sine;
     const Vec3 w = b.point - a.point;
     const double along = w.dot(across) / sine;
     const double distance = std::abs(along);
-    const double error = 1.01 * phi * (w.cross(across).norm() / sine + phi * distance) + 48 * kU;
+    const double error = 1.01 * phi * (w.cross(across).norm() / sine + phi * distance) + 48 * kUnitRoundoff;
     // Not as near as asked, or nearer than any facet of P is.
     if (distance - error > radius_ || distance + error < known_) return true;
     const bool certain = least > kSideError || most < -kSideError;
@@ -210,7 +211,7 @@ class TiedFacetsSearch {
 
   /// Lower bound of the distance of two nearly parallel edges' parallelogram: along the unit vector to the point
   /// nearest to the origin of the segment that it nearly is.
-  double sliver_distance(const Edge& a, const Edge& b) const {
+  double distance_of_degenerate(const Edge& a, const Edge& b) const {
     Vec3 corners[4];
     int count = 0;
     for (const std::int32_t va : {a.from, a.to}) {
@@ -258,11 +259,11 @@ class TiedFacetsSearch {
         out_.upper = height;
         out_.normal = c.normal;
       }
-      if (upper - lower + slivers_ <= settings_.width * largest_ / reach_) break;
+      if (upper - lower + hidden_ <= settings_.width * largest_ / reach_) break;
     }
-    if (slivers_ == 0 && upper < kInfinity) list_nearest(std::min(upper, radius_));
-    lower -= slivers_;
-    out_.lower = lower * reach_ * (1 - 4 * kU);
+    if (hidden_ == 0 && upper < kInfinity) list_nearest(std::min(upper, radius_));
+    lower -= hidden_;
+    out_.lower = lower * reach_ * (1 - 4 * kUnitRoundoff);
     out_.certified = lower > 0 && upper < kInfinity && out_.upper - out_.lower <= settings_.width * largest_;
   }
 
@@ -271,7 +272,7 @@ class TiedFacetsSearch {
     for (const Candidate& c : buffers_.candidates) {
       if (c.lower <= beyond) buffers_.nearest.push_back(corners(c));
     }
-    out_.beyond = beyond * reach_ * (1 - 4 * kU);
+    out_.beyond = beyond * reach_ * (1 - 4 * kUnitRoundoff);
   }
 
   [[nodiscard]] SurfaceCorners corners(const Candidate& c) const {
@@ -291,7 +292,7 @@ class TiedFacetsSearch {
   [[nodiscard]] double turn_error(const Candidate& c) const {
     const Edge& a = buffers_.edges_a[static_cast<std::size_t>(c.a)];
     const Edge& b = buffers_.edges_b[static_cast<std::size_t>(c.b)];
-    return (8 * kDirectionError + 16 * kU) / b.direction.cross(a.direction).norm();
+    return (8 * kDirectionError + 16 * kUnitRoundoff) / b.direction.cross(a.direction).norm();
   }
 
   [[nodiscard]] double least_corner(const Candidate& c) {
@@ -341,7 +342,7 @@ class TiedFacetsSearch {
     const std::int32_t facet = of_a ? c.a : c.b;
     const std::int32_t vertex = of_a ? c.b : c.a;
     const auto loop = body(of_a).facet_vertices(facet);
-    const Vec3 foot = height * c.normal;
+    const Vec3 projection = height * c.normal;
     const auto corner = [&](std::size_t k) {
       return of_a ? difference_.vertex(loop[k], vertex).x : difference_.vertex(vertex, loop[k]).x;
     };
@@ -350,7 +351,7 @@ class TiedFacetsSearch {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vec3 next = corner(k);
       const Vec3 side = next - last;
-      if ((of_a ? -1 : 1) * c.normal.dot(side.cross(foot - last)) < -kInside * reach_ * side.norm()) return false;
+      if ((of_a ? -1 : 1) * c.normal.dot(side.cross(projection - last)) < -kInside * reach_ * side.norm()) return false;
       last = next;
     }
     out_.kind = c.kind;
@@ -362,10 +363,10 @@ class TiedFacetsSearch {
   [[nodiscard]] double lower_error() const { return face_error(difference_); }
   [[nodiscard]] double bound_error() const { return support_plane_error(difference_); }
 
-  /// Slivers may take this share of the width.
-  static constexpr double kSliverShare = 0.125;
-  /// A foot beyond a piece's border by no more than this, in units of the reach, is rounding.
-  static constexpr double kInside = 64 * kU;
+  /// Near-degenerate parallelograms may take this share of the width.
+  static constexpr double kHiddenShare = 0.125;
+  /// A projection beyond a piece's border by no more than this, in units of the reach, is rounding.
+  static constexpr double kInside = 64 * kUnitRoundoff;
 
   const ConvexPolytope& a_;
   const ConvexPolytope& b_;
@@ -373,25 +374,25 @@ class TiedFacetsSearch {
   const Pose& pose_b_;
   const PolytopeDifference& difference_;
   const InnerSurface& surface_;
-  const TiedFacetsSettings& settings_;
+  const NearFacetsSettings& settings_;
   std::vector<std::int32_t>& stack_;
-  TiedFacetsBuffers& buffers_;
+  NearFacetsBuffers& buffers_;
   double reach_;
   double radius_;  ///< no piece farther than this is wanted; divided by the reach, as all lengths below
   double known_;
   double rounding_ = 0;
-  double slivers_ = 0;
+  double hidden_ = 0;   ///< the width of all near-degenerate parallelograms together
   double largest_ = 0;  ///< |coordinate| of P seen, not divided
-  TiedFacets out_;
+  NearFacets out_;
 };
 
 }  // namespace
 
-TiedFacets nearest_tied_facet(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
-                              const PolytopeDifference& difference, const InnerSurface& surface,
-                              const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack,
-                              TiedFacetsBuffers& buffers) {
-  return TiedFacetsSearch(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers).run();
+NearFacets nearest_of_near_facets(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
+                                  const Pose& pose_b, const PolytopeDifference& difference, const InnerSurface& surface,
+                                  const NearFacetsSettings& settings, std::vector<std::int32_t>& stack,
+                                  NearFacetsBuffers& buffers) {
+  return NearFacetsSearch(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers).run();
 }
 
 }  // namespace pd::detail

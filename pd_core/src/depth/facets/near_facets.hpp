@@ -9,8 +9,8 @@
 /// Why it proves anything: the boundary of P consists of facets with a facet of one body and of parallelograms of two
 /// edges whose arcs cross. No pair is taken for crossing that need be: a pair that doubles cannot exclude counts, so
 /// that the least distance is a lower bound, and the support in the winner's normal is an upper bound. Pieces of two
-/// edges parallel up to rounding are slivers, no wider than their sine times the shorter edge: what they hide is taken
-/// off the lower bound.
+/// edges parallel up to rounding are near-degenerate parallelograms, no wider than their sine times the shorter edge:
+/// what they hide is taken off the lower bound.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace pd::detail {
 
-struct TiedFacetsBuffers {
+struct NearFacetsBuffers {
   /// An edge in the common frame, lengths divided by the reach.
   struct Edge {
     Vec3 direction;  ///< unit
@@ -57,12 +57,12 @@ struct TiedFacetsBuffers {
 };
 
 /// The piece of P's boundary that holds its point nearest to the origin.
-struct TiedFacets {
+struct NearFacets {
   bool certified = false;  ///< the bracket is as narrow as asked; else nothing below is known but the counts
   double lower = 0;
   double upper = 0;
   Vec3 normal = Vec3::UnitX();  ///< unit, of `upper`
-  TiedFacetsBuffers::Kind kind = TiedFacetsBuffers::Kind::edges;
+  NearFacetsBuffers::Kind kind = NearFacetsBuffers::Kind::edges;
   std::int32_t facet = -1;   ///< of A or of B
   std::int32_t vertex = -1;  ///< of the other body
   std::int32_t edge_a[2];    ///< vertices
@@ -70,15 +70,16 @@ struct TiedFacets {
   /// Where the point below the origin lies on the two edges, 0 at the first vertex, 1 at the second.
   double along_a = 0;
   double along_b = 0;
-  /// For an exact answer: `TiedFacetsBuffers::nearest` holds three corners of every piece that may be the nearest one,
-  /// the likeliest first, and all others are at least this far away; 0 where slivers spoil that.
+  /// For an exact answer: `NearFacetsBuffers::nearest` holds three corners of every piece that may be the nearest one,
+  /// the likeliest first, and all others are at least this far away; 0 where near-degenerate parallelograms leave that
+  /// open.
   double beyond = 0;
   std::int64_t pairs = 0;
   std::int64_t facets = 0;
   std::int64_t support_calls = 0;
 };
 
-struct TiedFacetsSettings {
+struct NearFacetsSettings {
   double lower = 0;  ///< certified bounds of the depth, lower > 0
   double upper = 0;
   double width = 0;  ///< of the bracket asked for, in units of L
@@ -88,9 +89,9 @@ struct TiedFacetsSettings {
 /// Fails (`certified` false) for flat bodies, where too much is left to try pair by pair, and where doubles do not
 /// narrow the bracket enough. Time O(n) and 0.4 ns a pair of edges left, of which there may be 256 (m + n) for m and n
 /// edges.
-TiedFacets nearest_tied_facet(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b,
-                              const PolytopeDifference& difference, const InnerSurface& surface,
-                              const TiedFacetsSettings& settings, std::vector<std::int32_t>& stack,
-                              TiedFacetsBuffers& buffers);
+NearFacets nearest_of_near_facets(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
+                                  const Pose& pose_b, const PolytopeDifference& difference, const InnerSurface& surface,
+                                  const NearFacetsSettings& settings, std::vector<std::int32_t>& stack,
+                                  NearFacetsBuffers& buffers);
 
 }  // namespace pd::detail

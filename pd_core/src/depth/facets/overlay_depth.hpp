@@ -4,8 +4,8 @@
 /// enumerated).
 ///
 /// pi(A, B) is attained at the plane of a facet when the origin lies inside P; the origin lies outside P exactly when
-/// it lies strictly outside the plane of some facet. Planes are bounded in doubles; `NearestFacet` parts those that
-/// tie.
+/// it lies strictly outside the plane of some facet. Planes are bounded in doubles; `FacetSelection` decides
+/// between those that tie.
 #pragma once
 
 #include <cstdint>
@@ -44,8 +44,8 @@ struct OverlayDepth {
 /// Exact class and nearest facet. Time O(m + n + K deg), see `OverlayWalk`; allocates nothing once the buffers have
 /// grown, except in exact arithmetic.
 ///
-/// @param exactly  whether facets that double-double cannot part are compared as fractions (some 1e-30 of the depth
-/// lies
+/// @param exactly  whether facets that double-double cannot distinguish are compared as fractions (some 1e-30 of the
+/// depth lies
 ///                 between them otherwise).
 /// @param upper    a bound on the depth that is known already, in the pair's scaled lengths.
 OverlayDepth overlay_depth(const PosedPair& pair, OverlayDepthBuffers& buffers, bool exactly = true,

@@ -20,8 +20,8 @@ void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& 
   }
   const PosedPair posed(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b);
   PolytopeShooter shooter(posed);
-  const CellSearchResult found = CellSearch(shooter, delta, 20).run();
-  finish_overlapping(posed, facet_of_direction(posed, ExactDirection(shooter.kept().normal)), pair.margins,
+  const DirectionRefinementResult found = DirectionRefinement(shooter, delta, 20).run();
+  answer_overlapping(posed, facet_of_direction(posed, ExactDirection(shooter.kept().normal)), pair.margins,
                      settings.bracket, buffers.faces, out);
   // Among planes that doubles cannot distinguish, the projection of the origin may lie on another one's facet: the ray
   // finds it.
@@ -52,7 +52,7 @@ void smooth_grid(const PosedShape& a, const PosedShape& b, double delta, const D
   const Statistics before = out.statistics;
   // A sixteenth of delta goes to the ends of the rays.
   SweptShooter shooter(a, b, buffers.points, out.lower, delta / 16);
-  const CellSearchResult found = CellSearch(shooter, delta, 20).run();
+  const DirectionRefinementResult found = DirectionRefinement(shooter, delta, 20).run();
   shooter.shoot(found.normal);
   out = PenetrationDepth();
   out.contact = ContactClass::overlapping;

@@ -12,8 +12,8 @@ namespace pd::detail {
 /// delta where none is given.
 inline constexpr double kDefaultGridDelta = 1e-2;
 
-/// Any two convex bodies, within (1 + settings.delta) (at least 1e-12, which is rounding's share), for smooth bodies or
-/// within 1e-12 L.
+/// Depth of any two convex bodies: upper <= (1 + delta) lower with delta = max(settings.delta, 1e-12), rounding's
+/// share. For smooth bodies a bracket 1e-12 L wide is enough, too.
 ///
 /// Class, distance and touching come from the expansion ([A] tests disjointness first, by linear programming). Bodies
 /// that overlap by their margins alone are answered exactly: their cores' distance decides.

@@ -9,6 +9,7 @@
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
@@ -36,14 +37,14 @@ void face_below_origin(const PolytopeQuery& query, int f, const Vec3& normal, Di
     if (weights[least] >= 0) return;
     // weights[i] belongs to vertex i, whose opposite edge runs from vertex i + 1.
     const int next = surface.face(f).adj[(least + 1) % 3] >> 2;
-    const double level = std::sqrt(key) + 64 * 0x1p-53 * query.difference.reach();
+    const double level = std::sqrt(key) + 64 * kUnitRoundoff * query.difference.reach();
     if (std::sqrt(std::max(0.0, surface.key(next))) > level) return;
     f = next;
   }
 }
 
 /// Witnesses and features of a parallelogram of two edges.
-void set_contact_of_edges(const PolytopeQuery& query, const TiedFacets& found, PenetrationDepth& out) {
+void set_contact_of_edges(const PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
   const auto [a, b] = std::pair(found.edge_a, found.edge_b);
   const double s = found.along_a, t = found.along_b;
   const PolytopeDifference& difference = query.difference;
@@ -57,10 +58,10 @@ void set_contact_of_edges(const PolytopeQuery& query, const TiedFacets& found, P
 }
 
 /// The same of a facet of one body and a vertex of the other.
-void set_contact_of_facet(const PolytopePair& pair, const TiedFacets& found, PenetrationDepth& out) {
+void set_contact_of_facet(const PolytopePair& pair, const NearFacets& found, PenetrationDepth& out) {
   const Feature facet{Feature::Kind::facet, found.facet, -1};
   const Feature vertex{Feature::Kind::vertex, found.vertex, -1};
-  if (found.kind == TiedFacetsBuffers::Kind::facet_of_a) {
+  if (found.kind == NearFacetsBuffers::Kind::facet_of_a) {
     out.feature_a = facet;
     out.feature_b = vertex;
     out.witness_b = pair.pose_b->apply(pair.b->vertex(found.vertex)) + pair.margins.b * out.normal;
@@ -145,9 +146,9 @@ bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, P
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   if (surface.status != ExpansionStatus::over_budget || !(surface.lower > 0)) return false;
   const PolytopePair& pair = query.pair;
-  const TiedFacets found = nearest_tied_facet(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b, query.with_supports(),
-                                              query.buffers.surface, {surface.lower, surface.upper, kCertifiedWidth},
-                                              query.buffers.stack, query.buffers.tied_facets);
+  const NearFacets found = nearest_of_near_facets(
+      *pair.a, *pair.pose_a, *pair.b, *pair.pose_b, query.with_supports(), query.buffers.surface,
+      {surface.lower, surface.upper, kCertifiedWidth}, query.buffers.stack, query.buffers.near_facets);
   out.statistics.support_calls += found.support_calls;
   out.statistics.facets_visited += found.facets;
   out.statistics.pair_evaluations += found.pairs;
@@ -155,7 +156,7 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
   if (query.bracket == Bracket::tightest) return prove_near_facets(query, found.beyond, out);
   if (!found.certified) return false;
   set_depth(pair, found.lower, found.upper, found.normal, out);
-  if (found.kind == TiedFacetsBuffers::Kind::edges) {
+  if (found.kind == NearFacetsBuffers::Kind::edges) {
     set_contact_of_edges(query, found, out);
   } else {
     set_contact_of_facet(pair, found, out);
@@ -163,17 +164,17 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
   return true;
 }
 
-NearestResult closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
+ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
   // What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
   const double relative = query.pair.margins.both() > 0 ? 0.0 : query.settings.delta;
-  return nearest_point(query.with_supports(), start, relative, kCertifiedWidth, query.buffers.stack,
+  return closest_point(query.with_supports(), start, relative, kCertifiedWidth, query.buffers.stack,
                        statistics.support_calls);
 }
 
-bool answer_apart(PolytopeQuery& query, const NearestResult& nearest, PenetrationDepth& out) {
+bool answer_apart(PolytopeQuery& query, const ClosestPoint& nearest, PenetrationDepth& out) {
   if (!nearest.certified) return false;
   const double margin = query.pair.margins.both();
-  const double round = 4 * 0x1p-53 * (nearest.upper + margin);
+  const double round = 4 * kUnitRoundoff * (nearest.upper + margin);
   if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;
   save_simplex(query, nearest);
   out.normal = nearest.normal;

@@ -29,10 +29,10 @@ bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, P
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
 /// The point of P closest to the origin, from vertices of P that may be near it.
-[[nodiscard]] NearestResult closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start,
-                                          Statistics& statistics);
+[[nodiscard]] ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start,
+                                         Statistics& statistics);
 
 /// Cores that are apart: separated, or overlapping by their margins. The simplex is saved in the warm certificate.
-bool answer_apart(PolytopeQuery& query, const NearestResult& nearest, PenetrationDepth& out);
+bool answer_apart(PolytopeQuery& query, const ClosestPoint& nearest, PenetrationDepth& out);
 
 }  // namespace pd::detail

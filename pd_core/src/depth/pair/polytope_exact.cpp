@@ -37,15 +37,15 @@ VertexPair any_vertex(PolytopeQuery& query, const ExpansionResult& surface) {
 /// lengths).
 bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond, PenetrationDepth& out) {
   const PosedPair& posed = query.exact();
-  PlaneFaces& faces = query.buffers.faces;
+  SupportFaces& faces = query.buffers.faces;
   const auto proven = prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()), faces);
   if (!proven) return false;
-  finish_overlapping(posed, proven->facet, proven->plane, faces, query.pair.margins, query.bracket, out);
+  answer_overlapping(posed, proven->facet, proven->plane, faces, query.pair.margins, query.bracket, out);
   return true;
 }
 
 /// The origin is known to lie in P: in its interior, or `nearest` says where.
-void expand_exactly(PolytopeQuery& query, std::span<const VertexPair> seed, const ExactNearest* nearest,
+void expand_exactly(PolytopeQuery& query, std::span<const VertexPair> seed, const ExactClosestPoint* nearest,
                     PenetrationDepth& out) {
   const PosedPair& posed = query.exact();
   const ExactDepth exact =
@@ -58,9 +58,9 @@ void expand_exactly(PolytopeQuery& query, std::span<const VertexPair> seed, cons
     answer_by_overlay(query, out);
   } else if (exact.contact == ContactClass::overlapping) {
     const FacetOfDifference facet = facet_of_direction(posed, *exact.normal);
-    finish_overlapping(posed, facet, margins, query.bracket, query.buffers.faces, out);
+    answer_overlapping(posed, facet, margins, query.bracket, query.buffers.faces, out);
   } else {
-    finish_touching(posed, *exact.normal, *nearest, margins, out);
+    answer_touching(posed, *exact.normal, *nearest, margins, out);
   }
 }
 
@@ -71,18 +71,18 @@ void answer_from_facet(PolytopeQuery& query, const OverlayDepth& found, Penetrat
   out.statistics.facets_visited += found.facets_visited;
   out.statistics.exact_signs += found.exact_comparisons;
   if (found.contact == ContactClass::overlapping) {
-    finish_overlapping(posed, found.facet, margins, query.bracket, query.buffers.faces, out);
+    answer_overlapping(posed, found.facet, margins, query.bracket, query.buffers.faces, out);
     return;
   }
   const VertexPair any{0, 0};
-  const ExactNearest nearest = exact_nearest(posed, &any, 1);
+  const ExactClosestPoint nearest = exact_closest_point(posed, &any, 1);
   if (nearest.apart) {
-    finish_apart(posed, nearest, margins, out);
+    answer_separated(posed, nearest, margins, out);
   } else if (found.has_facet) {
-    finish_touching(posed, normal_of(posed, found.facet), nearest, margins, out);
+    answer_touching(posed, normal_of(posed, found.facet), nearest, margins, out);
   } else {
     const ExactDepth flat = exact_expanding_polytope(posed, &any, 1, std::numeric_limits<int>::max());
-    finish_touching(posed, *flat.normal, nearest, margins, out);
+    answer_touching(posed, *flat.normal, nearest, margins, out);
   }
 }
 
@@ -102,9 +102,9 @@ bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surfac
   out.method = Method::decomposition;
   if (!(surface.lower > 0)) {
     const VertexPair any = any_vertex(query, surface);
-    const ExactNearest nearest = exact_nearest(posed, &any, 1);
+    const ExactClosestPoint nearest = exact_closest_point(posed, &any, 1);
     if (nearest.apart) {
-      finish_apart(posed, nearest, query.pair.margins, out);
+      answer_separated(posed, nearest, query.pair.margins, out);
       return true;
     }
   }
@@ -146,7 +146,7 @@ bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, Penetra
 }
 
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out) {
-  const std::vector<SurfaceCorners>& near = query.buffers.tied_facets.nearest;
+  const std::vector<SurfaceCorners>& near = query.buffers.near_facets.nearest;
   if (!(beyond > 0) || near.size() > kMaxNearFaces) return false;
   return prove_among(query, near, beyond, out);
 }
@@ -164,7 +164,7 @@ bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surfac
   const bool in_doubles = surface.status == ExpansionStatus::separated || (surface.face < 0 && query.within_range());
   if (in_doubles) {
     const DifferenceVertex first = query.with_supports().support(surface.normal, nullptr);
-    const NearestResult nearest = closest_point(query, {&first, 1}, out.statistics);
+    const ClosestPoint nearest = closest_point(query, {&first, 1}, out.statistics);
     if (answer_apart(query, nearest, out) && query.bracket == Bracket::certified) return true;
     for (; count < static_cast<std::size_t>(nearest.count); ++count) {
       start[count] = {nearest.simplex[count].a, nearest.simplex[count].b};
@@ -175,13 +175,13 @@ bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surfac
   const PosedPair& posed = query.exact();
   const Margins& margins = query.pair.margins;
   if (in_doubles) {
-    PlaneFaces& faces = query.buffers.faces;
+    SupportFaces& faces = query.buffers.faces;
     const auto proof = prove_separation(posed, std::span(start).first(count), faces);
-    if (proof && finish_apart(posed, *proof, faces, margins, query.bracket, out)) return true;
+    if (proof && answer_separated(posed, *proof, faces, margins, query.bracket, out)) return true;
   }
-  const ExactNearest nearest = exact_nearest(posed, start.data(), static_cast<int>(count));
+  const ExactClosestPoint nearest = exact_closest_point(posed, start.data(), static_cast<int>(count));
   if (nearest.apart) {
-    finish_apart(posed, nearest, margins, out);
+    answer_separated(posed, nearest, margins, out);
   } else {
     expand_exactly(query, std::span(nearest.simplex).first(static_cast<std::size_t>(nearest.count)), &nearest, out);
   }

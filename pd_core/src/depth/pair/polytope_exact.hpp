@@ -21,7 +21,7 @@ bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surfac
 /// The surface's nearest face proved to lie in the nearest facet of P, mostly without big numbers.
 bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
-/// Of the few pieces of P's boundary that may be nearest (`buffers.tied_facets.nearest`), the one that is. Those pieces
+/// Of the few pieces of P's boundary that may be nearest (`buffers.near_facets.nearest`), the one that is. Those pieces
 /// and what lies beyond cover the boundary, as the triangles of a surface enclose a ball: the proof is the same.
 /// @param beyond  no other piece is nearer to the origin; 0: not known.
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out);

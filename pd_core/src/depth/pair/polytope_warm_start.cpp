@@ -84,7 +84,7 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   if (!is_of_pair(state, query.pair)) return false;
   DifferenceVertex start[3];
   query.difference.posed_vertices(state.apart, count, start);
-  const NearestResult nearest =
+  const ClosestPoint nearest =
       closest_point(query, std::span(start).first(static_cast<std::size_t>(count)), out.statistics);
   if (!answer_apart(query, nearest, out)) return false;
   out.method = Method::expansion;
@@ -154,7 +154,7 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
   }
 }
 
-void save_simplex(PolytopeQuery& query, const NearestResult& nearest) {
+void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest) {
   if (!query.warm) return;
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.apart_count = nearest.count;

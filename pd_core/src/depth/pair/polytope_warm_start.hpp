@@ -30,6 +30,6 @@ void save_surface(PolytopeQuery& query, const ExpansionResult& result);
 /// The restored surface held as it was: saves how far its planes are now, for `answer_from_cached_faces`.
 void save_reference(PolytopeQuery& query, const ExpansionResult& result);
 /// The simplex of P that holds its closest point.
-void save_simplex(PolytopeQuery& query, const NearestResult& nearest);
+void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest);
 
 }  // namespace pd::detail

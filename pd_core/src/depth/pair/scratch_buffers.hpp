@@ -22,8 +22,8 @@ struct ScratchBuffers {
   std::vector<PointPair> points;
   OverlayDepthBuffers overlay;
   DecompositionBuffers decomposition;
-  TiedFacetsBuffers tied_facets;
-  PlaneFaces faces;
+  NearFacetsBuffers near_facets;
+  SupportFaces faces;
 };
 
 }  // namespace pd::detail

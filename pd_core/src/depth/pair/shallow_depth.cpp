@@ -56,7 +56,7 @@ void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& 
   counts.steps = search.steps();
   counts.degrees = search.degrees();
 
-  finish_overlapping(posed, nearest_piece(walk, search.visited()), pair.margins, settings.bracket, buffers.faces, out);
+  answer_overlapping(posed, nearest_piece(walk, search.visited()), pair.margins, settings.bracket, buffers.faces, out);
   out.method = Method::shallow;
   out.statistics.support_calls = cores.statistics.support_calls + shooter.support_calls();
   out.statistics.facets_visited = cores.statistics.facets_visited + counts.visited;

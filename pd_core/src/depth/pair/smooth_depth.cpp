@@ -8,10 +8,12 @@
 
 #include "depth/difference/barycentric.hpp"
 #include "depth/distance/gjk_double_double.hpp"
+#include "depth/expansion/cached_surface.hpp"
 #include "depth/expansion/expanding_hull.hpp"
 #include "depth/expansion/expanding_polytope.hpp"
 #include "depth/pair/inscribed_balls.hpp"
 #include "depth/pair/scaled_shape.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "pd/depth/warm_certificate.hpp"
 
 namespace pd::detail {
@@ -135,8 +137,8 @@ class SmoothQuery {
     if (!same_shape(*last.a, *a_.shape) || !same_shape(*last.b, *b_.shape)) return false;
     DifferenceVertex start[3];
     for (int i = 0; i < count; ++i) start[i] = difference_.vertex(last.on_a[i], last.on_b[i]);
-    const NearestResult nearest =
-        nearest_point(difference_, std::span(start).first(static_cast<std::size_t>(count)), margin_ > 0 ? 0.0 : delta_,
+    const ClosestPoint nearest =
+        closest_point(difference_, std::span(start).first(static_cast<std::size_t>(count)), margin_ > 0 ? 0.0 : delta_,
                       0.25 * kAbsolute, buffers_.stack, out_.statistics.support_calls);
     if (!nearest.certified) return false;
     const double unclear = 2 * kAbsolute * difference_.reach();
@@ -157,7 +159,7 @@ class SmoothQuery {
     return same(std::get<Cone>(x.core()), std::get<Cone>(y.core()));
   }
 
-  void remember_apart(const NearestResult& nearest) {
+  void remember_apart(const ClosestPoint& nearest) {
     if (!warm_ || nearest.count > 3) return;
     WarmSmoothPoints& memory = warm_->state().smooth;
     if (!memory.a || !same_shape(*memory.a, *a_.shape)) memory.a = *a_.shape;
@@ -233,12 +235,12 @@ class SmoothQuery {
   void solve_apart(const ExpansionResult& core) {
     const DifferenceVertex first = difference_.support(core.normal, nullptr);
     const double relative = margin_ > 0 ? 0.0 : delta_;
-    NearestResult nearest = nearest_point(difference_, {&first, 1}, relative, 0.25 * kAbsolute, buffers_.stack,
-                                          out_.statistics.support_calls);
+    ClosestPoint nearest = closest_point(difference_, {&first, 1}, relative, 0.25 * kAbsolute, buffers_.stack,
+                                         out_.statistics.support_calls);
     Vec3 proven = nearest.normal;
     if (!nearest.certified) {
-      const SmoothNearest near =
-          smooth_nearest(difference_, first, relative, 0.25 * kAbsolute, out_.statistics.support_calls);
+      const ClosestPointWithNormal near =
+          closest_point_double_double(difference_, first, relative, 0.25 * kAbsolute, out_.statistics.support_calls);
       nearest = near.nearest;
       proven = near.normal;
     }
@@ -249,10 +251,10 @@ class SmoothQuery {
   }
 
   /// From the bracket of the cores' distance. `normal` is its direction; `out` leads out where margins overlap.
-  void answer_apart(const NearestResult& nearest, const Vec3& normal, WayOut out) {
+  void answer_apart(const ClosestPoint& nearest, const Vec3& normal, WayOut out) {
     const double touching = kAbsolute * std::max(size(), nearest.point.cwiseAbs().maxCoeff());
     if (nearest.lower > 0) remember_apart(nearest);
-    const double round = 4 * 0x1p-53 * (nearest.upper + margin_);
+    const double round = 4 * kUnitRoundoff * (nearest.upper + margin_);
     const double distance_lower = std::max(0.0, nearest.lower) - margin_ - round;
     const double distance_upper = nearest.upper - margin_ + round;
     if (distance_upper <= touching && distance_lower >= -touching) {

@@ -7,7 +7,7 @@
 /// that triangle: a lower bound that is never below the paper's cos(alpha) min Delta(u_i), and exact where the three
 /// rays meet one facet. The cell with the least bound is cut in four until the least plane distance met so far is
 /// within (1 + delta) of it. Every shot's plane gives an upper bound; where one improves the best, a ray along its
-/// normal follows, so that the best plane ends with the origin's foot on P itself.
+/// normal follows, so that the projection of the origin on the best plane lies on P itself.
 ///
 /// Cones of neighbours of unequal size leave gaps of rounding's width along a shared edge. A nearest point v there
 /// costs nothing: a direction w of a cone at an angle e from v has Delta(w) <= |v| / cos(e), and 1 - cos(1e-15) is 0
@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "depth/rays/ray_shooting.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "structure/icosahedron.hpp"
 
 namespace pd::detail {
@@ -33,7 +34,7 @@ inline constexpr double kLeastDelta = 1e-12;
 /// Rays of one search. A covering of the sphere at 1 part in 10^4 takes as many; a ray takes 5 to 50 microseconds.
 inline constexpr std::int64_t kMaxRays = 100'000;
 
-struct CellSearchResult {
+struct DirectionRefinementResult {
   bool reached = true;  ///< false: rounding or kMaxRays ended the search with a wider bracket
   double lower = 0;     ///< certified: lower <= pi
   double upper = 0;     ///< least plane distance, rounded up
@@ -42,17 +43,17 @@ struct CellSearchResult {
 
 /// @tparam Shooter  PolytopeShooter or SweptShooter.
 template <class Shooter>
-class CellSearch {
+class DirectionRefinement {
  public:
   /// @param faces  20, or 10 where P is symmetric about the origin.
-  CellSearch(Shooter& shooter, double delta, std::size_t faces)
+  DirectionRefinement(Shooter& shooter, double delta, std::size_t faces)
       : shooter_(shooter), delta_(std::max(delta, kLeastDelta)) {
     const Icosahedron body = icosahedron();
     for (const Vec3& v : body.vertices) add_corner(v);
     for (std::size_t f = 0; f < faces; ++f) push({body.faces[f][0], body.faces[f][1], body.faces[f][2], 0, 0});
   }
 
-  CellSearchResult run() {
+  DirectionRefinementResult run() {
     double finished = std::numeric_limits<double>::infinity();
     while (!cells_.empty()) {
       const Cell cell = cells_.top();
@@ -103,7 +104,7 @@ class CellSearch {
     return static_cast<std::int32_t>(corners_.size()) - 1;
   }
 
-  /// Takes over a lower plane, and follows its normal down to one that carries its foot.
+  /// Takes over a lower plane, and follows its normal down to one that holds the origin's projection.
   void improve(RayShot shot) {
     while (shot.height < best_.upper) {
       const bool by_little = best_.upper - shot.height <= 0.001 * shooter_.absolute_error();
@@ -143,7 +144,7 @@ class CellSearch {
     const double length = n.norm();
     if (!(length > 0)) return 0;
     const double least = std::min({a.dot(n), b.dot(n), c.dot(n)}) / length;
-    return std::max(0.0, least - 16 * 0x1p-53);
+    return std::max(0.0, least - 16 * kUnitRoundoff);
   }
 
   /// The point of a triangle nearest to the origin, up to rounding.
@@ -169,7 +170,7 @@ class CellSearch {
   std::vector<Corner> corners_;
   std::priority_queue<Cell, std::vector<Cell>, Later> cells_;
   std::unordered_map<std::uint64_t, std::int32_t> middles_;
-  CellSearchResult best_{true, 0, std::numeric_limits<double>::infinity(), Vec3::UnitX()};
+  DirectionRefinementResult best_{true, 0, std::numeric_limits<double>::infinity(), Vec3::UnitX()};
 };
 
 }  // namespace pd::detail

@@ -8,7 +8,7 @@
 
 namespace pd::detail {
 
-FarPortal::FarPortal(const RaySigns& ray) : ray_(ray), pair_(ray.pair()) {
+FarPortal::FarPortal(const DirectionSigns& ray) : ray_(ray), pair_(ray.pair()) {
   int largest = 0;
   ray.scaled().cwiseAbs().maxCoeff(&largest);
   Vec3 x = Vec3::Unit((largest + 1) % 3), y = Vec3::Unit((largest + 2) % 3);
@@ -75,7 +75,7 @@ int FarPortal::sign(const PortalPlane& plane, const PairVector& edge) const {
   const Vec3& n = plane.rounded.vector;
   const Vec3 e = pair_.approximate(edge);
   const double size = n.cwiseAbs().sum(), value = e.dot(n);
-  // As in posed_support.hpp.
+  // As in exact_support.hpp.
   const double bound = e.cwiseAbs().sum() * (plane.rounded.error + 0x1p-51 * size) +
                        pair_.vector_error() * (size + 3 * plane.rounded.error);
   if (std::abs(value) > bound * (1 + 0x1p-48) + 0x1p-900) return value > 0 ? 1 : -1;
@@ -113,7 +113,8 @@ void FarPortal::replace(const VertexPair& s) {
 int FarPortal::side(const VertexPair& x, const VertexPair& y) const {
   ++signs_asked_;
   if (x.a >= 0) return ray_.side(x, y);
-  // det(z_k - o, y - o, d) = M det(g_k, y - o, d) + ...; the moved line decides where that is 0, as in RaySigns::side.
+  // det(z_k - o, y - o, d) = M det(g_k, y - o, d) + ...; the moved line decides where that is 0, as in
+  // DirectionSigns::side.
   const Vec3& g = around_[static_cast<std::size_t>(x.b)];
   return ray_.side_of_far(g, y);
 }

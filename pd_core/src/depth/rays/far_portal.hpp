@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #include "depth/difference/direction_signs.hpp"
-#include "depth/difference/posed_support.hpp"
+#include "depth/difference/exact_support.hpp"
 
 namespace pd::detail {
 
@@ -33,7 +33,7 @@ struct PortalPlane {
 class FarPortal {
  public:
   /// All three corners far.
-  explicit FarPortal(const RaySigns& ray);
+  explicit FarPortal(const DirectionSigns& ray);
 
   [[nodiscard]] bool is_far(std::size_t i) const { return corners_[i].a < 0; }
   [[nodiscard]] bool has_far_corner() const { return is_far(0) || is_far(1) || is_far(2); }
@@ -50,10 +50,10 @@ class FarPortal {
   [[nodiscard]] std::int64_t signs_asked() const { return signs_asked_; }
 
  private:
-  /// As RaySigns::side, where x may be far.
+  /// As DirectionSigns::side, where x may be far.
   [[nodiscard]] int side(const VertexPair& x, const VertexPair& y) const;
 
-  const RaySigns& ray_;
+  const DirectionSigns& ray_;
   const PosedPair& pair_;
   std::array<Vec3, 3> around_;         ///< g_k: counter-clockwise seen against d, positively spanning across it
   std::array<VertexPair, 3> corners_;  ///< a = -1: far, and b is k

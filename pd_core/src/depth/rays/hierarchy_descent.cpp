@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "depth/difference/posed_support.hpp"
+#include "depth/difference/exact_support.hpp"
 #include "depth/rays/far_portal.hpp"
 #include "structure/exact_climb.hpp"
 #include "structure/hierarchy/plane_descent.hpp"
@@ -43,7 +43,7 @@ struct Cap {
 
 class Descent {
  public:
-  Descent(const RaySigns& ray, const DescentSide& a, const DescentSide& b)
+  Descent(const DirectionSigns& ray, const DescentSide& a, const DescentSide& b)
       : ray_(ray), pair_(ray.pair()), portal_(ray), sides_{a, b} {
     const auto levels = [](const DescentSide& s) { return s.hierarchy ? s.hierarchy->levels().size() : 0; };
     outer_ = levels(a) <= levels(b) ? 0 : 1;
@@ -230,7 +230,7 @@ class Descent {
     return true;
   }
 
-  const RaySigns& ray_;
+  const DirectionSigns& ray_;
   const PosedPair& pair_;
   FarPortal portal_;
   std::array<DescentSide, 2> sides_;
@@ -240,7 +240,7 @@ class Descent {
 
 }  // namespace
 
-HierarchyDescentResult descend_hierarchies(const RaySigns& ray, const DescentSide& a, const DescentSide& b) {
+HierarchyDescentResult descend_hierarchies(const DirectionSigns& ray, const DescentSide& a, const DescentSide& b) {
   return Descent(ray, a, b).run();
 }
 

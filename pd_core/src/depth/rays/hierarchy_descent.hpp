@@ -51,7 +51,7 @@ struct DescentSide {
 /// At least one side has a hierarchy, of its polytope in the pair. Decisions by exact signs; where the path through the
 /// levels is lost to rounding (a tie of values), the exact check at level 0 resumes from where it stands. At coarser
 /// levels there is no such check, and the plane supports up to rounding.
-[[nodiscard]] HierarchyDescentResult descend_hierarchies(const RaySigns& ray, const DescentSide& a,
+[[nodiscard]] HierarchyDescentResult descend_hierarchies(const DirectionSigns& ray, const DescentSide& a,
                                                          const DescentSide& b);
 
 }  // namespace pd::detail

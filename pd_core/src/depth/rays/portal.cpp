@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "depth/difference/posed_support.hpp"
+#include "depth/difference/exact_support.hpp"
 
 namespace pd::detail {
 
@@ -26,7 +26,7 @@ bool same_point(const VertexPair& x, const VertexPair& y) { return x.a == y.a &&
 
 class PortalSearch {
  public:
-  PortalSearch(const RaySigns& ray, const PortalHierarchies& hierarchies)
+  PortalSearch(const DirectionSigns& ray, const PortalHierarchies& hierarchies)
       : ray_(ray), pair_(ray.pair()), hierarchies_(hierarchies) {}
 
   /// Nothing where the line does not meet the interior of P.
@@ -61,7 +61,7 @@ class PortalSearch {
   bool enclose(std::array<VertexPair, 3>& v) {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
-    const RaySigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
+    const DirectionSigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
     v[0] = support_exactly(pair_, {sideways.scaled(), 0}, start(sideways.scaled(), {-1, -1}),
                            [&](const PairVector& edge) { return sideways.along(edge); });
     ++support_calls_;
@@ -110,7 +110,7 @@ class PortalSearch {
     }
   }
 
-  const RaySigns& ray_;
+  const DirectionSigns& ray_;
   const PosedPair& pair_;
   const PortalHierarchies& hierarchies_;
   std::int64_t support_calls_ = 0;
@@ -118,10 +118,10 @@ class PortalSearch {
 
 }  // namespace
 
-Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies) {
+Portal find_portal(const DirectionSigns& ray, const PortalHierarchies& hierarchies) {
   return *PortalSearch(ray, hierarchies).run();
 }
 
-std::optional<Portal> find_line_portal(const RaySigns& ray) { return PortalSearch(ray, {}).run(); }
+std::optional<Portal> find_line_portal(const DirectionSigns& ray) { return PortalSearch(ray, {}).run(); }
 
 }  // namespace pd::detail

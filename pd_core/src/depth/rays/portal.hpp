@@ -30,9 +30,9 @@ struct PortalHierarchies {
 
 /// Requires the origin in the interior of P. Measured 7 to 30 supports; each O(sqrt n) on round bodies, O(log n) where
 /// hierarchies say where its climb starts.
-[[nodiscard]] Portal find_portal(const RaySigns& ray, const PortalHierarchies& hierarchies = {});
+[[nodiscard]] Portal find_portal(const DirectionSigns& ray, const PortalHierarchies& hierarchies = {});
 
 /// The same for a line that may miss: nothing where the line through the origin does not meet the interior of P.
-[[nodiscard]] std::optional<Portal> find_line_portal(const RaySigns& ray);
+[[nodiscard]] std::optional<Portal> find_line_portal(const DirectionSigns& ray);
 
 }  // namespace pd::detail

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "depth/difference/exact_support.hpp"
+#include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
@@ -31,7 +32,7 @@ double ratio(const Dyadic& x, const Dyadic& y) {
 
 RayShot PolytopeShooter::shoot(const Vec3& direction) {
   ++shots_;
-  const RaySigns ray(*pair_, direction);
+  const DirectionSigns ray(*pair_, direction);
   const Portal portal = find_portal(ray, hierarchies_);
   support_calls_ += portal.support_calls;
   corners_ = portal.corners;
@@ -77,7 +78,7 @@ SweptShooter::SweptShooter(const PosedShape& a, const PosedShape& b, std::vector
       inner_radius_(inner_radius),
       relative_(relative),
       reach_(difference_.reach() + margin_a_ + margin_b_),
-      error_(difference_.point_error() + difference_.support_error() + 8 * 0x1p-53 * reach_) {}
+      error_(difference_.point_error() + difference_.support_error() + 8 * kUnitRoundoff * reach_) {}
 
 SweptShooter::Corner SweptShooter::support(const Vec3& direction) {
   ++support_calls_;

@@ -82,7 +82,7 @@ class SweptShooter {
   void keep() const {}
   [[nodiscard]] std::int64_t support_calls() const { return support_calls_; }
   [[nodiscard]] std::int64_t shots() const { return shots_; }
-  /// What is below this is not told apart: 1e-12 of P's reach, as for every answer about smooth bodies.
+  /// What is below this is not distinguished: 1e-12 of P's reach, as for every answer about smooth bodies.
   [[nodiscard]] double absolute_error() const { return 1e-12 * reach_; }
 
  private:

@@ -5,6 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "numeric/quotient.hpp"
+#include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/face_sum.hpp"
 
 namespace pd::detail {
@@ -199,7 +201,7 @@ bool ShallowSearch::meets_ball(const Edge& edge) const {
   const double t = squared > 0 ? std::clamp(-p.dot(e) / squared, 0.0, 1.0) : 0.0;
   // Rounding may only let an edge in that lies a little outside.
   const double size = std::max(p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff());
-  return (p + t * e).norm() <= radius_ * (1 + 0x1p-40) + 4 * pair_.vector_error() + 32 * 0x1p-53 * size;
+  return (p + t * e).norm() <= radius_ * (1 + 0x1p-40) + 4 * pair_.vector_error() + 32 * kUnitRoundoff * size;
 }
 
 void ShallowSearch::run() {
@@ -211,15 +213,18 @@ void ShallowSearch::run() {
   }
 }
 
-FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<OverlayPiece>& pieces) {
-  const PosedPair& pair = walk.pair();
+namespace {
+
+struct NearPiece {
+  OverlayPiece piece;
+  double lower;  ///< of its plane's distance
+};
+
+/// The pieces that may be the nearest, by distances in doubles, each within its error: these leave out all but the near
+/// ties.
+std::vector<NearPiece> near_pieces(const PosedPair& pair, const std::vector<OverlayPiece>& pieces) {
   const double e = pair.vector_error();
-  // Distances in doubles, each within its error, part all but the near ties.
-  struct Candidate {
-    OverlayPiece piece;
-    double lower;
-  };
-  std::vector<Candidate> candidates;
+  std::vector<NearPiece> near;
   double upper = std::numeric_limits<double>::infinity();
   for (const OverlayPiece& piece : pieces) {
     const FacetOfDifference facet = facet_of(pair, piece);
@@ -230,7 +235,7 @@ FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<Overl
     const double length = n.norm();
     const double least = length * (1 - 0x1p-50) - 2 * normal_error;
     if (!(least > 0)) {
-      candidates.push_back({piece, 0});
+      near.push_back({piece, 0});
       continue;
     }
     const double offset_error = (normal_error * (sp + 3 * e) + sn * e + 0x1p-50 * sp * sn) * (1 + 0x1p-40);
@@ -238,31 +243,33 @@ FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<Overl
     const double error = (offset_error + 2 * normal_error * std::abs(distance)) / least + 0x1p-48 * std::abs(distance);
     if (distance - error > upper) continue;
     upper = std::min(upper, distance + error);
-    candidates.push_back({piece, distance - error});
+    near.push_back({piece, distance - error});
   }
+  std::erase_if(near, [&](const NearPiece& c) { return c.lower > upper; });
+  return near;
+}
 
-  struct Squared {
-    Dyadic numerator;
-    Dyadic denominator;
-  };
+}  // namespace
+
+FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<OverlayPiece>& pieces) {
+  const PosedPair& pair = walk.pair();
   const auto rank = [&](const OverlayPiece& piece) {
     const FacetOfDifference f = facet_of(pair, piece);
     return std::make_tuple(piece.kind, f.on_a.first, f.on_a.second, f.on_b.first, f.on_b.second);
   };
   std::optional<OverlayPiece> best;
-  Squared best_squared;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.lower > upper) continue;
+  SquaredRatio best_squared;
+  for (const NearPiece& candidate : near_pieces(pair, pieces)) {
     // A piece that only cuts another one's plane, or has no area, is not its facet's representative.
     if (candidate.piece.kind != OverlayPiece::Kind::facet_of_a && !whole_facet(walk, candidate.piece)) continue;
     const FacetOfDifference facet = facet_of(pair, candidate.piece);
     const Dyadic3 n = cross(pair.exact(facet.u), pair.exact(facet.v));
     const Dyadic offset = dot(pair.exact(facet.point()), n);
-    const Squared squared{offset * offset, dot(n, n)};
+    const SquaredRatio squared{offset * offset, dot(n, n)};
     if (squared.denominator.sign() == 0) continue;
     int order = -1;
     if (best) {
-      order = (squared.numerator * best_squared.denominator - best_squared.numerator * squared.denominator).sign();
+      order = compare(squared, best_squared);
       if (order == 0 && rank(candidate.piece) < rank(*best)) order = -1;
     }
     if (order < 0) {

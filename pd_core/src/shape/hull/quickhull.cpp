@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 namespace {
 
@@ -12,7 +14,7 @@ namespace {
 // products (two differences, product, subtraction), against a point and a vertex at most 2 apart in every coordinate;
 // the products and sums of height and offset add 8u P_i. Together below 20u (P_0 + P_1 + P_2), u = 2^-53; 24 covers the
 // rounding of the bound. Underflow adds less than kUnderflow.
-constexpr double kHeightError = 24 * 0x1p-53;
+constexpr double kHeightError = 24 * kUnitRoundoff;
 constexpr double kUnderflow = 1e-300;
 
 // The hull first grows in breadth: growing one corner at a time gives its vertices degrees of order n where two long

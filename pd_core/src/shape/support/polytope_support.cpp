@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numeric/unit_roundoff.hpp"
 #include "shape/support/direction_table.hpp"
 #include "shape/support/vertex_arrays.hpp"
 
@@ -62,7 +63,7 @@ int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int
     for (const std::int32_t w : p.neighbours(stack[i])) {
       const Vec3 edge = p.vertex(w) - from;
       // Difference, product and two sums: 4u of the products' magnitudes.
-      if (edge.dot(direction) < -8 * 0x1p-53 * edge.cwiseAbs().maxCoeff() * size) continue;
+      if (edge.dot(direction) < -8 * kUnitRoundoff * edge.cwiseAbs().maxCoeff() * size) continue;
       if (std::find(stack.begin(), stack.end(), w) != stack.end()) continue;
       stack.push_back(w);
       const double value = p.vertex(w).dot(direction);
@@ -81,7 +82,7 @@ int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, con
   const double* const z = p.z();
   const double dx = direction.x(), dy = direction.y(), dz = direction.z();
   // Two products of three terms, each within 3u of the sum of its terms' magnitudes, and their difference.
-  const double doubt = 8 * 0x1p-53 * p.radius() * (std::abs(dx) + std::abs(dy) + std::abs(dz));
+  const double doubt = 8 * kUnitRoundoff * p.radius() * (std::abs(dx) + std::abs(dy) + std::abs(dz));
   std::int32_t level[kMostLevelVertices];
   int count = 0;
   const auto is_listed = [&](std::int32_t v) { return std::find(level, level + count, v) != level + count; };

@@ -184,7 +184,8 @@ PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock& first, const
   return right < left ? right : left;
 }
 
-PD_CLONES void turn_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z) {
+PD_CLONES void transform_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y,
+                                  double* z) {
   const int padded = (vertices.count + kVertexBlock - 1) / kVertexBlock * kVertexBlock;
   for (int i = 0; i < padded; i += kLanes) {
     Lanes turned;

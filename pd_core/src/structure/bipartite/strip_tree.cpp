@@ -4,6 +4,20 @@
 
 namespace pd::detail {
 
+namespace {
+
+/// Of the leaves below a node of a complete tree with `size` leaves, the first and the last.
+int first_leaf(int node, int size) {
+  while (node < size) node *= 2;
+  return node;
+}
+int last_leaf(int node, int size) {
+  while (node < size) node = 2 * node + 1;
+  return node;
+}
+
+}  // namespace
+
 StripTree::StripTree(const std::vector<ChartLine>& lines, const std::vector<double>& xs) : lines_(&lines), xs_(&xs) {
   if (lines.empty() || xs.size() < 2) return;
   size_ = static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(xs.size() - 1)));
@@ -23,15 +37,8 @@ StripTree::StripTree(const std::vector<ChartLine>& lines, const std::vector<doub
     int low = rank_of(from) + size_;
     int high = rank_of(to) + size_;
     const auto put = [&](int node) {
-      double height = 0;
-      if (!loose) {
-        int first = node;
-        int last = node;
-        while (first < size_) first *= 2;
-        while (last < size_) last = 2 * last + 1;
-        height = lines[static_cast<std::size_t>(number)].height(0.5 * (x(first - size_) + x(last + 1 - size_)));
-      }
-      placed.push_back({node, loose, height, number});
+      const double middle = 0.5 * (x(first_leaf(node, size_) - size_) + x(last_leaf(node, size_) + 1 - size_));
+      placed.push_back({node, loose, loose ? 0 : lines[static_cast<std::size_t>(number)].height(middle), number});
     };
     for (; low < high; low /= 2, high /= 2) {
       if (low & 1) put(low++);

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <span>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 double norm1(const Vec3& v) { return v.cwiseAbs().sum(); }
 
@@ -77,7 +77,7 @@ InPlane::InPlane(const PosedPair& pair, const PairVector& u, const PairVector& v
   const double a = norm1(x), b = norm1(y);
   const Vec3 n = x.cross(y);
   const double size = n.cwiseAbs().maxCoeff(&axis_);
-  if (size > (e * (a + b + 2 * e) + 3 * kU * a * b) * (1 + 16 * kU) + 0x1p-900) {
+  if (size > (e * (a + b + 2 * e) + 3 * kUnitRoundoff * a * b) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
     sign_ = n[axis_] > 0 ? 1 : -1;
     return;
   }
@@ -91,7 +91,7 @@ int InPlane::turn(const PairVector& x, const PairVector& y) const {
   const double e = pair_->vector_error();
   const double a = norm1(p), b = norm1(q);
   const double value = coordinate(Vec3(p.cross(q)), axis_);
-  if (std::abs(value) > (e * (a + b + 2 * e) + 3 * kU * a * b) * (1 + 16 * kU) + 0x1p-900) {
+  if (std::abs(value) > (e * (a + b + 2 * e) + 3 * kUnitRoundoff * a * b) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
     return value > 0 ? sign_ : -sign_;
   }
   return sign_ * coordinate(cross(pair_->exact(x), pair_->exact(y)), axis_).sign();

@@ -4,14 +4,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
 #include "shape/support/polytope_support.hpp"
 #include "structure/overlay/zero_pattern.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 /// Vertices of a higher degree are searched by halving.
 constexpr int kLargeDegree = 16;
@@ -109,9 +108,9 @@ int OverlayWalk::decide_exactly(bool edge_of_a, int half_edge, int facet, bool s
   const double edge_error = edges.edge_error;
   const double normal_error = facets.normal_errors[static_cast<std::size_t>(facet)];
   const double bound =
-      3 * (x.size * normal_error + sn * edge_error + 3 * edge_error * normal_error + 3 * kU * x.size * sn) +
-      4 * kU * norm1(c);
-  if (std::abs(value) > bound * (1 + 16 * kU) + 0x1p-900) return value > 0 ? direction : -direction;
+      3 * (x.size * normal_error + sn * edge_error + 3 * edge_error * normal_error + 3 * kUnitRoundoff * x.size * sn) +
+      4 * kUnitRoundoff * norm1(c);
+  if (std::abs(value) > bound * (1 + 16 * kUnitRoundoff) + 0x1p-900) return value > 0 ? direction : -direction;
 
   const Dyadic3 moved = cross(pair_->exact(e), cross(pair_->exact(u), pair_->exact(v)));
   const Dyadic first = dot(to_dyadic(Vec3(kAxis[0], kAxis[1], kAxis[2])), moved);

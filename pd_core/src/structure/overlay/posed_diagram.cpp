@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/facet_of_difference.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
 
@@ -26,9 +25,9 @@ void pose_edges(const PosedPair& pair, bool of_a, PosedDiagram& diagram) {
     point = pair.approximate(posed);
     reach = std::max(reach, norm1(point));
   }
-  diagram.reach = reach * (1 + 4 * kU) + 3 * diagram.point_error;
+  diagram.reach = reach * (1 + 4 * kUnitRoundoff) + 3 * diagram.point_error;
   // The difference of two points, rounded.
-  diagram.edge_error = (2 * diagram.point_error + kU * 2 * diagram.reach) * (1 + 4 * kU);
+  diagram.edge_error = (2 * diagram.point_error + kUnitRoundoff * 2 * diagram.reach) * (1 + 4 * kUnitRoundoff);
   diagram.half_edges.resize(static_cast<std::size_t>(body.num_half_edges()));
   double total = 0;
   for (int h = 0; h < body.num_half_edges(); ++h) {
@@ -58,13 +57,13 @@ void pose_facets(const ConvexPolytope& body, const PosedDiagram& other, PosedDia
     // A coordinate is u_j v_k - u_k v_j: input errors, then two products and a difference (3u of the sum of
     // magnitudes).
     const double su = norm1(u), sv = norm1(v), sn = norm1(n);
-    const double normal_error = (error * (su + sv + 2 * error) + 3 * kU * su * sv) * (1 + 8 * kU);
+    const double normal_error = (error * (su + sv + 2 * error) + 3 * kUnitRoundoff * su * sv) * (1 + 8 * kUnitRoundoff);
     diagram.normal_errors[f] = normal_error;
     // <e, n> errs by |e|_1 (error(n) + 4u |n|_1), the latter for products and sums, and by error(e) (|n|_1 + 3
     // error(n)).
-    const double slope = normal_error + 4 * kU * sn;
+    const double slope = normal_error + 4 * kUnitRoundoff * sn;
     const double constant = other.edge_error * (sn + 3 * normal_error) + 0x1p-900;
-    diagram.facets[f] = {{n.x(), n.y(), n.z()}, std::max(slope, constant / other.edge_size) * (1 + 16 * kU)};
+    diagram.facets[f] = {{n.x(), n.y(), n.z()}, std::max(slope, constant / other.edge_size) * (1 + 16 * kUnitRoundoff)};
   }
 }
 

@@ -1,0 +1,67 @@
+/// @file
+/// Answers about a union of parts from the uncovered facets of the P_ij: what depth, directional depth and the place of
+/// a point share.
+#pragma once
+
+#include <optional>
+
+#include "compound/part_pairs.hpp"
+#include "compound/union_boundary.hpp"
+#include "pd/compound/compound_depth.hpp"
+
+namespace pd::detail {
+
+/// bad_value, or nothing.
+[[nodiscard]] std::optional<Error> refuse_settings(const UnionSettings& settings);
+
+/// v * 2^exponent.
+[[nodiscard]] Vec3 scaled(const Vec3& v, int exponent);
+
+class FacetsAnswer {
+ public:
+  using Where = UnionBoundary::BoundaryPoint;
+
+  /// Refers to all of them.
+  FacetsAnswer(const UnionPair& pair, const UnionSettings& settings, UnionStatistics& work)
+      : pair_(pair), settings_(settings), work_(work) {}
+
+  /// Builds the P_ij that come within `reach` of the origin. @return limit_exceeded.
+  [[nodiscard]] std::optional<Error> build(double reach);
+
+  /// Class of a union whose pairs touch at best: a placement on walls of zero width is inside. Builds.
+  /// @param where  the boundary point that the origin is, if it is one.
+  [[nodiscard]] Expected<ContactClass> class_of_touching(std::optional<Where>& where);
+
+  [[nodiscard]] UnionBoundary& boundary() { return *boundary_; }
+
+  /// Adds what was done; called once for each build.
+  void count();
+
+  [[nodiscard]] const PartDifference& piece(const Where& where) const { return differences_->pieces()[where.piece]; }
+  [[nodiscard]] const DifferenceFacet& facet(const Where& where) const { return piece(where).facets[where.facet]; }
+  /// Outward, unit.
+  [[nodiscard]] Vec3 normal(const Where& where) const {
+    return differences_->planes().normal(where.polygon.plane).normalized();
+  }
+
+  [[nodiscard]] std::int64_t exact_signs() const { return exact_signs_; }
+
+  /// The depth from the boundary point nearest to the origin.
+  void set_overlapping(const UnionBoundary::Nearest& nearest, UnionDepth& out) const;
+
+  /// The features of the facet at a point of it, as the protocol names them: a vertex stands for a larger face that is
+  /// parallel to the other body's facet.
+  void features(const Where& where, Feature& on_a, Feature& on_b) const;
+
+ private:
+  void set_witnesses(const Where& where, UnionDepth& out) const;
+
+  const UnionPair& pair_;
+  const UnionSettings& settings_;
+  UnionStatistics& work_;
+  std::int64_t exact_signs_ = 0;
+  std::optional<PartDifferences> differences_;
+  std::optional<UnionBoundary> boundary_;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "compound/union_boundary.hpp"
+#include "numeric/quotient.hpp"
+#include "numeric/root_sum.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+SquaredRatio squared_length(const PlaneSet::ExactPoint& point) {
+  return {dot(point.numerator, point.numerator), point.denominator * point.denominator};
+}
+
+Vec3 rounded(const PlaneSet::ExactPoint& point) {
+  const auto coordinate = [&](const Dyadic& x) { return quotient(x, point.denominator); };
+  return {coordinate(point.numerator.x), coordinate(point.numerator.y), coordinate(point.numerator.z)};
+}
+
+}  // namespace
+
+/// Facets wait in the order of their distance. The first is clipped; where a P_k holds its nearest point, that P_k is
+/// subtracted and what is left waits again; else its nearest point is a boundary point, the nearest so far.
+class UnionBoundary::NearestSearch {
+ public:
+  NearestSearch(UnionBoundary& boundary, double known_lower)
+      : boundary_(boundary), known_lower_(known_lower), scale_(boundary.differences_.extent()) {}
+
+  /// Each subtraction takes one P_k off a polygon's list for good, so that this ends.
+  Nearest run() {
+    const std::vector<PartDifference>& pieces = boundary_.differences_.pieces();
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      for (std::size_t f = 0; f < pieces[k].facets.size(); ++f) {
+        add({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, boundary_.own(k)});
+      }
+    }
+    while (!queue_.empty()) {
+      Waiting top = pop();
+      if (best_ && top.key >= best_key_) break;
+      ++boundary_.counts_.polygons;
+      if (!boundary_.contained_in_recent(top.cell.where.polygon)) visit(std::move(top));
+    }
+    best_->lower = std::max(known_lower_, best_->lower);
+    return *std::move(best_);
+  }
+
+ private:
+  struct Waiting {
+    double key;  ///< no point of the polygon is nearer
+    std::int64_t order;
+    Cell cell;
+  };
+  static bool later(const Waiting& x, const Waiting& y) { return x.key != y.key ? x.key > y.key : x.order > y.order; }
+
+  void push(Waiting waiting) {
+    queue_.push_back(std::move(waiting));
+    std::push_heap(queue_.begin(), queue_.end(), later);
+  }
+  Waiting pop() {
+    std::pop_heap(queue_.begin(), queue_.end(), later);
+    Waiting top = std::move(queue_.back());
+    queue_.pop_back();
+    return top;
+  }
+
+  /// A polygon that may hold a nearer point than the best so far waits.
+  void add(Cell cell) {
+    PlanePolygon& polygon = cell.where.polygon;
+    double farthest = 0;
+    for (const Vec3& x : polygon.corners) farthest = std::max(farthest, x.squaredNorm());
+    if (std::sqrt(farthest) < known_lower_ - 4 * polygon.error - 0x1p-48 * scale_) return;
+    cell.where.x = nearest_point(boundary_.planes_, polygon);
+    const double distance = cell.where.x.norm();
+    const double key = std::max(known_lower_, distance - 4 * polygon.error - 0x1p-50 * scale_);
+    if (key >= best_key_ || boundary_.contained_in_recent(polygon)) return;
+    push({key, order_++, std::move(cell)});
+  }
+
+  void visit(Waiting top) {
+    Cell& cell = top.cell;
+    // Ties are decided exactly, so that the lower bound is the depth itself.
+    std::optional<ExactNearestPoint> exact;
+    if (best_) {
+      exact = exact_nearest_point(boundary_.planes_, cell.where.polygon);
+      if (compare(squared_length(exact->point), best_squared_) >= 0) return;
+    }
+    const double tolerance = 8 * cell.where.polygon.error + 0x1p-44 * scale_;
+    const std::ptrdiff_t k = boundary_.covering(cell.where.x, cell.clipped, tolerance);
+    if (k >= 0) {
+      subtract(std::move(top), static_cast<std::size_t>(k));
+      return;
+    }
+    if (!exact) exact = exact_nearest_point(boundary_.planes_, cell.where.polygon);
+    const Vec3 x = rounded(exact->point);
+    if ((x - cell.where.x).cwiseAbs().maxCoeff() > tolerance / 4) {
+      // A flat crossing misled the doubles: asked again at the right point.
+      cell.where.x = x;
+      top.key = std::max(top.key, x.norm() * (1 - 0x1p-48));
+      push(std::move(top));
+      return;
+    }
+    accept(std::move(cell), *exact, x);
+  }
+
+  /// Puts back what P_k leaves of the polygon.
+  void subtract(Waiting top, std::size_t k) {
+    Cell& cell = top.cell;
+    boundary_.mark_recent(k);
+    cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
+    if (!boundary_.subtract(cell.where.polygon, cell.where.piece, k, false)) {
+      push(std::move(top));
+      return;
+    }
+    std::vector<PlanePolygon> rest = std::move(boundary_.rest_);
+    for (PlanePolygon& part : rest) {
+      add({{cell.where.piece, cell.where.facet, std::move(part), Vec3::Zero()}, cell.clipped});
+    }
+  }
+
+  /// An uncovered point, nearer than the best so far.
+  void accept(Cell cell, const ExactNearestPoint& exact, const Vec3& x) {
+    best_squared_ = squared_length(exact.point);
+    Nearest found;
+    found.where = std::move(cell.where);
+    found.where.x = x;
+    found.projection = exact.projection;
+    found.lower = RootSum(Dyadic(0.0), 1, best_squared_.numerator, best_squared_.denominator).round_down();
+    best_key_ = found.lower;
+    best_ = std::move(found);
+  }
+
+  UnionBoundary& boundary_;
+  const double known_lower_;
+  const double scale_;
+  std::vector<Waiting> queue_;  ///< a heap
+  std::int64_t order_ = 0;
+  std::optional<Nearest> best_;
+  SquaredRatio best_squared_;
+  double best_key_ = HUGE_VAL;  ///< distance of the best point, at most this
+};
+
+UnionBoundary::Nearest UnionBoundary::nearest(double known_lower) { return NearestSearch(*this, known_lower).run(); }
+
+}  // namespace pd::detail

@@ -1,0 +1,139 @@
+#include "contact/manifold_clip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pd::detail {
+
+namespace {
+
+/// Two edges within 3 degrees of each other make contact along both. Their crossing would be a poor contact point: it
+/// slides along the edges by up to 1 / 0.05 = 20 times what the bodies move.
+constexpr double kParallelSine = 0.05;
+
+/// Loop of a face across n, counter-clockwise about n; a segment is a loop of two.
+void load_polygon(const SupportingFace& face, const ContactFrame& frame, IdKind kind,
+                  std::vector<ClipVertex>& polygon) {
+  polygon.clear();
+  double twice_area = 0;
+  const std::size_t size = face.vertices.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto& vertex = face.vertices[i];
+    const std::int64_t id = kind == IdKind::vertex_a ? make_id(kind, vertex.id, 0) : make_id(kind, 0, vertex.id);
+    polygon.push_back({frame.flatten(vertex.point), id, vertex.id, false});
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    twice_area += cross(polygon[i].point, polygon[(i + 1) % size].point);
+  }
+  if (twice_area < 0) {
+    std::reverse(polygon.begin(), polygon.end());
+  }
+}
+
+/// Sutherland-Hodgman: `polygon` cut to the left of the line from `from` to `to`, which is edge `edge` of the other
+/// loop.
+void clip(std::vector<ClipVertex>& polygon, std::vector<ClipVertex>& out, const Vec2& from, const Vec2& to,
+          std::int32_t edge, std::int64_t corner_id) {
+  out.clear();
+  const Vec2 along = to - from;
+  const std::size_t size = polygon.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    const ClipVertex& here = polygon[i];
+    const ClipVertex& next = polygon[(i + 1) % size];
+    const double side_here = cross(along, here.point - from);
+    const double side_next = cross(along, next.point - from);
+    if (side_here >= 0) {
+      out.push_back(here);
+    }
+    if ((side_here > 0 && side_next < 0) || (side_here < 0 && side_next > 0)) {
+      const double s = side_here / (side_here - side_next);
+      const std::int64_t id = here.edge_of_b ? corner_id : make_id(IdKind::crossing, here.edge, edge);
+      ClipVertex crossing{here.point + s * (next.point - here.point), id, here.edge, here.edge_of_b};
+      if (side_here > 0) {
+        crossing.edge = edge;
+        crossing.edge_of_b = true;
+      }
+      out.push_back(crossing);
+    } else if (side_here == 0 && side_next < 0 && !out.empty()) {
+      out.back().edge = edge;
+      out.back().edge_of_b = true;
+    }
+  }
+  polygon.swap(out);
+}
+
+/// The interval that two nearly parallel segments share, as a loop of two; empty where they cross or miss.
+void overlap_of_segments(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
+                         std::vector<ClipVertex>& polygon) {
+  polygon.clear();
+  const Vec2 a0 = frame.flatten(a.vertices[0].point);
+  const Vec2 b0 = frame.flatten(b.vertices[0].point);
+  const Vec2 da = frame.flatten(a.vertices[1].point) - a0;
+  const Vec2 db = frame.flatten(b.vertices[1].point) - b0;
+  if (std::abs(cross(da, db)) > kParallelSine * da.norm() * db.norm()) {
+    return;
+  }
+  const double scale = da.squaredNorm();
+  if (scale == 0) {
+    return;
+  }
+  double s0 = (b0 - a0).dot(da) / scale;
+  double s1 = (b0 + db - a0).dot(da) / scale;
+  std::int32_t id0 = b.vertices[0].id;
+  std::int32_t id1 = b.vertices[1].id;
+  if (s0 > s1) {
+    std::swap(s0, s1);
+    std::swap(id0, id1);
+  }
+  if (s0 > 1 || s1 < 0) {
+    return;
+  }
+  const auto push = [&](double s, std::int64_t id) { polygon.push_back({a0 + s * da, id, 0, false}); };
+  push(std::max(s0, 0.0), s0 > 0 ? make_id(IdKind::vertex_b, 0, id0) : make_id(IdKind::vertex_a, a.vertices[0].id, 0));
+  push(std::min(s1, 1.0), s1 < 1 ? make_id(IdKind::vertex_b, 0, id1) : make_id(IdKind::vertex_a, a.vertices[1].id, 0));
+}
+
+}  // namespace
+
+double face_height(const SupportingFace& face, const ContactFrame& frame, const Vec2& p) {
+  const Vec3& first = face.vertices[0].point;
+  if (face.vertices.size() == 1) {
+    return frame.height(first);
+  }
+  if (face.vertices.size() == 2) {
+    const Vec2 start = frame.flatten(first);
+    const Vec2 along = frame.flatten(face.vertices[1].point) - start;
+    const double length_squared = along.squaredNorm();
+    const double s = length_squared > 0 ? std::clamp((p - start).dot(along) / length_squared, 0.0, 1.0) : 0.0;
+    return (1 - s) * frame.height(first) + s * frame.height(face.vertices[1].point);
+  }
+  const Vec2 offset = p - frame.flatten(first);
+  const double slope = offset.x() * face.plane_normal.dot(frame.u) + offset.y() * face.plane_normal.dot(frame.w);
+  return frame.height(first) - slope / face.plane_normal.dot(frame.n);
+}
+
+void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
+                     ClipBuffers& buffers) {
+  buffers.polygon.clear();
+  if (a.vertices.size() < 2 || b.vertices.size() < 2) {
+    return;  // a single point on one side: the witnesses are the contact
+  }
+  if (a.vertices.size() == 2 && b.vertices.size() == 2) {
+    overlap_of_segments(a, b, frame, buffers.polygon);
+    return;
+  }
+  // A segment is cut by the polygon, never the other way around: a loop of two has no inside.
+  const bool cut_b = b.vertices.size() == 2;
+  const auto& subject = cut_b ? b : a;
+  const auto& window = cut_b ? a : b;
+  load_polygon(window, frame, cut_b ? IdKind::vertex_a : IdKind::vertex_b, buffers.window);
+  const std::vector<ClipVertex>& edges = buffers.window;
+  load_polygon(subject, frame, cut_b ? IdKind::vertex_b : IdKind::vertex_a, buffers.polygon);
+  for (std::size_t i = 0; i < edges.size() && !buffers.polygon.empty(); ++i) {
+    clip(buffers.polygon, buffers.clipped, edges[i].point, edges[(i + 1) % edges.size()].point, edges[i].edge,
+         edges[i].id);
+  }
+}
+
+}  // namespace pd::detail
