@@ -24,8 +24,8 @@ using scenes::PairFamily;
 constexpr double kWidth = 1.8e-14;
 
 /// Vertices of P that are extreme in the directions of a cube's corners and axes.
-Surface some_surface(const PolytopeDifference& difference) {
-  Surface surface;
+InnerSurface some_surface(const PolytopeDifference& difference) {
+  InnerSurface surface;
   surface.clear();
   for (int k = 0; k < 27; ++k) {
     const Vec3 direction(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
@@ -52,7 +52,7 @@ void ask(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, c
   const double rounding = 1e-13 * difference.reach();
   const NearFacetsSettings settings{exact.lower / slack - rounding, exact.upper * slack + rounding, kWidth};
   if (!(settings.lower > 0)) return;
-  const Surface surface = some_surface(difference);
+  const InnerSurface surface = some_surface(difference);
   std::vector<std::int32_t> stack;
   NearFacetsBuffers buffers;
   const NearFacets found = nearest_of_near_facets(a, pose_a, b, pose_b, difference, surface, settings, stack, buffers);
