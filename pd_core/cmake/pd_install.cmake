@@ -20,7 +20,7 @@ function(pd_add_library target)
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LINK_DEPENDS ${exports})
   target_link_options(${target} PRIVATE LINKER:--version-script=${exports} LINKER:--no-undefined)
   add_library(${target}_internals STATIC $<TARGET_OBJECTS:${target}>)
-  target_link_libraries(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
+  target_link_libraries(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_LINK_LIBRARIES>)
   target_include_directories(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
 endfunction()
 
