@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "numeric/root_sum.hpp"
+#include "numeric/quotient.hpp"
 #include "planar/boundary_builder.hpp"
 
 namespace pd::detail {
@@ -42,8 +42,7 @@ double round_point(Junction& j, double scale) {
     if (error <= 0x1p-40 * scale) return error;
   }
   const auto x = point_at<Dyadic>(j.span, j.place);
-  j.rounded = {to_double(to_double_double(x.x) / to_double_double(x.w)),
-               to_double(to_double_double(x.y) / to_double_double(x.w))};
+  j.rounded = {quotient(x.x, x.w), quotient(x.y, x.w)};
   return 0x1p-50 * scale;
 }
 
