@@ -284,9 +284,9 @@ TEST(DropIn, DefaultBoxSlidesOverFlushCompoundBoxes) {
 }
 
 TEST(DropIn, KinematicBodiesCarryAndGhostsSee) {
+  btGhostPairCallback pairs;  // outlives the world, whose pair cache tells it what it drops
   BulletPenetrationDepthSolver solver;
   BulletWorld scene;
-  btGhostPairCallback pairs;
   scene.world().getPairCache()->setInternalGhostPairCallback(&pairs);
   install(scene.world(), solver);
   auto* box = scene.shape<btBoxShape>(btVector3(2, btScalar(0.5), 2));
