@@ -51,5 +51,7 @@ pd_use_ccache() {
   pd_launcher=()
   if command -v ccache >/dev/null; then
     pd_launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    # Without these it passes every source with a precompiled header on to the compiler.
+    export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros}"
   fi
 }

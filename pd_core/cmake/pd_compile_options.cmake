@@ -13,3 +13,20 @@ function(pd_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
 endfunction()
+
+# pd_precompile_headers(<target> [<header>...] | <target> REUSE_FROM <other>): what nearly every source of the target parses, and
+# the headers named, parsed once. Sources include what they use all the same: CI builds without (Clang). Targets that share one
+# (REUSE_FROM) must have the same flags; position-independent code for a library and for a program are two.
+function(pd_precompile_headers target)
+  if(NOT PD_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  if(ARGV1 STREQUAL REUSE_FROM)
+    target_precompile_headers(${target} REUSE_FROM ${ARGV2})
+  else()
+    target_precompile_headers(${target} PRIVATE <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <functional> <map>
+                              <memory> <optional> <span> <string> <vector> ${ARGN})
+  endif()
+  # What lets ccache look at a source that starts from a precompiled header.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()
