@@ -27,8 +27,6 @@ function(pd_precompile_headers target)
     target_precompile_headers(${target} PRIVATE <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <functional> <map>
                               <memory> <optional> <span> <string> <vector> ${ARGN})
   endif()
-  # -fpch-preprocess lets ccache look at a source that starts from a precompiled header. From one, GCC 12 no longer knows that
-  # std::string is a system's and reports sizes inside it (bug 105651 again); builds without watch instead.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
-                                           -Wno-stringop-overread>)
+  # What lets ccache look at a source that starts from a precompiled header.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endfunction()
