@@ -3,6 +3,7 @@
 /// (search_report.hpp).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct SurfaceSnapshot {
   std::vector<Face> faces;
   int nearest = -1;                   ///< the face with the least distance
   std::vector<std::int32_t> numbers;  ///< buffer of those who fill it
+
+  /// Room for a surface of so many faces.
+  void reserve(std::size_t count) {
+    points.reserve(count);
+    faces.reserve(count);
+    numbers.reserve(count);
+  }
 
   void clear() {
     points.clear();
