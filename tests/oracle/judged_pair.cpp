@@ -46,11 +46,14 @@ std::string JudgedPair::complaint(const PenetrationDepth& answer, Bracket bracke
                    {shape_a_->polytope(), shape_b_->polytope(), &points_.pose_a, &points_.pose_b, bracket}, answer);
   if (findings.wrong.empty()) return {};
   std::string what = name_ + ":";
-  for (const Breach& w : findings.wrong) what += " " + std::string(to_string(w.promise)) + ": " + w.what + ";";
+  for (const Breach& w : findings.wrong) {
+    what.append(" ").append(to_string(w.promise)).append(": ").append(w.what).append(";");
+  }
   PairText text =
       describe(name_, name_.substr(0, name_.find(' ')), points_.a, points_.pose_a, points_.b, points_.pose_b);
   text.contact = std::string(pd::to_string(verdict().contact));
-  return what + "\n" + to_json(text, what);
+  const std::string dump = to_json(text, what);
+  return what.append("\n").append(dump);
 }
 
 }  // namespace pd::oracle

@@ -1,15 +1,18 @@
 /// @file
 /// When two moving bodies first touch.
 ///
-/// Each body turns about the origin of its own frame at a constant angular velocity while that origin moves at a
-/// constant velocity. Two tools work together: *conservative advancement* (B. Mirtich, "Impulse-based dynamic
-/// simulation", 1996) proves a time span free of contact, and *Newton's method inside a bracket* finds the root of the
-/// signed distance.
+/// Each body turns about a point of its own (the origin of its frame, unless said otherwise) at a constant angular
+/// velocity while that point moves at a constant velocity. Time advances by proof only: along a fixed unit direction n
+/// the bodies are apart by s(t) = min_A <p(t), n> - max_B <q(t), n>, which is the least of functions g of single pairs of
+/// points. A point at distance r from its axis has |g''| <= |omega|^2 r, so between two times whose s is known
 ///
-/// With n the unit normal of the answer at time t and d the distance, every point p of body X at r from its origin
-/// moves along n no faster than v.n + |n x omega| |r| at any later time, so nothing touches before t + d / (closing
-/// speed of the origins along n + |n x omega_a| r_a + |n x omega_b| r_b), r the bodies' radii. The signed distance has
-/// the derivative (velocity of A's witness - velocity of B's witness) . n almost everywhere.
+///     s(t) >= linear interpolation - (t - t0) (t1 - t) / 2 * (|omega_a|^2 r_a + |omega_b|^2 r_b),
+///
+/// two supports a body for a whole span of time; without rotation s is concave and the span may have any length. n is
+/// the normal of the distance at the span's start, s is followed to where it has nearly vanished, and the next distance
+/// gives the next n: as B. Mirtich's conservative advancement ("Impulse-based dynamic simulation", 1996), with a bound of
+/// second order in place of his of first, along E. Catto's separation functions ("Continuous collision", GDC 2013), with
+/// a proof in place of his root finding.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"
@@ -25,9 +28,13 @@ struct RigidMotion {
 struct MovingShape {
   PosedShape start;  ///< at time 0
   RigidMotion motion;
+  /// From the point about which the body turns to the origin of the shape's frame, at time 0: zero for a shape that
+  /// turns about its own origin. The linear velocity is that of the point.
+  Vec3 arm = Vec3::Zero();
 };
 
-/// Where the body is at time t: exp(t [omega]) R and translation + t v.
+/// Where the shape is at time t: exp(t [omega]) R and translation - arm + t v + exp(t [omega]) arm. At time 0, and
+/// without rotation, the rotation is the start's own, to the bit.
 [[nodiscard]] Pose pose_at(const MovingShape& body, double time);
 
 /// Largest distance of a point of the shape from the origin of its frame, margin included.
@@ -41,6 +48,8 @@ struct TimeOfImpactSettings {
   double allowed_depth = 0;
   /// A cap on the number of distance queries; when it is reached the answer is what is proved by then.
   int max_queries = 200;
+  /// Without a hit, whether `contact` is asked for at the end of the duration; else it is of the last time looked at.
+  bool contact_at_end = true;
   DepthSettings depth;
 };
 
@@ -49,17 +58,21 @@ struct TimeOfImpact {
   /// The bodies are apart at `time`, by at most the tolerance; the duration when there is no hit; 0 when they are not
   /// apart at the start.
   double time = 0;
-  /// No contact happens in [0, certified).
+  /// No contact happens in [0, certified): proved, rounding of times, poses and supports included. With a hit it equals
+  /// `time`, without one the duration.
   double certified = 0;
-  /// The answer at `time` (or at the last time that was looked at, without a hit).
-  PenetrationDepth contact;
-  int queries = 0;  ///< distance queries made
+  /// False: the cap on queries, or the resolution of doubles at these coordinates, left a gap above the tolerance at
+  /// `time`; whether the bodies meet after it is open, and `hit` is true to be on the safe side.
+  bool reached = true;
+  PenetrationDepth contact;  ///< the answer at `time`
+  int queries = 0;           ///< distance queries made
 };
 
 /// First contact within [0, duration].
 ///
-/// `time - certified` is at most what the last thousandth of the bodies' size takes: up to there advancement proves,
-/// from there Newton's method finds the root (quadratically, 2 to 5 queries). Requires duration >= 0.
+/// Passing each other closer than the tolerance may count as a hit; nothing deeper is missed. Requires duration >= 0
+/// and velocities whose way in that time stays within the range of poses. Queries: 3 to 6 as a rule, one for pairs that
+/// the first normal keeps apart for all the time; some supports between two queries.
 [[nodiscard]] TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
                                           const TimeOfImpactSettings& settings = {});
 

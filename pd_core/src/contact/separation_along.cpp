@@ -1,0 +1,109 @@
+#include "contact/separation_along.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "depth/difference/smooth_difference.hpp"
+#include "numeric/unit_roundoff.hpp"
+#include "shape/support/polytope_support.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Largest distance of a point of a smooth core from the origin of its frame.
+struct CoreRadius {
+  double operator()(const ConvexPolytope& p) const { return p.radius(); }
+  double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
+  double operator()(const Cylinder& c) const { return std::hypot(c.radius, c.half_height); }
+  double operator()(const Cone& c) const { return std::hypot(c.radius, c.half_height); }
+};
+
+/// A few roundings on the way to a radius or a curvature.
+constexpr double kRoundedUp = 1 + 32 * kUnitRoundoff;
+
+/// The vector n as a frame sees it that has turned by `angle` about the unit vector `axis` (Rodrigues' formula).
+Vec3 turned_back(const Vec3& n, const Vec3& axis, double angle) {
+  if (angle == 0) return n;
+  const double sine = std::sin(angle);
+  const double half = std::sin(0.5 * angle);
+  const Vec3 across = axis.cross(n);
+  return n - sine * across + 2 * half * half * axis.cross(across);
+}
+
+}  // namespace
+
+MovingSupport::MovingSupport(const MovingShape& body)
+    : body_(body),
+      rotation_(body.start.shape->polytope() ? body.start.pose.rotation() : body.start.pose.nearest_rotation()),
+      pivot_(body.start.pose.translation() - body.arm),
+      speed_(body.motion.angular_velocity.stableNorm()) {
+  if (speed_ > 0) axis_ = body.motion.angular_velocity / speed_;
+  double from_axis = 0;
+  if (const ConvexPolytope* polytope = body.start.shape->polytope()) {
+    for (int v = 0; v < polytope->num_vertices(); ++v) {
+      const Vec3 r = body.arm + rotation_ * polytope->vertex(v);
+      radius_ = std::max(radius_, r.stableNorm());
+      from_axis = std::max(from_axis, axis_.cross(r).stableNorm());
+    }
+  } else {
+    radius_ = body.arm.stableNorm() + std::visit(CoreRadius{}, body.start.shape->core());
+    from_axis = radius_;
+  }
+  radius_ *= kRoundedUp;
+  // The cross product above is off by some units of the radius, not of itself.
+  curvature_ = speed_ * speed_ * (from_axis + 16 * kUnitRoundoff * radius_) * kRoundedUp;
+}
+
+double MovingSupport::least_along(const Vec3& n, double time, int& near) const {
+  const Vec3 turned = turned_back(n, axis_, speed_ * time);
+  const Vec3 local = rotation_.transpose() * turned;
+  Vec3 point;
+  if (const ConvexPolytope* polytope = body_.start.shape->polytope()) {
+    near = support_vertex(*polytope, -local, near);
+    point = polytope->vertex(near);
+  } else {
+    point = support_point(body_.start.shape->core(), -local);
+  }
+  return turned.dot(body_.arm) + local.dot(point);
+}
+
+MovingSeparation::MovingSeparation(const MovingShape& a, const MovingShape& b, double duration)
+    : motion_a_(a), motion_b_(b), a_(a), b_(b), margins_(a.start.shape->margin() + b.start.shape->margin()) {
+  // Pivots: two products, three sums of lengths below `way`. Supports: the turned direction is off by 8u and by the
+  // angle's own rounding, 2u of it; two products with matrices; sums of three terms: 40u of the radius.
+  const auto way = [&](const MovingShape& body) {
+    return body.start.pose.translation().stableNorm() + body.arm.stableNorm() +
+           duration * body.motion.linear_velocity.stableNorm();
+  };
+  const auto turn = [&](const MovingSupport& body) {
+    return (40 + 2 * body.angular_speed() * duration) * body.radius();
+  };
+  rounding_ = kUnitRoundoff * (8 * (way(a) + way(b)) + turn(a_) + turn(b_) + 4 * margins_);
+}
+
+double MovingSeparation::at(const Vec3& n, double time) {
+  const double between = (a_.pivot_at(time) - b_.pivot_at(time)).dot(n);
+  return between + a_.least_along(n, time, near_a_) + b_.least_along(-n, time, near_b_) - margins_ - rounding_;
+}
+
+double MovingSeparation::closing_bound(const Vec3& n) const {
+  const double bound = (motion_b_.motion.linear_velocity - motion_a_.motion.linear_velocity).dot(n) +
+                       n.cross(motion_a_.motion.angular_velocity).stableNorm() * a_.radius() +
+                       n.cross(motion_b_.motion.angular_velocity).stableNorm() * b_.radius();
+  const double speeds = motion_a_.motion.linear_velocity.stableNorm() + motion_b_.motion.linear_velocity.stableNorm() +
+                        a_.angular_speed() * a_.radius() + b_.angular_speed() * b_.radius();
+  return bound + 16 * kUnitRoundoff * speeds;
+}
+
+bool apart_throughout(double s0, double s1, double m) {
+  if (!(s0 > 0 && s1 > 0 && m >= 0)) return false;
+  // With x in [0, 1] along the span: s0 + (s1 - s0) x - m x (1 - x), least at x = (m + s0 - s1) / (2 m).
+  const double slope = m + s0 - s1;
+  if (slope <= 0 || slope >= 2 * m) return true;
+  // Rounded against the claim; the products are compared, so that no quotient is needed.
+  return slope * (slope / (4 * m)) * (1 + 16 * kUnitRoundoff) < s0;
+}
+
+}  // namespace pd::detail
