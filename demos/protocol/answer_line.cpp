@@ -22,6 +22,7 @@ constexpr std::array kQueries{
     QueryEntry{"width", answer_width},
     QueryEntry{"minkowski_difference", answer_minkowski_difference},
     QueryEntry{"contact_manifold", answer_contact_manifold},
+    QueryEntry{"time_of_impact", answer_time_of_impact},
     QueryEntry{"hierarchy", answer_hierarchy},
     QueryEntry{"decomposition", answer_decomposition},
     QueryEntry{"polygon_depth", answer_polygon_depth},

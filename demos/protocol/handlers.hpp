@@ -30,6 +30,7 @@ void answer_hull(const Node& line, Session& session, JsonWriter& answer);
 void answer_support_of_difference(const Node& line, Session& session, JsonWriter& answer);
 void answer_point_in_difference(const Node& line, Session& session, JsonWriter& answer);
 void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer);
+void answer_time_of_impact(const Node& line, Session& session, JsonWriter& answer);
 void answer_directional_depth(const Node& line, Session& session, JsonWriter& answer);
 void answer_decomposition(const Node& line, Session& session, JsonWriter& answer);
 void answer_minkowski_difference(const Node& line, Session& session, JsonWriter& answer);

@@ -131,7 +131,7 @@ NamedShape read_core(const Node& node, const Limits& limits) {
     type_node.refuse("unsupported",
                      "this query is for convex shapes; for compounds and star-shaped bodies there are "
                      "depth, distance, intersect, directional_depth, point_in_difference, "
-                     "support_of_difference, minkowski_difference and contact_manifold");
+                     "support_of_difference, minkowski_difference, contact_manifold and time_of_impact");
   }
   type_node.refuse(
       "bad_value",

@@ -5,31 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "pd/compound/compound_depth.hpp"
 #include "pd/compound/compound_difference.hpp"
 #include "pd/depth/difference_queries.hpp"
-#include "protocol/body_reader.hpp"
 #include "protocol/pair_reader.hpp"
 
 namespace pd::query {
 
 namespace {
-
-/// Two bodies where they stand. Holds what the posed compounds refer to: neither copied nor moved.
-struct BodyPair {
-  NamedBody a;
-  NamedBody b;
-  Pose pose_a;
-  Pose pose_b;
-
-  [[nodiscard]] PosedCompound posed_a() const { return {&a.compound, pose_a}; }
-  [[nodiscard]] PosedCompound posed_b() const { return {&b.compound, pose_b}; }
-};
-
-BodyPair read_bodies(const Node& line, const Limits& limits) {
-  return {read_body(line.at("a"), limits), read_body(line.at("b"), limits), read_optional_pose(line, "pose_a"),
-          read_optional_pose(line, "pose_b")};
-}
 
 template <class T>
 T value_or_refuse(Expected<T> expected, const Node& node) {
@@ -58,7 +40,14 @@ void write_work(const Statistics& statistics, const UnionStatistics& work, std::
   answer.end_object();
 }
 
-void write_answer(const UnionDepth& result, const BodyPair& pair, std::int64_t nanoseconds, JsonWriter& answer) {
+}  // namespace
+
+BodyPair read_bodies(const Node& line, const Limits& limits) {
+  return {read_body(line.at("a"), limits), read_body(line.at("b"), limits), read_optional_pose(line, "pose_a"),
+          read_optional_pose(line, "pose_b")};
+}
+
+void write_union_answer(const UnionDepth& result, const BodyPair& pair, std::int64_t nanoseconds, JsonWriter& answer) {
   write_depth_fields(result, answer);
   const std::string kind = feature_kind(result);
   answer.key("feature");
@@ -77,6 +66,8 @@ void write_answer(const UnionDepth& result, const BodyPair& pair, std::int64_t n
   answer.key("closed").boolean(result.closed);
   write_work(result.statistics, result.work, nanoseconds, answer);
 }
+
+namespace {
 
 UnionDepth solve(const Node& line, const BodyPair& pair, Session& session, const UnionSettings& settings) {
   return value_or_refuse(penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, settings), line);
@@ -97,7 +88,7 @@ void answer_union_depth(const Node& line, Session& session, JsonWriter& answer) 
   const BodyPair pair = read_bodies(line, session.limits);
   const Stopwatch watch;
   const UnionDepth result = solve(line, pair, session, settings);
-  write_answer(result, pair, watch.nanoseconds(), answer);
+  write_union_answer(result, pair, watch.nanoseconds(), answer);
 }
 
 void answer_union_distance(const Node& line, Session& session, JsonWriter& answer) {
@@ -105,7 +96,7 @@ void answer_union_distance(const Node& line, Session& session, JsonWriter& answe
   const BodyPair pair = read_bodies(line, session.limits);
   const Stopwatch watch;
   const UnionDepth result = solve(line, pair, session, {});
-  write_answer(result, pair, watch.nanoseconds(), answer);
+  write_union_answer(result, pair, watch.nanoseconds(), answer);
 }
 
 void answer_union_intersect(const Node& line, Session& session, JsonWriter& answer) {
@@ -272,6 +263,7 @@ constexpr std::array kUnionQueries{
     QueryEntry{"point_in_difference", answer_union_point_in_difference},
     QueryEntry{"support_of_difference", answer_union_support},
     QueryEntry{"contact_manifold", answer_union_contact_manifold},
+    QueryEntry{"time_of_impact", answer_union_time_of_impact},
     QueryEntry{"minkowski_difference", answer_union_minkowski_difference},
 };
 

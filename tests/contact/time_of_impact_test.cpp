@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "oracle/moving_pair.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace {
@@ -116,6 +117,61 @@ TEST(TimeOfImpact, AgainstSmallSteps) {
     }
   }
   EXPECT_GT(hits, 15);
+}
+
+TEST(TimeOfImpact, WithinItsBracketByBisectionOfTime) {
+  pd::Scratch scratch;
+  int hits = 0;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const pd::oracle::MovingCase pair = pd::oracle::moving_case(7, i);
+    const pd::oracle::ImpactJudgement judged = judge(pair, 1e-9, scratch, 1e-7);
+    EXPECT_EQ(judged.complaint, "") << pair.family << ", pair " << i;
+    EXPECT_EQ(judged.answer.certified, judged.answer.time);
+    hits += judged.reference_hit ? 1 : 0;
+  }
+  EXPECT_GT(hits, 10);
+}
+
+TEST(TimeOfImpact, APartTurnsAboutItsBody) {
+  // A point one to the right of the pivot, a quarter turn a second; the wall's face is 0.5 above the pivot.
+  const ConvexShape point(ConvexPolytope::from_points(std::vector<Vec3>{Vec3(1, 0, 0)}).value());
+  const ConvexShape wall(ConvexPolytope::box(Vec3(5, 1, 5)).value());
+  pd::Scratch scratch;
+  const MovingShape arm{{&point, at(0, 0, 0)}, {Vec3::Zero(), Vec3(0, 0, 2)}};
+  const MovingShape part{
+      {&point, at(3, 0, 0)}, {Vec3::Zero(), Vec3(0, 0, 2)}, Vec3(3, 0, 0)};  // the point is 4 from its pivot
+  const MovingShape still{{&wall, at(0, 1.5, 0)}, {}};
+  EXPECT_NEAR(pd::time_of_impact(arm, still, 2, scratch).time, std::asin(0.5) / 2, 1e-8);
+  EXPECT_NEAR(pd::time_of_impact(part, still, 2, scratch).time, std::asin(0.125) / 2, 1e-8);
+  EXPECT_LT((pd::pose_at(part, 0.7).translation() - 3 * Vec3(std::cos(1.4), std::sin(1.4), 0)).norm(), 1e-14);
+}
+
+TEST(TimeOfImpact, StartsWithinTheTolerance) {
+  const ConvexShape ball = ConvexShape::sphere(0.5).value();
+  pd::Scratch scratch;
+  const MovingShape still{{&ball, Pose()}, {}};
+  const MovingShape parting{{&ball, at(1 + 1e-10, 0, 0)}, {Vec3(1, 0, 0), Vec3::Zero()}};
+  const MovingShape closing{{&ball, at(1 + 1e-10, 0, 0)}, {Vec3(-1, 0, 0), Vec3::Zero()}};
+  EXPECT_FALSE(pd::time_of_impact(parting, still, 1, scratch).hit);
+  const auto hit = pd::time_of_impact(closing, still, 1, scratch);
+  EXPECT_TRUE(hit.hit);
+  EXPECT_GT(hit.time, 0);
+  EXPECT_LE(hit.time, 1e-10);
+}
+
+TEST(TimeOfImpact, SaysWhereDoublesCannotTell) {
+  // Coordinates of 1e9 are 1e-7 apart: a gap of 1e-12 cannot be had.
+  const ConvexShape box(ConvexPolytope::box(Vec3(1, 1, 1)).value());
+  pd::Scratch scratch;
+  pd::TimeOfImpactSettings settings;
+  settings.distance_tolerance = 1e-12;
+  const auto far = pd::time_of_impact({{&box, at(1e9 + 10, 0, 0)}, {Vec3(-16, 0.1, 0), Vec3(0.1, 0.2, 0.3)}},
+                                      {{&box, at(1e9, 0, 0)}, {Vec3(0, 0, 0), Vec3(0, 0.1, 0)}}, 1, scratch, settings);
+  EXPECT_TRUE(far.hit);
+  EXPECT_FALSE(far.reached);
+  EXPECT_GT(far.contact.distance, 0);
+  EXPECT_LT(far.contact.distance, 1e-4);
+  EXPECT_LE(far.certified, far.time + 1e-5);
 }
 
 }  // namespace

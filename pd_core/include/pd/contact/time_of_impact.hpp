@@ -3,16 +3,16 @@
 ///
 /// Each body turns about a point of its own (the origin of its frame, unless said otherwise) at a constant angular
 /// velocity while that point moves at a constant velocity. Time advances by proof only: along a fixed unit direction n
-/// the bodies are apart by s(t) = min_A <p(t), n> - max_B <q(t), n>, which is the least of functions g of single pairs of
-/// points. A point at distance r from its axis has |g''| <= |omega|^2 r, so between two times whose s is known
+/// the bodies are apart by s(t) = min_A <p(t), n> - max_B <q(t), n>, which is the least of functions g of single pairs
+/// of points. A point at distance r from its axis has |g''| <= |omega|^2 r, so between two times whose s is known
 ///
 ///     s(t) >= linear interpolation - (t - t0) (t1 - t) / 2 * (|omega_a|^2 r_a + |omega_b|^2 r_b),
 ///
 /// two supports a body for a whole span of time; without rotation s is concave and the span may have any length. n is
 /// the normal of the distance at the span's start, s is followed to where it has nearly vanished, and the next distance
-/// gives the next n: as B. Mirtich's conservative advancement ("Impulse-based dynamic simulation", 1996), with a bound of
-/// second order in place of his of first, along E. Catto's separation functions ("Continuous collision", GDC 2013), with
-/// a proof in place of his root finding.
+/// gives the next n: as B. Mirtich's conservative advancement ("Impulse-based dynamic simulation", 1996), with a bound
+/// of second order in place of his of first, along E. Catto's separation functions ("Continuous collision", GDC 2013),
+/// with a proof in place of his root finding.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"
@@ -71,8 +71,9 @@ struct TimeOfImpact {
 /// First contact within [0, duration].
 ///
 /// Passing each other closer than the tolerance may count as a hit; nothing deeper is missed. Requires duration >= 0
-/// and velocities whose way in that time stays within the range of poses. Queries: 3 to 6 as a rule, one for pairs that
-/// the first normal keeps apart for all the time; some supports between two queries.
+/// and velocities whose way in that time stays within the range of poses. Queries: 4 to 12 in the mean
+/// of five families (`impact_pairs`), one for pairs that the first normal keeps apart for all the time; some supports
+/// between two queries.
 [[nodiscard]] TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
                                           const TimeOfImpactSettings& settings = {});
 
