@@ -1,6 +1,7 @@
 /// @file
 /// time_of_impact: when two moving bodies first touch; of compounds, the earliest of their pairs of parts.
 #include <algorithm>
+#include <utility>
 
 #include "pd/compound/compound_depth.hpp"
 #include "pd/contact/time_of_impact.hpp"
@@ -12,12 +13,10 @@ namespace pd::query {
 
 namespace {
 
-constexpr std::initializer_list<std::string_view> kFields{"id",         "query",
-                                                          "a",          "pose_a",
-                                                          "b",          "pose_b",
-                                                          "velocity_a", "angular_velocity_a",
-                                                          "velocity_b", "angular_velocity_b",
-                                                          "duration",   "tolerance"};
+void allow_fields(const Node& line) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "velocity_a", "angular_velocity_a", "velocity_b",
+                    "angular_velocity_b", "duration", "tolerance"});
+}
 
 /// Squares of speeds stay in the range of doubles.
 constexpr double kMaxSpeed = 1e150;
@@ -117,7 +116,7 @@ TimeOfImpact earliest(const std::vector<PosedShape>& parts_a, const Pose& pose_a
 }  // namespace
 
 void answer_time_of_impact(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, kFields);
+  allow_fields(line);
   const Pair pair = read_pair(line, session.limits);
   const Motions motions = read_motions(line, pair.pose_a, pair.pose_b);
   TimeOfImpactSettings settings;
@@ -132,7 +131,7 @@ void answer_time_of_impact(const Node& line, Session& session, JsonWriter& answe
 }
 
 void answer_union_time_of_impact(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, kFields);
+  allow_fields(line);
   const BodyPair pair = read_bodies(line, session.limits);
   const Motions motions = read_motions(line, pair.pose_a, pair.pose_b);
   const std::vector<PosedShape> parts_a = posed_or_refuse(pair.a.compound, pair.pose_a, line.at("a"));
@@ -144,12 +143,13 @@ void answer_union_time_of_impact(const Node& line, Session& session, JsonWriter&
   // A pose is all of a shape that a motion moves, so that any part's shape serves to move a body.
   const Pose pose_a = pose_at({{parts_a.front().shape, pair.pose_a}, motions.a}, found.time);
   const Pose pose_b = pose_at({{parts_b.front().shape, pair.pose_b}, motions.b}, found.time);
-  auto contact = penetration_depth(PosedCompound{&pair.a.compound, pose_a}, PosedCompound{&pair.b.compound, pose_b},
-                                   session.scratch, UnionSettings{});
-  if (!contact) line.refuse(contact.error());
-  contact->bracket_reached = contact->bracket_reached && found.reached;
+  auto solved = penetration_depth(PosedCompound{&pair.a.compound, pose_a}, PosedCompound{&pair.b.compound, pose_b},
+                                  session.scratch, UnionSettings{});
+  if (!solved) line.refuse(solved.error());
+  UnionDepth contact = std::move(solved).value();
+  contact.bracket_reached = contact.bracket_reached && found.reached;
   write_time(found.hit, found.time, found.certified, answer);
-  write_union_answer(*contact, pair, watch.nanoseconds(), answer);
+  write_union_answer(contact, pair, watch.nanoseconds(), answer);
 }
 
 }  // namespace pd::query

@@ -41,7 +41,9 @@ void free_algorithm(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher) {
 
 }  // namespace
 
-BroadphaseState::BroadphaseState(btCollisionWorld& world) {
+void BroadphaseState::save(btCollisionWorld& world) {
+  pairs_.clear();
+  proxies_.clear();
   const btBroadphasePairArray& pairs = world.getPairCache()->getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
     pairs_.push_back({pairs[i].m_pProxy0, pairs[i].m_pProxy1, count_manifolds(pairs[i].m_algorithm)});
@@ -63,7 +65,11 @@ void BroadphaseState::restore(btCollisionWorld& world) const {
 void BroadphaseState::save_trees(const btDbvtBroadphase& broadphase, const btCollisionWorld& world) {
   for (int i = 0; i < 2; ++i) {
     const btDbvt& tree = broadphase.m_sets[i];
-    trees_[i] = {{}, tree.m_root, tree.m_lkhd, tree.m_leaves, tree.m_opath};
+    trees_[i].root = tree.m_root;
+    trees_[i].lookahead = tree.m_lkhd;
+    trees_[i].leaves = tree.m_leaves;
+    trees_[i].path = tree.m_opath;
+    trees_[i].nodes.clear();
     for_each_node(tree.m_root, [&](btDbvtNode* node) { trees_[i].nodes.push_back({node, *node}); });
   }
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();

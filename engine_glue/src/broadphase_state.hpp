@@ -16,7 +16,8 @@ namespace pd::detail {
 
 class BroadphaseState {
  public:
-  explicit BroadphaseState(btCollisionWorld& world);
+  /// Saves trees and pairs, in the memory of what was saved before.
+  void save(btCollisionWorld& world);
 
   /// Brings trees and pairs back. Pairs that came since lose their algorithm and go; pairs that went are there again,
   /// with an algorithm and manifolds made at the present poses. Restore the bodies first.

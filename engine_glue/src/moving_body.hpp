@@ -12,13 +12,20 @@
 namespace pd::detail {
 
 /// The constant velocities that lead from one transform to the other in `duration` > 0: the shorter turn.
-inline MovingShape moving_shape(const ConvexShape& shape, const btTransform& from, const btTransform& to,
-                                double duration) {
-  MovingShape result{{&shape, to_pd(from)}, {}};
-  result.motion.linear_velocity = (to_pd(to.getOrigin()) - to_pd(from.getOrigin())) / duration;
+inline RigidMotion motion_between(const btTransform& from, const btTransform& to, double duration) {
+  RigidMotion motion;
+  motion.linear_velocity = (to_pd(to.getOrigin()) - to_pd(from.getOrigin())) / duration;
+  if (from.getBasis() == to.getBasis()) return motion;  // products of rounded bases would turn a body at rest
   const Eigen::AngleAxisd turn(Mat3(to_pd(to.getBasis()) * to_pd(from.getBasis()).transpose()));
-  result.motion.angular_velocity = turn.angle() / duration * turn.axis();
-  return result;
+  motion.angular_velocity = turn.angle() / duration * turn.axis();
+  return motion;
+}
+
+/// A piece of a body that turns about the body's origin. `local`: of the piece in the body.
+inline MovingShape moving_piece(const ConvexShape& shape, const btTransform& body_start, const btTransform& local,
+                                const RigidMotion& motion) {
+  const btTransform start = body_start * local;
+  return {{&shape, to_pd(start)}, motion, to_pd(start.getOrigin()) - to_pd(body_start.getOrigin())};
 }
 
 }  // namespace pd::detail

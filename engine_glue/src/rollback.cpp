@@ -1,40 +1,17 @@
 #include "pd/bullet/rollback.hpp"
 
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "cached_shape.hpp"
-#include "moving_body.hpp"
+#include "impact_search.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pd/bullet/shape_cache.hpp"
-#include "pd/contact/time_of_impact.hpp"
+#include "substep.hpp"
+#include "world_step.hpp"
 
 namespace pd {
-
-/// A convex piece of a body.
-struct RollbackStepper::Part {
-  btCollisionObject* body;
-  const btConvexShape* bullet_shape;
-  btTransform local;  ///< of the piece in the body
-  std::shared_ptr<detail::CachedShape> cached;
-  double radius;  ///< about the body's origin
-  btTransform start;
-
-  [[nodiscard]] btTransform present() const { return body->getWorldTransform() * local; }
-  /// As the contact algorithm takes it: two boxes are sharp.
-  [[nodiscard]] const ConvexShape& shape_beside(const Part& other) const {
-    return cached->sharp && other.cached->sharp ? *cached->sharp : *cached->body;
-  }
-};
-
-struct RollbackStepper::Impact {
-  const Part* a = nullptr;
-  const Part* b = nullptr;
-  double time = HUGE_VAL;
-  double allowed_depth = 0;  ///< 0: a first contact
-};
 
 namespace {
 
@@ -51,153 +28,186 @@ Vec3 velocity_at(const btCollisionObject& object, const Vec3& point) {
   return to_pd(body->getLinearVelocity()) + to_pd(body->getAngularVelocity()).cross(arm);
 }
 
+/// What is left of a step below this share of it is rounding, no part.
+constexpr double kNothingLeft = 1e-6;
+
 }  // namespace
+
+struct RollbackStepper::State {
+  btDiscreteDynamicsWorld& world;
+  BulletPenetrationDepthSolver& solver;
+  RollbackSettings settings;
+  detail::ImpactSearch search;
+  detail::SubStepper parts;
+  std::unique_ptr<BulletSnapshot> start;
+  btScalar owed = 0;  ///< time of fixed steps that is not due yet
+
+  State(btDiscreteDynamicsWorld& w, BulletPenetrationDepthSolver& s, const RollbackSettings& chosen)
+      : world(w), solver(s), settings(chosen), search(w, s), parts(w) {}
+
+  void save() {
+    if (start) {
+      start->save_again();
+    } else {
+      start = std::make_unique<BulletSnapshot>(world, &solver);
+    }
+  }
+
+  void try_part(double from, double length, RollbackReport& report) {
+    parts.move(from, length, settings.gap);
+    ++report.simulation_steps;
+  }
+
+  void accept(double from, double length, RollbackReport& report) {
+    parts.accept(from, length);
+    ++report.parts;
+    detail::WorldStep::post_tick(world, static_cast<btScalar>(length));
+  }
+
+  /// Whether the state at `time` of a part, which meets something at `impact.time`, is one just before that all the
+  /// same: a gap left, and less than two gaps moved since.
+  [[nodiscard]] bool is_just_before(const detail::FoundImpact& impact, double time, double clearance,
+                                    const PenetrationDepth& contact) const;
+  /// Ends a part just before the impact. @return its length, `least` or more.
+  double advance_to(detail::FoundImpact impact, double from, double duration, double least, RollbackReport& report);
+  /// One frame, without what follows it (motion states, forces).
+  void frame(btScalar step, double elapsed, RollbackReport& report);
+};
 
 RollbackStepper::RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
                                  const RollbackSettings& settings)
-    : world_(world), solver_(solver), settings_(settings) {}
+    : state_(std::make_unique<State>(world, solver, settings)) {}
 
 RollbackStepper::~RollbackStepper() = default;
 
-void RollbackStepper::collect_parts() {
-  parts_.clear();
-  const auto add = [&](btCollisionObject* object, const btCollisionShape* shape, const btTransform& local,
-                       const auto& recurse) -> void {
-    if (shape->isCompound()) {
-      const auto* compound = static_cast<const btCompoundShape*>(shape);
-      for (int i = 0; i < compound->getNumChildShapes(); ++i) {
-        recurse(object, compound->getChildShape(i), local * compound->getChildTransform(i), recurse);
-      }
-    } else if (shape->isConvex()) {
-      const auto* convex = static_cast<const btConvexShape*>(shape);
-      if (auto cached = solver_.cache().find(*convex, 0); cached->body) {
-        const double radius =
-            to_pd(local.getOrigin()).norm() + bounding_radius(cached->sharp ? *cached->sharp : *cached->body);
-        parts_.push_back({object, convex, local, std::move(cached), radius, local});
-      }
-    }
-  };
-  const auto& objects = world_.getCollisionObjectArray();
-  for (int i = 0; i < objects.size(); ++i) {
-    if (objects[i]->hasContactResponse()) {
-      add(objects[i], objects[i]->getCollisionShape(), btTransform::getIdentity(), add);
-    }
-  }
+bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, double time, double clearance,
+                                            const PenetrationDepth& contact) const {
+  if (!(clearance > 0 && clearance <= settings.gap)) return false;
+  const Vec3 relative = velocity_at(*impact.b.body, contact.witness_b) - velocity_at(*impact.a.body, contact.witness_a);
+  return (time - impact.time) * relative.norm() <= 2 * settings.gap;
 }
 
-void RollbackStepper::remember_start_poses() {
-  for (Part& part : parts_) {
-    part.start = part.present();
-  }
-}
-
-bool RollbackStepper::earliest_impact(double duration, Impact& impact) {
-  impact = Impact();
-  TimeOfImpactSettings settings;
-  settings.distance_tolerance = 0.5 * settings_.gap;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    for (std::size_t j = i + 1; j < parts_.size(); ++j) {
-      const Part& a = parts_[i];
-      const Part& b = parts_[j];
-      if (a.body == b.body || (a.body->isStaticOrKinematicObject() && b.body->isStaticOrKinematicObject()) ||
-          !world_.getDispatcher()->needsCollision(a.body, b.body) ||
-          !world_.getPairCache()->needsBroadphaseCollision(a.body->getBroadphaseHandle(),
-                                                           b.body->getBroadphaseHandle())) {
-        continue;
-      }
-      const MovingShape moving_a = detail::moving_shape(a.shape_beside(b), a.start, a.present(), duration);
-      const MovingShape moving_b = detail::moving_shape(b.shape_beside(a), b.start, b.present(), duration);
-      const double travel = (moving_a.motion.linear_velocity - moving_b.motion.linear_velocity).norm() * duration;
-      const double apart = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
-      if (apart > travel + a.radius + b.radius) {
-        continue;
-      }
-      const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_);
-      // From where it is, a pair in contact may sink by its share; then the step is cut, and Bullet sees it there.
-      const double start_depth = -signed_distance(before);
-      settings.allowed_depth =
-          start_depth >= -2 * settings_.gap
-              ? std::max(start_depth, 0.0) + settings_.contact_depth_share * std::min(a.radius, b.radius)
-              : 0;
-      const TimeOfImpact found = time_of_impact(moving_a, moving_b, duration, scratch_, settings);
-      if (found.hit && found.time < impact.time) {
-        impact = {&a, &b, found.time, settings.allowed_depth};
-      }
-    }
-  }
-  return impact.a != nullptr;
-}
-
-FirstContact RollbackStepper::advance_to(const Impact& impact, const BulletSnapshot& start, double duration,
-                                         RollbackReport& report) {
-  const auto measure = [&] {
-    return penetration_depth({&impact.a->shape_beside(*impact.b), to_pd(impact.a->present())},
-                             {&impact.b->shape_beside(*impact.a), to_pd(impact.b->present())}, scratch_);
-  };
+double RollbackStepper::State::advance_to(detail::FoundImpact impact, double from, double duration, double least,
+                                          RollbackReport& report) {
   FirstContact result;
-  result.body_a = impact.a->body;
-  result.body_b = impact.b->body;
-  result.undone_depth = std::max(0.0, -signed_distance(measure()));
-
-  // The bracket: apart at `low`, not apart at `high`. The motion that was searched is that of the whole step; a shorter
-  // step moves a little differently (gravity acts for less time), which Newton's method on real steps makes up for.
+  result.undone_depth = std::max(0.0, -signed_distance(search.measure(impact)));
+  // A shorter part moves a little differently (gravity acts for less time, Bullet clamps a fast turn less), so that
+  // each trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
+  // motion does; between them Newton's method on the pair's gap.
   double low = 0;
   double high = duration;
   double time = impact.time;
   for (;;) {
-    start.restore();
-    world_.stepSimulation(static_cast<btScalar>(time), 0);
-    ++report.simulation_steps;
+    start->restore();
+    try_part(from, time, report);
     ++result.trials;
-    result.contact = measure();
+    detail::FoundImpact earlier;
+    const bool meets = search.earliest(time, {settings.gap, settings.contact_slop}, earlier);
+    if (meets) impact = earlier;
+    result.contact = search.measure(impact);
     result.gap = signed_distance(result.contact);
-    result.time = time;
     const double clearance = result.gap + impact.allowed_depth;
-    if ((clearance > 0 && clearance <= settings_.gap) || result.trials >= settings_.max_trials) {
-      return result;
+    double next = HUGE_VAL;
+    if (meets) {
+      if (is_just_before(impact, time, clearance, result.contact)) break;
+      high = time;
+      next = impact.time;
+    } else {
+      if (clearance <= settings.gap) break;
+      low = time;
+      const double closing = (velocity_at(*impact.b.body, result.contact.witness_b) -
+                              velocity_at(*impact.a.body, result.contact.witness_a))
+                                 .dot(result.contact.normal);
+      if (closing > 0) next = time + (clearance - 0.5 * settings.gap) / closing;
     }
-    (clearance > 0 ? low : high) = time;
-    const double closing =
-        (velocity_at(*result.body_b, result.contact.witness_b) - velocity_at(*result.body_a, result.contact.witness_a))
-            .dot(result.contact.normal);
-    double next = closing > 0 ? time + (clearance - 0.5 * settings_.gap) / closing : HUGE_VAL;
-    if (!(next > low && next < high)) {
-      next = 0.5 * (low + high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const bool no_finer = static_cast<btScalar>(next) == static_cast<btScalar>(time);
+    if (next >= least && result.trials < settings.max_trials && !no_finer) {
+      time = next;
+      continue;
     }
-    if (static_cast<btScalar>(next) == static_cast<btScalar>(time)) {
-      return result;  // finer than a btScalar of time
+    if (!meets) break;
+    // The trials ended inside: the latest part that meets nothing is kept, or the least one, which is counted.
+    time = low >= least ? low : least;
+    start->restore();
+    try_part(from, time, report);
+    result.contact = search.measure(impact);
+    result.gap = signed_distance(result.contact);
+    if (low < least) {
+      ++report.least_parts;
+      report.deepest_run_in = std::max(report.deepest_run_in, -result.gap);
     }
-    time = next;
+    break;
   }
+  result.body_a = impact.a.body;
+  result.body_b = impact.b.body;
+  result.time = from + time;
+  if (impact.allowed_depth > 0) {
+    ++report.deepened;
+  } else {
+    report.contacts.push_back(result);
+  }
+  return time;
+}
+
+void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport& report) {
+  const auto whole = static_cast<double>(step);
+  const double least = settings.least_part * whole;
+  const auto known = report.contacts.size();
+  search.collect();
+  parts.begin_frame(step);
+  double done = 0;
+  int cuts = 0;
+  while (whole - done > kNothingLeft * whole) {
+    const double remaining = whole - done;
+    detail::WorldStep::pre_tick(world, static_cast<btScalar>(remaining));
+    save();
+    search.mark_start();
+    try_part(done, remaining, report);
+    const bool bounded = cuts >= settings.max_contacts_per_step;
+    report.bounded = report.bounded || bounded;
+    detail::FoundImpact impact;
+    if (bounded || remaining <= least || !search.earliest(remaining, {settings.gap, settings.contact_slop}, impact)) {
+      accept(done, remaining, report);
+      break;
+    }
+    ++cuts;
+    double part = least;
+    if (impact.time < least) {
+      start->restore();
+      try_part(done, least, report);
+      ++report.least_parts;
+      report.deepest_run_in = std::max(report.deepest_run_in, -signed_distance(search.measure(impact)));
+    } else {
+      part = advance_to(std::move(impact), done, remaining, least, report);
+    }
+    accept(done, part, report);
+    done += part;
+  }
+  for (std::size_t i = known; i < report.contacts.size(); ++i) report.contacts[i].time += elapsed;
 }
 
 RollbackReport RollbackStepper::step(btScalar step) {
   RollbackReport report;
-  collect_parts();
-  double done = 0;
-  double remaining = static_cast<double>(step);
-  // What is left below a btScalar's resolution of the step is no step.
-  while (remaining > 1e-7 * static_cast<double>(step)) {
-    const BulletSnapshot start(world_, &solver_);
-    remember_start_poses();
-    world_.stepSimulation(static_cast<btScalar>(remaining), 0);
-    ++report.simulation_steps;
-    report.bounded = static_cast<int>(report.contacts.size()) + report.deepened >= settings_.max_contacts_per_step;
-    Impact impact;
-    if (report.bounded || !earliest_impact(remaining, impact)) {
-      return report;
-    }
-    FirstContact contact = advance_to(impact, start, remaining, report);
-    const double advanced = contact.time;
-    contact.time += done;
-    if (impact.allowed_depth > 0) {
-      ++report.deepened;
-    } else {
-      report.contacts.push_back(contact);
-    }
-    done += advanced;
-    remaining -= advanced;
+  state_->frame(step, 0, report);
+  state_->parts.end_frame();
+  const bool latency = state_->world.getLatencyMotionStateInterpolation();
+  detail::WorldStep::synchronize(state_->world, latency ? btScalar(0) : step, 0);
+  return report;
+}
+
+RollbackReport RollbackStepper::step(btScalar time, int max_steps, btScalar fixed) {
+  RollbackReport report;
+  btScalar& owed = state_->owed;
+  owed += time;
+  const int due = static_cast<int>(owed / fixed);
+  owed -= static_cast<btScalar>(due) * fixed;
+  // As Bullet does: what is due beyond the most steps is lost.
+  for (int i = 0; i < std::min(due, max_steps); ++i) {
+    state_->frame(fixed, i * static_cast<double>(fixed), report);
   }
+  if (due > 0) state_->parts.end_frame();
+  detail::WorldStep::synchronize(state_->world, owed, fixed);
   return report;
 }
 

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "broadphase_state.hpp"
+#include "multibody_state.hpp"
 #include "pair_registry.hpp"
+#include "substep.hpp"
 
 namespace pd {
 
@@ -38,7 +40,8 @@ struct BodyState {
 struct ManifoldState {
   const btCollisionObject* body0;
   const btCollisionObject* body1;
-  std::vector<btManifoldPoint> points;
+  std::size_t first;  ///< of its points
+  int count;
   std::optional<detail::PairMemory> memory;
 };
 
@@ -69,19 +72,6 @@ BodyState save_body(btCollisionObject* object) {
   return state;
 }
 
-/// Bullet has no setter for the accumulated force, only additions that it multiplies by the body's factors.
-void set_forces(btRigidBody& body, const btVector3& force, const btVector3& torque) {
-  const btVector3 linear_factor = body.getLinearFactor();
-  const btVector3 angular_factor = body.getAngularFactor();
-  body.clearForces();
-  body.setLinearFactor(btVector3(1, 1, 1));
-  body.setAngularFactor(btVector3(1, 1, 1));
-  body.applyCentralForce(force);
-  body.applyTorque(torque);
-  body.setLinearFactor(linear_factor);
-  body.setAngularFactor(angular_factor);
-}
-
 void restore_body(const BodyState& state) {
   btCollisionObject* object = state.object;
   object->setWorldTransform(state.world);
@@ -98,7 +88,7 @@ void restore_body(const BodyState& state) {
     body->setTurnVelocity(state.turn);
     // The setters above count as the host's own changes of interpolation in no version of Bullet, but the inertia does
     // follow the orientation.
-    set_forces(*body, state.force, state.torque);
+    detail::set_forces(*body, state.force, state.torque);
     body->updateInertiaTensor();
   }
 }
@@ -115,15 +105,16 @@ btSequentialImpulseConstraintSolver* seeded_solver(btDiscreteDynamicsWorld& worl
 enum class Likeness { other, possible, same };
 
 /// Whether a manifold is the saved one. A compound has one for each pair of children, which only their points name.
-Likeness compare(const btPersistentManifold& manifold, const ManifoldState& state) {
+Likeness compare(const btPersistentManifold& manifold, const ManifoldState& state,
+                 const std::vector<btManifoldPoint>& points) {
   if (manifold.getBody0() != state.body0 || manifold.getBody1() != state.body1) {
     return Likeness::other;
   }
-  if (manifold.getNumContacts() == 0 || state.points.empty()) {
+  if (manifold.getNumContacts() == 0 || state.count == 0) {
     return Likeness::possible;
   }
   const btManifoldPoint& a = manifold.getContactPoint(0);
-  const btManifoldPoint& b = state.points[0];
+  const btManifoldPoint& b = points[state.first];
   return a.m_index0 == b.m_index0 && a.m_index1 == b.m_index1 && a.m_partId0 == b.m_partId0 &&
                  a.m_partId1 == b.m_partId1
              ? Likeness::same
@@ -137,9 +128,13 @@ struct BulletSnapshot::State {
   BulletPenetrationDepthSolver* solver;
   std::vector<BodyState> bodies;
   std::vector<ManifoldState> manifolds;
+  std::vector<btManifoldPoint> points;
   std::vector<JointState> joints;
+  detail::MultiBodyState multibodies;
   detail::BroadphaseState broadphase;
   unsigned long seed = 0;
+
+  void save();
 
   /// Puts the present manifolds into the saved order, those that the saved state does not know behind them.
   /// @return for each manifold in the new order its saved state, or nullptr.
@@ -152,7 +147,7 @@ struct BulletSnapshot::State {
       const int placed = static_cast<int>(saved.size());
       int found = -1;
       for (int i = placed; i < count; ++i) {
-        const Likeness likeness = compare(*present[i], wanted);
+        const Likeness likeness = compare(*present[i], wanted, points);
         if (likeness == Likeness::same || (likeness == Likeness::possible && found < 0)) {
           found = i;
         }
@@ -177,9 +172,9 @@ struct BulletSnapshot::State {
     btCollisionDispatcher& dispatcher = dispatcher_of(world);
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
       btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
-      manifold->setNumContacts(saved[i] != nullptr ? static_cast<int>(saved[i]->points.size()) : 0);
+      manifold->setNumContacts(saved[i] != nullptr ? saved[i]->count : 0);
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
-        manifold->getContactPoint(k) = saved[i]->points[k];
+        manifold->getContactPoint(k) = points[saved[i]->first + static_cast<std::size_t>(k)];
       }
       if (detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
         *memory = saved[i] != nullptr && saved[i]->memory ? *saved[i]->memory : detail::PairMemory();
@@ -188,32 +183,44 @@ struct BulletSnapshot::State {
   }
 };
 
-BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver)
-    : state_(std::make_unique<State>(State{world, solver, {}, {}, {}, detail::BroadphaseState(world)})) {
+void BulletSnapshot::State::save() {
+  broadphase.save(world);
+  multibodies.save(world);
+  bodies.clear();
+  manifolds.clear();
+  points.clear();
+  joints.clear();
   const auto& objects = world.getCollisionObjectArray();
   for (int i = 0; i < objects.size(); ++i) {
-    state_->bodies.push_back(save_body(objects[i]));
+    bodies.push_back(save_body(objects[i]));
   }
   btCollisionDispatcher& dispatcher = dispatcher_of(world);
   for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
-    ManifoldState saved{manifold->getBody0(), manifold->getBody1(), {}, {}};
+    ManifoldState saved{manifold->getBody0(), manifold->getBody1(), points.size(), manifold->getNumContacts(), {}};
     for (int k = 0; k < manifold->getNumContacts(); ++k) {
-      saved.points.push_back(manifold->getContactPoint(k));
+      points.push_back(manifold->getContactPoint(k));
     }
     if (const detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
       saved.memory = *memory;
     }
-    state_->manifolds.push_back(std::move(saved));
+    manifolds.push_back(std::move(saved));
   }
   for (int i = 0; i < world.getNumConstraints(); ++i) {
     btTypedConstraint* joint = world.getConstraint(i);
-    state_->joints.push_back({joint, joint->internalGetAppliedImpulse(), joint->isEnabled()});
+    joints.push_back({joint, joint->internalGetAppliedImpulse(), joint->isEnabled()});
   }
   if (const auto* seeded = seeded_solver(world)) {
-    state_->seed = seeded->getRandSeed();
+    seed = seeded->getRandSeed();
   }
 }
+
+BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver)
+    : state_(std::make_unique<State>(State{world, solver, {}, {}, {}, {}, {}, {}})) {
+  state_->save();
+}
+
+void BulletSnapshot::save_again() { state_->save(); }
 
 BulletSnapshot::~BulletSnapshot() = default;
 BulletSnapshot::BulletSnapshot(BulletSnapshot&&) noexcept = default;
@@ -224,6 +231,7 @@ void BulletSnapshot::restore() const {
   for (const BodyState& body : state_->bodies) {
     restore_body(body);
   }
+  state_->multibodies.restore();
   state_->broadphase.restore(world);
   state_->fill_manifolds(state_->reorder());
   for (const JointState& saved : state_->joints) {

@@ -5,14 +5,24 @@
 /// past each other, and no contact tells. Here a step is tried, the motion that it made is searched for first contacts
 /// (`time_of_impact`), and where there is one the state is restored and advanced to just before it; Bullet then meets
 /// the pair at distance about 0 and answers with its own impulse. The rest of the step follows the same way.
+///
+/// What is watched: convex shapes, compounds, meshes, heightfields and planes (their triangles that a swept box meets),
+/// kinematic bodies (moved by their share), links of multibodies. What is not: soft bodies, and shapes that
+/// `to_convex_shape` refuses.
+///
+/// What others see: motion states and tick callbacks see accepted states only. The pre-tick callback is called once for
+/// each accepted part of a step, before it, with the time that is left; the tick callback after it, with its length.
+/// Trials are full steps of Bullet otherwise: actions (vehicles, character controllers) and contact callbacks run in
+/// them, and what they keep outside of the world's state is theirs to undo. Forces and torques applied before a step
+/// act through all its parts.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/snapshot.hpp"
 #include "pd/depth/depth_answer.hpp"
-#include "pd/depth/scratch.hpp"
 
 namespace pd {
 
@@ -20,14 +30,17 @@ struct RollbackSettings {
   /// The gap left at a first contact, > 0, in the world's unit. Floats cannot place a body finer than about 1e-7 of its
   /// coordinates.
   double gap = 1e-5;
-  /// Pairs in contact already may sink by this share of the smaller body's radius before the step is cut there too:
-  /// after a corner hits, a fast body still turns its other corners through the wall.
-  double contact_depth_share = 0.02;
+  /// Pairs in contact already may sink by this length before the step is cut there too: after a corner hits, a fast
+  /// body still turns its other corners through the wall. Pairs that move by less in a step are not searched.
+  double contact_slop = 5e-4;
   /// Trials of a shorter step for one contact.
   int max_trials = 24;
   /// Cuts of one step; what is left of the step is then made in one piece (a ball that comes
   /// to rest bounces without end in finite time).
   int max_contacts_per_step = 64;
+  /// The least part of a step, as a share of it: a contact nearer than that is run into, by at most the relative speed
+  /// times that part.
+  double least_part = 1.0 / 4096;
 };
 
 /// One first contact.
@@ -45,7 +58,10 @@ struct FirstContact {
 struct RollbackReport {
   std::vector<FirstContact> contacts;  ///< in order of time
   int deepened = 0;                    ///< cuts of the step at pairs in contact that went deeper than they may
-  int simulation_steps = 0;            ///< calls of stepSimulation, trials included
+  int least_parts = 0;                 ///< parts of the least length, within which a contact may have been run into
+  double deepest_run_in = 0;           ///< how deep the pairs were that those parts were about
+  int parts = 0;                       ///< accepted parts of the step
+  int simulation_steps = 0;            ///< Bullet's steps, trials included
   bool bounded = false;                ///< max_contacts_per_step was reached
 };
 
@@ -54,32 +70,27 @@ class RollbackStepper {
   /// @param solver  installed in the world. World and solver must outlive the stepper.
   RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
                   const RollbackSettings& settings = {});
+  ~RollbackStepper();
+  RollbackStepper(const RollbackStepper&) = delete;
+  RollbackStepper& operator=(const RollbackStepper&) = delete;
 
-  /// Advances the world by `step` > 0 seconds, stopping at first contacts on the way.
+  /// Advances the world by `step` > 0 seconds, stopping at first contacts on the way: in place of
+  /// `stepSimulation(step, 0)`, which it equals bit for bit where nothing meets.
   ///
-  /// Pairs whose bodies are convex or compounds of convex children are watched, unless they are in contact (nearer than
-  /// twice the gap) when the search begins: those are Bullet's resting contacts. Planes, meshes and heightfields are
-  /// left to Bullet. Time: one collision query or more for each pair whose swept spheres meet; O(parts^2) sphere tests.
+  /// Pairs that are in contact (nearer than twice the gap) when a part of the step begins are Bullet's, up to
+  /// `contact_slop`. Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken
+  /// per unit of time (`src/substep.hpp`). Time: Bullet's own for each simulation step; a snapshot a part; a collision
+  /// query or more for each pair whose swept boxes meet and that moves by more than the slop.
   RollbackReport step(btScalar step);
 
+  /// As `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most `max_steps`, and
+  /// motion states moved on by the remainder, which is kept for the next call. The report sums up all steps; times of
+  /// contacts count from the first.
+  RollbackReport step(btScalar time, int max_steps, btScalar fixed);
+
  private:
-  struct Part;
-  struct Impact;
-
-  void collect_parts();
-  void remember_start_poses();
-  /// The earliest first contact of the motion since `remember_start_poses`, within `duration`.
-  bool earliest_impact(double duration, Impact& impact);
-  FirstContact advance_to(const Impact& impact, const BulletSnapshot& start, double duration, RollbackReport& report);
-
-  btDiscreteDynamicsWorld& world_;
-  BulletPenetrationDepthSolver& solver_;
-  RollbackSettings settings_;
-  std::vector<Part> parts_;
-  Scratch scratch_;
-
- public:
-  ~RollbackStepper();
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace pd

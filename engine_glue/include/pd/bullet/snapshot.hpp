@@ -2,8 +2,9 @@
 /// The state of a Bullet world between two steps, saved and restored so that a replay gives the same bits.
 ///
 /// Transforms and velocities are not enough (replays were up to 0.115 m off): a step also reads last step's contact
-/// points with their impulses, push and turn velocities, interpolation state, forces, activation, and the constraint
-/// solver's random seed. The order of the manifolds matters too, since the solver works them in that order.
+/// points with their impulses, push and turn velocities, interpolation state, forces, activation, the constraint
+/// solver's random seed, and the multibodies' joints. The order of the manifolds matters too, since the solver works
+/// them in that order.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -37,6 +38,9 @@ class BulletSnapshot {
   ~BulletSnapshot();
   BulletSnapshot(BulletSnapshot&&) noexcept;
   BulletSnapshot& operator=(BulletSnapshot&&) noexcept;
+
+  /// Saves the world's present state in place of the one held, in the same memory.
+  void save_again();
 
   /// Brings the world back. Time: that of a broadphase update, plus one collision detection where pairs have to be made
   /// again.

@@ -1,0 +1,287 @@
+#include "impact_search.hpp"
+
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "moving_body.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_cache.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+double signed_distance(const PenetrationDepth& answer) {
+  return answer.contact == ContactClass::separated ? answer.distance : -answer.depth;
+}
+
+DepthSettings quick() {
+  DepthSettings settings;
+  settings.bracket = Bracket::certified;
+  return settings;
+}
+
+/// The triangles of a concave shape that a box meets, as convex bodies of its margin.
+class TriangleCollector : public btTriangleCallback {
+ public:
+  TriangleCollector(const btVector3& lower, const btVector3& upper, double margin)
+      : lower_(lower), upper_(upper), margin_(margin) {}
+
+  void processTriangle(btVector3* corners, int, int) override {
+    // A tree of quantised boxes, and heightfields, offer more than what the box meets.
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+      if (low > upper_[axis] || high < lower_[axis]) return;
+    }
+    const std::array points{to_pd(corners[0]), to_pd(corners[1]), to_pd(corners[2])};
+    auto hull = ConvexPolytope::from_points(points);
+    if (!hull) return;  // corners that are no numbers: Bullet's own contacts have none there, either
+    auto shape = ConvexShape(std::move(hull).value()).with_margin(margin_);
+    if (shape) triangles.push_back(std::make_shared<const ConvexShape>(std::move(shape).value()));
+  }
+
+  std::vector<std::shared_ptr<const ConvexShape>> triangles;
+
+ private:
+  btVector3 lower_;
+  btVector3 upper_;
+  double margin_;
+};
+
+}  // namespace
+
+const ConvexShape& Piece::shape_beside(const Piece& other) const {
+  if (triangle) return *triangle;
+  return cached->sharp && other.cached && other.cached->sharp ? *cached->sharp : *cached->body;
+}
+
+Pose Piece::present() const { return to_pd(body->getWorldTransform() * local); }
+
+void ImpactSearch::collect() {
+  pieces_.clear();
+  bodies_.clear();
+  const auto& objects = world_.getCollisionObjectArray();
+  for (int i = 0; i < objects.size(); ++i) {
+    btCollisionObject* object = objects[i];
+    if (!object->hasContactResponse()) continue;
+    const int first = static_cast<int>(pieces_.size());
+    add_pieces(object, object->getCollisionShape(), btTransform::getIdentity());
+    const int count = static_cast<int>(pieces_.size()) - first;
+    if (count == 0) continue;
+    double radius = 0;
+    for (int k = first; k < first + count; ++k) {
+      const Piece& piece = pieces_[static_cast<std::size_t>(k)];
+      radius = std::max(radius, piece.concave != nullptr ? std::numeric_limits<double>::infinity()
+                                                         : to_pd(piece.local.getOrigin()).norm() + piece.radius);
+    }
+    Body body{object, first, count, radius};
+    bodies_.push_back(body);
+  }
+}
+
+void ImpactSearch::add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local) {
+  if (shape->isCompound()) {
+    const auto* compound = static_cast<const btCompoundShape*>(shape);
+    for (int i = 0; i < compound->getNumChildShapes(); ++i) {
+      add_pieces(object, compound->getChildShape(i), local * compound->getChildTransform(i));
+    }
+    return;
+  }
+  Piece piece;
+  piece.body = object;
+  piece.local = local;
+  if (shape->isConcave()) {
+    piece.concave = static_cast<const btConcaveShape*>(shape);
+  } else if (shape->isConvex()) {
+    piece.cached = solver_.cache().find(*static_cast<const btConvexShape*>(shape), 0);
+    if (!piece.cached->body) return;
+    piece.radius = bounding_radius(piece.cached->sharp ? *piece.cached->sharp : *piece.cached->body);
+  } else {
+    return;
+  }
+  pieces_.push_back(std::move(piece));
+}
+
+void ImpactSearch::mark_start() {
+  for (Body& body : bodies_) body.start = body.object->getWorldTransform();
+}
+
+void ImpactSearch::sweep(Body& body, double duration) {
+  const btTransform& end = body.object->getWorldTransform();
+  body.motion = motion_between(body.start, end, duration);
+  const double turn = body.motion.angular_velocity.norm() * duration;
+  body.travel = body.motion.linear_velocity.norm() * duration + (turn > 0 ? turn * body.radius : 0);
+  const btCollisionShape* shape = body.object->getCollisionShape();
+  shape->getAabb(body.start, body.lower, body.upper);
+  if (body.travel == 0) return;
+  btVector3 lower;
+  btVector3 upper;
+  shape->getAabb(end, lower, upper);
+  body.lower.setMin(lower);
+  body.upper.setMax(upper);
+  if (turn > 0 && std::isfinite(body.radius)) {
+    // Between its ends a turning point leaves the chord by r (1 - cos(turn / 2)) at most.
+    const auto bulge = static_cast<btScalar>(body.radius * (1 - std::cos(0.5 * std::min(turn, 6.28))) * 1.001);
+    body.lower -= btVector3(bulge, bulge, bulge);
+    body.upper += btVector3(bulge, bulge, bulge);
+  }
+}
+
+bool ImpactSearch::may_meet(const Body& a, const Body& b) const {
+  if (a.travel == 0 && b.travel == 0) return false;
+  if (a.object->isStaticOrKinematicObject() && b.object->isStaticOrKinematicObject()) return false;
+  if (a.lower.y() > b.upper.y() || b.lower.y() > a.upper.y() || a.lower.z() > b.upper.z() ||
+      b.lower.z() > a.upper.z()) {
+    return false;
+  }
+  return world_.getDispatcher()->needsCollision(a.object, b.object) &&
+         world_.getPairCache()->needsBroadphaseCollision(a.object->getBroadphaseHandle(),
+                                                         b.object->getBroadphaseHandle());
+}
+
+bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpact& found) {
+  duration_ = duration;
+  found = FoundImpact();
+  found.time = HUGE_VAL;
+  const auto widen = static_cast<btScalar>(settings.gap);
+  for (Body& body : bodies_) {
+    sweep(body, duration);
+    body.lower -= btVector3(widen, widen, widen);
+    body.upper += btVector3(widen, widen, widen);
+  }
+  order_.resize(bodies_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto lower_x = [&](int i) { return bodies_[static_cast<std::size_t>(i)].lower.x(); };
+  std::sort(order_.begin(), order_.end(),
+            [&](int i, int j) { return lower_x(i) != lower_x(j) ? lower_x(i) < lower_x(j) : i < j; });
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const Body& first = bodies_[static_cast<std::size_t>(order_[i])];
+    for (std::size_t j = i + 1; j < order_.size() && lower_x(order_[j]) <= first.upper.x(); ++j) {
+      const Body& second = bodies_[static_cast<std::size_t>(order_[j])];
+      if (may_meet(first, second)) {
+        // In the order of the world, so that the answer does not depend on where the bodies are.
+        search_bodies(order_[i] < order_[j] ? first : second, order_[i] < order_[j] ? second : first, settings, found);
+      }
+    }
+  }
+  return found.a.body != nullptr;
+}
+
+void ImpactSearch::search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found) {
+  // What moves by less than the slop can neither pass through nor sink deeper than that.
+  const double apart = (a.motion.linear_velocity - b.motion.linear_velocity).norm() * duration_;
+  const auto turning = [&](const Body& body) {
+    const double turn = body.motion.angular_velocity.norm() * duration_;
+    return turn > 0 ? turn * body.radius : 0;
+  };
+  if (apart + turning(a) + turning(b) <= settings.slop) return;
+  for (int i = a.first_piece; i < a.first_piece + a.num_pieces; ++i) {
+    for (int j = b.first_piece; j < b.first_piece + b.num_pieces; ++j) {
+      const Piece& pa = pieces_[static_cast<std::size_t>(i)];
+      const Piece& pb = pieces_[static_cast<std::size_t>(j)];
+      if (pa.concave == nullptr && pb.concave == nullptr) {
+        search_convex(a, pa, b, pb, settings, found);
+      } else if (pa.concave == nullptr) {
+        search_concave(a, pa, b, pb, settings, found);
+      } else if (pb.concave == nullptr) {
+        search_concave(b, pb, a, pa, settings, found);
+      }
+    }
+  }
+}
+
+void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
+                                 const Settings& settings, FoundImpact& found) {
+  const MovingShape moving_a = moving_piece(pa.shape_beside(pb), a.start, pa.local, a.motion);
+  const MovingShape moving_b = moving_piece(pb.shape_beside(pa), b.start, pb.local, b.motion);
+  const auto travel = [&](const Body& body, const Piece& piece, const MovingShape& moving) {
+    return body.motion.angular_velocity.norm() * duration_ * (moving.arm.norm() + piece.radius);
+  };
+  const double reach = (a.motion.linear_velocity - b.motion.linear_velocity).norm() * duration_ +
+                       travel(a, pa, moving_a) + travel(b, pb, moving_b);
+  const double centres = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
+  if (centres > reach + pa.radius + pb.radius + settings.gap) return;
+  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, quick());
+  const double start = signed_distance(before);
+  if (start > reach + settings.gap) return;
+  TimeOfImpactSettings impact;
+  impact.distance_tolerance = 0.5 * settings.gap;
+  impact.contact_at_end = false;
+  impact.depth = quick();
+  // From where it is, a pair in contact may sink by the slop; then the step is cut, and Bullet sees it there.
+  impact.allowed_depth = start <= 2 * settings.gap ? std::max(-start, 0.0) + settings.slop : 0;
+  const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
+  if (hit.hit && hit.time < found.time) found = {pa, pb, hit.time, impact.allowed_depth};
+}
+
+void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
+                             btVector3& upper) const {
+  const btTransform frame = (b.start * pb.local).inverse();
+  const btTransform start = a.start * pa.local;
+  const btTransform end = a.object->getWorldTransform() * pa.local;
+  const btVector3 from = frame * start.getOrigin();
+  const btVector3 to = frame * end.getOrigin();
+  lower = from;
+  upper = from;
+  lower.setMin(to);
+  upper.setMax(to);
+  const double turn = a.motion.angular_velocity.norm() * duration_;
+  const double arm = to_pd(pa.local.getOrigin()).norm();
+  // Where the concave body moves, too, its motion is laid on the other one.
+  const double moved = b.motion.linear_velocity.norm() * duration_ +
+                       b.motion.angular_velocity.norm() * duration_ *
+                           (to_pd(a.start.getOrigin() - b.start.getOrigin()).norm() + arm + a.travel);
+  const auto margin = static_cast<double>(pb.concave->getMargin());
+  const auto grown =
+      static_cast<btScalar>((pa.radius + margin + arm * (1 - std::cos(0.5 * std::min(turn, 6.28))) + moved) * 1.001);
+  lower -= btVector3(grown, grown, grown);
+  upper += btVector3(grown, grown, grown);
+}
+
+void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
+                                  const Settings& settings, FoundImpact& found) {
+  btVector3 lower;
+  btVector3 upper;
+  swept_box(a, pa, b, pb, lower, upper);
+  // A plane has no margin in Bullet's contacts; a mesh's triangles have its own.
+  const bool plane = pb.concave->getShapeType() == STATIC_PLANE_PROXYTYPE;
+  TriangleCollector collector(lower, upper, plane ? 0 : static_cast<double>(pb.concave->getMargin()));
+  pb.concave->processAllTriangles(&collector, lower, upper);
+  const MovingShape moving_a = moving_piece(*pa.cached->body, a.start, pa.local, a.motion);
+  const auto& triangles = collector.triangles;
+  // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
+  // their edges, no deeper than it lies on this one. So one depth is allowed for all.
+  double deepest = -HUGE_VAL;
+  std::vector<double> starts(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const MovingShape moving_b = moving_piece(*triangles[i], b.start, pb.local, b.motion);
+    starts[i] = signed_distance(penetration_depth(moving_a.start, moving_b.start, scratch_, quick()));
+    deepest = std::max(deepest, -starts[i]);
+  }
+  TimeOfImpactSettings impact;
+  impact.distance_tolerance = 0.5 * settings.gap;
+  impact.contact_at_end = false;
+  impact.depth = quick();
+  impact.allowed_depth = deepest >= -2 * settings.gap ? std::max(deepest, 0.0) + settings.slop : 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const MovingShape moving_b = moving_piece(*triangles[i], b.start, pb.local, b.motion);
+    const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
+    if (hit.hit && hit.time < found.time) {
+      found = {pa, pb, hit.time, impact.allowed_depth};
+      found.b.triangle = triangles[i];
+    }
+  }
+}
+
+PenetrationDepth ImpactSearch::measure(const FoundImpact& impact) {
+  return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.present()},
+                           {&impact.b.shape_beside(impact.a), impact.b.present()}, scratch_);
+}
+
+}  // namespace pd::detail

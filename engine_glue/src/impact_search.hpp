@@ -1,0 +1,94 @@
+/// @file
+/// The first contact of a world's bodies between two states: swept boxes first, then pairs of convex pieces, then time
+/// of impact.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <memory>
+#include <vector>
+
+#include "cached_shape.hpp"
+#include "pd/bullet/penetration_depth_solver.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/scratch.hpp"
+
+namespace pd::detail {
+
+/// A convex piece of a body, or a concave child whose triangles are pieces.
+struct Piece {
+  btCollisionObject* body = nullptr;
+  btTransform local = btTransform::getIdentity();  ///< in the body
+  std::shared_ptr<CachedShape> cached;
+  const btConcaveShape* concave = nullptr;
+  std::shared_ptr<const ConvexShape> triangle;  ///< of a concave child: the one that was met
+  double radius = 0;                            ///< of a convex piece, about its own origin
+
+  /// As the contact algorithm takes it: two boxes are sharp.
+  [[nodiscard]] const ConvexShape& shape_beside(const Piece& other) const;
+  [[nodiscard]] Pose present() const;
+};
+
+struct FoundImpact {
+  Piece a;
+  Piece b;
+  double time = 0;
+  double allowed_depth = 0;  ///< 0: a first contact
+};
+
+class ImpactSearch {
+ public:
+  ImpactSearch(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver) : world_(world), solver_(solver) {}
+
+  /// Reads the world's bodies and their pieces.
+  void collect();
+  /// The present poses are where the motion begins.
+  void mark_start();
+
+  struct Settings {
+    double gap = 0;   ///< pairs nearer than twice this are in contact already
+    double slop = 0;  ///< those may sink by this
+  };
+  /// The earliest first contact of the motion from the marked poses to the present ones, which takes `duration`.
+  /// @return whether there is one.
+  bool earliest(double duration, const Settings& settings, FoundImpact& found);
+
+  /// The pair's answer at the present poses.
+  [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact);
+
+ private:
+  struct Body {
+    btCollisionObject* object;
+    int first_piece;
+    int num_pieces;
+    double radius;  ///< of all pieces about the body's origin; infinite with a concave child
+    btTransform start = btTransform::getIdentity();
+    RigidMotion motion = {};
+    double travel = 0;  ///< no point of it moves farther
+    btVector3 lower = btVector3(0, 0, 0);
+    btVector3 upper = btVector3(0, 0, 0);
+  };
+
+  void add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local);
+  void sweep(Body& body, double duration);
+  [[nodiscard]] bool may_meet(const Body& a, const Body& b) const;
+  void search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found);
+  void search_convex(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
+                     FoundImpact& found);
+  void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
+                      FoundImpact& found);
+  /// The box of a convex piece's motion in the frame of a concave one.
+  void swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
+                 btVector3& upper) const;
+
+  btDiscreteDynamicsWorld& world_;
+  BulletPenetrationDepthSolver& solver_;
+  double duration_ = 0;
+  std::vector<Piece> pieces_;
+  std::vector<Body> bodies_;
+  std::vector<int> order_;
+  Scratch scratch_;
+};
+
+}  // namespace pd::detail

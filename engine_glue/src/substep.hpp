@@ -1,0 +1,75 @@
+/// @file
+/// A part of a frame's step, made so that cutting the frame adds no energy.
+///
+/// Bullet's corrections are per step: the bias velocity is erp * depth / h, the warm start is an impulse of the last h,
+/// a gap g forbids to approach faster than g / h. A part h of a frame H that took them as they are would throw out
+/// whatever is deep, H / h times too fast. So within a part
+///   - erp, erp2 and friction's erp are scaled by h / H: the bias velocity is that of the whole frame;
+///   - depth is mended by split impulses, which move bodies and leave their velocities alone;
+///   - pairs nearer than twice the gap count as touching (`m_linearSlop`), so that an impact at a gap of 1e-5 keeps its
+///     restitution whatever h is;
+///   - pairs that bounce and are farther apart than that do not brake each other: Bullet would let them come as near as
+///     their gap in this part, and take the speed that is left over without giving it back;
+///   - warm starts are scaled to h, and never above the force that the pair carried before the frame was cut: an
+///     impact's impulse is no force to start the next part with.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <vector>
+
+namespace pd::detail {
+
+class SubStepper {
+ public:
+  explicit SubStepper(btDiscreteDynamicsWorld& world) : world_(world) {}
+
+  /// Notes the forces that the host has applied and where kinematic bodies are and are to be.
+  void begin_frame(btScalar frame);
+  /// Moves from `from` to `from + step` seconds of the frame: Bullet's own step where that is all of it, no kinematic
+  /// body moves and the last frame was not cut.
+  void move(double from, double step, double gap);
+  /// The state that `move` left is kept: its impulses are of a step of that length, and forces begin anew.
+  void accept(double from, double step);
+  /// After the frame's last part.
+  void end_frame();
+
+ private:
+  struct Forces {
+    btRigidBody* body;
+    btVector3 force;
+    btVector3 torque;
+  };
+  struct Kinematic {
+    btCollisionObject* body;
+    btTransform start;
+    btTransform end;
+    btVector3 linear;
+    btVector3 angular;
+  };
+  struct PairForce {
+    const btCollisionObject* a;
+    const btCollisionObject* b;
+    btScalar force;
+  };
+
+  void scale_warm_starts(double step);
+  void note_pair_forces();
+  [[nodiscard]] btScalar pair_force(const btPersistentManifold& manifold) const;
+  void place_kinematics(double time);
+
+  btDiscreteDynamicsWorld& world_;
+  double frame_ = 0;
+  double last_step_ = 0;   ///< that of the impulses that contact points carry; 0: none known
+  bool cut_ = false;       ///< this frame has been accepted in parts
+  bool last_cut_ = false;  ///< the last one was
+  bool driven_ = false;    ///< a kinematic body moves in this frame
+  std::vector<Forces> forces_;
+  std::vector<Kinematic> kinematics_;
+  std::vector<PairForce> pair_forces_;  ///< of the last frame that was not cut, sorted
+};
+
+/// Bullet has no setter for the accumulated force, only additions that it multiplies by the body's factors.
+void set_forces(btRigidBody& body, const btVector3& force, const btVector3& torque);
+
+}  // namespace pd::detail
