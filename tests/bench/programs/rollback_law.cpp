@@ -1,0 +1,241 @@
+/// @file
+/// `rollback_law`: random worlds stepped by pd::RollbackStepper, and the law that cutting steps adds no energy:
+///
+///     E(t) <= E(0) + max(0, gain of a plain run at 1,920 Hz) + 1e-3 E_ref at the end of every step,
+///
+/// with E_ref the kinetic energy at the start plus the range of the potential. Scene number i depends on --seed and i
+/// only: hulls, boxes and compounds in a room, some in stacks or joined by constraints, restitution 0 to 1.
+/// Exit status 1 where a scene breaks the law.
+#include <btBulletDynamicsCommon.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "engine_glue/bullet_world.hpp"
+#include "pd/bullet/install.hpp"
+#include "pd/bullet/rollback.hpp"
+
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kRoom = 3;
+
+/// One world of a scene; made twice, for the two ways to step it.
+class RandomWorld {
+ public:
+  explicit RandomWorld(std::uint64_t seed) : random_(seed) {
+    pd::install(scene_.world(), solver_);
+    restitution_ = static_cast<btScalar>(uniform(0, 1));
+    if (uniform(0, 1) < 0.2) restitution_ = 0;
+    walls();
+    const int count = static_cast<int>(uniform(3, 9));
+    const bool stack = uniform(0, 1) < 0.3;
+    for (int i = 0; i < count; ++i) thrown(i, stack);
+    if (uniform(0, 1) < 0.3) joint();
+  }
+  ~RandomWorld() {
+    for (auto& joint : joints_) scene_.world().removeConstraint(joint.get());
+  }
+  RandomWorld(const RandomWorld&) = delete;
+  RandomWorld& operator=(const RandomWorld&) = delete;
+
+  btDiscreteDynamicsWorld& world() { return scene_.world(); }
+  pd::BulletPenetrationDepthSolver& solver() { return solver_; }
+
+  [[nodiscard]] double kinetic_energy() const {
+    double sum = 0;
+    for (const auto& body : scene_.bodies()) {
+      if (body->isStaticObject()) continue;
+      const btVector3 spin = body->getAngularVelocity() * body->getWorldTransform().getBasis();
+      sum += 0.5 * static_cast<double>(body->getLinearVelocity().length2() / body->getInvMass());
+      for (int i = 0; i < 3; ++i) {
+        sum += 0.5 * static_cast<double>(spin[i] * spin[i] / body->getInvInertiaDiagLocal()[i]);
+      }
+    }
+    return sum;
+  }
+  [[nodiscard]] double energy() const {
+    double sum = kinetic_energy();
+    for (const auto& body : scene_.bodies()) {
+      if (!body->isStaticObject()) {
+        sum += kGravity * static_cast<double>(body->getWorldTransform().getOrigin().y() / body->getInvMass());
+      }
+    }
+    return sum;
+  }
+  [[nodiscard]] double potential_range() const {
+    double mass = 0;
+    for (const auto& body : scene_.bodies()) {
+      if (!body->isStaticObject()) mass += static_cast<double>(1 / body->getInvMass());
+    }
+    return mass * kGravity * 2 * kRoom;
+  }
+  /// Bodies that left the room.
+  [[nodiscard]] int lost() const {
+    int count = 0;
+    for (const auto& body : scene_.bodies()) {
+      const btVector3 at = body->getWorldTransform().getOrigin();
+      if (!body->isStaticObject() && std::abs(static_cast<double>(at[at.absolute().maxAxis()])) > kRoom + 0.2) ++count;
+    }
+    return count;
+  }
+
+ private:
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  btVector3 vector(double size) {
+    std::normal_distribution<double> normal;
+    const double x = normal(random_);
+    const double y = normal(random_);
+    const double z = normal(random_);
+    return {static_cast<btScalar>(size * x), static_cast<btScalar>(size * y), static_cast<btScalar>(size * z)};
+  }
+
+  void walls() {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int side : {-1, 1}) {
+        btVector3 half(4, 4, 4);
+        half[axis] = btScalar(0.5);
+        auto* shape = scene_.shape<btBoxShape>(half);
+        shape->setMargin(0);
+        btVector3 at(0, 0, 0);
+        at[axis] = static_cast<btScalar>(side * (kRoom + 0.5));
+        scene_.body(shape, 0, at)->setRestitution(1);
+      }
+    }
+  }
+
+  btCollisionShape* random_shape() {
+    const double kind = uniform(0, 4);
+    const auto size = [&] { return static_cast<btScalar>(uniform(0.1, 0.35)); };
+    if (kind < 1) {
+      auto* box = scene_.shape<btBoxShape>(btVector3(size(), size(), size()));
+      box->setMargin(0);
+      return box;
+    }
+    if (kind < 2) return scene_.shape<btSphereShape>(size());
+    if (kind < 3) {
+      auto* hull = scene_.shape<btConvexHullShape>();
+      for (int i = 0; i < 12; ++i) hull->addPoint(vector(0.2), false);
+      hull->setMargin(0);
+      hull->recalcLocalAabb();
+      return hull;
+    }
+    auto* part = scene_.shape<btBoxShape>(btVector3(btScalar(0.35), btScalar(0.07), btScalar(0.09)));
+    part->setMargin(0);
+    auto* cross = scene_.shape<btCompoundShape>();
+    cross->addChildShape(btTransform::getIdentity(), part);
+    cross->addChildShape(btTransform(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI)), part);
+    return cross;
+  }
+
+  void thrown(int i, bool stack) {
+    btRigidBody* body = nullptr;
+    if (stack && i < 4) {
+      auto* box = scene_.shape<btBoxShape>(btVector3(btScalar(0.3), btScalar(0.3), btScalar(0.3)));
+      box->setMargin(0);
+      body = scene_.body(box, 1, btVector3(0, static_cast<btScalar>(-kRoom + 0.3 + 0.6 * i), 0));
+    } else {
+      const btVector3 at(btScalar(i % 3 * 1.5 - 1.5), btScalar(i / 3 * 1.3 - 0.6), btScalar(uniform(1.0, 1.6)));
+      body = scene_.body(random_shape(), static_cast<btScalar>(uniform(0.3, 3)), at);
+      body->setLinearVelocity(vector(12));
+      body->setAngularVelocity(vector(5));
+    }
+    body->setRestitution(restitution_);
+    body->setFriction(static_cast<btScalar>(uniform(0, 0.8)));
+    bodies_.push_back(body);
+  }
+
+  void joint() {
+    btRigidBody& a = *bodies_[bodies_.size() - 2];
+    btRigidBody& b = *bodies_.back();
+    const btVector3 middle = btScalar(0.5) * (a.getWorldTransform().getOrigin() + b.getWorldTransform().getOrigin());
+    joints_.push_back(std::make_unique<btPoint2PointConstraint>(a, b, a.getWorldTransform().invXform(middle),
+                                                                b.getWorldTransform().invXform(middle)));
+    scene_.world().addConstraint(joints_.back().get());
+  }
+
+  std::mt19937_64 random_;
+  pd::BulletPenetrationDepthSolver solver_;
+  pd::test::BulletWorld scene_;
+  std::vector<btRigidBody*> bodies_;
+  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+  btScalar restitution_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int scenes = 100;
+  int steps = 60;
+  std::uint64_t seed = 1;
+  CLI::App app{"Random worlds under pd::RollbackStepper: no energy may be gained."};
+  app.add_option("--scenes", scenes)->capture_default_str();
+  app.add_option("--seed", seed)->capture_default_str();
+  app.add_option("--steps", steps, "of 1/60 s")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  int broken = 0;
+  int lost = 0;
+  int lost_plain = 0;
+  long long parts = 0;
+  long long trials = 0;
+  long long contacts = 0;
+  long long contact_trials = 0;
+  int bounded = 0;
+  int least_parts = 0;
+  double deepest_run_in = 0;
+  double worst = -HUGE_VAL;
+  double seconds = 0;
+  for (int i = 0; i < scenes; ++i) {
+    const std::uint64_t own = seed * 1000003 + static_cast<std::uint64_t>(i);
+    RandomWorld guarded(own);
+    const double start = guarded.energy();
+    const double reference = guarded.kinetic_energy() + guarded.potential_range();
+    double gain = 0;
+    {
+      RandomWorld plain(own);
+      for (int k = 0; k < steps * 32; ++k) {
+        plain.world().stepSimulation(btScalar(1.0 / 1920), 0);
+        gain = std::max(gain, plain.energy() - start);
+      }
+      lost_plain += plain.lost();
+    }
+    pd::RollbackStepper stepper(guarded.world(), guarded.solver());
+    double excess = -HUGE_VAL;
+    const auto clock = std::chrono::steady_clock::now();
+    for (int k = 0; k < steps; ++k) {
+      const pd::RollbackReport report = stepper.step(btScalar(1.0 / 60));
+      parts += report.parts;
+      trials += report.simulation_steps;
+      contacts += static_cast<long long>(report.contacts.size());
+      for (const pd::FirstContact& contact : report.contacts) contact_trials += contact.trials;
+      bounded += report.bounded ? 1 : 0;
+      least_parts += report.least_parts;
+      deepest_run_in = std::max(deepest_run_in, report.deepest_run_in);
+      excess = std::max(excess, guarded.energy() - start - gain);
+    }
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    lost += guarded.lost();
+    worst = std::max(worst, excess / reference);
+    if (!(excess <= 1e-3 * reference)) {
+      ++broken;
+      std::printf("BROKEN seed=%llu scene=%d: %.3g of E_ref above the law\n", static_cast<unsigned long long>(seed), i,
+                  excess / reference);
+    }
+  }
+  const double frames = static_cast<double>(scenes) * steps;
+  std::printf(
+      "%d scenes of %d steps: %d break the law; worst %.3g of E_ref above E(0) and the plain gain (allowed 1e-3)\n",
+      scenes, steps, broken, worst);
+  std::printf("bodies lost: %d (plain at 1,920 Hz: %d)\n", lost, lost_plain);
+  std::printf("a step: %.3f parts, %.3f simulation steps, %.3f ms; %.2f trials a first contact\n",
+              static_cast<double>(parts) / frames, static_cast<double>(trials) / frames, 1e3 * seconds / frames,
+              contacts > 0 ? static_cast<double>(contact_trials) / static_cast<double>(contacts) : 0.0);
+  std::printf("least parts %d, deepest run in %.2g m; bounded steps %d\n", least_parts, deepest_run_in, bounded);
+  return broken == 0 ? 0 : 1;
+}
