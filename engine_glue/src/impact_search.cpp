@@ -4,7 +4,6 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/bullet/shape_cache.hpp"
+#include "triangles_in_box.hpp"
 
 namespace pd::detail {
 
@@ -26,33 +26,6 @@ DepthSettings quick() {
   settings.bracket = Bracket::certified;
   return settings;
 }
-
-/// The triangles of a concave shape that a box meets, as convex bodies of its margin.
-class TriangleCollector : public btTriangleCallback {
- public:
-  TriangleCollector(const btVector3& lower, const btVector3& upper, double margin)
-      : lower_(lower), upper_(upper), margin_(margin) {}
-
-  void processTriangle(btVector3* corners, int, int) override {
-    // A tree of quantised boxes, and heightfields, offer more than what the box meets.
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-      if (low > upper_[axis] || high < lower_[axis]) return;
-    }
-    const std::array points{to_pd(corners[0]), to_pd(corners[1]), to_pd(corners[2])};
-    auto hull = ConvexPolytope::from_points(points);
-    if (!hull) return;  // corners that are no numbers: Bullet's own contacts have none there, either
-    auto shape = ConvexShape(std::move(hull).value()).with_margin(margin_);
-    if (shape) triangles.push_back(std::make_shared<const ConvexShape>(std::move(shape).value()));
-  }
-
-  std::vector<std::shared_ptr<const ConvexShape>> triangles;
-
- private:
-  btVector3 lower_;
-  btVector3 upper_;
-  double margin_;
-};
 
 }  // namespace
 
@@ -249,18 +222,14 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   btVector3 lower;
   btVector3 upper;
   swept_box(a, pa, b, pb, lower, upper);
-  // A plane has no margin in Bullet's contacts; a mesh's triangles have its own.
-  const bool plane = pb.concave->getShapeType() == STATIC_PLANE_PROXYTYPE;
-  TriangleCollector collector(lower, upper, plane ? 0 : static_cast<double>(pb.concave->getMargin()));
-  pb.concave->processAllTriangles(&collector, lower, upper);
+  const std::vector<BoxedTriangle> triangles = triangles_in_box(*pb.concave, lower, upper);
   const MovingShape moving_a = moving_piece(*pa.cached->body, a.start, pa.local, a.motion);
-  const auto& triangles = collector.triangles;
   // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
   // their edges, no deeper than it lies on this one. So one depth is allowed for all.
   double deepest = -HUGE_VAL;
   std::vector<double> starts(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const MovingShape moving_b = moving_piece(*triangles[i], b.start, pb.local, b.motion);
+    const MovingShape moving_b = moving_piece(*triangles[i].shape, b.start, pb.local, b.motion);
     starts[i] = signed_distance(penetration_depth(moving_a.start, moving_b.start, scratch_, quick()));
     deepest = std::max(deepest, -starts[i]);
   }
@@ -270,11 +239,11 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   impact.depth = quick();
   impact.allowed_depth = deepest >= -2 * settings.gap ? std::max(deepest, 0.0) + settings.slop : 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const MovingShape moving_b = moving_piece(*triangles[i], b.start, pb.local, b.motion);
+    const MovingShape moving_b = moving_piece(*triangles[i].shape, b.start, pb.local, b.motion);
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
-      found.b.triangle = triangles[i];
+      found.b.triangle = triangles[i].shape;
     }
   }
 }
