@@ -36,7 +36,8 @@ class MovingSeparation {
   /// @param duration  the times asked for lie in [0, duration].
   MovingSeparation(const MovingShape& a, const MovingShape& b, double duration);
 
-  /// A lower bound of min_A <p, n> - max_B <q, n> - margins at `time`, for a unit vector n: within `2 * rounding()` of it.
+  /// A lower bound of min_A <p, n> - max_B <q, n> - margins at `time`, for a unit vector n: within `2 * rounding()` of
+  /// it.
   [[nodiscard]] double at(const Vec3& n, double time);
   /// s(t) plus this times t^2 / 2 is concave nowhere beyond: every pair of points has |g''| <= curvature.
   [[nodiscard]] double curvature() const { return a_.curvature() + b_.curvature(); }

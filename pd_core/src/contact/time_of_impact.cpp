@@ -60,8 +60,8 @@ class MovingPair {
     return settings_.allowed_depth + separation_.at(answer_.normal, time);
   }
 
-  /// One proved span from `time`, where `left` > 0 is left along the normal. Updates `left`. The span is shortened until
-  /// the proof holds; that of first order (Mirtich's) holds for certain.
+  /// One proved span from `time`, where `left` > 0 is left along the normal. Updates `left`. The span is shortened
+  /// until the proof holds; that of first order (Mirtich's) holds for certain.
   [[nodiscard]] double one_span(double time, double& left, double goal) {
     const double bound = separation_.closing_bound(answer_.normal);
     // Rounded down: the quotient and the sum with the time.
@@ -164,7 +164,8 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
   for (;;) {
     result.certified = time;
     const double clearance = pair.clearance();
-    if (clearance <= std::max(tolerance, unresolved)) return finish(true, time, clearance <= settings.distance_tolerance);
+    if (clearance <= std::max(tolerance, unresolved))
+      return finish(true, time, clearance <= settings.distance_tolerance);
     if (pair.queries() >= settings.max_queries) return finish(true, time, false);
     const double next = pair.follow_normal(time, std::max(0.5 * tolerance, 2 * pair.rounding()));
     if (next >= duration) {
