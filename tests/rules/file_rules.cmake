@@ -6,6 +6,7 @@
 #   2. No source, script or build file is longer than 500 lines.
 #   3. Every header says #pragma once and describes itself with @file.
 cmake_minimum_required(VERSION 3.25)
+get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
 set(rooms CMakeLists.txt engine_glue pd_core demos tests render README.md)
 set(tool_files CMakePresets.json LICENSE CHANGELOG.md)

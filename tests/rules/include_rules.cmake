@@ -12,6 +12,7 @@
 #   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli the command's parts.
 # With -DGRAPH=<file> it also writes the arrows between folders, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
+get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
 set(core_floors numeric shape structure depth compound contact)
 set(core_islands planar dimension)
