@@ -18,6 +18,7 @@ enum ExitCode : int {
 using Action = std::function<int()>;
 
 void add_depth_command(CLI::App& app, Action& action);
+void add_polygon_command(CLI::App& app, Action& action);
 void add_query_command(CLI::App& app, Action& action);
 void add_simplify_command(CLI::App& app, Action& action);
 void add_demo_command(CLI::App& app, Action& action);

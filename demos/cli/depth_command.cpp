@@ -4,15 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
-#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
+#include "options.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
 #ifdef PDEPTH_WITH_DEMOS
@@ -43,24 +42,6 @@ struct DepthArguments {
   std::string trace;
   bool json = false;
 };
-
-/// Numbers between commas or blanks; a Refusal where a word is none.
-std::vector<double> parse_numbers(const std::string& text, const std::string& option) {
-  std::vector<double> numbers;
-  std::size_t at = 0;
-  while ((at = text.find_first_not_of(", \t", at)) != std::string::npos) {
-    const std::size_t end = std::min(text.find_first_of(", \t", at), text.size());
-    double value = 0;
-    const char* first = text.data() + at + (text[at] == '+' ? 1 : 0);
-    const auto result = std::from_chars(first, text.data() + end, value);
-    if (result.ec != std::errc() || result.ptr != text.data() + end) {
-      query::refuse("bad_value", option + ": \"" + text.substr(at, end - at) + "\" is no number", "");
-    }
-    numbers.push_back(value);
-    at = end;
-  }
-  return numbers;
-}
 
 Pose parse_pose(const std::string& text, const std::string& option) {
   if (text.empty()) return {};
@@ -100,11 +81,6 @@ DepthSettings settings_of(const DepthArguments& arguments) {
   return settings;
 }
 
-/// The command writes one format, whatever the file is called.
-std::string refuse_other_pictures(const std::string& file) {
-  return std::filesystem::path(file).extension() == ".png" ? "" : file + ": pictures are written as PNG: name it *.png";
-}
-
 // ---- words for people --------------------------------------------------------------------------------------------
 
 std::string in_words(double value) { return fmt::format("{:.10g}", value + 0.0); }
@@ -130,14 +106,6 @@ std::string feature_in_words(const Feature& feature, const query::NamedShape& sh
       break;
   }
   return "none";
-}
-
-std::string duration_in_words(std::int64_t nanoseconds) {
-  const auto t = static_cast<double>(nanoseconds);
-  if (t < 1e3) return fmt::format("{} ns", nanoseconds);
-  if (t < 1e6) return fmt::format("{:.1f} us", t / 1e3);
-  if (t < 1e9) return fmt::format("{:.1f} ms", t / 1e6);
-  return fmt::format("{:.2f} s", t / 1e9);
 }
 
 void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }

@@ -12,6 +12,7 @@ namespace {
 constexpr const char* kFooter = R"(Examples:
   pdepth depth part.obj fixture.stl --pose-a 0,0,0.25
   pdepth depth a.ply b.off --json
+  pdepth polygon plate.svg tool.json --direction 0,1
   pdepth query lines.jsonl --threads 4 > answers.jsonl
   echo '{"id":1,"query":"depth","a":{"type":"box","half_extents":[1,1,1]},
          "b":{"type":"sphere","radius":1},"pose_b":{"translation":[1.5,0,0]}}' | tr -d '\n' | pdepth query
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   pd::cli::Action action;
   pd::cli::add_depth_command(app, action);
+  pd::cli::add_polygon_command(app, action);
   pd::cli::add_query_command(app, action);
   pd::cli::add_simplify_command(app, action);
   pd::cli::add_demo_command(app, action);

@@ -1,12 +1,12 @@
 /// @file
 /// polygon_depth: two polygons of the plane, Q moves ([D] section 4).
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "pd/planar/polygon_depth.hpp"
 #include "protocol/pair_reader.hpp"
+#include "protocol/polygon_answer.hpp"
 #include "protocol/polygon_reader.hpp"
 
 namespace pd::query {
@@ -70,58 +70,6 @@ Question read_question(const Node& line) {
   return question;
 }
 
-void write_point(const Point2& x, JsonWriter& answer) { answer.begin_array().number(x[0]).number(x[1]).end_array(); }
-
-void write_vertex(std::string_view key, const Polygon::VertexId& id, bool edge, JsonWriter& answer) {
-  answer.key(key).begin_object().key("kind").string(edge ? "edge" : "vertex");
-  answer.key("ring").string(id.ring < 0 ? "outer" : "holes[" + std::to_string(id.ring) + "]");
-  answer.key("index").integer(id.index).end_object();
-}
-
-void write_feature(const std::optional<PlanarFeature>& feature, JsonWriter& answer) {
-  if (!feature) {
-    answer.null();
-    return;
-  }
-  answer.begin_object();
-  write_vertex("p", feature->p, feature->p_edge, answer);
-  write_vertex("q", feature->q, feature->q_edge, answer);
-  answer.end_object();
-}
-
-/// "depth" for one answer, "depths" for a list, for every field.
-void write_answers(const std::vector<PolygonDepth>& answers, bool list, JsonWriter& answer) {
-  const auto field = [&](const char* one, const char* many, const auto& write) {
-    answer.key(list ? many : one);
-    if (list) answer.begin_array();
-    for (const PolygonDepth& a : answers) write(a);
-    if (list) answer.end_array();
-  };
-  field("class", "classes", [&](const PolygonDepth& a) { answer.string(to_string(a.contact)); });
-  field("depth", "depths", [&](const PolygonDepth& a) { answer.number(a.depth); });
-  field("lower", "lowers", [&](const PolygonDepth& a) { answer.number(a.lower); });
-  field("upper", "uppers", [&](const PolygonDepth& a) { answer.number(a.upper); });
-  field("translation", "translations", [&](const PolygonDepth& a) { write_point(a.translation, answer); });
-  field("normal", "normals", [&](const PolygonDepth& a) { write_point(a.normal, answer); });
-  field("feature", "features", [&](const PolygonDepth& a) { write_feature(a.feature, answer); });
-}
-
-void write_statistics(const PolygonDifference& r, std::int64_t nanoseconds, JsonWriter& answer) {
-  const PolygonDifference::Statistics s = r.statistics();
-  answer.key("method").string(s.implicit ? "implicit" : "explicit");
-  answer.key("stats").begin_object();
-  answer.key("sums").integer(s.sums);
-  answer.key("stretches").integer(s.stretches);
-  answer.key("arcs").integer(s.arcs);
-  answer.key("events").integer(s.reflex_points);
-  answer.key("holes").integer(s.loops - 1);
-  answer.key("pairs").integer(s.pairs);
-  answer.key("probes").integer(s.locations);
-  answer.key("bytes").integer(s.memory_bytes);
-  answer.key("nanoseconds").integer(nanoseconds);
-  answer.end_object();
-}
-
 }  // namespace
 
 void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer) {
@@ -152,18 +100,18 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
     for (std::size_t d = 0; d < directions; ++d) answers.push_back(question.answer(*r, y, d));
   }
   const std::int64_t nanoseconds = watch.nanoseconds();
-  write_answers(answers, placements_node.has_value() || line.find("direction_set").has_value(), answer);
+  write_polygon_answers(answers, placements_node.has_value() || line.find("direction_set").has_value(), answer);
   if (slots) {
     answer.key("slots").begin_array();
     for (const auto& slot : r->slots()) {
       answer.begin_array();
-      write_point(slot[0], answer);
-      write_point(slot[1], answer);
+      write_point2(slot[0], answer);
+      write_point2(slot[1], answer);
       answer.end_array();
     }
     answer.end_array();
   }
-  write_statistics(*r, nanoseconds, answer);
+  write_polygon_statistics(*r, nanoseconds, answer);
 }
 
 }  // namespace pd::query

@@ -35,24 +35,28 @@ std::vector<Point2> read_points2(const Node& node, const Limits& limits, bool di
   return points;
 }
 
-Polygon read_polygon(const Node& node, const Limits& limits) {
+PolygonRings read_polygon_rings(const Node& node, const Limits& limits) {
   require_object(node);
   allow_only(node, {"outer", "holes"});
-  const std::vector<Point2> outer = read_ring(node.at("outer"), limits);
-  std::vector<std::vector<Point2>> holes;
-  std::size_t vertices = outer.size();
+  PolygonRings rings{read_ring(node.at("outer"), limits), {}};
+  std::size_t vertices = rings.outer.size();
   if (const auto list = node.find("holes")) {
     require_array(*list, "an array of holes, each an array of points [x,y]");
     for (std::size_t h = 0; h < list->size(); ++h) {
-      holes.push_back(read_ring(list->element(h), limits));
-      vertices += holes.back().size();
+      rings.holes.push_back(read_ring(list->element(h), limits));
+      vertices += rings.holes.back().size();
     }
     if (vertices > static_cast<std::size_t>(limits.max_vertices)) {
       list->refuse("limit_exceeded", std::to_string(vertices) + " vertices; the limit is " +
                                          std::to_string(limits.max_vertices) + " (--max-vertices)");
     }
   }
-  Expected<Polygon> polygon = Polygon::from_rings(outer, holes);
+  return rings;
+}
+
+Polygon read_polygon(const Node& node, const Limits& limits) {
+  const PolygonRings rings = read_polygon_rings(node, limits);
+  Expected<Polygon> polygon = Polygon::from_rings(rings.outer, rings.holes);
   if (!polygon) node.refuse(polygon.error());
   return std::move(polygon).value();
 }

@@ -10,7 +10,14 @@
 
 namespace pd::query {
 
-/// {"outer":[[x,y],...],"holes"?:[...]}; a refusal names the edge at fault ("p.holes[0][2]").
+/// Rings as they were given.
+struct PolygonRings {
+  std::vector<Point2> outer;
+  std::vector<std::vector<Point2>> holes;
+};
+/// {"outer":[[x,y],...],"holes"?:[...]}, at most --max-vertices in all.
+[[nodiscard]] PolygonRings read_polygon_rings(const Node& node, const Limits& limits);
+/// The same, checked; a refusal names the edge at fault ("p.holes[0][2]").
 [[nodiscard]] Polygon read_polygon(const Node& node, const Limits& limits);
 [[nodiscard]] Point2 read_point2(const Node& node);
 /// As read_point2; zero_direction for [0,0].

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/mesh_file.hpp"
+#include "pd/shape/halfspaces.hpp"
 
 namespace pd::query {
 
@@ -95,6 +96,23 @@ ConvexShape read_about_axis(const Node& node, Expected<ConvexShape> (*make)(doub
   return value_or_refuse(make(radius, half_height, read_axis(node.at("axis"))), node);
 }
 
+/// A row [nx,ny,nz,offset] a plane.
+NamedShape read_halfspaces(const Node& node, const Limits& limits) {
+  allow_only(node, {"type", "margin", "planes"});
+  const Node rows = node.at("planes");
+  require_array(rows, "an array of halfspaces [nx,ny,nz,offset]");
+  if (rows.size() > static_cast<std::size_t>(limits.max_vertices)) {
+    rows.refuse("limit_exceeded", std::to_string(rows.size()) + " halfspaces; the limit is " +
+                                      std::to_string(limits.max_vertices) + " (--max-vertices)");
+  }
+  std::vector<Halfspace3> planes;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<double> n = read_numbers(rows.element(i), 4);
+    planes.push_back({{n[0], n[1], n[2]}, n[3]});
+  }
+  return {value_or_refuse(polytope_of_halfspaces(planes), node), {}};
+}
+
 NamedShape read_mesh(const Node& node, const Limits& limits) {
   allow_only(node, {"type", "margin", "path"});
   const Node path = node.at("path");
@@ -127,15 +145,16 @@ NamedShape read_core(const Node& node, const Limits& limits) {
   if (type == "cylinder") return {read_about_axis(node, &ConvexShape::cylinder), {}};
   if (type == "cone") return {read_about_axis(node, &ConvexShape::cone), {}};
   if (type == "mesh") return read_mesh(node, limits);
+  if (type == "halfspaces") return read_halfspaces(node, limits);
   if (type == "compound" || type == "star") {
     type_node.refuse("unsupported",
                      "this query is for convex shapes; for compounds and star-shaped bodies there are "
                      "depth, distance, intersect, directional_depth, point_in_difference, "
                      "support_of_difference, minkowski_difference, contact_manifold and time_of_impact");
   }
-  type_node.refuse(
-      "bad_value",
-      "unknown shape; known: convex, box, sphere, ellipsoid, capsule, cylinder, cone, mesh, compound, star");
+  type_node.refuse("bad_value",
+                   "unknown shape; known: convex, box, sphere, ellipsoid, capsule, cylinder, cone, halfspaces, mesh, "
+                   "compound, star");
 }
 
 }  // namespace

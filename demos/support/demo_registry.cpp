@@ -14,6 +14,7 @@ constexpr std::array kDemos{
     Demo{"rollback", "bodies thrown fast at each other, taken back to the exact time of first contact", run_rollback},
     Demo{"difference", "one pair with its Minkowski difference: why the depth is what it is", run_difference},
     Demo{"agarwal", "the constructions of Agarwal et al. 2000: normal diagrams, grids, searches, width", run_agarwal},
+    Demo{"dobkin", "the constructions of Dobkin et al. 1993: hierarchies, a descent, polygons with holes", run_dobkin},
 };
 
 }  // namespace

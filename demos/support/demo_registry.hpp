@@ -31,5 +31,7 @@ int run_rollback(const DemoOptions& options);
 int run_difference(const DemoOptions& options);
 /// The constructions of [A] as pictures: normal diagrams, direction grid, shallow search, width.
 int run_agarwal(const DemoOptions& options);
+/// The constructions of [D] as pictures: hierarchies, a descent, polygons and their convolution.
+int run_dobkin(const DemoOptions& options);
 
 }  // namespace pd::demo

@@ -2,7 +2,7 @@
 
 pd_build_packages=(
   g++ cmake ninja-build pkgconf libeigen3-dev libboost-dev libbullet-dev libosmesa6-dev libgl-dev libegl-dev libpng-dev
-  libpango1.0-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  libpango1.0-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev
 )
 # Loaded or run, not linked: the rasteriser, the fonts of the captions, the video encoder.
 pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)

@@ -131,6 +131,46 @@ TEST_F(Program, DepthForPrograms) {
   EXPECT_EQ(answer.at("feature").at("a"), Json({0}));
 }
 
+TEST_F(Program, PolygonForPeopleAndPrograms) {
+  write("frame.json", R"({"outer":[[0,0],[10,0],[10,10],[0,10]],"holes":[[[3,3],[3,7],[7,7],[7,3]]]})");
+  write("peg.svg", R"(<svg xmlns="http://www.w3.org/2000/svg"><rect width="1" height="1"/></svg>)");
+  const Outcome people = run("polygon frame.json peg.svg --place-q 2.25,4");
+  ASSERT_EQ(people.status, 0) << people.err;
+  for (const char* words : {"0.75", "(0.75, 0)", "1 hole", "convex", "moves Q clear of P", "edge at holes[0]"}) {
+    EXPECT_NE(people.out.find(words), std::string::npos) << words << "\n" << people.out;
+  }
+  const auto depth = [&](const std::string& more) {
+    const Outcome result = run("polygon frame.json peg.svg --json --place-q 2.25,4 " + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out).at("depth");
+  };
+  EXPECT_EQ(depth(""), 0.75);
+  EXPECT_EQ(depth("--direction 0,1"), 6.0);
+  EXPECT_EQ(depth("--complete"), 3.25);
+  EXPECT_EQ(depth("--direction 2,0 --complete"), 7.75);
+  write("bow.svg", R"(<svg><path id="bow" d="M0 0L4 4L4 0L0 4z"/></svg>)");
+  const Outcome crossed = run("polygon bow.svg peg.svg");
+  EXPECT_EQ(crossed.status, 2);
+  EXPECT_NE(crossed.err.find("<path id=\"bow\">: the edges that start at outer[0] and outer[2] cross"),
+            std::string::npos)
+      << crossed.err;
+  EXPECT_NE(crossed.err.find("the edge from (0.0, 0.0) to (4.0, 4.0)"), std::string::npos) << crossed.err;
+  EXPECT_EQ(run("polygon frame.json peg.svg --direction 0,0").status, 2);
+  EXPECT_EQ(run("polygon frame.json peg.svg --direction 1").status, 2);
+  EXPECT_EQ(run("polygon frame.json peg.svg --flatness 0").status, 2);
+  EXPECT_EQ(run("polygon frame.json nowhere.svg").status, 2);
+}
+
+TEST_F(Program, PolygonPicture) {
+  if (run("demo").out.find("dobkin") == std::string::npos) GTEST_SKIP() << "this build draws no pictures";
+  write("plate.svg", R"(<svg width="40mm" viewBox="0 0 40 40"><path d="M0 0H40V30H0zM5 5v9h9v-9z"/></svg>)");
+  write("disc.svg", R"(<svg width="40mm" viewBox="0 0 40 40"><circle cx="20" cy="10" r="3"/></svg>)");
+  const Outcome result = run("polygon plate.svg disc.svg --picture out.png");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find(" mm"), std::string::npos) << result.out;
+  EXPECT_TRUE(read("out.png").starts_with("\x89PNG"));
+}
+
 TEST_F(Program, DifferenceDemoDrawsAnyTwoMeshes) {
   if (run("demo").out.find("difference") == std::string::npos) GTEST_SKIP() << "this build has no demos";
   const std::string command = "demo difference spike.off cube.obj --size 640x360 --out drawn";

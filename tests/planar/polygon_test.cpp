@@ -73,4 +73,20 @@ TEST(Polygon, TouchingByTheLastBit) {
   EXPECT_FALSE(with_apex(std::nextafter(0.5, 0.0)));
 }
 
+TEST(Polygon, EdgesAreNamedInTheCallersOrder) {
+  const std::vector<Point2> points = {{0, 0}, {4, 0}, {4, 2}, {4, 4}, {0, 4}};  // [2] lies on an edge
+  const std::vector<Point2> turned(points.rbegin(), points.rend());
+  for (const auto& ring : {points, turned}) {
+    const Polygon polygon = *Polygon::from_rings(ring);
+    for (int v = 0; v < polygon.num_vertices(); ++v) {
+      const Point2 &a = polygon.point(v), &b = polygon.point(polygon.next(v));
+      const auto named = static_cast<std::size_t>(polygon.caller_edge(v).index);
+      const Point2& following = ring[(named + 1) % ring.size()];
+      EXPECT_TRUE(ring[named] == a || ring[named] == b);
+      // What follows it in the caller's ring lies on the same edge.
+      EXPECT_EQ((b[0] - a[0]) * (following[1] - a[1]) - (b[1] - a[1]) * (following[0] - a[0]), 0);
+    }
+  }
+}
+
 }  // namespace

@@ -45,7 +45,8 @@ class BoundaryBuilder {
 [[nodiscard]] std::vector<Stretch> split_where_touched(const SumBoundary& boundary,
                                                        const std::vector<Stretch>& stretches);
 
-/// Links the stretches of a boundary into loops and numbers them, the outer one 0. @return how many there are.
+/// Links the stretches of a boundary into loops, numbers them, the outer one 0, and puts them in this order, each
+/// behind the one that it continues. @return how many there are.
 int link_loops(const SumBoundary& boundary, std::vector<Stretch>& stretches, std::int64_t& reflex_points);
 
 }  // namespace pd::detail

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "numeric/quotient.hpp"
 #include "planar/boundary_builder.hpp"
@@ -93,16 +94,23 @@ class Linker {
     }
   }
 
+  /// Numbers the loops, and puts the stretches in the order in which they follow each other along them.
   int number_loops(int outer) {
     int loops = 0;
+    std::vector<Stretch> ordered;
+    ordered.reserve(stretches_.size());
     const auto walk = [&](int first) {
-      for (int s = first; stretches_[at(s)].loop < 0; s = next_[at(s)]) stretches_[at(s)].loop = loops;
+      for (int s = first; stretches_[at(s)].loop < 0; s = next_[at(s)]) {
+        stretches_[at(s)].loop = loops;
+        ordered.push_back(stretches_[at(s)]);
+      }
       ++loops;
     };
     walk(outer);
     for (int s = 0; s < static_cast<int>(stretches_.size()); ++s) {
       if (stretches_[at(s)].loop < 0) walk(s);
     }
+    stretches_ = std::move(ordered);
     return loops;
   }
 

@@ -97,6 +97,7 @@ std::string describe(const detail::RingFault& fault, const std::string& edge, co
     case Kind::crossing:
       return "the edges that start at " + edge + " and " + other + " cross; rings must not cross";
     case Kind::touching:
+    case Kind::meeting:
       return "the rings touch at " + edge + " and " + other + "; they may not share a point";
     case Kind::hole_outside:
       return "the hole of " + edge + " lies outside the outer ring or reaches out of it";
@@ -143,8 +144,11 @@ Expected<Polygon> Polygon::from_rings(std::span<const Point2> outer, std::span<c
     r.ring_start_.push_back(begin + size);
   }
   if (const auto fault = detail::find_ring_fault({r.points_, r.next_, r.previous_, ring_of})) {
-    const auto first = r.caller_id(fault->edge);
-    const std::string other = fault->other_edge < 0 ? "" : edge_name(r.caller_id(fault->other_edge));
+    using Kind = detail::RingFault::Kind;
+    const bool edges = fault->kind == Kind::crossing || fault->kind == Kind::touching;
+    const auto named = [&](int v) { return edges ? r.caller_edge(v) : r.caller_id(v); };
+    const VertexId first = named(fault->edge);
+    const std::string other = fault->other_edge < 0 ? "" : edge_name(named(fault->other_edge));
     return Error{ErrorCode::bad_value, describe(*fault, edge_name(first), other), edge_name(first)};
   }
   r.convex_ = r.num_rings() == 1;

@@ -87,7 +87,8 @@ ExactVector difference(const detail::Homogeneous<Dyadic>& x, const Point2& y) {
 std::optional<PlanarFeature> feature_of(const detail::SumBoundary& boundary, const Polygon& p, const Polygon& q,
                                         const BoundaryPoint& x, bool swapped) {
   const auto c = boundary.contact(boundary.stretches()[static_cast<std::size_t>(x.stretch)], x.edge);
-  PlanarFeature f{p.caller_id(c.p), q.caller_id(c.q), c.p_edge, c.q_edge};
+  PlanarFeature f{c.p_edge ? p.caller_edge(c.p) : p.caller_id(c.p), c.q_edge ? q.caller_edge(c.q) : q.caller_id(c.q),
+                  c.p_edge, c.q_edge};
   if (swapped) {
     std::swap(f.p, f.q);
     std::swap(f.p_edge, f.q_edge);

@@ -24,7 +24,7 @@ class Sweep {
     for (std::size_t i = 0; i < order.size() && !fault_; ++i) {
       const int v = order[i];
       if (i > 0 && point(order[i - 1]) == point(v)) {
-        fault_ = RingFault{RingFault::Kind::touching, v, order[i - 1]};
+        fault_ = RingFault{RingFault::Kind::meeting, v, order[i - 1]};
         break;
       }
       const auto ring = static_cast<std::size_t>(at(rings_.ring, v));

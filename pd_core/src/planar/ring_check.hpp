@@ -22,8 +22,8 @@ struct Rings {
 };
 
 struct RingFault {
-  enum class Kind { crossing, touching, hole_outside, hole_in_hole } kind;
-  int edge;        ///< by its first vertex
+  enum class Kind { crossing, touching, meeting, hole_outside, hole_in_hole } kind;
+  int edge;        ///< by its first vertex; where vertices meet and of holes, the vertex
   int other_edge;  ///< -1 where there is none
 };
 

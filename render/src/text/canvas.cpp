@@ -114,6 +114,18 @@ void Canvas::fill_polygon(std::span<const Point> loop, Colour colour, double opa
   cairo_fill(cairo_);
 }
 
+void Canvas::fill_rings(std::span<const std::vector<Point>> rings, Colour colour, double opacity) {
+  for (const std::vector<Point>& ring : rings) {
+    cairo_new_sub_path(cairo_);
+    for (const Point& p : ring) cairo_line_to(cairo_, p.x, p.y);
+    cairo_close_path(cairo_);
+  }
+  cairo_set_fill_rule(cairo_, CAIRO_FILL_RULE_EVEN_ODD);
+  set_colour(colour, opacity);
+  cairo_fill(cairo_);
+  cairo_set_fill_rule(cairo_, CAIRO_FILL_RULE_WINDING);
+}
+
 void Canvas::stroke(std::span<const Point> line, double width, Colour colour, double opacity, bool dashed) {
   for (const Point& p : line) {
     cairo_line_to(cairo_, p.x, p.y);

@@ -7,6 +7,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pd/render/image.hpp"
 
@@ -52,6 +53,8 @@ class Canvas {
   void fill_rectangle(double x, double y, double width, double height, Colour colour, double opacity = 1,
                       double corner = 0);
   void fill_polygon(std::span<const Point> loop, Colour colour, double opacity = 1);
+  /// Inside by the even-odd rule.
+  void fill_rings(std::span<const std::vector<Point>> rings, Colour colour, double opacity = 1);
   void stroke(std::span<const Point> line, double width, Colour colour, double opacity = 1, bool dashed = false);
   void fill_circle(Point centre, double radius, Colour colour, double opacity = 1);
 

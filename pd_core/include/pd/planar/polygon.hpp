@@ -30,8 +30,8 @@ class Polygon {
   /// @return ErrorCode::non_finite, out_of_range (above 1e300), too_few_points (fewer than 3 distinct points in a
   /// ring),
   ///         not_full_dimensional (a ring on one line), or bad_value for a ring that crosses or touches itself or
-  ///         another one, folds back, or is no hole of the outer ring. `where` names the edge by its first point:
-  ///         "outer[3]", "holes[0][2]".
+  ///         another one, folds back, or is no hole of the outer ring. `where` names the edge by its first point in
+  ///         the caller's order: "outer[3]", "holes[0][2]".
   static Expected<Polygon> from_rings(std::span<const Point2> outer, std::span<const std::vector<Point2>> holes = {});
 
   [[nodiscard]] int num_vertices() const { return static_cast<int>(points_.size()); }
@@ -48,6 +48,14 @@ class Polygon {
   /// 1: convex corner of the interior, -1: reflex. Never 0.
   [[nodiscard]] int turn(int vertex) const { return turn_[static_cast<std::size_t>(vertex)]; }
   [[nodiscard]] VertexId caller_id(int vertex) const { return caller_id_[static_cast<std::size_t>(vertex)]; }
+  /// The edge from a vertex to the next, by the end that comes first in the caller's order: where the caller's ring was
+  /// turned round, that is the next vertex.
+  [[nodiscard]] VertexId caller_edge(int vertex) const {
+    const int second = next(vertex), third = next(second);
+    const std::int32_t a = caller_id(vertex).index, b = caller_id(second).index, c = caller_id(third).index;
+    const bool ascending = (a < b && b < c) || (b < c && c < a) || (c < a && a < b);
+    return caller_id(ascending ? vertex : second);
+  }
   [[nodiscard]] bool convex() const { return convex_; }
 
  private:

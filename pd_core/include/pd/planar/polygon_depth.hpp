@@ -81,7 +81,8 @@ class PolygonDifference {
   };
   [[nodiscard]] Statistics statistics() const;
 
-  /// A curve of the boundary for drawing, rounded; loop 0 is the outer one.
+  /// A curve of the boundary for drawing, rounded; loop 0 is the outer one. They come loop after loop, each beginning
+  /// where the one before it ends.
   struct Curve {
     int loop;
     bool arc;

@@ -1,0 +1,42 @@
+#include "options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "support/refusal.hpp"
+
+namespace pd::cli {
+
+std::vector<double> parse_numbers(const std::string& text, const std::string& option) {
+  std::vector<double> numbers;
+  std::size_t at = 0;
+  while ((at = text.find_first_not_of(", \t", at)) != std::string::npos) {
+    const std::size_t end = std::min(text.find_first_of(", \t", at), text.size());
+    double value = 0;
+    const char* first = text.data() + at + (text[at] == '+' ? 1 : 0);
+    const auto result = std::from_chars(first, text.data() + end, value);
+    if (result.ec != std::errc() || result.ptr != text.data() + end) {
+      query::refuse("bad_value", option + ": \"" + text.substr(at, end - at) + "\" is no number", "");
+    }
+    numbers.push_back(value);
+    at = end;
+  }
+  return numbers;
+}
+
+std::string refuse_other_pictures(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".png" ? "" : file + ": pictures are written as PNG: name it *.png";
+}
+
+std::string duration_in_words(std::int64_t nanoseconds) {
+  const auto t = static_cast<double>(nanoseconds);
+  if (t < 1e3) return fmt::format("{} ns", nanoseconds);
+  if (t < 1e6) return fmt::format("{:.1f} us", t / 1e3);
+  if (t < 1e9) return fmt::format("{:.1f} ms", t / 1e6);
+  return fmt::format("{:.2f} s", t / 1e9);
+}
+
+}  // namespace pd::cli

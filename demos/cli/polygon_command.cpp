@@ -1,0 +1,226 @@
+/// @file
+/// `pdepth polygon P Q`: how far Q must move to come clear of P, in the plane, from drawings or JSON.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "drawing/polygon_file.hpp"
+#include "options.hpp"
+#include "pd/planar/polygon_depth.hpp"
+#include "protocol/pair_reader.hpp"
+#include "protocol/polygon_answer.hpp"
+#ifdef PDEPTH_WITH_DEMOS
+#include "support/polygon_picture.hpp"
+#endif
+
+namespace pd::cli {
+
+namespace {
+
+constexpr const char* kFooter = R"(P stays, Q moves. A file is
+  FILE.json     {"outer":[[x,y],...],"holes":[[[x,y],...],...]}, in P's unit
+  FILE.svg#ID   an element of a drawing: path, rect, circle, ellipse, polygon or polyline, with the transforms above it;
+                #ID may be left out where there is one. The inside follows fill-rule; fill and stroke do not matter
+Lengths are in the unit of the width of P's page (user units where it has none). In drawings y points down, and nothing is
+turned round. Curves become polylines: no point of one lies farther than --flatness from its chord.
+
+Without --direction the least move over all directions is found. With --complete Q shall get away for good:
+  with --direction     going on straight along it, for ever
+  without              by any motion: Q comes to where a way leads out, not into a hole that it fits in
+
+Examples:
+  pdepth polygon plate.svg tool.json
+  pdepth polygon sheet.svg#plate part.svg --direction 0,1 --complete
+  pdepth polygon frame.json peg.json --place-q 2.25,4 --picture out.png)";
+
+struct PolygonArguments {
+  std::string file_p;
+  std::string file_q;
+  std::string direction;
+  std::string place;
+  std::string picture;
+  std::optional<double> flatness;
+  bool complete = false;
+  bool json = false;
+};
+
+struct PolygonPair {
+  drawing::PolygonFile p, q;
+  Point2 place = {0, 0};
+  std::optional<Point2> direction;
+};
+
+Point2 parse_point(const std::string& text, const std::string& option) {
+  const std::vector<double> n = parse_numbers(text, option);
+  if (n.size() != 2) {
+    query::refuse("bad_value", option + ": two numbers are expected, X,Y, not " + std::to_string(n.size()), "");
+  }
+  for (const double x : n) {
+    if (!std::isfinite(x)) query::refuse("non_finite", option + ": the numbers must be finite", "");
+  }
+  return {n[0], n[1]};
+}
+
+PolygonPair read_pair(const PolygonArguments& arguments) {
+  const query::Limits limits{.max_vertices = 10'000'000};
+  drawing::PolygonFile p = drawing::read_polygon_file(arguments.file_p, arguments.flatness, "", limits);
+  drawing::PolygonFile q = drawing::read_polygon_file(arguments.file_q, arguments.flatness, p.unit, limits);
+  PolygonPair pair{std::move(p), std::move(q), {0, 0}, std::nullopt};
+  if (!arguments.place.empty()) pair.place = parse_point(arguments.place, "--place-q");
+  if (!arguments.direction.empty()) {
+    pair.direction = parse_point(arguments.direction, "--direction");
+    if (*pair.direction == Point2{0, 0}) query::refuse("zero_direction", "--direction must not be 0,0", "");
+  }
+  return pair;
+}
+
+PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r, bool complete) {
+  if (pair.direction) {
+    return r.depth_along(pair.place, *pair.direction, complete ? Leave::straight : Leave::first_exit);
+  }
+  return complete ? r.escape_depth(pair.place) : r.depth(pair.place);
+}
+
+// ---- words for people --------------------------------------------------------------------------------------------
+
+void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }
+
+void print_polygon(std::string_view name, const std::string& file, const drawing::PolygonFile& polygon) {
+  const int holes = polygon.polygon.num_rings() - 1;
+  std::string words = fmt::format("{}  ({} vertices", file, polygon.polygon.num_vertices());
+  if (holes > 0) words += fmt::format(", {} {}", holes, holes == 1 ? "hole" : "holes");
+  if (polygon.polygon.convex()) words += ", convex";
+  if (polygon.flatness > 0) {
+    words += fmt::format("; curves within {:.3g}{}{}", polygon.flatness, polygon.unit.empty() ? "" : " ", polygon.unit);
+  }
+  print_row(name, words + ")");
+}
+
+std::string feature_in_words(const Polygon& polygon, const Polygon::VertexId& id, bool edge) {
+  const std::string ring = id.ring < 0 ? "outer" : fmt::format("holes[{}]", id.ring);
+  for (int v = 0; v < polygon.num_vertices(); ++v) {
+    if (!((edge ? polygon.caller_edge(v) : polygon.caller_id(v)) == id)) continue;
+    const Point2 &a = polygon.point(v), &b = polygon.point(polygon.next(v));
+    if (!edge) return fmt::format("vertex {}[{}] ({:.10g}, {:.10g})", ring, id.index, a[0], a[1]);
+    return fmt::format("edge at {}[{}], ({:.10g}, {:.10g}) to ({:.10g}, {:.10g})", ring, id.index, a[0], a[1], b[0],
+                       b[1]);
+  }
+  return fmt::format("{} {}[{}]", edge ? "edge" : "vertex", ring, id.index);
+}
+
+/// What the answer says, in one line.
+std::string verdict(const PolygonPair& pair, const PolygonDepth& result, bool complete) {
+  const std::string way = pair.direction ? " along the direction" : "";
+  if (complete) {
+    if (result.depth == 0)
+      return pair.direction ? "Nothing is in Q's way along the direction." : "Q can leave as it is.";
+    return pair.direction ? "Q must go this far before nothing is in its way any more."
+                          : "After the least such move a way leads Q out of P.";
+  }
+  switch (result.contact) {
+    case PlanarContact::overlapping:
+      return "P and Q overlap; this moves Q clear of P" + way + ".";
+    case PlanarContact::touching:
+      return "P and Q touch: they share boundary points, but no inside.";
+    case PlanarContact::separated:
+      break;
+  }
+  return "P and Q are apart.";
+}
+
+void print_result(const PolygonArguments& arguments, const PolygonPair& pair, const PolygonDifference& r,
+                  const PolygonDepth& result, std::int64_t nanoseconds) {
+  const std::string unit = pair.p.unit.empty() ? "" : " " + pair.p.unit;
+  fmt::print("\n");
+  print_polygon("P", arguments.file_p, pair.p);
+  print_polygon("Q", arguments.file_q, pair.q);
+  fmt::print("\n{}\n\n", verdict(pair, result, arguments.complete));
+  print_row("depth", fmt::format("{}{}", result.depth, unit));
+  if (result.depth > 0) {
+    print_row("bracket", fmt::format("[{}, {}]", result.lower, result.upper));
+    print_row("translation",
+              fmt::format("({:.10g}, {:.10g})  moves Q", result.translation[0] + 0.0, result.translation[1] + 0.0));
+  }
+  if (result.normal != Point2{0, 0}) {
+    print_row("direction", fmt::format("({:.10g}, {:.10g})", result.normal[0] + 0.0, result.normal[1] + 0.0));
+  }
+  if (result.feature) {
+    print_row("of P", feature_in_words(pair.p.polygon, result.feature->p, result.feature->p_edge));
+    print_row("of Q", feature_in_words(pair.q.polygon, result.feature->q, result.feature->q_edge));
+  }
+  const PolygonDifference::Statistics s = r.statistics();
+  fmt::print("\n");
+  print_row("method", fmt::format("{}: {} convex sums, {} pieces of boundary, {} {}, {}",
+                                  s.implicit ? "implicit" : "explicit", s.sums, s.stretches, s.loops - 1,
+                                  s.loops == 2 ? "hole" : "holes", duration_in_words(nanoseconds)));
+  fmt::print("\n");
+}
+
+int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, const PolygonDifference& r,
+                 const PolygonDepth& result) {
+#ifdef PDEPTH_WITH_DEMOS
+  return demo::write_polygon_picture({&pair.p.polygon, &pair.q.polygon, pair.place, pair.p.unit, pair.p.drawing}, r,
+                                     result, verdict(pair, result, arguments.complete), arguments.picture);
+#else
+  (void)pair;
+  (void)r;
+  (void)result;
+  fmt::print(stderr, "pdepth: {}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)\n",
+             arguments.picture);
+  return kBadUsage;
+#endif
+}
+
+int run_polygon(const PolygonArguments& arguments) {
+  try {
+    const PolygonPair pair = read_pair(arguments);
+    const query::Stopwatch watch;
+    const Expected<PolygonDifference> r = PolygonDifference::of(pair.p.polygon, pair.q.polygon);
+    if (!r) query::refuse(to_string(r.error().code), r.error().message, r.error().where);
+    const PolygonDepth result = answer_of(pair, *r, arguments.complete);
+    const std::int64_t nanoseconds = watch.nanoseconds();
+    if (arguments.json) {
+      std::string out;
+      query::JsonWriter writer(out);
+      writer.begin_object();
+      query::write_polygon_answers({result}, false, writer);
+      query::write_polygon_statistics(*r, nanoseconds, writer);
+      writer.end_object();
+      fmt::print("{}\n", out);
+    } else {
+      print_result(arguments, pair, *r, result, nanoseconds);
+    }
+    return arguments.picture.empty() ? kDone : draw_picture(arguments, pair, *r, result);
+  } catch (const query::Refusal& refusal) {
+    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    return kBadUsage;
+  }
+}
+
+}  // namespace
+
+void add_polygon_command(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<PolygonArguments>();
+  CLI::App* command = app.add_subcommand("polygon", "How far one polygon must move to leave another, in the plane");
+  command->footer(kFooter);
+  command->add_option("P", arguments->file_p, "Polygon that stays: FILE.svg, FILE.svg#ID or FILE.json")->required();
+  command->add_option("Q", arguments->file_q, "Polygon that moves")->required();
+  command->add_option("--direction", arguments->direction, "Move along X,Y [the best direction]");
+  command->add_flag("--complete", arguments->complete, "Get away for good, not only clear of P");
+  command->add_option("--place-q", arguments->place, "Displacement X,Y of Q before it is looked at [0,0]");
+  command
+      ->add_option("--flatness", arguments->flatness, "Greatest distance of a curve from its chords [1e-4 of the size]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--picture", arguments->picture, "Draw P, Q and all forbidden placements as a PNG")
+      ->check(refuse_other_pictures, "FILE.png");
+  command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers polygon_depth");
+  command->callback([arguments, &action] { action = [arguments] { return run_polygon(*arguments); }; });
+}
+
+}  // namespace pd::cli
