@@ -81,6 +81,8 @@ BulletSolverStatistics BulletPenetrationDepthSolver::statistics() const {
     result.refused_poses += counters.refused_poses.read();
     result.support_calls += counters.support_calls.read();
     result.nanoseconds += counters.nanoseconds.read();
+    result.exact_signs += counters.exact_signs.read();
+    result.wider_brackets += counters.wider.read();
   });
   return result;
 }

@@ -2,10 +2,12 @@
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "installation.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
 
 namespace pd::detail {
 
@@ -13,6 +15,19 @@ namespace {
 
 /// One query in this many reads the clock: two readings cost a tenth of a short query.
 constexpr unsigned kClockSample = 16;
+
+double radius_of(const ConvexShape& shape) {
+  return shape.polytope() != nullptr ? shape.polytope()->radius() + shape.margin() : bounding_radius(shape);
+}
+
+/// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in Bullet's scalar leaves
+/// uncertain, whatever the reach of a floor. Coordinates are known to half a unit in the last place, so that surfaces
+/// are to 2^-24 (2^-53) of the distance from the world's origin and of the body's size.
+double contact_tolerance(const PosedShape& a, const PosedShape& b) {
+  constexpr double kShare = sizeof(btScalar) == sizeof(float) ? 0x1p-30 : 0x1p-59;
+  const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
+  return kShare * (farthest + std::min(radius_of(*a.shape), radius_of(*b.shape)));
+}
 
 bool in_range(const btTransform& pose) {
   return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
@@ -65,9 +80,16 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
   out.b = {(sharp ? found_b.sharp : found_b.body).get(), to_pd(pose_b)};
   DepthSettings depth_settings;
   depth_settings.delta = settings.delta;
-  depth_settings.bracket = Bracket::certified;  // Bullet rounds to its own scalar anyway
+  depth_settings.bracket = Bracket::contact;
+  depth_settings.contact_tolerance = contact_tolerance(out.a, out.b);
   out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, warm);
   counters.support_calls.add(out.depth.statistics.support_calls);
+  if (out.depth.statistics.exact_signs > 0) {
+    counters.exact_signs.add(out.depth.statistics.exact_signs);
+  }
+  if (!out.depth.bracket_reached) {
+    counters.wider.add();
+  }
   switch (out.depth.contact) {
     case ContactClass::overlapping:
       counters.overlapping.add();

@@ -27,11 +27,11 @@ class Counter {
 
 struct SolverCounters {
   Counter calls, overlapping, touching, separated, warm, unsupported, fallback, refused_poses, support_calls,
-      nanoseconds;
+      nanoseconds, exact_signs, wider;
   template <class Visit>
   void for_each(Visit&& visit) {
     for (Counter* counter : {&calls, &overlapping, &touching, &separated, &warm, &unsupported, &fallback,
-                             &refused_poses, &support_calls, &nanoseconds}) {
+                             &refused_poses, &support_calls, &nanoseconds, &exact_signs, &wider}) {
       visit(*counter);
     }
   }

@@ -78,6 +78,27 @@ TEST(Allocations, NoneAfterTheFirstCall) {
   std::printf("%d pairs, %d of them reached exact arithmetic\n", pairs, exact);
 }
 
+/// `Bracket::contact` has no exact arithmetic to fall back to, so that no call allocates.
+TEST(Allocations, NoneForContacts) {
+  Scratch scratch;
+  for (int f = 0; f < scenes::kPairFamilies; ++f) {
+    if (static_cast<PairFamily>(f) == PairFamily::scales) continue;  // sizes beyond 2^100 are left to exact numbers
+    for (int d = 0; d < scenes::kDepthClasses; ++d) {
+      for (const int n : {8, 64}) {
+        const JudgedPair pair = JudgedPair::of_family(static_cast<PairFamily>(f), n, static_cast<DepthClass>(d), 32);
+        const PosedShape a = pair.a();
+        const PosedShape b = pair.b();
+        const DepthSettings settings{.bracket = Bracket::contact, .contact_tolerance = 0x1p-30};
+        (void)penetration_depth(a, b, scratch, settings);
+        const std::int64_t before = allocations.load();
+        const PenetrationDepth answer = penetration_depth(a, b, scratch, settings);
+        EXPECT_EQ(allocations.load() - before, 0) << pair.name();
+        EXPECT_EQ(answer.statistics.exact_signs, 0) << pair.name();
+      }
+    }
+  }
+}
+
 /// Directions that are not across a needle see but its two ends: the first simplex has to be looked for.
 TEST(Allocations, NoneForNeedles) {
   Scratch scratch;

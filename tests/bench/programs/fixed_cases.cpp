@@ -1,5 +1,5 @@
 /// @file
-/// Six fixed queries whose instructions callgrind counts (`instruction_budget.cmake`): `fixed_cases NAME` sets one
+/// Fixed queries whose instructions callgrind counts (`instruction_budget.cmake`): `fixed_cases NAME` sets one
 /// up, runs it until no buffer grows any more, and then once more inside `pdepth_counted_call`, the only function that
 /// is counted.
 ///
@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "bench/programs/resting_cases.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -16,6 +17,7 @@
 namespace {
 
 constexpr pd::DepthSettings kHotPath{.bracket = pd::Bracket::certified};
+constexpr pd::DepthSettings kContact{.bracket = pd::Bracket::contact, .contact_tolerance = 0x1p-29};
 
 using pd::scenes::DepthClass;
 using pd::scenes::PairFamily;
@@ -36,6 +38,27 @@ constexpr FixedCase kCases[] = {
     {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, 0.01},
 };
 
+/// Bodies at rest, warm, for contacts.
+struct FixedRest {
+  const char* name;
+  pd::bench::RestingBody body;
+  pd::bench::RestingGround ground;
+  double width;
+};
+using pd::bench::RestingBody;
+using pd::bench::RestingGround;
+constexpr FixedRest kRests[] = {
+    {"rest_box_20", RestingBody::box, RestingGround::floor, 20},
+    {"rest_box_10000", RestingBody::box, RestingGround::floor, 1e4},
+    {"rest_hull_32_20", RestingBody::hull_32, RestingGround::floor, 20},
+    {"rest_sphere_20", RestingBody::sphere, RestingGround::floor, 20},
+    {"rest_capsule_20", RestingBody::capsule, RestingGround::floor, 20},
+    {"rest_cylinder_20", RestingBody::cylinder, RestingGround::floor, 20},
+    {"rest_cone_20", RestingBody::cone, RestingGround::floor, 20},
+    {"rest_sphere_triangle", RestingBody::sphere, RestingGround::triangle, 2},
+    {"rest_box_triangle", RestingBody::box, RestingGround::triangle, 2},
+};
+
 }  // namespace
 
 extern "C" {
@@ -43,8 +66,8 @@ extern "C" {
 /// By its plain name in callgrind's option --toggle-collect.
 __attribute__((noinline)) void pdepth_counted_call(const pd::PosedShape* a, const pd::PosedShape* b,
                                                    pd::Scratch* scratch, pd::WarmCertificate* certificate,
-                                                   pd::PenetrationDepth* answer) {
-  *answer = pd::penetration_depth(*a, *b, *scratch, kHotPath, certificate);
+                                                   pd::PenetrationDepth* answer, const pd::DepthSettings* settings) {
+  *answer = pd::penetration_depth(*a, *b, *scratch, *settings, certificate);
 }
 }
 
@@ -72,15 +95,32 @@ int main(int argc, char** argv) {
     } else {
       answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
     }
-    pdepth_counted_call(&posed_a, &posed_b, &scratch, c.warm_radians > 0 ? &certificate : nullptr, &answer);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, c.warm_radians > 0 ? &certificate : nullptr, &answer, &kHotPath);
     // The depth is printed so that no call can be left out; it also shows that the case is what it was.
     std::printf("%s: depth %.17g, %lld supports, %lld exact signs\n", c.name, answer.depth,
                 static_cast<long long>(answer.statistics.support_calls),
                 static_cast<long long>(answer.statistics.exact_signs));
     return 0;
   }
+  for (const FixedRest& c : kRests) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::bench::RestingCase rest(c.body, c.ground, c.width, 8);
+    const pd::PosedShape ground = rest.ground();
+    pd::Scratch scratch;
+    pd::WarmCertificate certificate;
+    pd::PenetrationDepth answer;
+    for (int frame = 0; frame + 1 < rest.frames(); ++frame) {
+      answer = pd::penetration_depth(rest.body(frame), ground, scratch, kContact, &certificate);
+    }
+    const pd::PosedShape body = rest.body(rest.frames() - 1);
+    pdepth_counted_call(&body, &ground, &scratch, &certificate, &answer, &kContact);
+    std::printf("%s: signed distance in [%.17g, %.17g]\n", c.name, answer.distance_lower - answer.upper,
+                answer.distance_upper - answer.lower);
+    return 0;
+  }
   std::fprintf(stderr, "fixed_cases NAME, one of:");
   for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
+  for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;
 }

@@ -64,6 +64,10 @@ struct BulletSolverStatistics {
   /// Spent in pairs, from the look-up of their shapes to their answer, over all threads; from a sample of one pair
   /// in 16.
   std::int64_t nanoseconds = 0;
+  /// Decisions left to exact arithmetic: 0 for bodies of ordinary size (`Bracket::contact`).
+  std::int64_t exact_signs = 0;
+  /// Answers whose certified interval is wider than the poses deserve, since a search met its budget of operations.
+  std::int64_t wider_brackets = 0;
 };
 
 /// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: each thread inside a call has buffers and counters of

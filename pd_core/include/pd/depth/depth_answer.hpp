@@ -36,6 +36,19 @@ enum class Method : std::uint8_t {
 enum class Bracket : std::uint8_t {
   certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
   tightest,   ///< lower and upper are the exact depth rounded down and up
+  /// What a physics engine can use, at a bounded cost: no finer than the numbers of its poses deserve
+  /// (`DepthSettings::contact_tolerance`), and never by exact arithmetic. Let s be the signed distance: the distance of
+  /// A and B, or minus their depth. Doubles, where they cancel double-double, show s in an interval no wider than
+  /// max(2e-14 L, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance), or delta times s as ever.
+  /// - separated: [distance_lower, distance_upper], above 0;
+  /// - overlapping: [-upper, -lower], below 0;
+  /// - touching: [-upper, distance_upper], which holds 0; depth, distance, lower and distance_lower are 0.
+  /// The plane across `normal` proves the lower end, a point of P or a ball inside P the upper one. Moving A by
+  /// upper * normal leaves no more overlap than rounding; no translation is searched on the grid of doubles. Normal,
+  /// witnesses and features are those of an answer within the bracket. `bracket_reached` is false where the interval is
+  /// wider than promised, but certified still. Holds for Method::automatic and expansion, and where |b - a| stays
+  /// within 2^-100 to 2^100; the others take it for `certified`.
+  contact,
 };
 
 struct DepthSettings {
@@ -45,6 +58,9 @@ struct DepthSettings {
   double delta = 0;
   /// Of the random order in which the decomposition tries blocks of edges: times depend on it, answers do not.
   std::uint64_t seed = 0;
+  /// Of Bracket::contact: an interval of this width is narrow enough, in the unit of the input, >= 0. An engine whose
+  /// poses are single precision knows them to 2^-24 max(|t_A|, |t_B|).
+  double contact_tolerance = 0;
 };
 
 struct Statistics {

@@ -17,6 +17,10 @@ struct PointPair {
   Vec3 local_b = Vec3::Zero();
 };
 
+/// The point of a core that is farthest in a direction of its own frame (any length; a zero direction gives some
+/// point).
+[[nodiscard]] Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction);
+
 /// The same interface as PolytopeDifference; the "ids" of a support are its index in `points`.
 class SmoothDifference {
  public:
@@ -42,6 +46,18 @@ class SmoothDifference {
     return points_[static_cast<std::size_t>(s.a)];
   }
   [[nodiscard]] Vec3 centre() const;
+  /// The point of A's core (`of` 0) or B's (1) farthest along a unit vector, and one inside it, both relative to the
+  /// body's translation in the caller's axes.
+  [[nodiscard]] Vec3 support_of(int of, const Vec3& unit) const {
+    const Body& body = of == 0 ? a_ : b_;
+    return body.rotation * support_point(*body.core, body.rotation.transpose() * unit);
+  }
+  [[nodiscard]] Vec3 centre_of(int of) const {
+    const Body& body = of == 0 ? a_ : b_;
+    return body.rotation * body.centre;
+  }
+  /// t_B - t_A.
+  [[nodiscard]] const Vec3& offset() const { return offset_; }
   [[nodiscard]] double reach() const { return reach_; }
   /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach.
   [[nodiscard]] double point_error() const { return 32 * kUnitRoundoff * reach_; }
@@ -62,9 +78,5 @@ class SmoothDifference {
   double reach_;
   std::vector<PointPair>& points_;
 };
-
-/// The point of a core that is farthest in a direction of its own frame (any length; a zero direction gives some
-/// point).
-[[nodiscard]] Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction);
 
 }  // namespace pd::detail

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <span>
 
+#include "depth/difference/bracket_width.hpp"
 #include "depth/difference/polytope_difference.hpp"
 
 namespace pd::detail {
@@ -48,10 +49,10 @@ inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, co
 
 /// @param start     one to three vertices of P to begin with, affinely independent.
 /// @param relative  stop when upper <= (1 + relative) lower ...
-/// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
+/// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 template <class Difference>
 ClosestPoint closest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
-                           double absolute, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
+                           const BracketWidth& width, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   ClosestPoint r;
   for (const DifferenceVertex& v : start) r.simplex[r.count++] = v;
   r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
@@ -73,7 +74,7 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
     double height = -s.x.dot(toward);
     const auto narrow = [&] {
       r.lower = height - lower_error;
-      return r.lower > 0 && (r.upper - r.lower <= absolute * largest || r.upper <= (1 + relative) * r.lower);
+      return r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || r.upper <= (1 + relative) * r.lower);
     };
     if (!narrow() && !seen_far_side) {
       // What is near the origin says little about L: look at P's far side once.

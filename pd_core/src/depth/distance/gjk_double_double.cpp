@@ -100,8 +100,10 @@ class Simplex {
 
 }  // namespace
 
-ClosestPointWithNormal closest_point_double_double(const SmoothDifference& difference, const DifferenceVertex& first,
-                                                   double relative, double absolute, std::int64_t& support_calls) {
+template <class Difference>
+ClosestPointWithNormal closest_point_double_double(const Difference& difference, const DifferenceVertex& first,
+                                                   double relative, const BracketWidth& width, int max_steps,
+                                                   std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   const double rounding = 8 * kUnitRoundoff * difference.reach();
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
@@ -114,7 +116,7 @@ ClosestPointWithNormal closest_point_double_double(const SmoothDifference& diffe
   r.upper = std::numeric_limits<double>::infinity();
   r.lower = -r.upper;
   out.normal = Vec3::UnitX();
-  for (;;) {
+  for (int step = 0;; ++step) {
     const ClosestOfFace& closest = simplex.closest();
     const double length = to_double(sqrt(closest.squared));
     // Each closest is nearer than the last.
@@ -129,7 +131,7 @@ ClosestPointWithNormal closest_point_double_double(const SmoothDifference& diffe
     }
     if (!(length > lower_error)) return out;
     const Vec3 toward = -r.point.normalized();
-    const DifferenceVertex s = difference.support(toward, nullptr);
+    const DifferenceVertex s = difference.certified_support(toward, difference.support(toward, nullptr), stack);
     ++support_calls;
     largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
     const double height = -s.x.dot(toward);
@@ -137,10 +139,17 @@ ClosestPointWithNormal closest_point_double_double(const SmoothDifference& diffe
       r.lower = height - lower_error;
       out.normal = toward;
     }
-    r.certified = r.lower > 0 && (r.upper - r.lower <= absolute * largest || r.upper <= (1 + relative) * r.lower);
+    r.certified = r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || r.upper <= (1 + relative) * r.lower);
     // What the formula's own rounding makes of a support on the simplex is no progress.
-    if (r.certified || length - height <= 0.5 * rounding || !simplex.add(s)) return out;
+    if (r.certified || length - height <= 0.5 * rounding || step >= max_steps || !simplex.add(s)) return out;
   }
 }
+
+template ClosestPointWithNormal closest_point_double_double(const SmoothDifference&, const DifferenceVertex&, double,
+                                                            const BracketWidth&, int, std::vector<std::int32_t>&,
+                                                            std::int64_t&);
+template ClosestPointWithNormal closest_point_double_double(const PolytopeDifference&, const DifferenceVertex&, double,
+                                                            const BracketWidth&, int, std::vector<std::int32_t>&,
+                                                            std::int64_t&);
 
 }  // namespace pd::detail

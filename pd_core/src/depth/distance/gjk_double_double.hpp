@@ -1,5 +1,5 @@
 /// @file
-/// The point of a smooth P nearest to the origin where plain doubles stop short: Gilbert, Johnson, Keerthi 1988 with
+/// The point of P nearest to the origin where plain doubles stop short: Gilbert, Johnson, Keerthi 1988 with
 /// the simplices solved in double-double and the best bounds of all steps kept.
 ///
 /// Close to contact the nearest points of successive simplices differ by less than a double tells, while their
@@ -20,9 +20,19 @@ struct ClosestPointWithNormal {
 
 /// @param first     a vertex of P to begin with.
 /// @param relative  stop when upper <= (1 + relative) lower ...
-/// @param absolute  ... or upper - lower <= absolute times the largest |coordinate| seen.
+/// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 /// `certified` is false where P holds the origin within rounding, or rounding left the bracket wider than asked.
-ClosestPointWithNormal closest_point_double_double(const SmoothDifference& difference, const DifferenceVertex& first,
-                                                   double relative, double absolute, std::int64_t& support_calls);
+/// Ends: each step but the last is strictly nearer, and there are at most `max_steps`.
+template <class Difference>
+ClosestPointWithNormal closest_point_double_double(const Difference& difference, const DifferenceVertex& first,
+                                                   double relative, const BracketWidth& width, int max_steps,
+                                                   std::vector<std::int32_t>& stack, std::int64_t& support_calls);
+
+extern template ClosestPointWithNormal closest_point_double_double(const SmoothDifference&, const DifferenceVertex&,
+                                                                   double, const BracketWidth&, int,
+                                                                   std::vector<std::int32_t>&, std::int64_t&);
+extern template ClosestPointWithNormal closest_point_double_double(const PolytopeDifference&, const DifferenceVertex&,
+                                                                   double, const BracketWidth&, int,
+                                                                   std::vector<std::int32_t>&, std::int64_t&);
 
 }  // namespace pd::detail

@@ -64,6 +64,20 @@ struct WarmSmoothPoints {
   int count = 0;
 };
 
+/// Of bodies that rest on each other: the facet of either that faces the other, and how often they were of no use
+/// (Bracket::contact, pair/contact_facets.hpp).
+struct WarmFacets {
+  struct OfBody {
+    std::optional<ConvexPolytope> owner;  ///< the very polytope; facet -1: none
+    int facet = -1;
+    std::int32_t near = -1;  ///< vertex of the other body that lay on it
+  };
+  OfBody bodies[2];      ///< of A, of B
+  int first = 1;         ///< the one that answered last
+  int pause_length = 0;  ///< frames to go without after one without an answer
+  int pause = 0;
+};
+
 /// What a WarmCertificate holds.
 struct WarmState {
   /// The shapes by content, not by address: the same calls give the same bits wherever memory lies.
@@ -79,6 +93,7 @@ struct WarmState {
   VertexPair apart[3];
   int apart_count = 0;
   WarmSmoothPoints smooth;
+  WarmFacets facets;
 };
 
 /// The nearest face at the present poses.

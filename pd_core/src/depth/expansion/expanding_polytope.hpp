@@ -183,7 +183,7 @@ class ExpandingPolytope {
     }
     s = difference_.certified_support(unit, s, stack_);
     height = s.x.dot(unit);
-    if (height < -bound_error() - goal.touching * largest) {
+    if (height < -bound_error() - std::max(goal.touching * largest, goal.touching_width)) {
       result.status = ExpansionStatus::separated;
       result.upper = height + bound_error();
       result.normal = unit;
@@ -226,11 +226,18 @@ class ExpandingPolytope {
   std::int64_t facets_visited_ = 0;
 };
 
+/// An upper bound on the depth: the height of P along a face's normal.
+struct HeightOfFace {
+  double upper = std::numeric_limits<double>::infinity();
+  Vec3 normal = Vec3::UnitX();  ///< unit
+  int face = -1;
+};
+
 /// An upper bound on the depth from a surface whose expansion stopped early: the least height of P, certified, over the
 /// normals of the surface's nearest faces. The support in any direction bounds the depth from above, and the nearest
 /// faces' directions bound it well. Time: a few supports.
-inline double upper_bound_of_nearest_faces(const PolytopeDifference& difference, const InnerSurface& surface,
-                                           std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
+inline HeightOfFace upper_bound_of_nearest_faces(const PolytopeDifference& difference, const InnerSurface& surface,
+                                                 std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   constexpr std::size_t kTried = 8;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::array<std::pair<double, int>, kTried> nearest;
@@ -242,13 +249,14 @@ inline double upper_bound_of_nearest_faces(const PolytopeDifference& difference,
       std::swap(nearest[k], nearest[k - 1]);
     }
   }
-  double least = kNone;
+  HeightOfFace least;
   for (const auto& [key, f] : nearest) {
     if (f < 0) break;
     const Vec3 unit = surface.normal(f).normalized();
     const DifferenceVertex s = difference.certified_support(unit, difference.support(unit, nullptr), stack);
     ++support_calls;
-    least = std::min(least, s.x.dot(unit) + support_plane_error(difference));
+    const double height = s.x.dot(unit) + support_plane_error(difference);
+    if (height < least.upper) least = {height, unit, f};
   }
   return least;
 }

@@ -3,6 +3,7 @@
 /// (expanding_polytope.hpp) and on an exact hull (expanding_hull.hpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -13,7 +14,7 @@ namespace pd::detail {
 enum class ExpansionStatus : std::uint8_t {
   certified,   ///< 0 < lower <= depth <= upper, the bracket as narrow as asked
   separated,   ///< h_P(normal) < 0 for certain
-  touching,    ///< |signed distance| <= goal.touching times the largest |coordinate| seen (smooth bodies)
+  touching,    ///< |signed distance| is within what the goal takes for contact (smooth bodies)
   undecided,   ///< doubles cannot tell (touching, flat, or bracket not reached): exact arithmetic must
   over_budget  ///< too many nearly equal facets: the overlay is faster
 };
@@ -27,9 +28,11 @@ struct ExpansionResult {
 };
 
 struct ExpansionGoal {
-  double relative = 0;  ///< stop when upper <= (1 + relative) lower
-  double absolute = 0;  ///< or when upper - lower <= absolute times the largest |coordinate| seen
-  double touching = 0;  ///< see ExpansionStatus::touching
+  double relative = 0;        ///< stop when upper <= (1 + relative) lower
+  double absolute = 0;        ///< or when upper - lower <= absolute times the largest |coordinate| seen
+  double width = 0;           ///< or when upper - lower <= width
+  double touching = 0;        ///< see ExpansionStatus::touching
+  double touching_width = 0;  ///< the same, as a length
   int max_steps = std::numeric_limits<int>::max();
   int vertices = 0;  ///< of both bodies, for ExpansionBudget; 0: given up after `max_steps` only
   /// `undecided` when a lower bound above `loss_from` falls by more than `max_loss`: the surface has lost its
@@ -40,12 +43,14 @@ struct ExpansionGoal {
 
 /// Whether a bracket is as narrow as asked; `largest` as in ExpansionGoal::absolute.
 inline bool reached(const ExpansionGoal& goal, double lower, double upper, double largest) {
-  return lower > 0 && (upper - lower <= goal.absolute * largest || upper <= (1 + goal.relative) * lower);
+  return lower > 0 &&
+         (upper - lower <= std::max(goal.absolute * largest, goal.width) || upper <= (1 + goal.relative) * lower);
 }
 
 /// Whether a bracket shows the bodies as touching, to within what was asked.
 inline bool touches(const ExpansionGoal& goal, double lower, double upper, double largest) {
-  return upper <= goal.touching * largest && lower >= -goal.touching * largest;
+  const double limit = std::max(goal.touching * largest, goal.touching_width);
+  return upper <= limit && lower >= -limit;
 }
 
 }  // namespace pd::detail

@@ -34,7 +34,7 @@ class BoxPair {
     spread(rotation_b_, frame_b.half_extents, of_b_);
   }
 
-  BoxPairDepth solve(double width) {
+  BoxPairDepth solve(const BracketWidth& width) {
     BoxPairDepth out;
     // Generators and centre err by 12u of the reach together, the sum of seven products by 8u.
     const double rounding = 20 * kUnitRoundoff * reach_;
@@ -52,7 +52,7 @@ class BoxPair {
     }
     if (!(nearest.lower_key > 0)) return out;
     out.lower = std::sqrt(nearest.lower_key) - rounding - (kParallelSine + 2 * kTurn) * nearest.slivers;
-    if (!(out.lower > 0) || out.upper - out.lower > width * greatest_coordinate()) return out;
+    if (!(out.lower > 0) || out.upper - out.lower > width.limit(greatest_coordinate())) return out;
     if (place_witness(nearest.axis, distance, out)) out.status = BoxPairStatus::certified;
     return out;
   }
@@ -207,7 +207,8 @@ std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
 }
 
 BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
-                            const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b, double width) {
+                            const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
+                            const BracketWidth& width) {
   return BoxPair(a, frame_a, pose_a, b, frame_b, pose_b).solve(width);
 }
 

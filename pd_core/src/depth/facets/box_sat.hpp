@@ -12,6 +12,7 @@
 
 #include <optional>
 
+#include "depth/difference/bracket_width.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/feature.hpp"
 #include "pd/shape/pose.hpp"
@@ -39,9 +40,10 @@ struct BoxPairDepth {
   Vec3 point_a = Vec3::Zero();  ///< witness on A, relative to A's translation
 };
 
-/// @param width  the certified bracket's greatest width in units of L.
+/// @param width  the certified bracket's greatest width.
 /// Requires extents between 2^-100 and 2^100. Constant time, no allocation.
 BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
-                            const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b, double width);
+                            const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
+                            const BracketWidth& width);
 
 }  // namespace pd::detail

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/unit_roundoff.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -43,6 +45,30 @@ void set_depth(const PolytopePair& pair, double lower, double upper, const Vec3&
   out.depth = (upper + margin) * (1 + 0x1p-52);
   out.normal = normal;
   out.translation = out.depth * normal;
+}
+
+void set_signed_distance(double margin, double core_lower, double core_upper, PenetrationDepth& out) {
+  // The difference and the sum round once each.
+  const double round = 4 * kUnitRoundoff * (std::max(std::abs(core_lower), std::abs(core_upper)) + margin);
+  const double lower = core_lower - margin - round;
+  const double upper = core_upper - margin + round;
+  if (lower > 0 || (margin == 0 && core_lower > 0)) {
+    out.contact = ContactClass::separated;
+    out.distance_lower = lower;
+    out.distance_upper = upper;
+    out.distance = std::clamp((out.witness_a - out.witness_b).norm(), out.distance_lower, out.distance_upper);
+  } else if (upper < 0) {
+    out.contact = ContactClass::overlapping;
+    out.lower = -upper;
+    out.depth = -lower;
+    out.upper = out.depth * (1 + 0x1p-50);
+    out.translation = out.depth * out.normal;
+    out.witness_b = out.witness_a + out.translation;
+  } else {
+    out.contact = ContactClass::touching;
+    out.upper = -lower * (1 + 0x1p-50);
+    out.distance_upper = upper;
+  }
 }
 
 void set_witnesses(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,

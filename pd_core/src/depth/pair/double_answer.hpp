@@ -18,6 +18,11 @@ inline void face_corners(const InnerSurface& surface, int f, DifferenceVertex (&
 /// @param normal        unit.
 void set_depth(const PolytopePair& pair, double lower, double upper, const Vec3& normal, PenetrationDepth& out);
 
+/// Class and bracket from an interval of the cores' signed distance (distance, or minus depth) whose upper end may not
+/// lie below minus the margins of touching cores: of cores apart, or nearly touching. An interval that holds 0 after
+/// the margins is `touching` (`Bracket::contact`). Normal and witnesses of the swept surfaces are set.
+void set_signed_distance(double margin, double core_lower, double core_upper, PenetrationDepth& out);
+
 /// Witnesses: the combinations of the corners' vertices on A and on B. Weights need not sum to 1; negative ones count
 /// as 0. `out.normal` is set.
 void set_witnesses(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 
+#include "depth/expansion/cached_surface.hpp"
+#include "depth/pair/contact_facets.hpp"
+#include "depth/pair/polytope_contact.hpp"
 #include "depth/pair/polytope_double.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
+#include "pd/depth/warm_certificate.hpp"
 
 namespace pd::detail {
 
@@ -18,8 +22,9 @@ bool answer_by_chosen_overlay(PolytopeQuery& query, PenetrationDepth& out) {
 ExpansionResult bounded(PolytopeQuery& query, ExpansionResult surface, Statistics& statistics) {
   if (!(surface.lower > 0)) return surface;
   ScratchBuffers& buffers = query.buffers;
-  surface.upper = std::min(surface.upper, upper_bound_of_nearest_faces(query.with_supports(), buffers.surface,
-                                                                       buffers.stack, statistics.support_calls));
+  const HeightOfFace least =
+      upper_bound_of_nearest_faces(query.with_supports(), buffers.surface, buffers.stack, statistics.support_calls);
+  surface.upper = std::min(surface.upper, least.upper);
   return surface;
 }
 
@@ -32,7 +37,8 @@ bool answer_by_chosen_decomposition(PolytopeQuery& query, const ExpansionResult&
 bool answer_among_many_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   if (surface.status != ExpansionStatus::over_budget || !(surface.lower > 0)) return false;
   const ExpansionResult found = bounded(query, surface, out.statistics);
-  return answer_among_near_facets(query, found, out) || answer_by_decomposition(query, found, out);
+  if (answer_among_near_facets(query, found, out)) return true;
+  return !query.for_contact() && answer_by_decomposition(query, found, out);
 }
 
 // The order of methods. Each stage looks for itself whether it applies, and answers or passes on.
@@ -52,6 +58,7 @@ constexpr StageAfterSearch kAfterSearch[] = {
     answer_by_chosen_decomposition,  // [A] section 2, where `Method::decomposition` is asked for
     answer_from_surface,             // the nearest face, in doubles
     answer_among_many_facets,        // too many nearly equal facets for the expansion
+    answer_contact,                  // `Bracket::contact`: whatever is left, without exact numbers
     prove_surface,                   // the nearest face proved in double-double: the tightest bracket
     answer_by_exact_expansion,       // the same facet by exact arithmetic
     answer_by_closest_point,         // apart, touching or in doubt: GJK in doubles, then exactly
@@ -66,13 +73,17 @@ void answer(PolytopeQuery& query, PenetrationDepth& out) {
     if (stage(query, surface, out)) return;
   }
 }
-
 }  // namespace
 
 void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,
                     WarmCertificate* warm, PenetrationDepth& out) {
   PolytopeQuery query(pair, settings, buffers, warm);
+  if (answer_from_contact_facet(query, out)) return;
   answer(query, out);
+  if (warm != nullptr && query.for_contact()) {
+    learn_contact_facet(0, *pair.a, *pair.pose_a, out, warm->state().facets);
+    learn_contact_facet(1, *pair.b, *pair.pose_b, out, warm->state().facets);
+  }
   out.statistics.exact_signs += query.exact_signs();
 }
 

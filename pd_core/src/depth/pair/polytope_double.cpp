@@ -78,7 +78,8 @@ void set_contact_of_facet(const PolytopePair& pair, const NearFacets& found, Pen
 
 ExpansionGoal expansion_goal(const PolytopeQuery& query) {
   ExpansionGoal goal;
-  goal.absolute = kCertifiedWidth;
+  goal.absolute = query.width().of_size;
+  goal.width = query.width().length;
   goal.relative = query.settings.delta;
   goal.vertices = query.vertices();
   goal.max_steps = ExpansionBudget::max_steps(goal.vertices);
@@ -86,14 +87,14 @@ ExpansionGoal expansion_goal(const PolytopeQuery& query) {
 }
 
 bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.bracket != Bracket::certified || query.settings.method != Method::automatic) return false;
+  if (query.bracket == Bracket::tightest || query.settings.method != Method::automatic) return false;
   const PolytopePair& pair = query.pair;
   const std::optional<BoxFrame> box_a = box_frame(*pair.a);
   if (!box_a) return false;
   const std::optional<BoxFrame> box_b = box_frame(*pair.b);
   if (!box_b || !query.within_range()) return false;
   const BoxPairDepth boxes =
-      box_pair_depth(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, kCertifiedWidth);
+      box_pair_depth(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, query.width());
   out.method = Method::overlay;
   out.statistics.facets_visited += kBoxAxes;
   if (boxes.status == BoxPairStatus::separated) {
@@ -136,11 +137,22 @@ bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, P
   if (surface.status != ExpansionStatus::certified || query.bracket == Bracket::tightest) return false;
   if (!bound_is_of_face(query.buffers.surface, surface)) return false;
   set_depth(query.pair, surface.lower, surface.upper, surface.normal, out);
+  set_contact_of_face(query, surface.face, surface.normal, out);
+  return true;
+}
+
+void set_contact_of_face(const PolytopeQuery& query, int face, const Vec3& unit_normal, PenetrationDepth& out) {
   DifferenceVertex corners[3];
   double weights[3];
-  face_below_origin(query, surface.face, surface.normal, corners, weights);
+  face_below_origin(query, face, unit_normal, corners, weights);
   set_contact(query.pair, corners, weights, out);
-  return true;
+}
+
+void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& nearest, PenetrationDepth& out) {
+  set_witnesses(pair, nearest.simplex, nearest.weights, nearest.count, out);
+  DifferenceVertex corners[3];
+  for (int i = 0; i < 3; ++i) corners[i] = nearest.simplex[std::min(i, nearest.count - 1)];
+  set_features(pair, corners, out);
 }
 
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
@@ -167,7 +179,7 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
 ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
   // What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
   const double relative = query.pair.margins.both() > 0 ? 0.0 : query.settings.delta;
-  return closest_point(query.with_supports(), start, relative, kCertifiedWidth, query.buffers.stack,
+  return closest_point(query.with_supports(), start, relative, query.width(), query.buffers.stack,
                        statistics.support_calls);
 }
 
@@ -175,26 +187,12 @@ bool answer_apart(PolytopeQuery& query, const ClosestPoint& nearest, Penetration
   if (!nearest.certified) return false;
   const double margin = query.pair.margins.both();
   const double round = 4 * kUnitRoundoff * (nearest.upper + margin);
-  if (margin > 0 && nearest.lower - margin <= round && nearest.upper - margin >= -round) return false;
+  const bool sign_unclear = nearest.lower - margin <= round && nearest.upper - margin >= -round;
+  if (margin > 0 && sign_unclear && !query.for_contact()) return false;
   save_simplex(query, nearest);
   out.normal = nearest.normal;
-  set_witnesses(query.pair, nearest.simplex, nearest.weights, nearest.count, out);
-  DifferenceVertex corners[3];
-  for (int i = 0; i < 3; ++i) corners[i] = nearest.simplex[std::min(i, nearest.count - 1)];
-  set_features(query.pair, corners, out);
-  if (nearest.lower > margin) {
-    out.contact = ContactClass::separated;
-    out.distance_lower = nearest.lower - margin - round;
-    out.distance_upper = nearest.upper - margin + round;
-    out.distance = std::clamp((out.witness_a - out.witness_b).norm(), out.distance_lower, out.distance_upper);
-  } else {
-    out.contact = ContactClass::overlapping;
-    out.lower = margin - nearest.upper - round;
-    out.depth = margin - nearest.lower + round;
-    out.upper = out.depth * (1 + 0x1p-50);
-    out.translation = out.depth * out.normal;
-    out.witness_b = out.witness_a + out.translation;
-  }
+  set_contact_of_simplex(query.pair, nearest, out);
+  set_signed_distance(margin, nearest.lower, nearest.upper, out);
   return true;
 }
 

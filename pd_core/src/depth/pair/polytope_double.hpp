@@ -24,6 +24,12 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
 /// The surface's nearest face, where its bracket is as narrow as asked.
 bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
+/// Witnesses and features of a face of the surface, or of those in its plane where the origin projects.
+void set_contact_of_face(const PolytopeQuery& query, int face, const Vec3& unit_normal, PenetrationDepth& out);
+
+/// Witnesses and features of the closest points of the cores; `out.normal` is set.
+void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& nearest, PenetrationDepth& out);
+
 /// Of the facets of P between the bounds that an expansion leaves, the nearest (facets/near_facets.hpp); for the
 /// tightest bracket it is proved.
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
@@ -32,7 +38,8 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
 [[nodiscard]] ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start,
                                          Statistics& statistics);
 
-/// Cores that are apart: separated, or overlapping by their margins. The simplex is saved in the warm certificate.
+/// Cores that are apart: separated, or overlapping by their margins, or for `Bracket::contact` touching. The simplex is
+/// saved in the warm certificate.
 bool answer_apart(PolytopeQuery& query, const ClosestPoint& nearest, PenetrationDepth& out);
 
 }  // namespace pd::detail

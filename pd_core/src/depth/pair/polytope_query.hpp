@@ -5,6 +5,8 @@
 
 #include <optional>
 
+#include "depth/certificate/exact_answer.hpp"
+#include "depth/difference/bracket_width.hpp"
 #include "depth/difference/polytope_difference.hpp"
 #include "depth/pair/polytope_depth.hpp"
 #include "shape/posed_pair.hpp"
@@ -19,7 +21,7 @@ class PolytopeQuery {
         settings(asked),
         buffers(scratch),
         warm(certificate),
-        bracket(asked.delta == 0 ? asked.bracket : Bracket::certified),
+        bracket(bracket_of(asked)),
         difference(*asked_pair.a, *asked_pair.pose_a, *asked_pair.b, *asked_pair.pose_b) {}
 
   const PolytopePair& pair;
@@ -47,13 +49,25 @@ class PolytopeQuery {
 
   /// Whether doubles with error bounds may answer alone.
   [[nodiscard]] bool doubles_suffice() const {
-    return bracket == Bracket::certified && settings.method != Method::decomposition;
+    return bracket != Bracket::tightest && settings.method != Method::decomposition;
   }
+  /// Whether the answer may be as wide as `contact_tolerance` and needs no exact numbers.
+  [[nodiscard]] bool for_contact() const { return bracket == Bracket::contact; }
+  /// How narrow the bracket of doubles has to be.
+  [[nodiscard]] BracketWidth width() const { return {kCertifiedWidth, for_contact() ? settings.contact_tolerance : 0}; }
   [[nodiscard]] int vertices() const { return pair.a->num_vertices() + pair.b->num_vertices(); }
   /// Sizes outside this range are left to the exact stages, which rescale.
   [[nodiscard]] bool within_range() const { return difference.reach() > 0x1p-100 && difference.reach() < 0x1p100; }
 
  private:
+  static Bracket bracket_of(const DepthSettings& asked) {
+    if (asked.bracket == Bracket::contact) {
+      const bool searched = asked.method == Method::automatic || asked.method == Method::expansion;
+      return searched ? Bracket::contact : Bracket::certified;
+    }
+    return asked.delta == 0 ? asked.bracket : Bracket::certified;
+  }
+
   std::optional<PosedPair> exact_;
 };
 

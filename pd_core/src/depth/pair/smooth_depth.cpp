@@ -11,6 +11,8 @@
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/expansion/expanding_hull.hpp"
 #include "depth/expansion/expanding_polytope.hpp"
+#include "depth/pair/contact_facets.hpp"
+#include "depth/pair/double_answer.hpp"
 #include "depth/pair/inscribed_balls.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -32,6 +34,9 @@ class SmoothQuery {
         buffers_(buffers),
         out_(out),
         difference_(a, b, buffers.points),
+        for_contact_(settings.bracket == Bracket::contact &&
+                     (settings.method == Method::automatic || settings.method == Method::expansion)),
+        width_(for_contact_ ? settings.contact_tolerance : 0),
         delta_(settings.delta > 0 ? settings.delta : kDefaultDelta),
         margin_(a.shape->margin() + b.shape->margin()),
         warm_(warm) {}
@@ -39,10 +44,20 @@ class SmoothQuery {
   void solve() {
     out_.method = Method::expansion;
     buffers_.surface.clear();
+    if (for_contact_ && solve_on_facet()) return;
     if (!solve_apart_from_memory() && !solve_by_inscribed_balls()) solve_by_expansion();
     const double lower = out_.contact == ContactClass::overlapping ? out_.lower : out_.distance_lower;
     const double upper = out_.contact == ContactClass::overlapping ? out_.upper : out_.distance_upper;
     out_.bracket_reached = upper <= (1 + delta_) * lower * (1 + 0x1p-48);
+    if (!for_contact_) return;
+    out_.bracket_reached |= signed_width() <= contact_width();
+    if (warm_ == nullptr) return;
+    for (const int of : {0, 1}) {
+      const PosedShape& owner = of == 0 ? a_ : b_;
+      if (owner.shape->polytope()) {
+        learn_contact_facet(of, *owner.shape->polytope(), owner.pose, out_, warm_->state().facets);
+      }
+    }
   }
 
  private:
@@ -53,7 +68,7 @@ class SmoothQuery {
         solve_apart(core);
         return;
       case ExpansionStatus::touching:
-        if (margin_ > 0) {
+        if (margin_ > 0 || for_contact_) {
           solve_apart(core);
         } else {
           fill_touching(core.normal);
@@ -74,7 +89,9 @@ class SmoothQuery {
     goal.relative = delta_;
     goal.absolute = kAbsolute;
     goal.touching = kAbsolute;
-    goal.max_steps = kMaxSmoothSteps;
+    goal.width = width_;
+    goal.touching_width = 0.5 * width_;
+    goal.max_steps = for_contact_ ? kMaxContactSteps : kMaxSmoothSteps;
     ExpandingPolytope<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
     goal.max_loss = 4 * difference_.point_error();
     ExpansionResult best = expansion.run(Vec3::Zero(), goal);
@@ -86,6 +103,10 @@ class SmoothQuery {
     }
     if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
     if (best.status != ExpansionStatus::undecided) return best;
+    if (for_contact_) {
+      tighten_upper(best);
+      return best;
+    }
     best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
                              buffers_.surface.watch);
     if (best.face >= 0) {
@@ -139,10 +160,10 @@ class SmoothQuery {
     for (int i = 0; i < count; ++i) start[i] = difference_.vertex(last.on_a[i], last.on_b[i]);
     const ClosestPoint nearest =
         closest_point(difference_, std::span(start).first(static_cast<std::size_t>(count)), margin_ > 0 ? 0.0 : delta_,
-                      0.25 * kAbsolute, buffers_.stack, out_.statistics.support_calls);
+                      {0.25 * kAbsolute, 0.5 * width_}, buffers_.stack, out_.statistics.support_calls);
     if (!nearest.certified) return false;
     const double unclear = 2 * kAbsolute * difference_.reach();
-    if (nearest.lower - margin_ <= unclear && nearest.upper - margin_ >= -unclear) return false;
+    if (!for_contact_ && nearest.lower - margin_ <= unclear && nearest.upper - margin_ >= -unclear) return false;
     answer_apart(nearest, nearest.normal, {nearest.normal, -nearest.lower});
     out_.warm = true;
     return true;
@@ -235,12 +256,14 @@ class SmoothQuery {
   void solve_apart(const ExpansionResult& core) {
     const DifferenceVertex first = difference_.support(core.normal, nullptr);
     const double relative = margin_ > 0 ? 0.0 : delta_;
-    ClosestPoint nearest = closest_point(difference_, {&first, 1}, relative, 0.25 * kAbsolute, buffers_.stack,
-                                         out_.statistics.support_calls);
+    const BracketWidth width{0.25 * kAbsolute, 0.5 * width_};
+    ClosestPoint nearest =
+        closest_point(difference_, {&first, 1}, relative, width, buffers_.stack, out_.statistics.support_calls);
     Vec3 proven = nearest.normal;
     if (!nearest.certified) {
-      const ClosestPointWithNormal near =
-          closest_point_double_double(difference_, first, relative, 0.25 * kAbsolute, out_.statistics.support_calls);
+      const ClosestPointWithNormal near = closest_point_double_double(
+          difference_, first, relative, width, for_contact_ ? kMaxContactSteps : std::numeric_limits<int>::max(),
+          buffers_.stack, out_.statistics.support_calls);
       nearest = near.nearest;
       proven = near.normal;
     }
@@ -257,6 +280,10 @@ class SmoothQuery {
     const double round = 4 * kUnitRoundoff * (nearest.upper + margin_);
     const double distance_lower = std::max(0.0, nearest.lower) - margin_ - round;
     const double distance_upper = nearest.upper - margin_ + round;
+    if (for_contact_) {
+      answer_contact(nearest, normal, out);
+      return;
+    }
     if (distance_upper <= touching && distance_lower >= -touching) {
       fill_touching(normal);
       return;
@@ -277,11 +304,60 @@ class SmoothQuery {
     out_.witness_b = out_.witness_a + out_.translation;
   }
 
+  /// The same for Bracket::contact: the signed distance lies between -out.upper and nearest.upper, less the margins.
+  void answer_contact(const ClosestPoint& nearest, const Vec3& normal, WayOut out) {
+    if (!std::isfinite(out.upper)) out = thinnest_axis();
+    const bool apart = nearest.lower > 0;
+    out_.normal = apart ? normal : out.normal;
+    set_witnesses(nearest.simplex, nearest.weights, nearest.count);
+    set_signed_distance(margin_, apart ? nearest.lower : -out.upper, nearest.upper, out_);
+  }
+  double contact_width() const { return std::max(2 * kAbsolute * size(), width_) * (1 + 0x1p-48); }
+  double signed_width() const {
+    if (out_.contact == ContactClass::overlapping) return out_.upper - out_.lower;
+    return out_.distance_upper - out_.distance_lower + out_.upper;
+  }
+
+  /// Bracket::contact: a curved body on the facet of a polytope that it lay on in the last frame, or on a polygon.
+  bool solve_on_facet() {
+    const int of = a_.shape->polytope() ? 0 : 1;
+    const PosedShape& owner = of == 0 ? a_ : b_;
+    const ConvexPolytope* polytope = owner.shape->polytope();
+    if (polytope == nullptr) return false;
+    WarmFacets* facets = warm_ ? &warm_->state().facets : nullptr;
+    if (facets != nullptr && !may_try(*facets)) return false;
+    int facet = facets != nullptr ? known_facet(*facets, of, *polytope) : -1;
+    const bool remembered = facet >= 0;
+    const double sense = of == 0 ? -1 : 1;
+    if (facet < 0 && polytope->affine_dimension() == 2) {
+      // P's centre lies before one of both sides.
+      const Vec3 normal = owner.pose.rotation() * polytope->facet_normal(0);
+      facet = -sense * difference_.centre().dot(normal) >= 0 ? 0 : 1;
+    }
+    if (facet < 0) return false;
+    const Vec3 offset = of == 0 ? difference_.offset() : Vec3(-difference_.offset());
+    const FacetContact contact =
+        facet_contact(*polytope, owner.pose.rotation(), facet, offset, difference_.centre_of(1 - of),
+                      support_plane_error(difference_), [&](const Vec3& unit) {
+                        return BodyPoint{difference_.support_of(1 - of, unit), -1};
+                      });
+    const bool narrow = contact.certified &&
+                        contact.upper - contact.lower <= std::max(kAbsolute * contact.largest, width_) * (1 + 0x1p-48);
+    if (remembered) count_try(*facets, narrow);
+    if (!narrow) return false;
+    set_contact_on_facet(contact, of == 0, {a_.shape->margin(), b_.shape->margin()},
+                         of == 0 ? Vec3(b_.pose.translation() - a_.pose.translation()) : Vec3(Vec3::Zero()), out_);
+    out_.warm = remembered;
+    return true;
+  }
+
   const PosedShape& a_;
   const PosedShape& b_;
   ScratchBuffers& buffers_;
   PenetrationDepth& out_;
   SmoothDifference difference_;
+  bool for_contact_;
+  double width_;  ///< Bracket::contact: of the interval
   double delta_;
   double margin_;
   WarmCertificate* warm_;
@@ -314,7 +390,9 @@ void smooth_depth(const PosedShape& a, const PosedShape& b, const DepthSettings&
   for (double& x : offset.reshaped()) x = std::ldexp(x, -exponent);
   const PosedShape near_a{&scaled_a, Pose::from_trusted_matrix(a.pose.rotation(), Vec3::Zero())};
   const PosedShape near_b{&scaled_b, Pose::from_trusted_matrix(b.pose.rotation(), offset)};
-  SmoothQuery(near_a, near_b, settings, buffers, out, nullptr).solve();
+  DepthSettings near_settings = settings;
+  near_settings.contact_tolerance = std::ldexp(settings.contact_tolerance, -exponent);
+  SmoothQuery(near_a, near_b, near_settings, buffers, out, nullptr).solve();
   scale_answer(out, exponent);
   move_witnesses(a.pose.translation(), out);
 }

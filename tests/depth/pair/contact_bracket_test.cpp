@@ -1,0 +1,207 @@
+/// @file
+/// `Bracket::contact`: the interval that an engine asks for, judged by exact answers; no exact sign, whatever the pair.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "oracle/contact_check.hpp"
+#include "oracle/judged_pair.hpp"
+#include "oracle/resting_pair.hpp"
+#include "pd/depth/warm_certificate.hpp"
+
+namespace pd {
+namespace {
+
+using oracle::check_contact;
+using oracle::largest_difference;
+
+/// As an engine in single precision has it: 1/64 of what a pose leaves uncertain.
+double tolerance_of(const PosedShape& a, const PosedShape& b, double smaller_radius) {
+  return std::ldexp(std::max(a.pose.translation().norm(), b.pose.translation().norm()) + smaller_radius, -30);
+}
+DepthSettings contact(double tolerance) { return {.bracket = Bracket::contact, .contact_tolerance = tolerance}; }
+
+bool same_bits(const Vec3& x, const Vec3& y) { return std::memcmp(x.data(), y.data(), sizeof(Vec3)) == 0; }
+
+/// Checks one pair cold, warm, again and the other way round.
+class Judge {
+ public:
+  void ask(const PosedShape& a, const PosedShape& b, double tolerance, const std::string& name) {
+    const DepthSettings settings = contact(tolerance);
+    const PenetrationDepth exact = penetration_depth(a, b, scratch_);
+    const PenetrationDepth answer = penetration_depth(a, b, scratch_, settings);
+    const double allowed =
+        std::max(2e-14 * (largest_difference(a, b) + a.shape->margin() + b.shape->margin()), tolerance);
+    EXPECT_EQ(check_contact(a, b, answer, exact, allowed, scratch_), "") << name;
+    ++pairs;
+    missed += !answer.bracket_reached;
+    EXPECT_TRUE(answer.bracket_reached) << name << ": " << answer.lower << " " << answer.upper << " "
+                                        << answer.distance_lower << " " << answer.distance_upper;
+    ++classes[static_cast<int>(answer.contact)];
+
+    const PenetrationDepth again = penetration_depth(a, b, other_scratch_, settings);
+    expect_same(again, answer, name + ", again");
+    PenetrationDepth swapped = penetration_depth(b, a, scratch_, settings);
+    // Two equal bodies in one place are one another's mirror: nothing tells them apart.
+    if (swapped.normal != answer.normal) {
+      EXPECT_EQ(swapped.normal, Vec3(-answer.normal)) << name << ", swapped";
+    } else {
+      swapped.translation = -answer.translation;
+      std::swap(swapped.witness_a, swapped.witness_b);
+    }
+    swapped.normal = answer.normal;
+    std::swap(swapped.witness_a, swapped.witness_b);
+    expect_same(swapped, answer, name + ", swapped");
+
+    WarmCertificate memory;
+    (void)penetration_depth(a, b, scratch_, settings, &memory);
+    const PenetrationDepth warm = penetration_depth(a, b, scratch_, settings, &memory);
+    EXPECT_EQ(check_contact(a, b, warm, exact, allowed, scratch_), "") << name << ", warm";
+  }
+  int pairs = 0;
+  int missed = 0;
+  int classes[3] = {};
+
+ private:
+  static void expect_same(const PenetrationDepth& x, const PenetrationDepth& y, const std::string& name) {
+    EXPECT_TRUE(x.contact == y.contact && x.lower == y.lower && x.upper == y.upper &&
+                x.distance_lower == y.distance_lower && x.distance_upper == y.distance_upper &&
+                same_bits(x.normal, y.normal) && same_bits(x.witness_a, y.witness_a) &&
+                same_bits(x.witness_b, y.witness_b))
+        << name;
+  }
+  Scratch scratch_;
+  Scratch other_scratch_;
+};
+
+ConvexShape hull(const std::vector<Vec3>& points, double margin = 0) {
+  return *ConvexShape(*ConvexPolytope::from_points(points)).with_margin(margin);
+}
+
+TEST(ContactBracket, FamiliesOfPairs) {
+  Judge judge;
+  for (int f = 0; f < scenes::kPairFamilies; ++f) {
+    for (int d = 0; d < scenes::kDepthClasses; ++d) {
+      // Sizes beyond 2^100 are left to exact numbers.
+      if (static_cast<scenes::PairFamily>(f) == scenes::PairFamily::scales) continue;
+      for (const int n : {8, 24}) {
+        const oracle::JudgedPair pair = oracle::JudgedPair::of_family(static_cast<scenes::PairFamily>(f), n,
+                                                                      static_cast<scenes::DepthClass>(d), 11);
+        judge.ask(pair.a(), pair.b(), tolerance_of(pair.a(), pair.b(), 1), pair.name());
+      }
+    }
+  }
+  EXPECT_EQ(judge.missed, 0);
+  EXPECT_GT(judge.classes[static_cast<int>(ContactClass::overlapping)], 20);
+}
+
+TEST(ContactBracket, WithinAHairOfContact) {
+  Judge judge;
+  Scratch scratch;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const oracle::RestingPair rest = oracle::make_resting_pair(seed, scratch);
+    for (const bool sharp : {false, true}) {
+      const ConvexShape a = hull(rest.cores.a, sharp ? 0 : rest.margin_a);
+      const ConvexShape b = hull(rest.cores.b, sharp ? 0 : rest.margin_b);
+      const PosedShape posed_a{&a, rest.cores.pose_a}, posed_b{&b, rest.cores.pose_b};
+      judge.ask(posed_a, posed_b, tolerance_of(posed_a, posed_b, 0.01), "seed " + std::to_string(seed));
+    }
+  }
+  EXPECT_EQ(judge.missed, 0);
+  EXPECT_GT(judge.classes[static_cast<int>(ContactClass::touching)], 20);
+}
+
+/// A box, a hull, a ball and a capsule that stand on floors within 1e-12 to 1e-5 of contact, sharp and rounded.
+TEST(ContactBracket, OnFloorsOfAnyWidth) {
+  Judge judge;
+  scenes::Random random(3);
+  const std::vector<std::vector<Vec3>> bodies = {scenes::box({0.5, 0.5, 0.5}),
+                                                 {{0, -0.5, 0}, {0.4, 0.3, 0}, {-0.3, 0.2, 0.5}, {-0.2, 0.4, -0.5}},
+                                                 {Vec3(0, -0.5, 0)},
+                                                 {{-0.5, -0.5, 0}, {0.5, -0.5, 0}}};
+  for (const double width : {1.0, 20.0, 200.0, 1e4}) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      for (const double margin : {0.0, 0.04}) {
+        for (const double gap : {0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-5, -1e-5}) {
+          const ConvexShape body = hull(bodies[k], margin);
+          const ConvexShape floor = hull(scenes::box({width, 1, width}), margin);
+          const auto [sine, cosine] = scenes::turn(random.uniform());
+          const Pose pose = *Pose::from_quaternion({cosine, 0, sine, 0}, {0.3, 0.5 + 2 * margin + gap, -0.1});
+          const PosedShape posed_a{&body, pose}, posed_b{&floor, *Pose::from_matrix(Mat3::Identity(), {0, -1, 0})};
+          judge.ask(posed_a, posed_b, tolerance_of(posed_a, posed_b, 0.5),
+                    "body " + std::to_string(k) + " on " + std::to_string(width) + ", gap " + std::to_string(gap));
+        }
+      }
+    }
+  }
+  EXPECT_EQ(judge.missed, 0);
+}
+
+/// What spans no volume: the Minkowski difference is flat, a segment or a point, and holds the origin.
+TEST(ContactBracket, FlatBodiesThroughEachOther) {
+  Judge judge;
+  const std::vector<std::vector<Vec3>> bodies = {{Vec3::Zero()},
+                                                 {{-1, 0, 0}, {1, 0, 0}},
+                                                 {{0, 0, -1}, {0, 0, 1}},
+                                                 {{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}},
+                                                 {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}};
+  for (const double margin : {0.0, 0.25}) {
+    for (const double turn : {0.0, 0.1}) {
+      for (std::size_t i = 0; i < bodies.size(); ++i) {
+        for (std::size_t k = i; k < bodies.size(); ++k) {
+          const ConvexShape a = hull(bodies[i], margin), b = hull(bodies[k], margin);
+          const auto [sine, cosine] = scenes::turn(turn);
+          const Pose pose = *Pose::from_quaternion({cosine, sine, 0, 0}, {5, 6, 7});
+          const PosedShape posed_a{&a, pose}, posed_b{&b, pose};
+          judge.ask(posed_a, posed_b, tolerance_of(posed_a, posed_b, 1),
+                    std::to_string(i) + " in " + std::to_string(k) + ", margin " + std::to_string(margin));
+        }
+      }
+    }
+  }
+  EXPECT_EQ(judge.missed, 0);
+}
+
+/// Curved bodies: against the interval of a much narrower search.
+TEST(ContactBracket, CurvedBodiesOnFloors) {
+  Scratch scratch;
+  scenes::Random random(5);
+  int touching = 0;
+  for (const double width : {1.0, 20.0, 1e4}) {
+    const ConvexShape floor = hull(scenes::box({width, 1, width}), 0.04);
+    const PosedShape posed_floor{&floor, *Pose::from_matrix(Mat3::Identity(), {0, -1.04, 0})};
+    for (const double margin : {0.0, 0.04}) {
+      const ConvexShape bodies[] = {*ConvexShape::cylinder(0.4, 0.5, 1)->with_margin(margin),
+                                    *ConvexShape::cone(0.4, 0.5, 1)->with_margin(margin),
+                                    *ConvexShape::ellipsoid({0.3, 0.5, 0.4})->with_margin(margin)};
+      for (const ConvexShape& body : bodies) {
+        WarmCertificate memory;
+        for (const double gap : {1e-5, -1e-5, 1e-8, -1e-8, 0.0, 0.1, -0.1}) {
+          const double tip = 1e-6 * random.uniform(-1, 1);
+          const Pose pose = *Pose::from_quaternion({std::sqrt(1 - tip * tip), 0, 0, tip}, {0.1, 0.5 + margin + gap, 0});
+          const PosedShape posed{&body, pose};
+          const double tolerance = tolerance_of(posed, posed_floor, 0.5);
+          const double allowed = std::max(1e-12 * (2 * width + 2), tolerance);
+          const PenetrationDepth fine = penetration_depth(posed, posed_floor, scratch, {.delta = 1e-12});
+          for (WarmCertificate* warm : {static_cast<WarmCertificate*>(nullptr), &memory}) {
+            const PenetrationDepth answer = penetration_depth(posed, posed_floor, scratch, contact(tolerance), warm);
+            const oracle::SignedInterval own = oracle::signed_distance(answer), truth = oracle::signed_distance(fine);
+            // The reference takes what lies within 1e-12 L of contact for touching.
+            const double slack = fine.contact == ContactClass::touching ? 1e-12 * (2 * width + 2) : 0;
+            EXPECT_LE(own.lower, truth.upper + slack) << width << " " << gap;
+            EXPECT_GE(own.upper, truth.lower - slack) << width << " " << gap;
+            EXPECT_TRUE(answer.bracket_reached) << width << " " << gap << " " << own.upper - own.lower;
+            EXPECT_LE(own.upper - own.lower, std::max(allowed, 1.01e-6 * std::abs(own.lower)));
+            touching += answer.contact == ContactClass::touching;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(touching, 4);
+}
+
+}  // namespace
+}  // namespace pd
