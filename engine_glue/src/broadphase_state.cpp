@@ -29,7 +29,8 @@ int count_manifolds(btCollisionAlgorithm* algorithm) {
   if (algorithm == nullptr) {
     return -1;
   }
-  btManifoldArray manifolds;
+  thread_local btManifoldArray manifolds;  // asked for every pair of every snapshot: its memory is kept
+  manifolds.resize(0);
   algorithm->getAllContactManifolds(manifolds);
   return manifolds.size();
 }

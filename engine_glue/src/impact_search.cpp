@@ -250,7 +250,7 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
 
 PenetrationDepth ImpactSearch::measure(const FoundImpact& impact) {
   return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.present()},
-                           {&impact.b.shape_beside(impact.a), impact.b.present()}, scratch_);
+                           {&impact.b.shape_beside(impact.a), impact.b.present()}, scratch_, quick());
 }
 
 }  // namespace pd::detail

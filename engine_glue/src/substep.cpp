@@ -67,6 +67,10 @@ class BouncingContacts {
     return one;
   }
 
+  static bool bounces(const btBroadphaseProxy* proxy) {
+    return static_cast<const btCollisionObject*>(proxy->m_clientObject)->getRestitution() > 0;
+  }
+
   static void near(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
     Rule rule{};
     {
@@ -74,8 +78,9 @@ class BouncingContacts {
       rule = active().at(&dispatcher);
     }
     rule.host(pair, dispatcher, info);
-    if (pair.m_algorithm == nullptr) return;
-    btManifoldArray manifolds;
+    if (pair.m_algorithm == nullptr || !bounces(pair.m_pProxy0) || !bounces(pair.m_pProxy1)) return;
+    thread_local btManifoldArray manifolds;  // asked for every pair of every step: its memory is kept
+    manifolds.resize(0);
     pair.m_algorithm->getAllContactManifolds(manifolds);
     for (int i = 0; i < manifolds.size(); ++i) {
       for (int k = manifolds[i]->getNumContacts() - 1; k >= 0; --k) {
