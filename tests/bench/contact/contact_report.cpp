@@ -123,7 +123,10 @@ const std::vector<FigureColumn>& figure_columns() {
                                                  {"energy_gained", &ContactFigures::energy_gained},
                                                  {"contacts", &ContactFigures::contacts},
                                                  {"new_points", &ContactFigures::new_points},
-                                                 {"lost", &ContactFigures::lost}};
+                                                 {"lost", &ContactFigures::lost},
+                                                 {"queries", &ContactFigures::queries},
+                                                 {"exact_signs", &ContactFigures::exact_signs},
+                                                 {"wider", &ContactFigures::wider}};
   return columns;
 }
 

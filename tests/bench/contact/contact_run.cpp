@@ -131,6 +131,10 @@ class Runner {
     figures_.new_points = points_ > 0 ? young_ / points_ : 0;
     figures_.final_speed = static_cast<double>(bullet_.body(bullet_.first_moving()).getLinearVelocity().x());
     figures_.lost = lost();
+    const BulletSolverStatistics statistics = bullet_.solver().statistics();
+    figures_.queries = static_cast<double>(statistics.calls);
+    figures_.exact_signs = static_cast<double>(statistics.exact_signs);
+    figures_.wider = static_cast<double>(statistics.wider_brackets);
     return figures_;
   }
 

@@ -33,6 +33,9 @@ struct ContactFigures {
   double contacts = 0;       ///< mean over the last quarter
   double new_points = 0;     ///< share of points younger than two steps, over the last quarter
   double lost = 0;           ///< bodies below the ground or far away at the end
+  double queries = 0;        ///< asked of our solver
+  double exact_signs = 0;    ///< decisions in them that exact arithmetic took
+  double wider = 0;          ///< answers with a bracket wider than the poses deserve
 };
 
 /// Runs the scene under every setting for `seconds`; settings share a step length. A scene whose goal is to stand ends

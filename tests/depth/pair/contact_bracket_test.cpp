@@ -203,5 +203,33 @@ TEST(ContactBracket, CurvedBodiesOnFloors) {
   EXPECT_GT(touching, 4);
 }
 
+/// Anyhow deep in each other: the budget of steps leaves a bracket of a thousandth, seldom.
+TEST(ContactBracket, CurvedBodiesDeepInEachOther) {
+  Scratch scratch;
+  scenes::Random random(1);
+  const ConvexShape shapes[] = {*ConvexShape::cylinder(0.4, 0.5, 1), *ConvexShape::cone(0.4, 0.5, 1),
+                                *ConvexShape::ellipsoid({0.3, 0.5, 0.4}), hull({{-0.4, 0, 0}, {0.4, 0, 0}}, 0.2)};
+  int overlapping = 0;
+  int missed = 0;
+  for (int i = 0; i < 300; ++i) {
+    const ConvexShape& a = shapes[i % 4];
+    const ConvexShape& b = shapes[(i / 4) % 4];
+    if (a.polytope() && b.polytope()) continue;
+    const Pose pose_a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+    const Pose pose_b = *Pose::from_quaternion(
+        random.quaternion(), {random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
+    const PenetrationDepth answer = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch, contact(0x1p-30));
+    const PenetrationDepth fine = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
+    const oracle::SignedInterval own = oracle::signed_distance(answer), truth = oracle::signed_distance(fine);
+    EXPECT_LE(own.lower, truth.upper + 2e-12) << i;
+    EXPECT_GE(own.upper, truth.lower - 2e-12) << i;
+    EXPECT_LE(own.upper - own.lower, std::max(1e-9, 2e-3 * std::abs(own.lower))) << i;
+    overlapping += answer.contact == ContactClass::overlapping;
+    missed += !answer.bracket_reached;
+  }
+  EXPECT_GT(overlapping, 100);
+  EXPECT_LE(missed, 30);
+}
+
 }  // namespace
 }  // namespace pd

@@ -37,9 +37,10 @@ enum class Bracket : std::uint8_t {
   certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
   tightest,   ///< lower and upper are the exact depth rounded down and up
   /// What a physics engine can use, at a bounded cost: no finer than the numbers of its poses deserve
-  /// (`DepthSettings::contact_tolerance`), and never by exact arithmetic. Let s be the signed distance: the distance of
-  /// A and B, or minus their depth. Doubles, where they cancel double-double, show s in an interval no wider than
-  /// max(2e-14 L, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance), or delta times s as ever.
+  /// (`DepthSettings::contact_tolerance`), and never by numbers of unbounded length. Let s be the signed distance: the
+  /// distance of A and B, or minus their depth. Doubles, where they cancel double-double, show s in an interval no
+  /// wider than max(2e-14 L, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance), or delta times s as
+  /// ever.
   /// - separated: [distance_lower, distance_upper], above 0;
   /// - overlapping: [-upper, -lower], below 0;
   /// - touching: [-upper, distance_upper], which holds 0; depth, distance, lower and distance_lower are 0.

@@ -24,6 +24,8 @@ namespace {
 
 constexpr double kDefaultDelta = 1e-6;
 constexpr double kAbsolute = 1e-12;  ///< of L: where a bracket, and `touching`, stop
+/// Bracket::contact: of the depth; what rounding leaves wider is searched again on an exact hull.
+constexpr double kCloseBounds = 1e-3;
 
 class SmoothQuery {
  public:
@@ -105,7 +107,7 @@ class SmoothQuery {
     if (best.status != ExpansionStatus::undecided) return best;
     if (for_contact_) {
       tighten_upper(best);
-      return best;
+      if (best.face >= 0 && best.lower > 0 && best.upper - best.lower <= kCloseBounds * best.upper) return best;
     }
     best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
                              buffers_.surface.watch);
