@@ -55,6 +55,20 @@ double enter_ray(const Box2& box, const Point2& y, const Point2& d, double limit
   return low <= high ? low : std::numeric_limits<double>::infinity();
 }
 
+/// Do both ends of a span lie on one side of the line through y along d for certain? In doubles: four times the
+/// rounding of the differences and products is left as air. What overflows is not certain.
+bool beside_line(const Span& e, const Point2& y, const Point2& d) {
+  const auto side = [&](const SumPoint& x) {
+    const double px = (x.p[0] - x.q[0]) - y[0], py = (x.p[1] - x.q[1]) - y[1];
+    const double size_x = std::abs(x.p[0]) + std::abs(x.q[0]) + std::abs(y[0]);
+    const double size_y = std::abs(x.p[1]) + std::abs(x.q[1]) + std::abs(y[1]);
+    const double value = d[0] * py - d[1] * px;
+    const double air = 0x1p-49 * (std::abs(d[0]) * size_y + std::abs(d[1]) * size_x) + 0x1p-1060;
+    return value > air ? 1 : (value < -air ? -1 : 0);
+  };
+  return side(e.s) * side(e.z) > 0;
+}
+
 }  // namespace
 
 BoundaryQuery::BoundaryQuery(const SumBoundary& boundary)
@@ -94,7 +108,7 @@ std::optional<BoundaryPoint> BoundaryQuery::touch(const Point2& y, bool outer_on
   return found;
 }
 
-PlanarContact BoundaryQuery::contact(const Point2& y, std::optional<BoundaryPoint>* touched) const {
+PlanarContact BoundaryQuery::contact_by_sums(const Point2& y, std::optional<BoundaryPoint>* touched) const {
   Box2 here;
   here.add(y);
   const SumPoint x = point(y);
@@ -193,10 +207,48 @@ std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const 
     const Stretch& s = boundary_.stretches()[at(i)];
     if (outer_only && s.loop != 0) return;
     visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
-                [&](int e) { search.meet(i, e, boundary_.part(s, e)); });
+                [&](int e) {
+                  const EdgePart part = boundary_.part(s, e);
+                  if (!beside_line(part.span, y, d)) search.meet(i, e, part);
+                });
   });
   if (!search.best) return std::nullopt;
   return search.best->point;
+}
+
+std::optional<PlanarContact> BoundaryQuery::contact_by_ray(const Point2& y, const Point2& d,
+                                                           std::optional<BoundaryPoint>& hit) const {
+  RaySearch search{*this, {point(y), {{0, 0}, d}, {}}, {}};
+  const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, y, d, search.limit)); };
+  const auto first = [&](const Box2& box) { return enter_ray(box, y, d, search.limit); };
+  stretch_tree_.visit(enter, first, [&](std::int32_t i) {
+    const Stretch& s = boundary_.stretches()[at(i)];
+    visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
+                [&](int e) {
+                  const EdgePart part = boundary_.part(s, e);
+                  if (!beside_line(part.span, y, d)) search.meet(i, e, part);
+                });
+  });
+  if (!search.best) return PlanarContact::separated;  // the ray goes to infinity, and y is not on the boundary
+  const Hit& best = *search.best;
+  hit = best.point;
+  if (!search.unique || !best.crossing || search.sign(best) == 0) return std::nullopt;
+  const EdgePart part = boundary_.part(boundary_.stretches()[at(best.point.stretch)], best.point.edge);
+  if (compare_places(part.span, part.from, best.point.at) >= 0) return std::nullopt;
+  if (compare_places(part.span, best.point.at, part.to) >= 0) return std::nullopt;
+  return cross_sign(part.span.d, search.ray.d) < 0 ? PlanarContact::overlapping : PlanarContact::separated;
+}
+
+PlanarContact BoundaryQuery::contact_and_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& touched,
+                                             std::optional<BoundaryPoint>& hit) const {
+  if (const auto found = contact_by_ray(y, d, hit)) return *found;
+  return contact_by_sums(y, &touched);
+}
+
+PlanarContact BoundaryQuery::contact(const Point2& y, std::optional<BoundaryPoint>* touched) const {
+  std::optional<BoundaryPoint> hit;
+  if (const auto found = contact_by_ray(y, {64, 7}, hit)) return *found;
+  return contact_by_sums(y, touched);
 }
 
 std::optional<Place> BoundaryQuery::last_exit(const Point2& y, const Point2& d) const {
@@ -241,7 +293,10 @@ bool BoundaryQuery::in_unbounded_face(const Point2& y) const {
     stretch_tree_.visit(enter, [&](std::int32_t i) {
       const Stretch& s = boundary_.stretches()[at(i)];
       visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
-                  [&](int e) { search.meet(i, e, boundary_.part(s, e)); });
+                  [&](int e) {
+                    const EdgePart part = boundary_.part(s, e);
+                    if (!beside_line(part.span, y, d)) search.meet(i, e, part);
+                  });
     });
     if (!search.best) return true;
     if (search.unique) return boundary_.stretches()[at(search.best->point.stretch)].loop == 0;

@@ -31,8 +31,12 @@ class BoundaryQuery {
   /// A placement as a point of R's plane.
   [[nodiscard]] static SumPoint point(const Point2& placement) { return {placement, {0, 0}}; }
 
-  /// `touched`: where it lies on the boundary.
+  /// `touched`: where it lies on the boundary. Found by the first crossing of a ray; where that is in doubt, by the
+  /// convex sums themselves.
   [[nodiscard]] PlanarContact contact(const Point2& y, std::optional<BoundaryPoint>* touched = nullptr) const;
+  /// Class and first point of the boundary on the ray from y along d, in one search.
+  [[nodiscard]] PlanarContact contact_and_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& touched,
+                                              std::optional<BoundaryPoint>& hit) const;
   /// The nearest point of the boundary (of loop 0 alone); among equals the one that is least by its coordinates.
   [[nodiscard]] std::optional<BoundaryPoint> nearest(const Point2& y, bool outer_only) const;
   /// The first point of the boundary (of loop 0 alone) on the ray from y.
@@ -52,7 +56,11 @@ class BoundaryQuery {
   struct RaySearch;
   struct NearestSearch;
 
-  [[nodiscard]] bool generic_first_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& hit) const;
+  /// The class of y by the first stretch that the ray along d crosses: R lies on the left of it. Nothing where the ray
+  /// begins on the boundary, or its first meeting with it is no crossing inside one edge.
+  [[nodiscard]] std::optional<PlanarContact> contact_by_ray(const Point2& y, const Point2& d,
+                                                            std::optional<BoundaryPoint>& hit) const;
+  [[nodiscard]] PlanarContact contact_by_sums(const Point2& y, std::optional<BoundaryPoint>* touched) const;
   [[nodiscard]] std::optional<BoundaryPoint> touch(const Point2& y, bool outer_only) const;
 
   const SumBoundary& boundary_;

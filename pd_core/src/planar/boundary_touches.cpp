@@ -16,8 +16,12 @@ class Touches {
  public:
   Touches(const SumBoundary& boundary, const std::vector<Stretch>& stretches)
       : boundary_(boundary), stretches_(stretches), cuts_(stretches.size()) {
-    for (const Stretch& s : stretches_) boxes_.push_back(boundary_.box(s));
-    tree_ = BoxTree(boxes_);
+    std::vector<Box2> pieces;
+    for (int i = 0; i < static_cast<int>(stretches_.size()); ++i) {
+      boxes_.push_back(boundary_.box(stretches_[at(i)]));
+      add_pieces(i, pieces);
+    }
+    tree_ = BoxTree(std::move(pieces));
   }
 
   [[nodiscard]] std::vector<Stretch> split() {
@@ -31,11 +35,44 @@ class Touches {
   }
 
  private:
+  /// A straight stretch gives a row of small boxes along it: of long edges side by side, as a star has them, whole
+  /// boxes would all overlap.
+  void add_pieces(int i, std::vector<Box2>& pieces) {
+    constexpr int kPieces = 16;
+    const Stretch& s = stretches_[at(i)];
+    const int first = SumBoundary::first_edge(s), count = SumBoundary::last_edge(s) - first + 1;
+    const Span e = boundary_.edge(boundary_.candidate(s), first);
+    const Point2 from = {e.s.p[0] - e.s.q[0], e.s.p[1] - e.s.q[1]}, to = {e.z.p[0] - e.z.q[0], e.z.p[1] - e.z.q[1]};
+    const auto between = [&](int k) {
+      const double t = static_cast<double>(k) / kPieces;
+      return Point2{(1 - t) * from[0] + t * to[0], (1 - t) * from[1] + t * to[1]};
+    };
+    for (int k = 0; k < (count == 1 ? kPieces : 1); ++k) {
+      Box2 piece = boxes_[at(i)];
+      if (count == 1) {
+        piece = {};
+        piece.add(between(k));
+        piece.add(between(k + 1));
+        // What interpolation rounds is relative to the ends, not to a piece near zero between them.
+        for (std::size_t a = 0; a < 2; ++a) {
+          const double air = 0x1p-48 * std::max(std::abs(from[a]), std::abs(to[a]));
+          piece.low[a] -= air;
+          piece.high[a] += air;
+        }
+      }
+      pieces.push_back(piece);
+      owner_.push_back(i);
+    }
+  }
+
+  /// Others that may be near the box; one of them may come more than once. `other` returns whether to go on.
   template <class Visit>
   void visit_others(const Box2& box, int self, const Visit& other) const {
-    tree_.visit([&](const Box2& b) { return b.meets(box); },
-                [&](std::int32_t j) {
-                  if (j != self && boxes_[at(j)].meets(box)) other(j);
+    bool more = true;
+    tree_.visit([&](const Box2& b) { return more && b.meets(box); },
+                [&](std::int32_t piece) {
+                  const std::int32_t j = owner_[at(piece)];
+                  if (more && j != self && boxes_[at(j)].meets(box)) more = other(j);
                 });
   }
 
@@ -43,7 +80,10 @@ class Touches {
   void visit(int i, int begin, int end) {
     const Box2 box = boundary_.box(boundary_.candidate(stretches_[at(i)]), begin, end);
     bool near = false;
-    visit_others(box, i, [&](int) { near = true; });
+    visit_others(box, i, [&](int) {
+      near = true;
+      return false;
+    });
     if (!near) return;
     if (end - begin > 1) {
       visit(i, begin, (begin + end) / 2);
@@ -54,6 +94,7 @@ class Touches {
     visit_others(start, i, [&](int j) {
       const Stretch& s = stretches_[at(j)];
       compare(i, begin, j, start, SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1);
+      return true;
     });
   }
 
@@ -125,6 +166,7 @@ class Touches {
   const std::vector<Stretch>& stretches_;
   std::vector<std::vector<Position>> cuts_;
   std::vector<Box2> boxes_;
+  std::vector<std::int32_t> owner_;  ///< of every box of the tree
   BoxTree tree_;
 };
 

@@ -151,8 +151,8 @@ PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point
   const State& s = *state_;
   const Point2 y = s.turned(placement), d = s.turned(direction);
   PolygonDepth answer;
-  std::optional<BoundaryPoint> touched;
-  answer.contact = s.query.contact(y, &touched);
+  std::optional<BoundaryPoint> touched, first;
+  answer.contact = s.query.contact_and_hit(y, d, touched, first);
   const detail::Span ray{detail::BoundaryQuery::point(y), {{0, 0}, d}, {}};
   if (leave == Leave::straight) {
     if (const auto out = s.query.last_exit(y, d)) {
@@ -167,7 +167,7 @@ PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point
     }
     if (leave == Leave::first_exit || s.query.in_unbounded_face(y)) return answer;
   }
-  const auto hit = s.query.first_on_ray(y, d, leave == Leave::escape);
+  const auto hit = leave == Leave::escape ? s.query.first_on_ray(y, d, true) : first;
   assert(hit);
   fill(answer, difference(detail::point_at<Dyadic>(s.query.span_of(*hit), hit->at), y), s.swapped);
   answer.feature = feature_of(s.boundary, s.p, s.q, *hit, s.swapped);

@@ -25,6 +25,14 @@ void measure_hierarchy(const DobkinSettings& settings, ClaimTable& table);
 /// Probes of the search in two convex polygons; work of the medial axis; answers against the scan of all edges.
 void measure_convex_polygons(const DobkinSettings& settings, ClaimTable& table);
 
+/// Supports and directional depth of large polytopes beside the sampled climb; of small ones beside their whole
+/// difference.
+void measure_against_climb(const DobkinSettings& settings, ClaimTable& table);
+/// The implicit boundary of [D] section 4 beside GEOS, Boost.Geometry and CGAL, where they are; holes and memory.
+void measure_polygon_boundary(const DobkinSettings& settings, ClaimTable& table);
+/// Directional queries after preprocessing beside ray casts and binary searches.
+void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table);
+
 /// @return the exit code, as `run_agarwal`.
 int run_dobkin(const DobkinSettings& settings);
 [[nodiscard]] std::string dobkin_chapters();

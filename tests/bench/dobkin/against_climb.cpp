@@ -1,0 +1,215 @@
+/// @file
+/// Support queries and directional depth of large polytopes beside the sampled climb, and of small ones beside the hull
+/// of all pairwise sums.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+extern "C" {
+#include <libqhull_r/qhull_ra.h>
+}
+
+#include "bench/dobkin/dobkin.hpp"
+#include "bench/measure/stopwatch.hpp"
+#include "pd/depth/directional_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "scenes/shape_families.hpp"
+#include "shape/support/polytope_support.hpp"
+
+namespace pd::bench {
+
+namespace {
+
+const Claim kSupport{"Fact 5.1, support", "support of a large polytope beside the sampled climb"};
+const Claim kDepth{"Theorem 5.6, time", "directional depth beside support queries and beside the whole difference"};
+
+/// Hulls of every 8th, 64th, ... vertex, and hill climbing in each from the best of the one above: the structure that
+/// is usual where there is no hierarchy.
+class SampledClimb {
+ public:
+  SampledClimb(const ConvexPolytope& polytope, scenes::Random& random) {
+    std::vector<std::int32_t> ids(static_cast<std::size_t>(polytope.num_vertices()));
+    std::iota(ids.begin(), ids.end(), 0);
+    levels_.push_back({polytope, {}});
+    while (ids.size() > 64) {
+      for (std::size_t i = ids.size(); i > 1; --i) {
+        std::swap(ids[i - 1], ids[static_cast<std::size_t>(random.next() % i)]);
+      }
+      ids.resize(ids.size() / 8);
+      std::vector<Vec3> points;
+      for (const std::int32_t id : ids) points.push_back(polytope.vertex(id));
+      const ConvexPolytope hull = ConvexPolytope::from_points(points).value();
+      Level level{hull, {}};
+      for (int v = 0; v < hull.num_vertices(); ++v) {
+        level.in_whole.push_back(ids[static_cast<std::size_t>(hull.caller_id(v))]);
+      }
+      // From the level below to this one: where the vertices of this one stand there.
+      std::vector<std::int32_t> place(static_cast<std::size_t>(polytope.num_vertices()), -1);
+      const Level& below = levels_.back();
+      for (int v = 0; v < below.hull.num_vertices(); ++v) place[static_cast<std::size_t>(whole(below, v))] = v;
+      for (const std::int32_t v : level.in_whole) level.below.push_back(place[static_cast<std::size_t>(v)]);
+      levels_.push_back(std::move(level));
+    }
+  }
+  [[nodiscard]] int support(const Vec3& direction) const {
+    int v = 0;
+    for (std::size_t l = levels_.size(); l-- > 0;) {
+      const ConvexPolytope& hull = levels_[l].hull;
+      double best = direction.dot(hull.vertex(v));
+      for (bool better = true; better;) {
+        better = false;
+        for (const std::int32_t n : hull.neighbours(v)) {
+          const double value = direction.dot(hull.vertex(n));
+          if (value <= best) continue;
+          best = value;
+          v = n;
+          better = true;
+          break;
+        }
+      }
+      if (l > 0) v = levels_[l].below[static_cast<std::size_t>(v)];
+    }
+    return v;
+  }
+
+ private:
+  struct Level {
+    ConvexPolytope hull;
+    std::vector<std::int32_t> in_whole = {};  ///< per vertex; empty at the whole polytope
+    std::vector<std::int32_t> below = {};     ///< its number one level finer
+  };
+  static std::int32_t whole(const Level& level, int v) {
+    return level.in_whole.empty() ? v : level.in_whole[static_cast<std::size_t>(v)];
+  }
+  std::vector<Level> levels_;
+};
+
+/// Least mean time of a call over the directions; `disturb` runs before each call, unmeasured.
+template <class Call, class Disturb>
+double nanoseconds(const std::vector<Vec3>& directions, int rounds, const Call& call, Disturb&& disturb) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < rounds; ++round) {
+    double sum = 0;
+    for (const Vec3& d : directions) {
+      disturb();
+      const auto begin = Clock::now();
+      call(d);
+      sum += elapsed_ns(begin, Clock::now());
+    }
+    best = std::min(best, sum / static_cast<double>(directions.size()));
+  }
+  return best;
+}
+
+std::vector<Vec3> directions_of(int count, scenes::Random& random) {
+  std::vector<Vec3> directions;
+  for (int i = 0; i < count; ++i) directions.push_back(random.direction());
+  return directions;
+}
+
+/// Walks through more memory than a core's caches hold.
+class CacheFlush {
+ public:
+  CacheFlush() : bytes_(std::size_t{96} << 20) {}
+  void operator()() {
+    for (std::size_t i = 0; i < bytes_.size(); i += 64) bytes_[i] = static_cast<char>(bytes_[i] + 1);
+  }
+
+ private:
+  std::vector<char> bytes_;
+};
+
+void measure_large(const DobkinSettings& settings, ClaimTable& table) {
+  const int n = settings.full ? 1 << 20 : 1 << 14;
+  scenes::Random random(settings.seed);
+  const ConvexPolytope p = ConvexPolytope::from_points(scenes::sphere_hull(n, random)).value();
+  const ConvexPolytope q = ConvexPolytope::from_points(scenes::sphere_hull(n, random)).value();
+  const SampledClimb climb(p, random);
+  const std::vector<Vec3> directions = directions_of(2000, random);
+  double sum = 0;
+  const auto nothing = [] {};
+  const auto by_climb = [&](const Vec3& d) { sum += climb.support(d); };
+  const double climbing = nanoseconds(directions, 5, by_climb, nothing);
+  const double supports = nanoseconds(
+      directions, 5, [&](const Vec3& d) { sum += detail::support_vertex(p, d, -1); }, nothing);
+  const std::string range = fmt::format("n = {}", n), title = "balls";
+  table.add_value(kSupport, title, "support, ns", range, supports);
+  table.add_value(kSupport, title, "sampled climb, ns", range, climbing);
+  table.add_value(kSupport, title, "support / sampled climb", range, supports / climbing, 0.7);
+
+  const PolyhedralHierarchy hp = PolyhedralHierarchy::build(p, HierarchyKind::inner).value();
+  const PolyhedralHierarchy hq = PolyhedralHierarchy::build(q, HierarchyKind::inner).value();
+  const DirectionalHierarchies both{&hp, &hq};
+  const ConvexShape a(p), b(q);
+  const Pose moved = Pose::from_quaternion(random.quaternion(), Vec3(0.2, -0.1, 0.3)).value();
+  const PosedShape posed_a{&a, moved}, posed_b{&b, Pose()};
+  Scratch scratch;
+  CacheFlush flush;
+  const std::vector<Vec3> few(directions.begin(), directions.begin() + 60);
+  const double cold_climb = nanoseconds(few, 1, by_climb, flush);
+  table.add_value(kDepth, title, "cold support by sampled climb, ns", range, cold_climb);
+  for (const auto& [method, name] :
+       {std::pair{DirectionalMethod::hierarchy, "hierarchies"}, std::pair{DirectionalMethod::portal, "portal"}}) {
+    const auto ask = [&, m = method](const Vec3& d) {
+      sum += directional_depth(posed_a, posed_b, d, scratch, m, &both).value().depth;
+    };
+    const double warm = nanoseconds(few, 5, ask, nothing);
+    const double cold = nanoseconds(few, 1, ask, flush);
+    table.add_value(kDepth, title, fmt::format("{}: warm, ns", name), range, warm);
+    table.add_value(kDepth, title, fmt::format("{}: warm / cold support", name), range, warm / cold_climb, 2);
+    table.add_value(kDepth, title, fmt::format("{}: cold / cold support", name), range, cold / cold_climb, 8);
+  }
+  if (sum < 0) std::abort();
+}
+
+/// The hull of all b - a by Qhull, without what is asked of it.
+double seconds_of_hull(const ConvexPolytope& p, const ConvexPolytope& q) {
+  std::vector<double> points;
+  for (int i = 0; i < p.num_vertices(); ++i) {
+    for (int k = 0; k < q.num_vertices(); ++k) {
+      const Vec3 x = q.vertex(k) - p.vertex(i);
+      points.insert(points.end(), {x.x(), x.y(), x.z()});
+    }
+  }
+  const auto begin = Clock::now();
+  qhT context;
+  qh_zero(&context, stderr);
+  std::string options = "qhull Qt";
+  qh_new_qhull(&context, 3, static_cast<int>(points.size() / 3), points.data(), False, options.data(), nullptr, stderr);
+  const double seconds = elapsed_ns(begin, Clock::now()) * 1e-9;
+  qh_freeqhull(&context, qh_ALL);
+  int current = 0, total = 0;
+  qh_memfreeshort(&context, &current, &total);
+  return seconds;
+}
+
+void measure_small(const DobkinSettings& settings, ClaimTable& table) {
+  const int n = settings.full ? 512 : 128;
+  scenes::Random random(settings.seed + 3);
+  const ConvexPolytope p = ConvexPolytope::from_points(scenes::sphere_hull(n, random)).value();
+  const ConvexPolytope q = ConvexPolytope::from_points(scenes::sphere_hull(n, random)).value();
+  const ConvexShape a(p), b(q);
+  const PosedShape posed_a{&a, Pose()}, posed_b{&b, Pose()};
+  Scratch scratch;
+  double sum = 0;
+  const double ours = nanoseconds(
+      directions_of(500, random), 5,
+      [&](const Vec3& d) { sum += directional_depth(posed_a, posed_b, d, scratch).value().depth; }, [] {});
+  if (sum < 0) std::abort();
+  table.add_value(kDepth, "balls", "time / Qhull's hull of pairwise sums", fmt::format("n = m = {}", n),
+                  ours * 1e-9 / seconds_of_hull(p, q), 0.01);
+}
+
+}  // namespace
+
+void measure_against_climb(const DobkinSettings& settings, ClaimTable& table) {
+  measure_small(settings, table);
+  measure_large(settings, table);
+}
+
+}  // namespace pd::bench

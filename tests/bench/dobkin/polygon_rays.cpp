@@ -1,0 +1,174 @@
+/// @file
+/// [D] Theorem 4.5: directional queries after preprocessing, beside a ray cast on P's own edges; and the search in two
+/// convex polygons beside binary searches in arrays of their length.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bench/dobkin/dobkin.hpp"
+#include "bench/measure/stopwatch.hpp"
+#include "pd/planar/convex_depth.hpp"
+#include "pd/planar/polygon_depth.hpp"
+#include "planar/box_tree.hpp"
+#include "scenes/polygon_families.hpp"
+
+namespace pd::bench {
+
+namespace {
+
+const Claim kRays{"Theorem 4.5", "directional depth of a placement in sublinear time after preprocessing"};
+const Claim kSearch{"Section 3, time", "directional depth of convex polygons beside binary searches"};
+
+/// First hit of a ray with P's edges down a tree of boxes, all in doubles: what a robot planner has at hand.
+class EdgeCaster {
+ public:
+  explicit EdgeCaster(const Polygon& p) : p_(p) {
+    std::vector<detail::Box2> boxes;
+    for (int v = 0; v < p.num_vertices(); ++v) {
+      detail::Box2 box;
+      box.add(p.point(v));
+      box.add(p.point(p.next(v)));
+      boxes.push_back(box);
+    }
+    tree_ = detail::BoxTree(std::move(boxes));
+  }
+  [[nodiscard]] double cast(const Point2& y, const Point2& d) const {
+    double best = std::numeric_limits<double>::infinity();
+    const auto entry = [&](const detail::Box2& box) {
+      double low = 0, high = best;
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double a = (box.low[k] - y[k]) / d[k], b = (box.high[k] - y[k]) / d[k];
+        low = std::max(low, std::min(a, b));
+        high = std::min(high, std::max(a, b));
+      }
+      return low <= high ? low : std::numeric_limits<double>::infinity();
+    };
+    tree_.visit([&](const detail::Box2& box) { return std::isfinite(entry(box)); }, entry,
+                [&](std::int32_t v) {
+                  const Point2 &a = p_.point(v), &b = p_.point(p_.next(v));
+                  const double ex = b[0] - a[0], ey = b[1] - a[1], ax = a[0] - y[0], ay = a[1] - y[1];
+                  const double w = d[0] * ey - d[1] * ex;
+                  const double t = (ax * ey - ay * ex) / w, s = (ax * d[1] - ay * d[0]) / w;
+                  if (t >= 0 && s >= 0 && s <= 1) best = std::min(best, t);
+                });
+    return best;
+  }
+
+ private:
+  const Polygon& p_;
+  detail::BoxTree tree_;
+};
+
+struct Ray {
+  Point2 from, direction;
+};
+
+/// Rays from inside P.
+std::vector<Ray> rays_in(const Polygon& p, const PolygonDifference& r, int count, scenes::Random& random) {
+  detail::Box2 box;
+  for (const Point2& x : p.points()) box.add(x);
+  std::vector<Ray> rays;
+  for (int tries = 0; static_cast<int>(rays.size()) < count && tries < 100 * count; ++tries) {
+    const Point2 y = {random.uniform(box.low[0], box.high[0]), random.uniform(box.low[1], box.high[1])};
+    if (r.contact(y) != PlanarContact::overlapping) continue;
+    const scenes::Turn t = scenes::turn(random.uniform());
+    rays.push_back({y, {t.cosine, t.sine}});
+  }
+  return rays;
+}
+
+/// Least mean time of a call over the rays.
+template <class Call>
+double nanoseconds(const std::vector<Ray>& rays, const Call& call) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 5; ++round) {
+    const auto begin = Clock::now();
+    for (const Ray& ray : rays) call(ray);
+    best = std::min(best, elapsed_ns(begin, Clock::now()) / static_cast<double>(rays.size()));
+  }
+  return best;
+}
+
+template <class Make>
+void measure_rays(const std::string& family, const Make& make, double q_radius, double most_ratio, double most_exponent,
+                  const DobkinSettings& settings, ClaimTable& table) {
+  Growth time{family, "time of a directional query, ns", "n"};
+  double ours = 0, cast = 0;
+  int last = 0;
+  scenes::Random random(settings.seed + 5);
+  for (int n = 256; n <= (settings.full ? 65536 : 4096); n *= 4) {
+    const Polygon p = make(n);
+    const Polygon q = scenes::round_polygon(32, q_radius > 0 ? q_radius : 0.3 / n);
+    const PolygonDifference r = PolygonDifference::of(p, q, PolygonMethod::implicit).value();
+    const EdgeCaster caster(p);
+    const std::vector<Ray> rays = rays_in(p, r, 400, random);
+    double sum = 0;
+    ours = nanoseconds(rays, [&](const Ray& ray) { sum += r.depth_along(ray.from, ray.direction).depth; });
+    cast = nanoseconds(rays, [&](const Ray& ray) { sum += caster.cast(ray.from, ray.direction); });
+    if (sum < 0) std::abort();  // the sums are used, so that no call is left out
+    time.add(p.num_vertices(), ours);
+    last = p.num_vertices();
+  }
+  table.add_growth(kRays, std::move(time), most_exponent);
+  table.add_value(kRays, family, "time / that of a ray cast on P's edges", "n = " + std::to_string(last), ours / cast,
+                  most_ratio);
+}
+
+ConvexPolygon ellipse(int n, double phase, double squash) {
+  std::vector<Point2> points;
+  for (int i = 0; i < n; ++i) {
+    const scenes::Turn t = scenes::turn((i + phase) / n);
+    points.push_back({t.cosine, squash * t.sine});
+  }
+  return ConvexPolygon::from_points(points).value();
+}
+
+/// Two random binary searches in arrays of the polygons' lengths: the bare cost of finding something among so many.
+void measure_searches(const DobkinSettings& settings, ClaimTable& table) {
+  const int n = settings.full ? 1 << 20 : 1 << 15;
+  const ConvexPolygon p = ellipse(n, 0.3, 0.7), q = ellipse(n, 0.1, 0.4);
+  std::vector<double> first, second;
+  for (int i = 0; i < n; ++i) {
+    first.push_back(i);
+    second.push_back(i + 0.5);
+  }
+  scenes::Random random(settings.seed);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4000; ++i) {
+    const scenes::Turn t = scenes::turn(random.uniform());
+    rays.push_back({{random.uniform(0, n), random.uniform(0, n)}, {t.cosine, t.sine}});
+  }
+  double sum = 0;
+  const double ours = nanoseconds(rays, [&](const Ray& ray) {
+    sum += convex_directional_depth(p, q, {0.1, 0.2}, ray.direction).value().depth;
+  });
+  const double searches = nanoseconds(rays, [&](const Ray& ray) {
+    sum += *std::lower_bound(first.begin(), first.end() - 1, ray.from[0]);
+    sum += *std::lower_bound(second.begin(), second.end() - 1, ray.from[1]);
+  });
+  if (sum < 0) std::abort();
+  const std::string range = "n = m = " + std::to_string(n);
+  table.add_value(kSearch, "ellipses", "time of a directional query, ns", range, ours);
+  table.add_value(kSearch, "ellipses", "time / that of two std::lower_bound", range, ours / searches, 4);
+}
+
+}  // namespace
+
+void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table) {
+  scenes::Random random(settings.seed);
+  measure_rays(
+      "star, Q tiny", [&](int n) { return scenes::star_polygon(n, random); }, 0, 0.7, 0.5, settings, table);
+  measure_rays(
+      "comb", [](int n) { return scenes::comb_polygon(n); }, 0.3, 1.5, 0.2, settings, table);
+  measure_rays(
+      "spiral", [](int n) { return scenes::spiral_polygon(n); }, 0.3, 1.5, 0.2, settings, table);
+  measure_rays(
+      "plate with holes",
+      [](int n) { return scenes::plate_with_holes(std::max(2, static_cast<int>(std::sqrt(n / 4)))); }, 0.3, 1.5, 0.2,
+      settings, table);
+  measure_searches(settings, table);
+}
+
+}  // namespace pd::bench
