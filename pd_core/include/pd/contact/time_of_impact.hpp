@@ -46,8 +46,9 @@ struct TimeOfImpactSettings {
   /// >= 0: looks for the first time at which the bodies are deeper than this in each other, for pairs that are in
   /// contact from the start. "Apart" below then means: not as deep as this.
   double allowed_depth = 0;
-  /// A cap on the number of distance queries; when it is reached the answer is what is proved by then.
-  int max_queries = 200;
+  /// A cap on the number of distance queries; when it is reached the answer is what is proved by then. Long edges that
+  /// are nearly parallel and turn fast against each other take up to 300: a normal serves them for a short while only.
+  int max_queries = 1000;
   /// Without a hit, whether `contact` is asked for at the end of the duration; else it is of the last time looked at.
   bool contact_at_end = true;
   DepthSettings depth;
