@@ -1,6 +1,7 @@
 // Path data ([SVG] section 9.3): letters with their numbers, repeated without the letter, relative where it is small.
 #include <cctype>
-#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "drawing/svg_text.hpp"
 

@@ -1,9 +1,12 @@
 #include "drawing/svg_text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "support/refusal.hpp"
 
