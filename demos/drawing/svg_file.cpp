@@ -28,8 +28,13 @@ std::string_view local_name(const pugi::xml_node& node) {
 }
 
 std::string described(const pugi::xml_node& node) {
-  std::string words = "<" + std::string(node.name());
-  if (const char* id = node.attribute("id").value(); *id != '\0') words += " id=\"" + std::string(id) + "\"";
+  std::string words = "<";
+  words += node.name();
+  if (const char* id = node.attribute("id").value(); *id != '\0') {
+    words += " id=\"";
+    words += id;
+    words += '"';
+  }
   return words + ">";
 }
 
