@@ -323,5 +323,39 @@ TEST(DifferenceQueries, LinesAgreeWithPointClasses) {
   EXPECT_EQ(line_in_difference(ball, ball, Vec3::Zero(), Vec3::Zero()).error().code, ErrorCode::zero_direction);
 }
 
+TEST(DirectionalDepth, BracketsOfCurvedBodiesAreNarrowAlongPlanesOfSymmetryToo) {
+  const std::vector<ConvexShape> shapes = {*ConvexShape::ellipsoid(Vec3(1, 2, 3)),
+                                           *ConvexShape::ellipsoid(Vec3::Ones()),
+                                           *ConvexShape::cylinder(1, 2, 2),
+                                           *ConvexShape::cone(1, 1, 1),
+                                           *ConvexShape::capsule(0.5, 1, 0),
+                                           *ConvexShape(*ConvexPolytope::box(Vec3(1, 0.01, 1))).with_margin(0.1),
+                                           ConvexShape(*ConvexPolytope::from_points(std::vector<Vec3>{Vec3::Zero()}))};
+  const std::vector<Vec3> directions = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(), -Vec3::UnitY(),   Vec3::UnitZ(),
+                                        -Vec3::UnitZ(), Vec3(1, 1, 0),  Vec3(1, 1, 1), Vec3(1e-9, 0, 1), Vec3(1, 2, 3)};
+  Scratch scratch;
+  int overlapping = 0;
+  for (const ConvexShape& a : shapes) {
+    for (const ConvexShape& b : shapes) {
+      for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0.1, 0.2)}) {
+        for (const Vec3& direction : directions) {
+          const auto found = directional_depth({&a, Pose()}, {&b, Pose::from_trusted_matrix(Mat3::Identity(), offset)},
+                                               direction, scratch);
+          if (found->contact != ContactClass::overlapping) continue;
+          ++overlapping;
+          EXPECT_LE(found->lower, found->depth);
+          EXPECT_LE(found->depth, found->upper);
+          EXPECT_LE(found->upper, (1 + 1e-8) * found->lower) << direction.transpose();
+        }
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 500);
+  // Known ones: ellipsoids' radii add up along their axes.
+  const auto along_z = directional_depth({&shapes[0], Pose()}, {&shapes[0], Pose()}, Vec3::UnitZ(), scratch);
+  EXPECT_LE(along_z->lower, 6);
+  EXPECT_GE(along_z->upper, 6);
+}
+
 }  // namespace
 }  // namespace pd

@@ -7,6 +7,7 @@
 #include "compound/octree_depth.hpp"
 #include "compound/part_pairs.hpp"
 #include "depth/pair/canonical_order.hpp"
+#include "depth/pair/scaled_shape.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
 
@@ -61,6 +62,34 @@ Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, co
   return out;
 }
 
+/// The parts times 2^-exponent about a point, in world coordinates.
+Compound scaled_about(const Vec3& centre, const std::vector<PosedShape>& parts, int exponent) {
+  std::vector<Compound::Part> scaled;
+  for (const PosedShape& part : parts) {
+    const Vec3 translation = detail::times_power(part.pose.translation() - centre, -exponent);
+    scaled.push_back(
+        {detail::scaled(*part.shape, -exponent), Pose::from_trusted_matrix(part.pose.rotation(), translation)});
+  }
+  return *Compound::from_parts(std::move(scaled));
+}
+
+/// Bodies with curved parts are answered at size 1, where products of lengths neither over- nor underflow.
+Expected<UnionDepth> solve_scaled(const UnionPair& pair, const Vec3& centre, Scratch& scratch,
+                                  const UnionSettings& settings) {
+  const int exponent = pair.scale_exponent();
+  const Compound near_a = scaled_about(centre, pair.a, exponent), near_b = scaled_about(centre, pair.b, exponent);
+  UnionSettings near_settings = settings;
+  near_settings.resolution = std::ldexp(settings.resolution, -exponent);
+  Expected<UnionDepth> solved = penetration_depth({&near_a, Pose()}, {&near_b, Pose()}, scratch, near_settings);
+  if (!solved) return solved.error();
+  UnionDepth out = std::move(solved).value();
+  detail::scale_answer(out, exponent);
+  out.witness_a += centre;
+  out.witness_b += centre;
+  pair.name_parts(out.part_a, out.part_b);
+  return out;
+}
+
 }  // namespace
 
 Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompound& b, Scratch& scratch,
@@ -74,6 +103,9 @@ Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompou
     return Error{ErrorCode::unsupported, "the facets of the difference are known for polytopes without a margin only",
                  ""};
   }
+  if (!pair.polytopes && pair.scale_exponent() != 0) {
+    return solve_scaled(pair, a.pose.translation(), scratch, settings);
+  }
   // A pair is solved in one order, whichever way it was asked.
   const bool exchanged = pair.exchange_to_canonical_order();
   const bool facets =
@@ -82,6 +114,7 @@ Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompou
                                        : Expected<UnionDepth>(detail::solve_by_octree(pair, scratch, settings));
   if (!solved) return solved.error();
   UnionDepth out = std::move(solved).value();
+  pair.name_parts(out.part_a, out.part_b);
   if (exchanged) {
     detail::exchange_bodies(out);
     std::swap(out.part_a, out.part_b);

@@ -49,8 +49,10 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
     if (static_cast<std::int64_t>(result.facets.size()) == max_facets) return false;
     const detail::PartDifference& piece = differences->pieces()[where.piece];
     const detail::DifferenceFacet& facet = piece.facets[where.facet];
-    result.facets.push_back({differences->planes().normal(where.polygon.plane).normalized(), piece.part_a, piece.part_b,
-                             facet.on_a, facet.on_b, static_cast<std::int32_t>(corners.size()),
+    std::int32_t part_a = piece.part_a, part_b = piece.part_b;
+    pair->name_parts(part_a, part_b);
+    result.facets.push_back({differences->planes().normal(where.polygon.plane).normalized(), part_a, part_b, facet.on_a,
+                             facet.on_b, static_cast<std::int32_t>(corners.size()),
                              static_cast<std::int32_t>(where.polygon.corners.size())});
     for (const Vec3& x : where.polygon.corners) {
       Vec3 y;

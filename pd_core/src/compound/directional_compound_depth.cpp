@@ -61,6 +61,7 @@ Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const 
   out.normal = answer.normal(hit->where);
   out.part_a = answer.piece(hit->where).part_a;
   out.part_b = answer.piece(hit->where).part_b;
+  pair->name_parts(out.part_a, out.part_b);
   answer.features(hit->where, out.feature_a, out.feature_b);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "depth/pair/canonical_order.hpp"
 #include "pd/depth/scratch.hpp"
@@ -39,6 +40,19 @@ double box_gap(const Box& a, const Box& b) {
   return largest <= 0 ? largest : gap.cwiseMax(Vec3::Zero()).stableNorm() * (1 - 0x1p-40);
 }
 
+/// The parts ordered by content; `order` tells which of the given ones each is, the first of equals first.
+std::vector<PosedShape> in_canonical_order(const std::vector<PosedShape>& parts, std::vector<std::int32_t>& order) {
+  order.resize(parts.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
+    return compare_bodies(parts[static_cast<std::size_t>(i)], parts[static_cast<std::size_t>(j)]) < 0;
+  });
+  std::vector<PosedShape> sorted;
+  sorted.reserve(parts.size());
+  for (const std::int32_t i : order) sorted.push_back(parts[static_cast<std::size_t>(i)]);
+  return sorted;
+}
+
 }  // namespace
 
 bool UnionPair::exchange_to_canonical_order() {
@@ -47,6 +61,7 @@ bool UnionPair::exchange_to_canonical_order() {
   if (order <= 0) return false;
   std::swap(a, b);
   std::swap(boxes_a, boxes_b);
+  std::swap(order_a, order_b);
   return true;
 }
 
@@ -83,8 +98,8 @@ Expected<UnionPair> UnionPair::pose(const PosedCompound& a, const PosedCompound&
   auto parts_b = b.body->posed(b.pose);
   if (!parts_b) return Error{parts_b.error().code, parts_b.error().message, "pose_b"};
   UnionPair pair;
-  pair.a = *std::move(parts_a);
-  pair.b = *std::move(parts_b);
+  pair.a = in_canonical_order(*parts_a, pair.order_a);
+  pair.b = in_canonical_order(*parts_b, pair.order_b);
   for (const PosedShape& part : pair.a) pair.boxes_a.push_back(bounding_box(part));
   for (const PosedShape& part : pair.b) pair.boxes_b.push_back(bounding_box(part));
   const Box box_a = whole(pair.boxes_a), box_b = whole(pair.boxes_b);

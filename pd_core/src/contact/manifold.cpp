@@ -6,6 +6,7 @@
 #include "contact/manifold_clip.hpp"
 #include "contact/manifold_reduce.hpp"
 #include "contact/supporting_face.hpp"
+#include "depth/pair/scaled_shape.hpp"
 
 namespace pd {
 
@@ -59,21 +60,13 @@ double lift_corners(const ContactFrame& frame, double margin_a, double margin_b,
   return deepest;
 }
 
-}  // namespace
-
-ManifoldScratch::ManifoldScratch() : buffers_(std::make_unique<detail::ManifoldBuffers>()) {}
-ManifoldScratch::~ManifoldScratch() = default;
-ManifoldScratch::ManifoldScratch(ManifoldScratch&&) noexcept = default;
-ManifoldScratch& ManifoldScratch::operator=(ManifoldScratch&&) noexcept = default;
-
-ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
-                                 double breaking_threshold, ManifoldScratch& scratch) {
+ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
+                            double breaking_threshold, detail::ManifoldBuffers& buffers) {
   ContactManifold manifold;
   manifold.normal = answer.normal;
   const double signed_depth = answer.contact == ContactClass::separated ? -answer.distance : answer.depth;
   if (signed_depth < -breaking_threshold) return manifold;
   // 1. The faces that meet, cut by each other across the normal.
-  auto& buffers = scratch.buffers();
   const Vec3& n = answer.normal;
   const ContactFrame frame(n, 0.5 * (answer.witness_a + answer.witness_b));
   detail::supporting_face(a, -n, answer.feature_a, buffers.face_a);
@@ -97,12 +90,47 @@ ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const
     flat.push_back(frame.flatten(on_b));
   } else {
     first = detail::deepest_point(points, flat, deepest, noise);
+    // The depth of the bodies is known: what the lifted corner misses of it is noise, halved between its two ends.
+    ContactPoint& point = points[first];
+    const double missing = signed_depth - point.depth;
+    point.position_b += 0.5 * missing * n;
+    point.position_a = point.position_b - signed_depth * n;
+    point.depth = signed_depth;
   }
 
   // 4. Four of them.
   if (points.size() > 4) detail::reduce_to_four(points, flat, first);
   manifold.count = static_cast<int>(points.size());
   std::copy(points.begin(), points.end(), manifold.points.begin());
+  return manifold;
+}
+
+}  // namespace
+
+ManifoldScratch::ManifoldScratch() : buffers_(std::make_unique<detail::ManifoldBuffers>()) {}
+ManifoldScratch::~ManifoldScratch() = default;
+ManifoldScratch::ManifoldScratch(ManifoldScratch&&) noexcept = default;
+ManifoldScratch& ManifoldScratch::operator=(ManifoldScratch&&) noexcept = default;
+
+ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
+                                 double breaking_threshold, ManifoldScratch& scratch) {
+  const int exponent = detail::extreme_exponent(a, b);
+  if (exponent == 0) return manifold_of(a, b, answer, breaking_threshold, scratch.buffers());
+  // At size 1, where areas are ordinary numbers.
+  const Vec3& origin = a.pose.translation();
+  const detail::ScaledPair near(a, b, exponent);
+  PenetrationDepth near_answer = answer;
+  near_answer.witness_a -= origin;
+  near_answer.witness_b -= origin;
+  detail::scale_answer(near_answer, -exponent);
+  ContactManifold manifold =
+      manifold_of(near.a(), near.b(), near_answer, std::ldexp(breaking_threshold, -exponent), scratch.buffers());
+  for (int i = 0; i < manifold.count; ++i) {
+    ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
+    point.position_a = detail::times_power(point.position_a, exponent) + origin;
+    point.position_b = detail::times_power(point.position_b, exponent) + origin;
+    point.depth = std::ldexp(point.depth, exponent);
+  }
   return manifold;
 }
 

@@ -10,6 +10,7 @@
 #include "depth/difference/exact_support.hpp"
 #include "depth/difference/smooth_difference.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
+#include "depth/pair/scaled_shape.hpp"
 #include "depth/rays/portal.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -109,6 +110,12 @@ Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const Pos
     return polytope_support(*polytope_a, a.pose, *polytope_b, b.pose, margin, direction);
   }
   DifferenceSupport support;
+  if (const int exponent = detail::extreme_exponent(a, b); exponent != 0) {
+    const detail::ScaledPair near(a, b, exponent);
+    support = *support_of_difference(near.a(), near.b(), direction);
+    support.value = std::ldexp(support.value, exponent);
+    return support;
+  }
   const double scale = direction.cwiseAbs().maxCoeff();
   const Vec3 n = direction / scale;
   const double on_b = smooth_support(b, n, support.vertex_b);

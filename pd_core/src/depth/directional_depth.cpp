@@ -6,6 +6,7 @@
 #include <span>
 
 #include "depth/certificate/support_faces.hpp"
+#include "depth/pair/scaled_shape.hpp"
 #include "depth/pair/scratch_buffers.hpp"
 #include "depth/rays/hierarchy_descent.hpp"
 #include "depth/rays/portal.hpp"
@@ -173,6 +174,14 @@ bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHier
 void swept_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction, double inner_radius,
                  detail::ScratchBuffers& buffers, DirectionalDepth& out) {
   constexpr double kRelative = 1e-13;
+  if (const int exponent = detail::extreme_exponent(a, b); exponent != 0) {
+    const detail::ScaledPair near(a, b, exponent);
+    swept_depth(near.a(), near.b(), direction, std::ldexp(inner_radius, -exponent), buffers, out);
+    out.lower = detail::times_power_down(out.lower, exponent);
+    out.upper = detail::times_power_up(out.upper, exponent);
+    out.depth = out.upper;
+    return;
+  }
   detail::SweptShooter shooter(a, b, buffers.points, inner_radius, kRelative);
   const detail::RayShot shot = shooter.shoot(direction.stableNormalized());
   out.lower = shot.lower;

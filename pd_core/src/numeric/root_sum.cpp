@@ -15,6 +15,13 @@ DoubleDouble scaled(const DoubleDouble& x, int exponent) {
 
 int top_bit(const Dyadic& x) { return x.exponent() + static_cast<int>(msb(boost::multiprecision::abs(x.mantissa()))); }
 
+constexpr double kLargest = std::numeric_limits<double>::max();
+
+/// How many doubles lie from x to y, 0 <= x <= y.
+std::int64_t steps_between(double x, double y) {
+  return std::bit_cast<std::int64_t>(y) - std::bit_cast<std::int64_t>(x);
+}
+
 /// The k-th double after x >= 0 (before it for negative k), not below 0.
 double step(double x, std::int64_t k) {
   const std::int64_t bits = std::bit_cast<std::int64_t>(x) + k;
@@ -56,7 +63,9 @@ DoubleDouble RootSum::approximate() const {
 }
 
 double RootSum::round_down() const {
-  double low = std::max(0.0, to_double(approximate()));
+  // Where parts of the approximation leave the range of doubles it says nothing.
+  double low = to_double(approximate());
+  low = low > 0 ? std::min(low, kLargest) : 0;
   std::int64_t stride = 1;
   // The approximation is within an ulp, but for subnormal numbers: gallop there.
   if (compare(Dyadic(low)) < 0) {
@@ -72,10 +81,12 @@ double RootSum::round_down() const {
     }
     return low;
   }
+  if (low == kLargest) return low;
   double high = step(low, 1);
   while (compare(Dyadic(high)) >= 0) {
     low = high;
-    high = step(high, stride);
+    if (low == kLargest) return low;
+    high = step(high, std::min(stride, steps_between(high, kLargest)));
     stride *= 2;
   }
   while (step(low, 1) < high) {

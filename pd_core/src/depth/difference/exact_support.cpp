@@ -28,8 +28,8 @@ SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const Exa
   double best = -std::numeric_limits<double>::infinity();
   for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
   // The local direction errs by 12u per coordinate (unit 4u, rotation 4u, product 3u), the dot product by 3u |v|: twice
-  // 32u covers both values that are compared.
-  const double slack = 64 * kUnitRoundoff * body.radius();
+  // 32u covers both values that are compared. Products of subnormal coordinates lose half of the least double each.
+  const double slack = 64 * kUnitRoundoff * body.radius() + 0x1p-1070;
   SupportFace face;
   for (int v = 0; v < n; ++v) {
     if (body.vertex(v).dot(local) < best - slack) continue;

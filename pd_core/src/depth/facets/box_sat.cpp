@@ -17,6 +17,8 @@ constexpr double kTurn = 12 * kUnitRoundoff;
 constexpr double kParallelSine = 8 * kUnitRoundoff;
 /// |column of R| <= 1 + 1e-6 (Pose), and the rounding of the half extents.
 constexpr double kLongest = 1 + 0x1p-19;
+/// Fourth powers of lengths above it, the squares of cross products, are ordinary numbers.
+constexpr double kLeastExtent = 0x1p-200;
 
 class BoxPair {
  public:
@@ -203,6 +205,7 @@ std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
   }
   if (!box) return std::nullopt;
   const Vec3 least = p.vertex(0), most = p.vertex(7);
+  if (!((most - least).minCoeff() > kLeastExtent)) return std::nullopt;
   return BoxFrame{0.5 * (least + most), 0.5 * (most - least)};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "depth/pair/core_class.hpp"
+#include "depth/pair/scaled_shape.hpp"
 #include "depth/pair/smooth_depth.hpp"
 
 namespace pd::detail {
@@ -78,6 +79,12 @@ void grid_depth(const PosedShape& a, const PosedShape& b, const DepthSettings& s
   if (polytope_a && polytope_b) {
     polytope_grid({polytope_a, polytope_b, &a.pose, &b.pose, {a.shape->margin(), b.shape->margin()}}, delta, settings,
                   buffers, out);
+  } else if (const int exponent = extreme_exponent(a, b); exponent != 0) {
+    const ScaledPair near(a, b, exponent);
+    smooth_grid(near.a(), near.b(), delta, settings, buffers, out);
+    scale_answer(out, exponent);
+    out.witness_a += a.pose.translation();
+    out.witness_b += a.pose.translation();
   } else {
     smooth_grid(a, b, delta, settings, buffers, out);
   }

@@ -49,6 +49,7 @@ int extreme_exponent(const PosedShape& a, const PosedShape& b) {
   const double bodies = std::max(
       {std::visit(Size{}, a.shape->core()), std::visit(Size{}, b.shape->core()), a.shape->margin(), b.shape->margin()});
   const double size = std::max(bodies, (b.pose.translation() - a.pose.translation()).cwiseAbs().maxCoeff());
+  if (!(size > 0)) return 0;
   const int exponent = std::ilogb(size);
   return std::abs(exponent) > kRoom ? exponent : 0;
 }
@@ -58,21 +59,34 @@ ConvexShape scaled(const ConvexShape& shape, int exponent) {
   return *core.with_margin(std::ldexp(shape.margin(), exponent));
 }
 
+ScaledPair::ScaledPair(const PosedShape& a, const PosedShape& b, int exponent)
+    : a_(scaled(*a.shape, -exponent)),
+      b_(scaled(*b.shape, -exponent)),
+      pose_a_(Pose::from_trusted_matrix(a.pose.rotation(), Vec3::Zero())),
+      pose_b_(Pose::from_trusted_matrix(b.pose.rotation(),
+                                        times_power(b.pose.translation() - a.pose.translation(), -exponent))) {}
+
+Vec3 times_power(const Vec3& v, int exponent) {
+  return {std::ldexp(v.x(), exponent), std::ldexp(v.y(), exponent), std::ldexp(v.z(), exponent)};
+}
+
+double times_power_down(double x, int exponent) {
+  const double scaled = std::ldexp(x, exponent);
+  return std::ldexp(scaled, -exponent) > x ? std::nextafter(scaled, 0.0) : scaled;
+}
+
+double times_power_up(double x, int exponent) {
+  const double scaled = std::ldexp(x, exponent);
+  return std::ldexp(scaled, -exponent) < x ? std::nextafter(scaled, HUGE_VAL) : scaled;
+}
+
 void scale_answer(PenetrationDepth& answer, int exponent) {
-  const auto down = [&](double& x) {
-    const double scaled = std::ldexp(x, exponent);
-    x = std::ldexp(scaled, -exponent) > x ? std::nextafter(scaled, 0.0) : scaled;
-  };
-  const auto up = [&](double& x) {
-    const double scaled = std::ldexp(x, exponent);
-    x = std::ldexp(scaled, -exponent) < x ? std::nextafter(scaled, HUGE_VAL) : scaled;
-  };
-  down(answer.lower);
-  down(answer.distance_lower);
-  for (double* x : {&answer.depth, &answer.upper, &answer.distance, &answer.distance_upper}) up(*x);
-  for (Vec3* v : {&answer.translation, &answer.witness_a, &answer.witness_b}) {
-    for (double& x : v->reshaped()) x = std::ldexp(x, exponent);
+  answer.lower = times_power_down(answer.lower, exponent);
+  answer.distance_lower = times_power_down(answer.distance_lower, exponent);
+  for (double* x : {&answer.depth, &answer.upper, &answer.distance, &answer.distance_upper}) {
+    *x = times_power_up(*x, exponent);
   }
+  for (Vec3* v : {&answer.translation, &answer.witness_a, &answer.witness_b}) *v = times_power(*v, exponent);
 }
 
 }  // namespace pd::detail

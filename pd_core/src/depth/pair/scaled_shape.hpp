@@ -15,6 +15,31 @@ namespace pd::detail {
 /// a polytope's hull anew.
 [[nodiscard]] ConvexShape scaled(const ConvexShape& shape, int exponent);
 
+/// Two bodies times 2^-exponent about A's translation, which comes to lie at the origin: what is far away may be small.
+/// Holds what its posed shapes refer to.
+class ScaledPair {
+ public:
+  ScaledPair(const PosedShape& a, const PosedShape& b, int exponent);
+  ScaledPair(const ScaledPair&) = delete;
+  ScaledPair& operator=(const ScaledPair&) = delete;
+
+  [[nodiscard]] PosedShape a() const { return {&a_, pose_a_}; }
+  [[nodiscard]] PosedShape b() const { return {&b_, pose_b_}; }
+
+ private:
+  ConvexShape a_;
+  ConvexShape b_;
+  Pose pose_a_;
+  Pose pose_b_;
+};
+
+/// Each coordinate times 2^exponent.
+[[nodiscard]] Vec3 times_power(const Vec3& v, int exponent);
+
+/// x >= 0 times 2^exponent, rounded down or up where that is subnormal.
+[[nodiscard]] double times_power_down(double x, int exponent);
+[[nodiscard]] double times_power_up(double x, int exponent);
+
 /// Every length and point of an answer times 2^exponent, brackets rounded outwards where that is subnormal.
 void scale_answer(PenetrationDepth& answer, int exponent);
 

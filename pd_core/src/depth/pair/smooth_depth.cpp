@@ -386,12 +386,8 @@ void smooth_depth(const PosedShape& a, const PosedShape& b, const DepthSettings&
     move_witnesses(a.pose.translation(), out);
     return;
   }
-  // A at the origin: what is far away may be small.
-  const ConvexShape scaled_a = scaled(*a.shape, -exponent), scaled_b = scaled(*b.shape, -exponent);
-  Vec3 offset = b.pose.translation() - a.pose.translation();
-  for (double& x : offset.reshaped()) x = std::ldexp(x, -exponent);
-  const PosedShape near_a{&scaled_a, Pose::from_trusted_matrix(a.pose.rotation(), Vec3::Zero())};
-  const PosedShape near_b{&scaled_b, Pose::from_trusted_matrix(b.pose.rotation(), offset)};
+  const ScaledPair near(a, b, exponent);
+  const PosedShape near_a = near.a(), near_b = near.b();
   DepthSettings near_settings = settings;
   near_settings.contact_tolerance = std::ldexp(settings.contact_tolerance, -exponent);
   SmoothQuery(near_a, near_b, near_settings, buffers, out, nullptr).solve();

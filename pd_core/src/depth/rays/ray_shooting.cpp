@@ -12,6 +12,9 @@ namespace pd::detail {
 
 namespace {
 
+/// A relative width of a shot's bracket that asks for no second line.
+constexpr double kSquareEnough = 1e-9;
+
 /// sqrt(x) as a fraction in [1, 2) and an exponent of two, so that no exponent overflows; relative error below 2^-51.
 std::pair<double, int> root(const Dyadic& x) {
   int e = x.exponent() + static_cast<int>(msb(x.mantissa()));
@@ -120,39 +123,53 @@ RayShot SweptShooter::shoot(const Vec3& direction) {
   points_.clear();
   const double length = direction.norm();
   const Vec3 unit = direction / length;
-  std::array<Corner, 3> v = enclose(unit);
   RayShot shot;
   shot.upper = std::numeric_limits<double>::infinity();
   shot.height = std::numeric_limits<double>::infinity();
-  // Leaving the triangle by its rounding moves the crossing by less than error_ from P, whose points x within error_
-  // are inside after a shrinking by inner_radius / (inner_radius + error_) about the origin.
-  const double shrink = inner_radius_ / (inner_radius_ + 4 * error_) * (1 - 0x1p-48);
-  const auto side = [&](const Vec3& x, const Vec3& y) { return x.cross(y).dot(unit); };
+  push_portal(unit, unit, shot);
+  // A line in a plane of symmetry may meet triangles edge-on only, which doubles cannot push. A line beside it meets
+  // them squarely, and what that costs is counted.
+  constexpr double kTilts[] = {0x1p-40, 0x1p-32, 0x1p-24};
+  const Vec3 across = unit.unitOrthogonal();
+  const Vec3 beside = 0.8 * across + 0.6 * unit.cross(across);
+  for (const double tilt : kTilts) {
+    if (shot.upper <= (1 + std::max(relative_, kSquareEnough)) * shot.lower) break;
+    if (shot.upper - shot.lower <= absolute_error()) break;
+    for (const double sense : {tilt, -tilt}) push_portal(unit, (unit + sense * beside).normalized(), shot);
+  }
+  shot.lower = std::max(shot.lower, inner_radius_ * (1 - 0x1p-48)) / length * (1 - 0x1p-50);
+  shot.upper = shot.upper / length * (1 + 0x1p-50);
+  return shot;
+}
+
+void SweptShooter::push_portal(const Vec3& unit, const Vec3& line, RayShot& shot) {
+  std::array<Corner, 3> v = enclose(line);
+  const auto side = [&](const Vec3& x, const Vec3& y) { return x.cross(y).dot(line); };
   // The crossing moves outwards at every step; where rounding holds it back for so long, it has come to its end.
   constexpr int kStalled = 32;
   for (int stalled = 0; stalled < kStalled; ++stalled) {
     const Vec3 n = (v[1].x - v[0].x).cross(v[2].x - v[0].x);
     const double size = n.norm();
-    const double slope = n.dot(unit) / size;
+    const double slope = n.dot(line) / size;
     if (!(slope > 0)) break;  // the triangle has shrunk to rounding
     const Vec3 normal = n / size;
     const double level = std::max({v[0].x.dot(normal), v[1].x.dot(normal), v[2].x.dot(normal)});
-    const double inside = std::min({v[0].x.dot(normal), v[1].x.dot(normal), v[2].x.dot(normal)}) / slope * shrink;
+    const Crossing crossing = cross_triangle(v, line);
+    // A convex combination of points within error_ of P, however flat their triangle; the ray passes it by `aside`.
+    // What is within e of P is inside after a shrinking by r / (r + e) about the origin, r the inner radius.
+    const Vec3 x = crossing.on_b - crossing.on_a;
+    const double along = x.dot(unit);
+    const double aside = (x - along * unit).norm();
+    const double inside = along * (inner_radius_ / (inner_radius_ + 4 * error_ + aside) * (1 - 0x1p-48));
     if (inside > shot.lower) {
       stalled = 0;
       shot.lower = inside;
-      const double w[3] = {std::max(0.0, side(v[1].x, v[2].x)), std::max(0.0, side(v[2].x, v[0].x)),
-                           std::max(0.0, side(v[0].x, v[1].x))};
-      const double total = w[0] + w[1] + w[2];
-      if (total > 0) {
-        crossing_.on_a = (w[0] * v[0].points.a + w[1] * v[1].points.a + w[2] * v[2].points.a) / total;
-        crossing_.on_b = (w[0] * v[0].points.b + w[1] * v[1].points.b + w[2] * v[2].points.b) / total;
-      }
+      crossing_ = crossing;
     }
     const Corner s = support(normal);
-    const double height = s.x.dot(normal) + error_;
-    if (height / slope < shot.upper) {
-      shot.upper = height / slope * (1 + 0x1p-48);
+    const double height = s.x.dot(normal) + error_, slope_of_ray = normal.dot(unit);
+    if (slope_of_ray > 0 && height / slope_of_ray < shot.upper) {
+      shot.upper = height / slope_of_ray * (1 + 0x1p-48);
       shot.normal = normal;
       shot.height = height * (1 + 0x1p-48);
     }
@@ -167,9 +184,32 @@ RayShot SweptShooter::shoot(const Vec3& direction) {
     if (replaced < 0) break;
     v[static_cast<std::size_t>(replaced)] = s;
   }
-  shot.lower = std::max(shot.lower, inner_radius_ * (1 - 0x1p-48)) / length * (1 - 0x1p-50);
-  shot.upper = shot.upper / length * (1 + 0x1p-50);
-  return shot;
+}
+
+SweptShooter::Crossing SweptShooter::cross_triangle(const std::array<Corner, 3>& v, const Vec3& line) {
+  const auto side = [&](const Vec3& x, const Vec3& y) { return x.cross(y).dot(line); };
+  const auto combined = [](const double(&w)[3], const Vec3& x, const Vec3& y, const Vec3& z) {
+    return Vec3((w[0] * x + w[1] * y + w[2] * z) / (w[0] + w[1] + w[2]));
+  };
+  double w[3] = {std::max(0.0, side(v[1].x, v[2].x)), std::max(0.0, side(v[2].x, v[0].x)),
+                 std::max(0.0, side(v[0].x, v[1].x))};
+  const double total = w[0] + w[1] + w[2];
+  if (!(total > 0)) return {v[0].points.a, v[0].points.b};
+  for (double& weight : w) weight /= total;
+  // Areas of a triangle far from the origin are mostly rounding: one step of Newton's along its edges, which are not.
+  const Vec3 x = combined(w, v[0].x, v[1].x, v[2].x);
+  const Vec3 aside = x - x.dot(line) * line;
+  const Vec3 edge_1 = v[1].x - v[0].x, edge_2 = v[2].x - v[0].x;
+  const double area = side(edge_1, edge_2);
+  if (area > 0) {
+    const double w_1 = w[1] - side(aside, edge_2) / area, w_2 = w[2] - side(edge_1, aside) / area;
+    w[0] = std::max(0.0, 1 - w_1 - w_2);
+    w[1] = std::max(0.0, w_1);
+    w[2] = std::max(0.0, w_2);
+    if (!(w[0] + w[1] + w[2] > 0.5)) return {v[0].points.a, v[0].points.b};
+  }
+  return {combined(w, v[0].points.a, v[1].points.a, v[2].points.a),
+          combined(w, v[0].points.b, v[1].points.b, v[2].points.b)};
 }
 
 }  // namespace pd::detail

@@ -92,6 +92,10 @@ class SweptShooter {
   };
   Corner support(const Vec3& direction);
   std::array<Corner, 3> enclose(const Vec3& unit);
+  /// Tightens the shot along `unit` by a portal about `line`, a direction at or near it.
+  void push_portal(const Vec3& unit, const Vec3& line, RayShot& shot);
+  /// Points of A and of B whose difference lies in the triangle, where the line crosses it up to rounding.
+  static Crossing cross_triangle(const std::array<Corner, 3>& corners, const Vec3& line);
 
   SmoothDifference difference_;
   std::vector<PointPair>& points_;
