@@ -7,11 +7,12 @@
 
 namespace pd::cli {
 
-/// Exit codes of every subcommand. 130 is Ctrl-C.
+/// Exit codes of every subcommand.
 enum ExitCode : int {
   kDone = 0,
-  kFailed = 1,    ///< the work could not be finished: no room on the disk, no GL context
-  kBadUsage = 2,  ///< an unknown option, or input that cannot be read
+  kFailed = 1,         ///< the work could not be finished: no room on the disk, no GL context
+  kBadUsage = 2,       ///< an unknown option, or input that cannot be read
+  kInterrupted = 130,  ///< Ctrl-C
 };
 
 /// What to run after the arguments are parsed.
@@ -20,6 +21,7 @@ using Action = std::function<int()>;
 void add_depth_command(CLI::App& app, Action& action);
 void add_polygon_command(CLI::App& app, Action& action);
 void add_query_command(CLI::App& app, Action& action);
+void add_minimise_command(CLI::App& app, Action& action);
 void add_simplify_command(CLI::App& app, Action& action);
 void add_demo_command(CLI::App& app, Action& action);
 

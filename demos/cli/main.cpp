@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 
 #include "commands.hpp"
@@ -30,6 +32,8 @@ Exit codes:
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Whole lines and whole frames are written at once, so that what stands there by then is complete.
+  std::signal(SIGINT, [](int) { std::_Exit(pd::cli::kInterrupted); });
   CLI::App app("Penetration depth of convex bodies, exact and certified.", "pdepth");
   app.set_version_flag("--version", "pdepth " PDEPTH_VERSION);
   app.footer(kFooter);
@@ -38,6 +42,7 @@ int main(int argc, char** argv) {
   pd::cli::add_depth_command(app, action);
   pd::cli::add_polygon_command(app, action);
   pd::cli::add_query_command(app, action);
+  pd::cli::add_minimise_command(app, action);
   pd::cli::add_simplify_command(app, action);
   pd::cli::add_demo_command(app, action);
   try {

@@ -23,7 +23,7 @@ constexpr const char* kFooter = R"(One JSON object a line in, one out, in the sa
   {"id":1,"class":"overlapping","depth":...,"lower":...,"upper":...,"translation":[...],...}
 A line that cannot be answered is answered by {"id":1,"error":{"code":...,"message":...,"where":...}}.
 
-For input from strangers: --no-files, and small --max-line and --max-vertices.)";
+For input from strangers: --no-files, --max-time, --max-memory, and small --max-line and --max-vertices.)";
 
 struct QueryArguments {
   std::string input = "-";
@@ -53,7 +53,8 @@ int run_query(QueryArguments arguments) {
       fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(reason));
       return kBadUsage;
     case query::StreamEnd::unwritable:
-      fmt::print(stderr, "pdepth: the answers cannot be written: {}\n", std::strerror(reason));
+      fmt::print(stderr, "pdepth: the answers{} cannot be written: {}\n",
+                 settings.record.path.empty() ? "" : " or the record", std::strerror(reason));
       return kFailed;
   }
   return kFailed;
@@ -77,6 +78,22 @@ void add_query_command(CLI::App& app, Action& action) {
   command->add_option("--max-vertices", settings.limits.max_vertices, "Most vertices of one shape")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{50'000'000}))
       ->capture_default_str();
+  command
+      ->add_option("--max-time", settings.budget.milliseconds,
+                   "Milliseconds for a line; then the certified bracket so far, or limit_exceeded (0: no bound)")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{86'400'000}))
+      ->capture_default_str();
+  command->add_option("--max-memory", settings.budget.megabytes, "Megabytes for a line (0: no bound)")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 30))
+      ->capture_default_str();
+  command->add_option("--record", settings.record.path, "Append the lines that were asked to this file");
+  command->add_option("--record-above", settings.record.above_milliseconds, "Record only lines that took longer, in ms")
+      ->needs("--record")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_flag("--record-unreached", settings.record.unreached,
+                 "Record only lines whose bracket was not reached, or that hit a limit")
+      ->needs("--record");
   command->callback([arguments, &action] { action = [arguments] { return run_query(*arguments); }; });
 }
 

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "protocol/body_reader.hpp"
+#include "protocol/bounded_line.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/union_queries.hpp"
 
@@ -67,7 +68,7 @@ std::span<const QueryEntry> queries() { return kQueries; }
 std::string answer_line(std::string_view line, Session& session) {
   ParsedLine parsed;
   try {
-    parsed = parse_line(line);
+    parsed = parse_line_within(line, session.limits.max_vertices);
     if (parsed.refusal) return error_answer(parsed.id_text, *parsed.refusal);
     const Node root(parsed.object);
     std::string out;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/bounded_line.hpp"
 #include "protocol/json_writer.hpp"
 
 namespace pd::query {
@@ -13,6 +14,7 @@ namespace {
 std::string shown(const Json& value) {
   if (value.is_array()) return "an array of " + std::to_string(value.size());
   if (value.is_object()) return "an object";
+  if (value.is_binary()) return "an array of " + std::to_string(value.get_binary().size() / (3 * sizeof(double)));
   std::string text;
   if (value.is_string()) {
     append_string(text, shortened(value.get_ref<const std::string&>()));
@@ -124,11 +126,14 @@ Vec3 read_vector(const Node& node) {
 }
 
 std::vector<Vec3> read_points(const Node& node, std::int64_t limit) {
-  require_array(node, "an array of points [x,y,z]");
-  if (node.size() > static_cast<std::size_t>(limit)) {
+  auto packed = packed_points(node.json());
+  if (!packed) require_array(node, "an array of points [x,y,z]");
+  const std::size_t size = packed ? packed->size() : node.size();
+  if (size > static_cast<std::size_t>(limit)) {
     node.refuse("limit_exceeded",
-                std::to_string(node.size()) + " points; the limit is " + std::to_string(limit) + " (--max-vertices)");
+                std::to_string(size) + " points; the limit is " + std::to_string(limit) + " (--max-vertices)");
   }
+  if (packed) return *std::move(packed);
   std::vector<Vec3> points;
   points.reserve(node.size());
   for (std::size_t i = 0; i < node.size(); ++i) {

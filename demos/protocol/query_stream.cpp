@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -55,9 +56,27 @@ class AnswerSink {
   std::string pending_;
 };
 
-std::string answer_or_refuse(const std::string& line, bool oversized, Session& session) {
-  return oversized ? answer_oversized_line(session.limits) : answer_line(line, session);
-}
+/// How each line is answered, and kept where that is asked for.
+class Answerer {
+ public:
+  Answerer(const StreamSettings& settings, LineRecorder& recorder) : settings_(settings), recorder_(recorder) {}
+
+  [[nodiscard]] Session session() const { return {.limits = settings_.limits}; }
+
+  std::string operator()(const std::string& line, bool oversized, Session& session) const {
+    if (oversized) return answer_oversized_line(session.limits);
+    const auto start = std::chrono::steady_clock::now();
+    std::string answer =
+        settings_.budget.bounded() ? answer_within(line, session, settings_.budget) : answer_line(line, session);
+    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+    recorder_.keep(line, answer, spent.count());
+    return answer;
+  }
+
+ private:
+  const StreamSettings& settings_;
+  LineRecorder& recorder_;
+};
 
 /// Lines in order, each with its answer once a worker has it. The reader waits at `admit` while too much is under way.
 class OrderedWork {
@@ -87,8 +106,8 @@ class OrderedWork {
   }
 
   /// A worker's life: answers lines until there are no more.
-  void work(const Limits& limits) {
-    Session session{.limits = limits};
+  void work(const Answerer& answerer) {
+    Session session = answerer.session();
     for (;;) {
       Job* job = nullptr;
       {
@@ -98,7 +117,7 @@ class OrderedWork {
         job = unstarted_.front();
         unstarted_.pop_front();
       }
-      std::string answer = answer_or_refuse(job->line, job->oversized, session);
+      std::string answer = answerer(job->line, job->oversized, session);
       const std::scoped_lock lock(mutex_);
       job->answer = std::move(answer);
       job->answered = true;
@@ -145,25 +164,26 @@ class OrderedWork {
   bool output_failed_ = false;
 };
 
-StreamEnd answer_alone(LineSource& source, AnswerSink& sink, const Limits& limits) {
-  Session session{.limits = limits};
+StreamEnd answer_alone(LineSource& source, AnswerSink& sink, const Answerer& answerer) {
+  Session session = answerer.session();
   std::string line;
   for (;;) {
     const LineSource::Next next = source.next(line);
     if (next == LineSource::Next::end) return StreamEnd::answered;
     if (next == LineSource::Next::failed) return StreamEnd::unreadable;
     if (next == LineSource::Next::line && is_blank(line)) continue;
-    if (!sink.write(answer_or_refuse(line, next == LineSource::Next::oversized, session))) return StreamEnd::unwritable;
+    if (!sink.write(answerer(line, next == LineSource::Next::oversized, session))) return StreamEnd::unwritable;
   }
 }
 
-StreamEnd answer_together(LineSource& source, AnswerSink& sink, const StreamSettings& settings) {
+StreamEnd answer_together(LineSource& source, AnswerSink& sink, const Answerer& answerer,
+                          const StreamSettings& settings) {
   constexpr std::size_t kLinesPerThread = 32;  // enough that no thread waits for a slow neighbour's turn
   OrderedWork work(settings.limits.max_line, kLinesPerThread * static_cast<std::size_t>(settings.threads));
   StreamEnd end = StreamEnd::answered;
   {
     std::vector<std::jthread> threads;
-    for (int i = 0; i < settings.threads; ++i) threads.emplace_back([&] { work.work(settings.limits); });
+    for (int i = 0; i < settings.threads; ++i) threads.emplace_back([&] { work.work(answerer); });
     threads.emplace_back([&] { work.write_all(sink); });
     std::string line;
     for (;;) {
@@ -183,9 +203,12 @@ StreamEnd answer_together(LineSource& source, AnswerSink& sink, const StreamSett
 StreamEnd answer_stream(int input, int output, const StreamSettings& settings) {
   LineSource source(input, settings.limits.max_line);
   AnswerSink sink(output, !is_regular_file(input) || !is_regular_file(output));
+  LineRecorder recorder(settings.record);
+  if (!recorder.good()) return StreamEnd::unwritable;
+  const Answerer answerer(settings, recorder);
   const StreamEnd end =
-      settings.threads > 1 ? answer_together(source, sink, settings) : answer_alone(source, sink, settings.limits);
-  if (!sink.flush()) return StreamEnd::unwritable;
+      settings.threads > 1 ? answer_together(source, sink, answerer, settings) : answer_alone(source, sink, answerer);
+  if (!sink.flush() || !recorder.good()) return StreamEnd::unwritable;
   return end;
 }
 

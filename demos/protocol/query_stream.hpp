@@ -3,18 +3,22 @@
 #pragma once
 
 #include "protocol/limits.hpp"
+#include "protocol/line_budget.hpp"
+#include "protocol/line_recorder.hpp"
 
 namespace pd::query {
 
 enum class StreamEnd {
   answered,    ///< every line has its answer
   unreadable,  ///< the input failed half way; what came before is answered
-  unwritable,  ///< the answers cannot be written
+  unwritable,  ///< the answers, or the record of lines, cannot be written
 };
 
 struct StreamSettings {
-  Limits limits;
+  Limits limits = {};
   int threads = 1;
+  LineBudget budget = {};
+  RecordSettings record = {};
 };
 
 /// Reads lines from `input` until its end and writes one answer a line to `output`, in the order of the lines.

@@ -9,7 +9,7 @@
 #      the compiler's intrinsics. No file of the core knows threads.
 #   3. engine_glue and render stand on pd_core's public headers and do not see each other; neither knows demos or tests.
 #   4. Nothing outside pd_core includes pd_core/src, except tests.
-#   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli the command's parts.
+#   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli and tests/fuzz the command's parts.
 # With -DGRAPH=<file> it also writes the arrows between folders, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
@@ -162,7 +162,7 @@ function(check_include file line path)
     report(${file} "${line}" "demos do not include tests")
   endif()
   if(room STREQUAL "tests" AND (path MATCHES "^(demos|report|agarwal)/" OR
-                                (NOT file MATCHES "^tests/(cli|demos)/" AND path MATCHES "^(cli|protocol|mesh|support)/")))
+                                (NOT file MATCHES "^tests/(cli|demos|fuzz)/" AND path MATCHES "^(cli|protocol|mesh|support)/")))
     report(${file} "${line}" "tests see of demos nothing but scenes")
   endif()
 endfunction()

@@ -1,0 +1,177 @@
+/// @file
+/// What one line may cost: points counted while they are read, a bound of time and of memory, records of lines, Ctrl-C.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "protocol/line_budget.hpp"
+#include "protocol_lines.hpp"
+
+namespace pd::test {
+namespace {
+
+using query::answer_within;
+using query::LineBudget;
+using query::Session;
+
+std::string list_of_points(int count) {
+  std::string text = "[";
+  for (int i = 0; i < count; ++i)
+    text += (i == 0 ? "[0," : ",[0,") + std::to_string(i % 7) + "," + std::to_string(i) + "]";
+  return text + "]";
+}
+
+TEST(LineLimits, PointsAreCountedWhileTheyAreRead) {
+  query::Limits limits;
+  limits.max_vertices = 100;
+  const auto hull = [&](const std::string& vertices, const std::string& behind) {
+    return answer(R"({"id":7,"query":"hull","a":{"type":"convex","vertices":)" + vertices + "}}" + behind, limits);
+  };
+  EXPECT_EQ(code_of(hull(list_of_points(100), "")), "");
+  const Json refused = hull(list_of_points(101), "");
+  EXPECT_EQ(code_of(refused), "limit_exceeded");
+  EXPECT_EQ(where_of(refused), "a.vertices");
+  EXPECT_EQ(refused.at("id"), 7);
+  // The reading ends at the limit: what is wrong behind it is never met.
+  EXPECT_EQ(code_of(hull(list_of_points(101), "}}} no JSON")), "limit_exceeded");
+  EXPECT_EQ(code_of(hull(list_of_points(100), "}}} no JSON")), "bad_json");
+  const Json nested = answer(R"({"query":"depth","a":{"type":"compound","parts":[{"shape":)" + std::string(kUnitBox) +
+                                 R"(},{"shape":{"type":"convex","vertices":)" + list_of_points(101) + "}}]}}",
+                             limits);
+  EXPECT_EQ(where_of(nested), "a.parts[1].shape.vertices");
+  // Any other kind of list is bounded by the count of its values.
+  std::string empty = "[";
+  for (int i = 0; i < 150'000; ++i) empty += "[],";
+  EXPECT_EQ(code_of(answer(R"({"query":"hull","a":)" + empty + "0]}", limits)), "limit_exceeded");
+}
+
+TEST(LineLimits, ListsThatAreNoPointsAreReadAsEver) {
+  const auto code_and_place = [](const std::string& vertices) {
+    const Json reply = answer(R"({"query":"hull","a":{"type":"convex","vertices":)" + vertices + "}}");
+    return code_of(reply) + " " + where_of(reply);
+  };
+  EXPECT_EQ(code_and_place("[]"), "too_few_points a.vertices");
+  EXPECT_EQ(code_and_place("[[0,0,0],[1,2]]"), "bad_value a.vertices[1]");
+  EXPECT_EQ(code_and_place("[[0,0,0],[1,2,3,4]]"), "bad_value a.vertices[1]");
+  EXPECT_EQ(code_and_place(R"([[0,0,0],[1,2,3],[0,"nan",1],[3,3,3]])"), "non_finite a.vertices[2]");
+  EXPECT_EQ(code_and_place("[[0,0,0],[1,[2],3]]"), "bad_value a.vertices[1]");
+  EXPECT_EQ(code_and_place("[[0,0,0],7]"), "bad_value a.vertices[1]");
+  EXPECT_EQ(code_and_place(R"([[0,0,0],{"x":1}])"), "bad_value a.vertices[1]");
+  EXPECT_EQ(code_and_place("[[0,0,0],[]]"), "bad_value a.vertices[1]");
+  EXPECT_EQ(code_and_place("[[0,0,0],[1,1,1]]"), " ");
+  EXPECT_EQ(code_and_place("[[0,0,1e999]]"), "bad_json ");
+  // An id goes back as it came.
+  const Json reply = answer(R"({"id":{"vertices":[[1,2,3]]},"query":"hull","a":)" + std::string(kUnitBox) + "}");
+  EXPECT_EQ(reply.at("id"), Json::parse(R"({"vertices":[[1,2,3]]})"));
+}
+
+TEST(LineBudget, AnOrdinaryLineHasItsOrdinaryAnswer) {
+  Session session;
+  const std::string line = R"({"id":3,"query":"hull","a":)" + std::string(kUnitBox) + "}";
+  Json within = Json::parse(answer_within(line, session, {.milliseconds = 60'000, .megabytes = 2'000}));
+  Json without = answer(line);
+  within.erase("stats");
+  without.erase("stats");
+  EXPECT_EQ(within, without);
+}
+
+TEST(LineBudget, TimeEndsWithTheBracketSoFar) {
+  Session session;
+  // Nearly balls: a bracket of 1e-9 takes as many rays as a search may shoot.
+  const std::string line =
+      R"({"id":"slow","query":"depth","method":"grid","delta":1e-9,"a":{"type":"ellipsoid","radii":[1,1.0001,1.0002]},)"
+      R"("b":{"type":"ellipsoid","radii":[1,1.0003,1.0001]},"pose_b":{"quaternion_wxyz":[0.5,0.5,0.5,0.5]}})";
+  const Json cut = Json::parse(answer_within(line, session, {.milliseconds = 100, .megabytes = 0}));
+  EXPECT_EQ(cut.at("id"), "slow");
+  if (code_of(cut).empty()) {
+    EXPECT_EQ(cut.at("bracket_reached"), false);
+    EXPECT_LE(cut.at("lower"), 2.0001);
+    EXPECT_GE(cut.at("upper"), 2.0001);
+  } else {
+    EXPECT_EQ(code_of(cut), "limit_exceeded");  // a machine so slow that even the coarse run was not ready
+  }
+  // What has no bracket is refused, and the next line answered.
+  const std::string hull =
+      R"({"id":1,"query":"hull","a":{"type":"convex","vertices":)" + list_of_points(400'000) + "}}";
+  EXPECT_EQ(code_of(Json::parse(answer_within(hull, session, {.milliseconds = 2, .megabytes = 0}))), "limit_exceeded");
+}
+
+TEST(LineBudget, MemoryEndsTheLineAndNoOther) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's shadow takes address space without bound";
+#endif
+  Session session;
+  const std::string line =
+      R"({"id":1,"query":"hull","a":{"type":"convex","vertices":)" + list_of_points(1'000'000) + "}}";
+  EXPECT_EQ(code_of(Json::parse(answer_within(line, session, {.milliseconds = 0, .megabytes = 1}))), "limit_exceeded");
+  const std::string next = R"({"id":2,"query":"hull","a":)" + std::string(kUnitBox) + "}";
+  EXPECT_EQ(code_of(Json::parse(answer_within(next, session, {.milliseconds = 0, .megabytes = 400}))), "");
+}
+
+class ProgramWithFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    char name[] = "/tmp/pd_budget_XXXXXX";
+    ASSERT_NE(::mkdtemp(name), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::stringstream text;
+    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  int run(const std::string& command) {
+    const int status = std::system(("cd '" + folder_.string() + "' && " + command).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  std::filesystem::path folder_;
+  const std::string program_ = "'" PDEPTH_PROGRAM "'";
+};
+
+TEST_F(ProgramWithFiles, ARecordReplaysToTheSameBits) {
+  const std::string lines = depth_line(kUnitBox, R"({"type":"ellipsoid","radii":[1,2,3]})") + "\n" +
+                            depth_line(kUnitBox, kUnitBox, R"("pose_b":{"translation":[0.1,0.3,1e-17]})") + "\n" +
+                            R"({"id":9,"query":"depth","a":{"type":"ellipsoid","radii":[1e10,1,1]},"b":)" + kUnitBox +
+                            "}\n";
+  write("lines", lines);
+  const std::string strip = " | sed 's/\"nanoseconds\":[0-9]*//' ";
+  ASSERT_EQ(run(program_ + " query lines --record all" + strip + "> first"), 0);
+  EXPECT_EQ(read("all"), lines);
+  ASSERT_EQ(run(program_ + " query all" + strip + "> second"), 0);
+  EXPECT_EQ(read("first"), read("second"));
+  ASSERT_EQ(run(program_ + " query lines --record some --record-unreached > answers"), 0);
+  EXPECT_EQ(read("some"), lines.substr(lines.rfind("{\"id\":9")));
+  ASSERT_EQ(run(program_ + " query lines --record none --record-above 1e9 > answers"), 0);
+  EXPECT_EQ(read("none"), "");
+  EXPECT_EQ(run(program_ + " query lines --record /nowhere/to/be > answers 2> words"), 1);
+}
+
+TEST_F(ProgramWithFiles, MinimiseKeepsWhatThePredicateAsksFor) {
+  write(
+      "line",
+      R"({"id":1,"query":"hull","a":{"type":"convex","vertices":[[0.123,5,1],[1,0,0],[0,1,0],[0.7,0.8,"nan"],[4,4,4]]}})"
+      "\n");
+  const std::string predicate = "--predicate \"" + program_ + " query | grep -q non_finite\"";
+  ASSERT_EQ(run(program_ + " minimise line " + predicate + " > small 2> words"), 0);
+  EXPECT_EQ(Json::parse(read("small")),
+            Json::parse(R"({"query":"hull","a":{"type":"convex","vertices":[[0,0,"nan"]]}})"));
+  write("fine", R"({"query":"hull","a":{"type":"box","half_extents":[1,1,1]}})");
+  EXPECT_EQ(run(program_ + " minimise fine " + predicate + " > small 2> words"), 2);
+}
+
+TEST_F(ProgramWithFiles, InterruptedProgramEndsWith130) {
+  EXPECT_EQ(run("bash -c 'set -m; " + std::string("mkfifo in; (sleep 5 > in) & ") + PDEPTH_PROGRAM +
+                " query in > out & pid=$!; sleep 0.3; kill -INT $pid; wait $pid'"),
+            130);
+}
+
+}  // namespace
+}  // namespace pd::test

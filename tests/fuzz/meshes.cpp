@@ -1,0 +1,29 @@
+/// @file
+/// Any bytes as a mesh file, the first of them its format: points, or a refusal.
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "fuzz/input.hpp"
+#include "mesh/mesh_file.hpp"
+#include "support/refusal.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  constexpr std::array kFormats = {"obj", "stl", "ply", "off", "gltf", "glb"};
+  const std::string path = "/tmp/pd_fuzz_" + std::to_string(::getpid()) + "." +
+                           kFormats[static_cast<std::size_t>(data[0]) % kFormats.size()];
+  std::FILE* const file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) return 0;
+  (void)std::fwrite(data + 1, 1, size - 1, file);
+  (void)std::fclose(file);
+  try {
+    const auto mesh = pd::query::read_mesh_points(path, 10'000, std::uintmax_t{1} << 20);
+    PD_LAW(mesh.ids.empty() || mesh.ids.size() == mesh.points.size());
+  } catch (const pd::query::Refusal&) {
+  }
+  (void)std::remove(path.c_str());
+  return 0;
+}
