@@ -105,6 +105,13 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
   return manifold;
 }
 
+/// Whether two polytopes count the same vertices and facets.
+bool same_vertices(const PosedShape& x, const PosedShape& y) {
+  const ConvexPolytope* const p = x.shape->polytope();
+  const ConvexPolytope* const q = y.shape->polytope();
+  return !p || (p->num_vertices() == q->num_vertices() && p->num_facets() == q->num_facets());
+}
+
 }  // namespace
 
 ManifoldScratch::ManifoldScratch() : buffers_(std::make_unique<detail::ManifoldBuffers>()) {}
@@ -123,6 +130,9 @@ ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const
   near_answer.witness_a -= origin;
   near_answer.witness_b -= origin;
   detail::scale_answer(near_answer, -exponent);
+  // A body far smaller than the pair may lose vertices at that size: its features are searched anew there.
+  if (!same_vertices(a, near.a())) near_answer.feature_a = Feature();
+  if (!same_vertices(b, near.b())) near_answer.feature_b = Feature();
   ContactManifold manifold =
       manifold_of(near.a(), near.b(), near_answer, std::ldexp(breaking_threshold, -exponent), scratch.buffers());
   for (int i = 0; i < manifold.count; ++i) {
