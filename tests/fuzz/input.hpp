@@ -60,11 +60,16 @@ inline Expected<ConvexShape> read_shape(Input& input) {
       case 0:
         return ConvexShape::ellipsoid({input.size(), input.size(), input.size()});
       case 1:
-        return ConvexShape::cylinder(input.size(), input.size(), input.choice(3));
       case 2:
-        return ConvexShape::cone(input.size(), input.size(), input.choice(3));
-      case 3:
-        return ConvexShape::capsule(input.size(), input.size(), input.choice(3));
+      case 3: {
+        // One by one: the order in which a call's arguments are read is the compiler's choice.
+        const int axis = input.choice(3);
+        const double second = input.size();
+        const double first = input.size();
+        if (kind == 1) return ConvexShape::cylinder(first, second, axis);
+        if (kind == 2) return ConvexShape::cone(first, second, axis);
+        return ConvexShape::capsule(first, second, axis);
+      }
       case 4:
       case 5: {
         auto box = ConvexPolytope::box({input.size(), input.size(), input.size()});

@@ -72,7 +72,7 @@ struct TimeOfImpact {
 /// First contact within [0, duration].
 ///
 /// Passing each other closer than the tolerance may count as a hit; nothing deeper is missed. Requires duration >= 0
-/// and velocities whose way in that time stays within the range of poses. Queries: 4 to 12 in the mean
+/// and velocities whose way in that time stays within the range of poses. Queries: 3 to 14 in the mean
 /// of five families (`impact_pairs`), one for pairs that the first normal keeps apart for all the time; some supports
 /// between two queries.
 [[nodiscard]] TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
