@@ -60,6 +60,16 @@ double lift_corners(const ContactFrame& frame, double margin_a, double margin_b,
   return deepest;
 }
 
+/// Gives the deepest point the bodies' depth, which is known: what its lifted corner misses of it is halved between its
+/// two ends. The other points keep their own: a face that lies tilted on another rests on the differences between them.
+void end_at_depth(std::vector<ContactPoint>& points, double signed_depth, const Vec3& n) {
+  const auto deepest = std::max_element(points.begin(), points.end(),
+                                        [](const ContactPoint& x, const ContactPoint& y) { return x.depth < y.depth; });
+  deepest->position_b += 0.5 * (signed_depth - deepest->depth) * n;
+  deepest->position_a = deepest->position_b - signed_depth * n;
+  deepest->depth = signed_depth;
+}
+
 ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
                             double breaking_threshold, detail::ManifoldBuffers& buffers) {
   ContactManifold manifold;
@@ -90,16 +100,11 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
     flat.push_back(frame.flatten(on_b));
   } else {
     first = detail::deepest_point(points, flat, deepest, noise);
-    // The depth of the bodies is known: what the lifted corner misses of it is noise, halved between its two ends.
-    ContactPoint& point = points[first];
-    const double missing = signed_depth - point.depth;
-    point.position_b += 0.5 * missing * n;
-    point.position_a = point.position_b - signed_depth * n;
-    point.depth = signed_depth;
   }
 
   // 4. Four of them.
   if (points.size() > 4) detail::reduce_to_four(points, flat, first);
+  end_at_depth(points, signed_depth, n);
   manifold.count = static_cast<int>(points.size());
   std::copy(points.begin(), points.end(), manifold.points.begin());
   return manifold;
