@@ -7,6 +7,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include <algorithm>
+#include <limits>
 #include <typeinfo>
 
 #include "friction_anchor.hpp"
@@ -57,50 +58,57 @@ btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentMan
 /// New point for each old one: -1 where none.
 using Matching = std::array<int, 4>;
 
-/// Pairs last step's manifold points with this step's: first by feature, then by place within the breaking threshold,
-/// nearest first.
+/// Pairs last step's manifold points with this step's: by feature where the place is the same within the breaking
+/// threshold, else by place, nearest first, and then by feature wherever it has gone (what slides fast keeps its
+/// impulse). Place comes before a feature that is elsewhere: where the edges of two faces nearly coincide, a crossing
+/// of theirs goes from one end to the other by rounding.
 Matching match_points(const btPersistentManifold& manifold, const PairMemory& memory, const ContactManifold& fresh,
                       const std::array<btVector3, 4>& fresh_local_a) {
   Matching matching{-1, -1, -1, -1};
   std::array<bool, 4> taken{};
   const int count = manifold.getNumContacts();
-  for (int i = 0; i < count; ++i) {
-    const btVector3& local = manifold.getContactPoint(i).m_localPointA;
-    for (int r = 0; r < memory.num_points; ++r) {
-      if (!(memory.points[r].local_a == local)) {
-        continue;
-      }
+  const btScalar reach = manifold.getContactBreakingThreshold() * manifold.getContactBreakingThreshold();
+  const auto gap = [&](int i, int k) {
+    return (manifold.getContactPoint(i).m_localPointA - fresh_local_a[k]).length2();
+  };
+  const auto match = [&](int i, int k) {
+    matching[i] = k;
+    taken[k] = true;
+  };
+  const auto by_feature = [&](btScalar within) {
+    for (int i = 0; i < count; ++i) {
+      if (matching[i] >= 0) continue;
+      const btVector3& local = manifold.getContactPoint(i).m_localPointA;
+      int r = 0;
+      while (r < memory.num_points && !(memory.points[r].local_a == local)) ++r;
+      if (r == memory.num_points) continue;
       for (int k = 0; k < fresh.count; ++k) {
-        if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id) {
-          matching[i] = k;
-          taken[k] = true;
+        if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id && gap(i, k) < within) {
+          match(i, k);
           break;
         }
       }
-      break;
     }
-  }
-  const btScalar reach = manifold.getContactBreakingThreshold() * manifold.getContactBreakingThreshold();
+  };
+  by_feature(reach);
   for (;;) {
     int best_old = -1;
     int best_new = -1;
     btScalar best = reach;
     for (int i = 0; i < count; ++i) {
       for (int k = 0; k < fresh.count; ++k) {
-        const btScalar gap = (manifold.getContactPoint(i).m_localPointA - fresh_local_a[k]).length2();
-        if (matching[i] < 0 && !taken[k] && gap < best) {
-          best = gap;
+        if (matching[i] < 0 && !taken[k] && gap(i, k) < best) {
+          best = gap(i, k);
           best_old = i;
           best_new = k;
         }
       }
     }
-    if (best_old < 0) {
-      return matching;
-    }
-    matching[best_old] = best_new;
-    taken[best_new] = true;
+    if (best_old < 0) break;
+    match(best_old, best_new);
   }
+  by_feature(std::numeric_limits<btScalar>::infinity());
+  return matching;
 }
 
 }  // namespace

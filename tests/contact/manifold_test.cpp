@@ -30,11 +30,11 @@ struct Contact {
 };
 
 Contact touch(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b, const Pose& pose_b,
-              double threshold = 0.02) {
+              double threshold = 0.02, const pd::DepthSettings& settings = {}) {
   pd::Scratch scratch;
   pd::ManifoldScratch buffers;
   Contact result;
-  result.answer = pd::penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
+  result.answer = pd::penetration_depth({&a, pose_a}, {&b, pose_b}, scratch, settings);
   result.manifold = pd::contact_manifold({&a, pose_a}, {&b, pose_b}, result.answer, threshold, buffers);
   const double signed_depth =
       result.answer.contact == pd::ContactClass::separated ? -result.answer.distance : result.answer.depth;
@@ -229,6 +229,24 @@ TEST(Manifold, DeepestPointIsAsDeepAsTheBodies) {
     EXPECT_LE(deepest, apart ? -contact.answer.distance_lower : contact.answer.upper);
   }
   EXPECT_GT(met, 500);
+}
+
+TEST(Manifold, BoxThatTouchesASlopeHasItsFourCorners) {
+  // Placed to touch exactly: rounding decides, and the simplex that an answer for contacts ends with may hold corners
+  // of facets that do not touch.
+  const ConvexShape slope = box(20, 20, 5), cube = box(0.5, 0.5, 0.5);
+  for (int k = 1; k <= 200; ++k) {
+    const double angle = 0.003 * k;
+    const Pose ground = pose(Vec3::Zero(), Vec3::UnitY(), angle);
+    const Pose at = pose(ground.rotation() * Vec3(-3, 0.3, 5.5), Vec3::UnitY(), angle);
+    for (const double tolerance : {0.0, 0x1p-57, 0x1p-40, 0x1p-26}) {
+      const Contact contact =
+          touch(slope, ground, cube, at, 0.02, {.bracket = pd::Bracket::contact, .contact_tolerance = tolerance});
+      ASSERT_EQ(contact.manifold.count, 4) << angle << ", " << tolerance;
+      EXPECT_NEAR(area(contact.manifold), 1, 1e-9) << angle << ", " << tolerance;
+      for (int i = 0; i < 4; ++i) EXPECT_NEAR(contact.manifold.points[i].depth, 0, 1e-13 + tolerance);
+    }
+  }
 }
 
 }  // namespace

@@ -71,7 +71,10 @@ void polytope_face(const ConvexPolytope& polytope, const Pose& pose, const Vec3&
   FacetChoice choice;
   int vertex = -1;
   int edge_end = -1;
-  switch (feature.kind) {
+  // An answer for contacts leaves open what is nearer than its tolerance: its facet may be one beside the normal.
+  const bool beside = feature.kind == Feature::Kind::facet &&
+                      !(polytope.facet_normal(feature.first).dot(local_direction) >= kFaceCosine);
+  switch (beside ? Feature::Kind::none : feature.kind) {
     case Feature::Kind::facet:
       choice.facet = feature.first;
       choice.cosine = 1;

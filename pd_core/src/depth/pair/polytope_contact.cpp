@@ -114,6 +114,23 @@ class CoreInterval {
   Statistics& statistics_;
 };
 
+/// Witnesses of the nearest point; features of those corners of its simplex that lie in P's supporting plane along the
+/// normal, within `width`. A simplex round the origin has others, too, on facets that do not touch.
+void set_contact_along(const PolytopePair& pair, const ClosestPoint& nearest, double width, PenetrationDepth& out) {
+  set_witnesses(pair, nearest.simplex, nearest.weights, nearest.count, out);
+  const auto height = [&](int i) { return nearest.simplex[i].x.dot(out.normal); };
+  int top = 0;
+  for (int i = 1; i < nearest.count; ++i) {
+    if (height(i) > height(top)) top = i;
+  }
+  DifferenceVertex corners[3] = {nearest.simplex[top], nearest.simplex[top], nearest.simplex[top]};
+  int count = 1;
+  for (int i = 0; i < nearest.count && count < 3; ++i) {
+    if (i != top && height(i) >= height(top) - width) corners[count++] = nearest.simplex[i];
+  }
+  set_features(pair, corners, out);
+}
+
 void answer_near_boundary(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   const PolytopeDifference& difference = query.with_supports();
   const DifferenceVertex first = difference.support(surface.normal, nullptr);
@@ -142,7 +159,7 @@ void answer_near_boundary(PolytopeQuery& query, const ExpansionResult& surface, 
   if (!narrow()) cores.look_across_flat_bodies();
   cores.lower = std::min(cores.lower, nearest.upper);
   out.normal = cores.normal;
-  set_contact_of_simplex(query.pair, nearest, out);
+  set_contact_along(query.pair, nearest, limit, out);
   set_signed_distance(query.pair.margins.both(), cores.lower, nearest.upper, out);
   out.bracket_reached = narrow();
 }
