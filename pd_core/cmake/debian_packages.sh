@@ -51,7 +51,8 @@ pd_use_ccache() {
   pd_launcher=()
   if command -v ccache >/dev/null; then
     pd_launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-    # Without these it passes every source with a precompiled header on to the compiler.
-    export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros}"
+    # Sources with a precompiled header need the first; by the others one build folder's objects serve the next.
+    export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros}" CCACHE_BASEDIR="${CCACHE_BASEDIR:-${PWD}}"
+    export CCACHE_NOHASHDIR=1
   fi
 }
