@@ -193,7 +193,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   }
   ContactManifold fresh;
   if (outcome == SolverCore::Outcome::answered) {
-    fresh = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold), buffers->manifold);
+    fresh = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold), buffers->manifold,
+                             DeepestPoint::as_lifted);
   }
   if (owns_manifold_) {
     replace_points(fresh, result);

@@ -71,7 +71,7 @@ void end_at_depth(std::vector<ContactPoint>& points, double signed_depth, const 
 }
 
 ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
-                            double breaking_threshold, detail::ManifoldBuffers& buffers) {
+                            double breaking_threshold, DeepestPoint deepest_point, detail::ManifoldBuffers& buffers) {
   ContactManifold manifold;
   manifold.normal = answer.normal;
   const double signed_depth = answer.contact == ContactClass::separated ? -answer.distance : answer.depth;
@@ -104,7 +104,7 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
 
   // 4. Four of them.
   if (points.size() > 4) detail::reduce_to_four(points, flat, first);
-  end_at_depth(points, signed_depth, n);
+  if (deepest_point == DeepestPoint::at_depth) end_at_depth(points, signed_depth, n);
   manifold.count = static_cast<int>(points.size());
   std::copy(points.begin(), points.end(), manifold.points.begin());
   return manifold;
@@ -125,9 +125,9 @@ ManifoldScratch::ManifoldScratch(ManifoldScratch&&) noexcept = default;
 ManifoldScratch& ManifoldScratch::operator=(ManifoldScratch&&) noexcept = default;
 
 ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
-                                 double breaking_threshold, ManifoldScratch& scratch) {
+                                 double breaking_threshold, ManifoldScratch& scratch, DeepestPoint deepest) {
   const int exponent = detail::extreme_exponent(a, b);
-  if (exponent == 0) return manifold_of(a, b, answer, breaking_threshold, scratch.buffers());
+  if (exponent == 0) return manifold_of(a, b, answer, breaking_threshold, deepest, scratch.buffers());
   // At size 1, where areas are ordinary numbers.
   const Vec3& origin = a.pose.translation();
   const detail::ScaledPair near(a, b, exponent);
@@ -138,8 +138,8 @@ ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const
   // A body far smaller than the pair may lose vertices at that size: its features are searched anew there.
   if (!same_vertices(a, near.a())) near_answer.feature_a = Feature();
   if (!same_vertices(b, near.b())) near_answer.feature_b = Feature();
-  ContactManifold manifold =
-      manifold_of(near.a(), near.b(), near_answer, std::ldexp(breaking_threshold, -exponent), scratch.buffers());
+  ContactManifold manifold = manifold_of(near.a(), near.b(), near_answer, std::ldexp(breaking_threshold, -exponent),
+                                         deepest, scratch.buffers());
   for (int i = 0; i < manifold.count; ++i) {
     ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
     point.position_a = detail::times_power(point.position_a, exponent) + origin;
