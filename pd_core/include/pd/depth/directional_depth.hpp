@@ -55,7 +55,8 @@ struct DirectionalDepth {
 ///
 /// Polytopes: exact on the stored numbers and poses; every choice is made by the exact sign of a determinant, and the
 /// crossing point is rounded from a rational. Smooth bodies and bodies with margins: a certified bracket from doubles,
-/// at most 1e-9 wide relative to the depth in all that was measured where the bodies overlap by much more than rounding.
+/// at most 1e-9 wide relative to the depth in all that was measured where the bodies overlap by much more than
+/// rounding.
 ///
 /// @param direction  any finite length but zero.
 /// @param hierarchies  for DirectionalMethod::hierarchy: those of the two bodies' polytopes, or nullptr (they are built
