@@ -57,9 +57,8 @@ struct Impact {
 };
 
 double signed_depth(const MovingShape& a, const MovingShape& b, double time, Scratch& scratch) {
-  const PenetrationDepth answer =
-      penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch);
-  return answer.contact == ContactClass::separated ? -answer.distance : answer.depth;
+  return -penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch)
+              .signed_distance();
 }
 
 btTransform to_transform(const Pose& pose) {

@@ -80,7 +80,8 @@ void add_query_command(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--max-time", settings.budget.milliseconds,
-                   "Milliseconds for a line; then the certified bracket so far, or limit_exceeded (0: no bound)")
+                   "Milliseconds for a line; then, of a depth, a coarse run's certified bracket, else limit_exceeded "
+                   "(0: no bound)")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{86'400'000}))
       ->capture_default_str();
   command->add_option("--max-memory", settings.budget.megabytes, "Megabytes for a line (0: no bound)")

@@ -60,7 +60,7 @@ Expected<ConvexPolytope> outer_level(const PolyhedralHierarchy& h, int level) {
   return polytope_of_halfspaces(planes);
 }
 
-/// Levels that are about `shares` of the body in size.
+/// For each size the coarsest level that has as many vertices, or facets.
 std::vector<int> levels_of_size(const PolyhedralHierarchy& h, const std::vector<int>& sizes, bool facets) {
   std::vector<int> chosen;
   for (const int size : sizes) {

@@ -17,15 +17,7 @@ namespace pd::detail {
 
 namespace {
 
-double signed_distance(const PenetrationDepth& answer) {
-  return answer.contact == ContactClass::separated ? answer.distance : -answer.depth;
-}
-
-DepthSettings quick() {
-  DepthSettings settings;
-  settings.bracket = Bracket::certified;
-  return settings;
-}
+constexpr DepthSettings kQuick{.bracket = Bracket::certified};
 
 }  // namespace
 
@@ -180,13 +172,13 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
                        travel(a, pa, moving_a) + travel(b, pb, moving_b);
   const double centres = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
   if (centres > reach + pa.radius + pb.radius + settings.gap) return;
-  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, quick());
-  const double start = signed_distance(before);
+  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, kQuick);
+  const double start = before.signed_distance();
   if (start > reach + settings.gap) return;
   TimeOfImpactSettings impact;
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
-  impact.depth = quick();
+  impact.depth = kQuick;
   // From where it is, a pair in contact may sink by the slop; then the step is cut, and Bullet sees it there.
   impact.allowed_depth = start <= 2 * settings.gap ? std::max(-start, 0.0) + settings.slop : 0;
   const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
@@ -227,30 +219,28 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
   // their edges, no deeper than it lies on this one. So one depth is allowed for all.
   double deepest = -HUGE_VAL;
-  std::vector<double> starts(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const MovingShape moving_b = moving_piece(*triangles[i].shape, b.start, pb.local, b.motion);
-    starts[i] = signed_distance(penetration_depth(moving_a.start, moving_b.start, scratch_, quick()));
-    deepest = std::max(deepest, -starts[i]);
+  for (const BoxedTriangle& triangle : triangles) {
+    const PosedShape posed = moving_piece(*triangle.shape, b.start, pb.local, b.motion).start;
+    deepest = std::max(deepest, -penetration_depth(moving_a.start, posed, scratch_, kQuick).signed_distance());
   }
   TimeOfImpactSettings impact;
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
-  impact.depth = quick();
+  impact.depth = kQuick;
   impact.allowed_depth = deepest >= -2 * settings.gap ? std::max(deepest, 0.0) + settings.slop : 0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const MovingShape moving_b = moving_piece(*triangles[i].shape, b.start, pb.local, b.motion);
+  for (const BoxedTriangle& triangle : triangles) {
+    const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
-      found.b.triangle = triangles[i].shape;
+      found.b.triangle = triangle.shape;
     }
   }
 }
 
 PenetrationDepth ImpactSearch::measure(const FoundImpact& impact) {
   return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.present()},
-                           {&impact.b.shape_beside(impact.a), impact.b.present()}, scratch_, quick());
+                           {&impact.b.shape_beside(impact.a), impact.b.present()}, scratch_, kQuick);
 }
 
 }  // namespace pd::detail

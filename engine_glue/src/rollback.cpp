@@ -15,10 +15,6 @@ namespace pd {
 
 namespace {
 
-double signed_distance(const PenetrationDepth& answer) {
-  return answer.contact == ContactClass::separated ? answer.distance : -answer.depth;
-}
-
 Vec3 velocity_at(const btCollisionObject& object, const Vec3& point) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr || body->isStaticObject()) {
@@ -90,7 +86,7 @@ bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, d
 double RollbackStepper::State::advance_to(detail::FoundImpact impact, double from, double duration, double least,
                                           RollbackReport& report) {
   FirstContact result;
-  result.undone_depth = std::max(0.0, -signed_distance(search.measure(impact)));
+  result.undone_depth = std::max(0.0, -search.measure(impact).signed_distance());
   // A shorter part moves a little differently (gravity acts for less time, Bullet clamps a fast turn less), so that
   // each trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
   // motion does; between them Newton's method on the pair's gap.
@@ -105,7 +101,7 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
     const bool meets = search.earliest(time, {settings.gap, settings.contact_slop}, earlier);
     if (meets) impact = earlier;
     result.contact = search.measure(impact);
-    result.gap = signed_distance(result.contact);
+    result.gap = result.contact.signed_distance();
     const double clearance = result.gap + impact.allowed_depth;
     double next = HUGE_VAL;
     if (meets) {
@@ -132,7 +128,7 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
     start->restore();
     try_part(from, time, report);
     result.contact = search.measure(impact);
-    result.gap = signed_distance(result.contact);
+    result.gap = result.contact.signed_distance();
     if (low < least) {
       ++report.least_parts;
       report.deepest_run_in = std::max(report.deepest_run_in, -result.gap);
@@ -177,7 +173,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
       start->restore();
       try_part(done, least, report);
       ++report.least_parts;
-      report.deepest_run_in = std::max(report.deepest_run_in, -signed_distance(search.measure(impact)));
+      report.deepest_run_in = std::max(report.deepest_run_in, -search.measure(impact).signed_distance());
     } else {
       part = advance_to(std::move(impact), done, remaining, least, report);
     }

@@ -16,10 +16,6 @@ namespace {
 /// One query in this many reads the clock: two readings cost a tenth of a short query.
 constexpr unsigned kClockSample = 16;
 
-double radius_of(const ConvexShape& shape) {
-  return shape.polytope() != nullptr ? shape.polytope()->radius() + shape.margin() : bounding_radius(shape);
-}
-
 /// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves
 /// uncertain, whatever the reach of a floor. Coordinates are known to half a unit in the last place, so that surfaces
 /// are to 2^-24 of the distance from the world's origin and of the body's size. In double precision that share, 2^-59,
@@ -27,7 +23,7 @@ double radius_of(const ConvexShape& shape) {
 double contact_tolerance(const PosedShape& a, const PosedShape& b) {
   constexpr double kShare = sizeof(btScalar) == sizeof(float) ? 0x1p-30 : 0x1p-46;
   const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
-  return kShare * (farthest + std::min(radius_of(*a.shape), radius_of(*b.shape)));
+  return kShare * (farthest + std::min(bounding_radius(*a.shape), bounding_radius(*b.shape)));
 }
 
 bool in_range(const btTransform& pose) {

@@ -9,7 +9,6 @@
 #include <map>
 #include <mutex>
 #include <shared_mutex>
-#include <tuple>
 
 #include "world_step.hpp"
 

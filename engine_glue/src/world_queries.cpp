@@ -119,12 +119,6 @@ class Neighbours : public btBroadphaseAabbCallback {
   const std::function<void(btBroadphaseProxy&)>& visit_;
 };
 
-DepthSettings quick() {
-  DepthSettings settings;
-  settings.bracket = Bracket::certified;
-  return settings;
-}
-
 void fill(WorldHit& hit, const btCollisionObject& object, const Piece& piece, const PenetrationDepth& answer) {
   hit.object = &object;
   hit.part = piece.part;
@@ -132,7 +126,7 @@ void fill(WorldHit& hit, const btCollisionObject& object, const Piece& piece, co
   hit.point_on_shape = answer.witness_a;
   hit.point_on_object = answer.witness_b;
   hit.normal = answer.normal;
-  hit.distance = answer.contact == ContactClass::separated ? answer.distance : -answer.depth;
+  hit.distance = answer.signed_distance();
 }
 
 bool passes(const btBroadphaseProxy& proxy, const WorldQuerySettings& settings) {
@@ -164,7 +158,7 @@ std::optional<SweepHit> first_hit(const Body& body, const RigidMotion& motion, c
   TimeOfImpactSettings settings;
   settings.distance_tolerance = tolerance;
   settings.contact_at_end = false;
-  settings.depth = quick();
+  settings.depth.bracket = Bracket::certified;
   for (const Piece& piece : pieces) {
     const TimeOfImpact found = time_of_impact({{&body.beside(piece.body), to_pd(from)}, motion},
                                               {{&piece.body.beside(body), to_pd(piece.pose)}, {}},

@@ -1,7 +1,9 @@
 /// @file
 /// What one line may cost: points counted while they are read, a bound of time and of memory, records of lines, Ctrl-C.
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +11,7 @@
 
 #include "protocol/line_budget.hpp"
 #include "protocol_lines.hpp"
+#include "temporary_folder.hpp"
 
 namespace pd::test {
 namespace {
@@ -111,28 +114,13 @@ TEST(LineBudget, MemoryEndsTheLineAndNoOther) {
   EXPECT_EQ(code_of(Json::parse(answer_within(next, session, {.milliseconds = 0, .megabytes = 400}))), "");
 }
 
-class ProgramWithFiles : public ::testing::Test {
+class ProgramWithFiles : public ::testing::Test, protected TemporaryFolder {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/pd_budget_XXXXXX";
-    ASSERT_NE(::mkdtemp(name), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  void write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::stringstream text;
-    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
-    return text.str();
-  }
   int run(const std::string& command) {
-    const int status = std::system(("cd '" + folder_.string() + "' && " + command).c_str());
+    const int status = std::system(("cd '" + path().string() + "' && " + command).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  std::filesystem::path folder_;
   const std::string program_ = "'" PDEPTH_PROGRAM "'";
 };
 
@@ -167,10 +155,34 @@ TEST_F(ProgramWithFiles, MinimiseKeepsWhatThePredicateAsksFor) {
   EXPECT_EQ(run(program_ + " minimise fine " + predicate + " > small 2> words"), 2);
 }
 
+/// A program that waits for its next line: its first answer shows that it is there.
 TEST_F(ProgramWithFiles, InterruptedProgramEndsWith130) {
-  EXPECT_EQ(run("bash -c 'set -m; " + std::string("mkfifo in; (sleep 5 > in) & ") + PDEPTH_PROGRAM +
-                " query in > out & pid=$!; sleep 0.3; kill -INT $pid; wait $pid'"),
-            130);
+  int in[2], out[2];
+  ASSERT_EQ(::pipe(in), 0);
+  ASSERT_EQ(::pipe(out), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::dup2(in[0], STDIN_FILENO);
+    ::dup2(out[1], STDOUT_FILENO);
+    ::close(in[1]);
+    ::execl(PDEPTH_PROGRAM, "pdepth", "query", nullptr);
+    ::_exit(127);
+  }
+  ::close(in[0]);
+  ::close(out[1]);
+  const std::string line = std::string(R"({"query":"hull","a":)") + kUnitBox + "}\n";
+  ASSERT_EQ(::write(in[1], line.data(), line.size()), static_cast<ssize_t>(line.size()));
+  char byte = 0;
+  ASSERT_EQ(::read(out[0], &byte, 1), 1);
+  ASSERT_EQ(::kill(child, SIGINT), 0);
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  // A shell shows 130 for a death by the signal, too; this is an exit.
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 130);
+  ::close(in[1]);
+  ::close(out[0]);
 }
 
 }  // namespace

@@ -10,24 +10,13 @@
 
 #include "protocol_lines.hpp"
 #include "support/refusal.hpp"
+#include "temporary_folder.hpp"
 
 namespace pd::test {
 namespace {
 
-class MeshFile : public ::testing::Test {
+class MeshFile : public ::testing::Test, protected TemporaryFolder {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/pd_mesh_XXXXXX";
-    ASSERT_NE(::mkdtemp(name), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& content) {
-    const std::string path = folder_ / name;
-    std::ofstream(path, std::ios::binary) << content;
-    return path;
-  }
   query::MeshPoints read(const std::string& name, const std::string& content) {
     return query::read_mesh_points(write(name, content), 1000, 1 << 20);
   }
@@ -39,8 +28,6 @@ class MeshFile : public ::testing::Test {
     }
     return "";
   }
-
-  std::filesystem::path folder_;
 };
 
 template <class T>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "protocol_lines.hpp"
+#include "temporary_folder.hpp"
 
 namespace pd::test {
 namespace {
@@ -21,37 +22,22 @@ struct Outcome {
   std::string err;
 };
 
-class Program : public ::testing::Test {
+class Program : public ::testing::Test, protected TemporaryFolder {
  protected:
   void SetUp() override {
-    char name[] = "/tmp/pd_program_XXXXXX";
-    ASSERT_NE(::mkdtemp(name), nullptr);
-    folder_ = name;
     write("cube.obj",
           "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
           "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
     write("spike.off", "OFF\n4 4 6\n0 0 0.5\n2 0 4\n-1 2 4\n-1 -2 4\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  void write(const std::string& name, const std::string& content) {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
   Outcome run(const std::string& arguments, const std::string& input = "") {
     write("in", input);
     const std::string command =
-        "cd '" + folder_.string() + "' && '" PDEPTH_PROGRAM "' " + arguments + " < in > out 2> err";
+        "cd '" + path().string() + "' && '" PDEPTH_PROGRAM "' " + arguments + " < in > out 2> err";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(Program, VersionAndHelp) {
@@ -106,7 +92,7 @@ TEST_F(Program, QueryLimits) {
 TEST_F(Program, UnwritableOutputIsOne) {
   write("lines.jsonl", depth_line(kUnitBox, kUnitBox));
   const std::string command =
-      "'" PDEPTH_PROGRAM "' query '" + (folder_ / "lines.jsonl").string() + "' > /dev/full 2> /dev/null";
+      "'" PDEPTH_PROGRAM "' query '" + (path() / "lines.jsonl").string() + "' > /dev/full 2> /dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
 }
 
@@ -207,7 +193,7 @@ TEST_F(Program, DepthTracesItsSearch) {
   const Outcome drawn = run("demo difference --trace search.jsonl --out drawn --size 320x180");
   if (drawn.status == 1) GTEST_SKIP() << "no off-screen graphics here: " << drawn.err;
   EXPECT_EQ(drawn.status, 0) << drawn.err;
-  EXPECT_GT(std::filesystem::file_size(folder_ / "drawn" / "search_strip.png"), 10'000U);
+  EXPECT_GT(std::filesystem::file_size(path() / "drawn" / "search_strip.png"), 10'000U);
 }
 
 TEST_F(Program, DepthTakesEveryKindOfPose) {
@@ -281,7 +267,7 @@ TEST_F(Program, PicturesAreNamedForWhatTheyAre) {
   const Outcome outcome = run("depth cube.obj spike.off --picture pair.jpg");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("*.png"), std::string::npos) << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "pair.jpg"));
+  EXPECT_FALSE(std::filesystem::exists(path() / "pair.jpg"));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
                             double breaking_threshold, DeepestPoint deepest_point, detail::ManifoldBuffers& buffers) {
   ContactManifold manifold;
   manifold.normal = answer.normal;
-  const double signed_depth = answer.contact == ContactClass::separated ? -answer.distance : answer.depth;
+  const double signed_depth = -answer.signed_distance();
   if (signed_depth < -breaking_threshold) return manifold;
   // 1. The faces that meet, cut by each other across the normal.
   const Vec3& n = answer.normal;

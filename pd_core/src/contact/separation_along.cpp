@@ -12,7 +12,6 @@ namespace pd::detail {
 
 namespace {
 
-/// Largest distance of a point of a smooth core from the origin of its frame.
 struct CoreRadius {
   double operator()(const ConvexPolytope& p) const { return p.radius(); }
   double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
@@ -34,6 +33,8 @@ Vec3 turned_back(const Vec3& n, const Vec3& axis, double angle) {
 
 }  // namespace
 
+double core_radius(const ConvexShape::Core& core) { return std::visit(CoreRadius{}, core); }
+
 MovingSupport::MovingSupport(const MovingShape& body)
     : body_(body),
       rotation_(body.start.shape->polytope() ? body.start.pose.rotation() : body.start.pose.nearest_rotation()),
@@ -48,7 +49,7 @@ MovingSupport::MovingSupport(const MovingShape& body)
       from_axis = std::max(from_axis, axis_.cross(r).stableNorm());
     }
   } else {
-    radius_ = body.arm.stableNorm() + std::visit(CoreRadius{}, body.start.shape->core());
+    radius_ = body.arm.stableNorm() + core_radius(body.start.shape->core());
     from_axis = radius_;
   }
   radius_ *= kRoundedUp;

@@ -6,6 +6,9 @@
 
 namespace pd::detail {
 
+/// Largest distance of a point of a core from the origin of its frame, of a polytope rounded up.
+[[nodiscard]] double core_radius(const ConvexShape::Core& core);
+
 /// One body of the pair: its core's support at any time.
 class MovingSupport {
  public:
@@ -39,7 +42,8 @@ class MovingSeparation {
   /// A lower bound of min_A <p, n> - max_B <q, n> - margins at `time`, for a unit vector n: within `2 * rounding()` of
   /// it.
   [[nodiscard]] double at(const Vec3& n, double time);
-  /// s(t) plus this times t^2 / 2 is concave nowhere beyond: every pair of points has |g''| <= curvature.
+  /// Every pair of points has |g''| <= this along any unit direction, so that s, the least of them, lies below its
+  /// chord over a span h by curvature * x (h - x) / 2 at most.
   [[nodiscard]] double curvature() const { return a_.curvature() + b_.curvature(); }
   /// No pair of points comes nearer along n faster than this, at any time.
   [[nodiscard]] double closing_bound(const Vec3& n) const;

@@ -33,9 +33,7 @@ class MovingPair {
 
   /// Signed distance above the allowed depth. The separation along any one normal bounds the signed distance from
   /// below, inside as well as outside.
-  [[nodiscard]] double clearance() const {
-    return settings_.allowed_depth + (answer_.contact == ContactClass::separated ? answer_.distance : -answer_.depth);
-  }
+  [[nodiscard]] double clearance() const { return settings_.allowed_depth + answer_.signed_distance(); }
 
   /// The latest time after `time` up to which the present normal proves the pair apart: the end of the duration, or one
   /// where what is left along the normal is about `goal`, or where the normal is worth no more.
@@ -123,22 +121,7 @@ Pose pose_at(const MovingShape& body, double time) {
   return Pose::from_trusted_matrix(turn * body.start.pose.rotation(), translation);
 }
 
-double bounding_radius(const ConvexShape& shape) {
-  double core = 0;
-  if (const ConvexPolytope* polytope = shape.polytope()) {
-    for (int v = 0; v < polytope->num_vertices(); ++v) {
-      core = std::max(core, polytope->vertex(v).norm());
-    }
-  } else if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape.core())) {
-    core = ellipsoid->radii.maxCoeff();
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.core())) {
-    core = std::hypot(cylinder->radius, cylinder->half_height);
-  } else {
-    const auto& cone = std::get<Cone>(shape.core());
-    core = std::hypot(cone.radius, cone.half_height);
-  }
-  return core + shape.margin();
-}
+double bounding_radius(const ConvexShape& shape) { return detail::core_radius(shape.core()) + shape.margin(); }
 
 TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
                             const TimeOfImpactSettings& settings) {

@@ -148,9 +148,13 @@ struct BoundaryQuery::Hit {
 struct BoundaryQuery::RaySearch {
   const BoundaryQuery& query;
   Span ray;
+  Point2 direction;
   std::optional<Hit> best;
   double limit = std::numeric_limits<double>::infinity();  ///< a bound of the best one's parameter
   bool unique = true;
+
+  RaySearch(const BoundaryQuery& q, const Point2& y, const Point2& d)
+      : query(q), ray{point(y), {{0, 0}, d}, {}}, direction(d) {}
 
   [[nodiscard]] int sign(const Hit& hit) const {
     return exact_sign([&]<class N>() { return hit.along<N>(ray).numerator; }) *
@@ -199,8 +203,9 @@ struct BoundaryQuery::RaySearch {
   }
 };
 
-std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const Point2& d, bool outer_only) const {
-  RaySearch search{*this, {point(y), {{0, 0}, d}, {}}, {}};
+/// Meets the boundary (loop 0 alone) along the search's ray, nearest boxes first.
+void BoundaryQuery::search_ray(RaySearch& search, bool outer_only) const {
+  const Point2 &y = search.ray.s.p, &d = search.direction;
   const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, y, d, search.limit)); };
   const auto first = [&](const Box2& box) { return enter_ray(box, y, d, search.limit); };
   stretch_tree_.visit(enter, first, [&](std::int32_t i) {
@@ -212,23 +217,19 @@ std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const 
                   if (!beside_line(part.span, y, d)) search.meet(i, e, part);
                 });
   });
+}
+
+std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const Point2& d, bool outer_only) const {
+  RaySearch search(*this, y, d);
+  search_ray(search, outer_only);
   if (!search.best) return std::nullopt;
   return search.best->point;
 }
 
 std::optional<PlanarContact> BoundaryQuery::contact_by_ray(const Point2& y, const Point2& d,
                                                            std::optional<BoundaryPoint>& hit) const {
-  RaySearch search{*this, {point(y), {{0, 0}, d}, {}}, {}};
-  const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, y, d, search.limit)); };
-  const auto first = [&](const Box2& box) { return enter_ray(box, y, d, search.limit); };
-  stretch_tree_.visit(enter, first, [&](std::int32_t i) {
-    const Stretch& s = boundary_.stretches()[at(i)];
-    visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
-                [&](int e) {
-                  const EdgePart part = boundary_.part(s, e);
-                  if (!beside_line(part.span, y, d)) search.meet(i, e, part);
-                });
-  });
+  RaySearch search(*this, y, d);
+  search_ray(search, false);
   if (!search.best) return PlanarContact::separated;  // the ray goes to infinity, and y is not on the boundary
   const Hit& best = *search.best;
   hit = best.point;
@@ -288,16 +289,8 @@ bool BoundaryQuery::in_unbounded_face(const Point2& y) const {
   constexpr std::array<int, 12> kSlopes = {1, 7, -3, 11, -5, 2, 13, -17, 23, -29, 31, -37};
   for (const int slope : kSlopes) {
     const Point2 d = {64.0, static_cast<double>(slope)};
-    RaySearch search{*this, {point(y), {{0, 0}, d}, {}}, {}};
-    const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, y, d, search.limit)); };
-    stretch_tree_.visit(enter, [&](std::int32_t i) {
-      const Stretch& s = boundary_.stretches()[at(i)];
-      visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
-                  [&](int e) {
-                    const EdgePart part = boundary_.part(s, e);
-                    if (!beside_line(part.span, y, d)) search.meet(i, e, part);
-                  });
-    });
+    RaySearch search(*this, y, d);
+    search_ray(search, false);
     if (!search.best) return true;
     if (search.unique) return boundary_.stretches()[at(search.best->point.stretch)].loop == 0;
   }

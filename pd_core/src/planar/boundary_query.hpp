@@ -60,6 +60,7 @@ class BoundaryQuery {
   /// begins on the boundary, or its first meeting with it is no crossing inside one edge.
   [[nodiscard]] std::optional<PlanarContact> contact_by_ray(const Point2& y, const Point2& d,
                                                             std::optional<BoundaryPoint>& hit) const;
+  void search_ray(RaySearch& search, bool outer_only) const;
   [[nodiscard]] PlanarContact contact_by_sums(const Point2& y, std::optional<BoundaryPoint>* touched) const;
   [[nodiscard]] std::optional<BoundaryPoint> touch(const Point2& y, bool outer_only) const;
 

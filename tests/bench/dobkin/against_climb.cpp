@@ -3,9 +3,7 @@
 /// of all pairwise sums.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <limits>
-#include <memory>
+#include <cstdlib>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -89,23 +87,6 @@ class SampledClimb {
   std::vector<Level> levels_;
 };
 
-/// Least mean time of a call over the directions; `disturb` runs before each call, unmeasured.
-template <class Call, class Disturb>
-double nanoseconds(const std::vector<Vec3>& directions, int rounds, const Call& call, Disturb&& disturb) {
-  double best = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < rounds; ++round) {
-    double sum = 0;
-    for (const Vec3& d : directions) {
-      disturb();
-      const auto begin = Clock::now();
-      call(d);
-      sum += elapsed_ns(begin, Clock::now());
-    }
-    best = std::min(best, sum / static_cast<double>(directions.size()));
-  }
-  return best;
-}
-
 std::vector<Vec3> directions_of(int count, scenes::Random& random) {
   std::vector<Vec3> directions;
   for (int i = 0; i < count; ++i) directions.push_back(random.direction());
@@ -116,8 +97,18 @@ std::vector<Vec3> directions_of(int count, scenes::Random& random) {
 class CacheFlush {
  public:
   CacheFlush() : bytes_(std::size_t{96} << 20) {}
-  void operator()() {
-    for (std::size_t i = 0; i < bytes_.size(); i += 64) bytes_[i] = static_cast<char>(bytes_[i] + 1);
+
+  /// Mean nanoseconds of a call on cold caches.
+  template <class Call>
+  [[nodiscard]] double cold_mean_ns(const std::vector<Vec3>& directions, const Call& call) {
+    double sum = 0;
+    for (const Vec3& d : directions) {
+      for (std::size_t i = 0; i < bytes_.size(); i += 64) bytes_[i] = static_cast<char>(bytes_[i] + 1);
+      const auto begin = Clock::now();
+      call(d);
+      sum += elapsed_ns(begin, Clock::now());
+    }
+    return sum / static_cast<double>(directions.size());
   }
 
  private:
@@ -132,11 +123,9 @@ void measure_large(const DobkinSettings& settings, ClaimTable& table) {
   const SampledClimb climb(p, random);
   const std::vector<Vec3> directions = directions_of(2000, random);
   double sum = 0;
-  const auto nothing = [] {};
   const auto by_climb = [&](const Vec3& d) { sum += climb.support(d); };
-  const double climbing = nanoseconds(directions, 5, by_climb, nothing);
-  const double supports = nanoseconds(
-      directions, 5, [&](const Vec3& d) { sum += detail::support_vertex(p, d, -1); }, nothing);
+  const double climbing = least_mean_ns(directions, 5, by_climb);
+  const double supports = least_mean_ns(directions, 5, [&](const Vec3& d) { sum += detail::support_vertex(p, d, -1); });
   const std::string range = fmt::format("n = {}", n), title = "balls";
   table.add_value(kSupport, title, "support, ns", range, supports);
   table.add_value(kSupport, title, "sampled climb, ns", range, climbing);
@@ -151,15 +140,15 @@ void measure_large(const DobkinSettings& settings, ClaimTable& table) {
   Scratch scratch;
   CacheFlush flush;
   const std::vector<Vec3> few(directions.begin(), directions.begin() + 60);
-  const double cold_climb = nanoseconds(few, 1, by_climb, flush);
+  const double cold_climb = flush.cold_mean_ns(few, by_climb);
   table.add_value(kDepth, title, "cold support by sampled climb, ns", range, cold_climb);
   for (const auto& [method, name] :
        {std::pair{DirectionalMethod::hierarchy, "hierarchies"}, std::pair{DirectionalMethod::portal, "portal"}}) {
     const auto ask = [&, m = method](const Vec3& d) {
       sum += directional_depth(posed_a, posed_b, d, scratch, m, &both).value().depth;
     };
-    const double warm = nanoseconds(few, 5, ask, nothing);
-    const double cold = nanoseconds(few, 1, ask, flush);
+    const double warm = least_mean_ns(few, 5, ask);
+    const double cold = flush.cold_mean_ns(few, ask);
     table.add_value(kDepth, title, fmt::format("{}: warm, ns", name), range, warm);
     table.add_value(kDepth, title, fmt::format("{}: warm / cold support", name), range, warm / cold_climb, 2);
     table.add_value(kDepth, title, fmt::format("{}: cold / cold support", name), range, cold / cold_climb, 8);
@@ -197,9 +186,9 @@ void measure_small(const DobkinSettings& settings, ClaimTable& table) {
   const PosedShape posed_a{&a, Pose()}, posed_b{&b, Pose()};
   Scratch scratch;
   double sum = 0;
-  const double ours = nanoseconds(
-      directions_of(500, random), 5,
-      [&](const Vec3& d) { sum += directional_depth(posed_a, posed_b, d, scratch).value().depth; }, [] {});
+  const double ours = least_mean_ns(directions_of(500, random), 5, [&](const Vec3& d) {
+    sum += directional_depth(posed_a, posed_b, d, scratch).value().depth;
+  });
   if (sum < 0) std::abort();
   table.add_value(kDepth, "balls", "time / Qhull's hull of pairwise sums", fmt::format("n = m = {}", n),
                   ours * 1e-9 / seconds_of_hull(p, q), 0.01);

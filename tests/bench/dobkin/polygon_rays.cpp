@@ -3,6 +3,7 @@
 /// convex polygons beside binary searches in arrays of their length.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <vector>
@@ -79,18 +80,6 @@ std::vector<Ray> rays_in(const Polygon& p, const PolygonDifference& r, int count
   return rays;
 }
 
-/// Least mean time of a call over the rays.
-template <class Call>
-double nanoseconds(const std::vector<Ray>& rays, const Call& call) {
-  double best = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < 5; ++round) {
-    const auto begin = Clock::now();
-    for (const Ray& ray : rays) call(ray);
-    best = std::min(best, elapsed_ns(begin, Clock::now()) / static_cast<double>(rays.size()));
-  }
-  return best;
-}
-
 template <class Make>
 void measure_rays(const std::string& family, const Make& make, double q_radius, double most_ratio, double most_exponent,
                   const DobkinSettings& settings, ClaimTable& table) {
@@ -105,8 +94,8 @@ void measure_rays(const std::string& family, const Make& make, double q_radius, 
     const EdgeCaster caster(p);
     const std::vector<Ray> rays = rays_in(p, r, 400, random);
     double sum = 0;
-    ours = nanoseconds(rays, [&](const Ray& ray) { sum += r.depth_along(ray.from, ray.direction).depth; });
-    cast = nanoseconds(rays, [&](const Ray& ray) { sum += caster.cast(ray.from, ray.direction); });
+    ours = least_mean_ns(rays, 5, [&](const Ray& ray) { sum += r.depth_along(ray.from, ray.direction).depth; });
+    cast = least_mean_ns(rays, 5, [&](const Ray& ray) { sum += caster.cast(ray.from, ray.direction); });
     if (sum < 0) std::abort();  // the sums are used, so that no call is left out
     time.add(p.num_vertices(), ours);
     last = p.num_vertices();
@@ -141,10 +130,10 @@ void measure_searches(const DobkinSettings& settings, ClaimTable& table) {
     rays.push_back({{random.uniform(0, n), random.uniform(0, n)}, {t.cosine, t.sine}});
   }
   double sum = 0;
-  const double ours = nanoseconds(rays, [&](const Ray& ray) {
+  const double ours = least_mean_ns(rays, 5, [&](const Ray& ray) {
     sum += convex_directional_depth(p, q, {0.1, 0.2}, ray.direction).value().depth;
   });
-  const double searches = nanoseconds(rays, [&](const Ray& ray) {
+  const double searches = least_mean_ns(rays, 5, [&](const Ray& ray) {
     sum += *std::lower_bound(first.begin(), first.end() - 1, ray.from[0]);
     sum += *std::lower_bound(second.begin(), second.end() - 1, ray.from[1]);
   });

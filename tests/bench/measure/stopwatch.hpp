@@ -2,7 +2,9 @@
 /// Times of short calls on a machine that is never quiet, and the order statistics that are made of them.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <vector>
 
 namespace pd::bench {
@@ -14,6 +16,18 @@ using Clock = std::chrono::steady_clock;
 
 /// Nanoseconds between two readings, less the clock's own cost; at least 0.
 [[nodiscard]] double elapsed_ns(Clock::time_point begin, Clock::time_point end);
+
+/// Nanoseconds of a call over the items: the least mean of the rounds, each timed as a whole.
+template <class Items, class Call>
+[[nodiscard]] double least_mean_ns(const Items& items, int rounds, const Call& call) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < rounds; ++round) {
+    const auto begin = Clock::now();
+    for (const auto& item : items) call(item);
+    best = std::min(best, elapsed_ns(begin, Clock::now()) / static_cast<double>(items.size()));
+  }
+  return best;
+}
 
 /// The value below which a share q in [0, 1] of the values lies (nearest rank). NaN where there are none.
 [[nodiscard]] double quantile(std::vector<double> values, double q);

@@ -56,7 +56,9 @@ struct DistanceResult {
 /// The first object that `shape` meets on the straight way from `from` to `to`, turning at constant speed about its
 /// origin by the shorter turn. Objects stand still at their world transforms; the broadphase must be up to date
 /// (`updateAabbs`, or a step), as for Bullet's own queries. Objects without contact response are asked, too.
-/// @return an error where `shape` has no exact body. Time: a time of impact a pair of convex pieces whose boxes meet.
+/// @return an error where `shape` has no exact body; hits with points, normal and distance as of `SweepHit`.
+/// Time: a time of impact (`pd/contact/time_of_impact.hpp`, whose proof this is) for each convex piece, and for each
+/// triangle of a mesh, that meets the box of the whole way; without a cache a conversion of each.
 [[nodiscard]] Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& shape,
                                                const btTransform& from, const btTransform& to,
                                                const WorldQuerySettings& settings = {});
@@ -71,7 +73,9 @@ Expected<int> sweep_test(btCollisionWorld& world, const btConvexShape& shape, co
 
 /// The object that is nearest to `shape` at `pose` (or overlaps it deepest), if one is within `reach` >= 0, with the
 /// closest points.
+/// @param reach  in the world's unit.
 /// @return an error where `shape` has no exact body.
+/// Time: an exact query (`penetration_depth`, tightest bracket) for each convex piece within reach.
 [[nodiscard]] Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexShape& shape,
                                                      const btTransform& pose, double reach,
                                                      const WorldQuerySettings& settings = {});

@@ -53,8 +53,8 @@ class ManifoldScratch {
 /// What the deepest of the four points says of its depth.
 enum class DeepestPoint : std::uint8_t {
   at_depth,  ///< the bodies' own depth: what the lifted corner misses of it (rounding, merged corners) is added
-  /// What its corner says, as the others do: an engine lets a face rest on the differences between its points, and a
-  /// tower of 20 boxes fell after 38 s where one of them was corrected alone (it stands for 60 s).
+  /// What its corner says, as the others do: an engine lets a face rest on the differences between its points, which
+  /// one point corrected alone would falsify (engine_glue/README.md, "Contact points").
   as_lifted
 };
 
@@ -64,6 +64,7 @@ enum class DeepestPoint : std::uint8_t {
 /// @param breaking_threshold  >= 0: pairs of points with a wider gap are left out; no points when the bodies are
 /// further apart than that. In the unit of the input. Four points of a larger intersection are kept: the deepest, the
 /// farthest from it, and those that span the largest area. Time O(k m) in the vertices of the two faces.
+/// @param deepest  at_depth for those who judge, as_lifted for engines.
 [[nodiscard]] ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
                                                double breaking_threshold, ManifoldScratch& scratch,
                                                DeepestPoint deepest = DeepestPoint::at_depth);

@@ -101,6 +101,9 @@ struct PenetrationDepth {
   Feature feature_b;
 
   Statistics statistics;
+
+  /// distance, or minus depth where the bodies overlap.
+  [[nodiscard]] double signed_distance() const { return contact == ContactClass::separated ? distance : -depth; }
 };
 
 }  // namespace pd

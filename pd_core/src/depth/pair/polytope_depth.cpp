@@ -73,6 +73,7 @@ void answer(PolytopeQuery& query, PenetrationDepth& out) {
     if (stage(query, surface, out)) return;
   }
 }
+
 }  // namespace
 
 void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,
