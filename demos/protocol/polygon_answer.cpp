@@ -52,6 +52,10 @@ void write_polygon_statistics(const PolygonDifference& r, std::int64_t nanosecon
   answer.key("stretches").integer(s.stretches);
   answer.key("arcs").integer(s.arcs);
   answer.key("events").integer(s.reflex_points);
+  answer.key("most_events").integer(s.reflex_bound);
+  answer.key("crossings").integer(s.crossings);
+  answer.key("crossings_of_two_sums").integer(s.most_crossings);
+  answer.key("facts_hold").boolean(s.facts_hold);
   answer.key("holes").integer(s.loops - 1);
   answer.key("pairs").integer(s.pairs);
   answer.key("probes").integer(s.locations);

@@ -192,9 +192,9 @@ TEST(PolygonDepth, MethodsGiveTheSameBits) {
     const auto a = *PolygonDifference::of(p, q, PolygonMethod::implicit);
     const auto b = *PolygonDifference::of(p, q, PolygonMethod::explicit_sums);
     const auto s = a.statistics();
-    if (s.sums >= 3) {
-      ASSERT_LE(s.reflex_points, 6 * s.sums - 12);
-    }
+    ASSERT_TRUE(s.facts_hold) << text(rings_p) << " q " << text(rings_q);  // [D] Facts 4.1 and 4.2
+    ASSERT_LE(s.most_crossings, 2);
+    ASSERT_LE(s.reflex_points, s.reflex_bound);
     for (int k = 0; k < 4; ++k) {
       const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)}, d = {next.eighths(-3, 3), next.eighths(1, 2)};
       for (const auto& [x, z] : {std::pair{a.depth(y), b.depth(y)},

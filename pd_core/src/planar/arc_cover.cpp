@@ -12,14 +12,16 @@ Position normalised(int edge, const Place& at) {
 
 }  // namespace
 
-void ArcCover::cut(int sum, CandidateCover& cover) {
+std::int64_t ArcCover::cut(int sum, CandidateCover& cover) {
   sum_ = sum;
+  crossings_ = 0;
   ++counts_.pairs;
   if (candidate_.count == 1) {
     cut_edge(0, cover);
   } else {
     cut_arc(cover);
   }
+  return crossings_;
 }
 
 void ArcCover::cut_edge(int edge, CandidateCover& cover) {
@@ -29,6 +31,8 @@ void ArcCover::cut_edge(int edge, CandidateCover& cover) {
   const CoveredIntervals::Interval interval{normalised(edge, part->from), normalised(edge, part->to)};
   switch (part->kind) {
     case ConvexSum::Cover::Kind::inside:
+      crossings_ += part->from.kind == Place::Kind::line ? 1 : 0;
+      crossings_ += part->to.kind == Place::Kind::line ? 1 : 0;
       cover.covered.add(interval);
       break;
     case ConvexSum::Cover::Kind::same_edge:

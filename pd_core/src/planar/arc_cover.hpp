@@ -23,8 +23,9 @@ class ArcCover {
   ArcCover(const SumBoundary& boundary, const Candidate& candidate, GivesWay gives_way, BoundaryCounts& counts)
       : boundary_(boundary), candidate_(candidate), gives_way_(std::move(gives_way)), counts_(counts) {}
 
-  /// Cuts away what lies in that sum.
-  void cut(int sum, CandidateCover& cover);
+  /// Cuts away what lies in that sum. @return how often the candidate crosses its boundary inside an edge of its own;
+  /// at a vertex of it, which takes a special position, is not counted.
+  std::int64_t cut(int sum, CandidateCover& cover);
 
  private:
   void cut_edge(int edge, CandidateCover& cover);
@@ -45,6 +46,7 @@ class ArcCover {
   GivesWay gives_way_;
   BoundaryCounts& counts_;
   int sum_ = -1;
+  std::int64_t crossings_ = 0;
 };
 
 }  // namespace pd::detail

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace pd::detail {
 
@@ -25,7 +27,17 @@ void BoundaryBuilder::build_implicit() {
   for (const Point2& p : q_.points()) q_box_.add(p);
   seen_.assign(triangulation_.triangles.size(), -1);
   for (int v = 0; v < p_.num_vertices(); ++v) add_arc_candidates(v);
-  for (const Candidate& candidate : r_.candidates_) {
+  // Sum after sum, so that the crossings of every two of them are counted together.
+  crossings_.assign(r_.sums_.size(), 0);
+  std::vector<std::int32_t> order(r_.candidates_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return r_.candidates_[at(a)].sum < r_.candidates_[at(b)].sum;
+  });
+  int last = -1;
+  for (const std::int32_t i : order) {
+    const Candidate& candidate = r_.candidates_[at(i)];
+    if (candidate.sum != std::exchange(last, candidate.sum)) next_sum();
     ArcCover cutter(
         r_, candidate,
         [&](int sum, int edge) {
@@ -38,7 +50,28 @@ void BoundaryBuilder::build_implicit() {
     flood(candidate, candidate.sum, cutter, cover);
     keep(candidate, cover);
   }
+  next_sum();
+  for (auto* list : {&r_.stretches_, &r_.slots_}) {
+    std::stable_sort(list->begin(), list->end(),
+                     [](const Stretch& a, const Stretch& b) { return a.candidate < b.candidate; });
+  }
   compact();
+}
+
+/// [D] Fact 4.1, checked while the boundary is made: what one sum's displaced edges and arcs have in common with the
+/// boundary of another one, counted.
+void BoundaryBuilder::count_crossings(int sum, std::int64_t crossings) {
+  if (crossings == 0) return;
+  if (crossings_[at(sum)] == 0) crossed_.push_back(sum);
+  crossings_[at(sum)] += static_cast<std::int32_t>(crossings);
+  r_.counts_.crossings += crossings;
+  r_.counts_.most_crossings = std::max<std::int64_t>(r_.counts_.most_crossings, crossings_[at(sum)]);
+}
+
+/// The sum at hand is done.
+void BoundaryBuilder::next_sum() {
+  for (const std::int32_t sum : crossed_) crossings_[at(sum)] = 0;
+  crossed_.clear();
 }
 
 /// The displaced edge that starts at vertex v, and the arc at v where P is convex there.
@@ -164,7 +197,7 @@ void BoundaryBuilder::flood(const Candidate& candidate, int triangle, ArcCover& 
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const Triangle& t = triangulation_.triangles[at(queue_[i])];
     if (t.inside && queue_[i] != candidate.sum) {
-      cutter.cut(queue_[i], cover);
+      count_crossings(queue_[i], cutter.cut(queue_[i], cover));
       if (cover.covered.whole()) return;
     }
     for (const std::int32_t n : t.neighbour) {

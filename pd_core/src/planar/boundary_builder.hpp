@@ -23,6 +23,8 @@ class BoundaryBuilder {
   [[nodiscard]] bool may_meet(const Triangle& triangle) const;
   void reach_of(const Candidate& candidate);
   void keep(const Candidate& candidate, const CandidateCover& cover);
+  void count_crossings(int sum, std::int64_t crossings);
+  void next_sum();
   void compact();
 
   SumBoundary& r_;
@@ -31,6 +33,8 @@ class BoundaryBuilder {
   Triangulation triangulation_;
   std::vector<std::int32_t> seen_;  ///< per triangle: the candidate that met it last
   std::vector<std::int32_t> queue_;
+  std::vector<std::int32_t> crossings_;  ///< per triangle: with the sum at hand
+  std::vector<std::int32_t> crossed_;    ///< those with any
   Box2 q_box_;
 
   /// Where Q lies while it slides along a candidate: within an interval along each of three directions.

@@ -8,6 +8,7 @@
 #include "pd/planar/polygon_depth.hpp"
 #include "planar/box_tree.hpp"
 #include "planar/sum_boundary.hpp"
+#include "planar/turned_boxes.hpp"
 
 namespace pd::detail {
 
@@ -23,6 +24,8 @@ struct SquaredLength {
   Dyadic numerator = 0;
   Dyadic denominator = 1.0;
 };
+
+class RaySearch;
 
 class BoundaryQuery {
  public:
@@ -48,24 +51,33 @@ class BoundaryQuery {
 
   [[nodiscard]] Span span_of(const BoundaryPoint& x) const;
   [[nodiscard]] std::size_t memory_bytes() const {
-    return stretch_tree_.memory_bytes() + sum_tree_.memory_bytes() + slot_tree_.memory_bytes();
+    return stretch_tree_.memory_bytes() + sum_tree_.memory_bytes() + slot_tree_.memory_bytes() +
+           ray_tree_.memory_bytes() + ends_.capacity() * sizeof(EdgeEnds);
   }
 
  private:
-  struct Hit;
-  struct RaySearch;
   struct NearestSearch;
+  /// A stretch of one edge by its ends, within 2^-51 `size`. Open: at least one end is the edge's, beyond the
+  /// stretch's.
+  struct EdgeEnds {
+    Point2 a, b;
+    double size;
+    enum class Kind : std::uint8_t { exact, open, arc } kind;
+  };
 
   /// The class of y by the first stretch that the ray along d crosses: R lies on the left of it. Nothing where the ray
   /// begins on the boundary, or its first meeting with it is no crossing inside one edge.
   [[nodiscard]] std::optional<PlanarContact> contact_by_ray(const Point2& y, const Point2& d,
                                                             std::optional<BoundaryPoint>& hit) const;
-  void search_ray(RaySearch& search, bool outer_only) const;
+  void add_ray_items();
+  void search_ray(RaySearch& search, const Point2& d, bool outer_only) const;
   [[nodiscard]] PlanarContact contact_by_sums(const Point2& y, std::optional<BoundaryPoint>* touched) const;
   [[nodiscard]] std::optional<BoundaryPoint> touch(const Point2& y, bool outer_only) const;
 
   const SumBoundary& boundary_;
   BoxTree stretch_tree_, sum_tree_, slot_tree_;
+  std::vector<EdgeEnds> ends_;  ///< of every stretch
+  TurnedBoxes ray_tree_;
 };
 
 }  // namespace pd::detail

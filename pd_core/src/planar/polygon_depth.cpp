@@ -1,10 +1,12 @@
 #include "pd/planar/polygon_depth.hpp"
 
+#include <bit>
 #include <cassert>
 #include <cmath>
 
 #include "numeric/root_sum.hpp"
 #include "planar/boundary_query.hpp"
+#include "planar/rounded_crossing.hpp"
 
 namespace pd {
 
@@ -31,6 +33,7 @@ struct PolygonDifference::State {
 
   Polygon p, q;
   bool implicit, swapped;
+  std::optional<detail::BoundaryCounts> given_up;  ///< of an implicit boundary that contradicted Facts 4.1 or 4.2
   detail::SumBoundary boundary;
   detail::BoundaryQuery query;
 
@@ -39,12 +42,20 @@ struct PolygonDifference::State {
 
 namespace {
 
+/// The nearest double, ties to even.
 double rounded(const Dyadic& numerator, const Dyadic& denominator) {
   // The exponents of both may pass the range of doubles: bring the denominator near 1.
   const int shift =
       -(denominator.exponent() + static_cast<int>(msb(boost::multiprecision::abs(denominator.mantissa()))));
-  return detail::to_double(detail::to_double_double(numerator.scaled(shift)) /
-                           detail::to_double_double(denominator.scaled(shift)));
+  const Dyadic n = numerator.scaled(shift), w = denominator.scaled(shift);
+  const detail::DoubleDouble q = detail::to_double_double(n) / detail::to_double_double(w);
+  const double near = detail::to_double(q);
+  if (near == 0 || detail::settles_nearest(q, 0x1p-96)) return near;
+  const double other = std::nextafter(near, q.lo > 0 ? HUGE_VAL : -HUGE_VAL);
+  const Dyadic beyond = n - (Dyadic(near) + Dyadic(other)).scaled(-1) * w;  // the middle of the two
+  const int side = beyond.sign() * w.sign() * (other > near ? 1 : -1);
+  if (side == 0) return (std::bit_cast<std::uint64_t>(near) & 1U) == 0 ? near : other;
+  return side > 0 ? other : near;
 }
 
 Point2 unit(const Dyadic& x, const Dyadic& y) {
@@ -84,6 +95,21 @@ ExactVector difference(const detail::Homogeneous<Dyadic>& x, const Point2& y) {
   return {x.x - Dyadic(y[0]) * x.w, x.y - Dyadic(y[1]) * x.w, x.w};
 }
 
+/// Of Q moved along the ray as far as a place on that edge.
+void fill_hit(PolygonDepth& answer, const detail::Span& ray, const Point2& direction, const detail::Span& edge,
+              const Place& at, bool turned) {
+  if (at.kind == Place::Kind::line) {
+    if (const auto r = detail::rounded_crossing(ray, direction, edge)) {
+      answer.lower = r->lower;
+      answer.depth = answer.upper = r->upper;
+      answer.translation = r->translation;
+      answer.normal = r->normal;
+      return;
+    }
+  }
+  fill(answer, difference(detail::point_at<Dyadic>(edge, at), ray.s.p), turned);
+}
+
 std::optional<PlanarFeature> feature_of(const detail::SumBoundary& boundary, const Polygon& p, const Polygon& q,
                                         const BoundaryPoint& x, bool swapped) {
   const auto c = boundary.contact(boundary.stretches()[static_cast<std::size_t>(x.stretch)], x.edge);
@@ -109,6 +135,12 @@ Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygo
   PolygonDifference r;
   r.state_ = swapped ? std::make_shared<const State>(q, p, implicit, true)
                      : std::make_shared<const State>(p, q, implicit, false);
+  // The implicit form relies on Facts 4.1 and 4.2: where they were seen to fail, it is given up.
+  if (implicit && !r.state_->boundary.counts().facts_hold()) {
+    auto rebuilt = std::make_shared<State>(p, q, false, false);
+    rebuilt->given_up = r.state_->boundary.counts();
+    r.state_ = std::move(rebuilt);
+  }
   return r;
 }
 
@@ -169,7 +201,7 @@ PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point
   }
   const auto hit = leave == Leave::escape ? s.query.first_on_ray(y, d, true) : first;
   assert(hit);
-  fill(answer, difference(detail::point_at<Dyadic>(s.query.span_of(*hit), hit->at), y), s.swapped);
+  fill_hit(answer, ray, direction, s.query.span_of(*hit), hit->at, s.swapped);
   answer.feature = feature_of(s.boundary, s.p, s.q, *hit, s.swapped);
   return answer;
 }
@@ -180,15 +212,20 @@ PolygonDifference::Statistics PolygonDifference::statistics() const {
   for (const detail::Stretch& stretch : b.stretches())
     arcs += b.candidate(stretch).id % 2 == 1 && state_->implicit ? 1 : 0;
   const auto& c = b.counts();
-  return {c.sums,
-          static_cast<std::int64_t>(b.stretches().size()),
-          arcs,
-          c.reflex_points,
-          b.num_loops(),
-          c.pairs,
-          c.locations,
-          static_cast<std::int64_t>(b.memory_bytes() + state_->query.memory_bytes()),
-          state_->implicit};
+  const auto& facts = state_->given_up.value_or(c);
+  return {.sums = c.sums,
+          .stretches = static_cast<std::int64_t>(b.stretches().size()),
+          .arcs = arcs,
+          .reflex_points = facts.reflex_points,
+          .reflex_bound = facts.reflex_bound(),
+          .crossings = facts.crossings,
+          .most_crossings = facts.most_crossings,
+          .loops = b.num_loops(),
+          .pairs = c.pairs,
+          .locations = c.locations,
+          .memory_bytes = static_cast<std::int64_t>(b.memory_bytes() + state_->query.memory_bytes()),
+          .implicit = state_->implicit,
+          .facts_hold = !state_->given_up};
 }
 
 namespace {

@@ -50,11 +50,19 @@ struct EdgePart {
 };
 
 struct BoundaryCounts {
-  std::int64_t pairs = 0;          ///< of a candidate and a convolved triangle that were intersected
-  std::int64_t locations = 0;      ///< points located in a convex sum for it
-  std::int64_t edges_covered = 0;  ///< single edges cut
-  std::int64_t reflex_points = 0;  ///< of the boundary, at most 6 s - 12 for s >= 3 triangles (Fact 4.2)
-  std::int64_t sums = 0;           ///< s
+  std::int64_t pairs = 0;           ///< of a candidate and a convolved triangle that were intersected
+  std::int64_t locations = 0;       ///< points located in a convex sum for it
+  std::int64_t edges_covered = 0;   ///< single edges cut
+  std::int64_t reflex_points = 0;   ///< of the boundary
+  std::int64_t sums = 0;            ///< s
+  std::int64_t crossings = 0;       ///< of displaced edges and arcs with sums of other triangles, inside edges
+  std::int64_t most_crossings = 0;  ///< of one sum's displaced edges and arcs with the boundary of one other sum
+
+  /// [D] Fact 4.1: the boundaries of two convolved triangles meet in at most two points, common stretches aside.
+  static constexpr std::int64_t kCrossingBound = 2;
+  /// [D] Fact 4.2: at most 6 s - 12 points of local nonconvexity for s >= 3 sums; 0 of one, 2 of two (Fact 4.1).
+  [[nodiscard]] std::int64_t reflex_bound() const { return sums >= 3 ? 6 * sums - 12 : (sums == 2 ? 2 : 0); }
+  [[nodiscard]] bool facts_hold() const { return most_crossings <= kCrossingBound && reflex_points <= reflex_bound(); }
 };
 
 class SumBoundary {

@@ -72,12 +72,19 @@ class PolygonDifference {
     std::int64_t sums;           ///< convex sums whose union R is
     std::int64_t stretches;      ///< implicit pieces of the boundary: displaced edges and arcs
     std::int64_t arcs;           ///< stretches that are arcs of Q or P
-    std::int64_t reflex_points;  ///< at most 6 sums - 12 for 3 or more sums ([D] Fact 4.2), implicit method
-    std::int64_t loops;          ///< closed curves of the boundary: 1 + holes of R
-    std::int64_t pairs;          ///< pieces and sums that were intersected
-    std::int64_t locations;      ///< points located in a convex sum for it
+    std::int64_t reflex_points;  ///< of the boundary
+    std::int64_t reflex_bound;   ///< 6 sums - 12 for 3 or more of them ([D] Fact 4.2), implicit method
+    std::int64_t crossings;      ///< of pieces of the boundary with sums of other triangles, implicit method
+    /// Of one sum's pieces with the boundary of one other sum: at most 2 ([D] Fact 4.1), implicit method.
+    std::int64_t most_crossings;
+    std::int64_t loops;      ///< closed curves of the boundary: 1 + holes of R
+    std::int64_t pairs;      ///< pieces and sums that were intersected
+    std::int64_t locations;  ///< points located in a convex sum for it
     std::int64_t memory_bytes;
     bool implicit;
+    /// Facts 4.1 and 4.2 held, as they must: checked while an implicit boundary is made. If not, it was given up for
+    /// explicit sums, and the four counts above are those that contradicted them.
+    bool facts_hold;
   };
   [[nodiscard]] Statistics statistics() const;
 

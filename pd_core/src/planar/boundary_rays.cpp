@@ -1,0 +1,112 @@
+// Rays over the boundary of R: its first point ahead, and the class of a placement by the side from which it is met.
+#include <array>
+#include <cmath>
+
+#include "planar/boundary_query.hpp"
+#include "planar/edge_ranges.hpp"
+#include "planar/ray_search.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// On which side of the ray's line a point lies for certain: 1 left, -1 right, 0 open. It is within 2^-51 `size`; four
+/// times the rounding of the differences and products is left as air. What overflows is not certain.
+int certain_side(const RoundedRay& ray, const Point2& x, double size) {
+  const double value = ray.d[0] * (x[1] - ray.y[1]) - ray.d[1] * (x[0] - ray.y[0]);
+  const double air = 0x1p-49 * ray.speed * (size + ray.reach) + 0x1p-1060;
+  return value > air ? 1 : (value < -air ? -1 : 0);
+}
+
+/// Do both ends of a span lie on one side of the ray's line for certain?
+bool beside_line(const RoundedRay& ray, const Span& e) {
+  const auto side = [&](const SumPoint& x) {
+    const double size = std::max(std::abs(x.p[0]) + std::abs(x.q[0]), std::abs(x.p[1]) + std::abs(x.q[1]));
+    return certain_side(ray, {x.p[0] - x.q[0], x.p[1] - x.q[1]}, size);
+  };
+  return side(e.s) * side(e.z) > 0;
+}
+
+}  // namespace
+
+/// Meets the boundary (loop 0 alone) along the search's ray, nearest boxes first ([D] section 4.3; the ears of Theorem
+/// 4.5 are the boxes of arcs, shot through by halving).
+void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_only) const {
+  const RoundedRay ray(search.ray().s.p, d);
+  ray_tree_.visit(ray, search.limit(), [&](std::int32_t i) {
+    const Stretch& s = boundary_.stretches()[at(i)];
+    if (outer_only && s.loop != 0) return;
+    const EdgeEnds& ends = ends_[at(i)];
+    if (ends.kind == EdgeEnds::Kind::arc) {
+      const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, ray.y, ray.d, search.limit())); };
+      visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
+                  [&](int e) {
+                    const EdgePart part = boundary_.part(s, e);
+                    if (!beside_line(ray, part.span)) search.meet(i, e, part);
+                  });
+      return;
+    }
+    const int a = certain_side(ray, ends.a, ends.size), b = certain_side(ray, ends.b, ends.size);
+    if (a * b > 0) return;
+    const int e = SumBoundary::first_edge(s);
+    if (a * b < 0 && ends.kind == EdgeEnds::Kind::exact) {
+      const Place crossing{Place::Kind::line, search.ray().s, search.ray().d};
+      search.offer({{i, e, crossing}, boundary_.edge(boundary_.candidate(s), e), true, true, b > 0});
+    } else {
+      search.meet(i, e, boundary_.part(s, e));
+    }
+  });
+}
+
+std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const Point2& d, bool outer_only) const {
+  RaySearch search(y, d);
+  search_ray(search, d, outer_only);
+  if (!search.best()) return std::nullopt;
+  return search.best()->point;
+}
+
+std::optional<PlanarContact> BoundaryQuery::contact_by_ray(const Point2& y, const Point2& d,
+                                                           std::optional<BoundaryPoint>& hit) const {
+  RaySearch search(y, d);
+  search_ray(search, d, false);
+  if (!search.best()) return PlanarContact::separated;  // the ray goes to infinity, and y is not on the boundary
+  const RayHit& best = *search.best();
+  hit = best.point;
+  if (!search.unique() || !best.crossing || search.sign(best) == 0) return std::nullopt;
+  if (best.certain) return best.leaves ? PlanarContact::overlapping : PlanarContact::separated;
+  const EdgePart part = boundary_.part(boundary_.stretches()[at(best.point.stretch)], best.point.edge);
+  if (compare_places(part.span, part.from, best.point.at) >= 0) return std::nullopt;
+  if (compare_places(part.span, best.point.at, part.to) >= 0) return std::nullopt;
+  return cross_sign(part.span.d, search.ray().d) < 0 ? PlanarContact::overlapping : PlanarContact::separated;
+}
+
+PlanarContact BoundaryQuery::contact_and_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& touched,
+                                             std::optional<BoundaryPoint>& hit) const {
+  if (const auto found = contact_by_ray(y, d, hit)) return *found;
+  return contact_by_sums(y, &touched);
+}
+
+PlanarContact BoundaryQuery::contact(const Point2& y, std::optional<BoundaryPoint>* touched) const {
+  std::optional<BoundaryPoint> hit;
+  if (const auto found = contact_by_ray(y, {64, 7}, hit)) return *found;
+  return contact_by_sums(y, touched);
+}
+
+bool BoundaryQuery::in_unbounded_face(const Point2& y) const {
+  if (touch(y, true)) return true;
+  // The first stretch that a ray meets borders the face of y, unless the ray runs into a point where loops meet.
+  constexpr std::array<int, 12> kSlopes = {1, 7, -3, 11, -5, 2, 13, -17, 23, -29, 31, -37};
+  for (const int slope : kSlopes) {
+    const Point2 d = {64.0, static_cast<double>(slope)};
+    RaySearch search(y, d);
+    search_ray(search, d, false);
+    if (!search.best()) return true;
+    if (search.unique()) return boundary_.stretches()[at(search.best()->point.stretch)].loop == 0;
+  }
+  // Every ray ran into a common point of stretches: decided by the last of them all the same.
+  return !first_on_ray(y, {64.0, 1.0}, false).has_value();
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,128 @@
+/// @file
+/// A binary tree of boxes, each turned along the longest thing in it where that makes it smaller, for rays.
+///
+/// Long edges side by side, as a star has them, have upright boxes that all overlap; turned ones do not. Boxes are kept
+/// in doubles and widened by more than all roundings, so that nothing that a ray meets is passed over.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "planar/box_tree.hpp"
+
+namespace pd::detail {
+
+/// A ray from y along d with what bounds its roundings. d != 0.
+struct RoundedRay {
+  Point2 y, d;
+  Point2 inverse;  ///< 1 / d
+  double reach;    ///< |y|_1
+  double speed;    ///< |d|_1
+  double air;      ///< more than the roundings of y and of differences with it
+  RoundedRay(const Point2& from, const Point2& along)
+      : y(from),
+        d(along),
+        inverse{1 / d[0], 1 / d[1]},
+        reach(std::abs(y[0]) + std::abs(y[1])),
+        speed(std::abs(d[0]) + std::abs(d[1])),
+        air(0x1p-48 * reach) {}
+};
+
+class TurnedBoxes {
+ public:
+  /// What lies in the convex hull of four points, given within `size` * 2^-50.
+  struct Item {
+    std::array<Point2, 4> corner;
+    double size;
+  };
+
+  TurnedBoxes() = default;
+  explicit TurnedBoxes(const std::vector<Item>& items);
+
+  /// Calls item(i) for what the ray may meet at parameters in [0, limit], nearest boxes first; `limit` may fall.
+  template <class Visit>
+  void visit(const RoundedRay& ray, const double& limit, const Visit& item) const {
+    if (node_.empty()) return;
+    struct Waiting {
+      std::int32_t node;
+      double entry;
+    };
+    std::array<Waiting, 64> stack;  // the tree halves: its depth is below 32
+    std::size_t top = 0;
+    stack[top++] = {0, entry(node_[0], ray, limit)};
+    while (top > 0) {
+      const Waiting w = stack[--top];
+      if (!(w.entry <= limit)) continue;
+      const Node& node = node_[static_cast<std::size_t>(w.node)];
+      if (node.right < 0) {
+        for (std::int32_t i = node.begin; i < node.end; ++i) item(item_[static_cast<std::size_t>(i)]);
+        continue;
+      }
+      Waiting near{w.node + 1, entry(node_[static_cast<std::size_t>(w.node) + 1], ray, limit)};
+      Waiting far{node.right, entry(node_[static_cast<std::size_t>(node.right)], ray, limit)};
+      if (far.entry < near.entry) std::swap(near, far);
+      if (std::isfinite(far.entry)) stack[top++] = far;
+      if (std::isfinite(near.entry)) stack[top++] = near;
+    }
+  }
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return node_.capacity() * sizeof(Node) + item_.capacity() * sizeof(std::int32_t);
+  }
+
+ private:
+  static constexpr int kLeafSize = 2;
+  struct Node {
+    Point2 axis;       ///< of length 1 within 2^-50; {1, 0}: upright
+    Point2 low, high;  ///< along the axis, and along its left normal
+    std::int32_t begin, end;
+    std::int32_t right;  ///< second child; the first one is the next node; -1: a leaf
+  };
+
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// A number not above the first parameter in [0, limit] at which the ray may be in the box, or infinity.
+  [[nodiscard]] static double entry(const Node& node, const RoundedRay& ray, double limit) {
+    double low = 0, high = limit;
+    if (node.axis[0] == 1) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double before = node.low[k] - ray.y[k] - ray.air, behind = node.high[k] - ray.y[k] + ray.air;
+        if (ray.d[k] != 0) {
+          clip(before * ray.inverse[k], behind * ray.inverse[k], low, high);
+        } else if (before > 0 || behind < 0) {
+          return kNever;
+        }
+      }
+    } else {
+      const Point2 &u = node.axis, &y = ray.y, &d = ray.d;
+      const Point2 from = {u[0] * y[0] + u[1] * y[1], u[0] * y[1] - u[1] * y[0]};
+      const Point2 speed = {u[0] * d[0] + u[1] * d[1], u[0] * d[1] - u[1] * d[0]};
+      for (std::size_t k = 0; k < 2; ++k) {
+        // The speed is within 2^-50 of |d|: below 2^-12 of it nothing is concluded.
+        if (std::abs(speed[k]) <= 0x1p-12 * ray.speed) continue;
+        const double inverse = 1 / speed[k];
+        clip((node.low[k] - from[k] - ray.air) * inverse, (node.high[k] - from[k] + ray.air) * inverse, low, high);
+      }
+    }
+    return low <= high ? low : kNever;
+  }
+  /// Cuts [low, high] to the parameters between a and b, which are within 2^-37 of themselves (or not numbers).
+  static void clip(double a, double b, double& low, double& high) {
+    const double first = std::min(a, b), last = std::max(a, b);
+    low = std::max(low, first - 0x1p-36 * std::abs(first));
+    high = std::min(high, last + 0x1p-36 * std::abs(last));
+  }
+
+  [[nodiscard]] static double area(const Node& n) { return (n.high[0] - n.low[0]) * (n.high[1] - n.low[1]); }
+  [[nodiscard]] Node smaller_box(const std::vector<Item>& items, int begin, int end) const;
+  double halve(const std::vector<Item>& items, int begin, int end, const Point2& direction);
+  std::int32_t build(const std::vector<Item>& items, int begin, int end);
+  [[nodiscard]] Node box_along(const std::vector<Item>& items, int begin, int end, const Point2& axis) const;
+
+  std::vector<Node> node_;
+  std::vector<std::int32_t> item_;
+};
+
+}  // namespace pd::detail
