@@ -12,6 +12,7 @@ enum ExitCode : int {
   kDone = 0,
   kFailed = 1,         ///< the work could not be finished: no room on the disk, no GL context
   kBadUsage = 2,       ///< an unknown option, or input that cannot be read
+  kConditionFails = 3,  ///< `audit`: a condition of --fail-on does not hold
   kInterrupted = 130,  ///< Ctrl-C
 };
 
@@ -23,6 +24,7 @@ void add_polygon_command(CLI::App& app, Action& action);
 void add_query_command(CLI::App& app, Action& action);
 void add_minimise_command(CLI::App& app, Action& action);
 void add_simplify_command(CLI::App& app, Action& action);
+void add_audit_command(CLI::App& app, Action& action);
 void add_demo_command(CLI::App& app, Action& action);
 
 }  // namespace pd::cli

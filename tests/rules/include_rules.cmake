@@ -9,7 +9,7 @@
 #      the compiler's intrinsics. No file of the core knows threads.
 #   3. engine_glue and render stand on pd_core's public headers and do not see each other; neither knows demos or tests.
 #   4. Nothing outside pd_core includes pd_core/src, except tests.
-#   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli and tests/fuzz the command's parts.
+#   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli, tests/audit and tests/fuzz the command's parts.
 # With -DGRAPH=<file> it also writes the arrows between folders, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
@@ -152,17 +152,17 @@ function(check_include file line path)
   elseif(room STREQUAL "render" AND (path MATCHES "^pd/(engine_glue|bullet)" OR path MATCHES "^(bt[A-Z]|Bullet|LinearMath)"))
     report(${file} "${line}" "render does not see engine_glue")
   endif()
-  if(room MATCHES "^(engine_glue|render)$" AND path MATCHES "^(scenes|cli|protocol|support|tests|oracle)/")
+  if(room MATCHES "^(engine_glue|render)$" AND path MATCHES "^(scenes|cli|protocol|support|audit|tests|oracle)/")
     report(${file} "${line}" "${room} stands below demos and tests")
   endif()
-  if(file MATCHES "^demos/scenes/" AND path MATCHES "^(cli|protocol|mesh|support|agarwal|report|oracle)/|^pd/render/")
+  if(file MATCHES "^demos/scenes/" AND path MATCHES "^(cli|protocol|mesh|support|audit|agarwal|report|oracle)/|^pd/render/")
     report(${file} "${line}" "scenes are shared by demos and tests and include neither")
   endif()
   if(room STREQUAL "demos" AND path MATCHES "^(oracle|bench)/")
     report(${file} "${line}" "demos do not include tests")
   endif()
   if(room STREQUAL "tests" AND (path MATCHES "^(demos|report|agarwal)/" OR
-                                (NOT file MATCHES "^tests/(cli|demos|fuzz)/" AND path MATCHES "^(cli|protocol|mesh|support)/")))
+                                (NOT file MATCHES "^tests/(cli|demos|fuzz|audit)/" AND path MATCHES "^(cli|protocol|mesh|support|audit)/")))
     report(${file} "${line}" "tests see of demos nothing but scenes")
   endif()
 endfunction()
