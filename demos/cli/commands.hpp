@@ -10,10 +10,10 @@ namespace pd::cli {
 /// Exit codes of every subcommand.
 enum ExitCode : int {
   kDone = 0,
-  kFailed = 1,         ///< the work could not be finished: no room on the disk, no GL context
-  kBadUsage = 2,       ///< an unknown option, or input that cannot be read
+  kFailed = 1,          ///< the work could not be finished: no room on the disk, no GL context
+  kBadUsage = 2,        ///< an unknown option, or input that cannot be read
   kConditionFails = 3,  ///< `audit`: a condition of --fail-on does not hold
-  kInterrupted = 130,  ///< Ctrl-C
+  kInterrupted = 130,   ///< Ctrl-C
 };
 
 /// What to run after the arguments are parsed.
