@@ -10,8 +10,9 @@
 #include <limits>
 #include <typeinfo>
 
-#include "friction_anchor.hpp"
+#include "covered_contact.hpp"
 #include "installation.hpp"
+#include "manifold_points.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
@@ -53,62 +54,6 @@ btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentMan
   const btScalar asked = result.m_closestPointDistanceThreshold;
   const bool spheres = a.getShapeType() == SPHERE_SHAPE_PROXYTYPE && b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
   return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
-}
-
-/// New point for each old one: -1 where none.
-using Matching = std::array<int, 4>;
-
-/// Pairs last step's manifold points with this step's: by feature where the place is the same within the breaking
-/// threshold, else by place, nearest first, and then by feature wherever it has gone (what slides fast keeps its
-/// impulse). Place comes before a feature that is elsewhere: where the edges of two faces nearly coincide, a crossing
-/// of theirs goes from one end to the other by rounding.
-Matching match_points(const btPersistentManifold& manifold, const PairMemory& memory, const ContactManifold& fresh,
-                      const std::array<btVector3, 4>& fresh_local_a) {
-  Matching matching{-1, -1, -1, -1};
-  std::array<bool, 4> taken{};
-  const int count = manifold.getNumContacts();
-  const btScalar reach = manifold.getContactBreakingThreshold() * manifold.getContactBreakingThreshold();
-  const auto gap = [&](int i, int k) {
-    return (manifold.getContactPoint(i).m_localPointA - fresh_local_a[k]).length2();
-  };
-  const auto match = [&](int i, int k) {
-    matching[i] = k;
-    taken[k] = true;
-  };
-  const auto by_feature = [&](btScalar within) {
-    for (int i = 0; i < count; ++i) {
-      if (matching[i] >= 0) continue;
-      const btVector3& local = manifold.getContactPoint(i).m_localPointA;
-      int r = 0;
-      while (r < memory.num_points && !(memory.points[r].local_a == local)) ++r;
-      if (r == memory.num_points) continue;
-      for (int k = 0; k < fresh.count; ++k) {
-        if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id && gap(i, k) < within) {
-          match(i, k);
-          break;
-        }
-      }
-    }
-  };
-  by_feature(reach);
-  for (;;) {
-    int best_old = -1;
-    int best_new = -1;
-    btScalar best = reach;
-    for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < fresh.count; ++k) {
-        if (matching[i] < 0 && !taken[k] && gap(i, k) < best) {
-          best = gap(i, k);
-          best_old = i;
-          best_new = k;
-        }
-      }
-    }
-    if (best_old < 0) break;
-    match(best_old, best_new);
-  }
-  by_feature(std::numeric_limits<btScalar>::infinity());
-  return matching;
 }
 
 }  // namespace
@@ -184,9 +129,11 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   PairAnswer answer;
   // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
   const std::uint64_t stamp = first ? 0 : installation_.stamp();
+  const bool as_one = core.settings.unions_as_one;
+  const BoxCorners corners{true, as_one && is_part(*a), as_one && is_part(*b)};
   const auto outcome =
-      core.answer(shape_a, pose_a, shape_b, pose_b, BoxCorners::sharp, stamp,
-                  memory_ ? memory_->shapes : buffers->recent, memory_ ? &memory_->warm : nullptr, *buffers, answer);
+      core.answer(shape_a, pose_a, shape_b, pose_b, corners, stamp, memory_ ? memory_->shapes : buffers->recent,
+                  memory_ ? &memory_->warm : nullptr, *buffers, answer);
   if (outcome == SolverCore::Outcome::unsupported) {
     process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
     return;
@@ -195,71 +142,16 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   if (outcome == SolverCore::Outcome::answered) {
     fresh = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold), buffers->manifold,
                              DeepestPoint::as_lifted);
+    if (as_one && (is_piece(*a) || is_piece(*b))) {
+      keep_uncovered(*a, *b, answer, static_cast<double>(threshold), static_cast<double>(info.m_timeStep), stamp, core,
+                     *buffers, fresh);
+    }
   }
   if (owns_manifold_) {
-    replace_points(fresh, result);
+    PointSurroundings whole;
+    replace_points(*manifold_, *memory_, fresh_points(fresh), *result, whole);
   } else {
-    add_points(fresh, result);
-  }
-}
-
-void ContactAlgorithm::add_points(const ContactManifold& fresh, btManifoldResult* result) {
-  const btVector3 normal = to_bullet(fresh.normal);
-  const btTransform& body_a = manifold_->getBody0()->getWorldTransform();
-  for (int k = 0; k < fresh.count; ++k) {
-    const btVector3 point_on_b = to_bullet(fresh.points[k].position_b);
-    const auto distance = static_cast<btScalar>(-fresh.points[k].depth);
-    const int entry = entry_near(*manifold_, body_a.invXform(point_on_b + normal * distance));
-    const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold_->getContactPoint(entry)) : FrictionAnchor();
-    add_anchored_point(*result, *manifold_, normal, point_on_b, distance, entry, anchor);
-  }
-}
-
-void ContactAlgorithm::replace_points(const ContactManifold& fresh, btManifoldResult* result) {
-  const btVector3 normal = to_bullet(fresh.normal);
-  const btTransform& body_a = manifold_->getBody0()->getWorldTransform();
-  std::array<btVector3, 4> local_a;
-  for (int k = 0; k < fresh.count; ++k) {
-    const auto distance = static_cast<btScalar>(-fresh.points[k].depth);
-    local_a[k] = body_a.invXform(to_bullet(fresh.points[k].position_b) + normal * distance);
-  }
-  Matching matching = match_points(*manifold_, *memory_, fresh, local_a);
-  // Bullet's `addContactPoint` hands impulses, life time and user data to the new point that falls on an old one. So a
-  // matched old point is moved to its heir first; that keeps Bullet's contact callbacks right, which clearing would
-  // not.
-  std::array<FrictionAnchor, 4> anchors;
-  for (int i = manifold_->getNumContacts() - 1; i >= 0; --i) {
-    if (matching[i] < 0) {
-      // Moves the last point into the gap: those behind are dealt with already.
-      const int last = manifold_->getNumContacts() - 1;
-      anchors[i] = anchors[last];
-      manifold_->removeContactPoint(i);
-    } else {
-      btManifoldPoint& old = manifold_->getContactPoint(i);
-      anchors[i] = anchor_of(old);
-      old.m_localPointA = local_a[matching[i]];
-    }
-  }
-  for (int k = 0; k < fresh.count; ++k) {
-    const int near = entry_near(*manifold_, local_a[k]);
-    const int entry =
-        add_anchored_point(*result, *manifold_, normal, to_bullet(fresh.points[k].position_b),
-                           static_cast<btScalar>(-fresh.points[k].depth), near, anchors[std::max(near, 0)]);
-    if (entry >= 0) {
-      memory_->points[entry].feature_id = fresh.points[k].feature_id;
-    }
-  }
-  memory_->num_points = manifold_->getNumContacts();
-  for (int i = 0; i < memory_->num_points; ++i) {
-    memory_->points[i].local_a = manifold_->getContactPoint(i).m_localPointA;
-    ++manifold_->getContactPoint(i).m_lifeTime;
-  }
-  // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.
-  if (gContactProcessedCallback != nullptr) {
-    for (int i = manifold_->getNumContacts() - 1; i >= 0; --i) {
-      gContactProcessedCallback(manifold_->getContactPoint(i), const_cast<btCollisionObject*>(manifold_->getBody0()),
-                                const_cast<btCollisionObject*>(manifold_->getBody1()));
-    }
+    add_points(*manifold_, fresh_points(fresh), *result);
   }
 }
 

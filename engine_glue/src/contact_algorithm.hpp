@@ -47,8 +47,6 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
 
  private:
   void take_manifold(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b);
-  void replace_points(const ContactManifold& fresh, btManifoldResult* result);
-  void add_points(const ContactManifold& fresh, btManifoldResult* result);
   void process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a, const btTransform& transform_a,
                          const btConvexShape& b, const btTransform& transform_b, const btDispatcherInfo& info,
                          btManifoldResult* result);

@@ -23,6 +23,19 @@ void for_each_convex_pair(Visit&& visit) {
   }
 }
 
+/// Convex bodies against meshes, in both orders.
+template <class Visit>
+void for_each_mesh_pair(Visit&& visit) {
+  for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
+    for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
+      if (btBroadphaseProxy::isConvex(i) && detail::MeshAlgorithm::takes(j)) {
+        visit(i, j, false);
+        visit(j, i, true);
+      }
+    }
+  }
+}
+
 /// Pairs lose their algorithms and get new ones, from the dispatcher's present tables, at the next step.
 void renew_pairs(btCollisionWorld& world) {
   btOverlappingPairCache* cache = world.getPairCache();
@@ -40,6 +53,11 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
   for_each_convex_pair([&](int i, int j) {
     dispatcher.registerCollisionCreateFunc(i, j, whole ? installation.one_shot(false) : installation.persistent());
     dispatcher.registerClosestPointsCreateFunc(i, j, whole ? installation.one_shot(true) : installation.persistent());
+  });
+  btCollisionConfiguration* configuration = dispatcher.getCollisionConfiguration();
+  for_each_mesh_pair([&](int i, int j, bool swapped) {
+    dispatcher.registerCollisionCreateFunc(
+        i, j, whole ? installation.mesh(swapped) : configuration->getCollisionAlgorithmCreateFunc(i, j));
   });
 }
 
@@ -68,6 +86,9 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   for_each_convex_pair([&](int i, int j) {
     dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
     dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
+  });
+  for_each_mesh_pair([&](int i, int j, bool) {
+    dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
   });
   if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
     dynamics->removeAction(installation->step_action());

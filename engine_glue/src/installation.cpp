@@ -11,6 +11,8 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       step_action_(*this),
       contacts_(*this, false),
       closest_(*this, true),
+      mesh_(*this, false),
+      swapped_mesh_(*this, true),
       persistent_(&depth_solver_) {}
 
 bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a,

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "contact_algorithm.hpp"
+#include "mesh_algorithm.hpp"
 
 class btCollisionDispatcher;
 
@@ -32,6 +33,8 @@ class Installation {
 
   /// For the table of contacts (`closest` false) or that of closest points.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
+  /// For the table of contacts: convex against mesh, or (`swapped`) mesh against convex.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
   [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent() { return &persistent_; }
   [[nodiscard]] btConvexPenetrationDepthSolver* depth_solver() { return &depth_solver_; }
   /// Tells that a step has ended; for `btDynamicsWorld::addAction`.
@@ -67,6 +70,8 @@ class Installation {
   StepAction step_action_;
   ContactAlgorithm::CreateFunc contacts_;
   ContactAlgorithm::CreateFunc closest_;
+  MeshAlgorithm::CreateFunc mesh_;
+  MeshAlgorithm::CreateFunc swapped_mesh_;
   btConvexConvexAlgorithm::CreateFunc persistent_;
 };
 

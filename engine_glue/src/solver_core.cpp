@@ -72,9 +72,9 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
     counters.refused_poses.add();
     return Outcome::refused;
   }
-  const bool sharp = corners == BoxCorners::sharp && found_a.sharp && found_b.sharp;
-  out.a = {(sharp ? found_a.sharp : found_a.body).get(), to_pd(pose_a)};
-  out.b = {(sharp ? found_b.sharp : found_b.body).get(), to_pd(pose_b)};
+  const bool pair = corners.sharp_pair && found_a.sharp && found_b.sharp;
+  out.a = {(found_a.sharp && (pair || corners.sharp_a) ? found_a.sharp : found_a.body).get(), to_pd(pose_a)};
+  out.b = {(found_b.sharp && (pair || corners.sharp_b) ? found_b.sharp : found_b.body).get(), to_pd(pose_b)};
   DepthSettings depth_settings;
   depth_settings.delta = settings.delta;
   depth_settings.bracket = Bracket::contact;
@@ -128,7 +128,7 @@ bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& s
   auto held = buffers.lease();
   PairAnswer found;
   // Rounded corners: Bullet's detector takes its cores and adds the margins itself.
-  switch (answer(*a, pose_a, *b, pose_b, BoxCorners::rounded, stamp, held->recent, nullptr, *held, found)) {
+  switch (answer(*a, pose_a, *b, pose_b, kRoundedBoxes, stamp, held->recent, nullptr, *held, found)) {
     case Outcome::answered:
       break;
     case Outcome::refused:

@@ -30,11 +30,14 @@ struct PairAnswer {
   PosedShape b;
 };
 
-/// How two shapes are taken.
-enum class BoxCorners {
-  rounded,  ///< as Bullet's GJK sees every shape: core and margin
-  sharp     ///< two btBoxShapes without their margins, as Bullet's own box/box algorithm takes them
+/// Which btBoxShapes are taken without their margins; the others as Bullet's GJK sees every shape, core and margin.
+struct BoxCorners {
+  bool sharp_pair = false;  ///< two of them, as Bullet's own box/box algorithm takes them
+  bool sharp_a = false;     ///< A as a part of a compound: rounded, flush boxes would have grooves between them
+  bool sharp_b = false;
 };
+inline constexpr BoxCorners kRoundedBoxes{};
+inline constexpr BoxCorners kSharpBoxPair{true, false, false};
 
 class SolverCore {
  public:

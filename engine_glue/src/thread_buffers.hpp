@@ -8,6 +8,7 @@
 #include <mutex>
 #include <vector>
 
+#include "covered_contact.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/scratch.hpp"
 #include "triangle_cache.hpp"
@@ -27,11 +28,12 @@ class Counter {
 
 struct SolverCounters {
   Counter calls, overlapping, touching, separated, warm, unsupported, fallback, refused_poses, support_calls,
-      nanoseconds, exact_signs, wider;
+      nanoseconds, exact_signs, wider, covered, skipped_triangles;
   template <class Visit>
   void for_each(Visit&& visit) {
-    for (Counter* counter : {&calls, &overlapping, &touching, &separated, &warm, &unsupported, &fallback,
-                             &refused_poses, &support_calls, &nanoseconds, &exact_signs, &wider}) {
+    for (Counter* counter :
+         {&calls, &overlapping, &touching, &separated, &warm, &unsupported, &fallback, &refused_poses, &support_calls,
+          &nanoseconds, &exact_signs, &wider, &covered, &skipped_triangles}) {
       visit(*counter);
     }
   }
@@ -40,6 +42,7 @@ struct SolverCounters {
 struct ThreadBuffers {
   Scratch scratch;
   ManifoldScratch manifold;
+  CoverBuffers cover;
   TriangleCache triangles;
   SolverCounters counters;
   unsigned queries = 0;  ///< for sampling the clock

@@ -15,9 +15,10 @@ enum class BulletContacts {
   persistent,  ///< Bullet's convex-convex algorithm (GJK, one point a step) with our solver for what penetrates
 };
 
-/// Every pair of convex shapes of the world, in both of the dispatcher's tables: box/box, sphere and capsule pairs, the
-/// convex children of compounds, and the triangles of meshes and heightfields included. Works at any time, also between
-/// steps: pairs that have an algorithm already lose it and get a new one (with their contact points) at the next step.
+/// Every pair of convex shapes of the world, in both of the dispatcher's tables, and (one_shot) in that of contacts
+/// every convex shape against a mesh or heightfield: box/box, sphere and capsule pairs, the convex children of
+/// compounds, and the triangles of meshes and heightfields included. Works at any time, also between steps: pairs that
+/// have an algorithm already lose it and get a new one (with their contact points) at the next step.
 ///
 /// Not covered, because Bullet decides without asking the tables: convex against `btStaticPlaneShape` (Bullet's support
 /// in the plane's direction, which is exact up to rounding), soft bodies, ray and sweep queries (`convexSweepTest`; use
@@ -31,6 +32,16 @@ enum class BulletContacts {
 /// the margin, plus a ball of it | | btBoxShape, anything else; cylinders | rounded by the margin, which lies inside |
 /// the same | | hulls, point clouds, triangles, cones | rounded by the margin, which lies outside | the same | |
 /// spheres, capsules | exact; the margin is the radius | the same |
+///
+/// Meshes, heightfields and compounds are one body each (one_shot; `BulletSolverSettings::unions_as_one`): a contact
+/// with an edge or face that other triangles or children cover, as far as the bodies move in a step, is dropped, or
+/// turned to the nearest facet of the same piece that is not covered. Flush children, seams that meet up to 1e-7 and
+/// T-junctions are flat; steps, valleys and corners keep every wall. Children of compounds are btBoxShapes without
+/// margin there: rounded, flush boxes would have grooves between them. Separate bodies that lie flush, and children
+/// without flat faces, are not looked at. A mesh or heightfield (of triangles; not GImpact or SDF) has contacts chosen
+/// from all its triangles together, up to four for each of up to four directions, each in a manifold of its own, from
+/// the breaking threshold beyond its margin on. Triangles without area or with corners that are no numbers are left
+/// out and counted; `pd::check_mesh` (mesh_check.hpp) finds them, and what Bullet would read past, beforehand.
 ///
 /// A world that steps (btDynamicsWorld) gets an action (`addAction`) that tells the solver when a step has ended;
 /// shapes are compared with what they were converted from once a step (shape_cache.hpp).

@@ -43,6 +43,9 @@ struct BulletSolverSettings {
   bool (*takes_pair)(const btCollisionObject& a, const btCollisionObject& b, void* user) = nullptr;
   /// Handed to both.
   void* user = nullptr;
+  /// Whether the contact algorithm takes the triangles of a mesh or heightfield and the children of a compound as one
+  /// body: contacts with edges and faces inside of it are dropped (install.hpp). false: each piece is alone.
+  bool unions_as_one = true;
   /// Entries of the shape cache.
   std::size_t cache_capacity = 4096;
 
@@ -68,6 +71,10 @@ struct BulletSolverStatistics {
   std::int64_t exact_signs = 0;
   /// Answers whose certified interval is wider than the poses deserve, since a search met its budget of operations.
   std::int64_t wider_brackets = 0;
+  /// Contacts of one piece of a mesh or compound that were dropped or changed, since other pieces cover them.
+  std::int64_t covered_contacts = 0;
+  /// Triangles of meshes that were left out of contacts: corners that are no numbers, or no area. Counted each time.
+  std::int64_t skipped_triangles = 0;
 };
 
 /// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: each thread inside a call has buffers and counters of

@@ -1,0 +1,350 @@
+#include "covered_contact.hpp"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "solver_core.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// A normal nearer to a facet's than this (1 - cosine, about 1e-5 rad) is that facet's.
+constexpr double kSameNormal = 1e-10;
+/// A way that leads less than this (as a sine) against a normal covers nothing: a contact that is off by so much gives
+/// a body that rests on it 1e-4 m/s a second aside.
+constexpr double kLevel = 1e-5;
+/// From here on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
+constexpr double kDecided = 0.02;
+/// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
+constexpr double kNearNormal = 0.9;
+/// Facets tried in place of a covered one.
+constexpr int kTries = 4;
+
+/// One of the pair's two bodies as a piece of its union, and the other that touches it.
+struct Side {
+  const btCollisionObjectWrapper& wrapper;
+  PosedShape own;
+  PosedShape other;
+  bool is_b;
+  /// From the piece outward, for the answer's normal.
+  [[nodiscard]] Vec3 outward(const Vec3& normal) const { return is_b ? normal : Vec3(-normal); }
+  [[nodiscard]] const Vec3& on_piece(const ContactPoint& point) const {
+    return is_b ? point.position_b : point.position_a;
+  }
+};
+
+/// Least <x, n> over a core.
+Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
+  if (const ConvexPolytope* polytope = shape.shape->polytope()) {
+    const Vec3 local = shape.pose.rotation().transpose() * n;
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int v = 0; v < polytope->num_vertices(); ++v) {
+      const double value = polytope->vertex(v).dot(local);
+      if (value < least) {
+        least = value;
+        best = v;
+      }
+    }
+    return shape.pose.apply(polytope->vertex(best));
+  }
+  const Mat3 rotation = shape.pose.nearest_rotation();
+  const Vec3 way = -(rotation.transpose() * n);
+  const auto round = [&](int axis, double radius) {
+    Vec3 radial = way;
+    radial[axis] = 0;
+    const double length = radial.norm();
+    return length > 0 ? Vec3(radius / length * radial) : Vec3(Vec3::Zero());
+  };
+  Vec3 local;
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.shape->core())) {
+    local = round(cylinder->axis, cylinder->radius);
+    local[cylinder->axis] = way[cylinder->axis] > 0 ? cylinder->half_height : -cylinder->half_height;
+  } else if (const auto* cone = std::get_if<Cone>(&shape.shape->core())) {
+    local = round(cone->axis, cone->radius);
+    local[cone->axis] = -cone->half_height;
+    const Vec3 apex = cone->half_height * Vec3::Unit(cone->axis);
+    if (apex.dot(way) > local.dot(way)) local = apex;
+  } else {
+    const Vec3& radii = std::get<Ellipsoid>(shape.shape->core()).radii;
+    local = radii.cwiseProduct(radii.cwiseProduct(way)) / radii.cwiseProduct(way).norm();
+  }
+  return rotation * local + shape.pose.translation();
+}
+
+class Cover {
+ public:
+  Cover(const btCollisionObjectWrapper& wrapper, double slack, double window, std::uint64_t stamp, SolverCore& core,
+        CoverBuffers& buffers)
+      : wrapper_(wrapper), slack_(slack), window_(window), stamp_(stamp), core_(core), buffers_(buffers) {}
+
+  /// Collects what is near the contact. @return whether there is anything.
+  bool look_round(const Vec3& point) {
+    // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
+    const double reach = 1.5 * window_ + slack_;
+    count_ = pieces_near(wrapper_, point, reach, stamp_, core_, buffers_.near);
+    return count_ > 0;
+  }
+
+  /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
+  /// the corners of its part within the window; -1 where a corner is free.
+  double covered(const Vec3& foot, const Vec3& n) {
+    feature_at(foot, n);
+    if (buffers_.feature.empty()) return -1;
+    double least = 1;
+    for (const Vec3& corner : buffers_.feature) {
+      double most = -1;
+      for (int i = 0; i < count_; ++i) {
+        const UnionPiece& piece = buffers_.near[static_cast<std::size_t>(i)];
+        // Surfaces lie flush, not cores, where margins differ.
+        const Vec3 level = corner + (buffers_.own.margin - piece.margin) * n;
+        most = std::max(most, covered_sine(piece, level, n, slack_, buffers_.active));
+      }
+      least = std::min(least, most);
+      if (least <= 0) break;
+    }
+    return least;
+  }
+
+ private:
+  /// The part of the feature within the window, by its corners.
+  void feature_at(const Vec3& foot, const Vec3& n) {
+    const std::vector<Plane>& planes = buffers_.own.planes;
+    std::vector<Vec3>& feature = buffers_.feature;
+    feature.clear();
+    const Plane* facet = nullptr;
+    const Plane* touched[2] = {nullptr, nullptr};
+    int count = 0;
+    for (const Plane& plane : planes) {
+      const double height = plane.height(foot);
+      if (height > 2 * slack_) return;
+      // The edges of a triangle are no facets.
+      if (!buffers_.own.flat && plane.normal.dot(n) >= 1 - kSameNormal) facet = &plane;
+      if (height < -2 * slack_) continue;
+      if (count < 2) touched[count] = &plane;
+      ++count;
+    }
+    if (facet != nullptr) {
+      const Vec3 u = n.unitOrthogonal() * window_;
+      const Vec3 w = n.cross(u);
+      feature = {foot + u + w, foot - u + w, foot - u - w, foot + u - w};
+      clip_to_piece(buffers_.own, 2 * slack_, feature, buffers_.spare);
+      return;
+    }
+    // Of a triangle, its two sides and one edge; of a solid, two facets.
+    const bool edge = buffers_.own.flat ? count == 3 : count == 2;
+    Vec3 along = Vec3::Zero();
+    if (edge) {
+      const Plane* second = buffers_.own.flat ? edge_of_triangle(foot) : touched[1];
+      if (second != nullptr) along = touched[0]->normal.cross(second->normal);
+    }
+    if (along.norm() > kLevel) {
+      along *= window_ / along.norm();
+      feature = {foot - along, foot + along};
+      clip_to_piece(buffers_.own, 2 * slack_, feature, buffers_.spare);
+      feature.push_back(foot);
+    } else {
+      feature = {foot};
+    }
+  }
+
+  const Plane* edge_of_triangle(const Vec3& foot) const {
+    for (std::size_t i = 2; i < buffers_.own.planes.size(); ++i) {
+      if (buffers_.own.planes[i].height(foot) >= -2 * slack_) return &buffers_.own.planes[i];
+    }
+    return nullptr;
+  }
+
+  const btCollisionObjectWrapper& wrapper_;
+  double slack_;
+  double window_;
+  std::uint64_t stamp_;
+  SolverCore& core_;
+  CoverBuffers& buffers_;
+  int count_ = 0;
+};
+
+void drop(ContactManifold& points, int i) {
+  --points.count;
+  points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];
+}
+
+/// The manifold along one facet of the piece, of points that lie on it.
+ContactManifold along_facet(const Side& side, const Plane& facet, double depth, const Vec3& farthest, double threshold,
+                            double slack, const UnionPiece& own, ManifoldScratch& scratch) {
+  PenetrationDepth answer;
+  answer.contact = depth > 0 ? ContactClass::overlapping : ContactClass::separated;
+  answer.depth = std::max(depth, 0.0);
+  answer.distance = std::max(-depth, 0.0);
+  answer.normal = side.is_b ? facet.normal : Vec3(-facet.normal);
+  const Vec3 on_other = farthest - side.other.shape->margin() * facet.normal;
+  const Vec3 on_own = on_other + depth * facet.normal;
+  answer.witness_a = side.is_b ? on_other : on_own;
+  answer.witness_b = side.is_b ? on_own : on_other;
+  ContactManifold points =
+      side.is_b ? contact_manifold(side.other, side.own, answer, threshold, scratch, DeepestPoint::as_lifted)
+                : contact_manifold(side.own, side.other, answer, threshold, scratch, DeepestPoint::as_lifted);
+  for (int i = points.count - 1; i >= 0; --i) {
+    const Vec3 foot = side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * facet.normal;
+    const bool outside = std::any_of(own.planes.begin(), own.planes.end(),
+                                     [&](const Plane& plane) { return plane.height(foot) > 2 * slack; });
+    if (outside) drop(points, i);
+  }
+  return points;
+}
+
+/// What one side's piece does to the manifold.
+class SideRule {
+ public:
+  SideRule(const Side& side, double threshold, double window, double slack, std::uint64_t stamp, SolverCore& core,
+           ThreadBuffers& buffers)
+      : side_(side),
+        threshold_(threshold),
+        window_(window),
+        slack_(slack),
+        buffers_(buffers),
+        cover_(side.wrapper, slack, window, stamp, core, buffers.cover) {}
+
+  /// @return whether `points` was changed
+  bool apply(double depth, const Vec3& witness, ContactManifold& points) {
+    const Vec3 n = side_.outward(points.normal);
+    if (pushes_from_triangle(n)) return false;
+    const Vec3 foot = witness - side_.own.shape->margin() * n;
+    if (!cover_.look_round(foot)) return false;
+    UnionPiece& own = buffers_.cover.own;
+    set_piece(side_.own, own);
+    if (own.planes.empty()) return false;
+    const auto best =
+        std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
+                         [&](const Plane& x, const Plane& y) { return x.normal.dot(n) < y.normal.dot(n); });
+    const double cosine = best->normal.dot(n);
+    if (cosine >= 1 - kSameNormal) return !own.flat && facet_contact(depth, best->normal, points);
+    const double sine = covered_here(foot, n);
+    if (sine <= kLevel || (sine < kDecided && cosine < kNearNormal)) return false;
+    points = own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth);
+    return true;
+  }
+
+ private:
+  /// Whether n is the normal of one side of a triangle: nothing covers those, and most contacts end here.
+  [[nodiscard]] bool pushes_from_triangle(const Vec3& n) const {
+    const ConvexPolytope* polytope = side_.own.shape->polytope();
+    return polytope != nullptr && polytope->affine_dimension() == 2 &&
+           std::abs((side_.own.pose.rotation() * polytope->facet_normal(0)).dot(n)) >= 1 - kSameNormal;
+  }
+
+  /// A contact in the middle of a triangle that does not push along its normal is the triangle's own.
+  double covered_here(const Vec3& foot, const Vec3& n) {
+    const UnionPiece& own = buffers_.cover.own;
+    if (own.flat) {
+      const double own_sine = covered_sine(own, foot, n, slack_, buffers_.cover.active);
+      if (own_sine > kDecided) return own_sine;
+    }
+    return cover_.covered(foot, n);
+  }
+
+  /// A solid's facet: each point by itself.
+  bool facet_contact(double depth, const Vec3& n, ContactManifold& points) {
+    const double margin = buffers_.cover.own.margin;
+    const int before = points.count;
+    for (int i = points.count - 1; i >= 0; --i) {
+      const Vec3 foot = side_.on_piece(points.points[static_cast<std::size_t>(i)]) - margin * n;
+      if (cover_.covered(foot, n) > kDecided) drop(points, i);
+    }
+    if (points.count == before) return false;
+    if (points.count == 0) points = nearest_free(n, depth);
+    return true;
+  }
+
+  double depth_along(const Plane& facet, Vec3& farthest) const {
+    farthest = farthest_against(side_.other, facet.normal);
+    return side_.other.shape->margin() + buffers_.cover.own.margin - facet.height(farthest);
+  }
+
+  ContactManifold turned(const Plane& facet) {
+    Vec3 farthest;
+    const double depth = depth_along(facet, farthest);
+    if (depth < -threshold_) return {};
+    return along_facet(side_, facet, depth, farthest, threshold_, slack_, buffers_.cover.own, buffers_.manifold);
+  }
+
+  /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach.
+  ContactManifold nearest_free(const Vec3& n, double depth) {
+    const UnionPiece& own = buffers_.cover.own;
+    std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
+    facets.clear();
+    const double limit = std::max(4 * depth, window_);
+    const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
+    Vec3 farthest;
+    for (int f = 0; f < count; ++f) {
+      const Plane& facet = own.planes[static_cast<std::size_t>(f)];
+      if (facet.normal.dot(n) >= 1 - kSameNormal) continue;
+      const double along = depth_along(facet, farthest);
+      if (along < -threshold_) return {};  // apart along a facet: nothing of this piece is near
+      if (along <= limit) facets.emplace_back(along, f);
+    }
+    std::sort(facets.begin(), facets.end());
+    for (int i = 0; i < std::min(kTries, static_cast<int>(facets.size())); ++i) {
+      const Plane& facet = own.planes[static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second)];
+      ContactManifold points = turned(facet);
+      for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
+        const Vec3 foot = side_.on_piece(points.points[static_cast<std::size_t>(k)]) - own.margin * facet.normal;
+        if (cover_.covered(foot, facet.normal) > kDecided) drop(points, k);
+      }
+      if (points.count > 0) return points;
+    }
+    return {};
+  }
+
+  Side side_;
+  double threshold_;
+  double window_;
+  double slack_;
+  ThreadBuffers& buffers_;
+  Cover cover_;
+};
+
+Vec3 velocity(const btCollisionObjectWrapper& wrapper) {
+  const btRigidBody* body = btRigidBody::upcast(wrapper.getCollisionObject());
+  return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
+}
+
+}  // namespace
+
+void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
+                    double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                    ContactManifold& points) {
+  if (points.count == 0) return;
+  const double farthest =
+      answer.a.pose.translation().cwiseAbs().cwiseMax(answer.b.pose.translation().cwiseAbs()).maxCoeff();
+  const double size = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
+  // Seams agree to 1e-7 of the bodies, poses to half a unit in the last place.
+  constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
+  const double slack = 0x1p-18 * size + kRounding * farthest;
+  double depth = -answer.depth.signed_distance();
+  const double window = threshold + std::abs(depth) + seconds * (velocity(a) - velocity(b)).norm();
+  Vec3 witness_b = answer.depth.witness_b;
+  if (is_piece(b)) {
+    SideRule rule({b, answer.b, answer.a, true}, threshold, window, slack, stamp, core, buffers);
+    if (rule.apply(depth, witness_b, points)) {
+      buffers.counters.covered.add();
+      if (points.count == 0) return;
+      const auto deepest = std::max_element(points.points.begin(), points.points.begin() + points.count,
+                                            [](const auto& x, const auto& y) { return x.depth < y.depth; });
+      depth = deepest->depth;
+      witness_b = deepest->position_b;
+    }
+  }
+  if (is_piece(a)) {
+    SideRule rule({a, answer.a, answer.b, false}, threshold, window, slack, stamp, core, buffers);
+    if (rule.apply(depth, witness_b - depth * points.normal, points)) buffers.counters.covered.add();
+  }
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,50 @@
+/// @file
+/// Contacts inside of a union: a pair of pieces is answered as if they were alone, and this decides what of the answer
+/// holds for the whole.
+///
+/// A contact of a piece is dropped only where the facet, edge or vertex of the piece that it pushes off from (its part
+/// within the body's reach of motion) lies wholly in other pieces that lead on against the normal (union_piece.hpp). A
+/// facet that is covered only where the contact stands, as walls of a valley or a corner cover each other, keeps it.
+/// Where a contact is dropped, the nearest facet of the same piece that is not covered answers, if it lies within
+/// reach. Triangles have two facets, their sides, which nothing covers.
+///
+/// Decided by tolerances of the poses' rounding, since the pieces of a decomposition meet up to rounding only.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "pd/contact/manifold.hpp"
+#include "union_piece.hpp"
+
+namespace pd::detail {
+
+class SolverCore;
+struct PairAnswer;
+struct ThreadBuffers;
+
+/// Memory of `keep_uncovered`, one a thread.
+struct CoverBuffers {
+  UnionPiece own;
+  std::vector<UnionPiece> near;
+  std::vector<const Plane*> active;
+  std::vector<Vec3> feature;
+  std::vector<Vec3> spare;
+  std::vector<std::pair<double, int>> facets;
+};
+
+/// Changes `points`, the manifold of `answer`, to what holds for the unions that a and b are pieces of.
+///
+/// @param threshold  up to which gap a pair of points is a contact
+/// @param seconds    of the step: how far bodies may move before contacts are found again
+/// Time: a query of the mesh's or compound's tree where a contact is suspect, and O(k f) in the k pieces near it and
+/// their f facets.
+void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
+                    double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                    ContactManifold& points);
+
+}  // namespace pd::detail

@@ -1,0 +1,159 @@
+#include "manifold_points.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "friction_anchor.hpp"
+#include "pd/bullet/scalar.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// New point for each old one: -1 where none.
+using Matching = std::array<int, 4>;
+
+/// Pairs last step's manifold points with this step's: by feature where the place is the same within the breaking
+/// threshold, else by place, nearest first, and then by feature wherever it has gone (what slides fast keeps its
+/// impulse). Place comes before a feature that is elsewhere: where the edges of two faces nearly coincide, a crossing
+/// of theirs goes from one end to the other by rounding.
+Matching match_points(const btPersistentManifold& manifold, const PairMemory& memory, const FreshPoints& fresh,
+                      const std::array<btVector3, 4>& fresh_local_a) {
+  Matching matching{-1, -1, -1, -1};
+  std::array<bool, 4> taken{};
+  const int count = manifold.getNumContacts();
+  const btScalar reach = manifold.getContactBreakingThreshold() * manifold.getContactBreakingThreshold();
+  const auto gap = [&](int i, int k) {
+    return (manifold.getContactPoint(i).m_localPointA - fresh_local_a[k]).length2();
+  };
+  const auto match = [&](int i, int k) {
+    matching[i] = k;
+    taken[k] = true;
+  };
+  const auto by_feature = [&](btScalar within) {
+    for (int i = 0; i < count; ++i) {
+      if (matching[i] >= 0) continue;
+      const btVector3& local = manifold.getContactPoint(i).m_localPointA;
+      int r = 0;
+      while (r < memory.num_points && !(memory.points[r].local_a == local)) ++r;
+      if (r == memory.num_points) continue;
+      for (int k = 0; k < fresh.count; ++k) {
+        if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id && gap(i, k) < within) {
+          match(i, k);
+          break;
+        }
+      }
+    }
+  };
+  by_feature(reach);
+  for (;;) {
+    int best_old = -1;
+    int best_new = -1;
+    btScalar best = reach;
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < fresh.count; ++k) {
+        if (matching[i] < 0 && !taken[k] && gap(i, k) < best) {
+          best = gap(i, k);
+          best_old = i;
+          best_new = k;
+        }
+      }
+    }
+    if (best_old < 0) break;
+    match(best_old, best_new);
+  }
+  by_feature(std::numeric_limits<btScalar>::infinity());
+  return matching;
+}
+
+/// Takes out what `refreshContactPoints` will take out at the end of the step: points that have parted or moved on, by
+/// Bullet's rule. In a manifold shared by many triangles they would keep fresh points from their places until then.
+void forget_parted(btPersistentManifold& manifold) {
+  const btTransform& pose_a = manifold.getBody0()->getWorldTransform();
+  const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
+  const btScalar threshold = manifold.getContactBreakingThreshold();
+  for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    const btVector3 on_a = pose_a(point.m_localPointA);
+    const btVector3 on_b = pose_b(point.m_localPointB);
+    const btScalar distance = (on_a - on_b).dot(point.m_normalWorldOnB);
+    const btVector3 drift = on_b - (on_a - point.m_normalWorldOnB * distance);
+    if (!(distance <= threshold) || drift.length2() > threshold * threshold) manifold.removeContactPoint(i);
+  }
+}
+
+btVector3 local_on_a(const btPersistentManifold& manifold, const FreshPoint& point) {
+  return manifold.getBody0()->getWorldTransform().invXform(point.point_on_b + point.normal * point.distance);
+}
+
+}  // namespace
+
+FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) {
+  return {to_bullet(normal), to_bullet(point.position_b), static_cast<btScalar>(-point.depth), point.feature_id};
+}
+
+FreshPoints fresh_points(const ContactManifold& manifold) {
+  FreshPoints fresh;
+  for (int k = 0; k < manifold.count; ++k) {
+    fresh.points[static_cast<std::size_t>(k)] =
+        fresh_point(manifold.normal, manifold.points[static_cast<std::size_t>(k)]);
+  }
+  fresh.count = manifold.count;
+  return fresh;
+}
+
+void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result) {
+  forget_parted(manifold);
+  for (int k = 0; k < fresh.count; ++k) {
+    const FreshPoint& point = fresh.points[k];
+    const int entry = entry_near(manifold, local_on_a(manifold, point));
+    const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
+    add_anchored_point(result, manifold, point.normal, point.point_on_b, point.distance, entry, anchor);
+  }
+}
+
+void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
+                    btManifoldResult& result, PointSurroundings& surroundings) {
+  std::array<btVector3, 4> local_a;
+  for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(manifold, fresh.points[k]);
+  Matching matching = match_points(manifold, memory, fresh, local_a);
+  // Bullet's `addContactPoint` hands impulses, life time and user data to the new point that falls on an old one. So a
+  // matched old point is moved to its heir first; that keeps Bullet's contact callbacks right, which clearing would
+  // not.
+  std::array<FrictionAnchor, 4> anchors;
+  for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
+    if (matching[i] < 0) {
+      // Moves the last point into the gap: those behind are dealt with already.
+      const int last = manifold.getNumContacts() - 1;
+      anchors[i] = anchors[last];
+      manifold.removeContactPoint(i);
+    } else {
+      btManifoldPoint& old = manifold.getContactPoint(i);
+      anchors[i] = anchor_of(old);
+      old.m_localPointA = local_a[matching[i]];
+    }
+  }
+  for (int k = 0; k < fresh.count; ++k) {
+    const FreshPoint& point = fresh.points[k];
+    const int near = entry_near(manifold, local_a[k]);
+    surroundings.enter(k);
+    const int entry = add_anchored_point(result, manifold, point.normal, point.point_on_b, point.distance, near,
+                                         anchors[std::max(near, 0)]);
+    surroundings.leave();
+    if (entry >= 0) memory.points[entry].feature_id = point.feature_id;
+  }
+  memory.num_points = manifold.getNumContacts();
+  for (int i = 0; i < memory.num_points; ++i) {
+    memory.points[i].local_a = manifold.getContactPoint(i).m_localPointA;
+    ++manifold.getContactPoint(i).m_lifeTime;
+  }
+  // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.
+  if (gContactProcessedCallback != nullptr) {
+    for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
+      gContactProcessedCallback(manifold.getContactPoint(i), const_cast<btCollisionObject*>(manifold.getBody0()),
+                                const_cast<btCollisionObject*>(manifold.getBody1()));
+    }
+  }
+}
+
+}  // namespace pd::detail

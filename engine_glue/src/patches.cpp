@@ -1,0 +1,116 @@
+#include "patches.hpp"
+
+#include <algorithm>
+
+namespace pd::detail {
+
+namespace {
+
+/// cos 25 degrees.
+constexpr double kOnePatch = 0.9;
+/// Of the breaking threshold: depths of a resting contact differ by so much from step to step.
+constexpr double kNoise = 1e-3;
+/// Of the breaking threshold: points that near are one. (Bullet merges what lies within the whole of it.)
+constexpr double kMerge = 0.05;
+
+}  // namespace
+
+void Patches::clear() {
+  points_.clear();
+  patches_.clear();
+}
+
+void Patches::add(const ContactManifold& manifold, int piece) {
+  for (int k = 0; k < manifold.count; ++k) {
+    points_.push_back({manifold.normal, manifold.points[static_cast<std::size_t>(k)], piece, -1});
+  }
+}
+
+void Patches::choose(int most, double breaking_threshold) {
+  std::stable_sort(points_.begin(), points_.end(),
+                   [](const Point& x, const Point& y) { return x.contact.depth > y.contact.depth; });
+  for (Point& point : points_) {
+    double nearest = -2;
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      const double cosine = patches_[i].normal.dot(point.normal);
+      if (cosine > nearest) {
+        nearest = cosine;
+        point.patch = static_cast<int>(i);
+      }
+    }
+    if (nearest < kOnePatch && static_cast<int>(patches_.size()) < most) {
+      point.patch = static_cast<int>(patches_.size());
+      patches_.emplace_back();
+      patches_.back().normal = point.normal;
+    }
+  }
+  for (std::size_t i = 0; i < patches_.size(); ++i) choose_in(static_cast<int>(i), breaking_threshold);
+}
+
+void Patches::choose_in(int index, double breaking_threshold) {
+  Patch& patch = patches_[static_cast<std::size_t>(index)];
+  const Vec3& n = patch.normal;
+  left_.clear();
+  const double merge = kMerge * breaking_threshold;
+  for (const Point& point : points_) {
+    if (point.patch != index) continue;
+    const bool repeated = std::any_of(left_.begin(), left_.end(), [&](const Point* other) {
+      return (other->contact.position_b - point.contact.position_b).squaredNorm() < merge * merge &&
+             other->normal.dot(point.normal) > kOnePatch;
+    });
+    if (!repeated) left_.push_back(&point);
+  }
+  const auto take = [&](const Point* point) {
+    const auto k = static_cast<std::size_t>(patch.fresh.count++);
+    patch.fresh.points[k] = fresh_point(point->normal, point->contact);
+    patch.pieces[k] = point->piece;
+    left_.erase(std::find(left_.begin(), left_.end(), point));
+  };
+  const auto best = [&](auto&& score) {
+    return *std::max_element(left_.begin(), left_.end(),
+                             [&](const Point* x, const Point* y) { return score(*x) < score(*y); });
+  };
+  const auto place = [](const Point& point) -> const Vec3& { return point.contact.position_b; };
+  if (left_.size() <= 4) {
+    while (!left_.empty()) take(left_.front());
+    return;
+  }
+  // Any direction that no face's edges are likely to have.
+  const Vec3 u = n.unitOrthogonal();
+  const Vec3 out = u + 0.3 * n.cross(u);
+  const double deep = left_.front()->contact.depth - kNoise * breaking_threshold;
+  const Point* first = best([&](const Point& p) { return p.contact.depth >= deep ? place(p).dot(out) : -1e300; });
+  take(first);
+  const Point* second = best([&](const Point& p) { return (place(p) - place(*first)).squaredNorm(); });
+  take(second);
+  const Vec3 across = n.cross(place(*second) - place(*first));
+  const Point* third = best([&](const Point& p) { return (place(p) - place(*first)).dot(across); });
+  const Point* fourth = best([&](const Point& p) { return -(place(p) - place(*first)).dot(across); });
+  take(third);
+  if (fourth != third) take(fourth);
+}
+
+int Patches::claim(const Vec3& normal) {
+  int found = -1;
+  double nearest = kOnePatch;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const double cosine = patches_[i].normal.dot(normal);
+    if (!patches_[i].claimed && cosine >= nearest) {
+      nearest = cosine;
+      found = static_cast<int>(i);
+    }
+  }
+  if (found >= 0) patches_[static_cast<std::size_t>(found)].claimed = true;
+  return found;
+}
+
+int Patches::claim_any() {
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    if (patches_[i].claimed) continue;
+    patches_[i].claimed = true;
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace pd::detail

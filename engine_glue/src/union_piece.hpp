@@ -1,0 +1,62 @@
+/// @file
+/// A piece of a union of convex pieces (a triangle of a mesh, a part of a compound) near a contact, as planes without
+/// its margin, and what it covers.
+///
+/// A piece covers a point c against a direction n (unit, outward from another piece that touches there) where c lies in
+/// it and it has a way d from c with <n, d> > 0: whoever left the other piece along n still stands in this one. The
+/// largest such <n, d> over unit d is the sine of the angle between n and the piece's normal cone at c.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cached_shape.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd::detail {
+
+class SolverCore;
+
+struct Plane {
+  Vec3 normal;  ///< unit, outward
+  double offset;
+  [[nodiscard]] double height(const Vec3& point) const { return normal.dot(point) - offset; }
+};
+
+struct UnionPiece {
+  std::vector<Plane> planes;  ///< the piece is where all heights are <= 0
+  double margin = 0;
+  bool flat = false;  ///< a triangle: its first two planes are its two sides
+};
+
+/// Sides first, then edges; no planes where the corners are no triangle.
+void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece& piece);
+/// No planes where the shape is no solid polytope.
+void set_solid(const ConvexShape& shape, const Pose& pose, UnionPiece& piece);
+/// As `set_triangle` or `set_solid`, as the body is one or the other.
+void set_piece(const PosedShape& body, UnionPiece& piece);
+
+/// The part of segment or polygon `points` (in place) that lies in the piece, each plane moved out by `slack`.
+void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& points, std::vector<Vec3>& spare);
+
+/// The largest <n, d> as above, 0 where the piece has no such way; -1 where `point` lies outside of it by more than
+/// `slack`. Planes within `slack` of the point count as touching it. Time O(k^3) in those. `active` is memory for them.
+[[nodiscard]] double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, double slack,
+                                  std::vector<const Plane*>& active);
+
+/// Whether the shape behind the wrapper is one piece of several.
+[[nodiscard]] bool is_piece(const btCollisionObjectWrapper& wrapper);
+/// Whether the shape behind the wrapper is a child of a compound.
+[[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
+
+/// The other pieces of the union that come within `reach` of a point, in world coordinates. Compounds in compounds and
+/// meshes in compounds included; curved parts are left out, since contacts inside of them do not arise from seams.
+/// `pieces` grows and is never shrunk, so that its planes keep their memory; the result counts.
+int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, std::uint64_t stamp,
+                SolverCore& core, std::vector<UnionPiece>& pieces);
+
+}  // namespace pd::detail
