@@ -38,7 +38,7 @@ function(pd_install_component target)
 
   install(TARGETS ${target} EXPORT pdepth-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${component} FILES_MATCHING PATTERN "*.hpp")
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${component} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
   install(EXPORT pdepth-${component} NAMESPACE pdepth:: FILE pdepth-${component}-targets.cmake
           DESTINATION ${PD_INSTALL_CMAKEDIR} COMPONENT ${component})
 

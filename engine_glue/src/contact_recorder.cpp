@@ -1,0 +1,18 @@
+#include "pd/bullet/contact_recorder.hpp"
+
+#include "recorded_world.hpp"
+
+namespace pd {
+
+ContactRecorder::ContactRecorder(btCollisionWorld& world, const std::string& path,
+                                 const ContactRecorderSettings& settings)
+    : world_(std::make_unique<detail::RecordedWorld>(world, path, settings.every)) {}
+
+ContactRecorder::~ContactRecorder() = default;
+
+bool ContactRecorder::close() { return world_->close(); }
+bool ContactRecorder::good() const { return world_->good(); }
+std::int64_t ContactRecorder::contacts() const { return world_->contacts(); }
+std::int64_t ContactRecorder::unsupported() const { return world_->unsupported(); }
+
+}  // namespace pd
