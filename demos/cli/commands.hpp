@@ -25,6 +25,7 @@ void add_query_command(CLI::App& app, Action& action);
 void add_minimise_command(CLI::App& app, Action& action);
 void add_simplify_command(CLI::App& app, Action& action);
 void add_audit_command(CLI::App& app, Action& action);
+void add_accuracy_command(CLI::App& app, Action& action);
 void add_demo_command(CLI::App& app, Action& action);
 
 }  // namespace pd::cli

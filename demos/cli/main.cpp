@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   pd::cli::add_minimise_command(app, action);
   pd::cli::add_simplify_command(app, action);
   pd::cli::add_audit_command(app, action);
+  pd::cli::add_accuracy_command(app, action);
   pd::cli::add_demo_command(app, action);
   try {
     app.parse(argc, argv);

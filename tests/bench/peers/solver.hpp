@@ -57,6 +57,7 @@ using Solvers = std::vector<std::unique_ptr<Solver>>;
 
 inline constexpr std::string_view kOurs = "pdepth-auto";
 inline constexpr std::string_view kBulletEpa = "bullet-epa";
+inline constexpr std::string_view kOde = "ode";
 
 /// Vertices of the hull in its canonical order.
 [[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);
@@ -78,6 +79,8 @@ void add_peers(Solvers& solvers);
 void add_bullet(Solvers& solvers);
 void add_ccd(Solvers& solvers);
 void add_fcl(Solvers& solvers);
+/// Bodies must be solids round the origin of their frames.
+void add_ode(Solvers& solvers);
 [[nodiscard]] std::string bullet_note();
 [[nodiscard]] std::string fcl_note();
 

@@ -1,0 +1,144 @@
+#include "audit/accuracy_run.hpp"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "audit/audit_stream.hpp"
+
+namespace pd::audit {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      result += "'\\''";
+    } else {
+      result += c;
+    }
+  }
+  return result + "'";
+}
+
+/// What a command writes to its standard output; empty where it fails.
+std::optional<std::string> output_of(const std::string& command) {
+  std::FILE* pipe = ::popen(("ulimit -t " + std::to_string(kRecorderSeconds) + "; " + command).c_str(), "r");
+  if (pipe == nullptr) return std::nullopt;
+  std::string text;
+  char buffer[4096];
+  for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof(buffer), pipe)) > 0;) text.append(buffer, got);
+  if (::pclose(pipe) != 0) return std::nullopt;
+  return text;
+}
+
+/// A file for a record, gone with it.
+class RecordFile {
+ public:
+  RecordFile() : path_((std::filesystem::temp_directory_path() / "pdepth_record_XXXXXX").string()) {
+    descriptor_ = ::mkstemp(path_.data());
+  }
+  ~RecordFile() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    ::unlink(path_.c_str());
+  }
+  RecordFile(const RecordFile&) = delete;
+  RecordFile& operator=(const RecordFile&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] bool good() const { return descriptor_ >= 0; }
+
+ private:
+  std::string path_;
+  int descriptor_;
+};
+
+double error_of(const Judgement& judgement) {
+  return std::max(std::abs(judgement.depth_error.value_or(0)), judgement.normal_excess.value_or(0));
+}
+
+void judge_record(const std::string& file, const AccuracySettings& settings, AccuracyRow& row) {
+  const int input = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  row.failed = input < 0;
+  if (row.failed) return;
+  Audit audit;
+  AuditSettings how;
+  how.tolerance = settings.tolerance;
+  how.threads = settings.threads;
+  audit_record(
+      input, how,
+      [&](const RecordedContact&, const Judgement& judgement, std::int64_t) {
+        const double error = error_of(judgement);
+        row.worst = std::max(row.worst, error);
+        row.above_small += error > kSmallError ? 1 : 0;
+        row.above_large += error > kLargeError ? 1 : 0;
+      },
+      audit);
+  ::close(input);
+  row.failed = audit.end != Audit::End::read;
+  const Totals& total = audit.summary.total();
+  row.contacts = total.contacts + audit.summary.refused();
+  row.missed = total.missed;
+  row.phantom = total.phantom;
+  row.no_answer = total.unanswered + audit.summary.refused();
+}
+
+}  // namespace
+
+std::int64_t AccuracyRow::wrong() const {
+  // A phantom may be large as well: no contact counts twice.
+  return std::min(contacts, missed + std::max(phantom, above_large) + no_answer);
+}
+
+void AccuracyRow::add(const AccuracyRow& other) {
+  nanoseconds =
+      contacts + other.contacts > 0
+          ? (nanoseconds * static_cast<double>(contacts) + other.nanoseconds * static_cast<double>(other.contacts)) /
+                static_cast<double>(contacts + other.contacts)
+          : 0;
+  failed = failed || other.failed;
+  contacts += other.contacts;
+  missed += other.missed;
+  phantom += other.phantom;
+  above_small += other.above_small;
+  above_large += other.above_large;
+  no_answer += other.no_answer;
+  worst = std::max(worst, other.worst);
+}
+
+std::vector<std::string> engines_of(const std::string& program) {
+  std::vector<std::string> engines;
+  const std::string text = output_of("exec " + quoted(program) + " --list").value_or("");
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    if (end > at) engines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return engines;
+}
+
+AccuracyRow run_accuracy(const std::string& program, const std::string& engine, const std::string& family,
+                         const AccuracySettings& settings) {
+  AccuracyRow row;
+  row.engine = engine;
+  row.family = family;
+  const RecordFile file;
+  const auto text =
+      output_of("exec " + quoted(program) + " --engine " + quoted(engine) + " --family " + quoted(family) +
+                " --pairs " + std::to_string(settings.pairs) + " --vertices " + std::to_string(settings.vertices) +
+                " --seed " + std::to_string(settings.seed) + " --out " + quoted(file.path()));
+  row.failed = !file.good() || !text;
+  if (row.failed) return row;
+  row.nanoseconds = std::strtod(text->c_str(), nullptr);
+  judge_record(file.path(), settings, row);
+  return row;
+}
+
+}  // namespace pd::audit

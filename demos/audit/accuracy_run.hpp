@@ -1,0 +1,55 @@
+/// @file
+/// Engines by families: recorder programs run on generated pairs, their records audited.
+///
+/// A recorder program answers `--list` with the names of its engines, one a line, and
+/// `--engine E --family F --pairs N --vertices V --seed S --out FILE` with a contact record of N pairs of the family at
+/// each of its four depths in FILE, and the mean nanoseconds of a query on its standard output.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pd::audit {
+
+struct AccuracySettings {
+  int pairs = 25;  ///< of each family, at each of its four depths
+  int vertices = 32;
+  std::uint64_t seed = 1;
+  double tolerance = 1e-6;  ///< of missed and phantom, relative to L, for every engine
+  int threads = 1;          ///< that audit
+};
+
+/// Largest errors that count as small and as large, relative to L: a contact's is the larger of depth error and normal
+/// excess.
+inline constexpr double kSmallError = 1e-6;
+inline constexpr double kLargeError = 1e-3;
+
+struct AccuracyRow {
+  std::string engine;
+  std::string family;
+  bool failed = false;  ///< the program crashed, ran into its time limit or wrote no record
+  std::int64_t contacts = 0;
+  std::int64_t missed = 0;
+  std::int64_t phantom = 0;
+  std::int64_t above_small = 0;
+  std::int64_t above_large = 0;
+  std::int64_t no_answer = 0;  ///< numbers that are not finite, and pairs that could not be judged
+  double worst = 0;            ///< the largest error, relative to L
+  double nanoseconds = 0;      ///< a query, in the mean
+
+  /// Contacts that a user would call wrong: missed, phantom, above_large or without an answer.
+  [[nodiscard]] std::int64_t wrong() const;
+  void add(const AccuracyRow& other);
+};
+
+/// Empty where the program does not run.
+[[nodiscard]] std::vector<std::string> engines_of(const std::string& program);
+
+/// Seconds of processor time after which a recorder is ended.
+inline constexpr int kRecorderSeconds = 120;
+
+[[nodiscard]] AccuracyRow run_accuracy(const std::string& program, const std::string& engine, const std::string& family,
+                                       const AccuracySettings& settings);
+
+}  // namespace pd::audit
