@@ -93,6 +93,8 @@ btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btC
   return new (memory) ContactAlgorithm(info, a, b, installation);
 }
 
+bool ContactAlgorithm::sharp_parts() const { return installation_.core().settings.unions_as_one; }
+
 void ContactAlgorithm::take_manifold(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
   manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
   owns_manifold_ = true;

@@ -34,6 +34,8 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
   btScalar calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo& info,
                                  btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;
+  /// Whether boxes that are children of compounds are taken without their margin.
+  [[nodiscard]] bool sharp_parts() const;
 
   struct CreateFunc : public btCollisionAlgorithmCreateFunc {
     /// `closest`: stands in the dispatcher's table of closest points, else in that of contacts

@@ -15,6 +15,7 @@
 #include <map>
 #include <utility>
 
+#include "contact_algorithm.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "triangles_in_box.hpp"
 
@@ -67,19 +68,64 @@ const btCollisionShape* leaf_of(const btCollisionObject& object, int index) {
 
 bool is_mesh(const btCollisionShape& shape) { return shape.isConcave() && has_parts(shape); }
 
-/// Whether the dispatcher's algorithm for two shapes is of this type.
-template <class Algorithm>
-bool answers_by(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& shape_a,
-                const btCollisionObject& b, const btCollisionShape& shape_b) {
+/// What `ask` says of the dispatcher's algorithm for two shapes.
+template <class Ask>
+bool algorithm_is(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& shape_a,
+                  const btCollisionObject& b, const btCollisionShape& shape_b, Ask&& ask) {
   const btCollisionObjectWrapper wrapper_a(nullptr, &shape_a, &a, a.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper wrapper_b(nullptr, &shape_b, &b, b.getWorldTransform(), -1, -1);
   btCollisionAlgorithm* algorithm =
       dispatcher.findAlgorithm(&wrapper_a, &wrapper_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
   if (algorithm == nullptr) return false;
-  const bool found = dynamic_cast<Algorithm*>(algorithm) != nullptr;
+  const bool found = ask(*algorithm);
   algorithm->~btCollisionAlgorithm();
   dispatcher.freeCollisionAlgorithm(algorithm);
   return found;
+}
+
+bool is_box(const btCollisionShape& shape) { return shape.getShapeType() == BOX_SHAPE_PROXYTYPE; }
+
+/// A ball meets triangles without their margin where Bullet's own algorithm for these answers.
+bool meets_bare_triangles(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& leaf_a,
+                          const btCollisionObject& b, const btCollisionShape& leaf_b) {
+  const auto ball_on_mesh = [](const btCollisionShape& ball, const btCollisionShape& mesh) {
+    return ball.getShapeType() == SPHERE_SHAPE_PROXYTYPE && is_mesh(mesh);
+  };
+  if (!ball_on_mesh(leaf_a, leaf_b) && !ball_on_mesh(leaf_b, leaf_a)) return false;
+  const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
+  const btCollisionShape& asked_a = is_mesh(leaf_a) ? static_cast<const btCollisionShape&>(triangle) : leaf_a;
+  const btCollisionShape& asked_b = is_mesh(leaf_b) ? static_cast<const btCollisionShape&>(triangle) : leaf_b;
+  return algorithm_is(dispatcher, a, asked_a, b, asked_b, [](const btCollisionAlgorithm& algorithm) {
+    return dynamic_cast<const btSphereTriangleCollisionAlgorithm*>(&algorithm) != nullptr;
+  });
+}
+
+/// Which boxes are taken without their margin: against planes, by Bullet's and our algorithm for two boxes, and as
+/// children of compounds by ours.
+struct SharpBoxes {
+  bool a = false;
+  bool b = false;
+};
+SharpBoxes sharp_boxes(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& leaf_a,
+                       const btCollisionObject& b, const btCollisionShape& leaf_b) {
+  const auto is_plane = [](const btCollisionShape& shape) { return shape.getShapeType() == STATIC_PLANE_PROXYTYPE; };
+  if (!is_box(leaf_a) && !is_box(leaf_b)) return {};
+  if (is_plane(leaf_a) || is_plane(leaf_b)) return {true, true};
+  if (is_box(leaf_a) && is_box(leaf_b)) {
+    const bool rounded = algorithm_is(dispatcher, a, leaf_a, b, leaf_b, [](const btCollisionAlgorithm& algorithm) {
+      return dynamic_cast<const btConvexConvexAlgorithm*>(&algorithm) != nullptr;
+    });
+    return {!rounded, !rounded};
+  }
+  if (!a.getCollisionShape()->isCompound() && !b.getCollisionShape()->isCompound()) return {};
+  const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
+  const btCollisionShape& asked_a = is_mesh(leaf_a) ? static_cast<const btCollisionShape&>(triangle) : leaf_a;
+  const btCollisionShape& asked_b = is_mesh(leaf_b) ? static_cast<const btCollisionShape&>(triangle) : leaf_b;
+  const bool parts = algorithm_is(dispatcher, a, asked_a, b, asked_b, [](const btCollisionAlgorithm& algorithm) {
+    const auto* own = dynamic_cast<const ContactAlgorithm*>(&algorithm);
+    return own != nullptr && own->sharp_parts();
+  });
+  return {parts && a.getCollisionShape()->isCompound(), parts && b.getCollisionShape()->isCompound()};
 }
 
 }  // namespace
@@ -196,9 +242,9 @@ void RecordedWorld::write_pair(btBroadphasePair& pair) {
     return;
   }
   const std::vector<Group> groups = groups_of(pair, a, b);
-  for (const Group& group : groups) write_group(pair, *group.a, *group.b, group);
+  for (const Group& group : groups) write_group(*group.a, *group.b, group);
   if (groups.empty() && !has_parts(*a->getCollisionShape()) && !has_parts(*b->getCollisionShape())) {
-    write_group(pair, *a, *b, Group{a, b, -1, -1, -1, -1, {}});
+    write_group(*a, *b, Group{a, b, -1, -1, -1, -1, {}});
   }
 }
 
@@ -238,32 +284,15 @@ RecordedPart RecordedWorld::part_of(const btCollisionObject& object, int part, i
   return {shapes_.convex(record_, static_cast<const btConvexShape&>(*leaf)), stands};
 }
 
-void RecordedWorld::write_group(const btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b,
-                                const Group& group) {
+void RecordedWorld::write_group(const btCollisionObject& a, const btCollisionObject& b, const Group& group) {
   const btCollisionShape* leaf_a = leaf_of(a, group.index_a);
   const btCollisionShape* leaf_b = leaf_of(b, group.index_b);
   if (leaf_a == nullptr || leaf_b == nullptr) {
     ++unsupported_;
     return;
   }
-  const auto types = [&](int x, int y) { return leaf_a->getShapeType() == x && leaf_b->getShapeType() == y; };
-  bool sharp = types(BOX_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE) || types(STATIC_PLANE_PROXYTYPE, BOX_SHAPE_PROXYTYPE);
-  if (types(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE)) {
-    const bool alone = leaf_a == a.getCollisionShape() && leaf_b == b.getCollisionShape();
-    sharp = alone ? dynamic_cast<btConvexConvexAlgorithm*>(pair.m_algorithm) == nullptr
-                  : !answers_by<btConvexConvexAlgorithm>(*dispatcher_, a, *leaf_a, b, *leaf_b);
-  }
-  bool without_margin = false;
-  const bool ball_and_mesh = (leaf_a->getShapeType() == SPHERE_SHAPE_PROXYTYPE && is_mesh(*leaf_b)) ||
-                             (leaf_b->getShapeType() == SPHERE_SHAPE_PROXYTYPE && is_mesh(*leaf_a));
-  if (ball_and_mesh) {
-    const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
-    const bool mesh_is_a = is_mesh(*leaf_a);
-    without_margin = answers_by<btSphereTriangleCollisionAlgorithm>(
-        *dispatcher_, a, mesh_is_a ? static_cast<const btCollisionShape&>(triangle) : *leaf_a, b,
-        mesh_is_a ? *leaf_b : static_cast<const btCollisionShape&>(triangle));
-  }
-
+  const SharpBoxes sharp = sharp_boxes(*dispatcher_, a, *leaf_a, b, *leaf_b);
+  const bool without_margin = meets_bare_triangles(*dispatcher_, a, *leaf_a, b, *leaf_b);
   // The points' numbers stay where `report` points to.
   std::vector<std::array<Vec3, 2>> positions;
   std::vector<pd_record_point> points;
@@ -276,9 +305,9 @@ void RecordedWorld::write_group(const btBroadphasePair& pair, const btCollisionO
     points.push_back(
         {positions[i][0].data(), positions[i][1].data(), -static_cast<double>(group.points[i]->getDistance())});
   }
-  const RecordedPart side_a = part_of(a, group.part_a, group.index_a, sharp, without_margin,
+  const RecordedPart side_a = part_of(a, group.part_a, group.index_a, sharp.a, without_margin,
                                       deepest ? &deepest->getPositionWorldOnA() : nullptr);
-  const RecordedPart side_b = part_of(b, group.part_b, group.index_b, sharp, without_margin,
+  const RecordedPart side_b = part_of(b, group.part_b, group.index_b, sharp.b, without_margin,
                                       deepest ? &deepest->getPositionWorldOnB() : nullptr);
   if (!side_a.shape || !side_b.shape) {
     ++unsupported_;

@@ -47,8 +47,7 @@ class RecordedWorld final : public btActionInterface {
   /// The points of a pair's manifolds by the parts that they belong to, in the order in which they come.
   [[nodiscard]] std::vector<Group> groups_of(const btBroadphasePair& pair, const btCollisionObject*& a,
                                              const btCollisionObject*& b) const;
-  void write_group(const btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b,
-                   const Group& group);
+  void write_group(const btCollisionObject& a, const btCollisionObject& b, const Group& group);
   [[nodiscard]] RecordedPart part_of(const btCollisionObject& object, int part, int index, bool sharp,
                                      bool without_margin, const btVector3* at);
   [[nodiscard]] RecordedPart triangle_of(const btCollisionObject& object, int part, int index, bool without_margin,

@@ -38,7 +38,9 @@ struct ContactRecorderSettings {
 /// A is the manifold's first body.
 ///
 /// Shapes are what Bullet's narrow phase means by them (`shape_conversion.hpp`); boxes are sharp where Bullet takes
-/// them so: against planes, and against boxes under Bullet's own box/box algorithm or ours. A sphere meets a triangle
+/// them so: against planes, against boxes under Bullet's own box/box algorithm or ours, and as children of compounds
+/// under ours (`BulletSolverSettings::unions_as_one`). A child or triangle is judged as if it were alone, although our
+/// contacts are those of the whole. A sphere meets a triangle
 /// under Bullet's own algorithm for these without the mesh's margin.
 ///
 /// Not written, but counted as `unsupported`: shapes without exact form, compounds in compounds, meshes in compounds,
