@@ -28,7 +28,7 @@ function(pd_precompile_headers target)
                               <memory> <optional> <span> <string> <vector> ${ARGN})
   endif()
   # -fpch-preprocess lets ccache look at a source that starts from a precompiled header. In such a source GCC 12 no longer knows
-  # that std::string is a system's and reports sizes inside it (bug 105651 again); packaging.subproject builds without.
+  # that std::string is a system's and reports sizes inside it (bug 105651 again); a build without precompiled headers has the warnings.
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   endif()

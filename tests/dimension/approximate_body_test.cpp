@@ -42,7 +42,7 @@ Known<D> known_body(int kind, double aspect, Random& random) {
   }
   const AffineMap<D> map{random_stretch<D>(random, aspect), 3 * random_direction<D>(random)};
   for (Vector<D>& p : r.vertices) p = map.apply(p);
-  const Matrix<D> inverse = map.linear.inverse();
+  const Matrix<D> inverse = inverse_of<D>(map.linear);
   for (Halfspace<D>& h : r.halfspaces) {
     h.normal = inverse.transpose() * h.normal;
     h.offset += h.normal.dot(map.translation);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "dimension/body_families.hpp"
 
@@ -18,15 +19,25 @@ ComposedBody<D> prepare(const std::vector<Vector<D>>& points, double epsilon, Ba
   return *ComposedBody<D>::of(*structure);
 }
 
-/// The largest <v, x> over the halfspaces' intersection, through the sum's own corner enumeration for D = 2, 3 and the
-/// linear program of Body for more.
+/// The largest <v, x> over the body that was made, asked many times.
 template <int D>
-double reach(const ApproximateBody<D>& body, const Vector<D>& v) {
-  if (body.representation == Representation::points) return extreme<D>(body.points, v).dot(v);
-  const auto polytope = Body<D>::from_halfspaces(body.halfspaces);
-  EXPECT_TRUE(polytope) << (polytope ? "" : polytope.error().message);
-  return polytope ? polytope->support(v).value : 0;
-}
+class Reach {
+ public:
+  explicit Reach(const ApproximateBody<D>& body) : body_(body) {
+    if (body.representation == Representation::points) return;
+    const auto polytope = Body<D>::from_halfspaces(body.halfspaces);
+    EXPECT_TRUE(polytope) << (polytope ? "" : polytope.error().message);
+    if (polytope) polytope_ = *polytope;
+  }
+  [[nodiscard]] double operator()(const Vector<D>& v) const {
+    if (body_.representation == Representation::points) return extreme<D>(body_.points, v).dot(v);
+    return polytope_ ? polytope_->support(v).value : 0;
+  }
+
+ private:
+  const ApproximateBody<D>& body_;
+  std::optional<Body<D>> polytope_;
+};
 
 /// Every promise, against supports of the sum by brute force: random directions, and those of the input's differences.
 template <int D>
@@ -48,6 +59,7 @@ void check_sums(Backend backend, double epsilon, int count, int cases) {
                                         << (representation == Representation::points ? "points" : "halfspaces"));
         const auto made = approximate_minkowski_sum<D>(sum, epsilon, representation, side);
         ASSERT_TRUE(made) << made.error().message;
+        const Reach<D> reach(made->body);
         for (int turn = 0; turn < 12; ++turn) {
           Vector<D> v = source.direction();
           if (turn % 3 == 0) v = (parts[0][0] - parts[1][std::size_t(turn) % parts[1].size()]).normalized();
@@ -56,14 +68,14 @@ void check_sums(Backend backend, double epsilon, int count, int cases) {
             h += extreme<D>(points, v).dot(v);
             width += extent<D>(points, v);
           }
-          const double high = reach<D>(made->body, v);
+          const double high = reach(v);
           const double room = 1e-7 * width + 1e-14;
           if (side == Side::outer) {
             EXPECT_GE(high, h - room);
             EXPECT_LE(high, h + epsilon / 2 * width + room);
           } else {
             EXPECT_LE(high, h + room);
-            EXPECT_GE(high + reach<D>(made->body, -v), (1 - epsilon) * width - room);
+            EXPECT_GE(high + reach(-v), (1 - epsilon) * width - room);
           }
         }
       }

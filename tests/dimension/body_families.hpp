@@ -2,7 +2,6 @@
 /// Bodies of any dimension for tests: round, flat, slender and with corners; all of known points.
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -33,10 +32,18 @@ class BodySource {
     } while (!(v.norm() > 1e-3));
     return v / v.norm();
   }
+  /// Gram-Schmidt, twice a column: Eigen's decompositions take each source half a minute to compile.
   [[nodiscard]] Matrix<D> rotation() {
-    Eigen::Matrix<double, D, D> m;
-    for (int i = 0; i < D; ++i) m.col(i) = direction();
-    return Matrix<D>(Eigen::HouseholderQR<Eigen::Matrix<double, D, D>>(m).householderQ());
+    Matrix<D> m;
+    for (int i = 0; i < D; ++i) {
+      Vector<D> v;
+      do {
+        v = direction();
+        for (int k = 0; k < 2 * i; ++k) v -= m.col(k % i).dot(v) * m.col(k % i);
+      } while (!(v.norm() > 1e-3));
+      m.col(i) = v / v.norm();
+    }
+    return m;
   }
 
   /// About the origin, of size about 1, turned at random; needles are 1e6 times longer than wide, slabs as much wider

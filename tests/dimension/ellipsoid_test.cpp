@@ -83,7 +83,7 @@ void check_sum_fattening() {
       // Lemma 7: the box itself is a sandwich of ratio d^(3/2) (1 + eta).
       const SandwichBox<D> box = sandwich_box(ellipsoid->sandwich);
       EXPECT_LE(box.ratio, std::pow(D, 1.5) * 1.11);
-      const Matrix<D> inverse = box.axes.inverse();
+      const Matrix<D> inverse = inverse_of<D>(box.axes);
       for (const Vector<D>& p : points) {
         ASSERT_LE((inverse * (p - box.centre)).cwiseAbs().maxCoeff(), box.ratio * (1 + 1e-6));
       }

@@ -129,7 +129,7 @@ std::vector<Vector<D>> hard_directions(const Body<D>& body, int count, Random& r
     const Vector<D> origin = any();
     for (int k = 0; k + 1 < D; ++k) through.row(k) = (fat * (any() - origin)).transpose();
     through.row(D - 1) = random_direction<D>(random).transpose();
-    const Vector<D> normal = through.inverse() * Vector<D>::Unit(D - 1);
+    const Vector<D> normal = inverse_of<D>(through) * Vector<D>::Unit(D - 1);
     if (normal.allFinite() && normal.norm() > 1e-6) directions.push_back(fat.transpose() * normal.normalized());
   }
   return directions;

@@ -1,6 +1,5 @@
 #include "pd/dimension/approximate_minkowski_sum.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,6 +9,7 @@
 #include "dimension/equal_planes.hpp"
 #include "dimension/radial_hull.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension {
 
@@ -24,7 +24,7 @@ class GrowingSum {
  public:
   explicit GrowingSum(const ComposedBody<D>& sum) : sum_(sum), hull_(0.5) {
     const detail::EllipsoidBounds<D> bounds = sum.node().template bounds<D>(Matrix<D>::Identity(), 0);
-    frame_.linear = bounds.inner.inverse();
+    frame_.linear = inverse_of<D>(bounds.inner);
     frame_.translation = -(frame_.linear * bounds.center);
     ratio_ = (frame_.linear * bounds.outer).norm();
   }

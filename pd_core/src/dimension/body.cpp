@@ -6,6 +6,7 @@
 #include "dimension/validate.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/dimension/enclosing_ellipsoid.hpp"
+#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension {
 
@@ -48,8 +49,8 @@ Expected<Body<D>> Body<D>::transformed(const AffineMap<D>& map) const {
   if (!map.linear.allFinite() || !map.translation.allFinite()) {
     return Error{ErrorCode::non_finite, "an affine map needs finite numbers", "affine"};
   }
-  const Eigen::FullPivLU<Eigen::Matrix<double, D, D>> lu(map.linear);
-  if (!lu.isInvertible()) {
+  const std::optional<Matrix<D>> inverse = inverse_if_regular<D>(map.linear);
+  if (!inverse) {
     return Error{ErrorCode::bad_value, "the matrix of an affine map must be regular", "affine"};
   }
   if (representation() == Representation::points) {
@@ -58,11 +59,10 @@ Expected<Body<D>> Body<D>::transformed(const AffineMap<D>& map) const {
     for (const Vector<D>& p : data_->points) points.push_back(map.apply(p));
     return from_points(std::move(points));
   }
-  const Matrix<D> inverse = lu.inverse();
   std::vector<Halfspace<D>> halfspaces;
   halfspaces.reserve(data_->halfspaces.size());
   for (const Halfspace<D>& h : data_->halfspaces) {
-    const Vector<D> normal = inverse.transpose() * h.normal;
+    const Vector<D> normal = inverse->transpose() * h.normal;
     halfspaces.push_back({normal, h.offset + normal.dot(map.translation)});
   }
   return from_halfspaces(std::move(halfspaces));

@@ -1,6 +1,5 @@
 #include "pd/dimension/composed_body.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "dimension/composed_node.hpp"
+#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension {
 
@@ -141,8 +141,7 @@ Expected<ComposedBody<D>> ComposedBody<D>::of(DirectionalWidth<D> body, const Af
   }
   const double scale = map.linear.cwiseAbs().maxCoeff();
   const Matrix<D> unit = map.linear / (scale > 0 ? scale : 1);
-  const Eigen::FullPivLU<Eigen::Matrix<double, D, D>> decomposition{Eigen::Matrix<double, D, D>(unit)};
-  if (!decomposition.isInvertible()) {
+  if (!inverse_if_regular<D>(unit)) {
     return Error{ErrorCode::bad_value, "the matrix is singular; the image would be flat", "affine.matrix"};
   }
   auto node = std::make_shared<detail::ComposedNode<D>>();

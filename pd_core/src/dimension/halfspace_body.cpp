@@ -6,12 +6,14 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <type_traits>
 
 #include "dimension/kernel_builder.hpp"
 #include "dimension/linear_program.hpp"
 #include "dimension/validate.hpp"
 #include "dimension/weighted_ellipsoid.hpp"
 #include "pd/dimension/enclosing_ellipsoid.hpp"
+#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension::detail {
 
@@ -20,6 +22,9 @@ namespace {
 /// A body that reaches farther than this times its largest offset is called unbounded.
 constexpr double kBound = 0x1p46;
 constexpr double kSlack = 0x1p-44;
+using pd::detail::DoubleDouble;
+/// Of double-double: 2^-40 of the body even where an optimum lies at the bound.
+constexpr double kFineSlack = 0x1p-86;
 /// Of the kernel of the polar, from whose facets the sandwich comes.
 constexpr double kPolarEpsilon = 0.05;
 
@@ -56,38 +61,54 @@ std::vector<std::size_t> shuffled(std::size_t n) {
   return order;
 }
 
-/// The rows a.x <= b of unit length with |b| <= 1, and extreme points of their intersection.
 template <int D>
+ProgramVector<double, D> to_array(const Vector<D>& v) {
+  ProgramVector<double, D> r;
+  for (std::size_t k = 0; k < D; ++k) r[k] = v[Eigen::Index(k)];
+  return r;
+}
+
+/// The rows a.x <= b of unit length with |b| <= 1, and extreme points of their intersection.
+template <typename Scalar, int D>
 class Program {
  public:
   explicit Program(std::span<const Halfspace<D>> halfspaces) {
-    scale_ = 0;
-    for (const std::size_t i : shuffled(halfspaces.size())) {
-      const double length = halfspaces[i].normal.stableNorm();
-      rows_.push_back({halfspaces[i].normal / length, halfspaces[i].offset / length});
-      scale_ = std::max(scale_, std::abs(rows_.back().b));
-    }
+    for (const Halfspace<D>& h : halfspaces) scale_ = std::max(scale_, std::abs(h.offset) / h.normal.stableNorm());
     if (!(scale_ > 0)) scale_ = 1;
-    for (ProgramRow<D>& row : rows_) row.b /= scale_;
+    rows_.reserve(halfspaces.size());
+    for (const std::size_t i : shuffled(halfspaces.size())) {
+      // By a power of two near its length first, so that squares neither overflow nor vanish.
+      const double power = std::exp2(std::round(std::log2(halfspaces[i].normal.stableNorm())));
+      ProgramRow<Scalar, D> row{};
+      for (std::size_t k = 0; k < D; ++k) row.a[k] = Scalar{halfspaces[i].normal[Eigen::Index(k)] / power};
+      const Scalar length = root(dot(row.a, row.a));
+      for (Scalar& a : row.a) a = a / length;
+      row.b = Scalar{halfspaces[i].offset / power} / (length * Scalar{scale_});
+      rows_.push_back(row);
+    }
   }
 
   [[nodiscard]] bool maximise(const Vector<D>& direction, Vector<D>& x) const {
-    return detail::maximise<D>(rows_, direction, kBound, kSlack, x);
+    ProgramVector<Scalar, D> objective, point;
+    for (std::size_t k = 0; k < D; ++k) objective[k] = Scalar{direction[Eigen::Index(k)]};
+    const double slack = std::is_same_v<Scalar, double> ? kSlack : kFineSlack;
+    if (!detail::maximise<Scalar, D>(rows_, objective, kBound, slack, point)) return false;
+    for (std::size_t k = 0; k < D; ++k) x[Eigen::Index(k)] = head(point[k]);
+    return true;
   }
   [[nodiscard]] double scale() const { return scale_; }
-  [[nodiscard]] const std::vector<ProgramRow<D>>& rows() const { return rows_; }
 
  private:
-  std::vector<ProgramRow<D>> rows_;
-  double scale_;
+  std::vector<ProgramRow<Scalar, D>> rows_;
+  double scale_ = 0;
 };
 
 Error empty_error() { return {ErrorCode::bad_value, "the halfspaces have no point in common", "halfspaces"}; }
 Error unbounded_error() { return {ErrorCode::unbounded, "the halfspaces must enclose a bounded body", "halfspaces"}; }
 
 /// A rough sandwich from extreme points along the axes of better and better frames. Scaled by `program.scale()`.
-template <int D>
-Expected<Sandwich<D>> rough_sandwich(const Program<D>& program) {
+template <typename Scalar, int D>
+Expected<Sandwich<D>> scaled_sandwich(const Program<Scalar, D>& program) {
   std::vector<Vector<D>> core;
   const auto add = [&](const Vector<D>& direction) -> std::optional<Error> {
     Vector<D> x;
@@ -141,6 +162,20 @@ Expected<Sandwich<D>> rough_sandwich(const Program<D>& program) {
   }
 }
 
+template <typename Scalar, int D>
+Expected<Sandwich<D>> rough_sandwich(std::span<const Halfspace<D>> halfspaces) {
+  const Program<Scalar, D> program(halfspaces);
+  const Expected<Sandwich<D>> scaled = scaled_sandwich<Scalar, D>(program);
+  if (!scaled) return scaled;
+  Sandwich<D> r = *scaled;
+  r.centre *= program.scale();
+  r.axes *= program.scale();
+  const bool interior = std::all_of(halfspaces.begin(), halfspaces.end(),
+                                    [&](const Halfspace<D>& h) { return h.offset > h.normal.dot(r.centre); });
+  if (!interior) return flat_error<D>("halfspaces");
+  return r;
+}
+
 }  // namespace
 
 template <int D>
@@ -157,12 +192,11 @@ std::vector<Vector<D>> polar_points(std::span<const Halfspace<D>> halfspaces, co
 template <int D>
 Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfspaces, double eta) {
   if (const auto error = check<D>(halfspaces)) return *error;
-  const Program<D> program(halfspaces);
-  const Expected<Sandwich<D>> rough = rough_sandwich<D>(program);
+  // Programs in doubles lose digits where an optimum of theirs lies at the bound: nothing is refused on their word.
+  Expected<Sandwich<D>> rough = rough_sandwich<double, D>(halfspaces);
+  if (!rough) rough = rough_sandwich<DoubleDouble, D>(halfspaces);
   if (!rough) return rough;
-  Sandwich<D> frame = *rough;
-  frame.centre *= program.scale();
-  frame.axes *= program.scale();
+  const Sandwich<D>& frame = *rough;
 
   // K_z = {z : <q_i, z> <= 1} holds the unit ball and lies in that of radius ratio. The hull H of a kernel of ratio q_i
   // has K_z in ratio H^o, whose vertices are its facets' normals, and K_z holds ratio H^o / limit.
@@ -183,7 +217,7 @@ Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfs
   const double limit = builder.limit();
   Sandwich<D> r;
   const Vector<D> centre = inner.centre / limit;
-  const double shift = (inner.axes.inverse() * (inner.centre - centre)).norm();
+  const double shift = (inverse_of<D>(inner.axes) * (inner.centre - centre)).norm();
   r.centre = frame.centre + frame.axes * centre;
   r.axes = frame.axes * inner.axes / (limit * (1 + 1e-9));
   r.ratio = (inner.ratio + shift) * limit * (1 + 2e-9);
@@ -193,18 +227,18 @@ Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfs
 template <int D>
 SupportPoint<D> extreme_point(std::span<const Halfspace<D>> halfspaces, const Sandwich<D>& sandwich,
                               const Vector<D>& direction) {
-  std::vector<ProgramRow<D>> rows;
+  std::vector<ProgramRow<double, D>> rows;
   rows.reserve(halfspaces.size());
   const std::vector<Vector<D>> polar = polar_points<D>(halfspaces, sandwich);
   for (const std::size_t i : shuffled(polar.size())) {
     const double length = polar[i].norm();
     // A plane at infinity holds nothing back.
-    if (length > 0) rows.push_back({polar[i] / length, 1 / length});
+    if (length > 0) rows.push_back({to_array<D>(polar[i] / length), 1 / length});
   }
-  Vector<D> z;
+  ProgramVector<double, D> z{};
   const Vector<D> objective = (sandwich.axes.transpose() * direction).stableNormalized();
-  maximise<D>(rows, objective, 4 * sandwich.ratio, kSlack, z);
-  const Vector<D> point = sandwich.centre + sandwich.axes * z;
+  maximise<double, D>(rows, to_array<D>(objective), 4 * sandwich.ratio, kSlack, z);
+  const Vector<D> point = sandwich.centre + sandwich.axes * Eigen::Map<const Vector<D>>(z.data());
   return {point, direction.dot(point), -1};
 }
 

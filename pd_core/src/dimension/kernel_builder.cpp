@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pd/dimension/matrix_inverse.hpp"
+
 namespace pd::dimension::detail {
 
 namespace {
@@ -28,7 +30,7 @@ double cells_of(double epsilon, int dimension) {
 template <int D>
 KernelBuilder<D>::KernelBuilder(const AffineMap<D>& to_unit, double epsilon)
     : to_unit_(to_unit),
-      centre_(-(to_unit.linear.inverse() * to_unit.translation)),
+      centre_(-(inverse_of<D>(to_unit.linear) * to_unit.translation)),
       limit_(limit_of(epsilon)),
       hull_(start_radius(epsilon)),
       cells_(cells_of(epsilon, D)),

@@ -3,85 +3,134 @@
 ///
 /// Seidel, "Small-dimensional linear programming and convex hulls made easy", 1991: constraints enter one by one, and
 /// one that cuts off the optimum so far holds it on its plane, a program in K - 1 variables. Expected O(K! n) in random
-/// order, which the caller provides. In doubles: a constraint counts as kept within `slack` (rows of unit length).
+/// order, which the caller provides. In doubles or in double-double: a constraint counts as kept within `slack` (rows
+/// of unit length). Optima of the programs in fewer variables may lie at the bound, so that slack * bound has to be
+/// small beside the body.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include "pd/dimension/vector.hpp"
+#include "numeric/double_double.hpp"
 
 namespace pd::dimension::detail {
 
-template <int K>
+template <typename Scalar, int K>
+using ProgramVector = std::array<Scalar, std::size_t(K)>;
+
+template <typename Scalar, int K>
 struct ProgramRow {
-  Eigen::Matrix<double, K, 1, Eigen::DontAlign> a;
-  double b;
+  ProgramVector<Scalar, K> a;
+  Scalar b;
+};
+
+inline double head(double x) { return x; }
+inline double head(const pd::detail::DoubleDouble& x) { return x.hi; }
+inline double root(double x) { return std::sqrt(x); }
+inline pd::detail::DoubleDouble root(const pd::detail::DoubleDouble& x) { return sqrt(x); }
+
+template <typename Scalar, std::size_t K>
+Scalar dot(const std::array<Scalar, K>& a, const std::array<Scalar, K>& b) {
+  Scalar sum = a[0] * b[0];
+  for (std::size_t k = 1; k < K; ++k) sum = sum + a[k] * b[k];
+  return sum;
+}
+
+/// What rounding may add to dot(a, b), in units of the slack.
+template <typename Scalar, std::size_t K>
+double magnitude(const std::array<Scalar, K>& a, const std::array<Scalar, K>& b) {
+  double sum = 1;
+  for (std::size_t k = 0; k < K; ++k) sum += std::abs(head(a[k]) * head(b[k]));
+  return sum;
+}
+
+/// The plane of `row`, solved for the variable `pivot`: x_pivot = offset - <along, the others>.
+template <typename Scalar, int K>
+struct Elimination {
+  std::size_t pivot = 0;
+  ProgramVector<Scalar, K - 1> along;
+  Scalar offset;
+
+  explicit Elimination(const ProgramRow<Scalar, K>& row) {
+    for (std::size_t k = 1; k < K; ++k) {
+      if (std::abs(head(row.a[k])) > std::abs(head(row.a[pivot]))) pivot = k;
+    }
+    for (std::size_t k = 0, to = 0; k < K; ++k) {
+      if (k != pivot) along[to++] = row.a[k] / row.a[pivot];
+    }
+    offset = row.b / row.a[pivot];
+  }
+  /// The linear form `v` on the plane, but for its constant v_pivot * offset.
+  [[nodiscard]] ProgramVector<Scalar, K - 1> restricted(const ProgramVector<Scalar, K>& v) const {
+    ProgramVector<Scalar, K - 1> r;
+    for (std::size_t k = 0, to = 0; k < K; ++k) {
+      if (k == pivot) continue;
+      r[to] = v[k] - v[pivot] * along[to];
+      ++to;
+    }
+    return r;
+  }
+  [[nodiscard]] ProgramVector<Scalar, K> lifted(const ProgramVector<Scalar, K - 1>& y) const {
+    ProgramVector<Scalar, K> x;
+    for (std::size_t k = 0, from = 0; k < K; ++k) {
+      if (k != pivot) x[k] = y[from++];
+    }
+    x[pivot] = offset - dot(along, y);
+    return x;
+  }
 };
 
 /// False when no x keeps all rows.
-template <int K>
-bool maximise(const std::vector<ProgramRow<K>>& rows, const Eigen::Matrix<double, K, 1, Eigen::DontAlign>& objective,
-              double bound, double slack, Eigen::Matrix<double, K, 1, Eigen::DontAlign>& x) {
+template <typename Scalar, int K>
+bool maximise(const std::vector<ProgramRow<Scalar, K>>& rows, const ProgramVector<Scalar, K>& objective, double bound,
+              double slack, ProgramVector<Scalar, K>& x) {
   if constexpr (K == 1) {
-    double low = -bound, high = bound;
-    for (const ProgramRow<1>& row : rows) {
-      const double a = row.a[0];
-      if (std::abs(a) <= slack) {
-        if (row.b < -slack) return false;
-      } else if (a > 0) {
-        high = std::fmin(high, row.b / a);
-      } else {
-        low = std::fmax(low, row.b / a);
+    Scalar low{-bound}, high{bound};
+    for (const ProgramRow<Scalar, 1>& row : rows) {
+      const Scalar& a = row.a[0];
+      if (std::abs(head(a)) <= slack) {
+        if (head(row.b) < -slack) return false;
+        continue;
+      }
+      const Scalar end = row.b / a;
+      if (head(a) > 0) {
+        if (head(end - high) < 0) high = end;
+      } else if (head(end - low) > 0) {
+        low = end;
       }
     }
-    if (low > high + slack * (1 + std::abs(low))) return false;
-    x[0] = objective[0] >= 0 ? high : low;
+    if (head(low - high) > slack * (1 + std::abs(head(low)))) return false;
+    x[0] = head(objective[0]) >= 0 ? high : low;
     return true;
   } else {
-    using Row = ProgramRow<K - 1>;
-    for (int k = 0; k < K; ++k) x[k] = objective[k] >= 0 ? bound : -bound;
-    std::vector<Row> below;
+    for (std::size_t k = 0; k < K; ++k) x[k] = Scalar{head(objective[k]) >= 0 ? bound : -bound};
+    std::vector<ProgramRow<Scalar, K - 1>> below;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double sum = rows[i].a.dot(x);
-      if (sum <= rows[i].b + slack * (1 + rows[i].a.cwiseAbs().dot(x.cwiseAbs()))) continue;
-      // On the plane of row i: x_pivot = (b - sum of the others) / a_pivot.
-      Eigen::Index pivot;
-      const double largest = rows[i].a.cwiseAbs().maxCoeff(&pivot);
-      if (largest <= slack) return false;
-      const auto without = [&](const auto& v) {
-        Eigen::Matrix<double, K - 1, 1, Eigen::DontAlign> r;
-        for (int k = 0, to = 0; k < K; ++k) {
-          if (k != pivot) r[to++] = v[k];
-        }
-        return r;
-      };
-      const double a = rows[i].a[pivot], b = rows[i].b;
-      const Eigen::Matrix<double, K - 1, 1, Eigen::DontAlign> along = without(rows[i].a) / a;
+      if (head(dot(rows[i].a, x) - rows[i].b) <= slack * magnitude(rows[i].a, x)) continue;
+      const Elimination<Scalar, K> plane(rows[i]);
+      if (std::abs(head(rows[i].a[plane.pivot])) <= slack) return false;
       below.clear();
-      below.push_back({-along, bound - b / a});
-      below.push_back({along, bound + b / a});
-      bool empty = false;
+      ProgramVector<Scalar, K - 1> opposite;
+      for (std::size_t k = 0; k + 1 < K; ++k) opposite[k] = -plane.along[k];
+      below.push_back({opposite, Scalar{bound} - plane.offset});
+      below.push_back({plane.along, Scalar{bound} + plane.offset});
       for (std::size_t j = 0; j < i; ++j) {
-        Row row{without(rows[j].a) - rows[j].a[pivot] * along, rows[j].b - rows[j].a[pivot] * b / a};
-        const double length = row.a.norm();
-        if (length <= slack) {
+        ProgramRow<Scalar, K - 1> row{plane.restricted(rows[j].a), rows[j].b - rows[j].a[plane.pivot] * plane.offset};
+        const Scalar length = root(dot(row.a, row.a));
+        if (head(length) <= slack) {
           // Parallel to row i.
-          empty = empty || row.b < -slack * (1 + std::abs(rows[j].b));
+          if (head(row.b) < -slack * (1 + std::abs(head(rows[j].b)))) return false;
           continue;
         }
-        row.a /= length;
-        row.b /= length;
+        for (Scalar& a : row.a) a = a / length;
+        row.b = row.b / length;
         below.push_back(row);
       }
-      Eigen::Matrix<double, K - 1, 1, Eigen::DontAlign> y;
-      if (empty || !maximise<K - 1>(below, without(objective) - objective[pivot] * along, bound, slack, y))
-        return false;
-      for (int k = 0, from = 0; k < K; ++k) {
-        if (k != pivot) x[k] = y[from++];
-      }
-      x[pivot] = b / a - along.dot(y);
+      ProgramVector<Scalar, K - 1> y;
+      if (!maximise<Scalar, K - 1>(below, plane.restricted(objective), bound, slack, y)) return false;
+      x = plane.lifted(y);
     }
     return true;
   }

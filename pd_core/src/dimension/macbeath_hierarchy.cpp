@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dimension/macbeath_cover.hpp"
+#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension::detail {
 
@@ -244,7 +245,7 @@ Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(const std:
                                                                       const AffineMap<D>& frame, double epsilon) {
   auto hierarchy = std::make_unique<MacbeathHierarchy<D>>();
   hierarchy->points = points;
-  hierarchy->pull_back = frame.linear.inverse().transpose();
+  hierarchy->pull_back = inverse_of<D>(frame.linear).transpose();
   std::vector<Vector<D>> fat;
   for (const SupportPoint<D>& p : points) fat.push_back(frame.apply(p.point));
   HierarchyBuilder<D> builder(PolarBody<D>(std::move(fat)), *hierarchy);

@@ -1,8 +1,9 @@
 #include "dimension/macbeath_region.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension::detail {
 
@@ -77,7 +78,7 @@ MacbeathRegion<D> PolarBody<D>::region(const Vector<D>& v, double delta,
     rest -= basis * (basis.transpose() * rest);
     basis.col(k) = rest / rest.norm();
   }
-  Matrix<D> inverse = moment.inverse();
+  Matrix<D> inverse = inverse_of<D>(moment);
   constexpr int kSteps = 60;
   for (int step = 0; step < kSteps; ++step) {
     double most = 0;
@@ -93,7 +94,7 @@ MacbeathRegion<D> PolarBody<D>::region(const Vector<D>& v, double delta,
     if (most <= kRoundness * D) break;
     const double share = (most / D - 1) / (most - 1);
     moment = (1 - share) * moment + share * far * far.transpose();
-    inverse = moment.inverse();
+    inverse = inverse_of<D>(moment);
   }
   double most = 0;  // whatever the weights: E = {z : z' moment z <= 1 / most} lies in every slab
   for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -110,7 +111,7 @@ std::vector<std::int32_t> PolarBody<D>::neighbours(const MacbeathRegion<D>& regi
   // A deeper region in the shadow is centred at s (x + z), z in the ellipsoid, 1 <= s <= <q, hit> / ..., and reaches at
   // most twice as far as this region's slabs do, which end within sqrt(roundness d) of the ellipsoid.
   const double reach = 1 + 2.5 * std::sqrt(kRoundness * D);
-  const Matrix<D> inverse = region.ellipsoid.inverse();
+  const Matrix<D> inverse = inverse_of<D>(region.ellipsoid);
   const double depth = region.center.dot(points_[region.point]);  // 1 - delta
   std::vector<std::int32_t> r;
   for (const std::int32_t p : candidates) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "pd/dimension/matrix_inverse.hpp"
+
 namespace pd::dimension {
 
 namespace {
@@ -54,7 +56,7 @@ FatteningMap<D> fatten_sum(std::span<const SandwichBox<D>> boxes) {
     for (std::size_t i = 0; i < generators.size(); ++i) {
       if (weights[i] > 0) metric += generators[i] * generators[i].transpose() / weights[i];
     }
-    const Plain inverse = metric.inverse();
+    const Plain inverse = inverse_of<D>(metric);
     lower = 1;
     total = 0;
     std::vector<double> next;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pd/dimension/matrix_inverse.hpp"
+
 namespace pd::dimension::detail {
 
 namespace {
@@ -141,7 +143,7 @@ template <int D>
 bool core_ellipsoid(std::span<const Vector<D>> points, double eta, Sandwich<D>& sandwich, std::int64_t& steps) {
   const SpanningFrame<D> frame = spanning_frame<D>(points);
   if (frame.rank < D) return false;
-  const Vector<D> origin = -(frame.to_frame.linear.inverse() * frame.to_frame.translation);
+  const Vector<D> origin = -(inverse_of<D>(frame.to_frame.linear) * frame.to_frame.translation);
   std::vector<Vector<D>> y;
   y.reserve(points.size());
   for (const Vector<D>& p : points) y.push_back(frame.to_frame.linear * (p - origin));
@@ -161,7 +163,7 @@ bool core_ellipsoid(std::span<const Vector<D>> points, double eta, Sandwich<D>& 
   double squared = 0;
   for (const Vector<D>& x : y) squared = std::max(squared, root.matrixL().solve(x - mean).squaredNorm());
   squared *= 1 + 1e-9;  // the roundings of the solve, in a frame where the covariance is well conditioned
-  const Matrix<D> from_frame = frame.to_frame.linear.inverse();
+  const Matrix<D> from_frame = inverse_of<D>(frame.to_frame.linear);
   sandwich.centre = origin + from_frame * mean;
   sandwich.axes = from_frame * Matrix<D>(root.matrixL()) / std::sqrt(squared);
   sandwich.ratio = squared;

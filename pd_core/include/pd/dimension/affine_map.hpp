@@ -2,8 +2,7 @@
 /// Affine maps x -> linear x + translation, and what they do to support functions.
 #pragma once
 
-#include <Eigen/LU>
-
+#include "pd/dimension/matrix_inverse.hpp"
 #include "pd/dimension/vector.hpp"
 
 namespace pd::dimension {
@@ -21,7 +20,7 @@ struct AffineMap {
   /// Requires a regular `linear`.
   [[nodiscard]] AffineMap inverse() const {
     AffineMap r;
-    r.linear = linear.inverse();
+    r.linear = inverse_of<D>(linear);
     r.translation = -(r.linear * translation);
     return r;
   }

@@ -24,7 +24,7 @@ struct Sandwich {
   /// Maps C to the unit ball about O, so that the image of K is (1 / ratio)-fat.
   [[nodiscard]] AffineMap<D> fattening() const {
     AffineMap<D> r;
-    r.linear = axes.inverse();
+    r.linear = inverse_of<D>(axes);
     r.translation = -(r.linear * centre);
     return r;
   }
