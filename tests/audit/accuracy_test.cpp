@@ -1,0 +1,86 @@
+/// @file
+/// `pdepth accuracy`: recorder programs driven, their records counted by engine and family; programs that misbehave.
+#include <sys/stat.h>
+
+#include <cstdlib>
+
+#include "audit/accuracy_run.hpp"
+#include "record_text.hpp"
+
+namespace pd::test {
+namespace {
+
+class Accuracy : public ::testing::Test, protected TemporaryFolder {
+ protected:
+  /// A recorder in the shell. Its engine "good" knows the cubes' depth, "bad" sees less, nothing, and what is not
+  /// there.
+  std::string recorder() {
+    const std::string cubes = RecordText().shape("s", R"({"type":"box","half_extents":[1,1,1]})").text();
+    const auto contact = [](const char* x, const char* reported) {
+      RecordText text("");
+      text.contact("s", "s", std::string(R"(,"pose_b":{"translation":[)") + x + ",0,0]}", reported);
+      return text.text().substr(1);
+    };
+    write("good", cubes + contact("1.5", R"({"depth":0.5,"normal":[-1,0,0]})") + contact("3", "null"));
+    write("bad", cubes + contact("1.5", R"({"depth":0.4999,"normal":[-1,0,0]})") + contact("1", "null") +
+                     contact("3", R"({"depth":0.25})") + contact("1", R"({"depth":"nan"})"));
+    const std::string program = write("a recorder", R"(#!/bin/sh
+here=$(dirname "$0")
+engine=
+while [ $# -gt 0 ]; do
+  case $1 in
+    --list) echo good; echo bad; exit 0 ;;
+    --engine) engine=$2; shift ;;
+    --out) out=$2; shift ;;
+    --family) family=$2; shift ;;
+  esac
+  shift
+done
+[ "$family" = box ] || kill -9 $$
+cat "$here/$engine" > "$out" && echo 1234
+)");
+    EXPECT_EQ(::chmod(program.c_str(), 0700), 0);
+    return program;
+  }
+};
+
+TEST_F(Accuracy, CountsWhatARecorderSays) {
+  const std::string program = recorder();
+  EXPECT_EQ(audit::engines_of(program), (std::vector<std::string>{"good", "bad"}));
+  const audit::AccuracyRow good = audit::run_accuracy(program, "good", "box", {});
+  EXPECT_FALSE(good.failed);
+  EXPECT_EQ(good.contacts, 2);
+  EXPECT_EQ(good.wrong() + good.above_small, 0);
+  EXPECT_EQ(good.nanoseconds, 1234);
+  const audit::AccuracyRow bad = audit::run_accuracy(program, "bad", "box", {});
+  EXPECT_EQ(bad.contacts, 4);
+  EXPECT_EQ(bad.missed, 1);
+  EXPECT_EQ(bad.phantom, 1);
+  EXPECT_EQ(bad.above_small, 2) << "the depth that is short, and the phantom";
+  EXPECT_EQ(bad.above_large, 1);
+  EXPECT_EQ(bad.no_answer, 1);
+  EXPECT_EQ(bad.wrong(), 3);
+  EXPECT_NEAR(bad.worst, 1.25 / 5, 1e-12);
+}
+
+TEST_F(Accuracy, ProgramsThatFail) {
+  EXPECT_TRUE(audit::engines_of(path() / "nobody").empty());
+  EXPECT_TRUE(audit::run_accuracy(path() / "nobody", "good", "box", {}).failed);
+  const std::string program = recorder();
+  EXPECT_TRUE(audit::run_accuracy(program, "good", "prism", {}).failed) << "it killed itself";
+  EXPECT_TRUE(audit::run_accuracy(program, "none", "box", {}).failed) << "it wrote no record";
+}
+
+TEST_F(Accuracy, TheCommand) {
+  const std::string command = "'" PDEPTH_PROGRAM "' accuracy --recorder '" + recorder() + "' --families ";
+  const std::string out = " > '" + (path() / "out").string() + "' 2>&1";
+  EXPECT_EQ(WEXITSTATUS(std::system((command + "box --csv '" + (path() / "table.csv").string() + "'" + out).c_str())),
+            0);
+  EXPECT_NE(read("out").find("good "), std::string::npos) << read("out");
+  EXPECT_NE(read("table.csv").find("\nbad,box,0,4,1,1,2,1,1,"), std::string::npos) << read("table.csv");
+  EXPECT_EQ(WEXITSTATUS(std::system((command + "box,prism" + out).c_str())), 2) << "a run failed";
+  EXPECT_EQ(WEXITSTATUS(std::system((command + "nonsense" + out).c_str())), 2);
+}
+
+}  // namespace
+}  // namespace pd::test
