@@ -227,6 +227,8 @@ const std::vector<ContactSceneMaker>& contact_scenes() {
       {"slide-compound", [](std::uint64_t p) { return slide(SlideOver::compound, p); }},
       {"slide-mesh", [](std::uint64_t p) { return slide(SlideOver::mesh, p); }},
       {"slide-heightfield", [](std::uint64_t p) { return slide(SlideOver::heightfield, p); }},
+      {"slide-t-junctions", [](std::uint64_t p) { return slide(SlideOver::t_junctions, p); }},
+      {"slide-decomposition", [](std::uint64_t p) { return slide(SlideOver::decomposition, p); }},
       {"bounces", bounces},
       {"one-place", one_place},
   };
@@ -354,30 +356,83 @@ ContactScene rolling_cylinder(std::uint64_t perturbation) {
   return scene;
 }
 
+namespace {
+
+WorldBody flush_boxes() {
+  WorldBody floor;
+  floor.kind = WorldBody::Kind::compound;
+  for (int i = -12; i <= 12; ++i) {
+    floor.parts.push_back(box(Vec3(0.5, 2, 0.5), Vec3(i, 0, -0.5)));
+  }
+  return floor;
+}
+
+/// Rows along x of cells of different lengths.
+WorldBody floor_of_t_junctions() {
+  WorldBody floor;
+  floor.kind = WorldBody::Kind::mesh;
+  const int cells[] = {17, 40, 23, 31};
+  for (int row = 0; row < 4; ++row) {
+    for (int i = 0; i <= cells[row]; ++i) {
+      const int corner = static_cast<int>(floor.points.size());
+      const double x = 24.0 * i / cells[row] - 12;
+      floor.points.emplace_back(x, row - 2, 0);
+      floor.points.emplace_back(x, row - 1, 0);
+      if (i < cells[row]) {
+        floor.triangles.push_back({corner, corner + 2, corner + 3});
+        floor.triangles.push_back({corner, corner + 3, corner + 1});
+      }
+    }
+  }
+  return floor;
+}
+
+WorldBody oblique_slab() {
+  WorldBody floor;
+  floor.kind = WorldBody::Kind::compound;
+  const auto seam = [](int i, double y) { return i - 12.5 + 0.15 * y * (i % 2 == 0 ? 1 : -1); };
+  for (int i = 0; i < 25; ++i) {
+    WorldBody part;
+    const double off = 0.5e-7 * ((i * 7) % 5 - 2);
+    part.position = Vec3(i - 12, 0, -0.5);
+    for (const double z : {-0.5, 0.5 + off}) {
+      for (const double y : {-2.0, 2.0}) {
+        part.points.emplace_back(seam(i, y) - off - part.position.x(), y, z);
+        part.points.emplace_back(seam(i + 1, y) + off - part.position.x(), y, z);
+      }
+    }
+    floor.parts.push_back(part);
+  }
+  return floor;
+}
+
+}  // namespace
+
 ContactScene slide(SlideOver ground, std::uint64_t perturbation) {
+  static constexpr struct {
+    const char* name;
+    const char* over;
+  } kGrounds[] = {{"slide-compound", "flush boxes of a compound"},
+                  {"slide-mesh", "a flat mesh"},
+                  {"slide-heightfield", "a flat heightfield"},
+                  {"slide-t-junctions", "a flat mesh with corners inside edges"},
+                  {"slide-decomposition", "hulls with oblique seams"}};
   ContactScene scene;
+  scene.name = kGrounds[static_cast<int>(ground)].name;
+  scene.title = std::string("A box slides over ") + kGrounds[static_cast<int>(ground)].over;
   scene.goal = ContactGoal::keep;
-  scene.seconds = 3;
+  scene.seconds = 6;
   scene.quick_seconds = 3;
   scene.wanted_speed = 3;
   scene.quick = true;
   scene.world.friction = 0;
-  WorldBody floor;
-  if (ground == SlideOver::compound) {
-    scene.name = "slide-compound";
-    scene.title = "A box slides over flush boxes of a compound";
-    floor.kind = WorldBody::Kind::compound;
-    for (int i = -12; i <= 12; ++i) {
-      floor.parts.push_back(box(Vec3(0.5, 2, 0.5), Vec3(i, 0, -0.5)));
-    }
-  } else {
-    scene.name = ground == SlideOver::mesh ? "slide-mesh" : "slide-heightfield";
-    scene.title = ground == SlideOver::mesh ? "A box slides over a flat mesh" : "A box slides over a flat heightfield";
-    floor = flat_mesh(12, 24, ground == SlideOver::heightfield);
-  }
+  WorldBody floor = ground == SlideOver::compound        ? flush_boxes()
+                    : ground == SlideOver::t_junctions   ? floor_of_t_junctions()
+                    : ground == SlideOver::decomposition ? oblique_slab()
+                                                         : flat_mesh(12, 24, ground == SlideOver::heightfield);
   floor.mass = 0;
   scene.world.bodies.push_back(floor);
-  WorldBody body = box(Vec3::Constant(0.4), Vec3(-5, 0.13, 0.4));
+  WorldBody body = box(Vec3::Constant(0.4), Vec3(-9, 0.13, 0.4));
   body.linear_velocity = Vec3(3, 0, 0);
   scene.world.bodies.push_back(body);
   perturb(scene, perturbation);

@@ -56,8 +56,9 @@ struct ContactSceneMaker {
 [[nodiscard]] ContactScene rolling_cylinder(std::uint64_t perturbation);
 /// Stones, boxes, cylinders and capsules that fall into a bowl (a triangle mesh) or onto a heightfield.
 [[nodiscard]] ContactScene pour(int count, bool heightfield, std::uint64_t perturbation);
-/// A box without friction that slides at 3 m/s over flush boxes of a compound, a flat mesh or a flat heightfield.
-enum class SlideOver { compound, mesh, heightfield };
+/// A box without friction that slides at 3 m/s for six seconds over flush boxes of a compound, a flat mesh, a flat
+/// heightfield, a mesh whose corners lie inside edges, or hulls with oblique seams that agree to 1e-7.
+enum class SlideOver { compound, mesh, heightfield, t_junctions, decomposition };
 [[nodiscard]] ContactScene slide(SlideOver ground, std::uint64_t perturbation);
 
 }  // namespace pd::scenes

@@ -39,6 +39,11 @@ struct Side {
   }
 };
 
+bool is_flat(const PosedShape& body) {
+  const ConvexPolytope* polytope = body.shape->polytope();
+  return polytope != nullptr && polytope->affine_dimension() == 2;
+}
+
 /// Least <x, n> over a core.
 Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
   if (const ConvexPolytope* polytope = shape.shape->polytope()) {
@@ -84,11 +89,13 @@ class Cover {
         CoverBuffers& buffers)
       : wrapper_(wrapper), slack_(slack), window_(window), stamp_(stamp), core_(core), buffers_(buffers) {}
 
-  /// Collects what is near the contact. @return whether there is anything.
-  bool look_round(const Vec3& point) {
+  /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
+  /// @return whether there is anything
+  bool look_round(const Vec3& foot, double margin, const Vec3& n) {
     // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
     const double reach = 1.5 * window_ + slack_;
-    count_ = pieces_near(wrapper_, point, reach, stamp_, core_, buffers_.near);
+    const Beyond beyond{n, n.dot(foot) + margin + 2 * slack_};
+    count_ = pieces_near(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.near);
     return count_ > 0;
   }
 
@@ -113,8 +120,9 @@ class Cover {
   }
 
  private:
-  /// The part of the feature within the window, by its corners.
-  void feature_at(const Vec3& foot, const Vec3& n) {
+  /// The part of the feature within the window, by its corners. They lie in the piece up to half the slack, so that a
+  /// flush neighbour holds them.
+  void feature_at(Vec3 foot, const Vec3& n) {
     const std::vector<Plane>& planes = buffers_.own.planes;
     std::vector<Vec3>& feature = buffers_.feature;
     feature.clear();
@@ -130,28 +138,25 @@ class Cover {
       if (count < 2) touched[count] = &plane;
       ++count;
     }
+    for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
     if (facet != nullptr) {
+      foot -= facet->height(foot) * facet->normal;
       const Vec3 u = n.unitOrthogonal() * window_;
       const Vec3 w = n.cross(u);
       feature = {foot + u + w, foot - u + w, foot - u - w, foot + u - w};
-      clip_to_piece(buffers_.own, 2 * slack_, feature, buffers_.spare);
+      clip_to_piece(buffers_.own, 0.5 * slack_, feature, buffers_.spare);
       return;
     }
+    feature = {foot};
     // Of a triangle, its two sides and one edge; of a solid, two facets.
-    const bool edge = buffers_.own.flat ? count == 3 : count == 2;
-    Vec3 along = Vec3::Zero();
-    if (edge) {
-      const Plane* second = buffers_.own.flat ? edge_of_triangle(foot) : touched[1];
-      if (second != nullptr) along = touched[0]->normal.cross(second->normal);
-    }
-    if (along.norm() > kLevel) {
-      along *= window_ / along.norm();
-      feature = {foot - along, foot + along};
-      clip_to_piece(buffers_.own, 2 * slack_, feature, buffers_.spare);
-      feature.push_back(foot);
-    } else {
-      feature = {foot};
-    }
+    if (count != (buffers_.own.flat ? 3 : 2)) return;
+    const Plane* second = buffers_.own.flat ? edge_of_triangle(foot) : touched[1];
+    Vec3 along = second != nullptr ? Vec3(touched[0]->normal.cross(second->normal)) : Vec3(Vec3::Zero());
+    if (along.norm() <= kLevel) return;
+    along *= window_ / along.norm();
+    feature = {foot - along, foot + along};
+    clip_to_piece(buffers_.own, 0.5 * slack_, feature, buffers_.spare);
+    feature.push_back(foot);
   }
 
   const Plane* edge_of_triangle(const Vec3& foot) const {
@@ -215,8 +220,9 @@ class SideRule {
   bool apply(double depth, const Vec3& witness, ContactManifold& points) {
     const Vec3 n = side_.outward(points.normal);
     if (pushes_from_triangle(n)) return false;
-    const Vec3 foot = witness - side_.own.shape->margin() * n;
-    if (!cover_.look_round(foot)) return false;
+    const double margin = side_.own.shape->margin();
+    const Vec3 foot = witness - margin * n;
+    if (!cover_.look_round(foot, margin, n) && !is_flat(side_.own)) return false;
     UnionPiece& own = buffers_.cover.own;
     set_piece(side_.own, own);
     if (own.planes.empty()) return false;
@@ -224,19 +230,19 @@ class SideRule {
         std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
                          [&](const Plane& x, const Plane& y) { return x.normal.dot(n) < y.normal.dot(n); });
     const double cosine = best->normal.dot(n);
-    if (cosine >= 1 - kSameNormal) return !own.flat && facet_contact(depth, best->normal, points);
+    if (cosine >= 1 - kSameNormal) return !own.flat && facet_contact(depth, best->normal, foot, points);
     const double sine = covered_here(foot, n);
     if (sine <= kLevel || (sine < kDecided && cosine < kNearNormal)) return false;
-    points = own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth);
+    points = own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot);
     return true;
   }
 
  private:
   /// Whether n is the normal of one side of a triangle: nothing covers those, and most contacts end here.
   [[nodiscard]] bool pushes_from_triangle(const Vec3& n) const {
-    const ConvexPolytope* polytope = side_.own.shape->polytope();
-    return polytope != nullptr && polytope->affine_dimension() == 2 &&
-           std::abs((side_.own.pose.rotation() * polytope->facet_normal(0)).dot(n)) >= 1 - kSameNormal;
+    return is_flat(side_.own) &&
+           std::abs((side_.own.pose.rotation() * side_.own.shape->polytope()->facet_normal(0)).dot(n)) >=
+               1 - kSameNormal;
   }
 
   /// A contact in the middle of a triangle that does not push along its normal is the triangle's own.
@@ -250,15 +256,15 @@ class SideRule {
   }
 
   /// A solid's facet: each point by itself.
-  bool facet_contact(double depth, const Vec3& n, ContactManifold& points) {
+  bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
     const double margin = buffers_.cover.own.margin;
     const int before = points.count;
     for (int i = points.count - 1; i >= 0; --i) {
-      const Vec3 foot = side_.on_piece(points.points[static_cast<std::size_t>(i)]) - margin * n;
-      if (cover_.covered(foot, n) > kDecided) drop(points, i);
+      const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(i)]) - margin * n;
+      if (cover_.covered(on_core, n) > kDecided) drop(points, i);
     }
     if (points.count == before) return false;
-    if (points.count == 0) points = nearest_free(n, depth);
+    if (points.count == 0) points = nearest_free(n, depth, foot);
     return true;
   }
 
@@ -275,8 +281,9 @@ class SideRule {
   }
 
   /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach.
-  ContactManifold nearest_free(const Vec3& n, double depth) {
+  ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
     const UnionPiece& own = buffers_.cover.own;
+    if (!own.flat) cover_.look_round(foot, own.margin, Vec3::Zero());
     std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
     facets.clear();
     const double limit = std::max(4 * depth, window_);
@@ -294,8 +301,8 @@ class SideRule {
       const Plane& facet = own.planes[static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second)];
       ContactManifold points = turned(facet);
       for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
-        const Vec3 foot = side_.on_piece(points.points[static_cast<std::size_t>(k)]) - own.margin * facet.normal;
-        if (cover_.covered(foot, facet.normal) > kDecided) drop(points, k);
+        const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(k)]) - own.margin * facet.normal;
+        if (cover_.covered(on_core, facet.normal) > kDecided) drop(points, k);
       }
       if (points.count > 0) return points;
     }

@@ -36,6 +36,18 @@ void for_each_mesh_pair(Visit&& visit) {
   }
 }
 
+/// Compounds against convex bodies, in both orders, and against compounds.
+template <class Visit>
+void for_each_compound_pair(Visit&& visit) {
+  for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
+    if (btBroadphaseProxy::isConvex(i)) {
+      visit(i, COMPOUND_SHAPE_PROXYTYPE);
+      visit(COMPOUND_SHAPE_PROXYTYPE, i);
+    }
+  }
+  visit(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE);
+}
+
 /// Pairs lose their algorithms and get new ones, from the dispatcher's present tables, at the next step.
 void renew_pairs(btCollisionWorld& world) {
   btOverlappingPairCache* cache = world.getPairCache();
@@ -58,6 +70,10 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
   for_each_mesh_pair([&](int i, int j, bool swapped) {
     dispatcher.registerCollisionCreateFunc(
         i, j, whole ? installation.mesh(swapped) : configuration->getCollisionAlgorithmCreateFunc(i, j));
+  });
+  for_each_compound_pair([&](int i, int j) {
+    dispatcher.registerCollisionCreateFunc(
+        i, j, whole ? installation.compound() : configuration->getCollisionAlgorithmCreateFunc(i, j));
   });
 }
 
@@ -87,9 +103,11 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
     dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
     dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
   });
-  for_each_mesh_pair([&](int i, int j, bool) {
+  const auto give_back = [&](int i, int j) {
     dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
-  });
+  };
+  for_each_mesh_pair([&](int i, int j, bool) { give_back(i, j); });
+  for_each_compound_pair(give_back);
   if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
     dynamics->removeAction(installation->step_action());
   }

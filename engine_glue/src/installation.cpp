@@ -1,5 +1,9 @@
 #include "installation.hpp"
 
+#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -13,7 +17,16 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       closest_(*this, true),
       mesh_(*this, false),
       swapped_mesh_(*this, true),
+      compound_(*this),
       persistent_(&depth_solver_) {}
+
+btCollisionAlgorithm* Installation::bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                      const btCollisionObjectWrapper* a,
+                                                      const btCollisionObjectWrapper* b) const {
+  return dispatcher_->getCollisionConfiguration()
+      ->getCollisionAlgorithmCreateFunc(a->getCollisionShape()->getShapeType(), b->getCollisionShape()->getShapeType())
+      ->CreateCollisionAlgorithm(info, a, b);
+}
 
 bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a,
                                              const btConvexShape* b, const btTransform& pose_a,

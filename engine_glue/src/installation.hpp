@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "compound_algorithm.hpp"
 #include "contact_algorithm.hpp"
 #include "mesh_algorithm.hpp"
 
@@ -35,6 +36,12 @@ class Installation {
   [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
   /// For the table of contacts: convex against mesh, or (`swapped`) mesh against convex.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
+  /// For the table of contacts: pairs with a compound, of compounds and convex bodies.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }
+  /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a dispatcher.
+  [[nodiscard]] btCollisionAlgorithm* bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                        const btCollisionObjectWrapper* a,
+                                                        const btCollisionObjectWrapper* b) const;
   [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent() { return &persistent_; }
   [[nodiscard]] btConvexPenetrationDepthSolver* depth_solver() { return &depth_solver_; }
   /// Tells that a step has ended; for `btDynamicsWorld::addAction`.
@@ -72,6 +79,7 @@ class Installation {
   ContactAlgorithm::CreateFunc closest_;
   MeshAlgorithm::CreateFunc mesh_;
   MeshAlgorithm::CreateFunc swapped_mesh_;
+  CompoundAlgorithm::CreateFunc compound_;
   btConvexConvexAlgorithm::CreateFunc persistent_;
 };
 

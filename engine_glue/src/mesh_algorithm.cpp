@@ -1,7 +1,6 @@
 #include "mesh_algorithm.hpp"
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
-#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -9,13 +8,13 @@
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "covered_contact.hpp"
 #include "installation.hpp"
-#include "manifold_points.hpp"
-#include "patches.hpp"
+#include "patch_manifolds.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
 
@@ -35,8 +34,16 @@ struct MetTriangle {
 /// are no numbers.
 class TrianglesInBox : public btTriangleCallback {
  public:
-  TrianglesInBox(const btVector3& lower, const btVector3& upper, std::vector<MetTriangle>& met)
-      : lower_(lower), upper_(upper), met_(met) {}
+  /// @param reach  how far from the box triangles count
+  TrianglesInBox(const btVector3& lower, const btVector3& upper, btScalar reach, std::vector<MetTriangle>& met)
+      : lower_(lower - btVector3(reach, reach, reach)),
+        upper_(upper + btVector3(reach, reach, reach)),
+        middle_(0.5 * (to_pd(lower) + to_pd(upper))),
+        half_(0.5 * (to_pd(upper) - to_pd(lower))),
+        // What rounding of the box and of the heights may add.
+        reach_(1.001 * static_cast<double>(reach) +
+               (sizeof(btScalar) == sizeof(float) ? 0x1p-20 : 0x1p-48) * (to_pd(lower_).norm() + to_pd(upper_).norm())),
+        met_(met) {}
 
   void processTriangle(btVector3* corners, int part, int index) override {
     for (int axis = 0; axis < 3; ++axis) {
@@ -48,14 +55,23 @@ class TrianglesInBox : public btTriangleCallback {
       ++skipped;
       return;
     }
+    // The box lies on one side of the triangle's plane, farther than contacts reach.
+    const double height = across.dot(middle_ - to_pd(corners[0]));
+    if (std::abs(height) > across.cwiseAbs().dot(half_) + reach_ * across.norm()) return;
     met_.push_back({{corners[0], corners[1], corners[2]}, part, index});
   }
+
+  [[nodiscard]] const btVector3& lower() const { return lower_; }
+  [[nodiscard]] const btVector3& upper() const { return upper_; }
 
   int skipped = 0;
 
  private:
   btVector3 lower_;
   btVector3 upper_;
+  Vec3 middle_;
+  Vec3 half_;
+  double reach_;
   std::vector<MetTriangle>& met_;
 };
 
@@ -99,30 +115,31 @@ class TriangleInResult {
   const btCollisionObjectWrapper* before_;
 };
 
-/// The number of a triangle's feature pair among those of all triangles.
-std::int64_t feature_of(const MetTriangle& triangle, std::int64_t feature) {
-  const auto number = static_cast<std::uint64_t>(feature) * 0x9E3779B97F4A7C15ULL +
-                      static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) * 0xC2B2AE3D27D4EB4FULL +
-                      static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.index)) * 0x165667B19E3779F9ULL;
-  return static_cast<std::int64_t>(number >> 11U);
-}
+class TriangleOfPoint : public PointSurroundings {
+ public:
+  TriangleOfPoint(const btCollisionObjectWrapper& mesh, btManifoldResult& result,
+                  const std::vector<MetTriangle>& triangles)
+      : mesh_(mesh), result_(result), triangles_(triangles) {}
+  void enter(int triangle) override {
+    inside_.emplace(result_, mesh_, triangles_[static_cast<std::size_t>(triangle)],
+                    mesh_.getCollisionShape()->getMargin());
+  }
+  void leave() override { inside_.reset(); }
+
+ private:
+  const btCollisionObjectWrapper& mesh_;
+  btManifoldResult& result_;
+  const std::vector<MetTriangle>& triangles_;
+  std::optional<TriangleInResult> inside_;
+};
 
 }  // namespace
 
 /// What lives between steps.
 struct MeshAlgorithm::State {
-  struct Kept {
-    btPersistentManifold* manifold;
-    PairMemory memory;
-  };
-
   State(const Installation& of, bool is_swapped, const btCollisionAlgorithmConstructionInfo& info)
-      : installation(of), swapped(is_swapped), construction(info) {}
+      : installation(of), swapped(is_swapped), construction(info), manifolds(of.core(), *info.m_dispatcher1) {}
   ~State() {
-    for (const auto& kept : manifolds) {
-      installation.core().pairs.remove(kept->manifold);
-      construction.m_dispatcher1->releaseManifold(kept->manifold);
-    }
     if (bullets != nullptr) {
       bullets->~btCollisionAlgorithm();
       construction.m_dispatcher1->freeCollisionAlgorithm(bullets);
@@ -131,35 +148,19 @@ struct MeshAlgorithm::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  Kept& manifold(std::size_t i, const btCollisionObjectWrapper& convex, const btCollisionObjectWrapper& mesh) {
-    while (i >= manifolds.size()) {
-      manifolds.push_back(std::make_unique<Kept>());
-      manifolds.back()->manifold =
-          construction.m_dispatcher1->getNewManifold(convex.getCollisionObject(), mesh.getCollisionObject());
-      installation.core().pairs.add(manifolds.back()->manifold, &manifolds.back()->memory);
-    }
-    return *manifolds[i];
-  }
-
   const Installation& installation;
   bool swapped;
   btCollisionAlgorithmConstructionInfo construction;
-  std::vector<std::unique_ptr<Kept>> manifolds;
+  PatchManifolds manifolds;
   btCollisionAlgorithm* bullets = nullptr;  ///< answers for what we do not
   std::vector<MetTriangle> triangles;
   Patches patches;
   bool used = false;
 
-  void clear() const {
-    for (const auto& kept : manifolds) kept->manifold->clearManifold();
-  }
-
   /// Fills `patches` with the points of all triangles.
   /// @return false where the body has no exact form
   bool find_points(const btCollisionObjectWrapper& convex, const btCollisionObjectWrapper& mesh, double seconds,
                    btScalar threshold, btManifoldResult& result);
-  void keep_points(const btCollisionObjectWrapper& convex, const btCollisionObjectWrapper& mesh,
-                   btManifoldResult& result);
 };
 
 MeshAlgorithm::MeshAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
@@ -181,18 +182,14 @@ btCollisionAlgorithm* MeshAlgorithm::CreateFunc::CreateCollisionAlgorithm(btColl
   const bool ours =
       !settings.takes_pair || settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user);
   if (!ours || !settings.unions_as_one) {
-    return installation.dispatcher()
-        ->getCollisionConfiguration()
-        ->getCollisionAlgorithmCreateFunc(a->getCollisionShape()->getShapeType(),
-                                          b->getCollisionShape()->getShapeType())
-        ->CreateCollisionAlgorithm(info, a, b);
+    return installation.bullets_algorithm(info, a, b);
   }
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(MeshAlgorithm));
   return new (memory) MeshAlgorithm(info, a, b, installation, m_swapped);
 }
 
 void MeshAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
-  for (const auto& kept : state_->manifolds) manifolds.push_back(kept->manifold);
+  state_->manifolds.append_to(manifolds);
   if (state_->bullets != nullptr) state_->bullets->getAllContactManifolds(manifolds);
 }
 
@@ -201,24 +198,17 @@ void MeshAlgorithm::processCollision(const btCollisionObjectWrapper* a, const bt
   State& state = *state_;
   const btCollisionObjectWrapper& convex = state.swapped ? *b : *a;
   const btCollisionObjectWrapper& mesh = state.swapped ? *a : *b;
-  // Of the pair, as Bullet keeps it; there is always one, so that hosts see the pair.
-  btPersistentManifold* first = state.manifold(0, convex, mesh).manifold;
-  result->setPersistentManifold(first);
-  const btScalar threshold = first->getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
+  btPersistentManifold& first = state.manifolds.first(*convex.getCollisionObject(), *mesh.getCollisionObject());
+  result->setPersistentManifold(&first);
+  const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
   const bool closed = state.installation.core().closed();
   if (!closed && state.find_points(convex, mesh, static_cast<double>(info.m_timeStep), threshold, *result)) {
-    state.keep_points(convex, mesh, *result);
-    result->setPersistentManifold(first);
+    TriangleOfPoint around(mesh, *result, state.triangles);
+    state.manifolds.replace(state.patches, *result, around);
     return;
   }
-  state.clear();
-  if (state.bullets == nullptr) {
-    state.bullets = state.installation.dispatcher()
-                        ->getCollisionConfiguration()
-                        ->getCollisionAlgorithmCreateFunc(a->getCollisionShape()->getShapeType(),
-                                                          b->getCollisionShape()->getShapeType())
-                        ->CreateCollisionAlgorithm(state.construction, a, b);
-  }
+  state.manifolds.clear();
+  if (state.bullets == nullptr) state.bullets = state.installation.bullets_algorithm(state.construction, a, b);
   state.bullets->processCollision(a, b, info, result);
 }
 
@@ -235,9 +225,8 @@ bool MeshAlgorithm::State::find_points(const btCollisionObjectWrapper& convex, c
   btVector3 upper;
   body.getAabb(pose.inverseTimes(convex.getWorldTransform()), lower, upper);
   const btScalar reach = concave.getMargin() + threshold;
-  const btVector3 extra(reach, reach, reach);
-  TrianglesInBox collector(lower - extra, upper + extra, triangles);
-  concave.processAllTriangles(&collector, lower - extra, upper + extra);
+  TrianglesInBox collector(lower, upper, reach, triangles);
+  concave.processAllTriangles(&collector, collector.lower(), collector.upper());
   auto buffers = core.buffers.lease();
   if (collector.skipped > 0) buffers->counters.skipped_triangles.add(collector.skipped);
   // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
@@ -254,57 +243,9 @@ bool MeshAlgorithm::State::find_points(const btCollisionObjectWrapper& convex, c
                                               buffers->manifold, DeepestPoint::as_lifted);
     keep_uncovered(convex, triangle.wrapper(), answer, static_cast<double>(threshold), seconds, stamp, core, *buffers,
                    points);
-    for (int k = 0; k < points.count; ++k) {
-      points.points[static_cast<std::size_t>(k)].feature_id =
-          feature_of(triangles[i], points.points[static_cast<std::size_t>(k)].feature_id);
-    }
-    patches.add(points, static_cast<int>(i));
+    patches.add(points, static_cast<int>(i), triangles[i].part, triangles[i].index);
   }
   return true;
-}
-
-void MeshAlgorithm::State::keep_points(const btCollisionObjectWrapper& convex, const btCollisionObjectWrapper& mesh,
-                                       btManifoldResult& result) {
-  class Around : public PointSurroundings {
-   public:
-    Around(const State& state, const btCollisionObjectWrapper& mesh, btManifoldResult& result, const Patch& patch)
-        : state_(state), mesh_(mesh), result_(result), patch_(patch) {}
-    void enter(int point) override {
-      const int piece = patch_.pieces[static_cast<std::size_t>(point)];
-      inside_.emplace(result_, mesh_, state_.triangles[static_cast<std::size_t>(piece)],
-                      mesh_.getCollisionShape()->getMargin());
-    }
-    void leave() override { inside_.reset(); }
-
-   private:
-    const State& state_;
-    const btCollisionObjectWrapper& mesh_;
-    btManifoldResult& result_;
-    const Patch& patch_;
-    std::optional<TriangleInResult> inside_;
-  };
-
-  const double threshold = static_cast<double>(manifolds[0]->manifold->getContactBreakingThreshold());
-  patches.choose(kPatches, threshold);
-  // A patch goes to the manifold that had its normal last step, as far as those go round.
-  std::array<int, kPatches> taken{};
-  for (std::size_t m = 0; m < manifolds.size(); ++m) {
-    const btPersistentManifold& manifold = *manifolds[m]->manifold;
-    taken[m] = manifold.getNumContacts() == 0 ? -1 : patches.claim(to_pd(manifold.getContactPoint(0).m_normalWorldOnB));
-  }
-  for (std::size_t m = 0; m < static_cast<std::size_t>(kPatches); ++m) {
-    int patch = m < manifolds.size() ? taken[m] : -1;
-    if (patch < 0) patch = patches.claim_any();
-    if (patch < 0) {
-      if (m < manifolds.size()) manifolds[m]->manifold->clearManifold();
-      continue;
-    }
-    Kept& kept = manifold(m, convex, mesh);
-    const Patch& chosen = patches[patch];
-    Around around(*this, mesh, result, chosen);
-    result.setPersistentManifold(kept.manifold);
-    replace_points(*kept.manifold, kept.memory, chosen.fresh, result, around);
-  }
 }
 
 }  // namespace pd::detail

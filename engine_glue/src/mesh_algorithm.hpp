@@ -16,12 +16,9 @@ class Installation;
 /// Bullet's own algorithm hands one manifold of four to every triangle in turn, so that what it keeps hangs on their
 /// order, and (3.24) asks no triangle before the body is within the breaking threshold of it less its margin, which
 /// lets bodies sink through most of a mesh's margin. This one collects the points of all triangles that the body's box
-/// meets, each under the rule of covered_contact.hpp, sorts them by normal into at most kPatches patches, and keeps
-/// four of each: deepest first, then those that span most. Every patch has a manifold of its own.
+/// meets, each under the rule of covered_contact.hpp, and keeps four for each direction (patches.hpp).
 class MeshAlgorithm final : public btActivatingCollisionAlgorithm {
  public:
-  static constexpr int kPatches = 4;
-
   /// @param swapped  a is the mesh
   MeshAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                 const btCollisionObjectWrapper* b, const Installation& installation, bool swapped);

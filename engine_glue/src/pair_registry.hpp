@@ -6,9 +6,11 @@
 #include <LinearMath/btVector3.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <unordered_map>
+#include <vector>
 
 #include "cached_shape.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -23,6 +25,13 @@ struct RememberedPoint {
   std::int64_t feature_id;
 };
 
+/// Of two children in a pair with compounds.
+struct ChildPairMemory {
+  std::uint64_t children = 0;  ///< both numbers
+  WarmCertificate warm;
+  std::array<std::shared_ptr<CachedShape>, 2> shapes;
+};
+
 struct PairMemory {
   WarmCertificate warm;
   /// Held so that the certificate's shapes stay where they are, and so that a pair looks nothing up that has not
@@ -30,6 +39,7 @@ struct PairMemory {
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
+  std::vector<ChildPairMemory> children;  ///< sorted by number
 };
 
 /// Memories by manifold. Algorithms come and go on the dispatcher's threads.

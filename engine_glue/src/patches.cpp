@@ -13,6 +13,14 @@ constexpr double kNoise = 1e-3;
 /// Of the breaking threshold: points that near are one. (Bullet merges what lies within the whole of it.)
 constexpr double kMerge = 0.05;
 
+/// The number of a piece's feature pair among those of all pieces.
+std::int64_t feature_of_piece(std::int64_t feature, int i, int j) {
+  const auto number = static_cast<std::uint64_t>(feature) * 0x9E3779B97F4A7C15ULL +
+                      static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) * 0xC2B2AE3D27D4EB4FULL +
+                      static_cast<std::uint64_t>(static_cast<std::uint32_t>(j)) * 0x165667B19E3779F9ULL;
+  return static_cast<std::int64_t>(number >> 11U);
+}
+
 }  // namespace
 
 void Patches::clear() {
@@ -20,9 +28,11 @@ void Patches::clear() {
   patches_.clear();
 }
 
-void Patches::add(const ContactManifold& manifold, int piece) {
+void Patches::add(const ContactManifold& manifold, int piece, int i, int j) {
   for (int k = 0; k < manifold.count; ++k) {
     points_.push_back({manifold.normal, manifold.points[static_cast<std::size_t>(k)], piece, -1});
+    std::int64_t& feature = points_.back().contact.feature_id;
+    feature = feature_of_piece(feature, i, j);
   }
 }
 

@@ -21,7 +21,9 @@ struct Patch {
 class Patches {
  public:
   void clear();
-  void add(const ContactManifold& manifold, int piece);
+  /// @param piece  handed back with the point
+  /// @param i, j  numbers of the piece that do not change from step to step: features are told apart by them
+  void add(const ContactManifold& manifold, int piece, int i, int j);
 
   /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees (the
   /// last ones take what fits nowhere), drops those that coincide, and keeps four of each patch: the deepest, the

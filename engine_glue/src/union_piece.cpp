@@ -32,11 +32,17 @@ struct PieceList {
 
 class TrianglesOf : public btTriangleCallback {
  public:
-  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, PieceList& list)
-      : pose_(pose), margin_(margin), except_(except), list_(list) {}
+  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Beyond* beyond,
+              PieceList& list)
+      : pose_(pose), margin_(margin), except_(except), beyond_(beyond), list_(list) {}
   void processTriangle(btVector3* corners, int part, int index) override {
     if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
-    set_triangle({to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))}, margin_, list_.next());
+    const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
+    if (beyond_ != nullptr) {
+      const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
+      if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
+    }
+    set_triangle(points, margin_, list_.next());
     list_.keep();
   }
 
@@ -44,6 +50,7 @@ class TrianglesOf : public btTriangleCallback {
   const btTransform& pose_;
   double margin_;
   const btCollisionObjectWrapper* except_;
+  const Beyond* beyond_;
   PieceList& list_;
 };
 
@@ -51,6 +58,7 @@ class TrianglesOf : public btTriangleCallback {
 struct Search {
   btVector3 centre;
   btScalar reach;
+  const Beyond* beyond;
   std::uint64_t stamp;
   SolverCore& core;
   PieceList list;
@@ -85,7 +93,7 @@ void collect(const btCollisionShape& shape, const btTransform& pose, const btCol
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
     const btVector3 extent(search.reach, search.reach, search.reach);
-    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search.list);
+    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search.beyond, search.list);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {
     btVector3 lower;
@@ -93,6 +101,11 @@ void collect(const btCollisionShape& shape, const btTransform& pose, const btCol
     shape.getAabb(pose, lower, upper);
     for (int i = 0; i < 3; ++i) {
       if (lower[i] > search.centre[i] + search.reach || upper[i] < search.centre[i] - search.reach) return;
+    }
+    if (search.beyond != nullptr) {
+      const Vec3& n = search.beyond->n;
+      const Vec3 far = n.cwiseProduct(to_pd(lower)).cwiseMax(n.cwiseProduct(to_pd(upper)));
+      if (far.sum() <= search.beyond->level) return;
     }
     const auto found = search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp);
     if (!found->body) return;
@@ -208,9 +221,9 @@ bool is_piece(const btCollisionObjectWrapper& wrapper) {
   return parent != nullptr && (parent->getCollisionShape()->isConcave() || is_part(wrapper));
 }
 
-int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, std::uint64_t stamp,
-                SolverCore& core, std::vector<UnionPiece>& pieces) {
-  Search search{to_bullet(point), static_cast<btScalar>(reach), stamp, core, {pieces}};
+int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
+                std::uint64_t stamp, SolverCore& core, std::vector<UnionPiece>& pieces) {
+  Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, {pieces}};
   for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
     const btCollisionShape& shape = *child->m_parent->getCollisionShape();
     if (shape.isConcave()) {

@@ -53,10 +53,17 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
 /// Whether the shape behind the wrapper is a child of a compound.
 [[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
 
+/// The half-space of what covers against n: what does not reach into it has no way that leads on along n.
+struct Beyond {
+  Vec3 n;
+  double level;
+};
+
 /// The other pieces of the union that come within `reach` of a point, in world coordinates. Compounds in compounds and
 /// meshes in compounds included; curved parts are left out, since contacts inside of them do not arise from seams.
 /// `pieces` grows and is never shrunk, so that its planes keep their memory; the result counts.
-int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, std::uint64_t stamp,
-                SolverCore& core, std::vector<UnionPiece>& pieces);
+/// @param beyond  null, or: pieces whose surface does not come beyond it are left out
+int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
+                std::uint64_t stamp, SolverCore& core, std::vector<UnionPiece>& pieces);
 
 }  // namespace pd::detail

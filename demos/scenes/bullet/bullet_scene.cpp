@@ -1,5 +1,6 @@
 #include "scenes/bullet/bullet_scene.hpp"
 
+#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 
 #include <algorithm>
@@ -43,6 +44,18 @@ std::unique_ptr<btConvexShape> hull_of(const std::vector<Vec3>& points, double m
   return hull;
 }
 
+/// Bullet's own cure for inner edges. The callback is one for all worlds and asked for bodies with
+/// CF_CUSTOM_MATERIAL_CALLBACK alone: those of `bullet_edges`.
+bool adjust_edges(btManifoldPoint& point, const btCollisionObjectWrapper* a, int part_a, int index_a,
+                  const btCollisionObjectWrapper* b, int part_b, int index_b) {
+  if (b->getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+    btAdjustInternalEdgeContacts(point, b, a, part_b, index_b);
+  } else if (a->getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+    btAdjustInternalEdgeContacts(point, a, b, part_a, index_a);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string_view to_string(ContactRun run) {
@@ -53,6 +66,8 @@ std::string_view to_string(ContactRun run) {
       return "bullet-margin-0";
     case ContactRun::bullet_hulls:
       return "bullet-hulls";
+    case ContactRun::bullet_edges:
+      return "bullet-edges";
     case ContactRun::persistent:
       return "persistent";
     case ContactRun::pdepth:
@@ -110,7 +125,12 @@ btCollisionShape* BulletScene::make_shape(const WorldBody& body, ContactRun run)
         mesh->addTriangle(to_bullet(body.points[triangle[0]]), to_bullet(body.points[triangle[1]]),
                           to_bullet(body.points[triangle[2]]));
       }
-      shapes_.push_back(std::make_unique<btBvhTriangleMeshShape>(mesh.get(), true));
+      auto shape = std::make_unique<btBvhTriangleMeshShape>(mesh.get(), true);
+      if (run == ContactRun::bullet_edges) {
+        edge_maps_.push_back(std::make_unique<btTriangleInfoMap>());
+        btGenerateInternalEdgeInfo(shape.get(), edge_maps_.back().get());
+      }
+      shapes_.push_back(std::move(shape));
       meshes_.push_back(std::move(mesh));
       shapes_.back()->setMargin(0);
       break;
@@ -130,6 +150,10 @@ btCollisionShape* BulletScene::make_shape(const WorldBody& body, ContactRun run)
       const double spacing = body.points[1].x() - body.points[0].x();
       terrain->setLocalScaling(btVector3(scalar(spacing), scalar(spacing), 1));
       terrain->setMargin(0);
+      if (run == ContactRun::bullet_edges) {
+        edge_maps_.push_back(std::make_unique<btTriangleInfoMap>());
+        btGenerateInternalEdgeInfo(terrain.get(), edge_maps_.back().get());
+      }
       shapes_.push_back(std::move(terrain));
       heights_.push_back(std::move(heights));
       break;
@@ -160,6 +184,10 @@ void BulletScene::add_body(const WorldBody& plan, ContactRun run) {
   body.setLinearVelocity(to_bullet(plan.linear_velocity));
   body.setAngularVelocity(to_bullet(plan.angular_velocity));
   body.setActivationState(DISABLE_DEACTIVATION);
+  if (run == ContactRun::bullet_edges && shape->isConcave()) {
+    body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+    gContactAddedCallback = adjust_edges;
+  }
   world_->addRigidBody(&body);
 }
 

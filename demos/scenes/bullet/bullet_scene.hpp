@@ -2,6 +2,7 @@
 /// A world of plain data (scenes/worlds.hpp) in Bullet, under one of several ways to find contacts.
 #pragma once
 
+#include <BulletCollision/CollisionShapes/btTriangleInfoMap.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
@@ -18,13 +19,14 @@ enum class ContactRun {
   bullet_best,   ///< Bullet as shipped, boxes as btBoxShape, default margins inside the bodies
   bullet_sharp,  ///< the same with margin 0
   bullet_hulls,  ///< boxes as hulls, with default margins
+  bullet_edges,  ///< Bullet as shipped, and its internal edge utility on meshes and heightfields
   persistent,    ///< Bullet's persistent manifolds, our depth; margin 0
   pdepth,        ///< our contact algorithm; boxes with default margins, hulls with margin 0
   pdepth_hulls,  ///< the same, boxes as hulls with margin 0
 };
-inline constexpr ContactRun kContactRuns[] = {ContactRun::bullet_best,  ContactRun::bullet_sharp,
-                                              ContactRun::bullet_hulls, ContactRun::persistent,
-                                              ContactRun::pdepth,       ContactRun::pdepth_hulls};
+inline constexpr ContactRun kContactRuns[] = {
+    ContactRun::bullet_best, ContactRun::bullet_sharp, ContactRun::bullet_hulls, ContactRun::bullet_edges,
+    ContactRun::persistent,  ContactRun::pdepth,       ContactRun::pdepth_hulls};
 [[nodiscard]] std::string_view to_string(ContactRun run);
 [[nodiscard]] constexpr bool is_ours(ContactRun run) {
   return run == ContactRun::persistent || run == ContactRun::pdepth || run == ContactRun::pdepth_hulls;
@@ -67,6 +69,7 @@ class BulletScene {
   std::unique_ptr<btDiscreteDynamicsWorld> world_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btTriangleMesh>> meshes_;
+  std::vector<std::unique_ptr<btTriangleInfoMap>> edge_maps_;  ///< of bullet_edges
   std::vector<std::unique_ptr<std::vector<btScalar>>> heights_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;

@@ -1,0 +1,76 @@
+#include "patch_manifolds.hpp"
+
+#include <array>
+
+#include "pd/bullet/scalar.hpp"
+#include "solver_core.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Leads from a point's number in its patch to its piece's.
+class PieceOfPoint : public PointSurroundings {
+ public:
+  PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
+  void enter(int point) override { pieces_.enter(patch_.pieces[static_cast<std::size_t>(point)]); }
+  void leave() override { pieces_.leave(); }
+
+ private:
+  const Patch& patch_;
+  PointSurroundings& pieces_;
+};
+
+}  // namespace
+
+PatchManifolds::~PatchManifolds() {
+  for (const auto& kept : manifolds_) {
+    core_.pairs.remove(kept->manifold);
+    dispatcher_.releaseManifold(kept->manifold);
+  }
+}
+
+PatchManifolds::Kept& PatchManifolds::at(std::size_t i, const btCollisionObject& a, const btCollisionObject& b) {
+  while (i >= manifolds_.size()) {
+    manifolds_.push_back(std::make_unique<Kept>());
+    manifolds_.back()->manifold = dispatcher_.getNewManifold(&a, &b);
+    core_.pairs.add(manifolds_.back()->manifold, &manifolds_.back()->memory);
+  }
+  return *manifolds_[i];
+}
+
+void PatchManifolds::clear() {
+  for (const auto& kept : manifolds_) kept->manifold->clearManifold();
+}
+
+void PatchManifolds::append_to(btManifoldArray& manifolds) const {
+  for (const auto& kept : manifolds_) manifolds.push_back(kept->manifold);
+}
+
+void PatchManifolds::replace(Patches& patches, btManifoldResult& result, PointSurroundings& surroundings) {
+  btPersistentManifold& first = *manifolds_[0]->manifold;
+  const btCollisionObject& a = *first.getBody0();
+  const btCollisionObject& b = *first.getBody1();
+  patches.choose(kMost, static_cast<double>(first.getContactBreakingThreshold()));
+  std::array<int, kMost> heirs{};
+  heirs.fill(-1);
+  for (std::size_t m = 0; m < manifolds_.size(); ++m) {
+    const btPersistentManifold& manifold = *manifolds_[m]->manifold;
+    if (manifold.getNumContacts() > 0) heirs[m] = patches.claim(to_pd(manifold.getContactPoint(0).m_normalWorldOnB));
+  }
+  for (std::size_t m = 0; m < static_cast<std::size_t>(kMost); ++m) {
+    const int heir = heirs[m] >= 0 ? heirs[m] : patches.claim_any();
+    if (heir < 0) {
+      if (m < manifolds_.size()) manifolds_[m]->manifold->clearManifold();
+      continue;
+    }
+    Kept& kept = at(m, a, b);
+    const Patch& patch = patches[heir];
+    PieceOfPoint around(patch, surroundings);
+    result.setPersistentManifold(kept.manifold);
+    replace_points(*kept.manifold, kept.memory, patch.fresh, result, around);
+  }
+  result.setPersistentManifold(&first);
+}
+
+}  // namespace pd::detail
