@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "impact_search.hpp"
@@ -72,9 +73,9 @@ struct RollbackStepper::State {
 
 RollbackStepper::RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
                                  const RollbackSettings& settings)
-    : state_(std::make_unique<State>(world, solver, settings)) {}
+    : state_(new State(world, solver, settings)) {}
 
-RollbackStepper::~RollbackStepper() = default;
+RollbackStepper::~RollbackStepper() { delete state_; }
 
 bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, double time, double clearance,
                                             const PenetrationDepth& contact) const {
@@ -86,6 +87,7 @@ bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, d
 double RollbackStepper::State::advance_to(detail::FoundImpact impact, double from, double duration, double least,
                                           RollbackReport& report) {
   FirstContact result;
+  PenetrationDepth contact;
   result.undone_depth = std::max(0.0, -search.measure(impact).signed_distance());
   // A shorter part moves a little differently (gravity acts for less time, Bullet clamps a fast turn less), so that
   // each trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
@@ -100,20 +102,20 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
     detail::FoundImpact earlier;
     const bool meets = search.earliest(time, {settings.gap, settings.contact_slop}, earlier);
     if (meets) impact = earlier;
-    result.contact = search.measure(impact);
-    result.gap = result.contact.signed_distance();
+    contact = search.measure(impact);
+    result.gap = contact.signed_distance();
     const double clearance = result.gap + impact.allowed_depth;
     double next = HUGE_VAL;
     if (meets) {
-      if (is_just_before(impact, time, clearance, result.contact)) break;
+      if (is_just_before(impact, time, clearance, contact)) break;
       high = time;
       next = impact.time;
     } else {
       if (clearance <= settings.gap) break;
       low = time;
-      const double closing = (velocity_at(*impact.b.body, result.contact.witness_b) -
-                              velocity_at(*impact.a.body, result.contact.witness_a))
-                                 .dot(result.contact.normal);
+      const double closing =
+          (velocity_at(*impact.b.body, contact.witness_b) - velocity_at(*impact.a.body, contact.witness_a))
+              .dot(contact.normal);
       if (closing > 0) next = time + (clearance - 0.5 * settings.gap) / closing;
     }
     if (!(next > low && next < high)) next = 0.5 * (low + high);
@@ -127,8 +129,8 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
     time = low >= least ? low : least;
     start->restore();
     try_part(from, time, report);
-    result.contact = search.measure(impact);
-    result.gap = result.contact.signed_distance();
+    contact = search.measure(impact);
+    result.gap = contact.signed_distance();
     if (low < least) {
       ++report.least_parts;
       report.deepest_run_in = std::max(report.deepest_run_in, -result.gap);
@@ -138,6 +140,9 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
   result.body_a = impact.a.body;
   result.body_b = impact.b.body;
   result.time = from + time;
+  result.normal = to_bullet(contact.normal);
+  result.point_a = to_bullet(contact.witness_a);
+  result.point_b = to_bullet(contact.witness_b);
   if (impact.allowed_depth > 0) {
     ++report.deepened;
   } else {
@@ -149,7 +154,7 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
 void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport& report) {
   const auto whole = static_cast<double>(step);
   const double least = settings.least_part * whole;
-  const auto known = report.contacts.size();
+  const int known = report.contacts.size();
   search.collect();
   parts.begin_frame(step);
   double done = 0;
@@ -180,7 +185,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     accept(done, part, report);
     done += part;
   }
-  for (std::size_t i = known; i < report.contacts.size(); ++i) report.contacts[i].time += elapsed;
+  for (int i = known; i < report.contacts.size(); ++i) report.contacts[i].time += elapsed;
 }
 
 RollbackReport RollbackStepper::step(btScalar step) {

@@ -7,7 +7,9 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "broadphase_state.hpp"
@@ -215,16 +217,20 @@ void BulletSnapshot::State::save() {
   }
 }
 
-BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver)
-    : state_(std::make_unique<State>(State{world, solver, {}, {}, {}, {}, {}, {}})) {
-  state_->save();
+BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver) : state_(nullptr) {
+  auto state = std::make_unique<State>(State{world, solver, {}, {}, {}, {}, {}, {}});
+  state->save();
+  state_ = state.release();
 }
 
 void BulletSnapshot::save_again() { state_->save(); }
 
-BulletSnapshot::~BulletSnapshot() = default;
-BulletSnapshot::BulletSnapshot(BulletSnapshot&&) noexcept = default;
-BulletSnapshot& BulletSnapshot::operator=(BulletSnapshot&&) noexcept = default;
+BulletSnapshot::~BulletSnapshot() { delete state_; }
+BulletSnapshot::BulletSnapshot(BulletSnapshot&& other) noexcept : state_(std::exchange(other.state_, nullptr)) {}
+BulletSnapshot& BulletSnapshot::operator=(BulletSnapshot&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
 
 void BulletSnapshot::restore() const {
   btDiscreteDynamicsWorld& world = state_->world;

@@ -91,15 +91,15 @@ TEST_F(RollbackEnergy, BallsOfRestitutionOneKeepTheirs) {
   const double before = kinetic_energy(scene);
   RollbackStepper stepper(scene.world(), solver);
   int trials = 0;
-  std::size_t contacts = 0;
+  int contacts = 0;
   for (int i = 0; i < 60; ++i) {
     const RollbackReport report = stepper.step(kStep);
     contacts += report.contacts.size();
     for (const FirstContact& contact : report.contacts) trials += contact.trials;
     EXPECT_FALSE(report.bounded);
   }
-  EXPECT_GT(contacts, 60u);
-  EXPECT_LE(trials, 4 * static_cast<int>(contacts));
+  EXPECT_GT(contacts, 60);
+  EXPECT_LE(trials, 4 * contacts);
   EXPECT_NEAR(kinetic_energy(scene), before, 0.02 * before);
   for (const auto& body : scene.bodies()) {
     if (!body->isStaticObject()) {
@@ -273,9 +273,9 @@ TEST_F(RollbackEnergy, ALongRodTurnsIntoAThinWallNotThroughIt) {
   btRigidBody* body = free_body(rod, btVector3(btScalar(0.4), 0, 0), btVector3(0, 0, 0), 0);
   body->setAngularVelocity(btVector3(0, 0, 60));
   RollbackStepper stepper(scene.world(), solver);
-  std::size_t contacts = 0;
+  int contacts = 0;
   for (int i = 0; i < 20; ++i) contacts += stepper.step(kStep).contacts.size();
-  EXPECT_GE(contacts, 1u);
+  EXPECT_GE(contacts, 1);
   // Neither end came out behind: the rod's middle stays in front, and it is not across the wall.
   const btTransform& pose = body->getWorldTransform();
   for (const btScalar side : {btScalar(-1), btScalar(1)}) {
@@ -294,7 +294,7 @@ TEST_F(RollbackEnergy, KinematicBodiesMoveByTheirShare) {
   pusher->setMotionState(&drive);
   btRigidBody* ball = free_body(scene.shape<btSphereShape>(btScalar(0.1)), btVector3(0, 0, 0), btVector3(0, 0, 0), 0);
   RollbackStepper stepper(scene.world(), solver);
-  std::size_t contacts = 0;
+  int contacts = 0;
   for (int i = 1; i <= 8; ++i) {
     // 30 m/s: half a metre a step, from a face at -1.5.
     drive.m_graphicsWorldTrans.setOrigin(btVector3(btScalar(-2 + 0.5 * i), 0, 0));
@@ -302,7 +302,7 @@ TEST_F(RollbackEnergy, KinematicBodiesMoveByTheirShare) {
     EXPECT_NEAR(static_cast<double>(pusher->getWorldTransform().getOrigin().x()), -2 + 0.5 * i, 1e-5) << i;
     EXPECT_GE(static_cast<double>(ball->getWorldTransform().getOrigin().x()), -1.5 + 0.5 * i + 0.1 - 1e-3) << i;
   }
-  EXPECT_GE(contacts, 1u);
+  EXPECT_GE(contacts, 1);
   EXPECT_NEAR(static_cast<double>(ball->getLinearVelocity().x()), 30, 0.05);
 }
 

@@ -32,13 +32,17 @@ TEST_F(Rollback, StopsAtTheKnownTime) {
   ball->setRestitution(1);
   RollbackStepper stepper(scene.world(), solver);
   const RollbackReport report = stepper.step(kStep);  // free flight would end at 0.333, 0.417 deep
-  ASSERT_EQ(report.contacts.size(), 1u);
+  ASSERT_EQ(report.contacts.size(), 1);
   const FirstContact& contact = report.contacts[0];
   EXPECT_NEAR(contact.time, 1.25 / 100, 1e-6);
   EXPECT_GT(contact.gap, 0);
   EXPECT_LE(contact.gap, 1e-5);
   EXPECT_NEAR(contact.undone_depth, 0.25 + 0.5 - (2 - 100.0 / 60), 1e-4);
   EXPECT_LE(contact.trials, 4);
+  // The contact object decides who is A: the way in which the ball leaves the wall is +x.
+  const btVector3 way_out = contact.body_a == ball ? contact.normal : -contact.normal;
+  EXPECT_NEAR(static_cast<double>(way_out.x()), 1, 1e-6);
+  EXPECT_NEAR(static_cast<double>((contact.point_a - contact.point_b).length()), contact.gap, 1e-6);
   EXPECT_GE(static_cast<double>(ball->getWorldTransform().getOrigin().x()), 0.75 - 1e-5);
 }
 
@@ -53,7 +57,7 @@ TEST_F(Rollback, MeetsWhatItWouldPassThrough) {
   bullet->setAngularVelocity(btVector3(0, 0, 5));
   RollbackStepper stepper(scene.world(), solver);
   const RollbackReport report = stepper.step(kStep);
-  ASSERT_GE(report.contacts.size(), 1u);
+  ASSERT_GE(report.contacts.size(), 1);
   EXPECT_EQ(report.contacts[0].undone_depth, 0);  // at the end of the plain step it is behind the wall
   EXPECT_LE(report.contacts[0].gap, 1e-5);
   for (int i = 0; i < 30; ++i) {
@@ -72,7 +76,7 @@ TEST_F(Rollback, TwoBodiesInOneStepInOrder) {
   late->setLinearVelocity(btVector3(0, -100, 0));
   RollbackStepper stepper(scene.world(), solver);
   const RollbackReport report = stepper.step(kStep);
-  ASSERT_EQ(report.contacts.size(), 2u);
+  ASSERT_EQ(report.contacts.size(), 2);
   EXPECT_NEAR(report.contacts[0].time, 0.005, 1e-6);
   EXPECT_NEAR(report.contacts[1].time, 0.010, 1e-6);
 }

@@ -17,12 +17,10 @@
 /// act through all its parts.
 #pragma once
 
-#include <memory>
-#include <vector>
+#include <LinearMath/btAlignedObjectArray.h>
 
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/snapshot.hpp"
-#include "pd/depth/depth_answer.hpp"
 
 namespace pd {
 
@@ -49,20 +47,28 @@ struct FirstContact {
   const btCollisionObject* body_b = nullptr;
   double time = 0;  ///< since the step began
   double gap = 0;   ///< signed distance left, as measured at the pose that Bullet reached
-  double undone_depth =
-      0;           ///< how deep the pair was at the end of the step that was taken back (0: it had passed through)
+  /// How deep the pair was at the end of the step that was taken back; 0 where it had passed through.
+  double undone_depth = 0;
   int trials = 0;  ///< shorter steps tried
-  PenetrationDepth contact;  ///< at that pose
+  /// At that pose, in the world: the unit direction in which A leaves B, and the point of each body nearest to the
+  /// other.
+  btVector3 normal = {0, 0, 0}, point_a = {0, 0, 0}, point_b = {0, 0, 0};
+};
+
+/// Bullet's array, which its headers bring along (<vector> and <memory> would double what a host parses), as a range.
+struct FirstContacts : btAlignedObjectArray<FirstContact> {
+  [[nodiscard]] const FirstContact* begin() const { return size() > 0 ? &(*this)[0] : nullptr; }
+  [[nodiscard]] const FirstContact* end() const { return begin() + size(); }
 };
 
 struct RollbackReport {
-  std::vector<FirstContact> contacts;  ///< in order of time
-  int deepened = 0;                    ///< cuts of the step at pairs in contact that went deeper than they may
-  int least_parts = 0;                 ///< parts of the least length, within which a contact may have been run into
-  double deepest_run_in = 0;           ///< how deep the pairs were that those parts were about
-  int parts = 0;                       ///< accepted parts of the step
-  int simulation_steps = 0;            ///< Bullet's steps, trials included
-  bool bounded = false;                ///< max_contacts_per_step was reached
+  FirstContacts contacts;     ///< in order of time
+  int deepened = 0;           ///< cuts of the step at pairs in contact that went deeper than they may
+  int least_parts = 0;        ///< parts of the least length, within which a contact may have been run into
+  double deepest_run_in = 0;  ///< how deep the pairs were that those parts were about
+  int parts = 0;              ///< accepted parts of the step
+  int simulation_steps = 0;   ///< Bullet's steps, trials included
+  bool bounded = false;       ///< max_contacts_per_step was reached
 };
 
 class RollbackStepper {
@@ -90,7 +96,7 @@ class RollbackStepper {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  State* state_;  ///< owned
 };
 
 }  // namespace pd

@@ -9,8 +9,6 @@
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
-#include <memory>
-
 #include "pd/bullet/penetration_depth_solver.hpp"
 
 namespace pd {
@@ -48,7 +46,7 @@ class BulletSnapshot {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  State* state_;  ///< owned; nullptr where moved from
 };
 
 }  // namespace pd
