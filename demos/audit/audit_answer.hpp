@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "audit/audit_stream.hpp"
+#include "audit/exact_depth.hpp"
 #include "audit/fail_conditions.hpp"
 
 namespace pd::audit {
@@ -25,6 +26,9 @@ namespace pd::audit {
 /// The columns of a file of comma-separated values, one row a contact; both end with a newline.
 [[nodiscard]] std::string csv_header();
 [[nodiscard]] std::string csv_row(const RecordedContact& contact, const Judgement& judgement, std::int64_t line);
+
+/// The exact signed depth of a contact that was judged.
+[[nodiscard]] SignedDepth worst_interval(const WorstContact& worst, double tolerance);
 
 /// A line for `pdepth query` that asks the exact side again; empty for a half-space, which is no shape of a query.
 [[nodiscard]] std::string query_line(const WorstContact& worst, double tolerance);

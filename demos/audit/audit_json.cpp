@@ -126,6 +126,12 @@ std::string audit_json(const Audit& audit, const std::vector<ConditionOutcome>& 
   return text;
 }
 
+SignedDepth worst_interval(const WorstContact& worst, double tolerance) {
+  Scratch scratch;
+  const double scale = contact_scale(worst.contact);
+  return signed_depth(worst.contact, tolerance, scale > 0 ? scale : 1, scratch).value_or(SignedDepth());
+}
+
 std::string query_line(const WorstContact& worst, double tolerance) {
   const RecordedContact& contact = worst.contact;
   if (contact.a->halfspace || contact.b->halfspace) return {};

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "audit/audit_answer.hpp"
+#include "audit/audit_report.hpp"
 #include "protocol/json_writer.hpp"
 
 namespace pd::audit {
@@ -34,30 +35,6 @@ std::string row(std::string_view kind, std::size_t kind_width, const Totals& tot
 
 std::string said(const WorstContact& worst) {
   return worst.contact.report ? fmt::format("reported {:.9g}", worst.contact.report->depth) : "reported nothing";
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        // XML has no other control characters than these.
-        result += static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t' ? c : '?';
-    }
-  }
-  return result;
 }
 
 /// "3 lines refused, 2 pairs without an answer".
@@ -102,7 +79,7 @@ std::string audit_junit(const Audit& audit, const std::vector<ConditionOutcome>&
   const auto failures = std::count_if(conditions.begin(), conditions.end(),
                                       [](const ConditionOutcome& outcome) { return !outcome.holds; }) +
                         (whole ? 0 : 1);
-  const std::string name = escaped(record);
+  const std::string name = xml_text(record);
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"pdepth audit {}\" tests=\"{}\" failures=\"{}\">\n",
       name, conditions.size() + 1, failures);
@@ -110,7 +87,7 @@ std::string audit_junit(const Audit& audit, const std::vector<ConditionOutcome>&
   if (whole) {
     text += "/>\n";
   } else {
-    text += fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", escaped(not_judged(audit.summary)));
+    text += fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", xml_text(not_judged(audit.summary)));
   }
   for (const ConditionOutcome& outcome : conditions) {
     text += fmt::format("  <testcase classname=\"{}\" name=\"{} &lt;= {:g}\"", name, outcome.condition.name,

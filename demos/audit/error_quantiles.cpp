@@ -14,12 +14,12 @@ std::int64_t bin_of(double value) {
   return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(value) >> kDroppedBits);
 }
 
-double middle_of(std::int64_t bin) {
+}  // namespace
+
+double ErrorQuantiles::middle_of(std::int64_t bin) {
   const std::uint64_t low = static_cast<std::uint64_t>(bin) << kDroppedBits;
   return std::bit_cast<double>(low + (std::uint64_t{1} << (kDroppedBits - 1)));
 }
-
-}  // namespace
 
 void ErrorQuantiles::add(double value) {
   ++count_;

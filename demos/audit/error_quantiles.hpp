@@ -16,12 +16,22 @@ class ErrorQuantiles {
   void add(double value);
 
   [[nodiscard]] std::int64_t count() const { return count_; }
+  [[nodiscard]] std::int64_t zeros() const { return zeros_; }
+  /// Calls `visit(middle, count)` for every bin that holds something, the least first; zeros are in none.
+  template <class Visit>
+  void each_bin(Visit&& visit) const {
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+      if (bins_[i] > 0) visit(middle_of(first_bin_ + static_cast<std::int64_t>(i)), bins_[i]);
+    }
+  }
   /// Exact; 0 of nothing.
   [[nodiscard]] double max() const { return max_; }
   /// The value of rank ceil(share * count), to 1 %. @param share  in (0, 1]. Requires count() > 0.
   [[nodiscard]] double quantile(double share) const;
 
  private:
+  static double middle_of(std::int64_t bin);
+
   std::vector<std::int64_t> bins_;  ///< of the bit patterns from first_bin_ on, cut to exponent and six bits
   std::int64_t first_bin_ = 0;
   std::int64_t zeros_ = 0;

@@ -9,12 +9,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "audit/audit_answer.hpp"
+#include "audit/audit_report.hpp"
 #include "commands.hpp"
 
 namespace pd::cli {
@@ -44,6 +46,7 @@ struct AuditArguments {
   std::string csv;
   std::string junit;
   std::string fail_on;
+  std::string report;  ///< a folder
   double tolerance = 0;
   audit::AuditSettings settings;
   bool json = false;
@@ -88,6 +91,14 @@ void print_refusals(const std::string& record, const audit::AuditSummary& summar
 int cannot_write(const std::string& file) {
   fmt::print(stderr, "pdepth: {} cannot be written\n", file);
   return kFailed;
+}
+
+/// The command that gives the same page again.
+std::string command_of(const AuditArguments& arguments) {
+  std::string text = fmt::format("pdepth audit '{}' --worst {}", arguments.input, arguments.settings.worst_kept);
+  if (arguments.tolerance > 0) text += fmt::format(" --tolerance {}", arguments.tolerance);
+  if (!arguments.fail_on.empty()) text += fmt::format(" --fail-on {}", arguments.fail_on);
+  return text + fmt::format(" --report '{}'    # pdepth {}", arguments.report, PDEPTH_VERSION);
 }
 
 /// The audit itself. @return a code other than kDone where there is nothing to report.
@@ -143,6 +154,14 @@ int run_audit(AuditArguments arguments) {
     if (!junit.close()) return cannot_write(arguments.junit);
   }
   if (result.end == audit::Audit::End::no_record) return kBadUsage;
+  if (!arguments.report.empty()) {
+    const std::filesystem::path page = std::filesystem::path(arguments.report) / "report.html";
+    std::error_code error;
+    std::filesystem::create_directories(arguments.report, error);
+    OutputFile file(page);
+    file.write(audit::audit_report(result, outcomes, arguments.input, command_of(arguments)));
+    if (!file.close()) return cannot_write(page);
+  }
   const std::string text = arguments.json ? audit::audit_json(result, outcomes) + "\n"
                                           : audit::audit_table(result, outcomes, arguments.input);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
@@ -172,6 +191,7 @@ void add_audit_command(CLI::App& app, Action& action) {
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   command->add_option("--csv", arguments->csv, "Write a row for each contact to this file");
   command->add_option("--junit", arguments->junit, "Write the conditions as tests to this file");
+  command->add_option("--report", arguments->report, "Write report.html, a page for people, into this folder");
   command->add_option("--fail-on", arguments->fail_on, "What is allowed, e.g. missed=0,phantom=0,depth_error=1e-4");
   command->add_option("--worst", settings.worst_kept, "Contacts to show, the worst first")
       ->check(CLI::Range(0, 10'000))

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 #include <string>
 
 #include "record_text.hpp"
@@ -141,6 +142,32 @@ TEST_F(AuditProgram, ConditionsAndTheirExitCodes) {
   EXPECT_NE(table.out.find("box-box"), std::string::npos);
   EXPECT_NE(read("audit.xml").find("failures=\"1\""), std::string::npos) << read("audit.xml");
   EXPECT_EQ(audit(record, "--junit nowhere/audit.xml").status, 1);
+}
+
+TEST_F(AuditProgram, ThePageForPeople) {
+  const std::string record = cubes()
+                                 .contact("s", "s", at("1.5"), R"({"depth":0.25})")
+                                 .contact("s", "s", at("1"), "null")
+                                 .line(R"({"contact":"<script>&","a":"s","b":"s","reported":{"depth":1e-300}})")
+                                 .line("<rubbish>")
+                                 .text();
+  EXPECT_EQ(audit(record, "--report 'a page' --fail-on missed=0 --worst 9").status, 3);
+  const std::string page = read("a page/report.html");
+  pugi::xml_document document;
+  const auto parsed = document.load_string(page.c_str(), pugi::parse_full);
+  ASSERT_TRUE(parsed) << parsed.description();
+  EXPECT_EQ(document.select_nodes("//details").size(), 3U);
+  EXPECT_GE(document.select_nodes("//svg//rect/title").size(), 2U);
+  EXPECT_EQ(document.select_nodes("//tbody/tr").size(), 2U);
+  EXPECT_TRUE(document.select_nodes("//script | //link | //img").empty());
+  EXPECT_EQ(page.find("http"), page.find("http://www.w3.org/1999/xhtml")) << "nothing is fetched";
+  EXPECT_EQ(page.find("http", page.find("http://www.w3.org") + 5), std::string::npos);
+  EXPECT_NE(page.find("prefers-color-scheme:dark"), std::string::npos);
+  // The line to ask again survives the page.
+  std::string line;
+  for (const auto& pre : document.select_nodes("//details/pre[2]")) line = pre.node().text().get();
+  EXPECT_EQ(Json::parse(line).at("query"), "depth") << line;
+  EXPECT_EQ(audit(record, "--report /dev/null/x").status, 1);
 }
 
 TEST_F(AuditProgram, TheSameBytesWithAnyNumberOfThreads) {
