@@ -1,10 +1,11 @@
 /// @file
 /// polygon_depth: two polygons of the plane, Q moves ([D] section 4).
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "pd/planar/polygon_depth.hpp"
+#include "pd/planar/direction_set.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/polygon_answer.hpp"
 #include "protocol/polygon_reader.hpp"
@@ -15,6 +16,9 @@ namespace {
 
 /// Explicit sums are one for every two triangles; a line may not ask for more.
 constexpr std::int64_t kMostSums = 1 << 20;
+
+/// Placements from which on a direction of a set is cut into trapezoids, which costs some dozens of rays an edge.
+constexpr std::size_t kWorthPreprocessing = 64;
 
 PolygonMethod read_polygon_method(const Node& line) {
   const auto node = line.find("method");
@@ -37,7 +41,28 @@ bool read_flag(const Node& line, std::string_view key) {
 struct Question {
   Leave leave = Leave::first_exit;
   std::vector<Point2> directions;  ///< empty: the least over all
+  bool fixed_set = false;          ///< given as a "direction_set"
 
+  /// Of every placement, direction after direction.
+  [[nodiscard]] std::vector<PolygonDepth> answers(const PolygonDifference& r, const std::vector<Point2>& placements,
+                                                  const Node& line) const {
+    const std::size_t count = std::max<std::size_t>(1, directions.size());
+    std::vector<PolygonDepth> found(placements.size() * count);
+    for (std::size_t d = 0; d < count; ++d) {
+      std::optional<DirectionSet> trapezoids;  // [D] section 6; of one direction at a time, for the sake of memory
+      if (fixed_set && leave == Leave::first_exit && placements.size() >= kWorthPreprocessing) {
+        auto made = DirectionSet::of(r, {&directions[d], 1});
+        if (!made) line.refuse(made.error());
+        trapezoids = std::move(*made);
+      }
+      for (std::size_t i = 0; i < placements.size(); ++i) {
+        found[i * count + d] = trapezoids ? trapezoids->depth(placements[i], 0) : answer(r, placements[i], d);
+      }
+    }
+    return found;
+  }
+
+ private:
   [[nodiscard]] PolygonDepth answer(const PolygonDifference& r, const Point2& y, std::size_t direction) const {
     if (!directions.empty()) return r.depth_along(y, directions[direction], leave);
     return leave == Leave::escape ? r.escape_depth(y) : r.depth(y);
@@ -55,7 +80,8 @@ Leave read_leave(const Node& line) {
 }
 
 Question read_question(const Node& line) {
-  Question question{read_leave(line), {}};
+  Question question;
+  question.leave = read_leave(line);
   const auto direction = line.find("direction");
   const auto set = line.find("direction_set");
   if (direction && set) set->refuse("bad_value", "give either \"direction\" or \"direction_set\"");
@@ -63,6 +89,7 @@ Question read_question(const Node& line) {
   if (set) {
     question.directions = read_points2(*set, {}, true);
     if (question.directions.empty()) set->refuse("bad_value", "needs a direction at least");
+    question.fixed_set = true;
   }
   if (question.leave == Leave::straight && question.directions.empty()) {
     line.refuse("missing_field", "going straight needs a \"direction\" (or \"complete\":\"escape\" for any motion)");
@@ -95,12 +122,9 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
   const Stopwatch watch;
   const Expected<PolygonDifference> r = PolygonDifference::of(p, q, method);
   if (!r) line.refuse(r.error());
-  std::vector<PolygonDepth> answers;
-  for (const Point2& y : placements) {
-    for (std::size_t d = 0; d < directions; ++d) answers.push_back(question.answer(*r, y, d));
-  }
+  const std::vector<PolygonDepth> answers = question.answers(*r, placements, line);
   const std::int64_t nanoseconds = watch.nanoseconds();
-  write_polygon_answers(answers, placements_node.has_value() || line.find("direction_set").has_value(), answer);
+  write_polygon_answers(answers, placements_node.has_value() || question.fixed_set, answer);
   if (slots) {
     answer.key("slots").begin_array();
     for (const auto& slot : r->slots()) {

@@ -21,6 +21,8 @@ TEST(PolygonQuery, DepthOverAllDirections) {
   EXPECT_EQ(reply.at("translation"), Json::parse("[-1.0,0.0]"));
   EXPECT_EQ(reply.at("method"), "implicit");
   EXPECT_EQ(reply.at("stats").at("holes"), 1);
+  EXPECT_EQ(reply.at("stats").at("facts_hold"), true);
+  EXPECT_LE(reply.at("stats").at("events"), reply.at("stats").at("most_events"));
   EXPECT_EQ(reply.at("feature").at("p").at("ring"), "outer");
 }
 
@@ -39,6 +41,23 @@ TEST(PolygonQuery, ListsOfPlacementsAndDirections) {
   const Json straight =
       answer(line(kFrame, kUnitSquare, R"("placements":[[2.25,4]],"complete":true,"direction_set":[[1,0],[0,1]])"));
   EXPECT_EQ(straight.at("depths"), Json::parse("[7.75,6.0]"));
+}
+
+// A set is answered out of trapezoids where many placements ask, one direction by rays.
+TEST(PolygonQuery, ADirectionSetGivesWhatItsDirectionsGive) {
+  std::string at = R"("placements":[[2.25,4],[4,4],[-1,0],[0.5,0.125])";
+  for (int i = 4; i < 100; ++i) at += ",[" + std::to_string(i % 13 - 1) + "," + std::to_string(i / 9) + ".5]";
+  at += "]";
+  const Json set = answer(line(kFrame, kUnitSquare, at + R"(,"direction_set":[[1,0],[-2,5]])"));
+  const Json first = answer(line(kFrame, kUnitSquare, at + R"(,"direction":[1,0])"));
+  const Json second = answer(line(kFrame, kUnitSquare, at + R"(,"direction":[-2,5])"));
+  for (const char* field : {"classes", "depths", "lowers", "translations", "normals"}) {
+    for (std::size_t i = 0; i < 100; ++i) {
+      if (set.at("classes").at(2 * i) == "touching" && field == std::string("normals")) continue;  // of either edge
+      EXPECT_EQ(set.at(field).at(2 * i), first.at(field).at(i)) << field << " " << i;
+      EXPECT_EQ(set.at(field).at(2 * i + 1), second.at(field).at(i)) << field << " " << i;
+    }
+  }
 }
 
 TEST(PolygonQuery, SlotsAreListedAndNoWayOut) {

@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <random>
 
 #include "planar/polygon_oracle.hpp"
+#include "planar/small_polygons.hpp"
 
 namespace {
 
@@ -19,13 +18,8 @@ using pd::Polygon;
 using pd::PolygonDepth;
 using pd::PolygonDifference;
 using pd::PolygonMethod;
-
-Polygon polygon(const oracle::Rings& rings) {
-  const std::vector<std::vector<Point2>> holes(rings.begin() + 1, rings.end());
-  auto made = Polygon::from_rings(rings[0], holes);
-  EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message);
-  return *made;
-}
+using pd::test::SmallPolygons;
+using pd::test::text;
 
 oracle::Rings square(double low, double high) { return {{{low, low}, {high, low}, {high, high}, {low, high}}}; }
 oracle::Rings frame() {
@@ -33,42 +27,6 @@ oracle::Rings frame() {
   rings.push_back({{3, 3}, {3, 7}, {7, 7}, {7, 3}});
   return rings;
 }
-
-/// Small whole coordinates: collinear, parallel and touching pieces come up all the time.
-class SmallPolygons {
- public:
-  explicit SmallPolygons(unsigned seed) : bits_(seed) {}
-  int whole(int low, int high) { return low + static_cast<int>(bits_() % static_cast<unsigned>(high - low + 1)); }
-  double eighths(int low, int high) { return whole(8 * low, 8 * high) / 8.0; }
-
-  oracle::Rings simple(int most, int grid, bool holes) {
-    for (;;) {
-      oracle::Rings rings = {ring(whole(3, most), grid)};
-      if (!Polygon::from_rings(rings[0])) continue;
-      for (int tries = 0; holes && tries < 20; ++tries) {
-        oracle::Rings with = rings;
-        with.push_back(ring(whole(3, 4), grid));
-        if (Polygon::from_rings(with[0], std::vector<std::vector<Point2>>(with.begin() + 1, with.end()))) rings = with;
-      }
-      return rings;
-    }
-  }
-  oracle::Rings convex(int most, int grid) {
-    for (;;) {
-      oracle::Rings rings = {ring(whole(3, most), grid)};
-      const auto made = Polygon::from_rings(rings[0]);
-      if (made && made->convex()) return rings;
-    }
-  }
-
- private:
-  std::vector<oracle::Vec> ring(int size, int grid) {
-    std::vector<oracle::Vec> points;
-    for (int i = 0; i < size; ++i) points.push_back({double(whole(0, grid)), double(whole(0, grid))});
-    return points;
-  }
-  std::mt19937 bits_;
-};
 
 void expect_near(double value, const PolygonDepth& answer, const std::string& what) {
   EXPECT_NEAR(answer.depth, value, 1e-8) << what;
@@ -78,19 +36,9 @@ void expect_near(double value, const PolygonDepth& answer, const std::string& wh
       << what;
 }
 
-std::string text(const oracle::Rings& rings) {
-  std::string s;
-  for (const auto& ring : rings) {
-    s += "[";
-    for (const auto& x : ring) s += "[" + std::to_string(int(x[0])) + "," + std::to_string(int(x[1])) + "],";
-    s += "] ";
-  }
-  return s;
-}
-
 /// One pair, several placements, every question, against the oracle. @return the number of answers compared.
 int judge(const oracle::Rings& p, const oracle::Rings& q, SmallPolygons& next, PolygonMethod method, int placements) {
-  const PolygonDifference r = *PolygonDifference::of(polygon(p), polygon(q), method);
+  const PolygonDifference r = *PolygonDifference::of(pd::test::made(p), pd::test::made(q), method);
   const oracle::PolygonOracle truth(p, q);
   int answers = 0;
   for (int i = 0; i < placements; ++i) {
@@ -108,13 +56,8 @@ int judge(const oracle::Rings& p, const oracle::Rings& q, SmallPolygons& next, P
   return answers;
 }
 
-int cases(int usual) {
-  const char* wanted = std::getenv("PD_PLANAR_CASES");  // the million-case runs
-  return wanted == nullptr ? usual : std::atoi(wanted);
-}
-
 TEST(PolygonDepth, SquareInASquare) {
-  const auto r = *PolygonDifference::of(polygon(square(0, 4)), polygon(square(0, 2)));
+  const auto r = *PolygonDifference::of(pd::test::made(square(0, 4)), pd::test::made(square(0, 2)));
   // Q + (1, 1) lies in the middle of the left and lower half: the forbidden placements are the open square (-2, 4)^2.
   const PolygonDepth a = r.depth({0.5, 1});
   EXPECT_EQ(a.contact, PlanarContact::overlapping);
@@ -127,7 +70,7 @@ TEST(PolygonDepth, SquareInASquare) {
 }
 
 TEST(PolygonDepth, AHoleIsAWayOutThatEscapesNowhere) {
-  const auto r = *PolygonDifference::of(polygon(frame()), polygon(square(0, 1)));
+  const auto r = *PolygonDifference::of(pd::test::made(frame()), pd::test::made(square(0, 1)));
   EXPECT_EQ(r.statistics().loops, 2);
   EXPECT_EQ(r.contact({4, 4}), PlanarContact::separated);  // in the hole
   const PolygonDepth in = r.depth({2.25, 4});
@@ -145,20 +88,20 @@ TEST(PolygonDepth, ASlotOfZeroWidthIsNoWayOut) {
   oracle::Rings rings = square(0, 10);
   rings.push_back({{3, 3}, {3, 7}, {5, 7}, {5, 3}});
   // A square of 2 fits the hole along a segment of placements, one of 3 does not fit; of 1 fits with room.
-  const auto r = *PolygonDifference::of(polygon(rings), polygon(square(0, 2)));
+  const auto r = *PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 2)));
   EXPECT_EQ(r.statistics().loops, 1);
   EXPECT_EQ(r.contact({3, 4}), PlanarContact::overlapping);
   EXPECT_EQ(r.depth({3, 4}).depth, 5);
   EXPECT_FALSE(r.slots().empty());
   for (const auto& slot : r.slots()) EXPECT_EQ(slot[0][0], 3);
-  EXPECT_TRUE(PolygonDifference::of(polygon(rings), polygon(square(0, 3)))->slots().empty());
-  EXPECT_EQ(PolygonDifference::of(polygon(rings), polygon(square(0, 1)))->statistics().loops, 2);
+  EXPECT_TRUE(PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 3)))->slots().empty());
+  EXPECT_EQ(PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 1)))->statistics().loops, 2);
 }
 
 TEST(PolygonDepth, ImplicitAgainstTheOracle) {
   SmallPolygons next(20261122);
   int answers = 0;
-  for (int i = 0; i < cases(300); ++i) {
+  for (int i = 0; i < pd::test::planar_cases(300); ++i) {
     const int grid = next.whole(3, 7);
     answers +=
         judge(next.simple(7, grid, i % 3 == 0), next.convex(5, next.whole(1, grid)), next, PolygonMethod::implicit, 3);
@@ -169,7 +112,7 @@ TEST(PolygonDepth, ImplicitAgainstTheOracle) {
 
 TEST(PolygonDepth, ExplicitAgainstTheOracle) {
   SmallPolygons next(7);
-  for (int i = 0; i < cases(120) && !HasFailure(); ++i) {
+  for (int i = 0; i < pd::test::planar_cases(120) && !HasFailure(); ++i) {
     const int grid = next.whole(3, 6);
     judge(next.simple(6, grid, i % 3 == 0), next.simple(6, next.whole(2, grid), false), next,
           PolygonMethod::explicit_sums, 2);
@@ -178,17 +121,17 @@ TEST(PolygonDepth, ExplicitAgainstTheOracle) {
 
 TEST(PolygonDepth, TheConvexOneMayBeEither) {
   SmallPolygons next(11);
-  for (int i = 0; i < cases(100) && !HasFailure(); ++i) {
+  for (int i = 0; i < pd::test::planar_cases(100) && !HasFailure(); ++i) {
     judge(next.convex(5, 5), next.simple(6, 5, i % 2 == 0), next, PolygonMethod::automatic, 2);
   }
 }
 
 TEST(PolygonDepth, MethodsGiveTheSameBits) {
   SmallPolygons next(3);
-  for (int i = 0; i < 10 * cases(300); ++i) {
+  for (int i = 0; i < 10 * pd::test::planar_cases(300); ++i) {
     const int grid = next.whole(3, 12);
     const oracle::Rings rings_p = next.simple(9, grid, i % 2 == 0), rings_q = next.convex(6, next.whole(1, grid));
-    const Polygon p = polygon(rings_p), q = polygon(rings_q);
+    const Polygon p = pd::test::made(rings_p), q = pd::test::made(rings_q);
     const auto a = *PolygonDifference::of(p, q, PolygonMethod::implicit);
     const auto b = *PolygonDifference::of(p, q, PolygonMethod::explicit_sums);
     const auto s = a.statistics();
@@ -214,7 +157,7 @@ TEST(PolygonDepth, APinchPartsTwoFaces) {
   const oracle::Rings p = {{{1, 2}, {4, 0}, {6, 8}, {4, 2}, {3, 4}, {5, 7}}};
   const oracle::Rings q = {{{0, 0}, {1, 1}, {1, 2}}};
   for (const PolygonMethod method : {PolygonMethod::implicit, PolygonMethod::explicit_sums}) {
-    EXPECT_EQ(PolygonDifference::of(polygon(p), polygon(q), method)->statistics().loops, 2);
+    EXPECT_EQ(PolygonDifference::of(pd::test::made(p), pd::test::made(q), method)->statistics().loops, 2);
   }
 }
 
@@ -222,7 +165,7 @@ TEST(PolygonDepth, APinchPartsTwoFaces) {
 TEST(PolygonDepth, AnArcCoveredOnBothSidesOfAVertex) {
   const oracle::Rings p = {{{11, 0}, {6, 1}, {0, 7}, {3, 7}, {7, 11}, {5, 7}, {7, 1}, {9, 1}}};
   const oracle::Rings q = {{{10, 7}, {9, 9}, {1, 5}, {0, 0}}};
-  const auto r = *PolygonDifference::of(polygon(p), polygon(q), PolygonMethod::implicit);
+  const auto r = *PolygonDifference::of(pd::test::made(p), pd::test::made(q), PolygonMethod::implicit);
   EXPECT_EQ(r.statistics().loops, 1);
   EXPECT_NEAR(r.depth({1, 0.25}).depth, oracle::PolygonOracle(p, q).depth({1, 0.25}), 1e-12);
 }
@@ -232,13 +175,13 @@ TEST(PolygonDepth, ScalesByPowersOfTwoKeepEveryBit) {
   for (const double scale : {0x1p-600, 0x1p-30, 0x1p900}) {
     for (int i = 0; i < 30; ++i) {
       oracle::Rings p = next.simple(8, 9, true), q = next.convex(5, 4);
-      const auto before = *PolygonDifference::of(polygon(p), polygon(q));
+      const auto before = *PolygonDifference::of(pd::test::made(p), pd::test::made(q));
       for (auto* rings : {&p, &q}) {
         for (auto& ring : *rings) {
           for (auto& x : ring) x = {x[0] * scale, x[1] * scale};
         }
       }
-      const auto after = *PolygonDifference::of(polygon(p), polygon(q));
+      const auto after = *PolygonDifference::of(pd::test::made(p), pd::test::made(q));
       const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)};
       const PolygonDepth a = before.depth(y), b = after.depth({y[0] * scale, y[1] * scale});
       ASSERT_EQ(a.contact, b.contact);
@@ -249,7 +192,7 @@ TEST(PolygonDepth, ScalesByPowersOfTwoKeepEveryBit) {
 }
 
 TEST(PolygonDepth, NeitherConvexIsRefusedByTheImplicitMethod) {
-  const Polygon f = polygon(frame());
+  const Polygon f = pd::test::made(frame());
   const auto r = PolygonDifference::of(f, f, PolygonMethod::implicit);
   ASSERT_FALSE(r.has_value());
   EXPECT_EQ(r.error().code, pd::ErrorCode::unsupported);

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "pd/planar/convex_depth.hpp"
 #include "pd/planar/polygon_depth.hpp"
 #include "planar/rounded_crossing.hpp"
+#include "planar/small_polygons.hpp"
 #include "planar/sum_boundary.hpp"
 #include "planar/turned_boxes.hpp"
 #include "scenes/polygon_families.hpp"
@@ -20,11 +20,6 @@ using pd::Polygon;
 using pd::PolygonDifference;
 using pd::PolygonMethod;
 using pd::scenes::Random;
-
-int cases(int usual) {
-  const char* wanted = std::getenv("PD_PLANAR_CASES");  // the million-case runs
-  return wanted == nullptr ? usual : std::atoi(wanted);
-}
 
 Point2 direction(Random& random) {
   const pd::scenes::Turn t = pd::scenes::turn(random.uniform());
@@ -45,7 +40,7 @@ std::vector<Point2> oval(int n, Random& random) {
 TEST(PolygonRays, ConvexPairsGiveTheBitsOfTheSearchInObjectSpace) {
   Random random(91);
   int overlapping = 0;
-  for (int i = 0; i < cases(400); ++i) {
+  for (int i = 0; i < pd::test::planar_cases(400); ++i) {
     const std::vector<Point2> a = oval(3 + i % 9, random), b = oval(3 + i % 7, random);
     const auto p = pd::ConvexPolygon::from_points(a), q = pd::ConvexPolygon::from_points(b);
     const auto ring_p = Polygon::from_rings(a), ring_q = Polygon::from_rings(b);
@@ -64,12 +59,12 @@ TEST(PolygonRays, ConvexPairsGiveTheBitsOfTheSearchInObjectSpace) {
       ASSERT_NEAR(found.normal[0] * d[1] - found.normal[1] * d[0], 0, 1e-15);
     }
   }
-  EXPECT_GT(overlapping, cases(400));
+  EXPECT_GT(overlapping, pd::test::planar_cases(400));
 }
 
 TEST(PolygonRays, StarsGiveTheBitsOfExplicitSums) {
   Random random(17);
-  for (int i = 0; i < cases(400) / 20; ++i) {
+  for (int i = 0; i < pd::test::planar_cases(400) / 20; ++i) {
     const Polygon p = pd::scenes::star_polygon(40, random), q = pd::scenes::round_polygon(5, i % 2 == 0 ? 0.004 : 0.1);
     const auto a = PolygonDifference::of(p, q, PolygonMethod::implicit).value();
     const auto b = PolygonDifference::of(p, q, PolygonMethod::explicit_sums).value();

@@ -1,12 +1,10 @@
 #include "pd/planar/polygon_depth.hpp"
 
-#include <bit>
 #include <cassert>
-#include <cmath>
 
-#include "numeric/root_sum.hpp"
-#include "planar/boundary_query.hpp"
-#include "planar/rounded_crossing.hpp"
+#include "numeric/quotient.hpp"
+#include "planar/difference_state.hpp"
+#include "planar/polygon_answer.hpp"
 
 namespace pd {
 
@@ -25,104 +23,6 @@ std::string_view to_string(PlanarContact contact) {
   }
   return "";
 }
-
-/// Where only Q is non-convex the implicit method takes the two in each other's place: Q + (-P) is -R.
-struct PolygonDifference::State {
-  State(const Polygon& p_in, const Polygon& q_in, bool implicit_in, bool swapped_in)
-      : p(p_in), q(q_in), implicit(implicit_in), swapped(swapped_in), boundary(p, q, implicit), query(boundary) {}
-
-  Polygon p, q;
-  bool implicit, swapped;
-  std::optional<detail::BoundaryCounts> given_up;  ///< of an implicit boundary that contradicted Facts 4.1 or 4.2
-  detail::SumBoundary boundary;
-  detail::BoundaryQuery query;
-
-  [[nodiscard]] Point2 turned(const Point2& v) const { return swapped ? Point2{-v[0], -v[1]} : v; }
-};
-
-namespace {
-
-/// The nearest double, ties to even.
-double rounded(const Dyadic& numerator, const Dyadic& denominator) {
-  // The exponents of both may pass the range of doubles: bring the denominator near 1.
-  const int shift =
-      -(denominator.exponent() + static_cast<int>(msb(boost::multiprecision::abs(denominator.mantissa()))));
-  const Dyadic n = numerator.scaled(shift), w = denominator.scaled(shift);
-  const detail::DoubleDouble q = detail::to_double_double(n) / detail::to_double_double(w);
-  const double near = detail::to_double(q);
-  if (near == 0 || detail::settles_nearest(q, 0x1p-96)) return near;
-  const double other = std::nextafter(near, q.lo > 0 ? HUGE_VAL : -HUGE_VAL);
-  const Dyadic beyond = n - (Dyadic(near) + Dyadic(other)).scaled(-1) * w;  // the middle of the two
-  const int side = beyond.sign() * w.sign() * (other > near ? 1 : -1);
-  if (side == 0) return (std::bit_cast<std::uint64_t>(near) & 1U) == 0 ? near : other;
-  return side > 0 ? other : near;
-}
-
-Point2 unit(const Dyadic& x, const Dyadic& y) {
-  const detail::Vec3DD u = detail::unit_double_double({x, y, Dyadic()});
-  return {detail::to_double(u.x), detail::to_double(u.y)};
-}
-
-/// An exact vector (x / w, y / w).
-struct ExactVector {
-  Dyadic x, y, w;
-};
-
-void fill(PolygonDepth& answer, const ExactVector& v, bool turned) {
-  Dyadic x = v.x, y = v.y, w = v.w;
-  if ((w.sign() < 0) != turned) {
-    x = -x;
-    y = -y;
-  }
-  if (w.sign() < 0) w = -w;
-  const Dyadic squared = x * x + y * y;
-  if (squared.sign() == 0) return;
-  const detail::RootSum length(Dyadic(), 1, squared, w * w);
-  answer.lower = length.round_down();
-  answer.upper = length.round_up(answer.lower);
-  answer.depth = answer.upper;
-  answer.translation = {rounded(x, w), rounded(y, w)};
-  answer.normal = unit(x, y);
-}
-
-/// Of Q where it touches P along that edge of the boundary: the edge's outer normal.
-void fill_touching(PolygonDepth& answer, const detail::Span& edge, bool turned) {
-  const auto d = detail::vector<Dyadic>(edge.d);
-  answer.normal = turned ? unit(-d.y, d.x) : unit(d.y, -d.x);
-}
-
-ExactVector difference(const detail::Homogeneous<Dyadic>& x, const Point2& y) {
-  return {x.x - Dyadic(y[0]) * x.w, x.y - Dyadic(y[1]) * x.w, x.w};
-}
-
-/// Of Q moved along the ray as far as a place on that edge.
-void fill_hit(PolygonDepth& answer, const detail::Span& ray, const Point2& direction, const detail::Span& edge,
-              const Place& at, bool turned) {
-  if (at.kind == Place::Kind::line) {
-    if (const auto r = detail::rounded_crossing(ray, direction, edge)) {
-      answer.lower = r->lower;
-      answer.depth = answer.upper = r->upper;
-      answer.translation = r->translation;
-      answer.normal = r->normal;
-      return;
-    }
-  }
-  fill(answer, difference(detail::point_at<Dyadic>(edge, at), ray.s.p), turned);
-}
-
-std::optional<PlanarFeature> feature_of(const detail::SumBoundary& boundary, const Polygon& p, const Polygon& q,
-                                        const BoundaryPoint& x, bool swapped) {
-  const auto c = boundary.contact(boundary.stretches()[static_cast<std::size_t>(x.stretch)], x.edge);
-  PlanarFeature f{c.p_edge ? p.caller_edge(c.p) : p.caller_id(c.p), c.q_edge ? q.caller_edge(c.q) : q.caller_id(c.q),
-                  c.p_edge, c.q_edge};
-  if (swapped) {
-    std::swap(f.p, f.q);
-    std::swap(f.p_edge, f.q_edge);
-  }
-  return f;
-}
-
-}  // namespace
 
 Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygon& q, PolygonMethod method) {
   const bool one_convex = p.convex() || q.convex();
@@ -155,14 +55,15 @@ PolygonDepth PolygonDifference::depth(const Point2& placement) const {
   std::optional<BoundaryPoint> touched;
   answer.contact = s.query.contact(y, &touched);
   if (answer.contact == PlanarContact::touching) {
-    fill_touching(answer, s.query.span_of(*touched), s.swapped);
-    answer.feature = feature_of(s.boundary, s.p, s.q, *touched, s.swapped);
+    detail::fill_touching(answer, s.query.span_of(*touched), s.swapped);
+    answer.feature = detail::feature_of(s.boundary, s.p, s.q, *touched, s.swapped);
   }
   if (answer.contact != PlanarContact::overlapping) return answer;
   const auto nearest = s.query.nearest(y, false);
   assert(nearest);
-  fill(answer, difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y), s.swapped);
-  answer.feature = feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
+  detail::fill(answer, detail::difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y),
+               s.swapped);
+  answer.feature = detail::feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
   return answer;
 }
 
@@ -174,8 +75,9 @@ PolygonDepth PolygonDifference::escape_depth(const Point2& placement) const {
   if (answer.contact != PlanarContact::overlapping && s.query.in_unbounded_face(y)) return answer;
   const auto nearest = s.query.nearest(y, true);
   assert(nearest);
-  fill(answer, difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y), s.swapped);
-  answer.feature = feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
+  detail::fill(answer, detail::difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y),
+               s.swapped);
+  answer.feature = detail::feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
   return answer;
 }
 
@@ -188,21 +90,26 @@ PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point
   const detail::Span ray{detail::BoundaryQuery::point(y), {{0, 0}, d}, {}};
   if (leave == Leave::straight) {
     if (const auto out = s.query.last_exit(y, d)) {
-      fill(answer, difference(detail::point_at<Dyadic>(ray, *out), y), s.swapped);
+      if (out->kind == Place::Kind::line) {
+        detail::fill_hit(answer, ray, direction, {out->point, out->direction, {}}, {Place::Kind::line, ray.s, ray.d},
+                         s.swapped);
+      } else {
+        detail::fill(answer, detail::difference(detail::point_at<Dyadic>(ray, *out), y), s.swapped);
+      }
     }
     return answer;
   }
   if (answer.contact != PlanarContact::overlapping) {
     if (touched) {
-      fill_touching(answer, s.query.span_of(*touched), s.swapped);
-      answer.feature = feature_of(s.boundary, s.p, s.q, *touched, s.swapped);
+      detail::fill_touching(answer, s.query.span_of(*touched), s.swapped);
+      answer.feature = detail::feature_of(s.boundary, s.p, s.q, *touched, s.swapped);
     }
     if (leave == Leave::first_exit || s.query.in_unbounded_face(y)) return answer;
   }
   const auto hit = leave == Leave::escape ? s.query.first_on_ray(y, d, true) : first;
   assert(hit);
-  fill_hit(answer, ray, direction, s.query.span_of(*hit), hit->at, s.swapped);
-  answer.feature = feature_of(s.boundary, s.p, s.q, *hit, s.swapped);
+  detail::fill_hit(answer, ray, direction, s.query.span_of(*hit), hit->at, s.swapped);
+  answer.feature = detail::feature_of(s.boundary, s.p, s.q, *hit, s.swapped);
   return answer;
 }
 
@@ -232,7 +139,7 @@ namespace {
 
 Point2 rounded_point(const detail::Span& span, const Place& at, double sign) {
   const auto x = detail::point_at<Dyadic>(span, at);
-  return {sign * rounded(x.x, x.w), sign * rounded(x.y, x.w)};
+  return {sign * detail::quotient(x.x, x.w), sign * detail::quotient(x.y, x.w)};
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ struct BoundedDoubleDouble {
   }
 };
 
-/// The crossing of a ray from y along d at t >= 0: t |d| between neighbouring doubles, t d and d / |d| to the nearest.
+/// The crossing of a ray from y along d (or of both turned round, -d) at t > 0: t |d| between neighbouring doubles, t d and d / |d| to the nearest.
 struct RoundedCrossing {
   double lower, upper;
   Point2 translation, normal;
@@ -86,7 +86,7 @@ inline std::optional<RoundedCrossing> rounded_crossing(const Span& ray, const Po
       const std::optional<double> gap = rounded_sum(edge.s.p[k], -edge.s.q[k], -ray.s.p[k]);
       const DoubleDouble normal = DoubleDouble{d[k], 0} / length;
       if (!gap || !settles_nearest(normal, relative)) return std::nullopt;
-      r.translation[k] = *gap;
+      r.translation[k] = d[k] == 0 ? 0 : std::copysign(*gap, d[k]);  // the ray may be turned round
       r.normal[k] = normal.hi;
       continue;
     }

@@ -100,6 +100,7 @@ class PolygonDifference {
   [[nodiscard]] std::vector<std::array<Point2, 2>> slots() const;
 
  private:
+  friend class DirectionSet;
   struct State;
   std::shared_ptr<const State> state_;
 };

@@ -1,0 +1,25 @@
+/// @file
+/// What a PolygonDifference keeps.
+#pragma once
+
+#include <optional>
+
+#include "planar/boundary_query.hpp"
+
+namespace pd {
+
+/// Where only Q is non-convex the implicit method takes the two in each other's place: Q + (-P) is -R.
+struct PolygonDifference::State {
+  State(const Polygon& p_in, const Polygon& q_in, bool implicit_in, bool swapped_in)
+      : p(p_in), q(q_in), implicit(implicit_in), swapped(swapped_in), boundary(p, q, implicit), query(boundary) {}
+
+  Polygon p, q;
+  bool implicit, swapped;
+  std::optional<detail::BoundaryCounts> given_up;  ///< of an implicit boundary that contradicted Facts 4.1 or 4.2
+  detail::SumBoundary boundary;
+  detail::BoundaryQuery query;
+
+  [[nodiscard]] Point2 turned(const Point2& v) const { return swapped ? Point2{-v[0], -v[1]} : v; }
+};
+
+}  // namespace pd
