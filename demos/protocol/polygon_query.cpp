@@ -65,6 +65,7 @@ struct Question {
  private:
   [[nodiscard]] PolygonDepth answer(const PolygonDifference& r, const Point2& y, std::size_t direction) const {
     if (!directions.empty()) return r.depth_along(y, directions[direction], leave);
+    if (leave == Leave::straight) return r.straight_escape_depth(y);
     return leave == Leave::escape ? r.escape_depth(y) : r.depth(y);
   }
 };
@@ -90,9 +91,6 @@ Question read_question(const Node& line) {
     question.directions = read_points2(*set, {}, true);
     if (question.directions.empty()) set->refuse("bad_value", "needs a direction at least");
     question.fixed_set = true;
-  }
-  if (question.leave == Leave::straight && question.directions.empty()) {
-    line.refuse("missing_field", "going straight needs a \"direction\" (or \"complete\":\"escape\" for any motion)");
   }
   return question;
 }

@@ -43,6 +43,12 @@ TEST(PolygonQuery, ListsOfPlacementsAndDirections) {
   EXPECT_EQ(straight.at("depths"), Json::parse("[7.75,6.0]"));
 }
 
+TEST(PolygonQuery, StraightOutOverAllDirections) {
+  const Json reply = answer(line(kFrame, kUnitSquare, R"("placements":[[4,4],[2.25,4],[11,4]],"complete":"straight")"));
+  EXPECT_EQ(reply.at("classes"), Json::parse(R"(["separated","overlapping","separated"])"));
+  EXPECT_EQ(reply.at("depths"), Json::parse("[5.0,3.25,0.0]"));
+}
+
 // A set is answered out of trapezoids where many placements ask, one direction by rays.
 TEST(PolygonQuery, ADirectionSetGivesWhatItsDirectionsGive) {
   std::string at = R"("placements":[[2.25,4],[4,4],[-1,0],[0.5,0.125])";
@@ -81,7 +87,6 @@ TEST(PolygonQuery, Refusals) {
           "q.holes[0][0]");
   refused(line(kUnitSquare, R"({"outer":[[0,0],["nan",0],[0,4]]})", ""), "non_finite", "q.outer[1][0]");
   refused(line(kUnitSquare, kUnitSquare, R"("direction":[0,0])"), "zero_direction", "direction");
-  refused(line(kUnitSquare, kUnitSquare, R"("complete":true)"), "missing_field", "");
   refused(line(kFrame, kFrame, R"("method":"implicit")"), "unsupported", "method");
   refused(line(kFrame, kFrame, R"("method":"fast")"), "bad_value", "method");
   refused(R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[1,0],[0,1]]}})", "missing_field", "q");

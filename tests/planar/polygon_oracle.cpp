@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace oracle {
 
@@ -128,7 +129,7 @@ std::string PolygonOracle::contact(const Vec& y) const {
   return overlapping == all ? "overlapping" : (overlapping == 0 ? "separated" : "touching");
 }
 
-double PolygonOracle::depth(const Vec& y) const {
+std::vector<Vec> PolygonOracle::places(const Vec& y) const {
   std::vector<Vec> places;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Segment& e = contacts_[i];
@@ -146,6 +147,11 @@ double PolygonOracle::depth(const Vec& y) const {
       if (a > -kZero && a < 1 + kZero && b > -kZero && b < 1 + kZero) places.push_back(plus(e.a, d, a));
     }
   }
+  return places;
+}
+
+double PolygonOracle::depth(const Vec& y) const {
+  std::vector<Vec> places = this->places(y);
   std::sort(places.begin(), places.end(),
             [&](const Vec& a, const Vec& b) { return norm(minus(a, y)) < norm(minus(b, y)); });
   for (const Vec& x : places) {
@@ -189,6 +195,27 @@ double PolygonOracle::straight_exit(const Vec& y, const Vec& d) const {
     if (interior(plus(y, d, 0.5 * (times[i] + times[i - 1])))) return times[i] * norm(d);
   }
   return 0;
+}
+
+double PolygonOracle::straight_escape(const Vec& y) const {
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<Vec> places = this->places(y);
+  std::sort(places.begin(), places.end());
+  places.erase(
+      std::unique(places.begin(), places.end(), [](const Vec& a, const Vec& b) { return norm(minus(a, b)) < kZero; }),
+      places.end());
+  for (const Vec& x : places) {
+    const Vec d = minus(x, y);
+    if (norm(d) > kZero && contact(x) == "touching") least = std::min(least, straight_exit(y, d));
+  }
+  // A place on the boundary may be left square to a contact through it.
+  if (contact(y) == "touching") {
+    for (const Segment& e : contacts_) {
+      const Vec d = minus(e.b, e.a);
+      least = std::min({least, straight_exit(y, {d[1], -d[0]}), straight_exit(y, {-d[1], d[0]})});
+    }
+  }
+  return least;
 }
 
 }  // namespace oracle

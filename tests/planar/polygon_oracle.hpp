@@ -29,12 +29,17 @@ class PolygonOracle {
   [[nodiscard]] double depth_along(const Vec& y, const Vec& d) const;
   /// Least t from which on none is interior.
   [[nodiscard]] double straight_exit(const Vec& y, const Vec& d) const;
+  /// The least of that over all d: tried towards every place on the boundary where two contacts cross or one ends, and
+  /// square to every contact.
+  [[nodiscard]] double straight_escape(const Vec& y) const;
 
  private:
   struct Segment {
     Vec a, b;
   };
   [[nodiscard]] bool overlap(const Vec& y) const;
+  /// Ends and crossings of contacts, and the feet of y on them.
+  [[nodiscard]] std::vector<Vec> places(const Vec& y) const;
   [[nodiscard]] std::vector<double> critical(const Vec& y, const Vec& d) const;
   /// How many of the sectors between edge directions round y overlap, and of how many.
   [[nodiscard]] std::array<int, 2> sectors(const Vec& y) const;

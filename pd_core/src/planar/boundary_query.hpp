@@ -49,6 +49,7 @@ class BoundaryQuery {
   /// For a placement outside R: does it lie in the unbounded face, or on its boundary?
   [[nodiscard]] bool in_unbounded_face(const Point2& y) const;
 
+  [[nodiscard]] const BoxTree& stretch_tree() const { return stretch_tree_; }
   [[nodiscard]] Span span_of(const BoundaryPoint& x) const;
   [[nodiscard]] std::size_t memory_bytes() const {
     return stretch_tree_.memory_bytes() + sum_tree_.memory_bytes() + slot_tree_.memory_bytes() +

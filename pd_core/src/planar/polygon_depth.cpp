@@ -5,6 +5,7 @@
 #include "numeric/quotient.hpp"
 #include "planar/difference_state.hpp"
 #include "planar/polygon_answer.hpp"
+#include "planar/straight_escape.hpp"
 
 namespace pd {
 
@@ -78,6 +79,18 @@ PolygonDepth PolygonDifference::escape_depth(const Point2& placement) const {
   detail::fill(answer, detail::difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y),
                s.swapped);
   answer.feature = detail::feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
+  return answer;
+}
+
+PolygonDepth PolygonDifference::straight_escape_depth(const Point2& placement) const {
+  const State& s = *state_;
+  const Point2 y = s.turned(placement);
+  PolygonDepth answer;
+  answer.contact = s.query.contact(y);
+  const detail::StraightEscape::Way way = detail::StraightEscape(s.boundary, s.query.stretch_tree(), y).run();
+  if (!way.exit) return answer;
+  detail::fill(answer, way.move, s.swapped);
+  answer.feature = detail::feature_of(s.boundary, s.p, s.q, *way.exit, s.swapped);
   return answer;
 }
 

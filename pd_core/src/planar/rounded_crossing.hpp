@@ -39,7 +39,8 @@ struct BoundedDoubleDouble {
   }
 };
 
-/// The crossing of a ray from y along d (or of both turned round, -d) at t > 0: t |d| between neighbouring doubles, t d and d / |d| to the nearest.
+/// The crossing of a ray from y along d (or of both turned round, -d) at t > 0: t |d| between neighbouring doubles, t d
+/// and d / |d| to the nearest.
 struct RoundedCrossing {
   double lower, upper;
   Point2 translation, normal;

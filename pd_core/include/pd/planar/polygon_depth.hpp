@@ -68,6 +68,11 @@ class PolygonDifference {
   /// The least translation in any direction that brings Q into the unbounded face.
   [[nodiscard]] PolygonDepth escape_depth(const Point2& placement) const;
 
+  /// The least translation over all directions from whose end Q can go on along the same direction for ever: the least
+  /// of depth_along(placement, d, Leave::straight). It may slide along P; 0 where some direction is free at once.
+  /// Time O(N (log N + k)) for N edges of the boundary, k of them looked at for one direction.
+  [[nodiscard]] PolygonDepth straight_escape_depth(const Point2& placement) const;
+
   struct Statistics {
     std::int64_t sums;           ///< convex sums whose union R is
     std::int64_t stretches;      ///< implicit pieces of the boundary: displaced edges and arcs
