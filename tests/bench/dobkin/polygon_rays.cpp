@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/agarwal/agarwal.hpp"
 #include "bench/dobkin/dobkin.hpp"
 #include "bench/measure/stopwatch.hpp"
 #include "pd/planar/convex_depth.hpp"
+#include "pd/planar/direction_set.hpp"
 #include "pd/planar/polygon_depth.hpp"
 #include "planar/box_tree.hpp"
 #include "scenes/polygon_families.hpp"
@@ -20,6 +22,8 @@ namespace pd::bench {
 namespace {
 
 const Claim kRays{"Theorem 4.5", "directional depth of a placement in sublinear time after preprocessing"};
+const Claim kSet{"Section 6, directions", "directional depth in O(log n) for a fixed set of directions"};
+const Claim kStraight{"Section 6, straight", "the least way straight out, over all directions"};
 const Claim kSearch{"Section 3, time", "directional depth of convex polygons beside binary searches"};
 
 /// First hit of a ray with P's edges down a tree of boxes, all in doubles: what a robot planner has at hand.
@@ -78,6 +82,41 @@ std::vector<Ray> rays_in(const Polygon& p, const PolygonDifference& r, int count
     rays.push_back({y, {t.cosine, t.sine}});
   }
   return rays;
+}
+
+/// The trapezoids of one direction: signs and time of a query, bytes; and the least way straight out.
+void measure_directions(const DobkinSettings& settings, ClaimTable& table) {
+  constexpr int kRound = 32;
+  Growth probes{"star, Q tiny", "most signs / (log2 pieces + log2 m)", "n"}, time{"star, Q tiny", "time, ns", "n"};
+  Growth bytes{"star, Q tiny", "bytes / (pieces log2 pieces)", "n"}, straight{"star, Q tiny", "time, ns", "n"};
+  scenes::Random random(settings.seed + 6);
+  int wrong = 0;
+  for (int n = 256; n <= (settings.full ? 65536 : 4096); n *= 4) {
+    const Polygon p = scenes::star_polygon(n, random), q = scenes::round_polygon(kRound, 0.3 / n);
+    const PolygonDifference r = PolygonDifference::of(p, q, PolygonMethod::implicit).value();
+    const Point2 d = {0.3, 1};
+    const DirectionSet set = DirectionSet::of(r, {&d, 1}).value();
+    const std::vector<Ray> rays = rays_in(p, r, 400, random);
+    const auto pieces = static_cast<double>(set.statistics().pieces);
+    std::int64_t most = 0;
+    for (const Ray& ray : rays) {
+      std::int64_t count = 0;
+      wrong += set.depth(ray.from, 0, &count).lower != r.depth_along(ray.from, d).lower ? 1 : 0;
+      most = std::max(most, count);
+    }
+    probes.add(n, static_cast<double>(most) / (std::log2(pieces) + std::log2(kRound)));
+    bytes.add(n, static_cast<double>(set.statistics().memory_bytes) / (pieces * std::log2(pieces)));
+    double sum = 0;
+    time.add(n, least_mean_ns(rays, 5, [&](const Ray& ray) { sum += set.depth(ray.from, 0).depth; }));
+    const std::vector<Ray> few(rays.begin(), rays.begin() + 3);
+    straight.add(n, least_mean_ns(few, 1, [&](const Ray& ray) { sum += r.straight_escape_depth(ray.from).depth; }));
+    if (sum < 0) std::abort();
+  }
+  table.add_growth(kSet, std::move(probes), 0.1);
+  table.add_growth(kSet, std::move(bytes), 0.1);
+  table.add_growth(kSet, std::move(time), 0.3);
+  table.add_value(kSet, "star, Q tiny", std::string(kWrongAnswers), "all", wrong, 0);
+  table.add_growth(kStraight, std::move(straight), 1.3);
 }
 
 template <class Make>
@@ -157,6 +196,7 @@ void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table) {
       "plate with holes",
       [](int n) { return scenes::plate_with_holes(std::max(2, static_cast<int>(std::sqrt(n / 4)))); }, 0.3, 1.5, 0.2,
       settings, table);
+  measure_directions(settings, table);
   measure_searches(settings, table);
 }
 
