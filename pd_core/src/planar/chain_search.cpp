@@ -1,5 +1,7 @@
 #include "planar/chain_search.hpp"
 
+#include <utility>
+
 namespace pd::detail {
 
 namespace {
@@ -16,24 +18,38 @@ struct Chain {
   [[nodiscard]] PolygonEdge edge(int k) const { return edge_of(*polygon, vertex(k), sign); }
 };
 
-Chain facing(const ConvexPolygon& polygon, double sign, const Point2& left, std::int64_t& probes) {
-  const Point2 up{sign * left[0], sign * left[1]}, down{-up[0], -up[1]};
-  Chain chain{&polygon, sign, polygon.extreme(down, &probes), 0};
+/// From the vertex farthest on the right of d to the one farthest on its left.
+Chain facing(const ConvexPolygon& polygon, double sign, const Point2& left, int right_vertex, int left_vertex) {
+  const Point2 up{sign * left[0], sign * left[1]};
+  Chain chain{&polygon, sign, right_vertex, 0};
   // An edge across: its far end leads on to d's side.
-  const int next = next_vertex(polygon, chain.first);
-  if (along(edge_of(polygon, chain.first, 1), up) == 0) chain.first = next;
-  const int last = polygon.extreme(up, &probes);
-  probes += 2;
-  chain.size = (last - chain.first + polygon.num_vertices()) % polygon.num_vertices();
+  if (along(edge_of(polygon, chain.first, 1), up) == 0) chain.first = next_vertex(polygon, chain.first);
+  chain.size = (left_vertex - chain.first + polygon.num_vertices()) % polygon.num_vertices();
   return chain;
 }
 
 }  // namespace
 
+// -Q is least where Q is greatest.
+SideVertices::SideVertices(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& d, std::int64_t& probes)
+    : p_right(p.extreme({d[1], -d[0]}, &probes)),
+      p_left(p.extreme({-d[1], d[0]}, &probes)),
+      q_right(q.extreme({d[1], -d[0]}, &probes)),
+      q_left(q.extreme({-d[1], d[0]}, &probes)) {}
+
+SideVertices SideVertices::turned() const {
+  SideVertices r = *this;
+  std::swap(r.p_right, r.p_left);
+  std::swap(r.q_right, r.q_left);
+  return r;
+}
+
 std::optional<ExitEdge> find_exit(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y, const Point2& d,
-                                  std::int64_t& probes) {
+                                  const SideVertices& sides, std::int64_t& probes) {
   const Point2 left{-d[1], d[0]};
-  const Chain cp = facing(p, 1, left, probes), cq = facing(q, -1, left, probes);
+  const Chain cp = facing(p, 1, left, sides.p_right, sides.p_left);
+  const Chain cq = facing(q, -1, left, sides.q_left, sides.q_right);
+  probes += 2;
   // Sign of the height of R's vertex (i, j) over the line.
   const auto height = [&](int i, int j) {
     ++probes;

@@ -16,10 +16,18 @@ struct ExitEdge {
   bool grazes = false;  ///< the line only touches R
 };
 
+/// The vertices of P and of Q that are least and greatest along d's left normal.
+struct SideVertices {
+  int p_right, p_left, q_right, q_left;
+  SideVertices(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& d, std::int64_t& probes);
+  /// Those of -d.
+  [[nodiscard]] SideVertices turned() const;
+};
+
 /// For the line through y along d; empty where it misses R. Of two edges that meet on the line the first
 /// counter-clockwise, but at the last corner of a grazed R the last.
 [[nodiscard]] std::optional<ExitEdge> find_exit(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y,
-                                                const Point2& d, std::int64_t& probes);
+                                                const Point2& d, const SideVertices& sides, std::int64_t& probes);
 
 /// y + t d lies on the edge's line for t = numerator / denominator, denominator > 0.
 template <class N>

@@ -48,9 +48,10 @@ struct Line {
   std::int64_t probes = 0;
 
   Line(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y, const Point2& d) {
-    ahead = detail::find_exit(p, q, y, d, probes);
+    const detail::SideVertices sides(p, q, d, probes);
+    ahead = detail::find_exit(p, q, y, d, sides, probes);
     if (!ahead) return;
-    behind = detail::find_exit(p, q, y, {-d[0], -d[1]}, probes);
+    behind = detail::find_exit(p, q, y, {-d[0], -d[1]}, sides.turned(), probes);
     const auto side = [&](const ExitEdge& e) {
       ++probes;
       return detail::side_of_edge(e.edge, p.vertex(e.parts.vertex_p), q.vertex(e.parts.vertex_q), y);
