@@ -33,6 +33,7 @@ struct ChildPairMemory {
 };
 
 struct PairMemory {
+  int patch = -1;  ///< the manifold's number among those of a pair with a mesh or compound; -1: of a single pair
   WarmCertificate warm;
   /// Held so that the certificate's shapes stay where they are, and so that a pair looks nothing up that has not
   /// changed.

@@ -34,6 +34,7 @@ PatchManifolds::Kept& PatchManifolds::at(std::size_t i, const btCollisionObject&
   while (i >= manifolds_.size()) {
     manifolds_.push_back(std::make_unique<Kept>());
     manifolds_.back()->manifold = dispatcher_.getNewManifold(&a, &b);
+    manifolds_.back()->memory.patch = static_cast<int>(manifolds_.size()) - 1;
     core_.pairs.add(manifolds_.back()->manifold, &manifolds_.back()->memory);
   }
   return *manifolds_[i];

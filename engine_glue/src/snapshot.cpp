@@ -106,12 +106,17 @@ btSequentialImpulseConstraintSolver* seeded_solver(btDiscreteDynamicsWorld& worl
 
 enum class Likeness { other, possible, same };
 
-/// Whether a manifold is the saved one. A compound has one for each pair of children, which only their points name.
-Likeness compare(const btPersistentManifold& manifold, const ManifoldState& state,
+/// Whether a manifold is the saved one. Those of patches have numbers; of Bullet's compounds there is one for each pair
+/// of children, which only their points name.
+Likeness compare(const btPersistentManifold& manifold, const detail::PairMemory* memory, const ManifoldState& state,
                  const std::vector<btManifoldPoint>& points) {
   if (manifold.getBody0() != state.body0 || manifold.getBody1() != state.body1) {
     return Likeness::other;
   }
+  const int patch = memory != nullptr ? memory->patch : -1;
+  const int saved_patch = state.memory ? state.memory->patch : -1;
+  if (patch != saved_patch) return Likeness::other;
+  if (patch >= 0) return Likeness::same;
   if (manifold.getNumContacts() == 0 || state.count == 0) {
     return Likeness::possible;
   }
@@ -149,7 +154,8 @@ struct BulletSnapshot::State {
       const int placed = static_cast<int>(saved.size());
       int found = -1;
       for (int i = placed; i < count; ++i) {
-        const Likeness likeness = compare(*present[i], wanted, points);
+        const Likeness likeness =
+            compare(*present[i], solver ? solver->pairs().find(present[i]) : nullptr, wanted, points);
         if (likeness == Likeness::same || (likeness == Likeness::possible && found < 0)) {
           found = i;
         }
@@ -179,7 +185,9 @@ struct BulletSnapshot::State {
         manifold->getContactPoint(k) = points[saved[i]->first + static_cast<std::size_t>(k)];
       }
       if (detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
+        const int patch = memory->patch;
         *memory = saved[i] != nullptr && saved[i]->memory ? *saved[i]->memory : detail::PairMemory();
+        memory->patch = patch;
       }
     }
   }
