@@ -337,6 +337,27 @@ Half half_of(DemoWorld& world, const Measurement& now, const std::vector<double>
   return half;
 }
 
+/// Adds a step to the film: longer where it tells something, and then to the strip, too.
+std::optional<Error> film_step(DuelFilm& film, const Half& first, const Half& second, const std::string& said,
+                               bool telling, bool moment, const std::string& time) {
+  const auto added = film.add_frame(first, second, said, telling ? kFramesPerImpact : kFramesPerStep);
+  if (!added) return added.error();
+  if (!moment || film.num_moments() >= 6) return std::nullopt;
+  const auto kept = film.add_moment(first, second, time);
+  if (!kept) return kept.error();
+  return std::nullopt;
+}
+
+/// The impacts from number `known` on, each before, at and after its first contact.
+std::optional<Error> draw_impacts(DemoWorld& world, const Course& course, std::size_t known, CloseUp& close_up,
+                                  render::Size size, const std::filesystem::path& folder) {
+  for (std::size_t k = known; k < course.impacts.size(); ++k) {
+    const auto drawn = draw_triptych(world, course.impacts[k], static_cast<int>(k) + 1, close_up, size, folder);
+    if (!drawn) return drawn.error();
+  }
+  return std::nullopt;
+}
+
 /// Runs both worlds, drawing as they go. @return how many frames there are.
 Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, const DemoOptions& options,
                          const std::filesystem::path& folder, render::Renderer& renderer, Course& course) {
@@ -381,22 +402,9 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
     const std::string said = fmt::format("penetration at the end of the step {} / {}", length_text(left.deepest),
                                          length_text(right.deepest));
     const bool telling = course.impacts.size() > known || left.deepest > 10 * kShownDepth;
-    const auto added = film.add_frame(first, second, said, telling ? kFramesPerImpact : kFramesPerStep);
-    if (!added) {
-      return added.error();
-    }
-    if ((telling || i == 0) && film.num_moments() < 6) {
-      const auto kept = film.add_moment(first, second, fmt::format("{:.0f} ms", 1e3 * i * step));
-      if (!kept) {
-        return kept.error();
-      }
-    }
-    for (std::size_t k = known; k < course.impacts.size(); ++k) {
-      const auto triptych = draw_triptych(guarded, course.impacts[k], static_cast<int>(k) + 1, close_up, whole, folder);
-      if (!triptych) {
-        return triptych.error();
-      }
-    }
+    const std::string time = fmt::format("{:.0f} ms", 1e3 * i * step);
+    if (auto error = film_step(film, first, second, said, telling, telling || i == 0, time)) return *std::move(error);
+    if (auto error = draw_impacts(guarded, course, known, close_up, whole, folder)) return *std::move(error);
     if (!write_text(folder / "rollback.json", to_json(course, guarded).dump(2) + "\n")) {
       return Error{ErrorCode::bad_value, "rollback.json cannot be written", folder.string()};
     }

@@ -17,15 +17,15 @@ namespace {
 constexpr const char* kStyle = R"(
 :root{color-scheme:light dark;--ink:#1b1f24;--paper:#fff;--quiet:#5b6570;--line:#d5dae0;--bar:#2b6cb0;--bad:#b3261e;--good:#1f7a3d}
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ee;--paper:#14171b;--quiet:#9aa5b1;--line:#343b44;--bar:#63a4e8;--bad:#ff8a80;--good:#6fd08c}}
-body{margin:0 auto;padding:1rem;max-width:64rem;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
+body{margin:0 auto;padding:1rem;max-width:72rem;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
 h1{font-size:1.5rem;margin:.2rem 0}h2{font-size:1.15rem;margin:2rem 0 .5rem}p{margin:.4rem 0}.quiet{color:var(--quiet)}
 .cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(8.5rem,1fr));gap:.6rem;padding:0;margin:1rem 0;list-style:none}
 .cards li{border:1px solid var(--line);border-radius:.5rem;padding:.6rem .8rem}.cards b{display:block;font-size:1.5rem}
 .bad b,.fails{color:var(--bad)}.good b,.holds{color:var(--good)}
-.scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
-th,td{padding:.25rem .6rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
+.scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:.9rem;font-variant-numeric:tabular-nums}
+th,td{padding:.25rem .5rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
 th:first-child,td:first-child{text-align:left}
-svg{width:100%;height:auto;display:block}svg text{fill:var(--quiet);font:11px system-ui,sans-serif}
+svg{width:100%;min-width:40rem;height:auto;display:block}svg text{fill:var(--quiet);font:11px system-ui,sans-serif}
 svg rect{fill:var(--bar)}svg line{stroke:var(--line)}
 details{border:1px solid var(--line);border-radius:.5rem;padding:.4rem .8rem;margin:.4rem 0}summary{cursor:pointer}
 pre{overflow-x:auto;white-space:pre-wrap;word-break:break-all;font-size:.8rem;margin:.4rem 0}
@@ -103,7 +103,8 @@ std::string chart(std::string_view title, const ErrorQuantiles& errors) {
   const double most = std::log10(static_cast<double>(*std::max_element(counts.begin(), counts.end()))) + 1;
   const double base = kTop + kHeight;
   std::string text = fmt::format(
-      "<h2>{}</h2>\n<svg viewBox=\"0 0 {} 170\" role=\"img\" aria-label=\"{}: contacts by power of ten of the "
+      "<h2>{}</h2>\n<div class=\"scroll\" tabindex=\"0\"><svg viewBox=\"0 0 {} 170\" role=\"img\" aria-label=\"{}: "
+      "contacts by power of ten of the "
       "error\">\n",
       title, kLeft + kStep * (kPowers + 1) + 8, title);
   const auto out = std::back_inserter(text);
@@ -119,7 +120,7 @@ std::string chart(std::string_view title, const ErrorQuantiles& errors) {
     fmt::format_to(out, "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", x + kStep / 2,
                    base - height - 3, counts[i]);
   }
-  fmt::format_to(out, "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"/>\n</svg>\n", kLeft, base,
+  fmt::format_to(out, "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"/>\n</svg></div>\n", kLeft, base,
                  kLeft + kStep * (kPowers + 1), base);
   return text +
          "<p class=\"quiet\">Contacts by the power of ten from which their error starts, relative to the size of "
@@ -131,10 +132,12 @@ std::string worst_contacts(const Audit& audit) {
   std::string text = "<h2>Worst contacts</h2>\n";
   for (const WorstContact& worst : audit.summary.worst()) {
     const SignedDepth x = worst_interval(worst, audit.tolerance);
+    std::string what(worst.column);
+    std::replace(what.begin(), what.end(), '_', ' ');
     text += fmt::format(
         "<details><summary>contact {}, line {}: {} {} ({})</summary>\n<p>Exact signed depth {:.17g} to {:.17g}; "
         "reported:</p>\n<pre>{}</pre>\n",
-        xml_text(query::shortened(worst.contact.id_text, 40)), worst.line, worst.column, short_number(worst.error),
+        xml_text(query::shortened(worst.contact.id_text, 40)), worst.line, what, short_number(worst.error),
         xml_text(kind_of(worst.contact)), x.lower, x.upper, xml_text(member_text(worst.text, "reported")));
     if (const std::string line = query_line(worst, audit.tolerance); !line.empty()) {
       text += fmt::format("<p>To ask again, for <code>pdepth query</code>:</p>\n<pre>{}</pre>\n", xml_text(line));

@@ -91,8 +91,9 @@ void BroadphaseState::save_trees(const btDbvtBroadphase& broadphase, const btCol
   need_cleanup_ = broadphase.m_needcleanup;
 }
 
-void BroadphaseState::restore_trees(btDbvtBroadphase& broadphase) const {
-  // The nodes of both trees and their spare ones are the memory at hand; updates alone neither add to it nor take away.
+/// Where each saved node lives now: at its old address where that is still a node's, else anywhere. The nodes of both
+/// trees and their spare ones are the memory at hand; updates alone neither add to it nor take away.
+std::map<const btDbvtNode*, btDbvtNode*> BroadphaseState::house_nodes(btDbvtBroadphase& broadphase) const {
   std::vector<btDbvtNode*> memory;
   for (btDbvt& tree : broadphase.m_sets) {
     for_each_node(tree.m_root, [&](btDbvtNode* node) { memory.push_back(node); });
@@ -126,6 +127,11 @@ void BroadphaseState::restore_trees(btDbvtBroadphase& broadphase) const {
   for (btDbvtNode* left_over : memory) {
     btAlignedFree(left_over);
   }
+  return now_at;
+}
+
+void BroadphaseState::restore_trees(btDbvtBroadphase& broadphase) const {
+  std::map<const btDbvtNode*, btDbvtNode*> now_at = house_nodes(broadphase);
   for (int i = 0; i < 2; ++i) {
     btDbvt& tree = broadphase.m_sets[i];
     for (const SavedNode& saved : trees_[i].nodes) {

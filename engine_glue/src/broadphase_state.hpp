@@ -10,6 +10,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 
 #include <array>
+#include <map>
 #include <vector>
 
 namespace pd::detail {
@@ -47,6 +48,7 @@ class BroadphaseState {
 
   void save_trees(const btDbvtBroadphase& broadphase, const btCollisionWorld& world);
   void restore_trees(btDbvtBroadphase& broadphase) const;
+  std::map<const btDbvtNode*, btDbvtNode*> house_nodes(btDbvtBroadphase& broadphase) const;
   void restore_pairs(btCollisionWorld& world) const;
 
   std::vector<SavedPair> pairs_;

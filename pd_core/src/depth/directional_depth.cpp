@@ -191,6 +191,37 @@ void swept_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction
   out.statistics.support_calls += shooter.support_calls();
 }
 
+/// Compute-Depth-3D, in hierarchies made for this query where the caller has none. False where the descent ends without
+/// an answer.
+Expected<bool> by_hierarchies(const PosedPair& pair, const ConvexPolytope& a, const ConvexPolytope& b,
+                              const Vec3& direction, const DirectionalHierarchies* hierarchies, DirectionalDepth& out) {
+  if (hierarchies != nullptr) return descend(pair, direction, *hierarchies, out);
+  Expected<PolyhedralHierarchy> built_a = PolyhedralHierarchy::build(a, HierarchyKind::inner);
+  if (!built_a) return built_a.error();
+  Expected<PolyhedralHierarchy> built_b = PolyhedralHierarchy::build(b, HierarchyKind::inner);
+  if (!built_b) return built_b.error();
+  return descend(pair, direction, DirectionalHierarchies{&*built_a, &*built_b}, out);
+}
+
+/// Where the ray leaves P, by the pieces of the overlay.
+Crossing by_overlay(const PosedPair& pair, const detail::DirectionSigns& ray, Scratch& scratch, DirectionalDepth& out) {
+  detail::OverlayWalk walk(pair, scratch.buffers().overlay.overlay);
+  NearestCrossing nearest(walk, ray);
+  walk.run([&](std::span<const detail::OverlayPiece> pieces) {
+    nearest.consume(pieces);
+    return true;
+  });
+  out.statistics.facets_visited += nearest.visited();
+  return nearest.best();
+}
+
+/// The same by a portal.
+Crossing by_portal(const PosedPair& pair, const detail::DirectionSigns& ray, DirectionalDepth& out) {
+  const detail::Portal portal = find_portal(ray);
+  out.statistics.support_calls += portal.support_calls;
+  return crossing_of(pair, ray.exact(), portal.corners);
+}
+
 }  // namespace
 
 Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction,
@@ -212,16 +243,10 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
 
   DirectionalDepth out;
   if (method == DirectionalMethod::hierarchy) {
-    std::optional<PolyhedralHierarchy> built[2];
-    for (const int side : {0, 1}) {
-      if (hierarchies != nullptr) break;
-      Expected<PolyhedralHierarchy> hierarchy =
-          PolyhedralHierarchy::build(side == 0 ? *polytope_a : *polytope_b, HierarchyKind::inner);
-      if (!hierarchy) return hierarchy.error();
-      built[side] = *std::move(hierarchy);
-    }
     const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
-    if (descend(pair, direction, hierarchies ? *hierarchies : DirectionalHierarchies{&*built[0], &*built[1]}, out)) {
+    const Expected<bool> answered = by_hierarchies(pair, *polytope_a, *polytope_b, direction, hierarchies, out);
+    if (!answered) return answered.error();
+    if (*answered) {
       out.statistics.exact_signs += pair.stages().double_double + pair.stages().exact;
       return out;
     }
@@ -241,21 +266,8 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
 
   const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
   const detail::DirectionSigns ray(pair, direction);
-  Crossing crossing;
-  if (method == DirectionalMethod::overlay) {
-    detail::OverlayWalk walk(pair, scratch.buffers().overlay.overlay);
-    NearestCrossing nearest(walk, ray);
-    walk.run([&](std::span<const detail::OverlayPiece> pieces) {
-      nearest.consume(pieces);
-      return true;
-    });
-    crossing = nearest.best();
-    out.statistics.facets_visited += nearest.visited();
-  } else {
-    const detail::Portal portal = find_portal(ray);
-    crossing = crossing_of(pair, ray.exact(), portal.corners);
-    out.statistics.support_calls += portal.support_calls;
-  }
+  const Crossing crossing =
+      method == DirectionalMethod::overlay ? by_overlay(pair, ray, scratch, out) : by_portal(pair, ray, out);
   fill(pair, ray.exact(), crossing, out);
   out.statistics.exact_signs += pair.stages().double_double + pair.stages().exact;
   return out;

@@ -45,6 +45,29 @@ int turns_round(std::span<const Vec3> vertices, std::span<const StarBody::Triang
   }
 }
 
+/// Three different vertices, and the centre strictly below the plane.
+std::optional<Error> refuse_face(const StarBody::Triangle& face, std::span<const Vec3> vertices, const Vec3& centre,
+                                 const std::string& where) {
+  for (const std::int32_t v : face) {
+    if (v < 0 || static_cast<std::size_t>(v) >= vertices.size()) {
+      return Error{ErrorCode::bad_faces,
+                   std::to_string(v) + " is no vertex; indices run from 0 to " + std::to_string(vertices.size() - 1),
+                   where};
+    }
+  }
+  if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
+    return Error{ErrorCode::bad_faces, "a face names a vertex twice; three different ones make a triangle", where};
+  }
+  const auto corner = [&](std::size_t k) { return vertices[static_cast<std::size_t>(face[k])]; };
+  if (orient3d(corner(0), corner(1), corner(2), centre) >= 0) {
+    return Error{ErrorCode::bad_faces,
+                 "the face does not see the centre from inside: its corners must turn counter-clockwise seen from "
+                 "outside, and the centre must lie strictly below its plane",
+                 where};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Expected<StarBody> StarBody::from_faces(std::span<const Vec3> vertices, std::span<const Triangle> faces,
@@ -64,23 +87,7 @@ Expected<StarBody> StarBody::from_faces(std::span<const Vec3> vertices, std::spa
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const std::string where = indexed("faces", static_cast<long long>(f));
     const Triangle& face = faces[f];
-    for (const std::int32_t v : face) {
-      if (v < 0 || static_cast<std::size_t>(v) >= vertices.size()) {
-        return Error{ErrorCode::bad_faces,
-                     std::to_string(v) + " is no vertex; indices run from 0 to " + std::to_string(vertices.size() - 1),
-                     where};
-      }
-    }
-    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
-      return Error{ErrorCode::bad_faces, "a face names a vertex twice; three different ones make a triangle", where};
-    }
-    const auto corner = [&](std::size_t k) { return vertices[static_cast<std::size_t>(face[k])]; };
-    if (orient3d(corner(0), corner(1), corner(2), centre) >= 0) {
-      return Error{ErrorCode::bad_faces,
-                   "the face does not see the centre from inside: its corners must turn counter-clockwise seen from "
-                   "outside, and the centre must lie strictly below its plane",
-                   where};
-    }
+    if (auto refused = refuse_face(face, vertices, centre, where)) return *std::move(refused);
     for (std::size_t k = 0; k < 3; ++k) {
       if (!face_of_edge.try_emplace({face[k], face[(k + 1) % 3]}, f).second) {
         return Error{ErrorCode::bad_faces,

@@ -51,6 +51,34 @@ struct Meeting {
   std::int32_t query;
 };
 
+/// The arcs of one diagram that cross blocks of stored arcs of the other: block and arc, blocks together, in
+/// `meetings`.
+/// @param tried_by  memory
+void find_meetings(const detail::OverlayWalk& walk, const StripTree& tree, const std::vector<ChartLine>& stored,
+                   const std::vector<ChartLine>& asked, bool of_a, std::vector<Meeting>& meetings,
+                   std::vector<std::int32_t>& tried_by) {
+  meetings.clear();
+  tried_by.assign(stored.size(), -1);
+  for (std::size_t q = 0; q < asked.size(); ++q) {
+    const std::int32_t edge = asked[q].segment.edge;
+    const auto query = static_cast<std::int32_t>(q);
+    tree.find_crossed(
+        asked[q],
+        [&](std::int32_t line) {
+          // Where arcs run within rounding of each other, one answer serves every strip.
+          if (std::exchange(tried_by[static_cast<std::size_t>(line)], query) == query) return false;
+          const std::int32_t other = stored[static_cast<std::size_t>(line)].segment.edge;
+          return detail::edge_crossing(walk, of_a ? other : edge, of_a ? edge : other).has_value();
+        },
+        [&](const StripTree::Block& block) {
+          meetings.push_back({block.first, block.count, query});
+        });
+  }
+  std::sort(meetings.begin(), meetings.end(), [](const Meeting& x, const Meeting& y) {
+    return x.first != y.first ? x.first < y.first : x.count != y.count ? x.count < y.count : x.query < y.query;
+  });
+}
+
 }  // namespace
 
 Decomposition Decomposition::of(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
@@ -78,26 +106,7 @@ Decomposition Decomposition::of(const ConvexPolytope& a, const Pose& pose_a, con
       const std::vector<ChartLine>& stored = of_a ? lines_a : lines_b;
       const std::vector<ChartLine>& asked = of_a ? lines_b : lines_a;
       const StripTree tree(stored, xs);
-      meetings.clear();
-      tried_by.assign(stored.size(), -1);
-      for (std::size_t q = 0; q < asked.size(); ++q) {
-        const std::int32_t edge = asked[q].segment.edge;
-        const auto query = static_cast<std::int32_t>(q);
-        tree.find_crossed(
-            asked[q],
-            [&](std::int32_t line) {
-              // Where arcs run within rounding of each other, one answer serves every strip.
-              if (std::exchange(tried_by[static_cast<std::size_t>(line)], query) == query) return false;
-              const std::int32_t other = stored[static_cast<std::size_t>(line)].segment.edge;
-              return detail::edge_crossing(walk, of_a ? other : edge, of_a ? edge : other).has_value();
-            },
-            [&](const StripTree::Block& block) {
-              meetings.push_back({block.first, block.count, query});
-            });
-      }
-      std::sort(meetings.begin(), meetings.end(), [](const Meeting& x, const Meeting& y) {
-        return x.first != y.first ? x.first < y.first : x.count != y.count ? x.count < y.count : x.query < y.query;
-      });
+      find_meetings(walk, tree, stored, asked, of_a, meetings, tried_by);
       for (std::size_t begin = 0, end = 0; begin < meetings.size(); begin = end) {
         const Meeting block = meetings[begin];
         const auto edge_of = [&](std::int32_t entry) -> const ChartLine& {

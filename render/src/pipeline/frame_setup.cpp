@@ -103,27 +103,10 @@ Eigen::Matrix4f model_matrix(const FrameSetup& frame, const Pose& pose, double u
   return model;
 }
 
-FrameSetup set_up_frame(const Scene& scene, const Camera& camera, Size size) {
-  FrameSetup frame{};
-  frame.origin = camera.target;
-  frame.scale = 1 / (camera.eye - camera.target).norm();
-  frame.eye = to_drawing(frame, camera.eye);
-  const Vec3 forward = (camera.target - camera.eye).normalized();
-  const Vec3 right = forward.cross(camera.up).normalized();
-  Mat3 axes;
-  axes << right.transpose(), right.cross(forward).transpose(), forward.transpose();
-  frame.axes = axes.cast<float>();
-  const double tangent = std::tan(camera.vertical_field_degrees * std::numbers::pi / 360);
-  frame.tangents = {static_cast<float>(tangent * size.width / size.height), static_cast<float>(tangent)};
-  frame.line_pixels = static_cast<float>(size.height) / 720.0f;
+namespace {
 
-  const Box focus = focus_of(scene);
-  const double radius = std::max(0.5 * focus.diagonal(), 1e-9 / frame.scale);
-  const Box all = bounds(scene);
-  frame.focus_radius = static_cast<float>(radius * frame.scale);
-  frame.occlusion_radius = static_cast<float>(1.1 * typical_body_radius(scene, 0.5 * radius) * frame.scale);
-
-  frame.up = scene.up.normalized().cast<float>();
+/// The ground's plane and grid about the point under the scene's focus.
+void set_up_ground(const Scene& scene, const Box& focus, FrameSetup& frame) {
   Vec3 ground_x;
   Vec3 ground_y;
   ground_axes(scene.up, ground_x, ground_y);
@@ -138,9 +121,14 @@ FrameSetup set_up_frame(const Scene& scene, const Camera& camera, Size size) {
   // Every tenth line is a major one: the offset is kept to ten steps.
   frame.grid_offset = {static_cast<float>(std::fmod(ground_x.dot(centre) / step, 10.0)),
                        static_cast<float>(std::fmod(ground_y.dot(centre) / step, 10.0))};
+}
 
-  // The depth range holds everything that is drawn; its near end is set by the nearest body, not by the ground, whose
-  // part below the eye is cut without being missed.
+/// The depth range holds everything that is drawn; its near end is set by the nearest body, not by the ground, whose
+/// part below the eye is cut without being missed.
+/// @param axes  right, up and forward of the camera, in rows but for forward's sign
+void set_up_projection(const Box& all, const Camera& camera, const Mat3& axes, double tangent, Size size,
+                       FrameSetup& frame) {
+  const Vec3 forward = (camera.target - camera.eye).normalized();
   double nearest = 1e300;
   double farthest = 1;
   for (int corner = 0; corner < 8 && !all.empty(); ++corner) {
@@ -163,6 +151,32 @@ FrameSetup set_up_frame(const Scene& scene, const Camera& camera, Size size) {
   view.block<3, 3>(0, 0) = axes;
   view.block<3, 1>(0, 3) = -axes * ((camera.eye - frame.origin) * frame.scale);
   frame.projection = (clip * view).cast<float>();
+}
+
+}  // namespace
+
+FrameSetup set_up_frame(const Scene& scene, const Camera& camera, Size size) {
+  FrameSetup frame{};
+  frame.origin = camera.target;
+  frame.scale = 1 / (camera.eye - camera.target).norm();
+  frame.eye = to_drawing(frame, camera.eye);
+  const Vec3 forward = (camera.target - camera.eye).normalized();
+  const Vec3 right = forward.cross(camera.up).normalized();
+  Mat3 axes;
+  axes << right.transpose(), right.cross(forward).transpose(), forward.transpose();
+  frame.axes = axes.cast<float>();
+  const double tangent = std::tan(camera.vertical_field_degrees * std::numbers::pi / 360);
+  frame.tangents = {static_cast<float>(tangent * size.width / size.height), static_cast<float>(tangent)};
+  frame.line_pixels = static_cast<float>(size.height) / 720.0f;
+
+  const Box focus = focus_of(scene);
+  const double radius = std::max(0.5 * focus.diagonal(), 1e-9 / frame.scale);
+  frame.focus_radius = static_cast<float>(radius * frame.scale);
+  frame.occlusion_radius = static_cast<float>(1.1 * typical_body_radius(scene, 0.5 * radius) * frame.scale);
+
+  frame.up = scene.up.normalized().cast<float>();
+  set_up_ground(scene, focus, frame);
+  set_up_projection(bounds(scene), camera, axes, tangent, size, frame);
 
   frame.to_light = light_direction(scene, camera).cast<float>();
   Box casters;

@@ -135,12 +135,10 @@ double fitted_exponent(const Series& series) {
                                                                       : std::numeric_limits<double>::quiet_NaN();
 }
 
-Image draw_chart(const Chart& chart, Size size) {
-  Image image(size, palette::kPaper);
-  Canvas canvas(image);
-  const double u = size.height / 720.0;
-  Range x_range;
-  Range y_range;
+namespace {
+
+/// What of the series can be drawn; a decade where nothing can.
+void ranges_of(const Chart& chart, Range& x_range, Range& y_range) {
   for (const Series& series : chart.series) {
     for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
       if (drawable(series.x[i], chart.x_scale) && drawable(series.y[i], chart.y_scale)) {
@@ -153,14 +151,22 @@ Image draw_chart(const Chart& chart, Size size) {
     x_range = {1, 10};
     y_range = {1, 10};
   }
+}
 
-  // The names at the line ends need room on the right.
-  const TextStyle name_style{.size = 15 * u, .weight = 600};
+/// In units of u, as every length below: a 720th of the picture's height.
+constexpr double kMargin = 44;
+
+TextStyle name_style(double u) { return {.size = 15 * u, .weight = 600}; }
+
+/// The axes with room for their figures on the left and for the names at the lines' ends on the right.
+Plot lay_out(const Canvas& canvas, const Chart& chart, Size size, double u) {
+  Range x_range;
+  Range y_range;
+  ranges_of(chart, x_range, y_range);
   double names = 0;
   for (const Series& series : chart.series) {
-    names = std::max(names, canvas.measure(series_text(series), name_style).width);
+    names = std::max(names, canvas.measure(series_text(series), name_style(u)).width);
   }
-  const double margin = 44 * u;
   Axis y_axis = detail::make_axis(chart.y_scale, y_range.lower, y_range.upper, chart.y_from_zero, 6);
   double figures = 0;
   for (const detail::Tick& tick : y_axis.ticks) {
@@ -170,31 +176,24 @@ Image draw_chart(const Chart& chart, Size size) {
   if (chart.x_scale == Scale::linear) {
     x_axis.lower = std::min(x_range.lower, x_axis.ticks.empty() ? x_range.lower : x_axis.ticks.front().value);
   }
-  const Plot plot{margin + figures + 12 * u,
-                  size.width - margin - std::min(names + 16 * u, 0.35 * size.width),
-                  150 * u,
-                  size.height - 84 * u,
-                  std::move(x_axis),
-                  std::move(y_axis)};
-  canvas.text({margin, 58 * u}, chart.title, {.size = 27 * u, .weight = 650});
-  canvas.text({margin, 86 * u}, chart.subtitle, {.size = 16 * u, .weight = 450, .colour = palette::kInkSoft});
-  draw_axes(canvas, plot, chart, u);
+  return {kMargin * u + figures + 12 * u,
+          size.width - kMargin * u - std::min(names + 16 * u, 0.35 * size.width),
+          150 * u,
+          size.height - 84 * u,
+          std::move(x_axis),
+          std::move(y_axis)};
+}
 
-  struct Name {
-    double y;
-    Point end;
-    std::string text;
-    Colour colour;
-  };
-  std::vector<Name> ends;
-  for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    const Series& series = chart.series[i];
-    const Colour colour = palette::series(series.colour >= 0 ? static_cast<std::size_t>(series.colour) : i);
-    if (const auto end = draw_series(canvas, plot, chart, series, colour, u)) {
-      ends.push_back({end->y, *end, series_text(series), colour});
-    }
-  }
-  // Names keep their order and are pushed apart to a line's height, down first and back up from the lower end.
+/// A series' name, at the end of its line.
+struct Name {
+  double y;
+  Point end;
+  std::string text;
+  Colour colour;
+};
+
+/// Names keep their order and are pushed apart to a line's height, down first and back up from the lower end.
+void draw_names(Canvas& canvas, const Plot& plot, std::vector<Name>& ends, double u) {
   std::stable_sort(ends.begin(), ends.end(), [](const Name& a, const Name& b) { return a.y < b.y; });
   const double line = 21 * u;
   for (std::size_t i = 1; i < ends.size(); ++i) {
@@ -206,12 +205,33 @@ Image draw_chart(const Chart& chart, Size size) {
     limit = name->y - line;
   }
   for (const Name& name : ends) {
-    TextStyle style = name_style;
+    TextStyle style = name_style(u);
     style.colour = name.colour;
     const std::array<Point, 2> leader = {{{name.end.x + 6 * u, name.end.y}, {plot.right + 12 * u, name.y}}};
     canvas.stroke(leader, 1 * u, name.colour, 0.4);
     canvas.text({plot.right + 16 * u, name.y + 5 * u}, name.text, style);
   }
+}
+
+}  // namespace
+
+Image draw_chart(const Chart& chart, Size size) {
+  Image image(size, palette::kPaper);
+  Canvas canvas(image);
+  const double u = size.height / 720.0;
+  const Plot plot = lay_out(canvas, chart, size, u);
+  canvas.text({kMargin * u, 58 * u}, chart.title, {.size = 27 * u, .weight = 650});
+  canvas.text({kMargin * u, 86 * u}, chart.subtitle, {.size = 16 * u, .weight = 450, .colour = palette::kInkSoft});
+  draw_axes(canvas, plot, chart, u);
+  std::vector<Name> ends;
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    const Series& series = chart.series[i];
+    const Colour colour = palette::series(series.colour >= 0 ? static_cast<std::size_t>(series.colour) : i);
+    if (const auto end = draw_series(canvas, plot, chart, series, colour, u)) {
+      ends.push_back({end->y, *end, series_text(series), colour});
+    }
+  }
+  draw_names(canvas, plot, ends, u);
   return image;
 }
 

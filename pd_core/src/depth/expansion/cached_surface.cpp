@@ -95,29 +95,27 @@ void set_reference(WarmState& state, InnerSurface& surface, const PolytopeDiffer
   r.clearance = std::sqrt(std::max(clearance, nearest)) - kFloatSlack * reach;
 }
 
-bool nearest_remembered(const WarmState& state, const PolytopeDifference& difference, RememberedFace& out) {
-  const WarmReference& r = state.reference;
-  if (!(r.clearance > 0)) return false;
-  const Movement moved = movement(r, difference);
-  if (!(moved.base + moved.turn * r.widest < r.clearance)) return false;
-  const auto nearest_index = static_cast<std::size_t>(r.nearest);
-  // The nearest face of then is no farther now, where the origin still projects into it.
-  const double farthest = static_cast<double>(r.distances[nearest_index]) + moved.base +
-                          moved.turn * static_cast<double>(r.spreads[nearest_index]) + kFloatSlack * difference.reach();
+namespace {
 
-  NearFaces near;
-  const double limit = farthest + moved.base + kFloatSlack * difference.reach();
+/// The faces of then whose planes may have come within `limit` of the origin, by number. False where none has, or more
+/// than fit.
+bool gather_near(const WarmState& state, float turn, double limit, NearFaces& near) {
+  const WarmReference& r = state.reference;
   const int face_count = static_cast<int>(state.faces.size());
   for (int from = 0; from < face_count; from += 64) {
     std::uint64_t bits = near_faces(r.distances.data() + from, r.spreads.data() + from, std::min(64, face_count - from),
-                                    static_cast<float>(moved.turn), static_cast<float>(limit));
+                                    turn, static_cast<float>(limit));
     for (; bits != 0; bits &= bits - 1) {
       if (near.count == kMaxNear) return false;
       near.faces[near.count++] = from + std::countr_zero(bits);
     }
   }
-  if (near.count == 0) return false;
+  return near.count > 0;
+}
 
+/// Their corners, each once, at the present poses, and their planes.
+void pose_near(const WarmState& state, const PolytopeDifference& difference, NearFaces& near,
+               DifferenceVertex* vertices) {
   std::int8_t places[kMaxRememberedVertices];
   std::fill(std::begin(places), std::end(places), std::int8_t{-1});
   VertexPair pairs[3 * kMaxNear];
@@ -135,11 +133,29 @@ bool nearest_remembered(const WarmState& state, const PolytopeDifference& differ
     near.q[i] = place(face.vertex[1]);
     near.r[i] = place(face.vertex[2]);
   }
-  DifferenceVertex vertices[3 * kMaxNear];
   difference.posed_vertices(pairs, vertex_count, vertices);
   for (int i = near.count; i < kMaxNear; ++i) near.p[i] = near.q[i] = near.r[i] = 0;
   triangle_planes(vertices[0].x.data(), {near.p, near.q, near.r}, 0, near.count,
                   {near.nx, near.ny, near.nz, near.levels, near.keys});
+}
+
+}  // namespace
+
+bool nearest_remembered(const WarmState& state, const PolytopeDifference& difference, RememberedFace& out) {
+  const WarmReference& r = state.reference;
+  if (!(r.clearance > 0)) return false;
+  const Movement moved = movement(r, difference);
+  if (!(moved.base + moved.turn * r.widest < r.clearance)) return false;
+  const auto nearest_index = static_cast<std::size_t>(r.nearest);
+  // The nearest face of then is no farther now, where the origin still projects into it.
+  const double farthest = static_cast<double>(r.distances[nearest_index]) + moved.base +
+                          moved.turn * static_cast<double>(r.spreads[nearest_index]) + kFloatSlack * difference.reach();
+
+  NearFaces near;
+  const double limit = farthest + moved.base + kFloatSlack * difference.reach();
+  if (!gather_near(state, static_cast<float>(moved.turn), limit, near)) return false;
+  DifferenceVertex vertices[3 * kMaxNear];
+  pose_near(state, difference, near, vertices);
 
   const double level_slack = kLevelSlack * cube(difference.reach());
   int nearest = 0;

@@ -208,24 +208,8 @@ void release(const Storage* storage) {
   ::operator delete (const_cast<Storage*>(storage), std::align_val_t{kAlignment});
 }
 
-}  // namespace
-
-std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, const FacetLoops& loops,
-                                       int affine_dimension) {
-  Counts n{};
-  n.vertices = static_cast<int>(vertices.size());
-  n.padded = padded(n.vertices);
-  n.facet_vertices = static_cast<int>(loops.vertices.size());
-  n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
-  n.facets = loops.size();
-
-  Block measure(nullptr);
-  take_arrays(measure, n);
-  auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
-  Block block(memory);
-  const Arrays out = take_arrays(block, n);
-  std::shared_ptr<const Storage> shared(out.storage, release);
-
+/// The vertices in the order of their coordinates, padded with the first. @return each one's place in that order
+std::vector<std::int32_t> place_vertices(std::span<const HullVertex> vertices, const Arrays& out, const Counts& n) {
   std::vector<std::int32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
@@ -234,7 +218,6 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   });
   std::vector<std::int32_t> rank(vertices.size());
-  double max_abs = 0;
   for (int i = 0; i < n.vertices; ++i) {
     const std::int32_t position = order[static_cast<std::size_t>(i)];
     const HullVertex& p = vertices[static_cast<std::size_t>(position)];
@@ -243,12 +226,18 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
     out.y[i] = p.y;
     out.z[i] = p.z;
     out.caller_ids[i] = p.caller_id;
-    max_abs = std::max({max_abs, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    out.storage->max_abs_coordinate =
+        std::max({out.storage->max_abs_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
   std::fill(out.x + n.vertices, out.x + n.padded, out.x[0]);
   std::fill(out.y + n.vertices, out.y + n.padded, out.y[0]);
   std::fill(out.z + n.vertices, out.z + n.padded, out.z[0]);
+  return rank;
+}
 
+/// Facets, edges and neighbours of a body of this dimension.
+void place_facets(const FacetLoops& loops, const std::vector<std::int32_t>& rank, int affine_dimension,
+                  const Arrays& out, const Counts& n) {
   if (affine_dimension >= 2) {
     write_surface(connect(loops, rank), out, n);
     for (int f = 0; f < n.facets; ++f) {
@@ -268,20 +257,21 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
       out.half_edges[1] = {1, 0, 0, -1};
     }
   }
+}
 
+/// What readers of the storage see.
+void publish(const Arrays& out, const Counts& n, int affine_dimension) {
   Storage& s = *out.storage;
   s.affine_dimension = affine_dimension;
   s.num_vertices = n.vertices;
   s.num_half_edges = n.half_edges;
   s.num_facets = n.facets;
   s.padded_size = n.padded;
-  s.max_abs_coordinate = max_abs;
   for (int v = 0; v < n.vertices; ++v) {
     const Vec3 point(out.x[v], out.y[v], out.z[v]);
     s.centre += point / n.vertices;  // divided first: a sum could overflow
     s.radius = std::max(s.radius, point.stableNorm() * (1 + 0x1p-48));
   }
-  s.memory_bytes = block.used();
   s.x = out.x;
   s.y = out.y;
   s.z = out.z;
@@ -293,7 +283,30 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   s.facet_vertices = out.facet_vertices;
   s.facet_half_edges = out.facet_half_edges;
   s.facet_normals = out.facet_normals;
-  if (n.vertices > kScanLimit) add_table(s);
+}
+
+}  // namespace
+
+std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, const FacetLoops& loops,
+                                       int affine_dimension) {
+  Counts n{};
+  n.vertices = static_cast<int>(vertices.size());
+  n.padded = padded(n.vertices);
+  n.facet_vertices = static_cast<int>(loops.vertices.size());
+  n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
+  n.facets = loops.size();
+
+  Block measure(nullptr);
+  take_arrays(measure, n);
+  auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
+  Block block(memory);
+  const Arrays out = take_arrays(block, n);
+  std::shared_ptr<const Storage> shared(out.storage, release);
+
+  place_facets(loops, place_vertices(vertices, out, n), affine_dimension, out, n);
+  publish(out, n, affine_dimension);
+  out.storage->memory_bytes = block.used();
+  if (n.vertices > kScanLimit) add_table(*out.storage);
   return shared;
 }
 
