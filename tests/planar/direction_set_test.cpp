@@ -144,7 +144,7 @@ TEST(DirectionSet, SignsGrowWithTheLogarithm) {
     std::int64_t most = 0;
     for (int i = 0; i < 500; ++i) {
       std::int64_t probes = 0;
-      set.depth({random.uniform(-1, 1), random.uniform(-1, 1)}, 0, &probes);
+      (void)set.depth({random.uniform(-1, 1), random.uniform(-1, 1)}, 0, &probes);
       most = std::max(most, probes);
     }
     EXPECT_LE(static_cast<double>(most), 2.5 * log + 6);
