@@ -159,7 +159,7 @@ constexpr double kMargin = 44;
 TextStyle name_style(double u) { return {.size = 15 * u, .weight = 600}; }
 
 /// The axes with room for their figures on the left and for the names at the lines' ends on the right.
-Plot lay_out(const Canvas& canvas, const Chart& chart, Size size, double u) {
+Plot lay_out(Canvas& canvas, const Chart& chart, Size size, double u) {
   Range x_range;
   Range y_range;
   ranges_of(chart, x_range, y_range);
