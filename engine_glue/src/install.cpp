@@ -6,6 +6,7 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 
 #include "installation.hpp"
+#include "mesh_contacts.hpp"
 #include "solver_core.hpp"
 
 namespace pd {
@@ -28,7 +29,7 @@ template <class Visit>
 void for_each_mesh_pair(Visit&& visit) {
   for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
     for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
-      if (btBroadphaseProxy::isConvex(i) && detail::MeshAlgorithm::takes(j)) {
+      if (btBroadphaseProxy::isConvex(i) && detail::takes_mesh(j)) {
         visit(i, j, false);
         visit(j, i, true);
       }

@@ -4,6 +4,8 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
+#include "compound_contacts.hpp"
+#include "mesh_contacts.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -15,9 +17,9 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       step_action_(*this),
       contacts_(*this, false),
       closest_(*this, true),
-      mesh_(*this, false),
-      swapped_mesh_(*this, true),
-      compound_(*this),
+      mesh_(*this, mesh_contacts, false),
+      swapped_mesh_(*this, mesh_contacts, true),
+      compound_(*this, compound_contacts, false),
       persistent_(&depth_solver_) {}
 
 btCollisionAlgorithm* Installation::bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,

@@ -9,9 +9,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "compound_algorithm.hpp"
 #include "contact_algorithm.hpp"
-#include "mesh_algorithm.hpp"
+#include "union_algorithm.hpp"
 
 class btCollisionDispatcher;
 
@@ -77,9 +76,9 @@ class Installation {
   StepAction step_action_;
   ContactAlgorithm::CreateFunc contacts_;
   ContactAlgorithm::CreateFunc closest_;
-  MeshAlgorithm::CreateFunc mesh_;
-  MeshAlgorithm::CreateFunc swapped_mesh_;
-  CompoundAlgorithm::CreateFunc compound_;
+  UnionAlgorithm::CreateFunc mesh_;
+  UnionAlgorithm::CreateFunc swapped_mesh_;
+  UnionAlgorithm::CreateFunc compound_;
   btConvexConvexAlgorithm::CreateFunc persistent_;
 };
 

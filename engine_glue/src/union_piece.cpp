@@ -1,6 +1,5 @@
 #include "union_piece.hpp"
 
-#include <BulletCollision/BroadphaseCollision/btDbvt.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
@@ -9,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
 
@@ -74,12 +74,7 @@ void collect_children(const btCompoundShape& compound, const btTransform& pose, 
     collect(*compound.getChildShape(child), pose * compound.getChildTransform(child), nullptr, search);
   };
   if (const btDbvt* tree = compound.getDynamicAabbTree()) {
-    struct Leaves : public btDbvt::ICollide {
-      explicit Leaves(const decltype(visit)& function) : each(function) {}
-      void Process(const btDbvtNode* leaf) override { each(leaf->dataAsInt); }
-      const decltype(visit)& each;
-    } leaves(visit);
-    tree->collideTV(tree->m_root, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), leaves);
+    for_each_leaf(*tree, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), visit);
     return;
   }
   for (int i = 0; i < compound.getNumChildShapes(); ++i) visit(i);

@@ -55,8 +55,9 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver,
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 
-/// Gives every pair of convex shapes back to the algorithms of the dispatcher's own configuration (not to create
-/// functions that the host had registered before). Contacts are found again at the next step.
+/// Gives every pair that `install` took (convex shapes, meshes, compounds) back to the algorithms of the dispatcher's
+/// own configuration (not to create functions that the host had registered before). Contacts are found again at the
+/// next step.
 /// @return false, and nothing changed, where the solver is not installed in this world's dispatcher.
 bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver);
 

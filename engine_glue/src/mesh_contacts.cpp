@@ -1,8 +1,7 @@
-#include "mesh_algorithm.hpp"
+#include "mesh_contacts.hpp"
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
@@ -13,14 +12,10 @@
 #include <vector>
 
 #include "covered_contact.hpp"
-#include "installation.hpp"
-#include "patch_manifolds.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
-
-static_assert(sizeof(MeshAlgorithm) <= sizeof(btConvexConvexAlgorithm));
 
 namespace {
 
@@ -133,119 +128,59 @@ class TriangleOfPoint : public PointSurroundings {
   std::optional<TriangleInResult> inside_;
 };
 
-}  // namespace
-
-/// What lives between steps.
-struct MeshAlgorithm::State {
-  State(const Installation& of, bool is_swapped, const btCollisionAlgorithmConstructionInfo& info)
-      : installation(of), swapped(is_swapped), construction(info), manifolds(of.core(), *info.m_dispatcher1) {}
-  ~State() {
-    if (bullets != nullptr) {
-      bullets->~btCollisionAlgorithm();
-      construction.m_dispatcher1->freeCollisionAlgorithm(bullets);
-    }
+class MeshContacts final : public UnionContacts {
+ public:
+  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
+    TriangleOfPoint around(question.b, question.result, triangles_);
+    manifolds.replace(patches, question.result, around);
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
 
-  const Installation& installation;
-  bool swapped;
-  btCollisionAlgorithmConstructionInfo construction;
-  PatchManifolds manifolds;
-  btCollisionAlgorithm* bullets = nullptr;  ///< answers for what we do not
-  std::vector<MetTriangle> triangles;
-  Patches patches;
-  bool used = false;
-
-  /// Fills `patches` with the points of all triangles.
-  /// @return false where the body has no exact form
-  bool find_points(const btCollisionObjectWrapper& convex, const btCollisionObjectWrapper& mesh, double seconds,
-                   btScalar threshold, btManifoldResult& result);
+ private:
+  std::vector<MetTriangle> triangles_;
 };
 
-MeshAlgorithm::MeshAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                             const btCollisionObjectWrapper* b, const Installation& installation, bool swapped)
-    : btActivatingCollisionAlgorithm(info, a, b), state_(std::make_unique<State>(installation, swapped, info)) {}
-
-MeshAlgorithm::~MeshAlgorithm() = default;
-
-bool MeshAlgorithm::takes(int proxy_type) {
-  return proxy_type == TRIANGLE_MESH_SHAPE_PROXYTYPE || proxy_type == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
-         proxy_type == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE || proxy_type == FAST_CONCAVE_MESH_PROXYTYPE ||
-         proxy_type == TERRAIN_SHAPE_PROXYTYPE || proxy_type == CUSTOM_CONCAVE_SHAPE_TYPE;
-}
-
-btCollisionAlgorithm* MeshAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                                          const btCollisionObjectWrapper* a,
-                                                                          const btCollisionObjectWrapper* b) {
-  const BulletSolverSettings& settings = installation.core().settings;
-  const bool ours =
-      !settings.takes_pair || settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user);
-  if (!ours || !settings.unions_as_one) {
-    return installation.bullets_algorithm(info, a, b);
-  }
-  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(MeshAlgorithm));
-  return new (memory) MeshAlgorithm(info, a, b, installation, m_swapped);
-}
-
-void MeshAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
-  state_->manifolds.append_to(manifolds);
-  if (state_->bullets != nullptr) state_->bullets->getAllContactManifolds(manifolds);
-}
-
-void MeshAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
-                                     const btDispatcherInfo& info, btManifoldResult* result) {
-  State& state = *state_;
-  const btCollisionObjectWrapper& convex = state.swapped ? *b : *a;
-  const btCollisionObjectWrapper& mesh = state.swapped ? *a : *b;
-  btPersistentManifold& first = state.manifolds.first(*convex.getCollisionObject(), *mesh.getCollisionObject());
-  result->setPersistentManifold(&first);
-  const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
-  const bool closed = state.installation.core().closed();
-  if (!closed && state.find_points(convex, mesh, static_cast<double>(info.m_timeStep), threshold, *result)) {
-    TriangleOfPoint around(mesh, *result, state.triangles);
-    state.manifolds.replace(state.patches, *result, around);
-    return;
-  }
-  state.manifolds.clear();
-  if (state.bullets == nullptr) state.bullets = state.installation.bullets_algorithm(state.construction, a, b);
-  state.bullets->processCollision(a, b, info, result);
-}
-
-bool MeshAlgorithm::State::find_points(const btCollisionObjectWrapper& convex, const btCollisionObjectWrapper& mesh,
-                                       double seconds, btScalar threshold, btManifoldResult& result) {
-  SolverCore& core = installation.core();
+bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory&, Patches& patches) {
+  const btCollisionObjectWrapper& convex = question.a;
+  const btCollisionObjectWrapper& mesh = question.b;
   const auto& body = static_cast<const btConvexShape&>(*convex.getCollisionShape());
   const auto& concave = static_cast<const btConcaveShape&>(*mesh.getCollisionShape());
   const btTransform& pose = mesh.getWorldTransform();
-  triangles.clear();
-  patches.clear();
+  const auto threshold = static_cast<double>(question.threshold);
+  triangles_.clear();
   if (!is_finite(convex.getWorldTransform()) || !is_finite(pose)) return true;
   btVector3 lower;
   btVector3 upper;
   body.getAabb(pose.inverseTimes(convex.getWorldTransform()), lower, upper);
-  const btScalar reach = concave.getMargin() + threshold;
-  TrianglesInBox collector(lower, upper, reach, triangles);
+  TrianglesInBox collector(lower, upper, concave.getMargin() + question.threshold, triangles_);
   concave.processAllTriangles(&collector, collector.lower(), collector.upper());
   auto buffers = core.buffers.lease();
   if (collector.skipped > 0) buffers->counters.skipped_triangles.add(collector.skipped);
-  // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
-  const std::uint64_t stamp = used ? installation.stamp() : 0;
-  used = true;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const TriangleInResult triangle(result, mesh, triangles[i], concave.getMargin());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const TriangleInResult triangle(question.result, mesh, triangles_[i], concave.getMargin());
     PairAnswer answer;
-    const auto outcome = core.answer(body, convex.getWorldTransform(), triangle.shape(), pose,
-                                     {true, is_part(convex), false}, stamp, buffers->recent, nullptr, *buffers, answer);
+    const auto outcome =
+        core.answer(body, convex.getWorldTransform(), triangle.shape(), pose, {true, is_part(convex), false},
+                    question.stamp, buffers->recent, nullptr, *buffers, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;
-    ContactManifold points = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold),
-                                              buffers->manifold, DeepestPoint::as_lifted);
-    keep_uncovered(convex, triangle.wrapper(), answer, static_cast<double>(threshold), seconds, stamp, core, *buffers,
+    ContactManifold points =
+        contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers->manifold, DeepestPoint::as_lifted);
+    keep_uncovered(convex, triangle.wrapper(), answer, threshold, question.seconds, question.stamp, core, *buffers,
                    points);
-    patches.add(points, static_cast<int>(i), triangles[i].part, triangles[i].index);
+    patches.add(points, static_cast<int>(i), triangles_[i].part, triangles_[i].index);
   }
   return true;
+}
+
+}  // namespace
+
+std::unique_ptr<UnionContacts> mesh_contacts() { return std::make_unique<MeshContacts>(); }
+
+bool takes_mesh(int proxy_type) {
+  return proxy_type == TRIANGLE_MESH_SHAPE_PROXYTYPE || proxy_type == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
+         proxy_type == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE || proxy_type == FAST_CONCAVE_MESH_PROXYTYPE ||
+         proxy_type == TERRAIN_SHAPE_PROXYTYPE || proxy_type == CUSTOM_CONCAVE_SHAPE_TYPE;
 }
 
 }  // namespace pd::detail

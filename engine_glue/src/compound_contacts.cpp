@@ -1,25 +1,19 @@
-#include "compound_algorithm.hpp"
+#include "compound_contacts.hpp"
 
-#include <BulletCollision/BroadphaseCollision/btDbvt.h>
-#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
-#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "child_tree.hpp"
 #include "covered_contact.hpp"
-#include "installation.hpp"
-#include "patch_manifolds.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
-
-static_assert(sizeof(CompoundAlgorithm) <= sizeof(btConvexConvexAlgorithm));
 
 namespace {
 
@@ -64,13 +58,8 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
     if (!apart(box_of(*child.shape, child.pose), world, reach)) children.push_back(child);
   };
   if (const btDbvt* tree = compound.getDynamicAabbTree()) {
-    struct Leaves : public btDbvt::ICollide {
-      explicit Leaves(const decltype(visit)& function) : each(function) {}
-      void Process(const btDbvtNode* leaf) override { each(leaf->dataAsInt); }
-      const decltype(visit)& each;
-    } leaves(visit);
     const btVector3 extra(reach, reach, reach);
-    tree->collideTV(tree->m_root, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), leaves);
+    for_each_leaf(*tree, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
     // The tree's order depends on its history.
     std::sort(children.begin(), children.end(), [](const Child& x, const Child& y) { return x.index < y.index; });
   } else {
@@ -156,120 +145,58 @@ bool all_convex(const std::vector<Child>& children) {
   return std::all_of(children.begin(), children.end(), [](const Child& child) { return child.shape->isConvex(); });
 }
 
-}  // namespace
-
-/// What lives between steps.
-struct CompoundAlgorithm::State {
-  State(const Installation& of, const btCollisionAlgorithmConstructionInfo& info)
-      : installation(of), construction(info), manifolds(of.core(), *info.m_dispatcher1) {}
-  ~State() {
-    if (bullets != nullptr) {
-      bullets->~btCollisionAlgorithm();
-      construction.m_dispatcher1->freeCollisionAlgorithm(bullets);
-    }
+class CompoundContacts final : public UnionContacts {
+ public:
+  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
+    ChildrenOfPoint around(question.result, question.a, children_a_, question.b, children_b_, pairs_);
+    manifolds.replace(patches, question.result, around);
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
 
-  /// Fills `patches` with the points of all pairs of children.
-  /// @return false where a child is not convex or has no exact form
-  bool find_points(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double seconds,
-                   btScalar threshold, btManifoldResult& result);
+ private:
   /// One pair's points. @return false where a child has no exact form
-  bool ask(const ChildrenInResult& pair, double seconds, double threshold, std::uint64_t stamp, ChildPairMemory& memory,
-           ThreadBuffers& buffers);
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, ChildPairMemory& memory,
+           ThreadBuffers& buffers, Patches& patches) const;
   /// What the pair remembers of two children: taken from last step's memory, or new.
-  ChildPairMemory& remember(std::uint64_t number);
+  ChildPairMemory& remember(std::vector<ChildPairMemory>& old, std::uint64_t number);
 
-  const Installation& installation;
-  btCollisionAlgorithmConstructionInfo construction;
-  PatchManifolds manifolds;
-  btCollisionAlgorithm* bullets = nullptr;  ///< answers for what we do not
-  std::vector<Child> children_a;
-  std::vector<Child> children_b;
-  std::vector<ChildPair> pairs;
-  std::vector<ChildPairMemory> fresh_memory;
-  Patches patches;
-  bool used = false;
+  std::vector<Child> children_a_;
+  std::vector<Child> children_b_;
+  std::vector<ChildPair> pairs_;
+  std::vector<ChildPairMemory> fresh_memory_;
 };
 
-CompoundAlgorithm::CompoundAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
-                                     const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
-                                     const Installation& installation)
-    : btActivatingCollisionAlgorithm(info, a, b), state_(std::make_unique<State>(installation, info)) {}
-
-CompoundAlgorithm::~CompoundAlgorithm() = default;
-
-btCollisionAlgorithm* CompoundAlgorithm::CreateFunc::CreateCollisionAlgorithm(
-    btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
-  const BulletSolverSettings& settings = installation.core().settings;
-  const bool ours =
-      !settings.takes_pair || settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user);
-  if (!ours || !settings.unions_as_one) {
-    return installation.bullets_algorithm(info, a, b);
-  }
-  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(CompoundAlgorithm));
-  return new (memory) CompoundAlgorithm(info, a, b, installation);
-}
-
-void CompoundAlgorithm::getAllContactManifolds(btManifoldArray& found) {
-  state_->manifolds.append_to(found);
-  if (state_->bullets != nullptr) state_->bullets->getAllContactManifolds(found);
-}
-
-void CompoundAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
-                                         const btDispatcherInfo& info, btManifoldResult* result) {
-  State& state = *state_;
-  btPersistentManifold& first = state.manifolds.first(*a->getCollisionObject(), *b->getCollisionObject());
-  result->setPersistentManifold(&first);
-  const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
-  const bool closed = state.installation.core().closed();
-  if (!closed && state.find_points(*a, *b, static_cast<double>(info.m_timeStep), threshold, *result)) {
-    ChildrenOfPoint around(*result, *a, state.children_a, *b, state.children_b, state.pairs);
-    state.manifolds.replace(state.patches, *result, around);
-    return;
-  }
-  state.manifolds.clear();
-  if (state.bullets == nullptr) state.bullets = state.installation.bullets_algorithm(state.construction, a, b);
-  state.bullets->processCollision(a, b, info, result);
-}
-
-ChildPairMemory& CompoundAlgorithm::State::remember(std::uint64_t number) {
-  std::vector<ChildPairMemory>& old = manifolds.memory().children;
+ChildPairMemory& CompoundContacts::remember(std::vector<ChildPairMemory>& old, std::uint64_t number) {
   const auto found = std::lower_bound(old.begin(), old.end(), number,
                                       [](const ChildPairMemory& x, std::uint64_t n) { return x.children < n; });
   if (found != old.end() && found->children == number) {
-    fresh_memory.push_back(std::move(*found));
+    fresh_memory_.push_back(std::move(*found));
     found->children = number;  // still found in its place by the search for the next
   } else {
-    fresh_memory.emplace_back();
-    fresh_memory.back().children = number;
+    fresh_memory_.emplace_back();
+    fresh_memory_.back().children = number;
   }
-  return fresh_memory.back();
+  return fresh_memory_.back();
 }
 
-bool CompoundAlgorithm::State::find_points(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
-                                           double seconds, btScalar threshold, btManifoldResult& result) {
-  patches.clear();
-  pairs.clear();
-  fresh_memory.clear();
+bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+  const auto& [a, b, seconds, threshold, stamp, result] = question;
+  pairs_.clear();
+  fresh_memory_.clear();
   const btTransform& pose_a = a.getWorldTransform();
   const btTransform& pose_b = b.getWorldTransform();
   if (!is_finite(pose_a) || !is_finite(pose_b)) return true;
   const Box world_a = box_of(*a.getCollisionShape(), pose_a);
   const Box world_b = box_of(*b.getCollisionShape(), pose_b);
-  children_near(a, box_of(*b.getCollisionShape(), pose_a.inverseTimes(pose_b)), world_b, threshold, children_a);
-  children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b);
-  if (!all_convex(children_a) || !all_convex(children_b)) return false;
-  auto buffers = installation.core().buffers.lease();
-  // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
-  const std::uint64_t stamp = used ? installation.stamp() : 0;
-  used = true;
-  for (std::size_t i = 0; i < children_a.size(); ++i) {
-    const Box box_a = box_of(*children_a[i].shape, children_a[i].pose);
-    for (std::size_t j = 0; j < children_b.size(); ++j) {
-      const Child& child_a = children_a[i];
-      const Child& child_b = children_b[j];
+  children_near(a, box_of(*b.getCollisionShape(), pose_a.inverseTimes(pose_b)), world_b, threshold, children_a_);
+  children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b_);
+  if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
+  auto buffers = core.buffers.lease();
+  for (std::size_t i = 0; i < children_a_.size(); ++i) {
+    const Child& child_a = children_a_[i];
+    const Box box_a = box_of(*child_a.shape, child_a.pose);
+    for (std::size_t j = 0; j < children_b_.size(); ++j) {
+      const Child& child_b = children_b_[j];
       if (apart(box_a, box_of(*child_b.shape, child_b.pose), threshold)) continue;
       if (gCompoundChildShapePairCallback != nullptr &&
           !gCompoundChildShapePairCallback(child_a.shape, child_b.shape)) {
@@ -277,31 +204,35 @@ bool CompoundAlgorithm::State::find_points(const btCollisionObjectWrapper& a, co
       }
       const std::uint64_t number = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child_a.index + 1)) << 32U) |
                                    static_cast<std::uint32_t>(child_b.index + 1);
-      pairs.emplace_back(static_cast<int>(i), static_cast<int>(j));
+      pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, seconds, static_cast<double>(threshold), stamp, remember(number), *buffers)) return false;
+      if (!ask(pair, question, core, remember(memory.children, number), *buffers, patches)) return false;
     }
   }
-  manifolds.memory().children.swap(fresh_memory);
+  memory.children.swap(fresh_memory_);
   return true;
 }
 
-bool CompoundAlgorithm::State::ask(const ChildrenInResult& pair, double seconds, double threshold, std::uint64_t stamp,
-                                   ChildPairMemory& memory, ThreadBuffers& buffers) {
-  SolverCore& core = installation.core();
+bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core,
+                           ChildPairMemory& memory, ThreadBuffers& buffers, Patches& patches) const {
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
-  const auto outcome =
-      core.answer(shape_a, pair.a().getWorldTransform(), shape_b, pair.b().getWorldTransform(),
-                  {true, is_part(pair.a()), is_part(pair.b())}, stamp, memory.shapes, &memory.warm, buffers, answer);
+  const auto outcome = core.answer(shape_a, pair.a().getWorldTransform(), shape_b, pair.b().getWorldTransform(),
+                                   {true, is_part(pair.a()), is_part(pair.b())}, question.stamp, memory.shapes,
+                                   &memory.warm, buffers, answer);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
+  const auto threshold = static_cast<double>(question.threshold);
   ContactManifold points =
       contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
-  keep_uncovered(pair.a(), pair.b(), answer, threshold, seconds, stamp, core, buffers, points);
-  patches.add(points, static_cast<int>(pairs.size()) - 1, pair.a().m_index, pair.b().m_index);
+  keep_uncovered(pair.a(), pair.b(), answer, threshold, question.seconds, question.stamp, core, buffers, points);
+  patches.add(points, static_cast<int>(pairs_.size()) - 1, pair.a().m_index, pair.b().m_index);
   return true;
 }
+
+}  // namespace
+
+std::unique_ptr<UnionContacts> compound_contacts() { return std::make_unique<CompoundContacts>(); }
 
 }  // namespace pd::detail

@@ -1,0 +1,91 @@
+#include "union_algorithm.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+
+#include <utility>
+
+#include "installation.hpp"
+#include "solver_core.hpp"
+
+namespace pd::detail {
+
+// Bullet's pool of algorithms holds no larger ones.
+static_assert(sizeof(UnionAlgorithm) <= sizeof(btConvexConvexAlgorithm));
+
+/// What lives between steps.
+struct UnionAlgorithm::State {
+  State(const Installation& of, const btCollisionAlgorithmConstructionInfo& info, bool is_swapped,
+        std::unique_ptr<UnionContacts> finder)
+      : installation(of),
+        construction(info),
+        swapped(is_swapped),
+        contacts(std::move(finder)),
+        manifolds(of.core(), *info.m_dispatcher1) {}
+  ~State() {
+    if (bullets != nullptr) {
+      bullets->~btCollisionAlgorithm();
+      construction.m_dispatcher1->freeCollisionAlgorithm(bullets);
+    }
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  const Installation& installation;
+  btCollisionAlgorithmConstructionInfo construction;
+  bool swapped;
+  std::unique_ptr<UnionContacts> contacts;
+  PatchManifolds manifolds;
+  Patches patches;
+  btCollisionAlgorithm* bullets = nullptr;  ///< answers for what we do not
+  bool used = false;
+};
+
+UnionAlgorithm::UnionAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                               const btCollisionObjectWrapper* b, const Installation& installation, bool swapped,
+                               std::unique_ptr<UnionContacts> contacts)
+    : btActivatingCollisionAlgorithm(info, a, b),
+      state_(std::make_unique<State>(installation, info, swapped, std::move(contacts))) {}
+
+UnionAlgorithm::~UnionAlgorithm() = default;
+
+btCollisionAlgorithm* UnionAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                           const btCollisionObjectWrapper* a,
+                                                                           const btCollisionObjectWrapper* b) {
+  const BulletSolverSettings& settings = installation.core().settings;
+  const bool ours =
+      !settings.takes_pair || settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user);
+  if (!ours || !settings.unions_as_one) return installation.bullets_algorithm(info, a, b);
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(UnionAlgorithm));
+  return new (memory) UnionAlgorithm(info, a, b, installation, m_swapped, contacts());
+}
+
+void UnionAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+  state_->manifolds.append_to(manifolds);
+  if (state_->bullets != nullptr) state_->bullets->getAllContactManifolds(manifolds);
+}
+
+void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                                      const btDispatcherInfo& info, btManifoldResult* result) {
+  State& s = *state_;
+  const btCollisionObjectWrapper& one = s.swapped ? *b : *a;
+  const btCollisionObjectWrapper& other = s.swapped ? *a : *b;
+  btPersistentManifold& first = s.manifolds.first(*one.getCollisionObject(), *other.getCollisionObject());
+  result->setPersistentManifold(&first);
+  if (!s.installation.core().closed()) {
+    // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
+    const std::uint64_t stamp = std::exchange(s.used, true) ? s.installation.stamp() : 0;
+    const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
+    const UnionQuestion question{one, other, static_cast<double>(info.m_timeStep), threshold, stamp, *result};
+    s.patches.clear();
+    if (s.contacts->find(question, s.installation.core(), s.manifolds.memory(), s.patches)) {
+      s.contacts->replace(question, s.patches, s.manifolds);
+      return;
+    }
+  }
+  s.manifolds.clear();
+  if (s.bullets == nullptr) s.bullets = s.installation.bullets_algorithm(s.construction, a, b);
+  s.bullets->processCollision(a, b, info, result);
+}
+
+}  // namespace pd::detail
