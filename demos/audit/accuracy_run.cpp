@@ -79,6 +79,7 @@ void judge_record(const std::string& file, const AccuracySettings& settings, Acc
         row.worst = std::max(row.worst, error);
         row.above_small += error > kSmallError ? 1 : 0;
         row.above_large += error > kLargeError ? 1 : 0;
+        row.only_large += error > kLargeError && !judgement.missed && !judgement.phantom ? 1 : 0;
       },
       audit);
   ::close(input);
@@ -92,11 +93,6 @@ void judge_record(const std::string& file, const AccuracySettings& settings, Acc
 
 }  // namespace
 
-std::int64_t AccuracyRow::wrong() const {
-  // A phantom may be large as well: no contact counts twice.
-  return std::min(contacts, missed + std::max(phantom, above_large) + no_answer);
-}
-
 void AccuracyRow::add(const AccuracyRow& other) {
   nanoseconds =
       contacts + other.contacts > 0
@@ -109,6 +105,7 @@ void AccuracyRow::add(const AccuracyRow& other) {
   phantom += other.phantom;
   above_small += other.above_small;
   above_large += other.above_large;
+  only_large += other.only_large;
   no_answer += other.no_answer;
   worst = std::max(worst, other.worst);
 }

@@ -34,12 +34,13 @@ struct AccuracyRow {
   std::int64_t phantom = 0;
   std::int64_t above_small = 0;
   std::int64_t above_large = 0;
-  std::int64_t no_answer = 0;  ///< numbers that are not finite, and pairs that could not be judged
-  double worst = 0;            ///< the largest error, relative to L
-  double nanoseconds = 0;      ///< a query, in the mean
+  std::int64_t only_large = 0;  ///< of above_large, those that are neither missed nor phantom
+  std::int64_t no_answer = 0;   ///< numbers that are not finite, and pairs that could not be judged
+  double worst = 0;             ///< the largest error, relative to L
+  double nanoseconds = 0;       ///< a query, in the mean
 
-  /// Contacts that a user would call wrong: missed, phantom, above_large or without an answer.
-  [[nodiscard]] std::int64_t wrong() const;
+  /// Contacts that a user would call wrong, each once: missed, phantom, above_large or without an answer.
+  [[nodiscard]] std::int64_t wrong() const { return missed + phantom + only_large + no_answer; }
   void add(const AccuracyRow& other);
 };
 

@@ -1,5 +1,6 @@
 /// @file
-/// How far bodies reach along a direction, in plain doubles: for scales (L, the size of a body), not for decisions.
+/// How far bodies reach along a direction, in plain doubles: for scales (L, the size of a body), and for what is
+/// compared with a tolerance far above their rounding (the normal's excess, depths in half-spaces).
 #pragma once
 
 #include "pd/shape/compound.hpp"

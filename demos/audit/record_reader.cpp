@@ -46,7 +46,6 @@ class JsonScanner {
   void skip_blanks_and(char separator) {
     while (!at_end() && (peek() == ' ' || peek() == '\t' || peek() == '\r' || peek() == separator)) ++at_;
   }
-  void step() { ++at_; }
 
   /// The value that begins here.
   std::string_view value() {

@@ -9,11 +9,11 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "audit/accuracy_run.hpp"
 #include "commands.hpp"
+#include "line_input.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd::cli {
@@ -26,7 +26,7 @@ with a contact record in FILE. Built beside this command where the packages are:
 precision, libccd, FCL, ODE) and record_peers_double (Bullet in double precision).
 
 Errors are the larger of depth error and normal excess, relative to the size of the pair. Our own row is judged by the
-same library; pdepth-bench judges it by an oracle that shares no code with it.
+same library; the program oracle_pairs judges our depths by an oracle that shares no code with it.
 
 Examples:
   pdepth accuracy
@@ -127,9 +127,7 @@ bool write_csv(const std::string& path, const std::vector<audit::AccuracyRow>& r
 }
 
 int run_accuracy_command(AccuracyArguments arguments) {
-  if (arguments.settings.threads == 0) {
-    arguments.settings.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  }
+  arguments.settings.threads = number_of_threads(arguments.settings.threads);
   if (arguments.families.empty()) arguments.families = all_families();
   if (arguments.recorders.empty()) arguments.recorders = recorders_beside();
   const std::vector<Engine> engines = engines_of(arguments);
@@ -182,9 +180,7 @@ void add_accuracy_command(CLI::App& app, Action& action) {
       ->check(CLI::Range(1e-15, 1.0))
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "Write engine by family to this file");
-  command->add_option("--threads", settings.threads, "Threads that judge; 0 = one for each processor")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
+  add_threads_option(*command, settings.threads, "judge");
   command->callback([arguments, &action] { action = [arguments] { return run_accuracy_command(*arguments); }; });
 }
 

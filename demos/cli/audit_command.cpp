@@ -1,23 +1,20 @@
 /// @file
 /// `pdepth audit RECORD.jsonl`: an engine's contacts against the exact answer.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "audit/audit_answer.hpp"
 #include "audit/audit_report.hpp"
 #include "commands.hpp"
+#include "line_input.hpp"
 
 namespace pd::cli {
 
@@ -50,7 +47,6 @@ struct AuditArguments {
   double tolerance = 0;
   audit::AuditSettings settings;
   bool json = false;
-  bool no_files = false;
 };
 
 /// A file that is written while the audit goes on; closed and checked once.
@@ -63,12 +59,13 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
+  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
   void write(const std::string& text) {
     if (file_ != nullptr) good_ = std::fwrite(text.data(), 1, text.size(), file_) == text.size() && good_;
   }
   /// False when it could not be opened, written or closed.
   [[nodiscard]] bool close() {
-    if (file_ == nullptr) return false;
+    if (!is_open()) return false;
     good_ = std::fclose(file_) == 0 && good_;
     file_ = nullptr;
     return good_;
@@ -103,40 +100,30 @@ std::string command_of(const AuditArguments& arguments) {
 
 /// The audit itself. @return a code other than kDone where there is nothing to report.
 int read_record(const AuditArguments& arguments, audit::Audit& result) {
-  int input = STDIN_FILENO;
-  if (arguments.input != "-") {
-    input = ::open(arguments.input.c_str(), O_RDONLY | O_CLOEXEC);
-    if (input < 0) {
-      fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(errno));
-      return kBadUsage;
-    }
-  }
+  const InputFile input(arguments.input);
+  if (!input.good()) return cannot_read(arguments.input, errno);
   std::unique_ptr<OutputFile> csv;
   audit::ContactSeen seen;
   if (!arguments.csv.empty()) {
     csv = std::make_unique<OutputFile>(arguments.csv);
+    if (!csv->is_open()) return cannot_write(arguments.csv);  // before an hour of judging, not after
     csv->write(audit::csv_header());
     seen = [&csv](const audit::RecordedContact& contact, const audit::Judgement& judgement, std::int64_t line) {
       csv->write(audit::csv_row(contact, judgement, line));
     };
   }
   errno = 0;
-  audit::audit_record(input, arguments.settings, seen, result);
+  audit::audit_record(input.descriptor(), arguments.settings, seen, result);
   const int reason = errno;
-  if (input != STDIN_FILENO) ::close(input);
   print_refusals(arguments.input, result.summary);
-  if (result.end == audit::Audit::End::unreadable) {
-    fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(reason));
-    return kBadUsage;
-  }
+  if (result.end == audit::Audit::End::unreadable) return cannot_read(arguments.input, reason);
   if (csv != nullptr && !csv->close()) return cannot_write(arguments.csv);
   return kDone;
 }
 
 int run_audit(AuditArguments arguments) {
   audit::AuditSettings& settings = arguments.settings;
-  settings.limits.files = !arguments.no_files;
-  if (settings.threads == 0) settings.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  settings.threads = number_of_threads(settings.threads);
   if (arguments.tolerance > 0) settings.tolerance = arguments.tolerance;
   std::vector<audit::FailCondition> conditions;
   try {
@@ -196,16 +183,8 @@ void add_audit_command(CLI::App& app, Action& action) {
   command->add_option("--worst", settings.worst_kept, "Contacts to show, the worst first")
       ->check(CLI::Range(0, 10'000))
       ->capture_default_str();
-  command->add_option("--threads", settings.threads, "Threads that judge; 0 = one for each processor")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
-  command->add_flag("--no-files", arguments->no_files, "Refuse shapes that name a file");
-  command->add_option("--max-line", settings.limits.max_line, "Longest line in bytes")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--max-vertices", settings.limits.max_vertices, "Most vertices of one shape")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{50'000'000}))
-      ->capture_default_str();
+  add_threads_option(*command, settings.threads, "judge");
+  add_limit_options(*command, settings.limits);
   command->callback([arguments, &action] { action = [arguments] { return run_audit(*arguments); }; });
 }
 

@@ -1,6 +1,5 @@
 /// @file
 /// `pdepth query`: the line protocol on a file or on standard input.
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -9,9 +8,9 @@
 #include <cstring>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "commands.hpp"
+#include "line_input.hpp"
 #include "protocol/query_stream.hpp"
 
 namespace pd::cli {
@@ -28,30 +27,20 @@ For input from strangers: --no-files, --max-time, --max-memory, and small --max-
 struct QueryArguments {
   std::string input = "-";
   query::StreamSettings settings;
-  bool no_files = false;
 };
 
 int run_query(QueryArguments arguments) {
   query::StreamSettings& settings = arguments.settings;
-  settings.limits.files = !arguments.no_files;
-  if (settings.threads == 0) settings.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  int input = STDIN_FILENO;
-  if (arguments.input != "-") {
-    input = ::open(arguments.input.c_str(), O_RDONLY | O_CLOEXEC);
-    if (input < 0) {
-      fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(errno));
-      return kBadUsage;
-    }
-  }
-  const query::StreamEnd end = query::answer_stream(input, STDOUT_FILENO, settings);
+  settings.threads = number_of_threads(settings.threads);
+  const InputFile input(arguments.input);
+  if (!input.good()) return cannot_read(arguments.input, errno);
+  const query::StreamEnd end = query::answer_stream(input.descriptor(), STDOUT_FILENO, settings);
   const int reason = errno;
-  if (input != STDIN_FILENO) ::close(input);
   switch (end) {
     case query::StreamEnd::answered:
       return kDone;
     case query::StreamEnd::unreadable:
-      fmt::print(stderr, "pdepth: {}: {}\n", arguments.input, std::strerror(reason));
-      return kBadUsage;
+      return cannot_read(arguments.input, reason);
     case query::StreamEnd::unwritable:
       fmt::print(stderr, "pdepth: the answers{} cannot be written: {}\n",
                  settings.record.path.empty() ? "" : " or the record", std::strerror(reason));
@@ -68,16 +57,8 @@ void add_query_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("query", "Answer queries of the line protocol, one JSON object a line");
   command->footer(kFooter);
   command->add_option("FILE", arguments->input, "Lines to answer; - is standard input")->capture_default_str();
-  command->add_option("--threads", settings.threads, "Threads that answer; 0 = one for each processor")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
-  command->add_flag("--no-files", arguments->no_files, "Refuse shapes that name a file");
-  command->add_option("--max-line", settings.limits.max_line, "Longest line in bytes")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--max-vertices", settings.limits.max_vertices, "Most vertices of one shape")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{50'000'000}))
-      ->capture_default_str();
+  add_threads_option(*command, settings.threads, "answer");
+  add_limit_options(*command, settings.limits);
   command
       ->add_option("--max-time", settings.budget.milliseconds,
                    "Milliseconds for a line; then, of a depth, a coarse run's certified bracket, else limit_exceeded "

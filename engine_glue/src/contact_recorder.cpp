@@ -4,11 +4,10 @@
 
 namespace pd {
 
-ContactRecorder::ContactRecorder(btCollisionWorld& world, const std::string& path,
-                                 const ContactRecorderSettings& settings)
-    : world_(std::make_unique<detail::RecordedWorld>(world, path, settings.every)) {}
+ContactRecorder::ContactRecorder(btCollisionWorld& world, const char* path, const ContactRecorderSettings& settings)
+    : world_(new detail::RecordedWorld(world, path, settings.every)) {}
 
-ContactRecorder::~ContactRecorder() = default;
+ContactRecorder::~ContactRecorder() { delete world_; }
 
 bool ContactRecorder::close() { return world_->close(); }
 bool ContactRecorder::good() const { return world_->good(); }

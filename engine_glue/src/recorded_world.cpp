@@ -143,14 +143,14 @@ struct RecordedWorld::Group {
   }
 };
 
-RecordedWorld::RecordedWorld(btCollisionWorld& world, const std::string& path, int every)
+RecordedWorld::RecordedWorld(btCollisionWorld& world, const char* path, int every)
     : world_(world), dispatcher_(dynamic_cast<btCollisionDispatcher*>(world.getDispatcher())), every_(every) {
   if (dispatcher_ == nullptr || every < 1) return;
   {
     Registry& registry = Registry::instance();
     const std::scoped_lock lock(registry.mutex);
     if (registry.worlds.contains(dispatcher_)) return;
-    if (pd_record_open(&record_, path.c_str(), engine_name().c_str(),
+    if (pd_record_open(&record_, path, engine_name().c_str(),
                        sizeof(btScalar) == sizeof(float) ? PD_RECORD_FLOAT32 : PD_RECORD_FLOAT64, nullptr) == 0) {
       return;
     }

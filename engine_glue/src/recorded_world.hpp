@@ -23,7 +23,7 @@ struct RecordedPart {
 
 class RecordedWorld final : public btActionInterface {
  public:
-  RecordedWorld(btCollisionWorld& world, const std::string& path, int every);
+  RecordedWorld(btCollisionWorld& world, const char* path, int every);
   ~RecordedWorld() override;
   RecordedWorld(const RecordedWorld&) = delete;
   RecordedWorld& operator=(const RecordedWorld&) = delete;

@@ -25,7 +25,7 @@ constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 2e-6 : 2e-8;
 Audited record_and_audit(BulletWorld& world, int steps, std::int64_t* unsupported = nullptr) {
   const TemporaryFolder folder;
   const std::string path = folder.path() / "contacts.jsonl";
-  ContactRecorder recorder(world.world(), path);
+  ContactRecorder recorder(world.world(), path.c_str());
   EXPECT_TRUE(recorder.good());
   for (int i = 0; i < steps; ++i) world.world().stepSimulation(btScalar(1) / 60, 0);
   EXPECT_TRUE(recorder.close());
@@ -170,13 +170,13 @@ TEST(ContactRecorder, LeavesTheWorldAsItWas) {
   const auto before = world.dispatcher().getNearCallback();
   const TemporaryFolder folder;
   {
-    ContactRecorder recorder(world.world(), folder.path() / "contacts.jsonl");
+    ContactRecorder recorder(world.world(), (folder.path() / "contacts.jsonl").c_str());
     EXPECT_NE(world.dispatcher().getNearCallback(), before);
-    ContactRecorder second(world.world(), folder.path() / "second.jsonl");
+    ContactRecorder second(world.world(), (folder.path() / "second.jsonl").c_str());
     EXPECT_FALSE(second.good());
   }
   EXPECT_EQ(world.dispatcher().getNearCallback(), before);
-  ContactRecorder nowhere(world.world(), folder.path() / "no" / "contacts.jsonl");
+  ContactRecorder nowhere(world.world(), (folder.path() / "no" / "contacts.jsonl").c_str());
   EXPECT_FALSE(nowhere.good());
   EXPECT_EQ(world.dispatcher().getNearCallback(), before);
 }
@@ -189,7 +189,7 @@ std::vector<btVector3> positions_after(int steps, bool recorded) {
   auto* hull = box_hull(world, btVector3(1, 1, 1), btScalar(0));
   for (int i = 0; i < 4; ++i) world.body(hull, 1, btVector3(btScalar(0.1) * btScalar(i), btScalar(2 * i + 1), 0));
   std::unique_ptr<ContactRecorder> recorder;
-  if (recorded) recorder = std::make_unique<ContactRecorder>(world.world(), folder.path() / "contacts.jsonl");
+  if (recorded) recorder = std::make_unique<ContactRecorder>(world.world(), (folder.path() / "contacts.jsonl").c_str());
   for (int i = 0; i < steps; ++i) world.world().stepSimulation(btScalar(1) / 60, 0);
   std::vector<btVector3> positions;
   for (const auto& body : world.bodies()) positions.push_back(body->getWorldTransform().getOrigin());

@@ -5,7 +5,7 @@
 # Measured is the preprocessed text in bytes, which is the same on every machine with the same packages; parsing time follows it.
 cmake_minimum_required(VERSION 3.25)
 
-set(headers install penetration_depth_solver snapshot rollback)
+set(headers install penetration_depth_solver snapshot rollback contact_recorder)
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")
 file(MAKE_DIRECTORY ${WORK})
 

@@ -12,8 +12,6 @@
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 
 #include <cstdint>
-#include <memory>
-#include <string>
 
 namespace pd {
 
@@ -40,8 +38,8 @@ struct ContactRecorderSettings {
 /// Shapes are what Bullet's narrow phase means by them (`shape_conversion.hpp`); boxes are sharp where Bullet takes
 /// them so: against planes, against boxes under Bullet's own box/box algorithm or ours, and as children of compounds
 /// under ours (`BulletSolverSettings::unions_as_one`). A child or triangle is judged as if it were alone, although our
-/// contacts are those of the whole. A sphere meets a triangle
-/// under Bullet's own algorithm for these without the mesh's margin.
+/// contacts are those of the whole. A sphere meets a triangle under Bullet's own algorithm for these without the mesh's
+/// margin. The trial steps of a `RollbackStepper` are steps, too, and are recorded.
 ///
 /// Not written, but counted as `unsupported`: shapes without exact form, compounds in compounds, meshes in compounds,
 /// soft bodies, GImpact meshes. Dispatchers of several threads are served, one at a time.
@@ -49,7 +47,7 @@ class ContactRecorder {
  public:
   /// Creates the file. @param world  must outlive the recorder; so must its dispatcher, a btCollisionDispatcher with no
   /// recorder yet (else nothing is recorded, and `good` is false).
-  ContactRecorder(btCollisionWorld& world, const std::string& path, const ContactRecorderSettings& settings = {});
+  ContactRecorder(btCollisionWorld& world, const char* path, const ContactRecorderSettings& settings = {});
   ~ContactRecorder();
   ContactRecorder(const ContactRecorder&) = delete;
   ContactRecorder& operator=(const ContactRecorder&) = delete;
@@ -63,7 +61,7 @@ class ContactRecorder {
   [[nodiscard]] std::int64_t unsupported() const;  ///< pairs that could not be
 
  private:
-  std::unique_ptr<detail::RecordedWorld> world_;
+  detail::RecordedWorld* world_;  ///< owned; <memory> would double what a host parses
 };
 
 }  // namespace pd

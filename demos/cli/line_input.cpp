@@ -1,0 +1,51 @@
+#include "line_input.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <thread>
+
+#include "commands.hpp"
+
+namespace pd::cli {
+
+void add_limit_options(CLI::App& command, query::Limits& limits) {
+  command.add_flag_callback(
+      "--no-files", [&limits] { limits.files = false; }, "Refuse shapes that name a file");
+  command.add_option("--max-line", limits.max_line, "Longest line in bytes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--max-vertices", limits.max_vertices, "Most vertices of one shape")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{50'000'000}))
+      ->capture_default_str();
+}
+
+void add_threads_option(CLI::App& command, int& threads, const std::string& purpose) {
+  command.add_option("--threads", threads, "Threads that " + purpose + "; 0 = one for each processor")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+}
+
+int number_of_threads(int option) {
+  return option > 0 ? option : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+InputFile::InputFile(const std::string& path)
+    : descriptor_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+
+InputFile::~InputFile() {
+  if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
+}
+
+int cannot_read(const std::string& path, int reason) {
+  fmt::print(stderr, "pdepth: {}: {}\n", path, std::strerror(reason));
+  return kBadUsage;
+}
+
+}  // namespace pd::cli
