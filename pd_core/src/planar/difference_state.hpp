@@ -20,6 +20,8 @@ struct PolygonDifference::State {
   detail::BoundaryQuery query;
 
   [[nodiscard]] Point2 turned(const Point2& v) const { return swapped ? Point2{-v[0], -v[1]} : v; }
+  /// Fills the answer with the way from y (turned) to the nearest point of the boundary, or of its outer curve alone.
+  void move_to_nearest(const Point2& y, bool outer_only, PolygonDepth& answer) const;
 };
 
 }  // namespace pd

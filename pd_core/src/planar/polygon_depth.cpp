@@ -45,6 +45,13 @@ Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygo
   return r;
 }
 
+void PolygonDifference::State::move_to_nearest(const Point2& y, bool outer_only, PolygonDepth& answer) const {
+  const auto nearest = query.nearest(y, outer_only);
+  assert(nearest);
+  detail::fill(answer, detail::difference(detail::point_at<Dyadic>(query.span_of(*nearest), nearest->at), y), swapped);
+  answer.feature = detail::feature_of(boundary, p, q, *nearest, swapped);
+}
+
 PlanarContact PolygonDifference::contact(const Point2& placement) const {
   return state_->query.contact(state_->turned(placement));
 }
@@ -60,11 +67,7 @@ PolygonDepth PolygonDifference::depth(const Point2& placement) const {
     answer.feature = detail::feature_of(s.boundary, s.p, s.q, *touched, s.swapped);
   }
   if (answer.contact != PlanarContact::overlapping) return answer;
-  const auto nearest = s.query.nearest(y, false);
-  assert(nearest);
-  detail::fill(answer, detail::difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y),
-               s.swapped);
-  answer.feature = detail::feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
+  s.move_to_nearest(y, false, answer);
   return answer;
 }
 
@@ -74,11 +77,7 @@ PolygonDepth PolygonDifference::escape_depth(const Point2& placement) const {
   PolygonDepth answer;
   answer.contact = s.query.contact(y);
   if (answer.contact != PlanarContact::overlapping && s.query.in_unbounded_face(y)) return answer;
-  const auto nearest = s.query.nearest(y, true);
-  assert(nearest);
-  detail::fill(answer, detail::difference(detail::point_at<Dyadic>(s.query.span_of(*nearest), nearest->at), y),
-               s.swapped);
-  answer.feature = detail::feature_of(s.boundary, s.p, s.q, *nearest, s.swapped);
+  s.move_to_nearest(y, true, answer);
   return answer;
 }
 
