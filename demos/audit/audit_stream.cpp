@@ -25,6 +25,7 @@ struct Line {
   query::ParsedLine parsed;
   LineKind kind = LineKind::other;
   std::optional<query::Refusal> refusal;
+  RecordedShape shape;
   RecordedContact contact;
   Judgement judgement;
 };
@@ -56,6 +57,10 @@ void parse(Line& line, const query::Limits& limits) {
       return;
     }
     line.kind = kind_of_line(line.parsed.object);
+    // Hulls are built here, on all threads; the table takes them in the order of the lines.
+    if (line.kind == LineKind::shape) {
+      line.shape = read_shape_line(query::Node(line.parsed.object), line.text, line.number, limits);
+    }
   });
 }
 
@@ -147,7 +152,7 @@ class RecordAuditor {
     if (line.kind == LineKind::other) {
       query::refuse("missing_field", "a line holds a \"shape\" or a \"contact\"", "");
     }
-    audit_.shapes.define(query::Node(line.parsed.object), line.text, line.number, settings_.limits);
+    audit_.shapes.define(query::Node(line.parsed.object), std::move(line.shape));
   }
 
   /// Calls `work(line, scratch)` for every line of the batch, on all threads.

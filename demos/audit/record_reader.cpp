@@ -91,18 +91,23 @@ std::string_view member_text(std::string_view line, std::string_view key) {
   return {};
 }
 
-void ShapeTable::define(const query::Node& line, std::string_view text, std::int64_t line_number,
-                        const query::Limits& limits) {
+RecordedShape read_shape_line(const query::Node& line, std::string_view text, std::int64_t line_number,
+                              const query::Limits& limits) {
   query::allow_only(line, {"shape", "is"});
+  (void)query::read_string(line.at("shape"));
+  RecordedShape shape = read_recorded_shape(line.at("is"), limits);
+  shape.line = line_number;
+  shape.text = member_text(text, "is");
+  return shape;
+}
+
+void ShapeTable::define(const query::Node& line, RecordedShape shape) {
   const query::Node id_node = line.at("shape");
   const std::string id = query::read_string(id_node);
   if (const auto taken = shapes_.find(id); taken != shapes_.end()) {
     id_node.refuse("bad_value", "the shape \"" + query::shortened(id) + "\" is defined on line " +
                                     std::to_string(taken->second.line) + " already");
   }
-  RecordedShape shape = read_recorded_shape(line.at("is"), limits);
-  shape.line = line_number;
-  shape.text = member_text(text, "is");
   shapes_.emplace(id, std::move(shape));
 }
 

@@ -43,8 +43,8 @@ struct RecordedContact {
 /// The shapes of a record by their ids; no entry moves once it is there.
 class ShapeTable {
  public:
-  /// Reads {"shape":id,"is":shape}. @throws query::Refusal; bad_value where the id is taken.
-  void define(const query::Node& line, std::string_view text, std::int64_t line_number, const query::Limits& limits);
+  /// Keeps the shape of a line {"shape":id,...}. @throws query::Refusal bad_value where the id is taken.
+  void define(const query::Node& line, RecordedShape shape);
   /// The shape that is named there, defined on a line before `line_number`.
   /// @throws query::Refusal bad_value where there is none.
   [[nodiscard]] const RecordedShape& named(const query::Node& node, std::int64_t line_number) const;
@@ -53,6 +53,10 @@ class ShapeTable {
  private:
   std::unordered_map<std::string, RecordedShape> shapes_;
 };
+
+/// The shape of a line {"shape":id,"is":shape}, which `text` holds. @throws query::Refusal.
+[[nodiscard]] RecordedShape read_shape_line(const query::Node& line, std::string_view text, std::int64_t line_number,
+                                            const query::Limits& limits);
 
 /// @throws query::Refusal; unsupported for a record of another version.
 [[nodiscard]] RecordHeader read_header(const query::Node& line);
