@@ -3,7 +3,7 @@
 # and tests the release build, the address and undefined-behaviour sanitizers, and engine_glue against Bullet in double
 # precision. The last line is `N passed, N failed`; the exit code is 0 when nothing failed.
 #
-#   tests/run.sh [CMAKE_OPTION...]    options for the release build, e.g. -DPD_WARNINGS_AS_ERRORS=ON
+#   tests/run.sh [CMAKE_OPTION...]    options for the release builds, e.g. -DPD_WARNINGS_AS_ERRORS=ON
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source pd_core/cmake/debian_packages.sh
@@ -58,7 +58,8 @@ run_preset release -- "$@"
 # Of the undefined behaviours, null pointers and alignment are left out: looked for at every access, they double the time that
 # Eigen's templates take to compile; the address sanitizer stops at null, and x86 at a misaligned vector.
 run_preset asan-ubsan --
-run_preset double-bullet --target test_engine_glue --
+# With the same options, so that the objects that do not see Bullet are the release build's.
+run_preset double-bullet --target test_engine_glue -- "$@"
 
 if ((skipped > 0)); then
   printf '%d skipped (listed above)\n' "${skipped}"

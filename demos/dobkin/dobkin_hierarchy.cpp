@@ -93,6 +93,57 @@ void add_nested(render::Scene& scene, const std::vector<ConvexPolytope>& from_in
   }
 }
 
+/// The cap that a vertex adds to a coarser level: the vertex with its neighbours in the level where it comes in.
+render::Solid cap_of(const ConvexPolytope& body, const PolyhedralHierarchy& hierarchy, int vertex) {
+  std::vector<Vec3> points = {body.vertex(vertex)};
+  for (const auto& star : hierarchy.star(vertex)) points.push_back(body.vertex(star.neighbour));
+  return {.mesh = render::polytope_mesh(ConvexPolytope::from_points(points).value()),
+          .colour = palette::kBodyB,
+          .opacity = 0.75f,
+          .hidden_opacity = 0.6f};
+}
+
+/// A plane across `direction` as a square about the line of search.
+void add_plane(const Vec3& middle, const Vec3& direction, double half, render::Scene& scene) {
+  const Vec3 u = direction.unitOrthogonal(), w = direction.cross(u);
+  std::vector<Vec3> corners;
+  for (const auto& [a, b] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1}}) {
+    corners.push_back(middle + half * (a * u + b * w));
+  }
+  scene.lines.push_back({.points = corners, .colour = palette::kFacetVertex, .width_pixels = 2.2});
+  scene.solids.push_back(
+      {.mesh = render::polytope_mesh(
+           ConvexPolytope::from_points(std::vector<Vec3>(corners.begin(), corners.end() - 1)).value()),
+       .colour = palette::kFacetVertex,
+       .opacity = 0.1f,
+       .hidden_opacity = 0.1f,
+       .edges = false});
+}
+
+/// What the search for the farthest vertex meets, from the coarsest level to the finest: planes, caps and the way.
+/// @return the number of caps.
+int add_descent(const ConvexPolytope& body, const PolyhedralHierarchy& hierarchy, const Vec3& direction,
+                render::Scene& scene) {
+  int last = -1, caps = 0;
+  std::vector<Vec3> path;
+  for (int level = static_cast<int>(hierarchy.levels().size()) - 1; level >= 0; --level) {
+    const int v = hierarchy.support(direction, nullptr, level);
+    if (v == last) continue;
+    if (last >= 0) {
+      ++caps;
+      scene.solids.push_back(cap_of(body, hierarchy, v));
+    }
+    const Vec3 at = body.vertex(v);
+    add_plane(direction * direction.dot(at), direction, 0.62 - 0.03 * static_cast<double>(path.size()), scene);
+    scene.balls.push_back({.centre = at, .radius = 0.026, .colour = palette::kContact});
+    path.push_back(at);
+    last = v;
+  }
+  scene.lines.push_back({.points = path, .colour = palette::kDepth, .width_pixels = 4});
+  scene.arrows.push_back({.from = path.back(), .to = path.back() + 0.5 * direction, .label = "direction"});
+  return caps;
+}
+
 }  // namespace
 
 Expected<render::Image> hierarchy_picture(render::Renderer& renderer, render::Size size) {
@@ -156,47 +207,7 @@ Expected<render::Image> descent_picture(render::Renderer& renderer, render::Size
                           .colour = kTones[0],
                           .opacity = 0.8f,
                           .hidden_opacity = 0.6f});
-  std::int64_t dots = 0;
-  int last = -1, caps = 0;
-  std::vector<Vec3> path;
-  const Vec3 u = direction.unitOrthogonal(), w = direction.cross(u);
-  for (int level = static_cast<int>(h.levels().size()) - 1; level >= 0; --level) {
-    const int v = h.support(direction, nullptr, level);
-    if (v == last) continue;
-    const Vec3 at = body.vertex(v);
-    const float share = static_cast<float>(path.size());
-    if (last >= 0) {
-      // The cap: the new vertex with its neighbours in the level where it comes in.
-      ++caps;
-      std::vector<Vec3> points = {at};
-      for (const auto& star : h.star(v)) points.push_back(body.vertex(star.neighbour));
-      scene.solids.push_back({.mesh = render::polytope_mesh(ConvexPolytope::from_points(points).value()),
-                              .colour = palette::kBodyB,
-                              .opacity = 0.75f,
-                              .hidden_opacity = 0.6f});
-    }
-    // The plane that supports the level, as a square about the line of search.
-    const Vec3 middle = direction * direction.dot(at);
-    const double half = 0.62 - 0.03 * share;
-    std::vector<Vec3> corners;
-    for (const auto& [a, b] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1}}) {
-      corners.push_back(middle + half * (a * u + b * w));
-    }
-    scene.lines.push_back({.points = corners, .colour = palette::kFacetVertex, .width_pixels = 2.2});
-    scene.solids.push_back(
-        {.mesh = render::polytope_mesh(
-             ConvexPolytope::from_points(std::vector<Vec3>(corners.begin(), corners.end() - 1)).value()),
-         .colour = palette::kFacetVertex,
-         .opacity = 0.1f,
-         .hidden_opacity = 0.1f,
-         .edges = false});
-    scene.balls.push_back({.centre = at, .radius = 0.026, .colour = palette::kContact});
-    path.push_back(at);
-    last = v;
-  }
-  (void)h.support(direction, &dots);
-  scene.lines.push_back({.points = path, .colour = palette::kDepth, .width_pixels = 4});
-  scene.arrows.push_back({.from = path.back(), .to = path.back() + 0.5 * direction, .label = "direction"});
+  const int caps = add_descent(body, h, direction, scene);
   auto drawn = [&]() -> Expected<render::Image> {
     const render::Box box = render::bounds(scene);
     scene.ground.visible = false;
@@ -206,6 +217,8 @@ Expected<render::Image> descent_picture(render::Renderer& renderer, render::Size
         scene, render::frame_box(box, size, {.azimuth_degrees = -30, .elevation_degrees = 12}, kInsets), size);
   }();
   if (!drawn) return drawn.error();
+  std::int64_t dots = 0;
+  (void)h.support(direction, &dots);
   render::Image image = std::move(drawn).value();
   render::annotate(image, {.title = fmt::format("Farthest of {} vertices in {} products", body.num_vertices(), dots),
                            .subtitle = "A search down the hierarchy: each level's plane lets in one cap at most",

@@ -181,7 +181,8 @@ PolytopePair round_patch(int m, const PatchShape& shape, double overlap, std::ui
   const Points a = patch_body(m, shape, random);
   const Points b = patch_body(m, shape, random);
   const double step = 2 * shape.eta / m;
-  const Vec3 shift(step * step * random.uniform(-1, 1), step * step * random.uniform(-1, 1), 0);
+  const double y = step * step * random.uniform(-1, 1);
+  const Vec3 shift(step * step * random.uniform(-1, 1), y, 0);
   return crossed(a, b, shift, overlap);
 }
 

@@ -58,7 +58,8 @@ PartList room(double half, double wall) {
 PartList rubble(int parts, int n, Random& random) {
   PartList list;
   for (int k = 0; k < parts; ++k) {
-    const Vec3 place = random.direction() * random.uniform(0, 2);
+    const double distance = random.uniform(0, 2);
+    const Vec3 place = random.direction() * distance;
     list.push_back({sphere_hull(n, random), *Pose::from_quaternion(random.quaternion(), place)});
   }
   return list;

@@ -19,6 +19,18 @@ int Random::integer(int low, int high) {
   return low + static_cast<int>(next() % static_cast<std::uint64_t>(high - low + 1));
 }
 
+Vec3 Random::point(double low, double high) {
+  const double z = uniform(low, high);
+  const double y = uniform(low, high);
+  return {uniform(low, high), y, z};
+}
+
+Vec3 Random::integer_point(int low, int high) {
+  const int z = integer(low, high);
+  const int y = integer(low, high);
+  return {static_cast<double>(integer(low, high)), static_cast<double>(y), static_cast<double>(z)};
+}
+
 Vec3 Random::direction() {
   for (;;) {
     const double x = uniform(-1, 1);
@@ -147,7 +159,8 @@ Points roof(int n, const RoofShape& shape, Random& random) {
 Points sliver(int n, double thickness, Random& random) {
   Points points;
   for (int i = 0; i < n; ++i) {
-    points.emplace_back(random.uniform(-1, 1), random.uniform(-1, 1), thickness * random.uniform(-1, 1));
+    points.push_back(random.point(-1, 1));
+    points.back().z() *= thickness;
   }
   return points;
 }
@@ -163,7 +176,7 @@ Points polygon(int n, Random& random) {
       points.emplace_back(x / 64.0, y / 64.0, -(x + y) / 64.0);
       continue;
     }
-    Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    Vec3 p = random.point(-1, 1);
     p[plane] = 0;
     points.push_back(p);
   }
@@ -193,9 +206,7 @@ Points cloud(int n, Random& random) {
 
 Points integer_points(int n, int range, Random& random) {
   Points points;
-  for (int i = 0; i < n; ++i) {
-    points.emplace_back(random.integer(-range, range), random.integer(-range, range), random.integer(-range, range));
-  }
+  for (int i = 0; i < n; ++i) points.push_back(random.integer_point(-range, range));
   return points;
 }
 

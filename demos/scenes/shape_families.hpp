@@ -4,7 +4,7 @@
 ///
 /// Everything is a function of its parameters and a seed. No distribution of the standard library and no transcendental
 /// function is used (their bits differ between libraries): only +, -, *, /, sqrt, which are correctly rounded
-/// everywhere.
+/// everywhere. No two arguments of one call draw from a generator: compilers differ in which they evaluate first.
 #pragma once
 
 #include <array>
@@ -27,6 +27,10 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// In [low, high], both included.
   int integer(int low, int high);
+  /// Each coordinate in [low, high), z drawn first.
+  Vec3 point(double low, double high);
+  /// Each coordinate an integer of [low, high], z drawn first.
+  Vec3 integer_point(int low, int high);
   /// On the unit sphere.
   Vec3 direction();
   /// A random rotation, unit up to rounding.

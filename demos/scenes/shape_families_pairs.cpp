@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scenes/shape_families.hpp"
+#include "scenes/single_precision.hpp"
 
 namespace pd::scenes {
 
@@ -83,13 +84,26 @@ void place(PointPair& pair, DepthClass depth, Random& random) {
 /// Both bodies in random rotations.
 PointPair placed(Points a, Points b, DepthClass depth, Random& random) {
   PointPair pair{std::move(a), std::move(b), {}, {}};
-  pair.pose_a = quaternion_pose(random, random.direction() * random.uniform(0, 2));
+  const double distance = random.uniform(0, 2);
+  const Vec3 translation = random.direction() * distance;
+  pair.pose_a = quaternion_pose(random, translation);
   pair.pose_b = quaternion_pose(random, Vec3::Zero());
   place(pair, depth, random);
   return pair;
 }
 
-Vec3 random_extents(Random& random) { return {random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1)}; }
+/// Two bodies that `draw()` makes, B first.
+template <typename Draw>
+PointPair placed(const Draw& draw, DepthClass depth, Random& random) {
+  Points b = draw();
+  return placed(draw(), std::move(b), depth, random);
+}
+
+Vec3 random_extents(Random& random) {
+  const double x = random.uniform(0.2, 1);
+  const double y = random.uniform(0.2, 1);
+  return {x, y, random.uniform(0.2, 1)};
+}
 
 /// A stands below, B comes from above, turned by a right angle about z and upside down: the profiles cross.
 /// Deep means the same place when `nested`, else by 1 (where the facets of two roofs are all nearly tied).
@@ -110,9 +124,15 @@ PointPair crossed(Points a, Points b, DepthClass depth, bool nested, Random& ran
                          : depth == DepthClass::mid     ? 0.1
                          : nested                       ? contact_height
                                                         : 1;
-  const Vec3 t(0.02 * random.uniform(-1, 1), 0.02 * random.uniform(-1, 1), contact_height - overlap);
-  pair.pose_b = matrix_pose(m, t);
+  const double y = 0.02 * random.uniform(-1, 1);
+  pair.pose_b = matrix_pose(m, Vec3(0.02 * random.uniform(-1, 1), y, contact_height - overlap));
   return pair;
+}
+
+/// Two crossed roofs, B's drawn first.
+PointPair crossed_roofs(int n, const RoofShape& shape, DepthClass depth, Random& random) {
+  Points b = roof(n, shape, random);
+  return crossed(roof(n, shape, random), std::move(b), depth, false, random);
 }
 
 PointPair near_aligned(DepthClass depth, Random& random) {
@@ -135,12 +155,12 @@ PointPair near_aligned(DepthClass depth, Random& random) {
 PointPair kissing(int n, bool nudged, Random& random) {
   const int range = random.integer(1, 6);
   PointPair pair{integer_points(n, range, random), integer_points(n, range, random), {}, {}};
-  if (random.integer(0, 2) == 0) pair.a = box(Vec3(random.integer(1, 4), random.integer(1, 4), random.integer(1, 4)));
-  if (random.integer(0, 2) == 0) pair.b = box(Vec3(random.integer(1, 4), random.integer(1, 4), random.integer(1, 4)));
-  pair.pose_a =
-      matrix_pose(right_angles(random), Vec3(random.integer(-9, 9), random.integer(-9, 9), random.integer(-9, 9)));
+  if (random.integer(0, 2) == 0) pair.a = box(random.integer_point(1, 4));
+  if (random.integer(0, 2) == 0) pair.b = box(random.integer_point(1, 4));
+  const Vec3 place_a = random.integer_point(-9, 9);
+  pair.pose_a = matrix_pose(right_angles(random), place_a);
   pair.pose_b = matrix_pose(right_angles(random), Vec3::Zero());
-  Vec3 d(random.integer(-3, 3), random.integer(-3, 3), random.integer(-3, 3));
+  Vec3 d = random.integer_point(-3, 3);
   if (d.squaredNorm() == 0) d = Vec3::UnitZ();
   Vec3 t = pair.pose_a.translation() + extreme(pair.a, pair.pose_a, d) - extreme(pair.b, pair.pose_b, -d);
   if (nudged) {
@@ -173,11 +193,9 @@ PointPair equal_bodies(int n, DepthClass depth, Random& random) {
 PointPair integer_grid(int n, DepthClass depth, Random& random) {
   const int range = random.integer(1, 8);
   PointPair pair{integer_points(n, range, random), integer_points(n, range, random), {}, {}};
-  if (random.integer(0, 1) != 0) {
-    pair.a = box(Vec3(random.integer(1, 8), random.integer(1, 8), random.integer(1, 8)));
-  }
+  if (random.integer(0, 1) != 0) pair.a = box(random.integer_point(1, 8));
   const int reach = depth == DepthClass::gap ? 3 * range : depth == DepthClass::deep ? 0 : range;
-  const Vec3 t(random.integer(-reach, reach), random.integer(-reach, reach), random.integer(-reach, reach));
+  const Vec3 t = random.integer_point(-reach, reach);
   pair.pose_a = matrix_pose(right_angles(random), Vec3::Zero());
   pair.pose_b = matrix_pose(right_angles(random), t);
   return pair;
@@ -185,9 +203,8 @@ PointPair integer_grid(int n, DepthClass depth, Random& random) {
 
 PointPair scaled(int n, DepthClass depth, Random& random) {
   static constexpr double kScales[] = {1e-300, 1e-250, 1e-200, 1e-150, 1e-100, 1e-30, 1e-9, 1e9, 1e30, 1e100, 1e150};
-  PointPair pair =
-      placed(sphere_hull(n, random), random.integer(0, 1) != 0 ? box(random_extents(random)) : sphere_hull(n, random),
-             depth, random);
+  Points b = random.integer(0, 1) != 0 ? box(random_extents(random)) : sphere_hull(n, random);
+  PointPair pair = placed(sphere_hull(n, random), std::move(b), depth, random);
   const double scale = kScales[random.integer(0, 10)];
   for (Vec3& p : pair.a) p *= scale;
   for (Vec3& p : pair.b) p *= scale;
@@ -199,27 +216,27 @@ PointPair scaled(int n, DepthClass depth, Random& random) {
 PointPair far_translation(int n, DepthClass depth, Random& random) {
   static constexpr double kFar[] = {1e3, 1e6, 1e9, 1e12};
   PointPair pair{sphere_hull(n, random), box(random_extents(random)), {}, {}};
-  pair.pose_a = quaternion_pose(random, random.direction() * kFar[random.integer(0, 3)]);
+  const double far = kFar[random.integer(0, 3)];
+  pair.pose_a = quaternion_pose(random, random.direction() * far);
   pair.pose_b = quaternion_pose(random, Vec3::Zero());
   if (random.integer(0, 3) == 0) {
     // Far from its own origin as well.
-    const Vec3 shift = random.direction() * kFar[random.integer(0, 1)];
+    const double from_origin = kFar[random.integer(0, 1)];
+    const Vec3 shift = random.direction() * from_origin;
     for (Vec3& p : pair.b) p += shift;
   }
   place(pair, depth, random);
   return pair;
 }
 
-Vec3 to_single(const Vec3& v) { return v.cast<float>().cast<double>(); }
-
 PointPair single_precision(int n, DepthClass depth, Random& random) {
-  PointPair pair = placed(random.integer(0, 1) != 0 ? box(random_extents(random)) : sphere_hull(n, random),
-                          sphere_hull(n, random), depth, random);
+  Points b = sphere_hull(n, random);
+  Points a = random.integer(0, 1) != 0 ? box(random_extents(random)) : sphere_hull(n, random);
+  PointPair pair = placed(std::move(a), std::move(b), depth, random);
   for (Vec3& p : pair.a) p = to_single(p);
   for (Vec3& p : pair.b) p = to_single(p);
-  for (Pose* pose : {&pair.pose_a, &pair.pose_b}) {
-    *pose = matrix_pose(pose->rotation().cast<float>().cast<double>(), to_single(pose->translation()));
-  }
+  pair.pose_a = to_single(pair.pose_a);
+  pair.pose_b = to_single(pair.pose_b);
   return pair;
 }
 
@@ -264,8 +281,72 @@ PointPair near_equal(int n, DepthClass depth, Random& random) {
   if (depth == DepthClass::mid) pair.a = prism(n);
   pair.b = pair.a;
   const double step = kSteps[random.integer(0, 3)];
-  pair.pose_b = *Pose::from_quaternion(small_rotation(random, step), step * random.direction());
+  const Vec3 translation = step * random.direction();
+  pair.pose_b = *Pose::from_quaternion(small_rotation(random, step), translation);
   if (depth == DepthClass::gap) place(pair, depth, random);
+  return pair;
+}
+
+/// Boxes aligned on a grid of eighths.
+PointPair cubes(DepthClass depth, Random& random) {
+  const auto eighths = [&](int low, int high) { return Vec3(random.integer_point(low, high) / 8.0); };
+  PointPair pair;
+  pair.a = box(eighths(1, 8));
+  pair.b = box(eighths(1, 8));
+  pair.pose_b = matrix_pose(Mat3::Identity(), depth == DepthClass::deep ? Vec3(Vec3::Zero()) : eighths(-9, 9));
+  return pair;
+}
+
+PointPair slivers(int n, DepthClass depth, Random& random) {
+  static constexpr double kThickness[] = {1e-3, 1e-6, 1e-9, 1e-12};
+  Points a = sliver(n, kThickness[random.integer(0, 3)], random);
+  Points b = random.integer(0, 1) != 0 ? sliver(n, kThickness[random.integer(0, 3)], random) : sphere_hull(n, random);
+  return placed(std::move(a), std::move(b), depth, random);
+}
+
+PointPair polygons(int n, DepthClass depth, Random& random) {
+  Points a = polygon(std::max(3, n), random);
+  Points b = random.integer(0, 1) != 0 ? polygon(std::max(3, n), random) : sphere_hull(n, random);
+  return placed(std::move(a), std::move(b), depth, random);
+}
+
+/// A segment against another, a polygon or a body.
+PointPair segments(int n, DepthClass depth, Random& random) {
+  const Vec3 d = random.direction();
+  const int other = random.integer(0, 2);
+  Points b = other == 0   ? Points{Vec3(random.direction()), Vec3(random.direction())}
+             : other == 1 ? polygon(std::max(3, n), random)
+                          : sphere_hull(n, random);
+  return placed({-d, d}, std::move(b), depth, random);
+}
+
+/// A point against itself, one of the other's points, a polygon or a body.
+PointPair points(int n, DepthClass depth, Random& random) {
+  Points a = {random.direction()};
+  const int other = random.integer(0, 3);
+  Points b = other == 0 ? Points{a[0]} : other == 1 ? polygon(std::max(3, n), random) : cloud(n, random);
+  PointPair pair{std::move(a), std::move(b), {}, {}};
+  if (other == 0) return pair;
+  if (other == 3) {
+    pair.a = {pair.b[0]};  // often a vertex
+    return pair;
+  }
+  pair.pose_a = quaternion_pose(random, Vec3::Zero());
+  pair.pose_b = quaternion_pose(random, Vec3::Zero());
+  place(pair, depth, random);
+  return pair;
+}
+
+/// Two prisms about parallel axes, turned about them: many edges exactly or nearly parallel.
+PointPair parallel_edges(int n, DepthClass depth, Random& random) {
+  PointPair pair{prism(n), prism(n), {}, {}};
+  const Turn t = turn(random.integer(0, 1) != 0 ? random.uniform() : 0.25 * random.integer(0, 3));
+  Mat3 m = Mat3::Identity();
+  m(0, 0) = m(1, 1) = t.cosine;
+  m(1, 0) = t.sine;
+  m(0, 1) = -t.sine;
+  pair.pose_b = matrix_pose(m, Vec3::Zero());
+  place(pair, depth, random);
   return pair;
 }
 
@@ -309,82 +390,37 @@ PointPair make_pair(PairFamily family, int n, DepthClass depth, std::uint64_t se
   random.next();
   switch (family) {
     case PairFamily::box:
-      return placed(box(random_extents(random)), box(random_extents(random)), depth, random);
-    case PairFamily::cubes: {
-      // Aligned on a grid of eighths.
-      const auto eighths = [&](int low, int high) {
-        return Vec3(random.integer(low, high) / 8.0, random.integer(low, high) / 8.0, random.integer(low, high) / 8.0);
-      };
-      PointPair pair{box(eighths(1, 8)), box(eighths(1, 8)), {}, {}};
-      pair.pose_b = matrix_pose(Mat3::Identity(), depth == DepthClass::deep ? Vec3(Vec3::Zero()) : eighths(-9, 9));
-      return pair;
-    }
+      return placed([&] { return box(random_extents(random)); }, depth, random);
+    case PairFamily::cubes:
+      return cubes(depth, random);
     case PairFamily::sphere:
-      return placed(sphere_hull(n, random), sphere_hull(n, random), depth, random);
+      return placed([&] { return sphere_hull(n, random); }, depth, random);
     case PairFamily::needle:
-      return placed(needle(n, random), needle(n, random), depth, random);
+      return placed([&] { return needle(n, random); }, depth, random);
     case PairFamily::prism:
       return placed(prism(n), prism(n), depth, random);
     case PairFamily::grid:
       return crossed(lens(n, 0.5), lens(n, 0.5), depth, true, random);
     case PairFamily::patch:
-      return crossed(roof(n, {0.5, 0.2, 0}, random), roof(n, {0.5, 0.2, 0}, random), depth, false, random);
+      return crossed_roofs(n, {0.5, 0.2, 0}, depth, random);
     case PairFamily::roofs:
-      return crossed(roof(n, {0.1, 0.2, 0}, random), roof(n, {0.1, 0.2, 0}, random), depth, false, random);
+      return crossed_roofs(n, {0.1, 0.2, 0}, depth, random);
     case PairFamily::tilted_roofs:
-      return crossed(roof(n, {0.5, 0.2, 0.2}, random), roof(n, {0.5, 0.2, 0.2}, random), depth, false, random);
-    case PairFamily::slivers: {
-      static constexpr double kThickness[] = {1e-3, 1e-6, 1e-9, 1e-12};
-      Points a = sliver(n, kThickness[random.integer(0, 3)], random);
-      Points b =
-          random.integer(0, 1) != 0 ? sliver(n, kThickness[random.integer(0, 3)], random) : sphere_hull(n, random);
-      return placed(std::move(a), std::move(b), depth, random);
-    }
-    case PairFamily::polygons: {
-      Points a = polygon(std::max(3, n), random);
-      Points b = random.integer(0, 1) != 0 ? polygon(std::max(3, n), random) : sphere_hull(n, random);
-      return placed(std::move(a), std::move(b), depth, random);
-    }
-    case PairFamily::segments: {
-      const Vec3 d = random.direction();
-      Points a = {-d, d};
-      const int other = random.integer(0, 2);
-      Points b = other == 0   ? Points{Vec3(random.direction()), Vec3(random.direction())}
-                 : other == 1 ? polygon(std::max(3, n), random)
-                              : sphere_hull(n, random);
-      return placed(std::move(a), std::move(b), depth, random);
-    }
-    case PairFamily::points: {
-      Points a = {random.direction()};
-      const int other = random.integer(0, 3);
-      Points b = other == 0 ? Points{a[0]} : other == 1 ? polygon(std::max(3, n), random) : cloud(n, random);
-      PointPair pair{std::move(a), std::move(b), {}, {}};
-      if (other == 0) return pair;  // the same point
-      if (other == 3) {
-        pair.a = {pair.b[0]};  // exactly one of the other's points, often a vertex
-        return pair;
-      }
-      pair.pose_a = quaternion_pose(random, Vec3::Zero());
-      pair.pose_b = quaternion_pose(random, Vec3::Zero());
-      place(pair, depth, random);
-      return pair;
-    }
+      return crossed_roofs(n, {0.5, 0.2, 0.2}, depth, random);
+    case PairFamily::slivers:
+      return slivers(n, depth, random);
+    case PairFamily::polygons:
+      return polygons(n, depth, random);
+    case PairFamily::segments:
+      return segments(n, depth, random);
+    case PairFamily::points:
+      return points(n, depth, random);
     case PairFamily::clouds:
-      return placed(cloud(n, random), cloud(n, random), depth, random);
+      return placed([&] { return cloud(n, random); }, depth, random);
     case PairFamily::near_aligned_boxes:
       return near_aligned(depth, random);
-    case PairFamily::parallel_edges: {
-      // Two prisms about parallel axes, turned about them: many edges exactly or nearly parallel.
-      PointPair pair{prism(n), prism(n), {}, {}};
-      const Turn t = turn(random.integer(0, 1) != 0 ? random.uniform() : 0.25 * random.integer(0, 3));
-      Mat3 m = Mat3::Identity();
-      m(0, 0) = m(1, 1) = t.cosine;
-      m(1, 0) = t.sine;
-      m(0, 1) = -t.sine;
-      pair.pose_b = matrix_pose(m, Vec3::Zero());
-      place(pair, depth, random);
-      return pair;
-    }
+    case PairFamily::parallel_edges:
+      return parallel_edges(n, depth, random);
     case PairFamily::kissing:
       return kissing(n, false, random);
     case PairFamily::near_kissing:

@@ -65,6 +65,9 @@ struct RollbackStepper::State {
   /// same: a gap left, and less than two gaps moved since.
   [[nodiscard]] bool is_just_before(const detail::FoundImpact& impact, double time, double clearance,
                                     const PenetrationDepth& contact) const;
+  /// Reports the contact that ended a part.
+  static void record(const detail::FoundImpact& impact, const PenetrationDepth& contact, FirstContact& result,
+                     RollbackReport& report);
   /// Ends a part just before the impact. @return its length, `least` or more.
   double advance_to(detail::FoundImpact impact, double from, double duration, double least, RollbackReport& report);
   /// One frame, without what follows it (motion states, forces).
@@ -137,9 +140,15 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
     }
     break;
   }
+  result.time = from + time;
+  record(impact, contact, result, report);
+  return time;
+}
+
+void RollbackStepper::State::record(const detail::FoundImpact& impact, const PenetrationDepth& contact,
+                                    FirstContact& result, RollbackReport& report) {
   result.body_a = impact.a.body;
   result.body_b = impact.b.body;
-  result.time = from + time;
   result.normal = to_bullet(contact.normal);
   result.point_a = to_bullet(contact.witness_a);
   result.point_b = to_bullet(contact.witness_b);
@@ -148,7 +157,6 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
   } else {
     report.contacts.push_back(result);
   }
-  return time;
 }
 
 void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport& report) {

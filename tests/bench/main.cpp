@@ -50,6 +50,16 @@ void add_common(CLI::App& command, Options& o) {
   command.add_flag("--quick", o.quick, "under a minute: fewer pairs, no dear cells");
 }
 
+void add_family_options(CLI::App& command, Options& o) {
+  command.add_option("--families", o.families, "names of families (default: all)")->delimiter(',');
+  command.add_option("--vertices", o.vertices, "sizes (default: the family's own)")->delimiter(',');
+}
+
+void add_pair_options(CLI::App& command, Options& o) {
+  command.add_option("--pairs", o.pairs, "pairs in each cell (default: 72, quick 12)");
+  command.add_option("--plots", o.plots, "writes log-log pictures into this folder");
+}
+
 /// Drops the solvers that were not asked for. False when a name is unknown.
 bool select(Solvers& solvers, const std::vector<std::string>& names) {
   if (names.empty()) return true;
@@ -162,60 +172,96 @@ void add_contact_options(CLI::App& command, ContactOptions& o) {
 }
 #endif
 
+CLI::App* add_pairs(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("pairs", "cold single pairs: families x vertices x depth");
+  add_common(*command, o);
+  add_family_options(*command, o);
+  add_pair_options(*command, o);
+  return command;
+}
+
+CLI::App* add_coherent(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("coherent", "sequences of frames, with the memory of the pair");
+  add_common(*command, o);
+  command->add_option("--frames", o.frames, "frames of a sequence")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  add_family_options(*command, o);
+  return command;
+}
+
+CLI::App* add_meshes(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("meshes", "cold single pairs over the hulls of your own meshes");
+  command->add_option("folder", o.folder, "searched for OBJ, STL, PLY, OFF and glTF files")->required();
+  add_common(*command, o);
+  add_pair_options(*command, o);
+  return command;
+}
+
+CLI::App* add_compare(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("compare", "two builds of pdepth-bench, run in turns on the same pairs");
+  command->add_option("before", o.compare.before, "the older program")->required()->check(CLI::ExistingFile);
+  command->add_option("after", o.compare.after, "the newer program")->required()->check(CLI::ExistingFile);
+  command->add_option("--rounds", o.compare.rounds)->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--seed", o.seed, "repeats a run (default: drawn, and printed)");
+  command->add_option("pairs", o.compare.arguments, "options of `pairs` for both, after --");
+  return command;
+}
+
+CLI::App* add_agarwal(CLI::App& app, AgarwalSettings& o) {
+  CLI::App* command = app.add_subcommand("agarwal", "the bounds of Agarwal et al. 2000, claim by claim");
+  command->add_option("--seed", o.seed, "seed of the families and pairs")->capture_default_str();
+  command->add_option("--chapters", o.chapters, agarwal_chapters())->delimiter(',');
+  command->add_option("--out", o.out, "folder for the table (CSV, Markdown), the points and the plots");
+  command->add_option("--pairs", o.pairs, "of the exactness chapter (default: 100000, quick 2000)");
+  command->add_flag("--quick", o.quick, "under a minute: smaller sizes, fewer pairs");
+  return command;
+}
+
+CLI::App* add_arya(CLI::App& app, AryaSettings& o) {
+  CLI::App* command = app.add_subcommand("arya", "the bounds of Arya, da Fonseca and Mount 2018, claim by claim");
+  command->add_option("--seed", o.seed, "seed of the clouds")->capture_default_str();
+  command->add_option("--chapters", o.chapters, arya_chapters())->delimiter(',');
+  command->add_option("--out", o.out, "folder for the table (CSV, Markdown), the points and the plots");
+  command->add_flag("--full", o.full, "up to 1e7 points; otherwise under a minute");
+  return command;
+}
+
+CLI::App* add_dobkin(CLI::App& app, DobkinSettings& o) {
+  CLI::App* command =
+      app.add_subcommand("dobkin", "the bounds of Dobkin, Hershberger, Kirkpatrick and Suri 1993, claim by claim");
+  command->add_option("--seed", o.seed, "seed of bodies and directions")->capture_default_str();
+  command->add_option("--chapters", o.chapters, dobkin_chapters())->delimiter(',');
+  command->add_option("--out", o.out, "folder for the table (CSV, Markdown) and the points");
+  command->add_flag("--full", o.full, "up to 2^20 vertices; otherwise under a minute");
+  return command;
+}
+
+CLI::App* add_hash(CLI::App& app, HashSettings& o) {
+  CLI::App* command = app.add_subcommand("hash", "the bits of answers, hashed: equal on every compiler and machine");
+  command->add_option("--pairs", o.pairs, "generated pairs, each asked in about ten ways")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--seed", o.seed)->capture_default_str();
+  command->add_option("--out", o.out, "writes the rows to this file");
+  command->add_option("--check", o.check, "compares them with this file");
+  return command;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Exact penetration depth beside the peers; every answer is judged by an exact oracle."};
   app.require_subcommand(1);
-  CLI::App* pairs = app.add_subcommand("pairs", "cold single pairs: families x vertices x depth");
-  add_common(*pairs, options);
-  CLI::App* coherent = app.add_subcommand("coherent", "sequences of frames, with the memory of the pair");
-  add_common(*coherent, options);
-  coherent->add_option("--frames", options.frames, "frames of a sequence")
-      ->check(CLI::Range(2, 100000))
-      ->capture_default_str();
-  for (CLI::App* command : {pairs, coherent}) {
-    command->add_option("--families", options.families, "names of families (default: all)")->delimiter(',');
-    command->add_option("--vertices", options.vertices, "sizes (default: the family's own)")->delimiter(',');
-  }
-  CLI::App* meshes = app.add_subcommand("meshes", "cold single pairs over the hulls of your own meshes");
-  meshes->add_option("folder", options.folder, "searched for OBJ, STL, PLY, OFF and glTF files")->required();
-  add_common(*meshes, options);
-  for (CLI::App* command : {pairs, meshes}) {
-    command->add_option("--pairs", options.pairs, "pairs in each cell (default: 72, quick 12)");
-    command->add_option("--plots", options.plots, "writes log-log pictures into this folder");
-  }
-  CLI::App* compare = app.add_subcommand("compare", "two builds of pdepth-bench, run in turns on the same pairs");
-  compare->add_option("before", options.compare.before, "the older program")->required()->check(CLI::ExistingFile);
-  compare->add_option("after", options.compare.after, "the newer program")->required()->check(CLI::ExistingFile);
-  compare->add_option("--rounds", options.compare.rounds)->check(CLI::PositiveNumber)->capture_default_str();
-  compare->add_option("--seed", options.seed, "repeats a run (default: drawn, and printed)");
-  compare->add_option("pairs", options.compare.arguments, "options of `pairs` for both, after --");
-  CLI::App* agarwal = app.add_subcommand("agarwal", "the bounds of Agarwal et al. 2000, claim by claim");
-  agarwal->add_option("--seed", options.agarwal.seed, "seed of the families and pairs")->capture_default_str();
-  agarwal->add_option("--chapters", options.agarwal.chapters, agarwal_chapters())->delimiter(',');
-  agarwal->add_option("--out", options.agarwal.out, "folder for the table (CSV, Markdown), the points and the plots");
-  agarwal->add_option("--pairs", options.agarwal.pairs, "of the exactness chapter (default: 100000, quick 2000)");
-  agarwal->add_flag("--quick", options.agarwal.quick, "under a minute: smaller sizes, fewer pairs");
-  CLI::App* arya = app.add_subcommand("arya", "the bounds of Arya, da Fonseca and Mount 2018, claim by claim");
-  arya->add_option("--seed", options.arya.seed, "seed of the clouds")->capture_default_str();
-  arya->add_option("--chapters", options.arya.chapters, arya_chapters())->delimiter(',');
-  arya->add_option("--out", options.arya.out, "folder for the table (CSV, Markdown), the points and the plots");
-  arya->add_flag("--full", options.arya.full, "up to 1e7 points; otherwise under a minute");
-  CLI::App* dobkin =
-      app.add_subcommand("dobkin", "the bounds of Dobkin, Hershberger, Kirkpatrick and Suri 1993, claim by claim");
-  dobkin->add_option("--seed", options.dobkin.seed, "seed of bodies and directions")->capture_default_str();
-  dobkin->add_option("--chapters", options.dobkin.chapters, dobkin_chapters())->delimiter(',');
-  dobkin->add_option("--out", options.dobkin.out, "folder for the table (CSV, Markdown) and the points");
-  dobkin->add_flag("--full", options.dobkin.full, "up to 2^20 vertices; otherwise under a minute");
-  CLI::App* hash = app.add_subcommand("hash", "the bits of answers, hashed: equal on every compiler and machine");
-  hash->add_option("--pairs", options.hash.pairs, "generated pairs, each asked in about ten ways")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  hash->add_option("--seed", options.hash.seed)->capture_default_str();
-  hash->add_option("--out", options.hash.out, "writes the rows to this file");
-  hash->add_option("--check", options.hash.check, "compares them with this file");
+  add_pairs(app, options);
+  CLI::App* coherent = add_coherent(app, options);
+  CLI::App* meshes = add_meshes(app, options);
+  CLI::App* compare = add_compare(app, options);
+  CLI::App* agarwal = add_agarwal(app, options.agarwal);
+  CLI::App* arya = add_arya(app, options.arya);
+  CLI::App* dobkin = add_dobkin(app, options.dobkin);
+  CLI::App* hash = add_hash(app, options.hash);
 #ifdef PD_BENCH_WITH_CONTACT
   ContactOptions contact_options;
   CLI::App* contact = app.add_subcommand("contact", "worlds: Bullet's ways to find contacts beside ours");

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "protocol_lines.hpp"
+#include "scenes/single_precision.hpp"
 
 namespace pd::test {
 namespace {
@@ -138,7 +139,7 @@ TEST(HardCases, DuplicatesChangeNoBit) {
 
 /// Single precision first where a case says so.
 Json as_stored(const Json& value, bool single) {
-  if (value.is_number() && single) return static_cast<double>(static_cast<float>(value.get<double>()));
+  if (value.is_number() && single) return scenes::to_single(value.get<double>());
   if (!value.is_structured()) return value;
   Json result = value;
   for (auto& element : result) element = as_stored(element, single);

@@ -7,14 +7,13 @@
 
 namespace pd::oracle {
 
-namespace {
-
 /// A triangle of the growing surface; neighbour[i] lies across corner[i] -> corner[i + 1].
-struct Face {
+struct Body::Face {
   int corner[3];
   int neighbour[3];
-  bool alive = true;
 };
+
+namespace {
 
 /// A point in long double, relative error 2^-63 in each coordinate, |coordinate| <= 1.
 struct Fine {
@@ -172,56 +171,45 @@ void Body::build_flat() {
   }
 }
 
-// Incremental hull. A point sees a face only strictly: coplanar points then extend a facet by coplanar triangles (their
-// horizon edge is never collinear with the point, because the visible face beside it is not coplanar with it).
-void Body::build_solid(const int (&start)[4]) {
-  std::vector<Face> faces;
-  int t[4] = {start[0], start[1], start[2], start[3]};
-  if (orientation(t[0], t[1], t[2], t[3]) > 0) std::swap(t[1], t[2]);
-  faces.push_back({{t[0], t[1], t[2]}, {1, 2, 3}});
-  faces.push_back({{t[1], t[0], t[3]}, {0, 3, 2}});
-  faces.push_back({{t[2], t[1], t[3]}, {0, 1, 3}});
-  faces.push_back({{t[0], t[2], t[3]}, {0, 2, 1}});
-
-  std::vector<int> alive = {0, 1, 2, 3};
-  std::vector<char> visible;
-  for (int p = 0; p < static_cast<int>(exact.size()); ++p) {
-    if (p == start[0] || p == start[1] || p == start[2] || p == start[3]) continue;
-    visible.assign(faces.size(), 0);
-    bool outside = false;
-    for (const int f : alive) {
-      visible[f] = orientation(faces[f].corner[0], faces[f].corner[1], faces[f].corner[2], p) > 0;
-      outside = outside || visible[f];
-    }
-    if (!outside) continue;
-    std::map<int, int> starting_at;  // horizon vertex -> new face whose horizon edge leaves it
-    std::vector<int> created;
-    for (const int f : alive) {
-      if (!visible[f]) continue;
-      for (int k = 0; k < 3; ++k) {
-        const int other = faces[f].neighbour[k];
-        if (visible[other]) continue;
-        const int from = faces[f].corner[k];
-        const int to = faces[f].corner[(k + 1) % 3];
-        const int index = static_cast<int>(faces.size());
-        faces.push_back({{from, to, p}, {other, -1, -1}});
-        for (int& back : faces[other].neighbour) {
-          if (back == f && faces[other].corner[&back - faces[other].neighbour] == to) back = index;
-        }
-        starting_at[from] = index;
-        created.push_back(index);
-      }
-    }
-    for (const int f : created) {
-      const int next = starting_at.at(faces[f].corner[1]);
-      faces[f].neighbour[1] = next;
-      faces[next].neighbour[2] = f;
-    }
-    std::erase_if(alive, [&](int f) { return visible[f] != 0; });
-    alive.insert(alive.end(), created.begin(), created.end());
+/// Adds a point to the hull. It sees a face only strictly: coplanar points then extend a facet by coplanar triangles
+/// (their horizon edge is never collinear with the point, because the visible face beside it is not coplanar with it).
+void Body::insert_point(int p, std::vector<Face>& faces, std::vector<int>& alive) const {
+  std::vector<char> visible(faces.size(), 0);
+  bool outside = false;
+  for (const int f : alive) {
+    visible[f] = orientation(faces[f].corner[0], faces[f].corner[1], faces[f].corner[2], p) > 0;
+    outside = outside || visible[f];
   }
+  if (!outside) return;
+  std::map<int, int> starting_at;  // horizon vertex -> new face whose horizon edge leaves it
+  std::vector<int> created;
+  for (const int f : alive) {
+    if (!visible[f]) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int other = faces[f].neighbour[k];
+      if (visible[other]) continue;
+      const int from = faces[f].corner[k];
+      const int to = faces[f].corner[(k + 1) % 3];
+      const int index = static_cast<int>(faces.size());
+      faces.push_back({{from, to, p}, {other, -1, -1}});
+      for (int& back : faces[other].neighbour) {
+        if (back == f && faces[other].corner[&back - faces[other].neighbour] == to) back = index;
+      }
+      starting_at[from] = index;
+      created.push_back(index);
+    }
+  }
+  for (const int f : created) {
+    const int next = starting_at.at(faces[f].corner[1]);
+    faces[f].neighbour[1] = next;
+    faces[next].neighbour[2] = f;
+  }
+  std::erase_if(alive, [&](int f) { return visible[f] != 0; });
+  alive.insert(alive.end(), created.begin(), created.end());
+}
 
-  // Coplanar neighbours become one facet direction.
+/// Adds one facet for each set of coplanar neighbours. @return [faces] the facet of each.
+std::vector<int> Body::merge_coplanar(const std::vector<Face>& faces, const std::vector<int>& alive) {
   std::vector<int> facet_of(faces.size(), -1);
   for (const int seed : alive) {
     if (facet_of[seed] >= 0) continue;
@@ -233,8 +221,7 @@ void Body::build_solid(const int (&start)[4]) {
     while (!stack.empty()) {
       const int f = stack.back();
       stack.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        const int g = faces[f].neighbour[k];
+      for (const int g : faces[f].neighbour) {
         if (facet_of[g] >= 0) continue;
         const bool coplanar = std::all_of(faces[g].corner, faces[g].corner + 3,
                                           [&](int v) { return orientation(c[0], c[1], c[2], v) == 0; });
@@ -245,6 +232,23 @@ void Body::build_solid(const int (&start)[4]) {
       }
     }
   }
+  return facet_of;
+}
+
+/// Incremental hull from a tetrahedron.
+void Body::build_solid(const int (&start)[4]) {
+  std::vector<Face> faces;
+  int t[4] = {start[0], start[1], start[2], start[3]};
+  if (orientation(t[0], t[1], t[2], t[3]) > 0) std::swap(t[1], t[2]);
+  faces.push_back({{t[0], t[1], t[2]}, {1, 2, 3}});
+  faces.push_back({{t[1], t[0], t[3]}, {0, 3, 2}});
+  faces.push_back({{t[2], t[1], t[3]}, {0, 1, 3}});
+  faces.push_back({{t[0], t[2], t[3]}, {0, 2, 1}});
+  std::vector<int> alive = {0, 1, 2, 3};
+  for (int p = 0; p < static_cast<int>(exact.size()); ++p) {
+    if (std::find(std::begin(start), std::end(start), p) == std::end(start)) insert_point(p, faces, alive);
+  }
+  const std::vector<int> facet_of = merge_coplanar(faces, alive);
   for (const int f : alive) {
     const int* c = faces[f].corner;
     triangles.push_back({{c[0], c[1], c[2]}, facet_of[f]});

@@ -49,8 +49,11 @@ class Body {
   int scale_exponent = 0;           ///< so that |relative| <= 1
 
  private:
+  struct Face;
   void build_flat();
   void build_solid(const int (&start)[4]);
+  void insert_point(int p, std::vector<Face>& faces, std::vector<int>& alive) const;
+  std::vector<int> merge_coplanar(const std::vector<Face>& faces, const std::vector<int>& alive);
   void finish();
   [[nodiscard]] int orientation(int a, int b, int c, int d) const;
 };

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "scenes/single_precision.hpp"
+
 namespace pd::oracle {
 
 namespace {
@@ -20,7 +22,7 @@ class Reader {
 
   [[nodiscard]] double number(const Json& j) const {
     const double value = j.get<double>();
-    return single_ ? static_cast<double>(static_cast<float>(value)) : value;
+    return single_ ? scenes::to_single(value) : value;
   }
   [[nodiscard]] Vec3 vector(const Json& j) const { return {number(j.at(0)), number(j.at(1)), number(j.at(2))}; }
 

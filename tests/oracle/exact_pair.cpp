@@ -121,32 +121,36 @@ ExactPair::ExactPair(const Body& a, const Pose& pose_a, const Body& b, const Pos
     }
     side.points.resize(body.exact.size());
     side.known.assign(body.exact.size(), 0);
-
-    Mat3 cofactor;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 row = rotation.row((i + 1) % 3).cross(rotation.row((i + 2) % 3));
-      cofactor.row(i) = row.transpose();
-    }
-    Rounded& r = side.rounded;
-    const double factor = std::ldexp(1.0, std::max(body.scale_exponent - scale_, -1000));
-    r.magnitude = body.dimension > 0 ? 2 * factor : 0;
-    magnitude_ += r.magnitude;
-    const std::size_t count = body.vertices.size();
-    const std::size_t padded = (count + 7) / 8 * 8;
-    r.x.resize(padded);
-    r.y.resize(padded);
-    r.z.resize(padded);
-    for (std::size_t k = 0; k < padded; ++k) {
-      const Vec3 p = rotation * (body.relative[body.vertices[k < count ? k : 0]] * factor);
-      r.x[k] = p.x();
-      r.y[k] = p.y();
-      r.z[k] = p.z();
-    }
-    r.edge_units.reserve(body.edges.size());
-    for (const Vec3& e : body.edge_units) r.edge_units.push_back((rotation * e).normalized());
-    r.facet_normals.reserve(body.facets.size());
-    for (const Body::Facet& f : body.facets) r.facet_normals.push_back((cofactor * f.unit_normal).normalized());
+    round_side(side, rotation);
   }
+}
+
+void ExactPair::round_side(Side& side, const Mat3& rotation) {
+  const Body& body = *side.body;
+  Mat3 cofactor;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 row = rotation.row((i + 1) % 3).cross(rotation.row((i + 2) % 3));
+    cofactor.row(i) = row.transpose();
+  }
+  Rounded& r = side.rounded;
+  const double factor = std::ldexp(1.0, std::max(body.scale_exponent - scale_, -1000));
+  r.magnitude = body.dimension > 0 ? 2 * factor : 0;
+  magnitude_ += r.magnitude;
+  const std::size_t count = body.vertices.size();
+  const std::size_t padded = (count + 7) / 8 * 8;
+  r.x.resize(padded);
+  r.y.resize(padded);
+  r.z.resize(padded);
+  for (std::size_t k = 0; k < padded; ++k) {
+    const Vec3 p = rotation * (body.relative[body.vertices[k < count ? k : 0]] * factor);
+    r.x[k] = p.x();
+    r.y[k] = p.y();
+    r.z[k] = p.z();
+  }
+  r.edge_units.reserve(body.edges.size());
+  for (const Vec3& e : body.edge_units) r.edge_units.push_back((rotation * e).normalized());
+  r.facet_normals.reserve(body.facets.size());
+  for (const Body::Facet& f : body.facets) r.facet_normals.push_back((cofactor * f.unit_normal).normalized());
 }
 
 const IVec& ExactPair::point(const Side& side, int i) const {

@@ -64,6 +64,8 @@ class ExactPair {
     Rounded rounded;
   };
   const IVec& point(const Side& side, int i) const;
+  /// The side's body in doubles, turned by `rotation`, in units of 2^scale().
+  void round_side(Side& side, const Mat3& rotation);
 
   Side sides_[2];
   IVec offset_;

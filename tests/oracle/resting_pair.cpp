@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scenes/single_precision.hpp"
+
 namespace pd::oracle {
 
 namespace {
@@ -10,7 +12,7 @@ namespace {
 using scenes::Points;
 using scenes::Random;
 
-double single(double x, bool round) { return round ? static_cast<double>(static_cast<float>(x)) : x; }
+double single(double x, bool round) { return round ? scenes::to_single(x) : x; }
 
 /// A box on a floor, a hull on a floor, two boxes, a box and a hull, capsules' cores among them.
 Points core(Random& random, int kind) {

@@ -15,23 +15,16 @@ Exact3 times(const Exact3& a, const Exact3& b) {
 }
 Rational dot(const Exact3& a, const Exact3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-}  // namespace
+/// A plane that has the points on it and all others on one side.
+struct SupportingPlane {
+  Exact3 normal;
+  std::set<std::size_t> on;
+};
 
-ExactHull exact_hull(std::span<const Vec3> points) {
-  std::vector<Exact3> p;
-  std::vector<int> ids;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Exact3 q{Rational(points[i].x()), Rational(points[i].y()), Rational(points[i].z())};
-    if (std::find(p.begin(), p.end(), q) == p.end()) {
-      p.push_back(q);
-      ids.push_back(static_cast<int>(i));
-    }
-  }
+std::vector<SupportingPlane> supporting_planes(const std::vector<Exact3>& p) {
   const std::size_t n = p.size();
-  // Supporting planes as the sets of points on them.
-  std::set<std::set<std::size_t>> planes;
-  std::vector<Exact3> normals;
-  std::vector<std::set<std::size_t>> members;
+  std::set<std::set<std::size_t>> known;
+  std::vector<SupportingPlane> planes;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       for (std::size_t k = j + 1; k < n; ++k) {
@@ -46,34 +39,53 @@ ExactHull exact_hull(std::span<const Vec3> points) {
           below = below || side < 0;
           if (side == 0) on.insert(q);
         }
-        if (above && below) continue;
-        if (planes.insert(on).second) {
-          normals.push_back(normal);
-          members.push_back(on);
-        }
+        if (!(above && below) && known.insert(on).second) planes.push_back({normal, on});
       }
     }
   }
+  return planes;
+}
+
+/// Of the directions, three that span space.
+bool span_space(const std::vector<Exact3>& directions) {
+  const std::size_t n = directions.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      for (std::size_t k = j + 1; k < n; ++k) {
+        if (!dot(directions[i], times(directions[j], directions[k])).is_zero()) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+ExactHull exact_hull(std::span<const Vec3> points) {
+  std::vector<Exact3> p;
+  std::vector<int> ids;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Exact3 q{Rational(points[i].x()), Rational(points[i].y()), Rational(points[i].z())};
+    if (std::find(p.begin(), p.end(), q) == p.end()) {
+      p.push_back(q);
+      ids.push_back(static_cast<int>(i));
+    }
+  }
+  const std::vector<SupportingPlane> planes = supporting_planes(p);
   // A vertex is a point whose supporting facets have normals of rank three.
   ExactHull hull;
-  std::vector<bool> is_vertex(n, false);
-  for (std::size_t q = 0; q < n; ++q) {
+  std::vector<bool> is_vertex(p.size(), false);
+  for (std::size_t q = 0; q < p.size(); ++q) {
     std::vector<Exact3> here;
-    for (std::size_t f = 0; f < members.size(); ++f) {
-      if (members[f].count(q) != 0) here.push_back(normals[f]);
+    for (const SupportingPlane& plane : planes) {
+      if (plane.on.count(q) != 0) here.push_back(plane.normal);
     }
-    for (std::size_t i = 0; i < here.size() && !is_vertex[q]; ++i) {
-      for (std::size_t j = i + 1; j < here.size() && !is_vertex[q]; ++j) {
-        for (std::size_t k = j + 1; k < here.size() && !is_vertex[q]; ++k) {
-          is_vertex[q] = !dot(here[i], times(here[j], here[k])).is_zero();
-        }
-      }
-    }
+    is_vertex[q] = span_space(here);
     if (is_vertex[q]) hull.vertices.insert(ids[q]);
   }
-  for (const auto& plane : members) {
+  for (const SupportingPlane& plane : planes) {
     std::set<int> facet;
-    for (const std::size_t q : plane) {
+    for (const std::size_t q : plane.on) {
       if (is_vertex[q]) facet.insert(ids[q]);
     }
     hull.facets.insert(facet);

@@ -8,6 +8,7 @@
 
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/verify.hpp"
+#include "scenes/single_precision.hpp"
 #include "shape/point_clouds.hpp"
 
 extern "C" {
@@ -67,7 +68,7 @@ TEST(HullPeers, HardCases) {
       Vec3 v;
       for (std::size_t k = 0; k < 3; ++k) {
         const double number = p.at(k).get<double>();
-        v[static_cast<int>(k)] = single ? static_cast<double>(static_cast<float>(number)) : number;
+        v[static_cast<int>(k)] = single ? scenes::to_single(number) : number;
       }
       points.push_back(v);
     }

@@ -3,17 +3,16 @@
 #include <cmath>
 
 #include "oracle/answer_check.hpp"
+#include "scenes/single_precision.hpp"
 
 namespace pd::bench {
 
 Vec3 received(const Vec3& v, Precision precision) {
-  return precision == Precision::binary32 ? Vec3(v.cast<float>().cast<double>()) : v;
+  return precision == Precision::binary32 ? scenes::to_single(v) : v;
 }
 
 Pose received(const Pose& pose, Precision precision) {
-  if (precision == Precision::binary64) return pose;
-  return Pose::from_trusted_matrix(pose.rotation().cast<float>().cast<double>(),
-                                   received(pose.translation(), precision));
+  return precision == Precision::binary32 ? scenes::to_single(pose) : pose;
 }
 
 const oracle::Body& JudgedBodies::get(int side, Precision precision) const {

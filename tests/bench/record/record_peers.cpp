@@ -12,6 +12,7 @@
 #include "bench/peers/solver.hpp"
 #include "pd/record/pd_record.h"
 #include "scenes/shape_families.hpp"
+#include "scenes/single_precision.hpp"
 
 namespace pd::bench {
 namespace {
@@ -32,14 +33,10 @@ struct CorpusPair {
   Pose pose_b;
 };
 
-Vec3 rounded(const Vec3& v, Precision precision) {
-  return precision == Precision::binary32 ? Vec3(v.cast<float>().cast<double>()) : v;
-}
+Vec3 rounded(const Vec3& v, Precision precision) { return precision == Precision::binary32 ? scenes::to_single(v) : v; }
 
 Pose rounded(const Pose& pose, Precision precision) {
-  if (precision != Precision::binary32) return pose;
-  return Pose::from_trusted_matrix(pose.rotation().cast<float>().cast<double>(),
-                                   rounded(pose.translation(), precision));
+  return precision == Precision::binary32 ? scenes::to_single(pose) : pose;
 }
 
 /// The body moved in its frame so that `centre` is the origin, and its pose so that it stays where it was (to
