@@ -7,22 +7,13 @@
 
 #include "depth/pair/canonical_order.hpp"
 #include "pd/depth/scratch.hpp"
+#include "shape/core_radius.hpp"
 
 namespace pd::detail {
 
 namespace {
 
 double outwards(double x, double magnitude) { return x + 8 * 0x1p-52 * magnitude; }
-
-double radius_of(const ConvexShape& shape) {
-  struct {
-    double operator()(const ConvexPolytope& p) const { return p.radius(); }
-    double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
-    double operator()(const Cylinder& c) const { return std::hypot(c.radius, c.half_height); }
-    double operator()(const Cone& c) const { return std::hypot(c.radius, c.half_height); }
-  } radius;
-  return std::visit(radius, shape.core()) * (1 + 0x1p-40);
-}
 
 Box whole(const std::vector<Box>& boxes) {
   Box box = boxes.front();
@@ -79,7 +70,7 @@ Box bounding_box(const PosedShape& part) {
     }
     size += 4 * body->radius();
   } else {
-    const double radius = radius_of(*part.shape);
+    const double radius = detail::core_radius(part.shape->core()) * (1 + 0x1p-40);
     low = t.array() - radius;
     high = t.array() + radius;
     size += radius;

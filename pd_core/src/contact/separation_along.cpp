@@ -6,18 +6,12 @@
 
 #include "depth/difference/smooth_difference.hpp"
 #include "numeric/unit_roundoff.hpp"
+#include "shape/core_radius.hpp"
 #include "shape/support/polytope_support.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-struct CoreRadius {
-  double operator()(const ConvexPolytope& p) const { return p.radius(); }
-  double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
-  double operator()(const Cylinder& c) const { return std::hypot(c.radius, c.half_height); }
-  double operator()(const Cone& c) const { return std::hypot(c.radius, c.half_height); }
-};
 
 /// A few roundings on the way to a radius or a curvature.
 constexpr double kRoundedUp = 1 + 32 * kUnitRoundoff;
@@ -32,8 +26,6 @@ Vec3 turned_back(const Vec3& n, const Vec3& axis, double angle) {
 }
 
 }  // namespace
-
-double core_radius(const ConvexShape::Core& core) { return std::visit(CoreRadius{}, core); }
 
 MovingSupport::MovingSupport(const MovingShape& body)
     : body_(body),

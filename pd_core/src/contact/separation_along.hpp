@@ -6,9 +6,6 @@
 
 namespace pd::detail {
 
-/// Largest distance of a point of a core from the origin of its frame, of a polytope rounded up.
-[[nodiscard]] double core_radius(const ConvexShape::Core& core);
-
 /// One body of the pair: its core's support at any time.
 class MovingSupport {
  public:

@@ -7,6 +7,7 @@
 #include "contact/separation_along.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
+#include "shape/core_radius.hpp"
 
 namespace pd {
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "shape/core_radius.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -41,11 +43,6 @@ struct SupportOf {
   }
 };
 
-double radius_of(const ConvexPolytope& p) { return p.radius(); }
-double radius_of(const Ellipsoid& e) { return e.radii.maxCoeff(); }
-double radius_of(const Cylinder& c) { return std::hypot(c.radius, c.half_height); }
-double radius_of(const Cone& c) { return std::hypot(c.radius, c.half_height); }
-
 }  // namespace
 
 Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction) {
@@ -56,8 +53,7 @@ SmoothDifference::Body SmoothDifference::body(const PosedShape& posed) {
   const ConvexShape::Core& core = posed.shape->core();
   const ConvexPolytope* polytope = posed.shape->polytope();
   return {&core, polytope ? posed.pose.rotation() : posed.pose.nearest_rotation(),
-          polytope ? polytope->centre() : Vec3(Vec3::Zero()),
-          std::visit([](const auto& c) { return radius_of(c); }, core)};
+          polytope ? polytope->centre() : Vec3(Vec3::Zero()), core_radius(core)};
 }
 
 SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points)
