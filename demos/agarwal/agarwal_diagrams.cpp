@@ -167,8 +167,9 @@ Expected<render::Image> draw_sphere(const scenes::PolytopePair& pair, const Colo
     }
   };
   dots(crossings.others, palette::kInkSoft, 0.009);
-  for (std::size_t k = 0; k < crossings.largest.size(); ++k)
+  for (std::size_t k = 0; k < crossings.largest.size(); ++k) {
     dots(crossings.largest[k].crossings, kFamilyColours[k], 0.023);
+  }
   scene.ground.visible = false;
   scene.focus = render::bounds(scene);
   return renderer.draw(scene, camera, size);

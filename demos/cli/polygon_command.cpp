@@ -118,8 +118,9 @@ std::string feature_in_words(const Polygon& polygon, const Polygon::VertexId& id
 std::string verdict(const PolygonPair& pair, const PolygonDepth& result, bool complete) {
   const std::string way = pair.direction ? " along the direction" : "";
   if (complete) {
-    if (result.depth == 0)
+    if (result.depth == 0) {
       return pair.direction ? "Nothing is in Q's way along the direction." : "Q can leave as it is.";
+    }
     return pair.direction ? "Q must go this far before nothing is in its way any more."
                           : "After the least such move a way leads Q out of P.";
   }

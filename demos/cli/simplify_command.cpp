@@ -93,8 +93,9 @@ int run_simplify(const SimplifyArguments& arguments) {
     const query::Stopwatch watch;
     std::vector<dimension::Vector<3>> points(scan.points.begin(), scan.points.end());
     const auto body = dimension::Body<3>::from_points(std::move(points));
-    if (!body)
+    if (!body) {
       query::refuse(to_string(body.error().code), arguments.input + ": " + body.error().message, body.error().where);
+    }
     const dimension::Side side = arguments.side == "inner" ? dimension::Side::inner : dimension::Side::outer;
     const auto small =
         dimension::approximate_body<3>(*body, arguments.epsilon, dimension::Representation::points, side);

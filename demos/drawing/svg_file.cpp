@@ -54,8 +54,9 @@ std::optional<std::string> property(const pugi::xml_node& node, const std::strin
       if (first == std::string_view::npos) return std::string();
       return std::string(s.substr(first, s.find_last_not_of(" \t\r\n") - first + 1));
     };
-    if (colon != std::string_view::npos && trimmed(part.substr(0, colon)) == name)
+    if (colon != std::string_view::npos && trimmed(part.substr(0, colon)) == name) {
       return trimmed(part.substr(colon + 1));
+    }
     at = end + 1;
   }
   const pugi::xml_attribute attribute = node.attribute(name.c_str());

@@ -56,8 +56,9 @@ MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices) {
     }
   }
   for (const Reference& reference : references) {
-    if (!vertices.reference(reference.index))
+    if (!vertices.reference(reference.index)) {
       refuse_line(reference.line, "an element names a vertex that is not there");
+    }
   }
   return std::move(vertices).finish();
 }

@@ -90,8 +90,9 @@ std::vector<int> feature_ids(const Feature& feature, const NamedShape& shape) {
       return {shape.caller_id(feature.first), shape.caller_id(feature.second)};
     case Feature::Kind::facet: {
       std::vector<int> ids;
-      for (const std::int32_t v : shape.shape.polytope()->facet_vertices(feature.first))
+      for (const std::int32_t v : shape.shape.polytope()->facet_vertices(feature.first)) {
         ids.push_back(shape.caller_id(v));
+      }
       return ids;
     }
     case Feature::Kind::none:

@@ -97,8 +97,9 @@ dimension::AffineMap<D> read_affine_map(const Node& body) {
   if (const auto matrix = node->find("matrix")) {
     require_array(*matrix, "the rows of a matrix");
     if (matrix->size() != D) matrix->refuse("bad_value", "must have " + std::to_string(D) + " rows");
-    for (int k = 0; k < D; ++k)
+    for (int k = 0; k < D; ++k) {
       map.linear.row(k) = read_row<D>(matrix->element(static_cast<std::size_t>(k))).transpose();
+    }
   }
   if (const auto translation = node->find("translation")) map.translation = read_row<D>(*translation);
   return map;

@@ -185,8 +185,9 @@ void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answe
       answer.key("nanoseconds").integer(nanoseconds).end_object();
     };
     // Kernels are those of the affine image, too: streaming needs no map.
-    if (const auto file = a.find("points_file"); file && !a.find("affine"))
+    if (const auto file = a.find("points_file"); file && !a.find("affine")) {
       return write(kernel_of_file<D>(*file, epsilon));
+    }
     const auto kernel = dimension::epsilon_kernel<D>(read_dimension_body<D>(a, session.limits), epsilon);
     if (!kernel) line.refuse(kernel.error());
     write(*kernel);

@@ -139,8 +139,9 @@ std::vector<Vec3> read_points(const Node& node, std::int64_t limit) {
   for (std::size_t i = 0; i < node.size(); ++i) {
     const Node point = node.element(i);
     const Json& value = point.json();
-    if (!value.is_array() || value.size() != 3)
+    if (!value.is_array() || value.size() != 3) {
       point.refuse("bad_value", "must be a point [x,y,z], is " + shown(value));
+    }
     Vec3 coordinates;
     for (std::size_t k = 0; k < 3; ++k) {
       const Json& number = value[k];

@@ -125,8 +125,9 @@ bool PointsFile::read_text_row(std::vector<double>& numbers) {
       if (*at == '+') ++at;
       double value = 0;
       const auto [rest, error] = std::from_chars(at, end, value);
-      if (error != std::errc())
+      if (error != std::errc()) {
         unreadable(path_, "line " + std::to_string(line_) + " holds something that is no number");
+      }
       numbers.push_back(value);
       at = rest;
     }

@@ -114,8 +114,9 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
   const bool one_convex = p.convex() || q.convex();
   if (!one_convex || method == PolygonMethod::explicit_sums) {
     const std::int64_t sums = static_cast<std::int64_t>(p.num_vertices()) * q.num_vertices();
-    if (sums > kMostSums)
+    if (sums > kMostSums) {
       line.refuse("limit_exceeded", "more than 2^20 sums of two triangles; one polygon convex needs none");
+    }
   }
   const Stopwatch watch;
   const Expected<PolygonDifference> r = PolygonDifference::of(p, q, method);

@@ -46,8 +46,9 @@ std::vector<std::vector<Point2>> rings_of(const Polygon& polygon, const Point2& 
   std::vector<std::vector<Point2>> rings;
   for (int r = 0; r < polygon.num_rings(); ++r) {
     rings.emplace_back();
-    for (int v = polygon.ring_begin(r); v < polygon.ring_end(r); ++v)
+    for (int v = polygon.ring_begin(r); v < polygon.ring_end(r); ++v) {
       rings.back().push_back(sum(polygon.point(v), shift));
+    }
   }
   return rings;
 }

@@ -51,8 +51,9 @@ class LockedPart {
   LockedPart& operator=(const LockedPart&) = delete;
 
   [[nodiscard]] const char* unreadable() const {
-    if (num_vertices < 0 || num_triangles < 0 || vertex_stride < 0 || index_stride < 0)
+    if (num_vertices < 0 || num_triangles < 0 || vertex_stride < 0 || index_stride < 0) {
       return "a count or stride below 0";
+    }
     if (num_triangles > 0 && (vertices == nullptr || indices == nullptr)) return "no array of vertices or indices";
     return nullptr;
   }
@@ -121,8 +122,9 @@ class MeshReader {
           // 0 and -0 are one place.
           corner[i] = corner[i] * scaling_[i] + 0.0;
           if (!std::isfinite(corner[i])) return Error{ErrorCode::non_finite, "a corner that is no number", where()};
-          if (std::abs(corner[i]) > kMaxCoordinate)
+          if (std::abs(corner[i]) > kMaxCoordinate) {
             return Error{ErrorCode::out_of_range, "a corner too far out", where()};
+          }
           points[static_cast<std::size_t>(k)][static_cast<Eigen::Index>(i)] = corner[i];
         }
         ids[static_cast<std::size_t>(k)] =

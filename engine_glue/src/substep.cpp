@@ -210,8 +210,9 @@ void SubStepper::note_pair_forces() {
   for (int i = 0; i < dispatcher->getNumManifolds(); ++i) {
     const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(i);
     const btScalar sum = total_impulse(manifold);
-    if (sum > 0)
+    if (sum > 0) {
       pair_forces_.push_back({manifold.getBody0(), manifold.getBody1(), sum / static_cast<btScalar>(frame_)});
+    }
   }
   std::sort(pair_forces_.begin(), pair_forces_.end(),
             [](const PairForce& x, const PairForce& y) { return before(x.a, x.b, y.a, y.b); });

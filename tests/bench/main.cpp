@@ -146,8 +146,9 @@ int coherent_command(const Options& o) {
   add_ours(solvers, false, true);
   add_peers(solvers);
   if (!select(solvers,
-              o.solvers.empty() ? std::vector<std::string>{"pdepth-auto", "pdepth-cold", "bullet-epa"} : o.solvers))
+              o.solvers.empty() ? std::vector<std::string>{"pdepth-auto", "pdepth-cold", "bullet-epa"} : o.solvers)) {
     return 2;
+  }
   print_preamble(o);
   const std::vector<CoherentRow> rows = run_coherent({*sequences, o.frames, o.seed}, solvers);
   bool good = o.csv.empty() || write_text(o.csv, to_csv(rows));

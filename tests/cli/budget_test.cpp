@@ -22,8 +22,9 @@ using query::Session;
 
 std::string list_of_points(int count) {
   std::string text = "[";
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i) {
     text += (i == 0 ? "[0," : ",[0,") + std::to_string(i % 7) + "," + std::to_string(i) + "]";
+  }
   return text + "]";
 }
 

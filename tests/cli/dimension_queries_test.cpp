@@ -63,8 +63,9 @@ TEST(DimensionQueries, ApproximationsInEitherRepresentation) {
   // Outer: no corner is cut off.
   for (const Json& row : h["halfspaces"]) {
     for (const double x : {0.0, 2.0}) {
-      for (const double y : {0.0, 1.0})
+      for (const double y : {0.0, 1.0}) {
         EXPECT_LE(row[0].get<double>() * x + row[1].get<double>() * y, row[2].get<double>());
+      }
     }
   }
   const Json p =

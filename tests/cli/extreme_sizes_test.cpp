@@ -78,8 +78,9 @@ TEST(ExtremeSizes, SubnormalPolytopesInEveryQuery) {
                                    {"contact_manifold", nullptr},
                                    {"minkowski_difference", nullptr}};
   std::vector<Query> convex = both;
-  for (const char* method : {"expansion", "overlay", "decomposition"})
+  for (const char* method : {"expansion", "overlay", "decomposition"}) {
     convex.push_back({"depth", {{"method", method}}});
+  }
   for (const char* method : {"shallow", "grid"}) convex.push_back({"depth", {{"method", method}, {"delta", 0.25}}});
   convex.push_back({"directional_depth", along_facets});
   convex.push_back({"decomposition", {{"verify", true}}});

@@ -49,8 +49,9 @@ std::string line_of(const Json& test_case) {
     return depth_line(kUnitBox, kUnitBox, "\"pose_a\":" + number_preserving_dump(pose));
   }
   if (kind == "option") {
-    if (input.contains("relative_error"))
+    if (input.contains("relative_error")) {
       return depth_line(kUnitBox, kUnitBox, "\"delta\":" + input["relative_error"].dump());
+    }
     if (input.contains("margin")) {
       return depth_line(R"({"type":"box","half_extents":[1,1,1],"margin":)" + input["margin"].dump() + "}", kUnitBox);
     }

@@ -147,8 +147,9 @@ void expect_sound(const UnionDepth& answer, const PosedCompound& a, const PosedC
   const auto parts_a = *a.body->posed(a.pose), parts_b = *b.body->posed(b.pose);
   const auto body = [](const PosedShape& part) {
     scenes::Points points;
-    for (int v = 0; v < part.shape->polytope()->num_vertices(); ++v)
+    for (int v = 0; v < part.shape->polytope()->num_vertices(); ++v) {
       points.push_back(part.shape->polytope()->vertex(v));
+    }
     return oracle::Body(points);
   };
   for (const PosedShape& x : parts_a) {

@@ -57,8 +57,9 @@ class BodySource {
         r.push_back(p);
       }
     } else if (family == Family::simplex) {
-      for (int i = 0; i <= D; ++i)
+      for (int i = 0; i <= D; ++i) {
         r.push_back(i < D ? Vector<D>(Vector<D>::Unit(i)) : Vector<D>(Vector<D>::Constant(-0.4)));
+      }
     } else {
       for (int i = 0; i < count; ++i) {
         Vector<D> p = direction();

@@ -67,8 +67,9 @@ std::vector<Vector<D>> family_points(int family, int n, Random& random) {
     }
   };
   const auto fill = [&](double power) {
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; ++i) {
       points.push_back(random_direction<D>(random) * std::pow(std::abs(uniform(random)), power));
+    }
   };
   if (family == 2) corners(1);
   if (family == 3) {

@@ -54,8 +54,9 @@ Bytes mutated(const std::vector<Bytes>& pool, std::mt19937_64& random) {
         }
         break;
       default:
-        if (at < bytes.size())
+        if (at < bytes.size()) {
           bytes[at] = static_cast<std::uint8_t>(below(2) == 0 ? random() : bytes[at] + below(5) - 2);
+        }
     }
   }
   return bytes;

@@ -80,10 +80,12 @@ class Checker {
   }
 
   void bracket(const ExactLength& truth, double lower, double middle, double upper, const char* name) {
-    if (lower < 0 || truth.compare(lower) > 0)
+    if (lower < 0 || truth.compare(lower) > 0) {
       fail(Promise::bracket, std::string(name) + text(" bracket: lower %.17g above %.17g", lower, truth.approximate()));
-    if (truth.compare(upper) < 0)
+    }
+    if (truth.compare(upper) < 0) {
       fail(Promise::bracket, std::string(name) + text(" bracket: upper %.17g below %.17g", upper, truth.approximate()));
+    }
     if (middle < lower * (1 - 0x1p-51) || middle > upper * (1 + 0x1p-51)) {
       fail(Promise::bracket, std::string(name) + text(" outside its bracket: %.17g, lower %.17g", middle, lower));
     }
@@ -97,8 +99,9 @@ class Checker {
     if (question_.bracket == Bracket::tightest) {
       const double down = truth.round_down();
       const double up = std::nextafter(truth.round_up(), INFINITY);
-      if (lower < down)
+      if (lower < down) {
         fail(Promise::width, std::string(name) + text(" tightest: lower %.17g below %.17g", lower, down));
+      }
       if (upper > up) fail(Promise::width, std::string(name) + text(" tightest: upper %.17g above %.17g", upper, up));
     }
   }
@@ -139,8 +142,9 @@ class Checker {
     near(Promise::witness, answer_.witness_b, answer_.witness_a, "witnesses of touching bodies");
     if (verdict_.flat_difference) return;  // every direction out of the plane leads out
     const double out = pair_.support(answer_.normal);
-    if (out > 0x1p-44 * pair_.magnitude())
+    if (out > 0x1p-44 * pair_.magnitude()) {
       fail(Promise::normal, text("normal of touching bodies leads out only after %g of %g", out, pair_.magnitude()));
+    }
   }
 
   void separated() {

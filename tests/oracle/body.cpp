@@ -85,8 +85,9 @@ Body::Body(std::span<const Vec3> points) : reference(points[0]) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     exact.push_back({integer(coordinates[3 * i]), integer(coordinates[3 * i + 1]), integer(coordinates[3 * i + 2])});
     for (const Integer* c : {&exact.back().x, &exact.back().y, &exact.back().z}) {
-      if (!c->is_zero())
+      if (!c->is_zero()) {
         top = std::max(top, static_cast<int>(boost::multiprecision::msb(boost::multiprecision::abs(*c))) + 1);
+      }
     }
   }
   scale_exponent = exponent + top;

@@ -133,8 +133,9 @@ class FacePairs {
       result.denominator = 1;
       return true;
     }
-    if (a.count == 1 && b.count == 2)
+    if (a.count == 1 && b.count == 2) {
       return point_edge(-from_a_to_b(a.corner[0], b.corner[0]), edge_b(b), false, result);
+    }
     if (a.count == 2 && b.count == 1) return point_edge(from_a_to_b(a.corner[0], b.corner[0]), edge_a(a), true, result);
     if (a.count == 2 && b.count == 2) return edge_edge(a, b, result);
     if (a.count == 1 && b.count == 3) {
@@ -221,8 +222,9 @@ std::vector<Face> faces_within(const Body& body, const std::vector<int>& near) {
     if (in[e.from] && in[e.to]) faces.push_back({{e.from, e.to, -1}, 2});
   }
   for (const Body::Triangle& t : body.triangles) {
-    if (in[t.corner[0]] && in[t.corner[1]] && in[t.corner[2]])
+    if (in[t.corner[0]] && in[t.corner[1]] && in[t.corner[2]]) {
       faces.push_back({{t.corner[0], t.corner[1], t.corner[2]}, 3});
+    }
   }
   return faces;
 }

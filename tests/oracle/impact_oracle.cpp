@@ -25,9 +25,10 @@ struct Turning {
     for (int f = 0; f < p.num_facets(); ++f) normals.emplace_back(r * p.facet_normal(f));
     for (int v = 0; v < p.num_vertices(); ++v) {
       for (const std::int32_t w : p.neighbours(v)) {
-        if (w > v)
+        if (w > v) {
           edges.emplace_back(
               (vertices[static_cast<std::size_t>(w)] - vertices[static_cast<std::size_t>(v)]).normalized());
+        }
       }
     }
     // A segment is apart along what is across it, a point along what leads to it: the caller adds those.

@@ -71,8 +71,9 @@ Side locate(const Segments& edges, const Vec& shift, const Vec& x) {
   for (const auto& e : edges) {
     const Vec a = plus(e.a, shift), b = plus(e.b, shift), d = minus(b, a);
     const double s = dot(minus(x, a), d) / dot(d, d);
-    if (std::abs(cross(d, minus(x, a))) / norm(d) < kNear * 1e-2 && s > -kZero && s < 1 + kZero)
+    if (std::abs(cross(d, minus(x, a))) / norm(d) < kNear * 1e-2 && s > -kZero && s < 1 + kZero) {
       return {false, true, d};
+    }
     if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])) inside = !inside;
   }
   return {inside, false, {}};

@@ -157,8 +157,9 @@ bool UnionBoundary::split_one(Cell& cell, std::vector<Cell>& open) {
   const auto split_by = [&](std::size_t k) {
     cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
     if (!subtract(polygon, cell.where.piece, k, true)) return false;
-    for (PlanePolygon& part : rest_)
+    for (PlanePolygon& part : rest_) {
       open.push_back({{cell.where.piece, cell.where.facet, std::move(part), Vec3::Zero()}, cell.clipped});
+    }
     return true;
   };
   // The one that holds the middle best covers most of it.

@@ -104,8 +104,9 @@ std::optional<UnionBoundary::Hit> UnionBoundary::along(const Vec3& direction, co
   };
   const std::vector<PartDifference>& pieces = differences_.pieces();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f)
+    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f) {
       wait({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, own(k)});
+    }
   }
   const auto holds = [&](const PartDifference& piece, const RayParameter& t, const Vec3& x) {
     const double slack = 0x1p-40 * (differences_.extent() + x.cwiseAbs().maxCoeff());

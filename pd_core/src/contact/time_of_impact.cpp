@@ -148,8 +148,9 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
   for (;;) {
     result.certified = time;
     const double clearance = pair.clearance();
-    if (clearance <= std::max(tolerance, unresolved))
+    if (clearance <= std::max(tolerance, unresolved)) {
       return finish(true, time, clearance <= settings.distance_tolerance);
+    }
     if (pair.queries() >= settings.max_queries) return finish(true, time, false);
     const double next = pair.follow_normal(time, std::max(0.5 * tolerance, 2 * pair.rounding()));
     if (next >= duration) {

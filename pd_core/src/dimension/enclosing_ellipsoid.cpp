@@ -52,8 +52,9 @@ Expected<EnclosingEllipsoid<D>> enclosing_ellipsoid(std::span<const Vector<D>> p
   if (!core_set.full_dimensional()) return detail::flat_error<D>("points");
   std::vector<Vector<D>> core = core_set.points();
   for (;;) {
-    if (!detail::core_ellipsoid<D>(core, eta / 2, result.sandwich, result.steps))
+    if (!detail::core_ellipsoid<D>(core, eta / 2, result.sandwich, result.steps)) {
       return detail::flat_error<D>("points");
+    }
     const Farthest<D> far = farthest<D>(points, result.sandwich);
     ++result.passes;
     const double limit = D * (1 + eta);

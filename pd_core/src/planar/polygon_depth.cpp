@@ -128,8 +128,9 @@ PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point
 PolygonDifference::Statistics PolygonDifference::statistics() const {
   const detail::SumBoundary& b = state_->boundary;
   std::int64_t arcs = 0;
-  for (const detail::Stretch& stretch : b.stretches())
+  for (const detail::Stretch& stretch : b.stretches()) {
     arcs += b.candidate(stretch).id % 2 == 1 && state_->implicit ? 1 : 0;
+  }
   const auto& c = b.counts();
   const auto& facts = state_->given_up.value_or(c);
   return {.sums = c.sums,

@@ -132,8 +132,9 @@ Expected<Compound> Compound::from_compounds(std::span<const Placed> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const Part& part : bodies[i].body.parts()) {
       const Expected<Pose> pose = composed(bodies[i].pose, part.pose);
-      if (!pose)
+      if (!pose) {
         return Error{pose.error().code, pose.error().message, detail::indexed("parts", static_cast<int>(i)) + ".pose"};
+      }
       parts.push_back({part.shape, *pose});
     }
   }

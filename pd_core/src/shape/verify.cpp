@@ -90,8 +90,9 @@ Finding check_loops(const ConvexPolytope& p) {
     if (h <= last_first) return indexed("facets", f) + " is out of order";
     last_first = h;
     for (const int v : loop) {
-      if (p.half_edge(h).origin != v || p.half_edge(h).facet != f)
+      if (p.half_edge(h).origin != v || p.half_edge(h).facet != f) {
         return indexed("facets", f) + " has other half-edges";
+      }
       h = p.half_edge(h).next;
     }
     if (h != p.facet_half_edge(f)) return indexed("facets", f) + " is not a closed loop";

@@ -89,8 +89,9 @@ class Subdivision {
         if (!std::exchange(seen_vertices[static_cast<std::size_t>(face[k])], true)) points.push_back(vertex(face[k]));
         const auto [from, to] = std::minmax(face[k], face[(k + 1) % 3]);
         if (std::exchange(seen_edges[{from, to}], true)) continue;
-        for (int i = 1; i < frequency_; ++i)
+        for (int i = 1; i < frequency_; ++i) {
           points.push_back(point(vertex(from), vertex(to), Vec3::Zero(), i, frequency_ - i));
+        }
       }
       for (int i = 1; i < frequency_; ++i) {
         for (int j = 1; i + j < frequency_; ++j) {

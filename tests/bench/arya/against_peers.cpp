@@ -130,8 +130,9 @@ void ellipsoids(const AryaSettings& settings, ClaimTable& table) {
 
 void measure_arya_kernels(const AryaSettings& settings, ClaimTable& table) {
   const std::size_t n = settings.full ? 10'000'000 : 300'000;
-  for (const Cloud kind : {Cloud::sphere, Cloud::ball, Cloud::box})
+  for (const Cloud kind : {Cloud::sphere, Cloud::ball, Cloud::box}) {
     kernel_against_passes(settings, table, kind, n, 1e-2);
+  }
   ellipsoids(settings, table);
 }
 

@@ -141,8 +141,9 @@ struct ClimbingHull {
       neighbours.push_back(to);
     }
     for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-    for (int k = 0; k < samples; ++k)
+    for (int k = 0; k < samples; ++k) {
       starts.push_back(static_cast<std::int32_t>(static_cast<std::int64_t>(polytope.num_vertices()) * k / samples));
+    }
   }
 
   [[nodiscard]] std::int32_t climb(const Vec3& d) const {
@@ -159,8 +160,9 @@ struct ClimbingHull {
     for (bool up = true; up;) {
       up = false;
       const auto here = static_cast<std::size_t>(at);
-      for (std::int32_t i = first[here]; i < first[here + 1]; ++i)
+      for (std::int32_t i = first[here]; i < first[here + 1]; ++i) {
         up = consider(neighbours[static_cast<std::size_t>(i)]) || up;
+      }
     }
     return at;
   }

@@ -113,8 +113,9 @@ class Hasher {
     if (i % 32 != 0) return;
     if (n <= 12) ask("shallow, delta .5", pair, {.method = Method::shallow, .delta = 0.5});
     // Sizes far from 1 are the business of other tests; the grid's search is long there.
-    if (family == PairFamily::sphere || family == PairFamily::box)
+    if (family == PairFamily::sphere || family == PairFamily::box) {
       ask("grid, delta .1", pair, {.method = Method::grid, .delta = 0.1});
+    }
   }
 
   /// Five frames with one memory; the second body drifts by a ten-thousandth of its place and size.

@@ -20,8 +20,9 @@ std::vector<int> planar_hull(const HullPoints& points, const AffineFrame& frame)
 
   std::vector<int> hull;
   const auto extend = [&](std::size_t base, int p) {
-    while (hull.size() >= base + 2 && points.orient2d(hull[hull.size() - 2], hull.back(), p, axis) <= 0)
+    while (hull.size() >= base + 2 && points.orient2d(hull[hull.size() - 2], hull.back(), p, axis) <= 0) {
       hull.pop_back();
+    }
     hull.push_back(p);
   };
   for (const int p : order) extend(0, p);

@@ -159,8 +159,9 @@ bool OverlayWalk::run_all() {
   // Entering a cell costs its degree, so the arcs of the body with the greater largest degree do the moving.
   const auto largest_degree = [](const ConvexPolytope& body) {
     int largest = 0;
-    for (int v = 0; v < body.num_vertices(); ++v)
+    for (int v = 0; v < body.num_vertices(); ++v) {
       largest = std::max(largest, static_cast<int>(body.neighbours(v).size()));
+    }
     return largest;
   };
   const bool b_moves = largest_degree(*b.body) > largest_degree(*a.body);
