@@ -43,9 +43,11 @@ double lift_corners(const ContactFrame& frame, double margin_a, double margin_b,
   points.clear();
   flat.clear();
   double deepest = -breaking_threshold;
+  if (buffers.clip.polygon.empty()) return deepest;
+  const detail::FaceHeight heights_a(buffers.face_a, frame), heights_b(buffers.face_b, frame);
   for (const ClipVertex& vertex : buffers.clip.polygon) {
-    const double height_a = face_height(buffers.face_a, frame, vertex.point) - margin_a;
-    const double height_b = face_height(buffers.face_b, frame, vertex.point) + margin_b;
+    const double height_a = heights_a.above(vertex.point) - margin_a;
+    const double height_b = heights_b.above(vertex.point) + margin_b;
     // Along n no pair is deeper than the bodies are; what the lifted heights say beyond that is rounding.
     const double depth = std::min(height_b - height_a, signed_depth);
     const bool repeated = std::any_of(flat.begin(), flat.end(), [&](const Vec2& p) {

@@ -24,7 +24,7 @@ void load_polygon(const SupportingFace& face, const ContactFrame& frame, IdKind 
     polygon.push_back({frame.flatten(vertex.point), id, vertex.id, false});
   }
   for (std::size_t i = 0; i < size; ++i) {
-    twice_area += cross(polygon[i].point, polygon[(i + 1) % size].point);
+    twice_area += cross(polygon[i].point, polygon[i + 1 < size ? i + 1 : 0].point);
   }
   if (twice_area < 0) {
     std::reverse(polygon.begin(), polygon.end());
@@ -38,11 +38,12 @@ void clip(std::vector<ClipVertex>& polygon, std::vector<ClipVertex>& out, const 
   out.clear();
   const Vec2 along = to - from;
   const std::size_t size = polygon.size();
+  double side_next = cross(along, polygon[0].point - from);
   for (std::size_t i = 0; i < size; ++i) {
     const ClipVertex& here = polygon[i];
-    const ClipVertex& next = polygon[(i + 1) % size];
-    const double side_here = cross(along, here.point - from);
-    const double side_next = cross(along, next.point - from);
+    const ClipVertex& next = polygon[i + 1 < size ? i + 1 : 0];
+    const double side_here = side_next;
+    side_next = cross(along, next.point - from);
     if (side_here >= 0) {
       out.push_back(here);
     }
@@ -96,21 +97,30 @@ void overlap_of_segments(const SupportingFace& a, const SupportingFace& b, const
 
 }  // namespace
 
-double face_height(const SupportingFace& face, const ContactFrame& frame, const Vec2& p) {
-  const Vec3& first = face.vertices[0].point;
-  if (face.vertices.size() == 1) {
-    return frame.height(first);
+FaceHeight::FaceHeight(const SupportingFace& face, const ContactFrame& frame)
+    : corners_(face.vertices.size()),
+      start_(frame.flatten(face.vertices[0].point)),
+      height_(frame.height(face.vertices[0].point)),
+      along_(Vec2::Zero()),
+      scale_(0) {
+  if (corners_ == 2) {
+    along_ = frame.flatten(face.vertices[1].point) - start_;
+    scale_ = along_.squaredNorm();
+    end_ = frame.height(face.vertices[1].point);
+  } else if (corners_ > 2) {
+    along_ = {face.plane_normal.dot(frame.u), face.plane_normal.dot(frame.w)};
+    scale_ = face.plane_normal.dot(frame.n);
   }
-  if (face.vertices.size() == 2) {
-    const Vec2 start = frame.flatten(first);
-    const Vec2 along = frame.flatten(face.vertices[1].point) - start;
-    const double length_squared = along.squaredNorm();
-    const double s = length_squared > 0 ? std::clamp((p - start).dot(along) / length_squared, 0.0, 1.0) : 0.0;
-    return (1 - s) * frame.height(first) + s * frame.height(face.vertices[1].point);
+}
+
+double FaceHeight::above(const Vec2& p) const {
+  if (corners_ == 1) return height_;
+  const Vec2 offset = p - start_;
+  if (corners_ == 2) {
+    const double s = scale_ > 0 ? std::clamp(offset.dot(along_) / scale_, 0.0, 1.0) : 0.0;
+    return (1 - s) * height_ + s * end_;
   }
-  const Vec2 offset = p - frame.flatten(first);
-  const double slope = offset.x() * face.plane_normal.dot(frame.u) + offset.y() * face.plane_normal.dot(frame.w);
-  return frame.height(first) - slope / face.plane_normal.dot(frame.n);
+  return height_ - (offset.x() * along_.x() + offset.y() * along_.y()) / scale_;
 }
 
 void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
@@ -131,7 +141,7 @@ void intersect_faces(const SupportingFace& a, const SupportingFace& b, const Con
   const std::vector<ClipVertex>& edges = buffers.window;
   load_polygon(subject, frame, cut_b ? IdKind::vertex_b : IdKind::vertex_a, buffers.polygon);
   for (std::size_t i = 0; i < edges.size() && !buffers.polygon.empty(); ++i) {
-    clip(buffers.polygon, buffers.clipped, edges[i].point, edges[(i + 1) % edges.size()].point, edges[i].edge,
+    clip(buffers.polygon, buffers.clipped, edges[i].point, edges[i + 1 < edges.size() ? i + 1 : 0].point, edges[i].edge,
          edges[i].id);
   }
 }

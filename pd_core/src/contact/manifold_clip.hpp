@@ -48,9 +48,21 @@ struct ContactFrame {
 /// a x b.
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Height along n, above `p` in the plane across n, of a face: of its plane, or of its segment at the nearest
+/// Heights along n, above points of the plane across n, of a face: of its plane, or of its segment at the nearest
 /// parameter.
-[[nodiscard]] double face_height(const SupportingFace& face, const ContactFrame& frame, const Vec2& p);
+class FaceHeight {
+ public:
+  FaceHeight(const SupportingFace& face, const ContactFrame& frame);
+  [[nodiscard]] double above(const Vec2& p) const;
+
+ private:
+  std::size_t corners_;
+  Vec2 start_;      ///< of the first corner
+  double height_;   ///< of it
+  Vec2 along_;      ///< to the second corner of a segment, or the plane's normal across n
+  double scale_;    ///< the segment's squared length, or the plane's normal along n
+  double end_ = 0;  ///< height of the segment's second corner
+};
 
 /// Grown on first use.
 struct ClipBuffers {

@@ -59,6 +59,13 @@ constexpr FixedRest kRests[] = {
     {"rest_box_triangle", RestingBody::box, RestingGround::triangle, 2},
 };
 
+/// Two bricks flush on each other, cold, for contacts.
+struct FixedFlush {
+  const char* name;
+  double gap;
+};
+constexpr FixedFlush kFlush[] = {{"flush_boxes_deep", -1e-3}, {"flush_boxes_apart", 1e-3}};
+
 }  // namespace
 
 extern "C" {
@@ -118,9 +125,21 @@ int main(int argc, char** argv) {
                 answer.distance_upper - answer.lower);
     return 0;
   }
+  for (const FixedFlush& c : kFlush) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::bench::FlushBricks bricks(c.gap);
+    const pd::PosedShape upper = bricks.upper(), lower = bricks.lower();
+    pd::Scratch scratch;
+    pd::PenetrationDepth answer = pd::penetration_depth(upper, lower, scratch, kContact);
+    pdepth_counted_call(&upper, &lower, &scratch, nullptr, &answer, &kContact);
+    std::printf("%s: signed distance in [%.17g, %.17g]\n", c.name, answer.distance_lower - answer.upper,
+                answer.distance_upper - answer.lower);
+    return 0;
+  }
   std::fprintf(stderr, "fixed_cases NAME, one of:");
   for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
+  for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;
 }

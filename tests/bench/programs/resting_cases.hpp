@@ -103,4 +103,18 @@ class RestingCase {
   std::vector<Pose> poses_;
 };
 
+/// Two bricks, one flush on the other and half its length aside, turned against it by what single precision leaves.
+struct FlushBricks {
+  /// @param gap  between them, below 0 where they overlap.
+  explicit FlushBricks(double gap) {
+    const Mat3 tipped{{1, 0x1p-22, 0}, {-0x1p-22, 1, -0x1p-21}, {0, 0x1p-21, 1}};
+    upper_pose = Pose::from_trusted_matrix(tipped, {0.5, 0.5 + gap, 0});
+    lower_pose = Pose::from_trusted_matrix(Mat3::Identity(), {0, 0, 0});
+  }
+  ConvexShape brick{*ConvexPolytope::box({0.5, 0.25, 0.5})};
+  Pose upper_pose, lower_pose;
+  [[nodiscard]] PosedShape upper() const { return {&brick, upper_pose}; }
+  [[nodiscard]] PosedShape lower() const { return {&brick, lower_pose}; }
+};
+
 }  // namespace pd::bench

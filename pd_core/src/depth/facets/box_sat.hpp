@@ -46,4 +46,25 @@ BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, co
                             const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
                             const BracketWidth& width);
 
+/// The signed distance of two boxes for Bracket::contact.
+struct BoxPairContact {
+  bool certified = false;  ///< lower <= signed distance <= upper, as narrow as asked, and the points are in place
+  double lower = 0;        ///< always a bound: P lies below -lower along the normal
+  double upper = 0;
+  Vec3 normal = Vec3::UnitX();  ///< unit; the plane of `lower`
+  Feature feature_a;
+  Feature feature_b;
+  Vec3 point_a = Vec3::Zero();  ///< of A, and of B, relative to A's translation
+  Vec3 point_b = Vec3::Zero();
+};
+
+/// Boxes that overlap, touch or are apart, flush or not, wherever the point of P nearest to the origin lies inside of a
+/// facet. Two things differ from `box_pair_depth`. Rotations in single precision have columns whose products are exact,
+/// so that even edges turned by 1e-7 span a plane known to 2u; the product of rounded generators errs by 12u over that
+/// sine, more than a contact may leave open. And the foot of the origin is met by any points of both faces, found by
+/// projecting from one to the other: of two flush faces that cross, no corner lies on the other.
+BoxPairContact box_pair_contact(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
+                                const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
+                                const BracketWidth& width);
+
 }  // namespace pd::detail

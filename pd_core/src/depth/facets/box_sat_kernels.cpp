@@ -34,8 +34,12 @@ PD_INLINE void add_height(Lanes& sum, const LaneVectors& n, double x, double y, 
 
 }  // namespace
 
-PD_CLONES NearestBoxAxis nearest_box_axis(const BoxGenerators& a, const BoxGenerators& b, const double (&c)[3],
+PD_CLONES NearestBoxAxis nearest_box_axis(const BoxEdges& edges_a, const BoxEdges& edges_b, const double (&c)[3],
                                           const BoxAxesErrors& errors) {
+  const BoxGenerators& a = edges_a.generators;
+  const BoxGenerators& b = edges_b.generators;
+  const BoxGenerators& along_a = edges_a.directions;
+  const BoxGenerators& along_b = edges_b.directions;
   const Lanes zero = {0, 0, 0, 0};
   const Lanes none = zero + std::numeric_limits<double>::infinity();
   const Flags first_three = {-1, -1, -1, 0};
@@ -44,19 +48,19 @@ PD_CLONES NearestBoxAxis nearest_box_axis(const BoxGenerators& a, const BoxGener
     LaneVectors u, v;
     Lanes length_u, length_v;
     if (block < 2) {
-      const BoxGenerators& own = block == 0 ? a : b;
+      const BoxGenerators& own = block == 0 ? along_a : along_b;
       load(u, own, 0);
       load(v, own, 1);
       load(length_u, own.length);
       load(length_v, own.length + 1);
     } else {
       const int i = block - 2;
-      u.x = zero + a.x[i];
-      u.y = zero + a.y[i];
-      u.z = zero + a.z[i];
-      length_u = zero + a.length[i];
-      load(v, b, 0);
-      load(length_v, b.length);
+      u.x = zero + along_a.x[i];
+      u.y = zero + along_a.y[i];
+      u.z = zero + along_a.z[i];
+      length_u = zero + along_a.length[i];
+      load(v, along_b, 0);
+      load(length_v, along_b.length);
     }
     LaneVectors n;
     n.x = u.y * v.z - u.z * v.y;

@@ -12,6 +12,7 @@ struct BoxGenerators {
   double x[8], y[8], z[8];
   double length[8];  ///< upper bounds
 };
+inline constexpr int kGeneratorsRead = 5;  ///< the rest is room: kernels read four lanes from the first or second on
 
 struct BoxAxesErrors {
   double turn;  ///< of a distance, times the inverse sine of the generators' angle
@@ -25,8 +26,14 @@ struct NearestBoxAxis {
   double slivers;  ///< sum over pairs left out of the shorter generator's length
 };
 
+/// The generators that heights are summed over, and the directions, parallel to them, whose products are normals.
+struct BoxEdges {
+  const BoxGenerators& generators;
+  const BoxGenerators& directions;
+};
+
 /// Distances of the facets' planes from the origin, `c` the centre of P. A pair of parallel generators spans none.
-NearestBoxAxis nearest_box_axis(const BoxGenerators& a, const BoxGenerators& b, const double (&c)[3],
+NearestBoxAxis nearest_box_axis(const BoxEdges& a, const BoxEdges& b, const double (&c)[3],
                                 const BoxAxesErrors& errors);
 
 }  // namespace pd::detail

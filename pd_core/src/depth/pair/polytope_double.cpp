@@ -74,6 +74,28 @@ void set_contact_of_facet(const PolytopePair& pair, const NearFacets& found, Pen
   }
 }
 
+bool answer_boxes_for_contact(PolytopeQuery& query, const BoxFrame& box_a, const BoxFrame& box_b,
+                              PenetrationDepth& out) {
+  const PolytopePair& pair = query.pair;
+  const BoxPairContact boxes =
+      box_pair_contact(*pair.a, box_a, *pair.pose_a, *pair.b, box_b, *pair.pose_b, query.width());
+  out.method = Method::overlay;
+  out.statistics.facets_visited += kBoxAxes;
+  if (!boxes.certified && boxes.lower > 0) {
+    const DifferenceVertex first = query.with_supports().support(boxes.normal, nullptr);
+    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+  }
+  if (!boxes.certified) return false;
+  const Vec3& origin = pair.pose_a->translation();
+  out.normal = boxes.normal;
+  out.witness_a = boxes.point_a + origin - pair.margins.a * boxes.normal;
+  out.witness_b = boxes.point_b + origin + pair.margins.b * boxes.normal;
+  out.feature_a = boxes.feature_a;
+  out.feature_b = boxes.feature_b;
+  set_signed_distance(pair.margins.both(), boxes.lower, boxes.upper, out);
+  return true;
+}
+
 }  // namespace
 
 ExpansionGoal expansion_goal(const PolytopeQuery& query) {
@@ -93,6 +115,7 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   if (!box_a) return false;
   const std::optional<BoxFrame> box_b = box_frame(*pair.b);
   if (!box_b || !query.within_range()) return false;
+  if (query.for_contact()) return answer_boxes_for_contact(query, *box_a, *box_b, out);
   const BoxPairDepth boxes =
       box_pair_depth(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, query.width());
   out.method = Method::overlay;
