@@ -59,11 +59,7 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape&
     known->compared.store(stamp, std::memory_order_relaxed);
     return known;
   }
-  // Converted outside the lock: readers of other shapes go on. Two threads may convert the same shape; both get equal
-  // bodies.
-  conversions_.fetch_add(1, std::memory_order_relaxed);
-  auto entry = convert(shape);
-  entry->fingerprint = fingerprint;
+  auto entry = make_entry(shape, fingerprint);
   entry->signature = signature;
   entry->compared.store(stamp, std::memory_order_relaxed);
   entry->last_use.store(now, std::memory_order_relaxed);
@@ -73,25 +69,61 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape&
     if (present->second->fingerprint == fingerprint && present->second->signature == signature) {
       return present->second;  // another thread was first: one body for all, so that warm pairs recognise it
     }
-    entries_.erase(present);
+    erase(&shape);
   }
   if (entries_.size() >= capacity_) {
-    entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
-      return a.second->last_use.load(std::memory_order_relaxed) < b.second->last_use.load(std::memory_order_relaxed);
-    }));
+    erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
+            return a.second->last_use.load(std::memory_order_relaxed) <
+                   b.second->last_use.load(std::memory_order_relaxed);
+          })->first);
   }
   entries_.emplace(&shape, entry);
+  std::weak_ptr<detail::CachedShape>& like = by_content_[fingerprint];
+  if (like.expired()) like = entry;
   return entry;
+}
+
+std::shared_ptr<detail::CachedShape> BulletShapeCache::make_entry(const btConvexShape& shape,
+                                                                  std::uint64_t fingerprint) {
+  std::shared_ptr<detail::CachedShape> like;
+  {
+    const std::shared_lock lock(mutex_);
+    const auto found = by_content_.find(fingerprint);
+    if (found != by_content_.end()) like = found->second.lock();
+  }
+  std::shared_ptr<detail::CachedShape> entry;
+  if (like) {
+    entry = std::make_shared<detail::CachedShape>();
+    entry->source = &shape;
+    entry->body = like->body;
+    entry->sharp = like->sharp;
+    entry->refusal = like->refusal;
+  } else {
+    // Outside the lock: readers of other shapes go on. Two threads may convert the same shape; both get equal bodies.
+    conversions_.fetch_add(1, std::memory_order_relaxed);
+    entry = convert(shape);
+  }
+  entry->fingerprint = fingerprint;
+  return entry;
+}
+
+void BulletShapeCache::erase(const btCollisionShape* shape) {
+  const auto entry = entries_.find(shape);
+  if (entry == entries_.end()) return;
+  const auto like = by_content_.find(entry->second->fingerprint);
+  if (like != by_content_.end() && like->second.lock() == entry->second) by_content_.erase(like);
+  entries_.erase(entry);
 }
 
 void BulletShapeCache::forget(const btCollisionShape* shape) {
   const std::unique_lock lock(mutex_);
-  entries_.erase(shape);
+  erase(shape);
 }
 
 void BulletShapeCache::clear() {
   const std::unique_lock lock(mutex_);
   entries_.clear();
+  by_content_.clear();
 }
 
 std::size_t BulletShapeCache::size() const {

@@ -52,6 +52,25 @@ TEST(ShapeCache, BoundedLeastRecentlyUsedFirst) {
   EXPECT_EQ(cache.conversions(), 5);
 }
 
+TEST(ShapeCache, EqualShapesShareOneBody) {
+  pd::BulletShapeCache cache(2);
+  btBoxShape one(btVector3(1, 2, 3)), same(btVector3(1, 2, 3)), other(btVector3(1, 2, 4));
+  const auto body = cache.find_or_convert(one);
+  EXPECT_EQ(cache.find_or_convert(same), body);
+  EXPECT_EQ(cache.conversions(), 1);
+  EXPECT_EQ(cache.size(), 2u);
+  // An edit of one leaves the other alone, and what was shared is found under neither address.
+  same.setLocalScaling(btVector3(2, 1, 1));
+  EXPECT_NE(cache.find_or_convert(same), body);
+  EXPECT_EQ(cache.find_or_convert(one), body);
+  EXPECT_EQ(cache.conversions(), 2);
+  ASSERT_NE(cache.find_or_convert(other), nullptr);  // in place of `same`
+  cache.forget(&one);
+  EXPECT_EQ(cache.conversions(), 3);
+  ASSERT_NE(cache.find_or_convert(one), nullptr);
+  EXPECT_EQ(cache.conversions(), 4);
+}
+
 TEST(ShapeCache, ForgetAndClear) {
   pd::BulletShapeCache cache;
   btSphereShape a(1);

@@ -4,7 +4,8 @@
 /// Bullet tells nobody when a shape is scaled, edited or freed (and its address used again). So a look-up compares the
 /// shape's present fingerprint with that of its entry (`shape_fingerprint`: type, margin, scaling, every point) and
 /// converts afresh when they differ; a shape that died is never read, and its entry leaves when the table is full
-/// (least recently used first) or by `forget`.
+/// (least recently used first) or by `forget`. Shapes of the same fingerprint share one body: a wall of equal bricks is
+/// converted once, and its queries read one body's memory.
 ///
 /// In a dynamics world that steps, all points are compared once a step and shape; further look-ups of the same step
 /// compare what takes no time: type, margin, scaling, sizes, the number of points and where they lie
@@ -48,14 +49,21 @@ class BulletShapeCache {
 
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
-  /// Conversions so far: first sights, and entries whose shape had changed.
+  /// Conversions so far: first sights, and entries whose shape had changed, of shapes like no other one at hand.
   [[nodiscard]] std::int64_t conversions() const { return conversions_.load(std::memory_order_relaxed); }
 
  private:
+  /// An entry for the shape as it is now: the body of an equal one, or converted.
+  [[nodiscard]] std::shared_ptr<detail::CachedShape> make_entry(const btConvexShape& shape, std::uint64_t fingerprint);
+  /// Requires the mutex to be held.
+  void erase(const btCollisionShape* shape);
+
   const std::size_t capacity_;
   mutable std::shared_mutex mutex_;
   std::unordered_map<const btCollisionShape*, std::shared_ptr<detail::CachedShape>>
       entries_;  // looked up only; never iterated into a result
+  /// By fingerprint, as long as their entries stand.
+  std::unordered_map<std::uint64_t, std::weak_ptr<detail::CachedShape>> by_content_;
   std::atomic<std::uint64_t> clock_{0};
   std::atomic<std::int64_t> conversions_{0};
 };
