@@ -10,11 +10,13 @@
 #include <limits>
 #include <typeinfo>
 
+#include "cached_shape.hpp"
 #include "covered_contact.hpp"
 #include "installation.hpp"
 #include "manifold_points.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "prefetch.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -23,6 +25,9 @@ namespace pd::detail {
 static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConvexAlgorithm));
 
 namespace {
+
+/// Of a certificate's state, what bodies at rest read.
+constexpr std::size_t kWarmBytesAtRest = 128;
 
 const btConvexShape& convex_shape(const btCollisionObjectWrapper* wrapper) {
   return *static_cast<const btConvexShape*>(wrapper->getCollisionShape());
@@ -54,6 +59,14 @@ btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentMan
   const btScalar asked = result.m_closestPointDistanceThreshold;
   const bool spheres = a.getShapeType() == SPHERE_SHAPE_PROXYTYPE && b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
   return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
+}
+
+/// What the query reads of a pair's memory: first of all, before bounding boxes are compared.
+void fetch_for_query(PairMemory& memory) {
+  for (const auto& shape : memory.shapes) {
+    if (shape) fetch(*shape);
+  }
+  if (memory.num_points > 0) fetch_bytes(&memory.warm.state(), kWarmBytesAtRest);
 }
 
 }  // namespace
@@ -110,6 +123,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     take_manifold(a, b);
   }
   result->setPersistentManifold(manifold_);
+  if (memory_) fetch_for_query(*memory_);
 
   const btConvexShape& shape_a = convex_shape(a);
   const btConvexShape& shape_b = convex_shape(b);
@@ -122,6 +136,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     }
     return;
   }
+  fetch(*manifold_);
   if (core.closed()) {
     btGjkEpaPenetrationDepthSolver epa;
     process_by_bullet(epa, shape_a, pose_a, shape_b, pose_b, info, result);

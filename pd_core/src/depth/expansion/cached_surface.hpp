@@ -80,6 +80,7 @@ struct WarmFacets {
 
 /// What a WarmCertificate holds.
 struct WarmState {
+  WarmFacets facets;  ///< first: bodies at rest read nothing else, and hosts may fetch it beforehand
   /// The shapes by content, not by address: the same calls give the same bits wherever memory lies.
   std::int32_t vertices_a = 0;
   std::int32_t vertices_b = 0;
@@ -93,7 +94,6 @@ struct WarmState {
   VertexPair apart[3];
   int apart_count = 0;
   WarmSmoothPoints smooth;
-  WarmFacets facets;
 };
 
 /// The nearest face at the present poses.
