@@ -179,6 +179,66 @@ TEST(ContactBracket, FlushBoxes) {
   EXPECT_GT(by_axes, asked * 5 / 6) << by_axes << " of " << asked;
 }
 
+/// Cores of spheres and capsules against each other: parallel and crossed, end to end, close and far.
+TEST(ContactBracket, PointsAndSegments) {
+  Judge judge;
+  Scratch scratch;
+  scenes::Random random(21);
+  int at_once = 0, asked = 0;
+  const auto vector = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 along = vector();
+    const double turn = i % 5 == 0 ? 0 : std::ldexp(1.0, -(i % 50));
+    const double gap = std::ldexp(1.0, -(i % 20));
+    const double margin = i % 3 == 0 ? 0 : 0.5 * gap + (i % 3 == 1 ? 1e-9 : 0.1);
+    const std::vector<Vec3> first = i % 4 == 0 ? std::vector<Vec3>{vector()} : std::vector<Vec3>{-along, along};
+    const Vec3 other = along + turn * vector();
+    const std::vector<Vec3> second = i % 7 == 0 ? std::vector<Vec3>{vector()} : std::vector<Vec3>{-other, other};
+    const ConvexShape a = hull(first, margin), b = hull(second, margin);
+    const Vec3 beside = gap * along.cross(vector()).normalized() + (i % 11 == 0 ? 2.5 : 0.2) * random.uniform() * along;
+    const PosedShape posed_a{&a, *Pose::from_matrix(Mat3::Identity(), {3, 1, 2})};
+    const PosedShape posed_b{&b, *Pose::from_matrix(Mat3::Identity(), Vec3(3, 1, 2) + beside)};
+    const std::string name = "pair " + std::to_string(i);
+    judge.ask(posed_a, posed_b, tolerance_of(posed_a, posed_b, 0.5), name);
+    const PenetrationDepth exact = penetration_depth(posed_a, posed_b, scratch);
+    const PenetrationDepth certified = penetration_depth(posed_a, posed_b, scratch, {.bracket = Bracket::certified});
+    const auto own = oracle::signed_distance(certified), truth = oracle::signed_distance(exact);
+    EXPECT_EQ(certified.contact, exact.contact) << name;
+    EXPECT_LE(own.lower, truth.upper) << name;
+    EXPECT_GE(own.upper, truth.lower) << name;
+    EXPECT_LE(own.upper - own.lower, 2e-14 * (largest_difference(posed_a, posed_b) + 2 * margin)) << name;
+    at_once += certified.statistics.support_calls == 1;
+    ++asked;
+  }
+  EXPECT_EQ(judge.missed, 0);
+  EXPECT_GT(at_once, asked * 2 / 3) << at_once << " of " << asked << " in closed form";
+}
+
+/// Points and segments over every face, edge and corner of a box, near and far, and inside of it.
+TEST(ContactBracket, PointsAndSegmentsOnBoxes) {
+  Judge judge;
+  scenes::Random random(22);
+  const ConvexShape boxes[] = {hull(scenes::box({0.5, 0.4, 0.3})), hull(scenes::box({100, 1, 100}), 0.04)};
+  for (int i = 0; i < 300; ++i) {
+    const auto vector = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    const double margin = i % 3 == 0 ? 0 : 0.1;
+    const std::vector<Vec3> core =
+        i % 2 == 0 ? std::vector<Vec3>{0.1 * vector()} : std::vector<Vec3>{0.3 * vector(), 0.3 * vector()};
+    const ConvexShape body = hull(core, margin);
+    const ConvexShape& box = boxes[i % 5 == 0];
+    const Vec3 spot = (1 + (i % 7 == 0 ? 1e-7 : 0.5 * random.uniform())) * vector().cwiseProduct(Vec3(1, 0.9, 0.8));
+    const Vec3 tip = 1e-6 * vector();
+    Mat3 turned{{0.8, 0, 0.6}, {0, 1, 0}, {-0.6, 0, 0.8}};
+    for (int c = 0; c < 3; ++c) turned.col(c) += tip.cross(Vec3(turned.col(c)));
+    const PosedShape posed_a{&body, *Pose::from_matrix(Mat3::Identity(), Vec3(1, 2, 3) + spot)};
+    const PosedShape posed_b{&box, Pose::from_trusted_matrix(turned.cast<float>().cast<double>(), {1, 2, 3})};
+    judge.ask(posed_a, posed_b, tolerance_of(posed_a, posed_b, 0.3), "pair " + std::to_string(i));
+  }
+  EXPECT_EQ(judge.missed, 0);
+  EXPECT_GT(judge.classes[static_cast<int>(ContactClass::overlapping)], 50);
+  EXPECT_GT(judge.classes[static_cast<int>(ContactClass::separated)], 50);
+}
+
 /// What spans no volume: the Minkowski difference is flat, a segment or a point, and holds the origin.
 TEST(ContactBracket, FlatBodiesThroughEachOther) {
   Judge judge;

@@ -159,8 +159,8 @@ class BoxPair {
     const int va = farthest(of_a_, out.normal, -1), vb = farthest(of_b_, out.normal, 1);
     out.feature_a = {Feature::Kind::vertex, va, -1};
     out.feature_b = {Feature::Kind::vertex, vb, -1};
-    if (block == 0) out.feature_a = {Feature::Kind::facet, facet(a_, across, (va & bit(across)) != 0), -1};
-    if (block == 1) out.feature_b = {Feature::Kind::facet, facet(b_, across, (vb & bit(across)) != 0), -1};
+    if (block == 0) out.feature_a = {Feature::Kind::facet, facet_of_box(a_, across, (va & bit(across)) != 0), -1};
+    if (block == 1) out.feature_b = {Feature::Kind::facet, facet_of_box(b_, across, (vb & bit(across)) != 0), -1};
     if (block >= 2) {
       out.feature_a = {Feature::Kind::edge, va & ~bit(block - 2), va | bit(block - 2)};
       out.feature_b = {Feature::Kind::edge, vb & ~bit(lane), vb | bit(lane)};
@@ -254,7 +254,7 @@ class BoxPair {
       return vertex_on_facet(of_b_, centre_b_, vb, out.normal, [&](const Vec3& b, int v) {
         if (!inside(of_a_, across, b - x - centre_a_, slack)) return false;
         out.point_a = b - x;
-        out.feature_a = {Feature::Kind::facet, facet(a_, across, (va & bit(across)) != 0), -1};
+        out.feature_a = {Feature::Kind::facet, facet_of_box(a_, across, (va & bit(across)) != 0), -1};
         out.feature_b = {Feature::Kind::vertex, v, -1};
         return true;
       });
@@ -263,7 +263,7 @@ class BoxPair {
       if (!inside(of_b_, across, a + x - centre_b_, slack)) return false;
       out.point_a = a;
       out.feature_a = {Feature::Kind::vertex, v, -1};
-      out.feature_b = {Feature::Kind::facet, facet(b_, across, (vb & bit(across)) != 0), -1};
+      out.feature_b = {Feature::Kind::facet, facet_of_box(b_, across, (vb & bit(across)) != 0), -1};
       return true;
     });
   }
@@ -295,12 +295,6 @@ class BoxPair {
     return true;
   }
 
-  static int facet(const ConvexPolytope& p, int axis, bool positive) {
-    int f = 0;
-    while ((positive ? 1 : -1) * p.facet_normal(f)[axis] < 0.5) ++f;
-    return f;
-  }
-
   const ConvexPolytope& a_;
   const ConvexPolytope& b_;
   const Mat3 rotation_a_;
@@ -328,6 +322,12 @@ std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
   const Vec3 least = p.vertex(0), most = p.vertex(7);
   if (!((most - least).minCoeff() > kLeastExtent)) return std::nullopt;
   return BoxFrame{0.5 * (least + most), 0.5 * (most - least)};
+}
+
+int facet_of_box(const ConvexPolytope& p, int axis, bool positive) {
+  int f = 0;
+  while ((positive ? 1 : -1) * p.facet_normal(f)[axis] < 0.5) ++f;
+  return f;
 }
 
 BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,

@@ -28,6 +28,9 @@ struct BoxFrame {
 /// Centre and half extents, rounded, of a polytope that is exactly such a box.
 std::optional<BoxFrame> box_frame(const ConvexPolytope& p);
 
+/// The facet of such a box across an axis, at its upper or lower end.
+int facet_of_box(const ConvexPolytope& p, int axis, bool positive);
+
 enum class BoxPairStatus : std::uint8_t { certified, separated, undecided };
 
 struct BoxPairDepth {

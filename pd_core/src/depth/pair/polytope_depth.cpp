@@ -8,6 +8,8 @@
 #include "depth/pair/polytope_double.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
+#include "depth/pair/slender_on_box.hpp"
+#include "depth/pair/slender_pair.hpp"
 #include "pd/depth/warm_certificate.hpp"
 
 namespace pd::detail {
@@ -78,6 +80,12 @@ void answer(PolytopeQuery& query, PenetrationDepth& out) {
 
 void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,
                     WarmCertificate* warm, PenetrationDepth& out) {
+  const Bracket bracket = PolytopeQuery::bracket_of(settings);
+  if (settings.method == Method::automatic && bracket != Bracket::tightest &&
+      answer_slender_pair(pair, settings, bracket, out)) {
+    return;
+  }
+  if (bracket == Bracket::contact && answer_slender_on_box(pair, settings, out)) return;
   PolytopeQuery query(pair, settings, buffers, warm);
   if (answer_from_contact_facet(query, out)) return;
   answer(query, out);

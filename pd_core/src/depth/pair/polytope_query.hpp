@@ -59,7 +59,7 @@ class PolytopeQuery {
   /// Sizes outside this range are left to the exact stages, which rescale.
   [[nodiscard]] bool within_range() const { return difference.reach() > 0x1p-100 && difference.reach() < 0x1p100; }
 
- private:
+  /// The bracket that an answer is made for.
   static Bracket bracket_of(const DepthSettings& asked) {
     if (asked.bracket == Bracket::contact) {
       const bool searched = asked.method == Method::automatic || asked.method == Method::expansion;
@@ -68,6 +68,7 @@ class PolytopeQuery {
     return asked.delta == 0 ? asked.bracket : Bracket::certified;
   }
 
+ private:
   std::optional<PosedPair> exact_;
 };
 

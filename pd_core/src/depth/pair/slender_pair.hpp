@@ -1,0 +1,18 @@
+/// @file
+/// Two points, a point and a segment, or two segments (the cores of spheres and capsules) in closed form.
+///
+/// P is a point, a segment or a parallelogram. The nearest two points of the segments give a point of P, whose length
+/// bounds the distance from above; the least of P's corners along that direction, or across the parallelogram, bounds
+/// it from below. Both are as near to each other as rounding leaves them wherever the points are found well.
+#pragma once
+
+#include "depth/pair/polytope_depth.hpp"
+#include "pd/depth/depth_answer.hpp"
+
+namespace pd::detail {
+
+/// Bracket::certified and contact. Passes on where the cores meet, or nearly, and where bracket or class stay in doubt.
+bool answer_slender_pair(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
+                         PenetrationDepth& out);
+
+}  // namespace pd::detail
