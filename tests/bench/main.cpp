@@ -222,6 +222,9 @@ CLI::App* add_agarwal(CLI::App& app, AgarwalSettings& o) {
 CLI::App* add_arya(CLI::App& app, AryaSettings& o) {
   CLI::App* command = app.add_subcommand("arya", "the bounds of Arya, da Fonseca and Mount 2018, claim by claim");
   command->add_option("--seed", o.seed, "seed of the clouds")->capture_default_str();
+  command->add_option("--pairs", o.pairs, "bodies or pairs a promise is tried on, d <= 3; 0: by --full")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--chapters", o.chapters, arya_chapters())->delimiter(',');
   command->add_option("--out", o.out, "folder for the table (CSV, Markdown), the points and the plots");
   command->add_flag("--full", o.full, "up to 1e7 points; otherwise under a minute");

@@ -58,6 +58,34 @@ class Meeting final : public SupportBody<N> {
   [[nodiscard]] double magnitude() const override { return magnitude_; }
 
   [[nodiscard]] EllipsoidBounds<N> bounds() const override {
+    if constexpr (N == D) {
+      const auto leaf = [](const ComposedBody<D>& body) { return body.node().kind == detail::ComposedKind::leaf; };
+      if (std::all_of(bodies_.begin(), bodies_.end(), leaf)) return leaf_bounds();
+    }
+    return composed_bounds();
+  }
+
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  [[nodiscard]] const QueryCounters& counters() const { return counters_; }
+
+ private:
+  /// Of one or two images of preprocessed bodies, from what their nodes keep.
+  [[nodiscard]] EllipsoidBounds<D> leaf_bounds() const {
+    const detail::ComposedNode<D>& first = bodies_[0].node();
+    EllipsoidBounds<D> r = {first.centre - point_, first.inner, first.inner};
+    double ratio = first.body->sandwich().ratio;
+    if (bodies_.size() == 2) {
+      const detail::ComposedNode<D>& second = bodies_[1].node();
+      r.center = first.centre - second.centre;
+      detail::add_to_root<D>(r.inner, 1, second.inner);
+      // Sums of roots are at most sqrt(2) times the root of the sum of squares.
+      ratio = std::sqrt(2.0) * std::max(ratio, second.body->sandwich().ratio);
+    }
+    r.outer = ratio * r.inner;
+    return r;
+  }
+
+  [[nodiscard]] EllipsoidBounds<N> composed_bounds() const {
     using Entry = Eigen::Matrix<double, N, D, Eigen::DontAlign, detail::kMaxRows<N>, D>;
     const double count = static_cast<double>(bodies_.size());
     EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size_);
@@ -79,10 +107,6 @@ class Meeting final : public SupportBody<N> {
     return r;
   }
 
-  [[nodiscard]] Eigen::Index size() const { return size_; }
-  [[nodiscard]] const QueryCounters& counters() const { return counters_; }
-
- private:
   std::span<const ComposedBody<D>> bodies_;
   Vector<D> point_;
   Eigen::Index differences_ = 0;

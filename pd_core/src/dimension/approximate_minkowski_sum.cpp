@@ -7,6 +7,7 @@
 
 #include "dimension/composed_node.hpp"
 #include "dimension/equal_planes.hpp"
+#include "dimension/joggle.hpp"
 #include "dimension/radial_hull.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
@@ -42,7 +43,9 @@ class GrowingSum {
       if (!hull_.alive(next.facet)) continue;
       if (certify(next) <= limit) continue;
       const std::size_t before = hull_.facets().size();
-      if (!hull_.insert(next.support, next.facet)) return false;
+      const double nearer = detail::joggle<D>(static_cast<std::int64_t>(hull_.vertices().size()), limit);
+      const Vector<D> point = (1 - nearer) * next.support;
+      if (!hull_.insert(point, next.facet)) return false;
       enter_facets(before);
     }
     return true;

@@ -15,6 +15,9 @@ namespace {
 
 /// What rounding may take from the bounds in a frame where the body is about a unit ball.
 constexpr double kRoom = 1e-10;
+/// Of epsilon, for the structure; the search takes the rest. The kernel's hull is much dearer than the search, which
+/// finds its last digits fast: measured on 1e6 points from .5 to .93, the total still fell at .9 by a third to a half.
+constexpr double kStructureShare = 0.9;
 
 /// The polytope inside K + (-K), in the frame in which K holds the unit ball and so K + (-K) the ball of radius 2.
 template <int D>
@@ -106,11 +109,13 @@ template <int D>
 Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon, Backend backend) {
   const pd::detail::FloatingPointGuard guard;
   if (const auto error = detail::check_epsilon(epsilon)) return *error;
-  // (1 + epsilon / 2) / (1 - epsilon / (2 (1 + epsilon))) = 1 + epsilon; a hair less for rounding.
+  // With k = kStructureShare: (1 + (1 - k) epsilon) / (1 - k epsilon / (1 + epsilon)) = 1 + epsilon; a hair less for
+  // rounding.
   const double share = epsilon * (1 - 1e-4);
-  const Expected<DirectionalWidth<D>> structure = DirectionalWidth<D>::build(body, share / (2 * (1 + share)), backend);
+  const Expected<DirectionalWidth<D>> structure =
+      DirectionalWidth<D>::build(body, kStructureShare * share / (1 + share), backend);
   if (!structure) return structure.error();
-  return WidthSearch<D>(body, *structure, share / 2).run();
+  return WidthSearch<D>(body, *structure, (1 - kStructureShare) * share).run();
 }
 
 template Expected<ApproximateWidth<2>> approximate_width<2>(const Body<2>&, double, Backend);

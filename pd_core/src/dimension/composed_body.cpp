@@ -156,6 +156,8 @@ Expected<ComposedBody<D>> ComposedBody<D>::of(DirectionalWidth<D> body, const Af
   }
   node->epsilon = body.backend() == Backend::exact ? 0 : body.epsilon();
   node->consistent = body.backend() != Backend::macbeath;
+  node->centre = map.apply(sandwich.centre);
+  detail::add_to_root<D>(node->inner, 1, axes);
   node->body = std::move(body);
   node->map = map;
   return ComposedBody(std::move(node));

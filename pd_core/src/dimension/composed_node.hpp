@@ -23,7 +23,10 @@ struct ComposedNode {
   ComposedKind kind = ComposedKind::leaf;
   std::optional<DirectionalWidth<D>> body;  ///< of a leaf
   AffineMap<D> map;                         ///< of a leaf
-  std::vector<ComposedBody<D>> parts;       ///< of the others
+  Vector<D> centre = Vector<D>::Zero();     ///< of a leaf: that of its sandwich, mapped
+  /// Of a leaf: the lower triangular root of its inner ellipsoid, mapped; the outer one is the sandwich's ratio larger.
+  SquareMatrix<D> inner = SquareMatrix<D>::Zero();
+  std::vector<ComposedBody<D>> parts;  ///< of the others
   int equations = 0;
   double epsilon = 0;
   double magnitude = 0;  ///< largest |coordinate| in the parts, or larger

@@ -24,8 +24,16 @@ class DirectionCells {
     return r;
   }
 
+  /// The axis along which the direction is longest, and the cell on that face.
+  struct Place {
+    std::int64_t cell;
+    int axis;
+  };
+
   /// Of a nonzero direction.
-  [[nodiscard]] std::int64_t cell(const Vector<D>& direction) const {
+  [[nodiscard]] std::int64_t cell(const Vector<D>& direction) const { return place(direction).cell; }
+
+  [[nodiscard]] Place place(const Vector<D>& direction) const {
     int axis = 0;
     for (int k = 1; k < D; ++k) {
       if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
@@ -40,7 +48,14 @@ class DirectionCells {
       const std::int64_t i = at >= 0 ? std::min(static_cast<std::int64_t>(at), along_ - 1) : 0;
       cell = cell * along_ + i;
     }
-    return cell;
+    return {cell, axis};
+  }
+
+  /// Of a cell, where its face of the cube is at distance 1: a box of this half-width about `middle`.
+  [[nodiscard]] double half_width() const { return 1 / static_cast<double>(along_); }
+  [[nodiscard]] int axis(std::int64_t cell) const {
+    for (int k = 1; k < D; ++k) cell /= along_;
+    return static_cast<int>(cell / 2);
   }
 
   /// The middle of a cell, of length 1 to sqrt(D).

@@ -189,15 +189,12 @@ std::vector<Vector<D>> polar_points(std::span<const Halfspace<D>> halfspaces, co
   return polar;
 }
 
-template <int D>
-Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfspaces, double eta) {
-  if (const auto error = check<D>(halfspaces)) return *error;
-  // Programs in doubles lose digits where an optimum of theirs lies at the bound: nothing is refused on their word.
-  Expected<Sandwich<D>> rough = rough_sandwich<double, D>(halfspaces);
-  if (!rough) rough = rough_sandwich<DoubleDouble, D>(halfspaces);
-  if (!rough) return rough;
-  const Sandwich<D>& frame = *rough;
+namespace {
 
+/// The sandwich from the polar points in the rough one's frame, which only has to be about right; refused where the
+/// frame is not.
+template <int D>
+Expected<Sandwich<D>> refined_sandwich(std::span<const Halfspace<D>> halfspaces, const Sandwich<D>& frame, double eta) {
   // K_z = {z : <q_i, z> <= 1} holds the unit ball and lies in that of radius ratio. The hull H of a kernel of ratio q_i
   // has K_z in ratio H^o, whose vertices are its facets' normals, and K_z holds ratio H^o / limit.
   std::vector<Vector<D>> polar = polar_points<D>(halfspaces, frame);
@@ -207,9 +204,16 @@ Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfs
   }
   KernelBuilder<D> builder({}, kPolarEpsilon);
   builder.add(polar, 0);
+  if (!builder.unplaced().empty()) return flat_error<D>("halfspaces");
   std::vector<Vector<D>> corners;
   for (const auto& f : builder.hull().facets()) {
-    if (f.successor < 0) corners.push_back(frame.ratio * f.normal);
+    if (f.successor >= 0) continue;
+    // A vertex of the hull's start among them: the polar points do not surround the unit ball, so that K_z reaches
+    // farther than the frame says.
+    for (const std::int32_t v : f.vertex) {
+      if (builder.kernel_of_vertex(v) < 0) return flat_error<D>("halfspaces");
+    }
+    corners.push_back(frame.ratio * f.normal);
   }
   const Expected<EnclosingEllipsoid<D>> ellipsoid = enclosing_ellipsoid<D>(corners, eta);
   if (!ellipsoid) return ellipsoid.error();
@@ -222,6 +226,22 @@ Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfs
   r.axes = frame.axes * inner.axes / (limit * (1 + 1e-9));
   r.ratio = (inner.ratio + shift) * limit * (1 + 2e-9);
   return r;
+}
+
+}  // namespace
+
+template <int D>
+Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfspaces, double eta) {
+  if (const auto error = check<D>(halfspaces)) return *error;
+  // Programs in doubles lose digits where an optimum of theirs lies at the bound: nothing is refused on their word, and
+  // nothing is believed that the polar points do not prove.
+  if (const Expected<Sandwich<D>> rough = rough_sandwich<double, D>(halfspaces)) {
+    Expected<Sandwich<D>> refined = refined_sandwich<D>(halfspaces, *rough, eta);
+    if (refined) return refined;
+  }
+  const Expected<Sandwich<D>> rough = rough_sandwich<DoubleDouble, D>(halfspaces);
+  if (!rough) return rough;
+  return refined_sandwich<D>(halfspaces, *rough, eta);
 }
 
 template <int D>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dimension/joggle.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension::detail {
@@ -13,6 +14,11 @@ namespace {
 constexpr std::size_t kFirstBlock = 4096;
 constexpr std::size_t kLastBlock = 65536;
 constexpr double kMostCells = 2e5;
+/// A survey of all cells costs about as much as this many searches for a point's cone in each.
+constexpr std::int64_t kSearchesACell = 4;
+/// From d = 4 on a cell meets dozens of cones, and its survey costs more than it saves (measured on 1e6 points).
+template <int D>
+constexpr bool kSurveys = D <= 3;
 
 /// 1 / (1 - epsilon) with room for the roundings of gauges.
 double limit_of(double epsilon) { return 1 / (1 - std::max(epsilon, kLeastEpsilon) * (1 - 1e-4)); }
@@ -35,6 +41,7 @@ KernelBuilder<D>::KernelBuilder(const AffineMap<D>& to_unit, double epsilon)
       hull_(start_radius(epsilon)),
       cells_(cells_of(epsilon, D)),
       hints_(static_cast<std::size_t>(cells_.size()), 0),
+      reach_(cells_),
       next_block_(kFirstBlock) {}
 
 template <int D>
@@ -48,16 +55,31 @@ void KernelBuilder<D>::add(std::span<const Vector<D>> chunk, std::int64_t index)
   }
 }
 
+/// Bounds that spare points their search, where the block or the searches so far are worth their price.
+template <int D>
+void KernelBuilder<D>::prepare_block(std::size_t size) {
+  const bool worth = located_ > kSearchesACell * cells_.size();
+  if (worth || hull_.facets().size() < size) {
+    // The gauge is at most |p| over the nearest plane's distance.
+    const double near = limit_ * hull_.inner_radius() * (1 - 1e-9);
+    near_squared_ = near * near;
+  }
+  if (!worth) return;
+  if constexpr (kSurveys<D>) reach_.survey(hull_, limit_, hints_, cones_visited_);
+  located_ = 0;
+}
+
 template <int D>
 void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t index) {
-  // A point this near is in no need of its cone: its gauge is at most |p| over the nearest plane's distance.
-  const double near = limit_ * hull_.inner_radius() * (1 - 1e-9);
-  const double near_squared = near * near;
+  prepare_block(block.size());
   lists_.resize(hull_.facets().size());
   for (std::size_t i = 0; i < block.size(); ++i) {
     const Vector<D> unit = to_unit_.linear * (block[i] - centre_);
-    if (unit.squaredNorm() <= near_squared) continue;
-    std::int32_t& hint = hints_[static_cast<std::size_t>(cells_.cell(unit))];
+    if (unit.squaredNorm() <= near_squared_) continue;
+    const typename DirectionCells<D>::Place place = cells_.place(unit);
+    if (reach_.holds(place, unit)) continue;
+    ++located_;
+    std::int32_t& hint = hints_[static_cast<std::size_t>(place.cell)];
     hint = hull_.locate(unit, hint, cones_visited_);
     if (hull_.gauge(hint, unit) <= limit_) continue;
     waiting_.push_back({block[i], unit, index + static_cast<std::int64_t>(i)});
@@ -134,8 +156,9 @@ template <int D>
 bool KernelBuilder<D>::enter(const Point& p, std::int32_t f) {
   const auto id = static_cast<std::int32_t>(kernel_.size());
   kernel_.push_back(p);
+  const double nearer = joggle<D>(p.index, limit_);
   for (const double shrink : {0.0, 0x1p-36, 0x1p-30}) {
-    const Vector<D> at = (1 - shrink) * p.unit;
+    const Vector<D> at = (1 - shrink - nearer) * p.unit;
     if (!hull_.insert(at, f)) continue;
     vertex_owner_.push_back(id);
     return true;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dimension/cell_reach.hpp"
 #include "dimension/direction_cells.hpp"
 #include "dimension/radial_hull.hpp"
 #include "pd/dimension/affine_map.hpp"
@@ -55,6 +56,7 @@ class KernelBuilder {
     }
   };
   void add_block(std::span<const Vector<D>> block, std::int64_t index);
+  void prepare_block(std::size_t size);
   void assign(std::int32_t i, std::int32_t start);
   void drain();
   bool enter(const Point& p, std::int32_t f);
@@ -65,6 +67,9 @@ class KernelBuilder {
   RadialHull<D> hull_;
   DirectionCells<D> cells_;
   std::vector<std::int32_t> hints_;  ///< per cell: the facet of the last point located from there
+  CellReach<D> reach_;
+  double near_squared_ = 0;   ///< points this near to the origin are inside whatever their direction
+  std::int64_t located_ = 0;  ///< points whose cone was searched since the last survey of `reach_`
   std::vector<Point> kernel_;
   std::vector<std::int32_t> vertex_owner_;
   std::vector<std::int32_t> unplaced_;

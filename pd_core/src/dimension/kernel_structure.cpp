@@ -10,21 +10,35 @@ namespace pd::dimension::detail {
 
 template <int D>
 KernelStructure<D>::KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes,
-                                    std::vector<std::array<std::int32_t, 2>> links)
+                                    const std::vector<std::array<std::int32_t, 2>>& links)
     : from_unit_(to_unit.inverse()), nodes_(std::move(nodes)), cells_(static_cast<double>(nodes_.size())) {
-  std::sort(links.begin(), links.end());
-  links.erase(std::unique(links.begin(), links.end()), links.end());
-  first_link_.assign(nodes_.size() + 1, 0);
-  for (const auto& [from, to] : links) {
-    ++first_link_[from + 1];
-    links_.push_back(to);
-  }
-  std::partial_sum(first_link_.begin(), first_link_.end(), first_link_.begin());
+  store_links(links);
   QueryCounters ignored;
   std::int32_t last = 0;
   for (std::int64_t c = 0; c < cells_.size(); ++c) {
     last = climb(last, cells_.middle(c), ignored);
     starts_.push_back(last);
+  }
+}
+
+/// Each node's neighbours in ascending order, once each; facets name them many times.
+template <int D>
+void KernelStructure<D>::store_links(const std::vector<std::array<std::int32_t, 2>>& links) {
+  std::vector<std::int32_t> end(nodes_.size() + 1, 0);
+  for (const auto& [from, to] : links) ++end[static_cast<std::size_t>(from) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::int32_t> named(links.size());
+  for (const auto& [from, to] : links) named[static_cast<std::size_t>(end[static_cast<std::size_t>(from)]++)] = to;
+  // `end` has moved on by one node each.
+  first_link_.assign(1, 0);
+  auto begin = named.begin();
+  for (std::size_t v = 0; v < nodes_.size(); ++v) {
+    const auto last = named.begin() + end[v];
+    std::sort(begin, last);
+    const auto unique = std::unique(begin, last);
+    for (auto to = begin; to != unique; ++to) links_.push_back({nodes_[static_cast<std::size_t>(*to)].unit, *to});
+    first_link_.push_back(static_cast<std::int32_t>(links_.size()));
+    begin = last;
   }
 }
 
@@ -40,7 +54,7 @@ std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::of_kernel(const Ke
       if (node_of[v] >= 0) continue;
       node_of[v] = static_cast<std::int32_t>(nodes.size());
       const auto& p = builder.kernel()[builder.kernel_of_vertex(v)];
-      nodes.push_back({p.unit, p.point, p.index});
+      nodes.push_back({hull.vertices()[static_cast<std::size_t>(v)], p.point, p.index});
     }
     for (const std::int32_t v : f.vertex) {
       for (const std::int32_t w : f.vertex) {
@@ -48,7 +62,7 @@ std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::of_kernel(const Ke
       }
     }
   }
-  const std::shared_ptr<KernelStructure> r(new KernelStructure(builder.to_unit(), std::move(nodes), std::move(links)));
+  const std::shared_ptr<KernelStructure> r(new KernelStructure(builder.to_unit(), std::move(nodes), links));
   for (const std::int32_t i : builder.unplaced()) {
     const auto& p = builder.kernel()[i];
     r->loose_.push_back({p.unit, p.point, p.index});
@@ -86,8 +100,7 @@ std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::build(const Body<D
       if (a != b) links.push_back({a, b});
     }
   }
-  return std::shared_ptr<const KernelStructure>(
-      new KernelStructure(sandwich.fattening(), std::move(nodes), std::move(links)));
+  return std::shared_ptr<const KernelStructure>(new KernelStructure(sandwich.fattening(), std::move(nodes), links));
 }
 
 template <int D>
@@ -99,10 +112,10 @@ std::int32_t KernelStructure<D>::climb(std::int32_t start, const Vector<D>& unit
   for (;;) {
     std::int32_t best = at;
     for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
-      const double other = unit_direction.dot(nodes_[links_[l]].unit);
+      const double other = unit_direction.dot(links_[l].unit);
       if (other > value) {
         value = other;
-        best = links_[l];
+        best = links_[l].node;
       }
     }
     products += first_link_[at + 1] - first_link_[at];
@@ -138,8 +151,8 @@ StructureSize KernelStructure<D>::size() const {
     r.max_out_degree = std::max<std::int64_t>(r.max_out_degree, first_link_[v + 1] - first_link_[v]);
   }
   r.depth = 1;
-  r.bytes = static_cast<std::int64_t>(nodes_.size() * sizeof(Node) +
-                                      (links_.size() + first_link_.size() + starts_.size()) * sizeof(std::int32_t));
+  r.bytes = static_cast<std::int64_t>(nodes_.size() * sizeof(Node) + links_.size() * sizeof(Link) +
+                                      (first_link_.size() + starts_.size()) * sizeof(std::int32_t));
   return r;
 }
 

@@ -29,7 +29,7 @@ class KernelStructure : public WidthStructure<D> {
   [[nodiscard]] StructureSize size() const override;
 
   struct Node {
-    Vector<D> unit;   ///< in the frame in which the body is fat
+    Vector<D> unit;   ///< in the frame in which the body is fat; of points, where the hull has it
     Vector<D> point;  ///< in the body's own
     std::int64_t index;
   };
@@ -44,13 +44,20 @@ class KernelStructure : public WidthStructure<D> {
  private:
   std::int32_t climb(std::int32_t start, const Vector<D>& unit_direction, QueryCounters& counters) const;
 
-  KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes, std::vector<std::array<std::int32_t, 2>> links);
+  KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes,
+                  const std::vector<std::array<std::int32_t, 2>>& links);
+  void store_links(const std::vector<std::array<std::int32_t, 2>>& links);
 
   AffineMap<D> from_unit_;
   std::vector<Node> nodes_;
   std::vector<Node> loose_;  ///< kernel points that rounding keeps out of the hull: scanned
   std::vector<std::int32_t> first_link_;
-  std::vector<std::int32_t> links_;
+  /// A neighbour with its place, so that a step reads one run of memory and not a node here and a node there.
+  struct Link {
+    Vector<D> unit;
+    std::int32_t node;
+  };
+  std::vector<Link> links_;
   DirectionCells<D> cells_;
   std::vector<std::int32_t> starts_;
 };

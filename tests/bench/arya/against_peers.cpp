@@ -8,6 +8,9 @@
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/arya/arya.hpp"
 #include "bench/arya/clouds.hpp"
+#ifdef PD_BENCH_WITH_CGAL
+#include "bench/arya/ellipsoid_peers.hpp"
+#endif
 #include "pd/dimension/approximate_width.hpp"
 #include "pd/dimension/enclosing_ellipsoid.hpp"
 #include "pd/dimension/epsilon_kernel.hpp"
@@ -75,6 +78,31 @@ void width_against_qhull(const AryaSettings& settings, ClaimTable& table, Cloud 
                   0);
 }
 
+#ifdef PD_BENCH_WITH_CGAL
+/// The same accuracy asked of both: eta bounds our ratio over D, and CGAL's epsilon that of its lifted points, which
+/// for the same number is the looser promise of the two.
+void ellipsoid_against_cgal(const AryaSettings& settings, ClaimTable& table, Cloud kind) {
+  constexpr double kEta = 1e-2;
+  const std::size_t n = settings.full ? 1'000'000 : 50'000;
+  std::mt19937_64 random(settings.seed);
+  const std::vector<Vector<3>> points = cloud<3>(kind, n, random);
+  double ratio = 0;
+  PeerEllipsoid certified, plain;
+  const std::array<std::function<void()>, 3> tasks = {
+      [&] { ratio = dimension::enclosing_ellipsoid<3>(points, kEta)->sandwich.ratio; },
+      [&] { certified = cgal_ellipsoid(points, kEta); }, [&] { plain = cgal_ellipsoid_in_doubles(points, kEta); }};
+  const std::vector<double> times = least_times_ns(tasks, 3, false);
+  const std::string name = fmt::format("{}, d = 3, eta = {:g}", to_string(kind), kEta);
+  const std::string range = fmt::format("n = {}", n);
+  const double broken = (ratio <= 3 * (1 + kEta) ? 0 : 1) + (certified.answered && plain.answered ? 0 : 1);
+  table.add_value(kEllipsoid, name, "time, ms", range, times[0] / 1e6);
+  table.add_value(kEllipsoid, name, "time / CGAL's", range, times[0] / times[1],
+                  settings.full ? std::optional(1.0 / 40) : std::nullopt);
+  table.add_value(kEllipsoid, name, "time / CGAL's in doubles, uncertified", range, times[0] / times[2]);
+  table.add_value(kEllipsoid, name, std::string(kWrongAnswers), range, broken, 0);
+}
+#endif
+
 /// The least that any algorithm of 64 directions does: the sum keeps the compiler honest.
 template <int D>
 double pass_of_64(const std::vector<Vector<D>>& points, const std::vector<Vector<D>>& directions) {
@@ -124,6 +152,9 @@ void ellipsoids(const AryaSettings& settings, ClaimTable& table) {
     }
     table.add_growth(kEllipsoid, std::move(passes), 0.2);
   }
+#ifdef PD_BENCH_WITH_CGAL
+  for (const Cloud kind : {Cloud::sphere, Cloud::ball, Cloud::needle}) ellipsoid_against_cgal(settings, table, kind);
+#endif
 }
 
 }  // namespace
@@ -142,11 +173,11 @@ void measure_arya_width(const AryaSettings& settings, ClaimTable& table) {
   const auto target = [&](double most) { return settings.full ? std::optional(most) : std::nullopt; };
   width_against_qhull<3>(settings, table, Cloud::ball, n, fine, target(1.0 / 5), 3);
   width_against_qhull<3>(settings, table, Cloud::box, n, fine, target(1.0 / 3), 3);
-  width_against_qhull<3>(settings, table, Cloud::sphere, n, fine, target(1.0 / 80), settings.full ? 1 : 3);
+  width_against_qhull<3>(settings, table, Cloud::sphere, n, fine, target(1.0 / 80), 3);
   if (settings.full) {
     width_against_qhull<4>(settings, table, Cloud::ball, n, 1e-2, target(1.0 / 6), 1);
-    // Qhull's hull of a million points on a sphere of R^4 takes more memory and time than a bench should.
-    width_against_qhull<4>(settings, table, Cloud::sphere, 100'000, 1e-2, target(1.0 / 100), 1);
+    width_against_qhull<4>(settings, table, Cloud::sphere, 100'000, 1e-2, {}, 1);
+    width_against_qhull<4>(settings, table, Cloud::sphere, n, 1e-2, target(1.0 / 100), 1);
   } else {
     width_against_qhull<4>(settings, table, Cloud::ball, 20'000, 5e-2, {}, 1);
   }

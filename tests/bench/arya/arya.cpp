@@ -1,8 +1,10 @@
 #include "bench/arya/arya.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 
 #include "bench/agarwal/agarwal.hpp"
@@ -20,19 +22,21 @@ struct Chapter {
   void (*measure)(const AryaSettings&, ClaimTable&);
 };
 constexpr Chapter kChapters[] = {
-    {"sizes", measure_arya_sizes}, {"promises", measure_arya_promises},         {"kernels", measure_arya_kernels},
-    {"width", measure_arya_width}, {"intersection", measure_arya_intersection}, {"macbeath", measure_arya_macbeath},
-    {"sums", measure_arya_sums},
+    {"sizes", measure_arya_sizes},       {"promises", measure_arya_promises},
+    {"theorems", measure_arya_theorems}, {"kernels", measure_arya_kernels},
+    {"width", measure_arya_width},       {"intersection", measure_arya_intersection},
+    {"macbeath", measure_arya_macbeath}, {"sums", measure_arya_sums},
 };
 
 bool write_files(const AryaSettings& settings, const ClaimTable& table) {
   const std::filesystem::path folder(settings.out);
   const std::string preamble = fmt::format(
-      "# The bounds of [M], measured\n\nWritten by `pdepth-bench arya{} --seed {} --out ...`. Exponents are "
+      "# The bounds of [M], measured\n\nWritten by `pdepth-bench arya{}{} --seed {} --out ...` on {:%F}. Exponents are "
       "least-squares "
       "slopes in log-log with their 95 % intervals; times are processor times of the fastest of several runs, in turns "
       "with the peer's. A bound that does not hold says FAILS.\n",
-      settings.full ? " --full" : "", settings.seed);
+      settings.full ? " --full" : "", settings.pairs > 0 ? fmt::format(" --pairs {}", settings.pairs) : "",
+      settings.seed, fmt::gmtime(std::time(nullptr)));
   const std::vector<Finding> findings = table.by_claim();
   bool written = write_text(folder / "arya.csv", to_csv(findings));
   written = write_text(folder / "arya_points.csv", points_csv(findings)) && written;

@@ -16,7 +16,8 @@ namespace pd::bench {
 struct AryaSettings {
   bool full = false;  ///< the sizes of the paper's table; otherwise under a minute
   std::uint64_t seed = 1;
-  std::string out;                    ///< folder for arya.csv, arya_points.csv, arya.md and the plots; or empty
+  int pairs = 0;    ///< bodies or pairs a promise is tried on for d <= 3; 0 = 1e5 when full, else some hundreds
+  std::string out;  ///< folder for arya.csv, arya_points.csv, arya.md and the plots; or empty
   std::vector<std::string> chapters;  ///< names of chapters; empty = all
 };
 
@@ -24,6 +25,8 @@ struct AryaSettings {
 void measure_arya_sizes(const AryaSettings& settings, ClaimTable& table);
 /// Promises on random and adversarial bodies: one error beyond epsilon is a wrong answer.
 void measure_arya_promises(const AryaSettings& settings, ClaimTable& table);
+/// The same for Lemmas 6, 13, 16 and Theorems 2, 3.
+void measure_arya_theorems(const AryaSettings& settings, ClaimTable& table);
 /// Kernels of many points against plain passes of dot products; enclosing ellipsoids.
 void measure_arya_kernels(const AryaSettings& settings, ClaimTable& table);
 /// Width against Qhull's hull of the same points.

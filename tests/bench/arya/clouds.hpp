@@ -11,10 +11,10 @@
 
 namespace pd::bench {
 
-enum class Cloud { sphere, ball, box, needle, slab, simplex };
+enum class Cloud { sphere, ball, box, needle, slab, simplex, cube };
 
 [[nodiscard]] constexpr std::string_view to_string(Cloud cloud) {
-  constexpr std::string_view kNames[] = {"sphere", "ball", "box", "needle", "slab", "simplex"};
+  constexpr std::string_view kNames[] = {"sphere", "ball", "box", "needle", "slab", "simplex", "cube"};
   return kNames[static_cast<int>(cloud)];
 }
 
@@ -30,16 +30,19 @@ dimension::Vector<D> direction(std::mt19937_64& random) {
   }
 }
 
-/// n points. Needles and slabs are spheres stretched by 1e6 and 1e-6 along a diagonal; a simplex is its corners and
-/// points inside.
+/// n points. Needles and slabs are spheres stretched by 1e6 and 1e-6 along a diagonal; simplices and cubes are
+/// their corners and points inside.
 template <int D>
 std::vector<dimension::Vector<D>> cloud(Cloud kind, std::size_t n, std::mt19937_64& random) {
   std::vector<dimension::Vector<D>> points(n);
   const dimension::Vector<D> axis = dimension::Vector<D>::Ones() / std::sqrt(static_cast<double>(D));
   for (std::size_t i = 0; i < n; ++i) {
     dimension::Vector<D>& p = points[i];
-    if (kind == Cloud::box) {
+    if (kind == Cloud::box || kind == Cloud::cube) {
       for (int k = 0; k < D; ++k) p[k] = uniform(random);
+      if (kind == Cloud::cube && i < std::size_t{1} << D) {
+        for (int k = 0; k < D; ++k) p[k] = ((i >> k) & 1) != 0 ? 1 : -1;
+      }
     } else if (kind == Cloud::simplex) {
       double sum = 0;
       for (int k = 0; k < D; ++k) sum += p[k] = std::abs(uniform(random));

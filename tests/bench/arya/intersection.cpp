@@ -73,7 +73,8 @@ void promises(const AryaSettings& settings, ClaimTable& table, Backend backend, 
     DirectionalWidth<D> structure;
   };
   std::vector<Prepared> pool;
-  for (const Cloud kind : {Cloud::sphere, Cloud::ball, Cloud::box, Cloud::needle, Cloud::slab, Cloud::simplex}) {
+  for (const Cloud kind :
+       {Cloud::sphere, Cloud::ball, Cloud::box, Cloud::needle, Cloud::slab, Cloud::simplex, Cloud::cube}) {
     for (int k = 0; k < bodies; ++k) {
       const auto body = *Body<D>::from_points(cloud<D>(kind, 20 + random() % 200, random));
       pool.push_back({body, *DirectionalWidth<D>::build(body, epsilon / 4, backend)});
@@ -307,11 +308,12 @@ void sums(const AryaSettings& settings, ClaimTable& table, std::size_t n, std::i
 
 void measure_arya_intersection(const AryaSettings& settings, ClaimTable& table) {
   const int scale = settings.full ? 100 : 1;
+  const int pairs = settings.pairs > 0 ? settings.pairs : 1000 * scale;
   for (const double epsilon : {0.1, 1e-3}) {
-    promises<2>(settings, table, Backend::kernel, "kernel", epsilon, 4, 1000 * scale);
-    promises<3>(settings, table, Backend::kernel, "kernel", epsilon, 2, 1000 * scale);
-    promises<2>(settings, table, Backend::exact, "exact", epsilon, 4, 1000 * scale);
-    promises<3>(settings, table, Backend::exact, "exact", epsilon, 2, 1000 * scale);
+    promises<2>(settings, table, Backend::kernel, "kernel", epsilon, 4, pairs);
+    promises<3>(settings, table, Backend::kernel, "kernel", epsilon, 2, pairs);
+    promises<2>(settings, table, Backend::exact, "exact", epsilon, 4, pairs);
+    promises<3>(settings, table, Backend::exact, "exact", epsilon, 2, pairs);
   }
   promises<4>(settings, table, Backend::kernel, "kernel", 0.1, 1, settings.full ? 3000 : 300);
   promises<5>(settings, table, Backend::kernel, "kernel", 0.3, 1, settings.full ? 3000 : 300);

@@ -51,7 +51,8 @@ void sizes(const AryaSettings& settings, ClaimTable& table, std::size_t n, std::
 template <int D>
 void promises(const AryaSettings& settings, ClaimTable& table, int bodies, int directions) {
   std::mt19937_64 random(settings.seed + D);
-  for (const Cloud kind : {Cloud::sphere, Cloud::ball, Cloud::box, Cloud::needle, Cloud::slab, Cloud::simplex}) {
+  for (const Cloud kind :
+       {Cloud::sphere, Cloud::ball, Cloud::box, Cloud::needle, Cloud::slab, Cloud::simplex, Cloud::cube}) {
     std::int64_t wrong = 0;
     double worst = 0;
     for (int b = 0; b < bodies; ++b) {
@@ -99,9 +100,10 @@ void measure_arya_sizes(const AryaSettings& settings, ClaimTable& table) {
 }
 
 void measure_arya_promises(const AryaSettings& settings, ClaimTable& table) {
-  const int scale = settings.full ? 100 : 1;
-  promises<2>(settings, table, 200 * scale, 20);
-  promises<3>(settings, table, 200 * scale, 20);
+  // Over the families of `promises`.
+  const int bodies = settings.pairs > 0 ? std::max(1, settings.pairs / 7) : settings.full ? 20'000 : 200;
+  promises<2>(settings, table, bodies, 20);
+  promises<3>(settings, table, bodies, 20);
   promises<4>(settings, table, settings.full ? 300 : 10, 20);
   promises<5>(settings, table, settings.full ? 300 : 5, 20);
 }

@@ -25,9 +25,10 @@ struct ApproximateWidth {
   StructureSize structure;
 };
 
-/// @param epsilon  in (0, 1); at least 4e-7 with the kernel backend.
+/// @param epsilon  in (0, 1); at least 1.2e-7 with the kernel backend.
 /// @return ErrorCode::bad_value ("epsilon").
-/// The structure of the backend is built for epsilon / (2 (1 + epsilon)); bounds up to rounding (1e-9, relative).
+/// The structure of the backend is built for .9 epsilon / (1 + epsilon), the search ends at the rest; bounds up to
+/// rounding (1e-9, relative).
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
                                                               Backend backend = Backend::kernel);
