@@ -22,15 +22,6 @@ namespace pd {
 
 class Scratch;
 
-struct ShallowCounts {
-  std::int64_t directions = 0;  ///< rays: O(1 / delta)
-  std::int64_t seeds = 0;       ///< different facets hit by the short rays
-  std::int64_t visited = 0;     ///< facets of P (pieces of one plane count singly) visited: at most K_delta
-  std::int64_t steps = 0;       ///< edges of P crossed or found to lie outside the ball
-  std::int64_t degrees = 0;     ///< arcs tried in those steps: the degrees of the visited cells
-  double radius = 0;            ///< of the ball
-};
-
 struct ShallowPenetration {
   PenetrationDepth answer;
   ShallowCounts counts;

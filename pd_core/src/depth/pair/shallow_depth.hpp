@@ -3,7 +3,7 @@
 #pragma once
 
 #include "depth/pair/polytope_depth.hpp"
-#include "pd/depth/shallow_penetration.hpp"
+#include "pd/depth/depth_answer.hpp"
 #include "pd/structure/direction_grid.hpp"
 
 namespace pd::detail {

@@ -3,7 +3,12 @@
 #pragma once
 
 #include "depth/pair/scratch_buffers.hpp"
-#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/depth_answer.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd {
+class WarmCertificate;
+}
 
 namespace pd::detail {
 
