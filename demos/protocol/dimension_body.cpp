@@ -1,5 +1,7 @@
 #include "protocol/dimension_body.hpp"
 
+#include <algorithm>
+
 #include "protocol/points_file.hpp"
 #include "support/refusal.hpp"
 
@@ -8,6 +10,8 @@ namespace pd::query {
 namespace {
 
 constexpr std::size_t kChunk = 65536;
+/// A header may claim more rows than the file holds.
+constexpr std::int64_t kMostReserved = 100'000'000;
 
 int checked_dimension(const Node& node, std::size_t dimension) {
   if (dimension < dimension::kMinDimension || dimension > dimension::kMaxDimension) {
@@ -55,6 +59,8 @@ std::vector<dimension::Vector<D>> read_file(const Node& node, const Limits& limi
   std::vector<dimension::Vector<D>> points;
   std::vector<double> numbers;
   try {
+    // Grown step by step, ten million points would take three times their own room for a while.
+    points.reserve(static_cast<std::size_t>(std::min(file.rows(), kMostReserved)));
     while (file.next(numbers, kChunk)) {
       for (std::size_t i = 0; i < numbers.size(); i += D) {
         points.push_back(Eigen::Map<const Eigen::Matrix<double, D, 1>>(numbers.data() + i));

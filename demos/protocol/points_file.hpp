@@ -18,6 +18,8 @@ class PointsFile {
 
   /// Numbers a row.
   [[nodiscard]] int dimension() const { return dimension_; }
+  /// As the header says; 0 for text, which does not.
+  [[nodiscard]] std::int64_t rows() const { return rows_; }
   /// Up to `rows` rows of numbers, appended to an emptied `numbers`; false at the end. Numbers may be NaN or infinite.
   /// @throws Refusal unreadable_file with the line.
   bool next(std::vector<double>& numbers, std::size_t rows);

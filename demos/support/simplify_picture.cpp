@@ -22,8 +22,10 @@ render::MeshRef points_mesh(const std::vector<Vec3>& scan, double size) {
   std::vector<Vec3> points;
   std::vector<std::array<std::int32_t, 3>> triangles;
   const std::size_t count = std::min(kMostPoints, scan.size());
+  // Steps of the golden section: equal ones would fall in with a scan's rows and draw a few of them only.
+  const auto step = static_cast<std::size_t>(0.6180339887498949 * static_cast<double>(scan.size())) | 1U;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& p = scan[i * scan.size() / count];
+    const Vec3& p = scan[count == scan.size() ? i : i * step % scan.size()];
     const auto first = static_cast<std::int32_t>(points.size());
     for (const Vec3& corner : kCorners) points.push_back(p + size * corner);
     triangles.push_back({first, first + 2, first + 1});

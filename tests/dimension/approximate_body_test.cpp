@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dimension/body_families.hpp"
 #include "dimension/families.hpp"
 #include "pd/dimension/approximate_width.hpp"
 
@@ -81,6 +82,34 @@ TEST(HalfspaceBody, HasTheSupportsOfItsVertices) {
   check_halfspace_bodies<3>();
   check_halfspace_bodies<4>();
   check_halfspace_bodies<5>();
+}
+
+/// Polar points of bodies of few vertices lie by the hundred on common faces: the surface over them must stay convex.
+template <int D>
+void check_bodies_of_approximations(double epsilon) {
+  BodySource<D> source(53);
+  for (int k = 0; k < 16; ++k) {
+    const auto points = source.points(k % 2 == 0 ? Family::needle : Family::slab, 44 + k);
+    const auto body = Body<D>::from_points(points);
+    ASSERT_TRUE(body);
+    const auto made = approximate_body<D>(*body, epsilon, Representation::halfspaces, Side::outer);
+    ASSERT_TRUE(made);
+    const auto polytope = Body<D>::from_halfspaces(made->halfspaces);
+    ASSERT_TRUE(polytope) << polytope.error().message;
+    for (int turn = 0; turn < 6; ++turn) {
+      Vector<D> v = source.direction();
+      if (turn % 2 == 1) v = (body->sandwich().fattening().linear.transpose() * v).normalized();
+      const double h = extreme<D>(points, v).dot(v), width = extent<D>(points, v);
+      EXPECT_GE(polytope->support(v).value, h - 1e-7 * width) << "D = " << D << ", body " << k;
+      EXPECT_LE(polytope->support(v).value, h + (epsilon / 2 + 1e-7) * width) << "D = " << D << ", body " << k;
+    }
+  }
+}
+
+TEST(HalfspaceBody, OfApproximationsWhoseFacesAreSharedByMany) {
+  check_bodies_of_approximations<3>(0.1);
+  check_bodies_of_approximations<4>(0.4);
+  check_bodies_of_approximations<5>(0.6);
 }
 
 TEST(HalfspaceBody, RefusesByName) {
@@ -209,6 +238,29 @@ TEST(ApproximateWidth, BracketsTheWidth) {
   check_width<3>({0.3, 1e-3});
   check_width<4>({0.3, 3e-2});
   check_width<5>({0.5});
+}
+
+template <int D>
+void check_width_over_macbeath(double epsilon, int count) {
+  BodySource<D> source(5);
+  for (const Family family : {Family::sphere, Family::needle}) {
+    const auto points = source.points(family, count);
+    const auto body = Body<D>::from_points(points);
+    const auto width = approximate_width<D>(*body, epsilon, Backend::macbeath);
+    ASSERT_TRUE(width) << width.error().message;
+    EXPECT_LE(width->upper, (1 + epsilon) * width->lower);
+    EXPECT_NEAR(extent<D>(points, width->direction), width->upper, 1e-9 * width->upper + 1e-15);
+    for (int turn = 0; turn < 50; ++turn) {
+      const Vector<D> v = (body->sandwich().fattening().linear.transpose() * source.direction()).normalized();
+      EXPECT_GE(extent<D>(points, v), width->lower * (1 - 1e-9)) << "D = " << D;
+    }
+  }
+}
+
+TEST(ApproximateWidth, OverMacbeathHierarchies) {
+  check_width_over_macbeath<2>(0.01, 60);
+  check_width_over_macbeath<3>(0.5, 40);
+  check_width_over_macbeath<4>(0.95, 30);
 }
 
 TEST(ApproximateWidth, OfAnalyticBodies) {

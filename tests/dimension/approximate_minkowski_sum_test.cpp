@@ -94,6 +94,7 @@ TEST(ApproximateMinkowskiSum, KeepsItsPromises) {
 TEST(ApproximateMinkowskiSum, OverMacbeathHierarchies) {
   check_sums<2>(Backend::macbeath, 0.05, 40, 6);
   check_sums<3>(Backend::macbeath, 0.6, 30, 2);
+  check_sums<4>(Backend::macbeath, 0.95, 30, 1);
 }
 
 TEST(ApproximateMinkowskiSum, CubesAddUpToACube) {
