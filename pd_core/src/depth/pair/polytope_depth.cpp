@@ -76,16 +76,21 @@ void answer(PolytopeQuery& query, PenetrationDepth& out) {
   }
 }
 
+/// Spheres and capsules, where a closed form is at hand.
+bool answer_slender(const PolytopePair& pair, const DepthSettings& settings, PenetrationDepth& out) {
+  const Bracket bracket = PolytopeQuery::bracket_of(settings);
+  if (settings.method == Method::automatic && bracket != Bracket::tightest &&
+      answer_slender_pair(pair, settings, bracket, out)) {
+    return true;
+  }
+  return bracket == Bracket::contact && answer_slender_on_box(pair, settings, out);
+}
+
 }  // namespace
 
 void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, ScratchBuffers& buffers,
                     WarmCertificate* warm, PenetrationDepth& out) {
-  const Bracket bracket = PolytopeQuery::bracket_of(settings);
-  if (settings.method == Method::automatic && bracket != Bracket::tightest &&
-      answer_slender_pair(pair, settings, bracket, out)) {
-    return;
-  }
-  if (bracket == Bracket::contact && answer_slender_on_box(pair, settings, out)) return;
+  if (std::min(pair.a->num_vertices(), pair.b->num_vertices()) <= 2 && answer_slender(pair, settings, out)) return;
   PolytopeQuery query(pair, settings, buffers, warm);
   if (answer_from_contact_facet(query, out)) return;
   answer(query, out);

@@ -45,8 +45,8 @@ class SmoothQuery {
 
   void solve() {
     out_.method = Method::expansion;
-    buffers_.surface.clear();
     if (for_contact_ && solve_on_facet()) return;
+    buffers_.surface.clear();
     if (!solve_apart_from_memory() && !solve_by_inscribed_balls()) solve_by_expansion();
     const double lower = out_.contact == ContactClass::overlapping ? out_.lower : out_.distance_lower;
     const double upper = out_.contact == ContactClass::overlapping ? out_.upper : out_.distance_upper;
