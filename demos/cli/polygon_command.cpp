@@ -31,12 +31,14 @@ Lengths are in the unit of the width of P's page (user units where it has none).
 turned round. Curves become polylines: no point of one lies farther than --flatness from its chord.
 
 Without --direction the least move over all directions is found. With --complete Q shall get away for good:
-  with --direction     going on straight along it, for ever
-  without              by any motion: Q comes to where a way leads out, not into a hole that it fits in
+  --complete=straight  going on straight along the move's own direction, for ever
+  --complete=escape    by any motion: Q comes to where a way leads out, not into a hole that it fits in
+--complete alone is straight with --direction, escape without.
 
 Examples:
   pdepth polygon plate.svg tool.json
   pdepth polygon sheet.svg#plate part.svg --direction 0,1 --complete
+  pdepth polygon sheet.svg#plate part.svg --complete=straight
   pdepth polygon frame.json peg.json --place-q 2.25,4 --picture out.png)";
 
 struct PolygonArguments {
@@ -46,14 +48,19 @@ struct PolygonArguments {
   std::string place;
   std::string picture;
   std::optional<double> flatness;
-  bool complete = false;
+  std::string complete;  ///< one of the three words below, or nothing
   bool json = false;
 };
+
+constexpr const char* kStraight = "straight";
+constexpr const char* kEscape = "escape";
+constexpr const char* kByDirection = "by-direction";  ///< --complete without a word
 
 struct PolygonPair {
   drawing::PolygonFile p, q;
   Point2 place = {0, 0};
   std::optional<Point2> direction;
+  Leave leave = Leave::first_exit;
 };
 
 Point2 parse_point(const std::string& text, const std::string& option) {
@@ -67,24 +74,37 @@ Point2 parse_point(const std::string& text, const std::string& option) {
   return {n[0], n[1]};
 }
 
+Leave leave_of(const PolygonArguments& arguments) {
+  if (arguments.complete.empty()) return Leave::first_exit;
+  if (arguments.complete == kByDirection) return arguments.direction.empty() ? Leave::escape : Leave::straight;
+  return arguments.complete == kStraight ? Leave::straight : Leave::escape;
+}
+
 PolygonPair read_pair(const PolygonArguments& arguments) {
   const query::Limits limits{.max_vertices = 10'000'000};
   drawing::PolygonFile p = drawing::read_polygon_file(arguments.file_p, arguments.flatness, "", limits);
   drawing::PolygonFile q = drawing::read_polygon_file(arguments.file_q, arguments.flatness, p.unit, limits);
-  PolygonPair pair{std::move(p), std::move(q), {0, 0}, std::nullopt};
+  PolygonPair pair{std::move(p), std::move(q), {0, 0}, std::nullopt, Leave::first_exit};
   if (!arguments.place.empty()) pair.place = parse_point(arguments.place, "--place-q");
   if (!arguments.direction.empty()) {
     pair.direction = parse_point(arguments.direction, "--direction");
     if (*pair.direction == Point2{0, 0}) query::refuse("zero_direction", "--direction must not be 0,0", "");
   }
+  pair.leave = leave_of(arguments);
   return pair;
 }
 
-PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r, bool complete) {
-  if (pair.direction) {
-    return r.depth_along(pair.place, *pair.direction, complete ? Leave::straight : Leave::first_exit);
+PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r) {
+  if (pair.direction) return r.depth_along(pair.place, *pair.direction, pair.leave);
+  switch (pair.leave) {
+    case Leave::straight:
+      return r.straight_escape_depth(pair.place);
+    case Leave::escape:
+      return r.escape_depth(pair.place);
+    case Leave::first_exit:
+      break;
   }
-  return complete ? r.escape_depth(pair.place) : r.depth(pair.place);
+  return r.depth(pair.place);
 }
 
 // ---- words for people --------------------------------------------------------------------------------------------
@@ -115,14 +135,17 @@ std::string feature_in_words(const Polygon& polygon, const Polygon::VertexId& id
 }
 
 /// What the answer says, in one line.
-std::string verdict(const PolygonPair& pair, const PolygonDepth& result, bool complete) {
+std::string verdict(const PolygonPair& pair, const PolygonDepth& result) {
   const std::string way = pair.direction ? " along the direction" : "";
-  if (complete) {
+  if (pair.leave == Leave::straight) {
     if (result.depth == 0) {
-      return pair.direction ? "Nothing is in Q's way along the direction." : "Q can leave as it is.";
+      return pair.direction ? "Nothing is in Q's way along the direction." : "Q can leave straight as it is.";
     }
     return pair.direction ? "Q must go this far before nothing is in its way any more."
-                          : "After the least such move a way leads Q out of P.";
+                          : "Straight on in this direction nothing is in Q's way after the least such move.";
+  }
+  if (pair.leave == Leave::escape) {
+    return result.depth == 0 ? "Q can leave as it is." : "After the least such move" + way + " a way leads Q out of P.";
   }
   switch (result.contact) {
     case PlanarContact::overlapping:
@@ -141,7 +164,7 @@ void print_result(const PolygonArguments& arguments, const PolygonPair& pair, co
   fmt::print("\n");
   print_polygon("P", arguments.file_p, pair.p);
   print_polygon("Q", arguments.file_q, pair.q);
-  fmt::print("\n{}\n\n", verdict(pair, result, arguments.complete));
+  fmt::print("\n{}\n\n", verdict(pair, result));
   print_row("depth", fmt::format("{}{}", result.depth, unit));
   if (result.depth > 0) {
     print_row("bracket", fmt::format("[{}, {}]", result.lower, result.upper));
@@ -167,7 +190,7 @@ int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, con
                  const PolygonDepth& result) {
 #ifdef PDEPTH_WITH_DEMOS
   return demo::write_polygon_picture({&pair.p.polygon, &pair.q.polygon, pair.place, pair.p.unit, pair.p.drawing}, r,
-                                     result, verdict(pair, result, arguments.complete), arguments.picture);
+                                     result, verdict(pair, result), arguments.picture);
 #else
   (void)pair;
   (void)r;
@@ -184,7 +207,7 @@ int run_polygon(const PolygonArguments& arguments) {
     const query::Stopwatch watch;
     const Expected<PolygonDifference> r = PolygonDifference::of(pair.p.polygon, pair.q.polygon);
     if (!r) query::refuse(to_string(r.error().code), r.error().message, r.error().where);
-    const PolygonDepth result = answer_of(pair, *r, arguments.complete);
+    const PolygonDepth result = answer_of(pair, *r);
     const std::int64_t nanoseconds = watch.nanoseconds();
     if (arguments.json) {
       std::string out;
@@ -213,7 +236,11 @@ void add_polygon_command(CLI::App& app, Action& action) {
   command->add_option("P", arguments->file_p, "Polygon that stays: FILE.svg, FILE.svg#ID or FILE.json")->required();
   command->add_option("Q", arguments->file_q, "Polygon that moves")->required();
   command->add_option("--direction", arguments->direction, "Move along X,Y [the best direction]");
-  command->add_flag("--complete", arguments->complete, "Get away for good, not only clear of P");
+  // A flag, so that a file may follow --complete alone; a word comes behind "=".
+  command
+      ->add_flag(fmt::format("--complete{{{}}}", kByDirection), arguments->complete,
+                 "Get away for good, not only clear of P: --complete=straight or --complete=escape")
+      ->check(CLI::IsMember({kStraight, kEscape, kByDirection}));
   command->add_option("--place-q", arguments->place, "Displacement X,Y of Q before it is looked at [0,0]");
   command
       ->add_option("--flatness", arguments->flatness, "Greatest distance of a curve from its chords [1e-4 of the size]")

@@ -147,6 +147,28 @@ TEST_F(Program, PolygonForPeopleAndPrograms) {
   EXPECT_EQ(run("polygon frame.json nowhere.svg").status, 2);
 }
 
+TEST_F(Program, PolygonAwayForGood) {
+  // A bent channel: at its end Q is free, can come out round the corner, and is 3 from the left side.
+  write("bent.json", R"({"outer":[[0,0],[10,0],[10,10],[9,10],[9,3],[1,3],[1,5],[7,5],[7,10],[0,10]]})");
+  write("peg.json", R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})");
+  const auto depth = [&](const std::string& options) {
+    const Outcome result = run("polygon --json --place-q 2,3.5 " + options + " bent.json peg.json");
+    EXPECT_EQ(result.status, 0) << options << result.err;
+    return Json::parse(result.out).at("depth");
+  };
+  EXPECT_EQ(depth("--complete"), 0.0);
+  EXPECT_EQ(depth("--complete=escape"), 0.0);
+  EXPECT_EQ(depth("--complete=straight"), 3.0);
+  EXPECT_EQ(depth("--direction 1,0 --complete"), 8.0);
+  EXPECT_EQ(depth("--direction 1,0 --complete=straight"), 8.0);
+  EXPECT_EQ(depth("--direction 1,0 --complete=escape"), 0.0);
+  const Outcome people = run("polygon bent.json peg.json --place-q 2,3.5 --complete=straight");
+  EXPECT_NE(people.out.find("Straight on in this direction"), std::string::npos) << people.out;
+  const Outcome unknown = run("polygon bent.json peg.json --complete=sideways");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("sideways"), std::string::npos) << unknown.err;
+}
+
 TEST_F(Program, PolygonPicture) {
   if (run("demo").out.find("dobkin") == std::string::npos) GTEST_SKIP() << "this build draws no pictures";
   write("plate.svg", R"(<svg width="40mm" viewBox="0 0 40 40"><path d="M0 0H40V30H0zM5 5v9h9v-9z"/></svg>)");

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,12 +14,15 @@
 #include <vector>
 
 #include "pd/planar/medial_axis.hpp"
+#include "planar/small_polygons.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd {
 namespace {
 
 using Integer = __int128;
+
+using test::planar_cases;
 
 ConvexPolygon polygon(const std::vector<Point2>& points) { return *ConvexPolygon::from_points(points); }
 
@@ -59,6 +63,17 @@ struct Oracle {
         for (const auto& [s, t] : points) all = all && side(line, s, t) >= 0;
         if (all) lines.push_back(line);
       }
+    }
+  }
+  /// By the edges of R in slope order, for polygons of many vertices.
+  Oracle(const ConvexPolygon& p, const ConvexPolygon& q) {
+    const ConvexDifference r = convex_difference(p, q);
+    const auto at = [&](const ConvexDifference::Corner& c, std::size_t k) {
+      return std::int64_t(p.vertex(c.p)[k] - q.vertex(c.q)[k]);
+    };
+    for (std::size_t i = 0; i < r.corners.size(); ++i) {
+      const auto &from = r.corners[i], &to = r.corners[(i + 1) % r.corners.size()];
+      lines.push_back({at(from, 0), at(from, 1), at(to, 0) - at(from, 0), at(to, 1) - at(from, 1)});
     }
   }
   static std::int64_t side(const Line& l, std::int64_t s, std::int64_t t) {
@@ -126,7 +141,7 @@ TEST(ConvexPolygon, ExtremeVertices) {
 TEST(ConvexDepth, AgainstAllPairsOfVertices) {
   scenes::Random random(62);
   int counts[3] = {0, 0, 0};
-  for (int round = 0; round < 3000 && !HasFailure(); ++round) {
+  for (int round = 0; round < planar_cases(3000) && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
     const int range = round % 3 == 0 ? 3 : 40;
     const auto points_p = grid_points(3 + round % 7, range, random);
@@ -175,6 +190,76 @@ TEST(ConvexDepth, AgainstAllPairsOfVertices) {
     }
   }
   for (const int count : counts) EXPECT_GT(count, 100);
+}
+
+/// Up to 2 `vectors` edges in whole numbers, `stretch` times as wide: where that is large, all but a few of them point
+/// almost along x.
+ConvexPolygon many_edges(int vectors, std::int64_t stretch, scenes::Random& random) {
+  std::set<std::pair<std::int64_t, std::int64_t>> edges;
+  while (static_cast<int>(edges.size()) < vectors) {
+    const std::int64_t x = random.integer(-25, 25), y = random.integer(-25, 25);
+    const std::int64_t divisor = std::gcd(x, y);
+    if (divisor == 0) continue;
+    const std::int64_t sign = y > 0 || (y == 0 && x > 0) ? 1 : -1;
+    edges.insert({sign * x / divisor, sign * y / divisor});
+  }
+  std::vector<std::pair<std::int64_t, std::int64_t>> sorted(edges.begin(), edges.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](const auto& a, const auto& b) { return a.first * b.second > a.second * b.first; });
+  std::vector<Point2> points;
+  std::int64_t x = 0, y = 0;
+  for (const std::int64_t sign : {1, -1}) {
+    for (const auto& e : sorted) {
+      points.push_back({double(stretch * x), double(y)});
+      x += sign * e.first;
+      y += sign * e.second;
+    }
+  }
+  return polygon(points);
+}
+
+TEST(ConvexDepth, PolygonsOfManyVerticesBySlopeOrder) {
+  scenes::Random random(66);
+  int met = 0, deep = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int sizes[] = {3, 40, 90, 300, 700};
+    const ConvexPolygon p = many_edges(sizes[round % 5], round % 3 == 0 ? 4096 : 1, random);
+    const ConvexPolygon q = many_edges(sizes[round / 5 % 5], round % 7 == 0 ? 512 : 1, random);
+    const Oracle oracle(p, q);
+    std::int64_t low[2] = {oracle.lines[0].x, oracle.lines[0].y}, high[2] = {low[0], low[1]};
+    for (const auto& l : oracle.lines) {
+      for (const auto& [k, value] : {std::pair{0, l.x}, std::pair{1, l.y}}) {
+        low[k] = std::min(low[k], value);
+        high[k] = std::max(high[k], value);
+      }
+    }
+    for (int i = 0; i < planar_cases(60); ++i) {
+      std::int64_t s = random.integer(int(low[0]), int(high[0])), t = random.integer(int(low[1]), int(high[1]));
+      if (i % 6 == 0) {  // a corner of R, where the line runs through two vertices
+        const auto& l = oracle.lines[static_cast<std::size_t>(random.integer(0, int(oracle.lines.size()) - 1))];
+        s = l.x;
+        t = l.y;
+      }
+      const int dx = random.integer(-30, 30), dy = random.integer(-30, 30);
+      if (dx == 0 && dy == 0) continue;
+      const Point2 y{double(s), double(t)}, d{double(dx), double(dy)};
+      const auto found = convex_directional_depth(p, q, y, d);
+      ASSERT_EQ(found->contact, oracle.contact(s, t)) << round << " " << i;
+      ASSERT_EQ(*convex_intersection(p, q, y), found->contact) << round << " " << i;
+      ++met;
+      if (found->contact != PlanarContact::overlapping) continue;
+      ++deep;
+      oracle.check_direction(s, t, dx, dy, *found);
+      const auto crossing = convex_crossing(p, q, y, d);
+      ASSERT_TRUE(crossing->meets);
+      ASSERT_EQ(crossing->leave_lower, found->lower);
+      ASSERT_EQ(crossing->leave_upper, found->upper);
+      ASSERT_LT(crossing->enter_upper, 0);
+      const Point2 e{double(oracle.lines[0].x), double(oracle.lines[0].y)};
+      ASSERT_NE(*convex_intersection(p, q, e), PlanarContact::overlapping);
+    }
+  }
+  EXPECT_GT(deep, met / 3);
 }
 
 TEST(ConvexDepth, DepthIsDisplacementLessSeparation) {

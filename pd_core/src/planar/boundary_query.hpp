@@ -50,6 +50,7 @@ class BoundaryQuery {
   [[nodiscard]] bool in_unbounded_face(const Point2& y) const;
 
   [[nodiscard]] const BoxTree& stretch_tree() const { return stretch_tree_; }
+  [[nodiscard]] const TurnedBoxes& ray_tree() const { return ray_tree_; }
   [[nodiscard]] Span span_of(const BoundaryPoint& x) const;
   [[nodiscard]] std::size_t memory_bytes() const {
     return stretch_tree_.memory_bytes() + sum_tree_.memory_bytes() + slot_tree_.memory_bytes() +

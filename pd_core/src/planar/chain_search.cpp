@@ -1,6 +1,10 @@
 #include "planar/chain_search.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
+
+#include "planar/angle_grid.hpp"
 
 namespace pd::detail {
 
@@ -16,6 +20,15 @@ struct Chain {
 
   [[nodiscard]] int vertex(int k) const { return (first + k) % polygon->num_vertices(); }
   [[nodiscard]] PolygonEdge edge(int k) const { return edge_of(*polygon, vertex(k), sign); }
+  /// How many of the chain's edges come before direction k of a grid, which is one of those between its ends.
+  [[nodiscard]] int edges_before(int k, int count) const {
+    const auto table = polygon->first_edges();
+    const int cells = static_cast<int>(table.size()) - 1;
+    const int turned = sign > 0 ? k : (k + count / 2) % count;  // -Q's edges are Q's, turned round
+    const int n = polygon->num_vertices();
+    const int place = table[static_cast<std::size_t>(turned) * static_cast<std::size_t>(cells / count)] - first;
+    return place < 0 ? place + n : (place < n ? place : place - n);
+  }
 };
 
 /// From the vertex farthest on the right of d to the one farthest on its left.
@@ -27,6 +40,84 @@ Chain facing(const ConvexPolygon& polygon, double sign, const Point2& left, int 
   chain.size = (left_vertex - chain.first + polygon.num_vertices()) % polygon.num_vertices();
   return chain;
 }
+
+/// What is left of a search: the wanted edge leads from R's vertex (p_low, q_low), not above the line, to (p_high,
+/// q_high) above it.
+struct ChainRange {
+  int p_low, p_high, q_low, q_high;
+};
+
+/// Narrows a range by the directions of the two polygons' common grid, whose vertices of R their tables know. First by
+/// halves, always at the same few places; then, where the boundary is nearly straight, between the heights of the two
+/// ends, and by halves again where that gained little: O(log of the grid) heights.
+class GridSearch {
+ public:
+  GridSearch(const Chain& p, const Chain& q, const Point2& y, const Point2& left, const Point2& d, std::int64_t& probes)
+      : p_(p), q_(q), y_(y), left_(left), d_(d), probes_(probes) {}
+
+  void run(ChainRange& range) {
+    const std::size_t entries = std::min(p_.polygon->first_edges().size(), q_.polygon->first_edges().size());
+    if (entries == 0) return;
+    count_ = static_cast<int>(entries) - 1;
+    // Directions that are certainly between d and -d: two cells' air for the rounding of the place of d.
+    const int from = static_cast<int>(grid_place(d_, count_));
+    low_ = {from + 1, range.p_low, range.q_low, height(range.p_low, range.q_low)};
+    high_ = {from + count_ / 2, range.p_high, range.q_high, height(range.p_high, range.q_high)};
+    bool halve = true;
+    while (high_.k - low_.k > 1 && (high_.p - low_.p) + (high_.q - low_.q) > kFew) {
+      const int width = high_.k - low_.k;
+      if (halve || width > count_ / kHalvedCells) {
+        // A multiple of a power of two: many searches look at the same entries.
+        const int step = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(1, width / 4))));
+        look((low_.k + width / 2) / step * step);
+        halve = false;
+      } else {
+        interpolate(width);
+        halve = high_.k - low_.k > width / 2;
+      }
+    }
+    range = {low_.p, high_.p, low_.q, high_.q};
+  }
+
+ private:
+  static constexpr int kFew = 8;            ///< edges left to the search by slopes
+  static constexpr int kHalvedCells = 256;  ///< above this part of the grid the boundary is no straight line
+
+  struct End {
+    int k;  ///< direction of the grid, counted on past its end
+    int p, q;
+    double height;
+  };
+
+  [[nodiscard]] double height(int i, int j) const {
+    const Point2 &p = p_.polygon->vertex(p_.vertex(i)), &q = q_.polygon->vertex(q_.vertex(j));
+    return (p[0] - q[0] - y_[0]) * left_[0] + (p[1] - q[1] - y_[1]) * left_[1];
+  }
+  void look(int k) {
+    const int wrapped = k % count_;
+    const int i = p_.edges_before(wrapped, count_), j = q_.edges_before(wrapped, count_);
+    ++probes_;
+    const int sign = offset_along(p_.polygon->vertex(p_.vertex(i)), q_.polygon->vertex(q_.vertex(j)), y_, left_);
+    (sign > 0 ? high_ : low_) = {k, i, j, height(i, j)};
+  }
+  /// Where a straight boundary would cross the line, and there beside it by more than it is bent.
+  void interpolate(int width) {
+    const double part = low_.height / (low_.height - high_.height);
+    const int guess = low_.k + (part > 0 ? static_cast<int>(std::min(part, 1.0) * width) : 0);
+    const int k = std::clamp(guess, low_.k + 1, high_.k - 1);
+    look(k);
+    const int air = 2 + static_cast<int>(static_cast<double>(width) * width / count_);
+    const int beside = high_.k == k ? k - air : k + air;
+    if (beside > low_.k && beside < high_.k) look(beside);
+  }
+
+  const Chain& p_;
+  const Chain& q_;
+  const Point2 &y_, &left_, &d_;
+  std::int64_t& probes_;
+  int count_ = 0;
+  End low_{}, high_{};
+};
 
 }  // namespace
 
@@ -61,7 +152,9 @@ std::optional<ExitEdge> find_exit(const ConvexPolygon& p, const ConvexPolygon& q
   exit.grazes = bottom == 0 || top == 0;
   // The wanted edge leads from a vertex not above the line to one above it (on it, where the line grazes the top); it
   // is one of P's edges [pl, pr) or of Q's [ql, qr), and what was dropped on the left comes before it in slope order.
-  int pl = 0, pr = cp.size, ql = 0, qr = cq.size;
+  ChainRange range{0, cp.size, 0, cq.size};
+  if (top > 0) GridSearch(cp, cq, y, left, d, probes).run(range);
+  auto [pl, pr, ql, qr] = range;
   const auto is_above = [&](int i, int j) { return top == 0 ? i == cp.size && j == cq.size : height(i, j) > 0; };
   while (pl < pr && ql < qr) {
     const int i = pl + (pr - pl) / 2, j = ql + (qr - ql) / 2;

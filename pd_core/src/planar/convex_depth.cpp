@@ -6,6 +6,7 @@
 #include "numeric/floating_point_guard.hpp"
 #include "planar/chain_search.hpp"
 #include "planar/edge_distance.hpp"
+#include "planar/rounded_crossing.hpp"
 
 namespace pd {
 
@@ -36,33 +37,73 @@ struct Rounded {
 };
 Rounded time_of(const ConvexPolygon& p, const ConvexPolygon& q, const ExitEdge& exit, const Point2& y,
                 const Point2& d) {
+  const detail::PolygonEdge& e = exit.edge;
+  const detail::Span ray{{y, {0, 0}}, {{0, 0}, d}, {}};
+  const detail::Span edge{{p.vertex(exit.parts.vertex_p), q.vertex(exit.parts.vertex_q)},
+                          e.sign > 0 ? detail::Direction{*e.from, *e.to} : detail::Direction{*e.to, *e.from},
+                          {}};
+  if (const auto r = detail::rounded_crossing(ray, d, edge)) return {r->lower, r->upper};
   const auto [numerator, denominator] = detail::crossing_time<Dyadic>(p, q, exit, y, d);
   const Dyadic x(d[0]), z(d[1]);
   return detail::rounded_root<Rounded>(numerator * numerator * (x * x + z * z), denominator * denominator);
 }
 
-/// The exits ahead of y and behind it, and y's class.
-struct Line {
-  std::optional<ExitEdge> ahead, behind;
-  int side_ahead = 0, side_behind = 0;
-  std::int64_t probes = 0;
+/// The exits of a line from R ahead of y and behind it, and y's class. What is behind is looked for when it matters.
+class Line {
+ public:
+  Line(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y, const Point2& d)
+      : p_(p), q_(q), y_(y), d_(d), sides_(p, q, d, probes_), ahead_(find_exit(p, q, y, d, sides_, probes_)) {
+    if (ahead_) side_ahead_ = side(*ahead_);
+  }
+  [[nodiscard]] const std::optional<ExitEdge>& ahead() const { return ahead_; }
+  [[nodiscard]] int side_ahead() const { return side_ahead_; }
+  /// Requires an exit ahead: then there is one behind.
+  [[nodiscard]] const ExitEdge& behind() {
+    if (!behind_) {
+      behind_ = find_exit(p_, q_, y_, {-d_[0], -d_[1]}, sides_.turned(), probes_);
+      side_behind_ = side(*behind_);
+    }
+    return *behind_;
+  }
+  [[nodiscard]] int side_behind() {
+    (void)behind();
+    return side_behind_;
+  }
+  [[nodiscard]] std::int64_t probes() const { return probes_; }
 
-  Line(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y, const Point2& d) {
-    const detail::SideVertices sides(p, q, d, probes);
-    ahead = detail::find_exit(p, q, y, d, sides, probes);
-    if (!ahead) return;
-    behind = detail::find_exit(p, q, y, {-d[0], -d[1]}, sides.turned(), probes);
-    const auto side = [&](const ExitEdge& e) {
-      ++probes;
-      return detail::side_of_edge(e.edge, p.vertex(e.parts.vertex_p), q.vertex(e.parts.vertex_q), y);
-    };
-    side_ahead = side(*ahead);
-    side_behind = side(*behind);
+  [[nodiscard]] PlanarContact contact() {
+    if (!ahead_ || side_ahead_ < 0) return PlanarContact::separated;
+    if (!ahead_->grazes && ahead_of_chord()) {
+      return side_ahead_ == 0 ? PlanarContact::touching : PlanarContact::overlapping;
+    }
+    if (side_behind() < 0) return PlanarContact::separated;
+    return ahead_->grazes || side_ahead_ == 0 || side_behind_ == 0 ? PlanarContact::touching
+                                                                   : PlanarContact::overlapping;
   }
-  [[nodiscard]] PlanarContact contact() const {
-    if (!ahead || side_ahead < 0 || side_behind < 0) return PlanarContact::separated;
-    return ahead->grazes || side_ahead == 0 || side_behind == 0 ? PlanarContact::touching : PlanarContact::overlapping;
+
+ private:
+  int side(const ExitEdge& e) {
+    ++probes_;
+    return detail::side_of_edge(e.edge, p_.vertex(e.parts.vertex_p), q_.vertex(e.parts.vertex_q), y_);
   }
+  /// Does y lie beyond the chord of R between its vertices farthest to the right and to the left? The line crosses the
+  /// chord, and R lies between there and the exit.
+  bool ahead_of_chord() {
+    ++probes_;
+    const detail::SumPoint right{p_.vertex(sides_.p_right), q_.vertex(sides_.q_left)};
+    const detail::SumPoint left{p_.vertex(sides_.p_left), q_.vertex(sides_.q_right)};
+    return detail::exact_sign([&]<class N>() {
+             return cross(detail::from_to<N>(right, left), detail::from_to<N>(right, {y_, {0, 0}}));
+           }) < 0;
+  }
+
+  const ConvexPolygon& p_;
+  const ConvexPolygon& q_;
+  const Point2 &y_, &d_;
+  std::int64_t probes_ = 0;
+  detail::SideVertices sides_;
+  std::optional<ExitEdge> ahead_, behind_;
+  int side_ahead_ = 0, side_behind_ = 0;
 };
 
 }  // namespace
@@ -72,17 +113,17 @@ Expected<PlanarDepth> convex_directional_depth(const ConvexPolygon& p, const Con
   const detail::FloatingPointGuard guard;
   if (const auto y = checked(displacement, "displacement"); !y) return y.error();
   if (const auto d = checked_direction(direction); !d) return d.error();
-  const Line line(p, q, displacement, direction);
+  Line line(p, q, displacement, direction);
   PlanarDepth out;
   out.contact = line.contact();
-  out.probes = line.probes;
+  out.probes = line.probes();
   if (out.contact != PlanarContact::overlapping) return out;
-  const Rounded t = time_of(p, q, *line.ahead, displacement, direction);
+  const Rounded t = time_of(p, q, *line.ahead(), displacement, direction);
   out.lower = t.lower;
   out.upper = t.upper;
   out.depth = t.upper;
-  out.edge = line.ahead->parts;
-  out.normal = detail::unit_normal(line.ahead->edge);
+  out.edge = line.ahead()->parts;
+  out.normal = detail::unit_normal(line.ahead()->edge);
   return out;
 }
 
@@ -91,18 +132,19 @@ Expected<PlanarCrossing> convex_crossing(const ConvexPolygon& p, const ConvexPol
   const detail::FloatingPointGuard guard;
   if (const auto y = checked(displacement, "displacement"); !y) return y.error();
   if (const auto d = checked_direction(direction); !d) return d.error();
-  const Line line(p, q, displacement, direction);
+  Line line(p, q, displacement, direction);
   PlanarCrossing out;
-  out.probes = line.probes;
-  out.meets = line.ahead.has_value();
+  out.meets = line.ahead().has_value();
+  if (out.meets) (void)line.behind();
+  out.probes = line.probes();
   if (!out.meets) return out;
-  const Rounded leave = time_of(p, q, *line.ahead, displacement, direction);
-  const Rounded enter = time_of(p, q, *line.behind, displacement, direction);
+  const Rounded leave = time_of(p, q, *line.ahead(), displacement, direction);
+  const Rounded enter = time_of(p, q, line.behind(), displacement, direction);
   // Inside the edge's line: ahead of y the end, behind it the beginning.
-  out.leave_lower = line.side_ahead >= 0 ? leave.lower : -leave.upper;
-  out.leave_upper = line.side_ahead >= 0 ? leave.upper : -leave.lower;
-  out.enter_lower = line.side_behind >= 0 ? -enter.upper : enter.lower;
-  out.enter_upper = line.side_behind >= 0 ? -enter.lower : enter.upper;
+  out.leave_lower = line.side_ahead() >= 0 ? leave.lower : -leave.upper;
+  out.leave_upper = line.side_ahead() >= 0 ? leave.upper : -leave.lower;
+  out.enter_lower = line.side_behind() >= 0 ? -enter.upper : enter.lower;
+  out.enter_upper = line.side_behind() >= 0 ? -enter.lower : enter.upper;
   return out;
 }
 
@@ -110,7 +152,8 @@ Expected<PlanarContact> convex_intersection(const ConvexPolygon& p, const Convex
                                             const Point2& displacement) {
   const detail::FloatingPointGuard guard;
   if (const auto y = checked(displacement, "displacement"); !y) return y.error();
-  return Line(p, q, displacement, {1, 0}).contact();
+  const Point2 across = {1, 0};
+  return Line(p, q, displacement, across).contact();
 }
 
 Expected<PlanarDepth> convex_depth(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& displacement) {

@@ -1,12 +1,14 @@
 #include "pd/planar/convex_polygon.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "numeric/floating_point_guard.hpp"
 #include "pd/numeric/predicates.hpp"
+#include "planar/angle_grid.hpp"
 #include "planar/convex_signs.hpp"
 
 namespace pd {
@@ -14,6 +16,14 @@ namespace pd {
 namespace {
 
 constexpr double kLargest = 1e300;
+/// Below this many vertices a binary search touches a few cache lines anyway.
+constexpr int kLeastTabulated = 64;
+
+/// Edges are sorted by angle from the lexicographically least vertex on: does this one come before a direction?
+bool before(const detail::PolygonEdge& edge, const detail::PolygonEdge& level, int half) {
+  const int he = detail::half_of(edge);
+  return he != half ? he < half : detail::turn(edge, level) > 0;
+}
 
 /// Andrew's monotone chain over points in lexicographic order without duplicates.
 std::vector<std::int32_t> hull_of(std::span<const Point2> points, const std::vector<std::int32_t>& sorted) {
@@ -57,22 +67,44 @@ Expected<ConvexPolygon> ConvexPolygon::from_points(std::span<const Point2> point
     return Error{ErrorCode::not_full_dimensional, "the points lie on one line; a polygon has an inside", "points"};
   }
   for (const std::int32_t i : polygon.caller_ids_) polygon.points_.push_back(at(i));
+  polygon.tabulate_edges();
   return polygon;
 }
 
+void ConvexPolygon::tabulate_edges() {
+  const int n = num_vertices();
+  if (n < kLeastTabulated) return;
+  const int count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(n)) / 2);
+  first_edges_.reserve(static_cast<std::size_t>(count) + 1);
+  first_edges_.push_back(0);
+  int edge = 0;
+  for (int k = 1; k < count; ++k) {
+    const Point2 origin{0, 0}, direction = detail::grid_direction(k, count);
+    const detail::PolygonEdge level{&origin, &direction};
+    const int half = detail::half_of(level);
+    while (edge < n && before(detail::edge_of(*this, edge, 1), level, half)) ++edge;
+    first_edges_.push_back(edge);
+  }
+  first_edges_.push_back(n);
+}
+
 int ConvexPolygon::extreme(const Point2& direction, std::int64_t* probes) const {
-  // Edges are sorted by angle. The first one at or after the direction's left normal falls or runs level: it leaves the
-  // extreme vertex.
+  // The first edge at or after the direction's left normal falls or runs level: it leaves the extreme vertex.
   const Point2 origin{0, 0}, normal{-direction[1], direction[0]};
   const detail::PolygonEdge level{&origin, &normal};
   const int half = detail::half_of(level);
   int low = -1, high = num_vertices();
+  if (!first_edges_.empty()) {
+    // The place is within a fraction of a cell: the normal is certainly not before the cell before its own, and before
+    // the end of the one behind it.
+    const int cells = static_cast<int>(first_edges_.size()) - 1;
+    const int cell = static_cast<int>(detail::grid_place(normal, cells));
+    low = first_edges_[static_cast<std::size_t>(std::max(cell - 1, 0))] - 1;
+    high = first_edges_[static_cast<std::size_t>(std::min(cell + 2, cells))];
+  }
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
-    const detail::PolygonEdge e = detail::edge_of(*this, middle, 1);
-    const int he = detail::half_of(e);
-    const bool before = he != half ? he < half : detail::turn(e, level) > 0;
-    (before ? low : high) = middle;
+    (before(detail::edge_of(*this, middle, 1), level, half) ? low : high) = middle;
     if (probes != nullptr) ++*probes;
   }
   return high == num_vertices() ? 0 : high;

@@ -22,6 +22,12 @@ Interval rounded_root(const Dyadic& numerator, const Dyadic& denominator) {
 
 /// The right normal of an edge, scaled to length 1 (within 4 ulp).
 inline Point2 unit_normal(const PolygonEdge& e) {
+  const DoubleDouble x = two_sum((*e.to)[0], -(*e.from)[0]), y = two_sum((*e.to)[1], -(*e.from)[1]);
+  const double size = std::max(std::abs(x.hi), std::abs(y.hi));
+  if (size < 0x1p400 && size > 0x1p-400) {  // no product overflows, and what underflows does not matter
+    const DoubleDouble length = sqrt(x * x + y * y);
+    return {e.sign * to_double(y / length) + 0.0, -e.sign * to_double(x / length) + 0.0};
+  }
   const auto v = vector_of<Dyadic>(e);
   const Vec3DD n = unit_double_double({v[1], -v[0], Dyadic(0.0)});
   return {to_double(n.x), to_double(n.y)};

@@ -86,7 +86,7 @@ PolygonDepth PolygonDifference::straight_escape_depth(const Point2& placement) c
   const Point2 y = s.turned(placement);
   PolygonDepth answer;
   answer.contact = s.query.contact(y);
-  const detail::StraightEscape::Way way = detail::StraightEscape(s.boundary, s.query.stretch_tree(), y).run();
+  const detail::StraightEscape::Way way = detail::StraightEscape(s.boundary, s.query, y).run();
   if (!way.exit) return answer;
   detail::fill(answer, way.move, s.swapped);
   answer.feature = detail::feature_of(s.boundary, s.p, s.q, *way.exit, s.swapped);

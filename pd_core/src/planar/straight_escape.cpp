@@ -87,14 +87,43 @@ N StraightEscape::beside(const Vector2<N>& d, const Span& span, const Place& pla
 void StraightEscape::attempt(const Candidate& candidate) {
   const std::optional<Point2> rounded = rounded_direction(candidate);
   if (!rounded) return;
+  const Vector2<Estimate> d = direction<Estimate>(candidate);
   std::vector<Piece> pieces;
-  if (!gather(direction<Estimate>(candidate), *rounded, pieces)) return;
+  if (blocked(d, *rounded) || !gather(d, *rounded, pieces)) return;
   const Vector2<Dyadic> exact = direction<Dyadic>(candidate);
   std::vector<Hit> hits;
   for (const Piece& piece : pieces) {
     if (auto hit = meet(piece, exact)) hits.push_back(std::move(*hit));
   }
   finish(hits, exact);
+}
+
+double StraightEscape::certain_crossing(const EdgePart& part, const Vector2<Estimate>& d, const Point2& u) const {
+  const Estimate from = beside(d, part.span, part.from), to = beside(d, part.span, part.to);
+  if (from.certain_sign() * to.certain_sign() >= 0) return 0;
+  const SumPoint y = BoundaryQuery::point(y_);
+  const Vector2<Estimate> edge = vector<Estimate>(part.span.d);
+  const Estimate n = cross(from_to<Estimate>(y, part.span.s), edge);
+  const Estimate w = edge.y * Estimate(u[0]) - edge.x * Estimate(u[1]);
+  // u is within 2^-44 of the direction, so that w is within so much of the edge's length.
+  const double off = 0x1p-43 * (std::abs(edge.x.value) + std::abs(edge.y.value)) + w.error;
+  const double least = (std::abs(n.value) - n.error) / (std::abs(w.value) + off);
+  return least > 0 && n.value * w.value > 0 ? least * (1 - 0x1p-40) : 0;
+}
+
+bool StraightEscape::blocked(const Vector2<Estimate>& d, const Point2& u) const {
+  if (!std::isfinite(limit_)) return false;
+  bool found = false;
+  double reach = std::numeric_limits<double>::infinity();
+  const RoundedRay beyond({y_[0] + limit_ * u[0], y_[1] + limit_ * u[1]}, u);
+  rays_.visit(beyond, reach, [&](std::int32_t i) {
+    const Stretch& s = boundary_.stretches()[at(i)];
+    const int edge = SumBoundary::first_edge(s);
+    if (found || edge != SumBoundary::last_edge(s)) return;
+    found = certain_crossing(boundary_.part(s, edge), d, u) > limit_;
+    if (found) reach = -1;
+  });
+  return found;
 }
 
 bool StraightEscape::gather(const Vector2<Estimate>& d, const Point2& u, std::vector<Piece>& pieces) const {
@@ -125,18 +154,7 @@ bool StraightEscape::gather(const Vector2<Estimate>& d, const Point2& u, std::ve
   };
   const auto look = [&](std::int32_t i, int e) {
     pieces.push_back({i, e});
-    const EdgePart part = boundary_.part(boundary_.stretches()[at(i)], e);
-    const Estimate from = beside(d, part.span, part.from), to = beside(d, part.span, part.to);
-    if (from.certain_sign() * to.certain_sign() >= 0) return;
-    const SumPoint y = BoundaryQuery::point(y_);
-    const Vector2<Estimate> edge = vector<Estimate>(part.span.d);
-    const Estimate n = cross(from_to<Estimate>(y, part.span.s), edge);
-    const Estimate w = edge.y * Estimate(u[0]) - edge.x * Estimate(u[1]);
-    // u is within 2^-44 of the direction, so that w is within so much of the edge's length.
-    const double off = 0x1p-43 * (std::abs(edge.x.value) + std::abs(edge.y.value)) + w.error;
-    const double least = (std::abs(n.value) - n.error) / (std::abs(w.value) + off);
-    if (!(least > 0) || n.value * w.value < 0) return;
-    nearest = std::max(nearest, least * (1 - 0x1p-40));
+    nearest = std::max(nearest, certain_crossing(boundary_.part(boundary_.stretches()[at(i)], e), d, u));
     if (nearest > limit_) more = false;
   };
   tree_.visit(

@@ -5,7 +5,9 @@
 /// semicontinuous, and between directions in which the envelope changes from one edge to another it is the distance to
 /// one line. So its least value is at the foot of a perpendicular, or in the direction of an end of a stretch or of a
 /// point where an arc is touched by a line from y. All of these are tried, those that a crossing farther out than the
-/// best one rules out by doubles, the others exactly ([D] section 6, complete separation).
+/// best one rules out by doubles, the others exactly ([D] section 6, complete separation). Such a crossing is looked
+/// for first from the best one's distance on, down the tree of turned boxes: nearly every direction has one close to
+/// there.
 #pragma once
 
 #include <limits>
@@ -19,8 +21,8 @@ namespace pd::detail {
 
 class StraightEscape {
  public:
-  StraightEscape(const SumBoundary& boundary, const BoxTree& stretches, const Point2& y)
-      : boundary_(boundary), tree_(stretches), y_(y) {}
+  StraightEscape(const SumBoundary& boundary, const BoundaryQuery& query, const Point2& y)
+      : boundary_(boundary), tree_(query.stretch_tree()), rays_(query.ray_tree()), y_(y) {}
 
   struct Way {
     ExactVector move;
@@ -55,6 +57,10 @@ class StraightEscape {
   template <class N>
   [[nodiscard]] Vector2<N> direction(const Candidate& candidate) const;
   [[nodiscard]] std::optional<Point2> rounded_direction(const Candidate& candidate) const;
+  /// A crossing of the ray with an edge part is certain, and not nearer than this; 0: none is.
+  [[nodiscard]] double certain_crossing(const EdgePart& part, const Vector2<Estimate>& d, const Point2& rounded) const;
+  /// A crossing beyond the best way is certain, with an edge that stands alone.
+  [[nodiscard]] bool blocked(const Vector2<Estimate>& d, const Point2& rounded) const;
   /// False where a crossing beyond the best way is certain.
   [[nodiscard]] bool gather(const Vector2<Estimate>& d, const Point2& rounded, std::vector<Piece>& pieces) const;
   [[nodiscard]] std::optional<Hit> meet(const Piece& piece, const Vector2<Dyadic>& d) const;
@@ -65,6 +71,7 @@ class StraightEscape {
 
   const SumBoundary& boundary_;
   const BoxTree& tree_;
+  const TurnedBoxes& rays_;
   Point2 y_;
   std::vector<Candidate> feet_, corners_;
   std::optional<Way> best_;

@@ -45,13 +45,7 @@ void rotation_in_double_double(const Pose& pose, DoubleDouble (&rotation)[9]) {
 
 /// Largest coordinate of |R| |v| over the vertices, bounded by the box of |v|.
 double reach(const ConvexPolytope& polytope, const DoubleDouble (&rotation)[9], double scale) {
-  const int n = polytope.num_vertices();
-  double box[3] = {0, 0, 0};
-  for (int v = 0; v < n; ++v) {
-    box[0] = std::max(box[0], std::abs(polytope.x()[v]));
-    box[1] = std::max(box[1], std::abs(polytope.y()[v]));
-    box[2] = std::max(box[2], std::abs(polytope.z()[v]));
-  }
+  const Vec3& box = polytope.max_abs_coordinates();
   double largest = 0;
   for (int i = 0; i < 3; ++i) {
     double sum = 0;
@@ -108,7 +102,7 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
                                    origin.cwiseAbs().maxCoeff(), 0x1p-1000});
   // Rescale only where a product of three lengths could leave the range of doubles: within it scaling changes no bit.
   scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
-  const double scale = std::ldexp(1.0, -scale_exponent_);
+  const double scale = scale_ = std::ldexp(1.0, -scale_exponent_);
 
   rotation_in_double_double(pose_a, body_a_.rotation_dd);
   rotation_in_double_double(pose_b, body_b_.rotation_dd);
@@ -137,17 +131,15 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
 }
 
 Vec3 PosedPair::approximate(const PairVector& v) const {
-  const double scale = std::ldexp(1.0, -scale_exponent_);
   Vec3 r =
-      rotate(*b_, body_b_.rotation, scale, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation, scale, v.a_to, v.a_from);
+      rotate(*b_, body_b_.rotation, scale_, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation, scale_, v.a_to, v.a_from);
   if (v.translated) r += offset_;
   return r;
 }
 
 Vec3DD PosedPair::approximate_dd(const PairVector& v) const {
-  const double scale = std::ldexp(1.0, -scale_exponent_);
-  Vec3DD r = rotate(*b_, body_b_.rotation_dd, scale, v.b_to, v.b_from) -
-             rotate(*a_, body_a_.rotation_dd, scale, v.a_to, v.a_from);
+  Vec3DD r = rotate(*b_, body_b_.rotation_dd, scale_, v.b_to, v.b_from) -
+             rotate(*a_, body_a_.rotation_dd, scale_, v.a_to, v.a_from);
   if (v.translated) r = r + offset_dd_;
   return r;
 }

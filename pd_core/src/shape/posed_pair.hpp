@@ -97,6 +97,7 @@ class PosedPair {
   const Pose* pose_a_;
   const Pose* pose_b_;
   int scale_exponent_ = 0;
+  double scale_ = 1;  ///< 2^-scale_exponent_
   double vector_error_ = 0;
   double vector_error_dd_ = 0;
   mutable Dyadic homogeneous_factor_;

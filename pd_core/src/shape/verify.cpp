@@ -16,11 +16,11 @@ using detail::indexed;
 using Finding = std::optional<std::string>;
 
 Finding check_vertices(const ConvexPolytope& p) {
-  double max_abs = 0;
+  Vec3 max_abs = Vec3::Zero();
   std::vector<int> ids;
   for (int v = 0; v < p.num_vertices(); ++v) {
     const Vec3 here = p.vertex(v);
-    max_abs = std::max(max_abs, here.cwiseAbs().maxCoeff());
+    max_abs = max_abs.cwiseMax(here.cwiseAbs());
     ids.push_back(p.caller_id(v));
     if (v == 0) continue;
     const Vec3 before = p.vertex(v - 1);
@@ -28,7 +28,8 @@ Finding check_vertices(const ConvexPolytope& p) {
       return indexed("vertices", v) + " is not after its predecessor";
     }
   }
-  if (max_abs != p.max_abs_coordinate()) return "max_abs_coordinate is not that of the vertices";
+  if (max_abs != p.max_abs_coordinates()) return "max_abs_coordinates are not those of the vertices";
+  if (max_abs.maxCoeff() != p.max_abs_coordinate()) return "max_abs_coordinate is not that of the vertices";
   std::sort(ids.begin(), ids.end());
   if (std::adjacent_find(ids.begin(), ids.end()) != ids.end()) return "two vertices have one caller id";
   if (p.padded_size() < p.num_vertices() || p.padded_size() % ConvexPolytope::kPadding != 0) return "padding is wrong";

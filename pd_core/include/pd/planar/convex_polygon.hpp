@@ -33,9 +33,17 @@ class ConvexPolygon {
   /// @param probes  counted up by the vertices or edges looked at, when given.
   [[nodiscard]] int extreme(const Point2& direction, std::int64_t* probes = nullptr) const;
 
+  /// For searches: entry k is the first edge, by the vertex that it leaves, at or after direction k of a grid of size()
+  /// - 1 directions (src/planar/angle_grid.hpp); the last entry is num_vertices(). Empty for small polygons. 2 to 4
+  /// bytes a vertex.
+  [[nodiscard]] std::span<const std::int32_t> first_edges() const { return first_edges_; }
+
  private:
+  void tabulate_edges();
+
   std::vector<Point2> points_;
   std::vector<std::int32_t> caller_ids_;
+  std::vector<std::int32_t> first_edges_;
 };
 
 /// R = P + (-Q) as what it is made of, so that nothing is rounded: vertex i is P's vertex `p` minus Q's vertex `q`, and

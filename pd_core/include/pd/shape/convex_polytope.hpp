@@ -92,6 +92,8 @@ class ConvexPolytope {
 
   /// Largest |coordinate|.
   [[nodiscard]] double max_abs_coordinate() const { return data_->max_abs_coordinate; }
+  /// The same for each axis.
+  [[nodiscard]] const Vec3& max_abs_coordinates() const { return data_->max_abs_coordinates; }
   /// Mean of the vertices, rounded: a point well inside, for choosing directions.
   [[nodiscard]] const Vec3& centre() const { return data_->centre; }
   /// Largest |vertex|, rounded up.
@@ -120,6 +122,7 @@ class ConvexPolytope {
     std::int32_t num_facets = 0;
     std::int32_t padded_size = 0;
     double max_abs_coordinate = 0;
+    Vec3 max_abs_coordinates = Vec3::Zero();
     double radius = 0;           ///< >= every |vertex|
     Vec3 centre = Vec3::Zero();  ///< mean of the vertices
     std::size_t memory_bytes = 0;

@@ -19,17 +19,42 @@ Vec3 leading(const Dyadic3& v) {
   return {v.x.scaled(-largest).to_double(), v.y.scaled(-largest).to_double(), v.z.scaled(-largest).to_double()};
 }
 
+/// Above this a face is walked to along edges; below, a scan of all vertices is faster.
+constexpr int kScannedVertices = 96;
+
+/// `extremal` of a solid in time of the climb and of the face's degrees: the vertices of one face hang together.
+template <class Sign>
+SupportFace face_climbed_to(const ConvexPolytope& body, const Vec3& local, Sign&& sign) {
+  SupportFace face{climb_exactly(body, support_vertex(body, local, -1), sign)};
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    for (const std::int32_t next : body.neighbours(face[i])) {
+      if (std::find(face.begin(), face.end(), next) == face.end() && sign(face[i], next) == 0) face.push_back(next);
+    }
+  }
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
 /// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the exact rotated difference.
 template <class Edge>
 SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const ExactDirection& direction, double sign,
                      Edge&& edge) {
   const Vec3 local = sign * (rotation.transpose() * direction.unit);
-  const int n = body.num_vertices();
-  double best = -std::numeric_limits<double>::infinity();
-  for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
   // The local direction errs by 12u per coordinate (unit 4u, rotation 4u, product 3u), the dot product by 3u |v|: twice
   // 32u covers both values that are compared. Products of subnormal coordinates lose half of the least double each.
   const double slack = 64 * kUnitRoundoff * body.radius() + 0x1p-1070;
+  const int n = body.num_vertices();
+  const auto exactly = [&](int from, int to) {
+    return dot(direction.exact, edge(from, to)).sign() * (sign > 0 ? 1 : -1);
+  };
+  if (n > kScannedVertices && body.affine_dimension() == 3) {
+    return face_climbed_to(body, local, [&](int from, int to) {
+      const double value = body.vertex(to).dot(local) - body.vertex(from).dot(local);
+      return std::abs(value) > slack ? (value > 0 ? 1 : -1) : exactly(from, to);
+    });
+  }
+  double best = -std::numeric_limits<double>::infinity();
+  for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
   SupportFace face;
   for (int v = 0; v < n; ++v) {
     if (body.vertex(v).dot(local) < best - slack) continue;
@@ -37,7 +62,7 @@ SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const Exa
       face.push_back(v);
       continue;
     }
-    const int compared = dot(direction.exact, edge(face.front(), v)).sign() * (sign > 0 ? 1 : -1);
+    const int compared = exactly(face.front(), v);
     if (compared > 0) face.clear();
     if (compared >= 0) face.push_back(v);
   }

@@ -70,6 +70,32 @@ PortalPlane FarPortal::plane() const {
   return plane;
 }
 
+bool FarPortal::is_side(const PairVector& edge) const {
+  if (edge.a_to == edge.a_from && edge.b_to == edge.b_from) return true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexPair &x = corners_[i], &y = corners_[(i + 1) % 3];
+    if (x.a < 0 || y.a < 0) continue;
+    const auto same = [](std::int32_t to, std::int32_t from, std::int32_t v, std::int32_t w) {
+      return (to == v && from == w) || (to == w && from == v);
+    };
+    if (edge.b_to < 0 && x.b == y.b && same(edge.a_to, edge.a_from, x.a, y.a)) return true;
+    if (edge.a_to < 0 && x.a == y.a && same(edge.b_to, edge.b_from, x.b, y.b)) return true;
+  }
+  return false;
+}
+
+bool FarPortal::completes_parallelogram(const VertexPair& s) const {
+  const auto balanced = [](std::int32_t s_, std::int32_t opposite, std::int32_t x, std::int32_t y) {
+    return (s_ == x && opposite == y) || (s_ == y && opposite == x);
+  };
+  if (has_far_corner()) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexPair &opposite = corners_[i], &x = corners_[(i + 1) % 3], &y = corners_[(i + 2) % 3];
+    if (balanced(s.a, opposite.a, x.a, y.a) && balanced(s.b, opposite.b, x.b, y.b)) return true;
+  }
+  return false;
+}
+
 int FarPortal::sign(const PortalPlane& plane, const PairVector& edge) const {
   ++signs_asked_;
   const Vec3& n = plane.rounded.vector;
@@ -79,6 +105,8 @@ int FarPortal::sign(const PortalPlane& plane, const PairVector& edge) const {
   const double bound = e.cwiseAbs().sum() * (plane.rounded.error + 0x1p-51 * size) +
                        pair_.vector_error() * (size + 3 * plane.rounded.error);
   if (std::abs(value) > bound * (1 + 0x1p-48) + 0x1p-900) return value > 0 ? 1 : -1;
+  // The portal's own sides lie in its plane, and a step may lead nowhere: no arithmetic is spent on those zeros.
+  if (is_side(edge)) return 0;
   switch (plane.kind) {
     case PortalPlane::Kind::spanned:
       return pair_.sign_determinant(edge, plane.u, plane.w);
@@ -96,6 +124,7 @@ bool FarPortal::beyond(const PortalPlane& plane, const VertexPair& s) const {
   for (std::size_t i = 0; i < 3; ++i) {
     if (corners_[i].a == s.a && corners_[i].b == s.b) return false;
   }
+  if (completes_parallelogram(s)) return false;
   return sign(plane, PairVector::difference(c.a, c.b, s.a, s.b)) > 0;
 }
 

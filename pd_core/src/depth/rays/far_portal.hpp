@@ -50,6 +50,10 @@ class FarPortal {
   [[nodiscard]] std::int64_t signs_asked() const { return signs_asked_; }
 
  private:
+  /// Is this step in A or in B a side of the portal, or none at all?
+  [[nodiscard]] bool is_side(const PairVector& edge) const;
+  /// Is s two corners' sum less the third, vertex by vertex? Then it lies in their plane.
+  [[nodiscard]] bool completes_parallelogram(const VertexPair& s) const;
   /// As DirectionSigns::side, where x may be far.
   [[nodiscard]] int side(const VertexPair& x, const VertexPair& y) const;
 

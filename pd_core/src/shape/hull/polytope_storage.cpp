@@ -226,9 +226,9 @@ std::vector<std::int32_t> place_vertices(std::span<const HullVertex> vertices, c
     out.y[i] = p.y;
     out.z[i] = p.z;
     out.caller_ids[i] = p.caller_id;
-    out.storage->max_abs_coordinate =
-        std::max({out.storage->max_abs_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    out.storage->max_abs_coordinates = out.storage->max_abs_coordinates.cwiseMax(Vec3(p.x, p.y, p.z).cwiseAbs());
   }
+  out.storage->max_abs_coordinate = out.storage->max_abs_coordinates.maxCoeff();
   std::fill(out.x + n.vertices, out.x + n.padded, out.x[0]);
   std::fill(out.y + n.vertices, out.y + n.padded, out.y[0]);
   std::fill(out.z + n.vertices, out.z + n.padded, out.z[0]);
