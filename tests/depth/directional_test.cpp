@@ -130,6 +130,17 @@ TEST(DirectionalDepth, GridBodiesAlongGridDirections) {
   EXPECT_GT(overlapping, 2 * rounds / 5);
 }
 
+TEST(DirectionalDepth, ALineThatOnlyMeetsAVertexOfTheSum) {
+  // The line runs along P's boundary and through a corner of the portal, with P on both sides of each of its sides: a
+  // descent once took it for one through the inside.
+  const Bodies bodies({{-2, -2, -1}, {0, 0, 2}, {1, 0, -2}, {0, 0, -2}, {-2, 2, 0}, {-1, 2, -2}}, Pose(),
+                      {{1, -1, 0}, {0, 2, 2}, {1, 0, 2}, {-1, 2, 2}}, Pose());
+  Scratch scratch;
+  int overlapping = 0;
+  check(bodies, Vec3(-1, 1, 2), scratch, overlapping);
+  EXPECT_EQ(overlapping, 0);
+}
+
 TEST(DirectionalDepth, BoxesByHand) {
   Scratch scratch;
   const ConvexShape box(*ConvexPolytope::box(Vec3(1, 1, 1)));

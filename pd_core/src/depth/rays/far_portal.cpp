@@ -19,6 +19,7 @@ FarPortal::FarPortal(const DirectionSigns& ray) : ray_(ray), pair_(ray.pair()) {
 
 PortalPlane FarPortal::plane() const {
   PortalPlane plane;
+  plane.of_portal = true;
   std::size_t far = 0, last_far = 3, real = 3;
   for (std::size_t i = 0; i < 3; ++i) {
     if (is_far(i)) {
@@ -106,7 +107,7 @@ int FarPortal::sign(const PortalPlane& plane, const PairVector& edge) const {
                        pair_.vector_error() * (size + 3 * plane.rounded.error);
   if (std::abs(value) > bound * (1 + 0x1p-48) + 0x1p-900) return value > 0 ? 1 : -1;
   // The portal's own sides lie in its plane, and a step may lead nowhere: no arithmetic is spent on those zeros.
-  if (is_side(edge)) return 0;
+  if (plane.of_portal && is_side(edge)) return 0;
   switch (plane.kind) {
     case PortalPlane::Kind::spanned:
       return pair_.sign_determinant(edge, plane.u, plane.w);
@@ -124,7 +125,7 @@ bool FarPortal::beyond(const PortalPlane& plane, const VertexPair& s) const {
   for (std::size_t i = 0; i < 3; ++i) {
     if (corners_[i].a == s.a && corners_[i].b == s.b) return false;
   }
-  if (completes_parallelogram(s)) return false;
+  if (plane.of_portal && completes_parallelogram(s)) return false;
   return sign(plane, PairVector::difference(c.a, c.b, s.a, s.b)) > 0;
 }
 

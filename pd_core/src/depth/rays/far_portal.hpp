@@ -27,6 +27,7 @@ struct PortalPlane {
   PairVector u, w;
   Dyadic3 exact;
   RoundedDirection rounded{};
+  bool of_portal = false;  ///< holds all corners of the portal that are not far
   std::size_t corner = 3;  ///< a corner in the plane that is a vertex of P; 3: none, everything is beyond
 };
 

@@ -205,27 +205,62 @@ class Descent {
     return levels.vertex();
   }
 
-  /// Where the line runs through a side of the portal, P must have vertices on both sides of the plane over it.
+  /// The plane through a corner x and the direction, and through a point of P: outwards is to the right of x -> y.
+  [[nodiscard]] PortalPlane plane_along_line(std::size_t x, const VertexPair& y) const {
+    const VertexPair& from = portal_.corner(x);
+    PortalPlane plane;
+    plane.kind = PortalPlane::Kind::parallel;
+    plane.w = PairVector::difference(y.a, y.b, from.a, from.b);
+    plane.rounded = rounded_cross(ray_.scaled(), 0, pair_.approximate(plane.w), pair_.vector_error());
+    plane.corner = x;
+    return plane;
+  }
+  /// The point of P farthest beyond such a plane; nothing where none lies strictly beyond it.
+  std::optional<VertexPair> beyond_line(const PortalPlane& plane) {
+    VertexPair s = portal_.corner(plane.corner);
+    for (const int side : {0, 1}) {
+      std::int32_t& v = side == 0 ? s.a : s.b;
+      v = level_extreme(plane, side);
+      if (finest(side) > 0) continue;
+      v = climb_exactly(body(side), v, [&](int from, int to) {
+        ++result_.certificate;
+        return rises(plane, side, from, to);
+      });
+    }
+    const VertexPair& x = portal_.corner(plane.corner);
+    if (portal_.sign(plane, PairVector::difference(x.a, x.b, s.a, s.b)) <= 0) return std::nullopt;
+    return s;
+  }
+  [[nodiscard]] static PairVector point(const VertexPair& p) { return PairVector::point(p.a, p.b); }
+
+  [[nodiscard]] bool on_line(std::size_t corner) const {
+    const Dyadic3 c = cross(pair_.exact(point(portal_.corner(corner))), ray_.exact());
+    return c.x.sign() == 0 && c.y.sign() == 0 && c.z.sign() == 0;
+  }
+  /// The line runs through a corner x: seen along it, points of P are followed to the right round x, from one of them
+  /// on, until nothing lies on the right of one (P lies on one side of the line) or they have come round it.
+  bool surrounds(std::size_t x, const VertexPair& first) {
+    VertexPair last = first;
+    for (;;) {
+      const std::optional<VertexPair> next = beyond_line(plane_along_line(x, last));
+      if (!next) return false;
+      if (ray_.turn(point(first), point(*next)) > 0) return true;
+      last = *next;
+    }
+  }
+
+  /// Where the line runs through a side or a corner of the portal, P must lie all round it.
   bool crosses_interior() {
     for (std::size_t i = 0; i < 3; ++i) {
       const VertexPair &x = portal_.corner(i), &y = portal_.corner((i + 1) % 3);
-      if (ray_.turn(PairVector::point(x.a, x.b), PairVector::point(y.a, y.b)) != 0) continue;
-      PortalPlane plane;
-      plane.kind = PortalPlane::Kind::parallel;
-      plane.w = PairVector::difference(y.a, y.b, x.a, x.b);  // outwards is to the right of x -> y
-      plane.rounded = rounded_cross(ray_.scaled(), 0, pair_.approximate(plane.w), pair_.vector_error());
-      plane.corner = i;
-      VertexPair s = x;
-      for (const int side : {0, 1}) {
-        std::int32_t& v = side == 0 ? s.a : s.b;
-        v = level_extreme(plane, side);
-        if (finest(side) > 0) continue;
-        v = climb_exactly(body(side), v, [&](int from, int to) {
-          ++result_.certificate;
-          return rises(plane, side, from, to);
-        });
+      if (ray_.turn(point(x), point(y)) != 0) continue;
+      for (const std::size_t corner : {i, (i + 1) % 3}) {
+        if (!on_line(corner)) continue;
+        std::size_t other = (corner + 1) % 3;
+        if (on_line(other)) other = (corner + 2) % 3;
+        return surrounds(corner, portal_.corner(other));
       }
-      if (!portal_.beyond(plane, s)) return false;
+      if (!beyond_line(plane_along_line(i, y))) return false;
     }
     return true;
   }
