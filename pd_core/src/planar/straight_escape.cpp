@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/length.hpp"
 #include "numeric/root_sum.hpp"
 #include "planar/monotone_boundary.hpp"
 
@@ -67,7 +68,7 @@ Vector2<N> StraightEscape::direction(const Candidate& candidate) const {
 /// Of length 1, within 2^-44; nothing for no direction at all.
 std::optional<Point2> StraightEscape::rounded_direction(const Candidate& candidate) const {
   const Vector2<Estimate> d = direction<Estimate>(candidate);
-  const double length = std::hypot(d.x.value, d.y.value);
+  const double length = pd::detail::length(d.x.value, d.y.value);
   if (d.x.error + d.y.error <= 0x1p-46 * length && std::isfinite(length)) {
     return Point2{d.x.value / length, d.y.value / length};
   }

@@ -1,7 +1,10 @@
 #include "planar/turned_boxes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+
+#include "numeric/length.hpp"
 
 namespace pd::detail {
 
@@ -49,7 +52,7 @@ TurnedBoxes::Node TurnedBoxes::smaller_box(const std::vector<Item>& items, int b
   for (int i = begin; i < end; ++i) {
     const Item& item = items[at(item_[at(i)])];
     const Point2 along = {item.corner[3][0] - item.corner[0][0], item.corner[3][1] - item.corner[0][1]};
-    const double l = std::hypot(along[0], along[1]);
+    const double l = pd::detail::length(along[0], along[1]);
     if (l > length) {
       length = l;
       longest = {along[0] / l, along[1] / l};
