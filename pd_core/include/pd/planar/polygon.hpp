@@ -4,6 +4,8 @@
 /// The polygon is the closed region between its rings. Rings come in either orientation, their first point not
 /// repeated; duplicate and collinear vertices are merged. Rings that cross, touch or fold back are refused with the
 /// edges at fault, decided on the stored numbers exactly.
+///
+/// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993, section 4.
 #pragma once
 
 #include <array>

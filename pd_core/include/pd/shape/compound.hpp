@@ -7,6 +7,9 @@
 /// translated within the compound by a vector that their vertices take exactly (a stack of boxes stays a stack of
 /// boxes when it is turned). Elsewhere the composed pose is rounded, each number once, and that pose is the body that
 /// all answers are about; posed alike, the same compound is always the same body.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000, open
+/// problem (ii).
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,8 @@
 /// Facet f is the point normal(f); the edge of half-edge h the great arc between the normals of its two facets; vertex
 /// v the convex cell of the directions in which v is extreme, its corners the normals of the facets round v. It needs
 /// no storage beside the polytope's own: this is its vocabulary, and the location of a direction in it.
+///
+/// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000, 2.2.
 #pragma once
 
 #include <cstdint>
