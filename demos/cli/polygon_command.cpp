@@ -240,7 +240,7 @@ void add_polygon_command(CLI::App& app, Action& action) {
   command
       ->add_flag(fmt::format("--complete{{{}}}", kByDirection), arguments->complete,
                  "Get away for good, not only clear of P: --complete=straight or --complete=escape")
-      ->check(CLI::IsMember({kStraight, kEscape, kByDirection}));
+      ->check(CLI::IsMember({kStraight, kEscape, kByDirection}).description(""));
   command->add_option("--place-q", arguments->place, "Displacement X,Y of Q before it is looked at [0,0]");
   command
       ->add_option("--flatness", arguments->flatness, "Greatest distance of a curve from its chords [1e-4 of the size]")

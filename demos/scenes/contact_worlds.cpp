@@ -208,6 +208,7 @@ ContactScene ragdolls(std::uint64_t perturbation) {
 const std::vector<ContactSceneMaker>& contact_scenes() {
   static const std::vector<ContactSceneMaker> makers{
       {"tower-1m", [](std::uint64_t p) { return tower(20, 0.5, p); }},
+      {"tower-10cm", [](std::uint64_t p) { return tower(20, 0.05, p); }},
       {"tower-1cm", [](std::uint64_t p) { return tower(20, 0.005, p); }},
       {"tower-1mm", [](std::uint64_t p) { return tower(20, 0.0005, p); }},
       {"pyramid", [](std::uint64_t p) { return pyramid(20, p); }},

@@ -165,6 +165,8 @@ void add_contact_options(CLI::App& command, ContactOptions& o) {
       ->delimiter(',')
       ->check(CLI::IsMember({"default", "recommended"}))
       ->capture_default_str();
+  command.add_option("--iterations", o.iterations, "of the constraint solver (default: the settings' own)")
+      ->check(CLI::PositiveNumber);
   command.add_option("--starts", o.starts, "perturbed starts of each scene (default: 10, quick 1)");
   command.add_option("--seconds", o.seconds, "simulated time of each run (default: the scene's own)");
   command.add_flag("--quick", o.quick, "a few minutes: short runs from one start");

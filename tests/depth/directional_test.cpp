@@ -343,6 +343,21 @@ TEST(DifferenceQueries, LinesAgreeWithPointClasses) {
   EXPECT_EQ(line_in_difference(ball, ball, Vec3::Zero(), Vec3::Zero()).error().code, ErrorCode::zero_direction);
 }
 
+// A face is a loop that is stored, however many corners it has: 200,000 of them looked for one by one took seconds.
+TEST(DirectionalDepth, FacesOfThousandsOfCorners) {
+  const ConvexShape drum(*ConvexPolytope::from_points(scenes::prism(20'000)));
+  const Pose above = Pose::from_trusted_matrix(Mat3::Identity(), Vec3(0.25, 0.125, 0.5));
+  Scratch scratch;
+  const auto found = directional_depth({&drum, Pose()}, {&drum, above}, Vec3::UnitZ(), scratch);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->contact, ContactClass::overlapping);
+  EXPECT_LE(found->lower, 1.5);
+  EXPECT_GE(found->upper, 1.5);
+  EXPECT_LE(found->upper - found->lower, 0x1p-51);
+  EXPECT_EQ(found->feature_b.kind, Feature::Kind::facet);
+  EXPECT_EQ(found->normal, Vec3::UnitZ());
+}
+
 TEST(DirectionalDepth, BracketsOfCurvedBodiesAreNarrowAlongPlanesOfSymmetryToo) {
   const std::vector<ConvexShape> shapes = {*ConvexShape::ellipsoid(Vec3(1, 2, 3)),
                                            *ConvexShape::ellipsoid(Vec3::Ones()),

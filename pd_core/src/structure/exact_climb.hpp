@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pd/shape/convex_polytope.hpp"
@@ -27,20 +28,36 @@ int climb_exactly(const ConvexPolytope& body, int at, Sign&& sign) {
   return at;
 }
 
-/// The lowest vertex of the face on which `at` lies and along whose edges the sign is 0. `stack` is a buffer.
+/// The vertices of the largest face on which `at` lies and along whose edges the sign is 0: `at` alone, an edge, or a
+/// facet, whose loop is stored. Time: the degree of `at`, in signs, and the face. `face` is the answer.
 template <class Sign>
-int lowest_of_face(const ConvexPolytope& body, int at, Sign&& sign, std::vector<std::int32_t>& stack) {
-  int lowest = at;
-  stack.assign(1, at);
-  for (std::size_t i = 0; i < stack.size(); ++i) {
-    const std::int32_t from = stack[i];
-    for (const std::int32_t next : body.neighbours(from)) {
-      if (sign(from, next) != 0 || std::find(stack.begin(), stack.end(), next) != stack.end()) continue;
-      stack.push_back(next);
-      lowest = std::min(lowest, static_cast<int>(next));
-    }
+void level_face(const ConvexPolytope& body, int at, Sign&& sign, std::vector<std::int32_t>& face) {
+  face.assign(1, at);
+  const auto neighbours = body.neighbours(at);
+  int edges[2];
+  for (std::size_t k = 0; k < neighbours.size() && face.size() < 3; ++k) {
+    if (sign(at, neighbours[k]) != 0) continue;
+    edges[face.size() - 1] = body.first_half_edge(at) + static_cast<int>(k);
+    face.push_back(neighbours[k]);
   }
-  return lowest;
+  if (face.size() < 3) return;
+  // Two level edges bound a facet, which lies on the left of one of them.
+  const auto holds = [&](std::span<const std::int32_t> loop, std::int32_t v) {
+    return std::find(loop.begin(), loop.end(), v) != loop.end();
+  };
+  for (const int edge : edges) {
+    const auto loop = body.facet_vertices(body.half_edge(edge).facet);
+    if (!holds(loop, face[1]) || !holds(loop, face[2])) continue;
+    face.assign(loop.begin(), loop.end());
+    return;
+  }
+}
+
+/// The lowest vertex of that face. `face` is a buffer.
+template <class Sign>
+int lowest_of_face(const ConvexPolytope& body, int at, Sign&& sign, std::vector<std::int32_t>& face) {
+  level_face(body, at, sign, face);
+  return *std::min_element(face.begin(), face.end());
 }
 
 }  // namespace pd::detail

@@ -107,7 +107,7 @@ int run_contact(const ContactOptions& options) {
       for (const std::string& setting : options.settings) {
         std::vector<ContactSetting> settings;
         for (const ContactRun run : runs) {
-          settings.push_back({run, rate, setting == "recommended"});
+          settings.push_back({run, rate, setting == "recommended", options.iterations});
         }
         std::vector<std::vector<ContactFigures>> by_run(runs.size());
         for (int start = 0; start < starts; ++start) {

@@ -84,6 +84,9 @@ class Runner {
     if (setting.recommended) {
       apply_recommended(bullet_.world().getSolverInfo());
     }
+    if (setting.iterations > 0) {
+      bullet_.world().getSolverInfo().m_numIterations = setting.iterations;
+    }
     for (int i = 0; i < bullet_.num_bodies(); ++i) {
       collect(i, scene.world.bodies[i], Pose(), pieces_);
       starts_.push_back(to_pd(bullet_.body(i).getWorldTransform().getOrigin()));

@@ -14,7 +14,7 @@
 namespace pd::bench {
 
 enum class RestingBody { box, hull_32, sphere, capsule, cylinder, cone };
-enum class RestingGround { floor, triangle };
+enum class RestingGround { floor, triangle, sphere, capsule };
 
 constexpr std::string_view kRestingBodies[] = {"box", "hull_32", "sphere", "capsule", "cylinder", "cone"};
 
@@ -22,11 +22,11 @@ constexpr std::string_view kRestingBodies[] = {"box", "hull_32", "sphere", "caps
 /// stands on y = 0; each frame moves it by what a step of an engine leaves (1e-5 up or down, a tip of 1e-6).
 class RestingCase {
  public:
-  /// @param width  half the width of the floor, or of the triangle.
+  /// @param width  half the width of the floor, of the triangle, or of the capsule's core along x and z.
   RestingCase(RestingBody body, RestingGround ground, double width, int frames)
       : body_(body_of(body)), ground_(ground_of(ground, width)) {
     tolerance_ = 0x1p-30 * 2;
-    below_ = *Pose::from_matrix(Mat3::Identity(), {0, ground == RestingGround::floor ? -1.0 : 0.0, 0});
+    below_ = *Pose::from_matrix(Mat3::Identity(), place_of(ground));
     const double height = height_of(body) + (ground == RestingGround::triangle ? kTriangleMargin : 0);
     scenes::Random random(7);
     for (int i = 0; i < frames; ++i) {
@@ -48,6 +48,7 @@ class RestingCase {
  private:
   static constexpr double kMargin = 0.04;
   static constexpr double kTriangleMargin = 0.04;
+  static constexpr double kRoundMargin = 0.5;
 
   static ConvexShape body_of(RestingBody body) {
     switch (body) {
@@ -88,7 +89,25 @@ class RestingCase {
     }
     return 0;
   }
+  /// Of the ground's origin; round ones stand under the body.
+  static Vec3 place_of(RestingGround ground) {
+    switch (ground) {
+      case RestingGround::floor:
+        return {0, -1, 0};
+      case RestingGround::triangle:
+        return Vec3::Zero();
+      case RestingGround::sphere:
+      case RestingGround::capsule:
+        break;
+    }
+    return {0.123, -kRoundMargin, 0.2};
+  }
   static ConvexShape ground_of(RestingGround ground, double width) {
+    if (ground == RestingGround::sphere || ground == RestingGround::capsule) {
+      std::vector<Vec3> core{Vec3::Zero()};
+      if (ground == RestingGround::capsule) core = {{-width, 0, -width}, {width, 0, width}};
+      return *ConvexShape(*ConvexPolytope::from_points(core)).with_margin(kRoundMargin);
+    }
     if (ground == RestingGround::floor) {
       return *ConvexShape(*ConvexPolytope::box({width - kMargin, 1 - kMargin, width - kMargin})).with_margin(kMargin);
     }

@@ -24,6 +24,25 @@ struct Cost {
   std::int64_t exact_signs = 0;
 };
 
+struct Ground {
+  const char* name;
+  pd::bench::RestingGround kind;
+  double width;
+  [[nodiscard]] bool is_round() const {
+    return kind == pd::bench::RestingGround::sphere || kind == pd::bench::RestingGround::capsule;
+  }
+};
+constexpr Ground kGrounds[] = {
+    {"triangle", pd::bench::RestingGround::triangle, 2}, {"sphere", pd::bench::RestingGround::sphere, 0},
+    {"capsule", pd::bench::RestingGround::capsule, 0.4}, {"1", pd::bench::RestingGround::floor, 1},
+    {"20", pd::bench::RestingGround::floor, 20},         {"200", pd::bench::RestingGround::floor, 200},
+    {"10000", pd::bench::RestingGround::floor, 1e4}};
+
+/// Spheres and capsules also rest on each other.
+bool is_round(pd::bench::RestingBody body) {
+  return body == pd::bench::RestingBody::sphere || body == pd::bench::RestingBody::capsule;
+}
+
 Cost measure(const RestingCase& rest, bool warm, pd::Bracket bracket, int rounds) {
   pd::Scratch scratch;
   pd::WarmCertificate memory;
@@ -66,14 +85,15 @@ int main(int argc, char** argv) {
       const pd::Bracket bracket = word == "tightest"    ? pd::Bracket::tightest
                                   : word == "certified" ? pd::Bracket::certified
                                                         : pd::Bracket::contact;
-      for (const double width : {0.0, 1.0, 20.0, 200.0, 1e4}) {
-        const auto ground = width == 0 ? pd::bench::RestingGround::triangle : pd::bench::RestingGround::floor;
-        const RestingCase rest(static_cast<pd::bench::RestingBody>(k), ground, width == 0 ? 2 : width, 256);
+      for (const Ground& ground : kGrounds) {
+        const auto body = static_cast<pd::bench::RestingBody>(k);
+        if (ground.is_round() && !is_round(body)) continue;
+        const RestingCase rest(body, ground.kind, ground.width, 256);
         const Cost warm = measure(rest, true, bracket, rounds);
         const Cost cold = measure(rest, false, bracket, std::max(1, rounds / 4));
-        std::printf("%-10s %-9s %8s %10.0f %10.0f  %d of %d, %lld\n", name.c_str(), word.c_str(),
-                    width == 0 ? "triangle" : std::to_string(static_cast<int>(width)).c_str(), warm.nanoseconds,
-                    cold.nanoseconds, warm.warm, rest.frames(), static_cast<long long>(warm.exact_signs));
+        std::printf("%-10s %-9s %8s %10.0f %10.0f  %d of %d, %lld\n", name.c_str(), word.c_str(), ground.name,
+                    warm.nanoseconds, cold.nanoseconds, warm.warm, rest.frames(),
+                    static_cast<long long>(warm.exact_signs));
       }
     }
   }

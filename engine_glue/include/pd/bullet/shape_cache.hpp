@@ -5,7 +5,8 @@
 /// shape's present fingerprint with that of its entry (`shape_fingerprint`: type, margin, scaling, every point) and
 /// converts afresh when they differ; a shape that died is never read, and its entry leaves when the table is full
 /// (least recently used first) or by `forget`. Shapes of the same fingerprint share one body: a wall of equal bricks is
-/// converted once, and its queries read one body's memory.
+/// converted once, and its queries read one body's memory. A fingerprint has 64 bits; an edit or another shape that has
+/// the same one by chance is not noticed.
 ///
 /// In a dynamics world that steps, all points are compared once a step and shape; further look-ups of the same step
 /// compare what takes no time: type, margin, scaling, sizes, the number of points and where they lie

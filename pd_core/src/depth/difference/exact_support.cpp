@@ -22,15 +22,11 @@ Vec3 leading(const Dyadic3& v) {
 /// Above this a face is walked to along edges; below, a scan of all vertices is faster.
 constexpr int kScannedVertices = 96;
 
-/// `extremal` of a solid in time of the climb and of the face's degrees: the vertices of one face hang together.
+/// `extremal` of a solid in time of the climb and of the face.
 template <class Sign>
 SupportFace face_climbed_to(const ConvexPolytope& body, const Vec3& local, Sign&& sign) {
-  SupportFace face{climb_exactly(body, support_vertex(body, local, -1), sign)};
-  for (std::size_t i = 0; i < face.size(); ++i) {
-    for (const std::int32_t next : body.neighbours(face[i])) {
-      if (std::find(face.begin(), face.end(), next) == face.end() && sign(face[i], next) == 0) face.push_back(next);
-    }
-  }
+  SupportFace face;
+  level_face(body, climb_exactly(body, support_vertex(body, local, -1), sign), sign, face);
   std::sort(face.begin(), face.end());
   return face;
 }
@@ -90,8 +86,9 @@ int common_facet(const ConvexPolytope& body, const SupportFace& vertices) {
     const int f = body.half_edge(first + static_cast<int>(k)).facet;
     const auto loop = body.facet_vertices(f);
     if (loop.size() != vertices.size()) continue;
-    const bool all = std::all_of(vertices.begin(), vertices.end(),
-                                 [&](std::int32_t w) { return std::find(loop.begin(), loop.end(), w) != loop.end(); });
+    const bool all = std::all_of(loop.begin(), loop.end(), [&](std::int32_t w) {
+      return std::binary_search(vertices.begin(), vertices.end(), w);
+    });
     if (all) return f;
   }
   return -1;

@@ -25,8 +25,8 @@ struct ExactDirection {
 /// Every vertex of one body that lies exactly on its supporting plane, ascending.
 using SupportFace = std::vector<std::int32_t>;
 
-/// Vertices of B that maximise <R_B v, direction>, exactly. O(n) doubles, exact arithmetic for ties within rounding
-/// only.
+/// Vertices of B that maximise <R_B v, direction>, exactly: of large solids in time of a climb and of the face, else in
+/// O(n) doubles; exact arithmetic for ties within rounding only.
 [[nodiscard]] SupportFace support_face_b(const PosedPair& pair, const ExactDirection& direction);
 /// Vertices of A that minimise <R_A v, direction>, exactly.
 [[nodiscard]] SupportFace support_face_a(const PosedPair& pair, const ExactDirection& direction);

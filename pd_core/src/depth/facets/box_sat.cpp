@@ -1,7 +1,9 @@
 #include "depth/facets/box_sat.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -98,14 +100,13 @@ class BoxPair {
   }
 
  private:
-  /// Whether all numbers have the 24 digits of single precision: products of two of them are exact.
+  /// Whether all numbers have the 24 digits of single precision: products of two of them are exact. By their bits,
+  /// since GCC 12 takes roundings to float and back, side by side in one vector, for none at all.
   static bool is_single(const Mat3& rotation) {
-    double lost = 0;
-    for (int i = 0; i < 9; ++i) {
-      const double x = rotation.data()[i];
-      lost += std::abs(x - static_cast<double>(static_cast<float>(x)));
-    }
-    return lost == 0;
+    constexpr std::uint64_t kBeyond = (std::uint64_t{1} << (53 - 24)) - 1;
+    std::uint64_t bits = 0;
+    for (int i = 0; i < 9; ++i) bits |= std::bit_cast<std::uint64_t>(rotation.data()[i]);
+    return (bits & kBeyond) == 0;
   }
 
   /// The points of a box farthest along a direction, up to a level: a centre and the generators that may be added with

@@ -238,7 +238,9 @@ class Descent {
     return c.x.sign() == 0 && c.y.sign() == 0 && c.z.sign() == 0;
   }
   /// The line runs through a corner x: seen along it, points of P are followed to the right round x, from one of them
-  /// on, until nothing lies on the right of one (P lies on one side of the line) or they have come round it.
+  /// on, until nothing lies on the right of one (P lies on one side of the line) or they have come round it. Each is a
+  /// corner of P's shadow further round than the last, by less than half a turn, so that the shadow's corners bound the
+  /// steps.
   bool surrounds(std::size_t x, const VertexPair& first) {
     VertexPair last = first;
     for (;;) {
