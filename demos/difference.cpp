@@ -12,9 +12,11 @@
 #include "pd/render/composition.hpp"
 #include "pd/render/video.hpp"
 #include "protocol/pair_reader.hpp"
+#include "report/page.hpp"
 #include "scenes/shape_families.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
+#include "support/report_parts.hpp"
 #include "support/search_picture.hpp"
 
 namespace pd::demo {
@@ -90,6 +92,16 @@ int write_film(const Bodies& bodies, const PenetrationDepth& answer, render::Siz
   return interrupted() ? kDemoInterrupted : kDemoDone;
 }
 
+void add_to_page(const Bodies& bodies, const PenetrationDepth& answer, const DemoOptions& options) {
+  const std::string title = fmt::format("{} and {}", bodies.name_a, bodies.name_b);
+  const auto figure =
+      answered_pair({&bodies.a.shape, bodies.pose_a}, {&bodies.b.shape, bodies.pose_b}, answer, title, "difference");
+  options.page->cards.push_back({fmt::format("{:.6g}", answer.depth), "depth of the pair below", {}});
+  options.page->sections.push_back("<section id=\"difference\"><h2>A pair and its Minkowski difference</h2>\n" +
+                                   report::picture(page_file(options, "difference.png"), title) +
+                                   report::pairs({report::pair_figure(figure)}) + "</section>\n");
+}
+
 int answer_and_draw(const Bodies& bodies, const DemoOptions& options, const std::filesystem::path& folder) {
   const std::filesystem::path picture = folder / "difference.png";
   const std::filesystem::path figures = folder / "difference.json";
@@ -107,6 +119,7 @@ int answer_and_draw(const Bodies& bodies, const DemoOptions& options, const std:
   fmt::print("depth     {} in [{}, {}]\n", answer.depth, answer.lower, answer.upper);
   fmt::print("distance  {} in [{}, {}]\n", answer.distance, answer.distance_lower, answer.distance_upper);
   fmt::print("picture   {}\nfigures   {}\n", picture.string(), figures.string());
+  if (options.page != nullptr) add_to_page(bodies, answer, options);
   if (!options.video) return kDemoDone;
   constexpr int kFrames = 120;
   const int code = write_film(bodies, answer, size, options.steps > 0 ? options.steps : kFrames, film);
@@ -170,6 +183,9 @@ int draw_search(const query::SearchFile& search, const DemoOptions& options, con
     fmt::print("{:<10}{}: {} to {}\n", end.arithmetic, end.outcome, end.lower, end.upper);
   }
   fmt::print("picture   {}\n", picture.string());
+  if (options.page != nullptr) {
+    options.page->sections.push_back(report::picture(page_file(options, "search_strip.png"), title));
+  }
   if (!options.video) return kDemoDone;
   const render::Size size{options.width, options.height};
   return write_search_film(search, SearchPictures(search, render::panel_size(size, 1)), renderer, size,

@@ -11,13 +11,16 @@ namespace pd::demo {
 namespace {
 
 constexpr std::array kPictures{
-    StillPicture{"hierarchies", hierarchy_picture},
-    StillPicture{"descent", descent_picture},
-    StillPicture{"polygons", polygons_picture},
+    StillPicture{"hierarchies", "The hierarchies of two polytopes, level by level", hierarchy_picture},
+    StillPicture{"descent", "One descent through them along a direction", descent_picture},
+    StillPicture{"polygons", "A polygon with holes, a convex one stuck in it, and all places where they overlap",
+                 polygons_picture},
 };
 
 }  // namespace
 
-int run_dobkin(const DemoOptions& options) { return draw_still_pictures(options, "dobkin", kPictures); }
+int run_dobkin(const DemoOptions& options) {
+  return draw_still_pictures(options, "dobkin", "The constructions of Dobkin et al.", kPictures);
+}
 
 }  // namespace pd::demo

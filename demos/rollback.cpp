@@ -21,6 +21,7 @@
 #include "pd/depth/scratch.hpp"
 #include "pd/render/composition.hpp"
 #include "pd/render/renderer.hpp"
+#include "rollback/rollback_course.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
@@ -35,26 +36,6 @@ constexpr int kFramesPerStep = 2;
 constexpr int kFramesPerImpact = 15;
 /// Depths below this are not worth an arrow.
 constexpr double kShownDepth = 2e-3;
-
-/// When a method says that two bodies meet, and how deep they are by then.
-struct Verdict {
-  std::string method;
-  bool hit = false;
-  double time = 0;   ///< seconds since the step began
-  double depth = 0;  ///< exact penetration at that time; negative: a gap
-};
-
-/// One impact: the two bodies at the start of the step in which they meet.
-struct Impact {
-  int a = -1;
-  int b = -1;
-  MovingShape moving_a;
-  MovingShape moving_b;
-  double step = 0;         ///< length of the step, seconds
-  double plain_depth = 0;  ///< at the end of the plain step
-  FirstContact contact;
-  std::vector<Verdict> verdicts;
-};
 
 double signed_depth(const MovingShape& a, const MovingShape& b, double time, Scratch& scratch) {
   return -penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch)
@@ -142,8 +123,6 @@ class CloseUp {
   render::Camera camera_;
 };
 
-std::string time_text(double seconds) { return fmt::format("{:.4f} ms", 1e3 * seconds); }
-
 /// The two bodies of an impact at a time of the step, everything else left out of focus.
 render::Scene moment(DemoWorld& world, const Impact& impact, double time, bool contact_disc) {
   Scratch scratch;
@@ -200,15 +179,6 @@ Expected<std::filesystem::path> draw_triptych(DemoWorld& world, const Impact& im
           fmt::format("a plain step ends {}, the rollback {} apart", undone, length_text(impact.contact.gap)), whole),
       folder / fmt::format("impact_{}.png", number));
 }
-
-struct Course {
-  std::vector<Impact> impacts;
-  double deepest_plain = 0;
-  double deepest_rollback = 0;
-  int simulation_steps = 0;
-  int steps = 0;
-  bool replay_same_bits = true;
-};
 
 /// Replays the coming step from a snapshot and compares every number of every body.
 bool replay_is_exact(DemoWorld& world, double step) {
@@ -360,7 +330,8 @@ std::optional<Error> draw_impacts(DemoWorld& world, const Course& course, std::s
 
 /// Runs both worlds, drawing as they go. @return how many frames there are.
 Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, const DemoOptions& options,
-                         const std::filesystem::path& folder, render::Renderer& renderer, Course& course) {
+                         const std::filesystem::path& folder, render::Renderer& renderer, Course& course,
+                         CourseRows& rows, std::vector<std::string>& figures) {
   const double step = 1 / plan.steps_per_second;
   DemoWorld plain(plan, kind);
   DemoWorld guarded(plan, SolverKind::exact);
@@ -381,8 +352,6 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
   // The scale of the sparkline stays put: the smallest thrown body.
   const double full_scale = 0.3;
   Progress progress("rollback", steps);
-  std::vector<double> plain_depths;
-  std::vector<double> guarded_depths;
   for (int i = 0; i <= steps && !interrupted(); ++i) {
     const std::size_t known = course.impacts.size();
     if (i > 0) {
@@ -393,12 +362,16 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
     const Measurement right = guarded.measure();
     course.deepest_plain = std::max(course.deepest_plain, left.deepest);
     course.deepest_rollback = std::max(course.deepest_rollback, right.deepest);
-    plain_depths.push_back(left.deepest);
-    guarded_depths.push_back(right.deepest);
     csv.row({static_cast<double>(i), i * step, left.deepest, right.deepest, left.kinetic_energy, right.kinetic_energy});
+    rows.times.push_back(i * step);
+    rows.plain_depths.push_back(left.deepest);
+    rows.rollback_depths.push_back(right.deepest);
+    rows.plain_energies.push_back(left.kinetic_energy);
+    rows.rollback_energies.push_back(right.kinetic_energy);
     const std::string status = fmt::format("{:.1f} ms   step {}", 1e3 * i * step, i);
-    const Half first = half_of(plain, left, plain_depths, full_scale, "plain steps", status);
-    const Half second = half_of(guarded, right, guarded_depths, full_scale, "taken back to first contact", status);
+    const Half first = half_of(plain, left, rows.plain_depths, full_scale, "plain steps", status);
+    const Half second =
+        half_of(guarded, right, rows.rollback_depths, full_scale, "taken back to first contact", status);
     const std::string said = fmt::format("penetration at the end of the step {} / {}", length_text(left.deepest),
                                          length_text(right.deepest));
     const bool telling = course.impacts.size() > known || left.deepest > 10 * kShownDepth;
@@ -409,6 +382,9 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
       return Error{ErrorCode::bad_value, "rollback.json cannot be written", folder.string()};
     }
     progress.show(i);
+  }
+  for (std::size_t k = 0; options.page != nullptr && k < course.impacts.size(); ++k) {
+    if (course.impacts[k].plain_depth > 0) figures.push_back(plain_end_figure(course.impacts[k], k + 1));
   }
   return film.finish();
 }
@@ -432,12 +408,15 @@ int run_rollback(const DemoOptions& options) {
   note_interrupts();
   const scenes::World plan = scenes::fast_throws(options.seed);
   Course course;
-  const auto frames =
-      run_course(plan, *kind, options.steps > 0 ? options.steps : plan.steps, options, folder, device, course);
+  CourseRows rows;
+  std::vector<std::string> figures;
+  const auto frames = run_course(plan, *kind, options.steps > 0 ? options.steps : plan.steps, options, folder, device,
+                                 course, rows, figures);
   if (!frames) {
     return report_failure(frames.error());
   }
   print_headline(course);
+  if (options.page != nullptr) add_to_page(course, rows, figures, plan.title, options);
   fmt::print("Pictures, figures and films: {}\n", folder.string());
   return interrupted() ? kDemoInterrupted : kDemoDone;
 }

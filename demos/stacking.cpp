@@ -3,6 +3,7 @@
 ///
 /// Small bodies without margins, where a depth solver is asked at every contact (bullet notes: with Bullet's default
 /// margins an ordinary stack asks it never). What is drawn as penetration is measured by pd_core for both.
+#include <btBulletDynamicsCommon.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,11 +11,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "pd/bullet/contact_recorder.hpp"
 #include "pd/render/renderer.hpp"
+#include "report/page.hpp"
+#include "report/scene_section.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
+#include "support/report_parts.hpp"
 
 namespace pd::demo {
 
@@ -24,6 +29,8 @@ namespace {
 constexpr std::array<double, 6> kTellingShares{0, 0.06, 0.14, 0.3, 0.6, 1};
 /// Depths below this are not worth an arrow.
 constexpr double kShownDepth = 2e-4;
+/// Every so many steps contacts are recorded for the page's audit: a record of each step would be 100 MB.
+constexpr int kRecordedEvery = 24;
 
 /// One of the two worlds of a run, with all it measured.
 struct Contender {
@@ -32,6 +39,7 @@ struct Contender {
   }
   SolverKind kind;
   DemoWorld world;
+  std::optional<ContactRecorder> recorder;  ///< for a page
   std::vector<Measurement> history;
   /// Bodies' poses at each frame, so that pictures can be drawn when the shared scale is known.
   std::vector<render::Scene> frames;
@@ -212,6 +220,80 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
   return film.finish();
 }
 
+std::filesystem::path record_of(const Run& run, const Contender& contender) {
+  return fmt::format("{}_{}.jsonl", run.plan.name, to_string(contender.kind));
+}
+
+/// The deepest pair of a contender's whole run.
+std::string deepest_pair(const Run& run, const Contender& contender) {
+  const auto deepest = std::max_element(contender.history.begin(), contender.history.end(),
+                                        [](const auto& x, const auto& y) { return x.deepest < y.deepest; });
+  if (deepest->deepest_a < 0) return {};
+  const Measurement& m = *deepest;
+  const auto step = static_cast<double>(deepest - contender.history.begin());
+  return report::pair_figure(
+      answered_pair({&contender.world.shape(m.deepest_a), m.deepest_pose_a},
+                    {&contender.world.shape(m.deepest_b), m.deepest_pose_b}, m.deepest_answer,
+                    fmt::format("{}: deepest pair of the run, {} at {:.2f} s", describe(contender.kind),
+                                length_text(m.deepest), step / run.plan.steps_per_second),
+                    fmt::format("{}_{}_deepest", run.plan.name, to_string(contender.kind))));
+}
+
+/// The scene as a section of the page: frames, curves, pairs and the audit of what was recorded.
+std::string section_of(const Run& run, const DemoOptions& options, const std::filesystem::path& folder) {
+  report::SceneSection section;
+  section.name = run.plan.name;
+  section.title = run.plan.title;
+  section.text =
+      "The same start under two solvers. Penetration is the exact depth of the deepest pair of bodies, "
+      "measured on the poses that each solver arrived at.";
+  for (std::size_t i = 0; i < run.contenders[0]->history.size(); ++i) {
+    section.times.push_back(static_cast<double>(i) / run.plan.steps_per_second);
+  }
+  const auto add = [&](const char* name, const char* unit, const auto& value) {
+    report::Quantity quantity{name, unit, {}};
+    for (const auto& contender : run.contenders) {
+      quantity.values.emplace_back();
+      for (const Measurement& m : contender->history) quantity.values.back().push_back(static_cast<double>(value(m)));
+    }
+    section.quantities.push_back(std::move(quantity));
+  };
+  add("deepest penetration", "m", [](const Measurement& m) { return m.deepest; });
+  add("moved from the start", "m", [](const Measurement& m) { return m.drift; });
+  add("kinetic energy", "J", [](const Measurement& m) { return m.kinetic_energy; });
+  add("contact points", "", [](const Measurement& m) { return m.contacts; });
+  add("overlapping pairs", "", [](const Measurement& m) { return m.overlapping_pairs; });
+  add("depth queries a step", "", [](const Measurement& m) { return m.solver_calls; });
+  std::vector<RecordOfRun> records;
+  std::vector<std::string> deepest;
+  for (const auto& contender : run.contenders) {
+    section.contenders.emplace_back(describe(contender->kind));
+    records.push_back({folder / record_of(run, *contender), std::string(describe(contender->kind))});
+    deepest.push_back(deepest_pair(run, *contender));
+  }
+  for (std::size_t i = 0; i < run.frame_steps.size(); ++i) {
+    const std::string file = fmt::format("frames/{}_{:04d}.png", run.plan.name, i);
+    section.frames.push_back({page_file(options, file), run.frame_steps[i]});
+  }
+  section.shown = section.frames.size() * 3 / 10;
+  section.more = report::picture(page_file(options, run.plan.name + "_strip.png"), run.plan.title + ": six moments") +
+                 "<h3>The deepest pairs</h3>\n" + report::pairs(deepest) + audited_records(options, records);
+  return report::scene_section(section);
+}
+
+void add_to_page(const Run& run, const DemoOptions& options, const std::filesystem::path& folder) {
+  using Rank = report::Card::Rank;
+  std::vector<double> late;
+  for (const auto& contender : run.contenders) late.push_back(contender->late_mean(&Measurement::deepest));
+  for (std::size_t i = 0; i < late.size(); ++i) {
+    options.page->cards.push_back(
+        {length_text(late[i]),
+         fmt::format("{}: penetration left, {}", run.plan.name, to_string(run.contenders[i]->kind)),
+         late[i] <= *std::min_element(late.begin(), late.end()) ? Rank::good : Rank::bad});
+  }
+  options.page->sections.push_back(section_of(run, options, folder));
+}
+
 void print_headline(const Run& run) {
   fmt::print("{}: {} bodies, {} steps of 1/{:.0f} s\n", run.plan.title, run.plan.bodies.size() - 1,
              run.contenders[0]->history.size() - 1, run.plan.steps_per_second);
@@ -250,7 +332,18 @@ int run_stacking(const DemoOptions& options) {
     run.plan = plan;
     run.contenders.push_back(std::make_unique<Contender>(plan, *first));
     run.contenders.push_back(std::make_unique<Contender>(plan, second));
+    if (options.page != nullptr) {
+      for (const auto& contender : run.contenders) {
+        contender->recorder.emplace(contender->world.bullet(), (folder / record_of(run, *contender)).c_str(),
+                                    ContactRecorderSettings{kRecordedEvery});
+      }
+    }
     simulate(run, options.steps > 0 ? options.steps : plan.steps);
+    for (const auto& contender : run.contenders) {
+      if (contender->recorder && !contender->recorder->close()) {
+        return report_failure({ErrorCode::bad_value, "a record cannot be written", folder.string()});
+      }
+    }
     write_csv(run, folder);
     figures.push_back(summary(run));
     if (!write_text(folder / "stacking.json", figures.dump(2) + "\n")) {
@@ -261,6 +354,7 @@ int run_stacking(const DemoOptions& options) {
       return report_failure(drawn.error());
     }
     print_headline(run);
+    if (options.page != nullptr) add_to_page(run, options, folder);
     if (interrupted()) {
       fmt::print(stderr, "pdepth: stopped; what was done is in {}\n", folder.string());
       return kDemoInterrupted;

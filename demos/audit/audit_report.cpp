@@ -8,56 +8,34 @@
 #include <iterator>
 
 #include "audit/audit_answer.hpp"
-#include "protocol/json_writer.hpp"
+#include "audit/contact_figure.hpp"
+#include "report/html_text.hpp"
 
 namespace pd::audit {
 
 namespace {
 
-constexpr const char* kStyle = R"(
-:root{color-scheme:light dark;--ink:#1b1f24;--paper:#fff;--quiet:#5b6570;--line:#d5dae0;--bar:#2b6cb0;--bad:#b3261e;--good:#1f7a3d}
-@media(prefers-color-scheme:dark){:root{--ink:#e6e9ee;--paper:#14171b;--quiet:#9aa5b1;--line:#343b44;--bar:#63a4e8;--bad:#ff8a80;--good:#6fd08c}}
-body{margin:0 auto;padding:1rem;max-width:72rem;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
-h1{font-size:1.5rem;margin:.2rem 0}h2{font-size:1.15rem;margin:2rem 0 .5rem}p{margin:.4rem 0}.quiet{color:var(--quiet)}
-.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(8.5rem,1fr));gap:.6rem;padding:0;margin:1rem 0;list-style:none}
-.cards li{border:1px solid var(--line);border-radius:.5rem;padding:.6rem .8rem}.cards b{display:block;font-size:1.5rem}
-.bad b,.fails{color:var(--bad)}.good b,.holds{color:var(--good)}
-.scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:.9rem;font-variant-numeric:tabular-nums}
-th,td{padding:.25rem .5rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
-th:first-child,td:first-child{text-align:left}
-svg{width:100%;min-width:40rem;height:auto;display:block}svg text{fill:var(--quiet);font:11px system-ui,sans-serif}
-svg rect{fill:var(--bar)}svg line{stroke:var(--line)}
-details{border:1px solid var(--line);border-radius:.5rem;padding:.4rem .8rem;margin:.4rem 0}summary{cursor:pointer}
-pre{overflow-x:auto;white-space:pre-wrap;word-break:break-all;font-size:.8rem;margin:.4rem 0}
-@media print{details{break-inside:avoid}.scroll{overflow:visible}}
-)";
+using report::escaped;
+using report::short_number;
 
-std::string short_number(double value) {
-  if (value == 0) return "0";
-  return value >= 1e-3 && value < 1e4 ? fmt::format("{:.3g}", value) : fmt::format("{:.1e}", value);
-}
-
-std::string card(std::string_view title, std::string_view value, std::string_view rank) {
-  return fmt::format("<li class=\"{}\"><b>{}</b>{}</li>\n", rank, value, title);
-}
-
-std::string cards(const Audit& audit) {
+std::vector<report::Card> cards(const Audit& audit) {
+  using Rank = report::Card::Rank;
   const Totals& total = audit.summary.total();
-  const auto count = [](std::string_view title, std::int64_t n) {
-    return card(title, fmt::format("{}", n), n == 0 ? "good" : "bad");
+  const auto count = [](std::string_view meaning, std::int64_t n) {
+    return report::Card{fmt::format("{}", n), std::string(meaning), n == 0 ? Rank::good : Rank::bad};
   };
   const ErrorQuantiles& depth = total.of(Column::depth_error);
-  std::string text = "<ul class=\"cards\">\n";
-  text += card("contacts judged", fmt::format("{}", total.judged), "");
-  text += count("missed", total.missed) + count("phantom", total.phantom);
-  text += count("not judged", total.unanswered + audit.summary.refused());
-  text += card("depth error, p99", depth.count() > 0 ? short_number(depth.quantile(0.99)) : "-", "");
-  text += card("depth error, largest", depth.count() > 0 ? short_number(depth.max()) : "-", "");
-  return text + "</ul>\n";
+  const bool any = depth.count() > 0;
+  return {{fmt::format("{}", total.judged), "contacts judged", Rank::plain},
+          count("missed", total.missed),
+          count("phantom", total.phantom),
+          count("not judged", total.unanswered + audit.summary.refused()),
+          {any ? short_number(depth.quantile(0.99)) : "-", "depth error, p99", Rank::plain},
+          {any ? short_number(depth.max()) : "-", "depth error, largest", Rank::plain}};
 }
 
 std::string table_row(std::string_view kind, const Totals& totals) {
-  std::string text = fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>", xml_text(kind),
+  std::string text = fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>", escaped(kind),
                                  totals.contacts, totals.missed, totals.phantom, totals.unanswered);
   for (const Column column : {Column::depth_error, Column::normal_excess, Column::point_error}) {
     const ErrorQuantiles& errors = totals.of(column);
@@ -103,7 +81,8 @@ std::string chart(std::string_view title, const ErrorQuantiles& errors) {
   const double most = std::log10(static_cast<double>(*std::max_element(counts.begin(), counts.end()))) + 1;
   const double base = kTop + kHeight;
   std::string text = fmt::format(
-      "<h2>{}</h2>\n<div class=\"scroll\" tabindex=\"0\"><svg viewBox=\"0 0 {} 170\" role=\"img\" aria-label=\"{}: "
+      "<h2>{}</h2>\n<div class=\"scroll\" tabindex=\"0\"><svg class=\"histogram\" viewBox=\"0 0 {} 170\" role=\"img\" "
+      "aria-label=\"{}: "
       "contacts by power of ten of the "
       "error\">\n",
       title, kLeft + kStep * (kPowers + 1) + 8, title);
@@ -129,22 +108,11 @@ std::string chart(std::string_view title, const ErrorQuantiles& errors) {
 
 std::string worst_contacts(const Audit& audit) {
   if (audit.summary.worst().empty()) return {};
-  std::string text = "<h2>Worst contacts</h2>\n";
+  std::vector<std::string> figures;
   for (const WorstContact& worst : audit.summary.worst()) {
-    const SignedDepth x = worst_interval(worst, audit.tolerance);
-    std::string what(worst.column);
-    std::replace(what.begin(), what.end(), '_', ' ');
-    text += fmt::format(
-        "<details><summary>contact {}, line {}: {} {} ({})</summary>\n<p>Exact signed depth {:.17g} to {:.17g}; "
-        "reported:</p>\n<pre>{}</pre>\n",
-        xml_text(query::shortened(worst.contact.id_text, 40)), worst.line, what, short_number(worst.error),
-        xml_text(kind_of(worst.contact)), x.lower, x.upper, xml_text(member_text(worst.text, "reported")));
-    if (const std::string line = query_line(worst, audit.tolerance); !line.empty()) {
-      text += fmt::format("<p>To ask again, for <code>pdepth query</code>:</p>\n<pre>{}</pre>\n", xml_text(line));
-    }
-    text += "</details>\n";
+    figures.push_back(report::pair_figure(contact_figure(worst, audit.tolerance)));
   }
-  return text;
+  return "<section id=\"worst\"><h2>Worst contacts</h2>\n" + report::pairs(figures) + "</section>\n";
 }
 
 std::string conditions_list(const std::vector<ConditionOutcome>& conditions) {
@@ -162,60 +130,31 @@ std::string refused_lines(const AuditSummary& summary) {
   if (summary.refused() == 0) return {};
   std::string text = fmt::format("<h2>Lines refused: {}</h2>\n<ul>\n", summary.refused());
   for (const RefusedLine& line : summary.refusals()) {
-    text += fmt::format("<li>line {}: {}: {}</li>\n", line.line, xml_text(line.refusal.code),
-                        xml_text(line.refusal.message));
+    text +=
+        fmt::format("<li>line {}: {}: {}</li>\n", line.line, escaped(line.refusal.code), escaped(line.refusal.message));
   }
   return text + "</ul>\n";
 }
 
 }  // namespace
 
-std::string xml_text(std::string_view text) {
-  // The writer of JSON replaces what is no UTF-8.
-  std::string clean;
-  query::append_string(clean, text);
-  clean = query::Json::parse(clean).get<std::string>();
-  std::string result;
-  for (const char c : clean) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t' ? c : '?';
-    }
-  }
-  return result;
-}
-
-std::string audit_report(const Audit& audit, const std::vector<ConditionOutcome>& conditions, std::string_view record,
-                         std::string_view command) {
-  const std::string engine = xml_text(audit.header.engine);
+report::Page audit_report(const Audit& audit, const std::vector<ConditionOutcome>& conditions, std::string_view record,
+                          std::string_view command) {
   const Totals& total = audit.summary.total();
-  std::string text =
-      "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  text += fmt::format("<title>Contacts of {}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n", engine, kStyle);
-  text += fmt::format(
-      "<h1>Contacts of {}</h1>\n<p class=\"quiet\">{} ({}), judged against the exact answer; counts beyond {:g} of a "
-      "pair's size.</p>\n",
-      engine, xml_text(record), audit.header.single_precision ? "float32" : "float64", audit.tolerance);
-  text += cards(audit) + conditions_list(conditions) + kinds(audit.summary);
-  text += chart("Depth error", total.of(Column::depth_error));
-  text += chart("Normal excess", total.of(Column::normal_excess));
-  text += chart("Points off the surface", total.of(Column::point_error));
-  text += worst_contacts(audit) + refused_lines(audit.summary);
-  text += fmt::format("<h2>How to reproduce</h2>\n<pre>{}</pre>\n</main>\n</body>\n</html>\n", xml_text(command));
-  return text;
+  report::Page page;
+  page.title = fmt::format("Contacts of {}", audit.header.engine);
+  page.text = fmt::format("{} ({}), judged against the exact answer; counts beyond {:g} of a pair's size.", record,
+                          audit.header.single_precision ? "float32" : "float64", audit.tolerance);
+  page.cards = cards(audit);
+  page.sections = {conditions_list(conditions),
+                   worst_contacts(audit),
+                   kinds(audit.summary),
+                   chart("Depth error", total.of(Column::depth_error)),
+                   chart("Normal excess", total.of(Column::normal_excess)),
+                   chart("Points off the surface", total.of(Column::point_error)),
+                   refused_lines(audit.summary)};
+  page.commands = {std::string(command)};
+  return page;
 }
 
 }  // namespace pd::audit

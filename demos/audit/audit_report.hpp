@@ -1,5 +1,5 @@
 /// @file
-/// An audit as one page for people: report.html, which needs no network, no script and no other file.
+/// An audit as one page for people: report.html, which needs no network and no other file.
 #pragma once
 
 #include <string>
@@ -8,16 +8,14 @@
 
 #include "audit/audit_stream.hpp"
 #include "audit/fail_conditions.hpp"
+#include "report/page.hpp"
 
 namespace pd::audit {
 
-/// Well-formed XHTML in UTF-8: headline figures, the table by kind, a histogram of each error by powers of ten (SVG),
-/// the worst contacts with the line that asks again, how to reproduce it. Light and dark, from 320 px on.
+/// Headline figures, the worst contacts drawn with the line that asks again, the table by kind, a histogram of each
+/// error by powers of ten, how to reproduce it.
 /// @param command  that makes it again
-[[nodiscard]] std::string audit_report(const Audit& audit, const std::vector<ConditionOutcome>& conditions,
-                                       std::string_view record, std::string_view command);
-
-/// Text for XML: markup escaped, control characters replaced.
-[[nodiscard]] std::string xml_text(std::string_view text);
+[[nodiscard]] report::Page audit_report(const Audit& audit, const std::vector<ConditionOutcome>& conditions,
+                                        std::string_view record, std::string_view command);
 
 }  // namespace pd::audit

@@ -6,18 +6,14 @@
 #include <iterator>
 
 #include "audit/audit_answer.hpp"
-#include "audit/audit_report.hpp"
 #include "protocol/json_writer.hpp"
+#include "report/html_text.hpp"
 
 namespace pd::audit {
 
 namespace {
 
-/// Three digits: "0", "3.1e-07", "0.0124".
-std::string short_number(double value) {
-  if (value == 0) return "0";
-  return value >= 1e-3 && value < 1e4 ? fmt::format("{:.3g}", value) : fmt::format("{:.1e}", value);
-}
+using report::short_number;
 
 std::string quantile_or_dash(const ErrorQuantiles& errors, double share) {
   return errors.count() > 0 ? short_number(errors.quantile(share)) : "-";
@@ -79,7 +75,7 @@ std::string audit_junit(const Audit& audit, const std::vector<ConditionOutcome>&
   const auto failures = std::count_if(conditions.begin(), conditions.end(),
                                       [](const ConditionOutcome& outcome) { return !outcome.holds; }) +
                         (whole ? 0 : 1);
-  const std::string name = xml_text(record);
+  const std::string name = report::escaped(record);
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"pdepth audit {}\" tests=\"{}\" failures=\"{}\">\n",
       name, conditions.size() + 1, failures);
@@ -87,7 +83,8 @@ std::string audit_junit(const Audit& audit, const std::vector<ConditionOutcome>&
   if (whole) {
     text += "/>\n";
   } else {
-    text += fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", xml_text(not_judged(audit.summary)));
+    text +=
+        fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", report::escaped(not_judged(audit.summary)));
   }
   for (const ConditionOutcome& outcome : conditions) {
     text += fmt::format("  <testcase classname=\"{}\" name=\"{} &lt;= {:g}\"", name, outcome.condition.name,

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -142,12 +141,8 @@ int run_audit(AuditArguments arguments) {
   }
   if (result.end == audit::Audit::End::no_record) return kBadUsage;
   if (!arguments.report.empty()) {
-    const std::filesystem::path page = std::filesystem::path(arguments.report) / "report.html";
-    std::error_code error;
-    std::filesystem::create_directories(arguments.report, error);
-    OutputFile file(page);
-    file.write(audit::audit_report(result, outcomes, arguments.input, command_of(arguments)));
-    if (!file.close()) return cannot_write(page);
+    const report::Page page = audit::audit_report(result, outcomes, arguments.input, command_of(arguments));
+    if (!report::write_page(arguments.report, page)) return cannot_write(arguments.report + "/report.html");
   }
   const std::string text = arguments.json ? audit::audit_json(result, outcomes) + "\n"
                                           : audit::audit_table(result, outcomes, arguments.input);

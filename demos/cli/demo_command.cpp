@@ -3,12 +3,16 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cctype>
+#include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "commands.hpp"
 #include "support/demo_options.hpp"
 #ifdef PDEPTH_WITH_DEMOS
+#include "report/page.hpp"
 #include "support/demo_registry.hpp"
 #endif
 
@@ -20,6 +24,7 @@ struct DemoArguments {
   std::string name;
   std::string size;
   std::string out;
+  std::string report;  ///< a folder
   demo::DemoOptions options;
 };
 
@@ -42,13 +47,53 @@ bool parse_size(const std::string& text, int& width, int& height) {
          height >= kSmallest && height <= kLargest;
 }
 
+/// The command that makes the same page again.
+std::string command_of(const DemoArguments& arguments) {
+  const demo::DemoOptions& options = arguments.options;
+  std::string text = "pdepth demo " + arguments.name;
+  for (const std::string& file : options.inputs) text += fmt::format(" '{}'", file);
+  if (options.steps > 0) text += fmt::format(" --steps {}", options.steps);
+  if (!arguments.size.empty()) text += " --size " + arguments.size;
+  if (!options.solver.empty()) text += " --solver " + options.solver;
+  if (!options.trace.empty()) text += fmt::format(" --trace '{}'", options.trace);
+  if (options.video) text += " --video";
+  return text + fmt::format(" --seed {} --report '{}'", options.seed, arguments.report);
+}
+
+/// Runs demos into folders of their names and writes the page of them all.
+int run_with_report(const DemoArguments& arguments, std::span<const demo::Demo> chosen) {
+  report::Page page;
+  const bool one = chosen.size() == 1;
+  page.title = one ? std::string(chosen.front().description) : "Penetration depth, exact and certified: all demos";
+  page.title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(page.title[0])));
+  page.text =
+      "How deep two convex bodies stick in each other, which shortest move takes them apart, and what an "
+      "engine's wrong answers do to its world.";
+  page.commands = {command_of(arguments)};
+  page.seed = fmt::format("{}", arguments.options.seed);
+  for (const demo::Demo& demo : chosen) {
+    demo::DemoOptions options = arguments.options;
+    options.out = std::filesystem::path(arguments.report) / std::string(demo.name);
+    options.page = &page;
+    options.page_folder = std::string(demo.name);
+    if (const int code = demo.run(options); code != kDone) return code;
+  }
+  if (!report::write_page(arguments.report, page)) {
+    fmt::print(stderr, "pdepth: {}/report.html cannot be written\n", arguments.report);
+    return kFailed;
+  }
+  fmt::print("Page: {}/report.html\n", arguments.report);
+  return kDone;
+}
+
 int run_demo(DemoArguments arguments) {
   if (arguments.name.empty()) {
     fmt::print("{}", demo_list());
     return kDone;
   }
   const demo::Demo* demo = demo::find_demo(arguments.name);
-  if (demo == nullptr) {
+  const bool all = arguments.name == "all";
+  if (demo == nullptr && !all) {
     fmt::print(stderr, "pdepth: there is no demo \"{}\"\n{}", arguments.name, demo_list());
     return kBadUsage;
   }
@@ -58,7 +103,13 @@ int run_demo(DemoArguments arguments) {
     return kBadUsage;
   }
   options.out = arguments.out;
-  return demo->run(options);
+  if (all && arguments.report.empty()) arguments.report = "pdepth_out/all";
+  if (arguments.report.empty()) return demo->run(options);
+  if (!arguments.out.empty()) {
+    fmt::print(stderr, "pdepth: --report makes the folder of the files itself: leave --out away\n");
+    return kBadUsage;
+  }
+  return run_with_report(arguments, all ? demo::demos() : std::span(demo, 1));
 }
 
 #else
@@ -81,15 +132,18 @@ void add_demo_command(CLI::App& app, Action& action) {
   command->footer(demo_list() + R"(
 Examples:
   pdepth demo stacking --steps 240 --video --out stacking
+  pdepth demo all --report show
   pdepth demo difference a.obj b.obj --size 1920x1080
   pdepth demo difference --trace search.jsonl)");
-  command->add_option("NAME", arguments->name, "Which demo; without it they are listed");
+  command->add_option("NAME", arguments->name, "Which demo, or `all`; without it they are listed");
   command->add_option("FILES", options.inputs, "Meshes, for the demos that take some");
   command->add_option("--steps", options.steps, "Steps of the simulation; 0 = the demo's own choice")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   command->add_option("--size", arguments->size, "Size of a frame, WIDTHxHEIGHT [1280x720]");
   command->add_option("--out", arguments->out, "Folder for the files [pdepth_out/NAME]");
+  command->add_option("--report", arguments->report,
+                      "Make a page: DIR/report.html, with the demo's files in DIR/NAME beside it");
   command->add_option("--solver", options.solver, "The solver shown first")
       ->check(CLI::IsMember({"exact", "approx", "bullet-epa", "bullet-minkowski"}));
   command->add_option("--seed", options.seed, "Seed of what is random")->capture_default_str();

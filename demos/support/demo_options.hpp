@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+namespace pd::report {
+struct Page;
+}
+
 namespace pd::demo {
 
 struct DemoOptions {
@@ -30,6 +34,10 @@ struct DemoOptions {
   std::string trace;
   /// Files to work on, for the demos that take some (difference: two meshes).
   std::vector<std::string> inputs;
+  /// Where the demo adds what it has to show; nullptr: no page is made.
+  report::Page* page = nullptr;
+  /// The demo's folder as the page sees it.
+  std::filesystem::path page_folder;
 };
 
 /// Exit codes of a demo, those of the command `pdepth`.

@@ -218,6 +218,8 @@ Measurement DemoWorld::measure() {
         result.deepest = answer.depth;
         result.deepest_a = i;
         result.deepest_b = j;
+        result.deepest_pose_a = poses[i];
+        result.deepest_pose_b = poses[j];
         result.deepest_answer = answer;
       }
     }

@@ -45,6 +45,8 @@ struct Measurement {
   double step_microseconds = 0;    ///< wall clock of Bullet's step
   int deepest_a = -1;              ///< bodies of the deepest pair, -1 without overlap
   int deepest_b = -1;
+  Pose deepest_pose_a;
+  Pose deepest_pose_b;
   PenetrationDepth deepest_answer;
 };
 

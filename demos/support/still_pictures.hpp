@@ -12,11 +12,14 @@
 namespace pd::demo {
 
 struct StillPicture {
-  std::string_view name;  ///< of the file, without its ending
+  std::string_view name;     ///< of the file, without its ending
+  std::string_view caption;  ///< of a page
   Expected<render::Image> (*draw)(render::Renderer& renderer, render::Size size);
 };
 
-/// Draws them in turn into the demo's folder and names each file on stdout. @return one of DemoExit.
-int draw_still_pictures(const DemoOptions& options, std::string_view demo, std::span<const StillPicture> pictures);
+/// Draws them in turn into the demo's folder and names each file on stdout. @param title  of the section on a page.
+/// @return one of DemoExit.
+int draw_still_pictures(const DemoOptions& options, std::string_view demo, std::string_view title,
+                        std::span<const StillPicture> pictures);
 
 }  // namespace pd::demo

@@ -1,0 +1,14 @@
+/// @file
+/// The files of the folder page/, which the build puts into the program.
+#pragma once
+
+#include <string_view>
+
+namespace pd::report {
+
+extern const std::string_view kPageCss;
+extern const std::string_view kPageJs;
+extern const std::string_view kPairJs;
+extern const std::string_view kThreeJs;  ///< three.js, MIT licence: page/three.LICENSE
+
+}  // namespace pd::report
