@@ -1,6 +1,7 @@
 #include "audit/accuracy_run.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <optional>
 
 #include "audit/audit_stream.hpp"
+#include "audit/contact_figure.hpp"
 
 namespace pd::audit {
 
@@ -64,7 +66,7 @@ double error_of(const Judgement& judgement) {
   return std::max(std::abs(judgement.depth_error.value_or(0)), judgement.normal_excess.value_or(0));
 }
 
-void judge_record(const std::string& file, const AccuracySettings& settings, AccuracyRow& row) {
+void judge_record(const std::string& file, const AccuracySettings& settings, double draw_above, AccuracyRow& row) {
   const int input = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   row.failed = input < 0;
   if (row.failed) return;
@@ -72,6 +74,7 @@ void judge_record(const std::string& file, const AccuracySettings& settings, Acc
   AuditSettings how;
   how.tolerance = settings.tolerance;
   how.threads = settings.threads;
+  how.worst_kept = std::isfinite(draw_above) ? 1 : 0;
   audit_record(
       input, how,
       [&](const RecordedContact&, const Judgement& judgement, std::int64_t) {
@@ -89,6 +92,12 @@ void judge_record(const std::string& file, const AccuracySettings& settings, Acc
   row.missed = total.missed;
   row.phantom = total.phantom;
   row.no_answer = total.unanswered + audit.summary.refused();
+  for (const WorstContact& worst : audit.summary.worst()) {
+    if (worst.error <= std::max(draw_above, kLargeError)) continue;
+    row.figure = contact_figure(worst, settings.tolerance);
+    row.figure->title = fmt::format("{}, {}: {}", row.engine, row.family, row.figure->title);
+    row.figure->file_name = fmt::format("{}_{}_{}", row.engine, row.family, row.figure->file_name);
+  }
 }
 
 }  // namespace
@@ -121,20 +130,21 @@ std::vector<std::string> engines_of(const std::string& program) {
   return engines;
 }
 
-AccuracyRow run_accuracy(const std::string& program, const std::string& engine, const std::string& family,
-                         const AccuracySettings& settings) {
+AccuracyRow run_accuracy(const std::string& program, const std::string& engine, const AccuracySource& source,
+                         const AccuracySettings& settings, double draw_above) {
   AccuracyRow row;
   row.engine = engine;
-  row.family = family;
+  row.family = source.family;
   const RecordFile file;
-  const auto text =
-      output_of("exec " + quoted(program) + " --engine " + quoted(engine) + " --family " + quoted(family) +
-                " --pairs " + std::to_string(settings.pairs) + " --vertices " + std::to_string(settings.vertices) +
-                " --seed " + std::to_string(settings.seed) + " --out " + quoted(file.path()));
+  const std::string pairs =
+      source.cases.empty() ? " --family " + quoted(source.family) : " --cases " + quoted(source.cases);
+  const auto text = output_of("exec " + quoted(program) + " --engine " + quoted(engine) + pairs + " --pairs " +
+                              std::to_string(settings.pairs) + " --vertices " + std::to_string(settings.vertices) +
+                              " --seed " + std::to_string(settings.seed) + " --out " + quoted(file.path()));
   row.failed = !file.good() || !text;
   if (row.failed) return row;
   row.nanoseconds = std::strtod(text->c_str(), nullptr);
-  judge_record(file.path(), settings, row);
+  judge_record(file.path(), settings, draw_above, row);
   return row;
 }
 

@@ -3,12 +3,17 @@
 ///
 /// A recorder program answers `--list` with the names of its engines, one a line, and
 /// `--engine E --family F --pairs N --vertices V --seed S --out FILE` with a contact record of N pairs of the family at
-/// each of its four depths in FILE, and the mean nanoseconds of a query on its standard output.
+/// each of its four depths in FILE, and the mean nanoseconds of a query on its standard output; with `--cases RECORD`
+/// in place of `--family F` with one of the pairs of that record.
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "report/pair_figure.hpp"
 
 namespace pd::audit {
 
@@ -38,6 +43,8 @@ struct AccuracyRow {
   std::int64_t no_answer = 0;   ///< numbers that are not finite, and pairs that could not be judged
   double worst = 0;             ///< the largest error, relative to L
   double nanoseconds = 0;       ///< a query, in the mean
+  /// The contact with the largest error, where it was asked for and is above kLargeError.
+  std::optional<report::PairFigure> figure;
 
   /// Contacts that a user would call wrong, each once: missed, phantom, above_large or without an answer.
   [[nodiscard]] std::int64_t wrong() const { return missed + phantom + only_large + no_answer; }
@@ -50,7 +57,15 @@ struct AccuracyRow {
 /// Seconds of processor time after which a recorder is ended.
 inline constexpr int kRecorderSeconds = 120;
 
-[[nodiscard]] AccuracyRow run_accuracy(const std::string& program, const std::string& engine, const std::string& family,
-                                       const AccuracySettings& settings);
+/// Pairs that a recorder is asked about.
+struct AccuracySource {
+  std::string family;
+  std::string cases;  ///< a record whose pairs are asked instead; empty: the generated family
+};
+
+/// @param draw_above  the worst contact is drawn where its error is larger; infinity: never
+[[nodiscard]] AccuracyRow run_accuracy(const std::string& program, const std::string& engine,
+                                       const AccuracySource& source, const AccuracySettings& settings,
+                                       double draw_above = std::numeric_limits<double>::infinity());
 
 }  // namespace pd::audit

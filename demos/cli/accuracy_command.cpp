@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "audit/accuracy_run.hpp"
+#include "audit/accuracy_report.hpp"
+#include "audit/mesh_cases.hpp"
 #include "commands.hpp"
 #include "line_input.hpp"
 #include "scenes/shape_families.hpp"
@@ -25,18 +27,26 @@ constexpr const char* kFooter =
 with a contact record in FILE. Built beside this command where the packages are: record_peers (ours, Bullet in single
 precision, libccd, FCL, ODE) and record_peers_double (Bullet in double precision).
 
+--cases and --meshes take the place of the families, unless --families names some; the pairs of a record are asked as
+they stand there, whatever its engine reported.
+
 Errors are the larger of depth error and normal excess, relative to the size of the pair. Our own row is judged by the
 same library; the program oracle_pairs judges our depths by an oracle that shares no code with it.
 
 Examples:
   pdepth accuracy
-  pdepth accuracy --families prism,needle --pairs 200 --csv table.csv)";
+  pdepth accuracy --families prism,needle --pairs 200 --csv table.csv
+  pdepth accuracy --report page
+  pdepth accuracy --cases contacts.jsonl --meshes robot/meshes)";
 
 struct AccuracyArguments {
   std::vector<std::string> recorders;
-  std::vector<std::string> families;
+  std::vector<std::string> only_families;
   std::vector<std::string> engines;
+  std::string cases;   ///< a record
+  std::string meshes;  ///< a folder
   std::string csv;
+  std::string report;  ///< a folder
   audit::AccuracySettings settings;
 };
 
@@ -80,79 +90,84 @@ std::vector<Engine> engines_of(const AccuracyArguments& arguments) {
   return engines;
 }
 
-std::string engine_table(const std::vector<audit::AccuracyRow>& totals) {
-  std::string text = fmt::format("{:<24} {:>8} {:>7} {:>8} {:>7} {:>7} {:>9} {:>9} {:>9}\n", "engine", "contacts",
-                                 "missed", "phantom", "> 1e-6", "> 1e-3", "no answer", "worst", "us");
-  for (const audit::AccuracyRow& row : totals) {
-    text += fmt::format("{:<24} {:>8} {:>7} {:>8} {:>7} {:>7} {:>9} {:>9.2g} {:>9.1f}{}\n", row.engine, row.contacts,
-                        row.missed, row.phantom, row.above_small, row.above_large, row.no_answer, row.worst,
-                        row.nanoseconds / 1e3, row.failed ? "  a run failed" : "");
-  }
-  return text;
-}
-
-/// Families down, engines across: contacts that a user would call wrong.
-std::string family_table(const std::vector<Engine>& engines, const std::vector<std::string>& families,
-                         const std::vector<audit::AccuracyRow>& rows) {
-  std::string text = "\nmissed, phantom, wrong by more than 1e-3 or without an answer, of the contacts of a family\n";
-  for (std::size_t e = 0; e < engines.size(); ++e) text += fmt::format("  {} = {}\n", e + 1, engines[e].name);
-  text += fmt::format("\n{:<20}", "family");
-  for (std::size_t e = 0; e < engines.size(); ++e) text += fmt::format(" {:>7}", e + 1);
-  text += "\n";
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    text += fmt::format("{:<20}", families[f]);
-    for (std::size_t e = 0; e < engines.size(); ++e) {
-      const audit::AccuracyRow& row = rows[e * families.size() + f];
-      const std::string cell = row.failed          ? "failed"
-                               : row.contacts == 0 ? "-"
-                               : row.wrong() == 0  ? "."
-                                                   : fmt::format("{}", row.wrong());
-      text += fmt::format(" {:>7}", cell);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-bool write_csv(const std::string& path, const std::vector<audit::AccuracyRow>& rows) {
+bool write_file(const std::string& path, const std::string& text) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) return false;
-  fmt::print(file, "engine,family,failed,contacts,missed,phantom,above_1e-6,above_1e-3,no_answer,worst,nanoseconds\n");
-  for (const audit::AccuracyRow& row : rows) {
-    fmt::print(file, "{},{},{:d},{},{},{},{},{},{},{},{}\n", row.engine, row.family, row.failed, row.contacts,
-               row.missed, row.phantom, row.above_small, row.above_large, row.no_answer, row.worst, row.nanoseconds);
-  }
-  const bool written = std::ferror(file) == 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
   return std::fclose(file) == 0 && written;
+}
+
+/// The command that gives the same page again.
+std::string command_of(const AccuracyArguments& arguments) {
+  const audit::AccuracySettings& settings = arguments.settings;
+  std::string text = fmt::format("pdepth accuracy --pairs {} --vertices {} --seed {} --tolerance {:g}", settings.pairs,
+                                 settings.vertices, settings.seed, settings.tolerance);
+  if (!arguments.only_families.empty()) text += fmt::format(" --families {}", fmt::join(arguments.only_families, ","));
+  if (!arguments.engines.empty()) text += fmt::format(" --engines {}", fmt::join(arguments.engines, ","));
+  if (!arguments.cases.empty()) text += fmt::format(" --cases '{}'", arguments.cases);
+  if (!arguments.meshes.empty()) text += fmt::format(" --meshes '{}'", arguments.meshes);
+  return text + fmt::format(" --report '{}'", arguments.report);
+}
+
+/// Runs every engine on every source.
+audit::AccuracyTable table_of(const std::vector<Engine>& engines, const std::vector<audit::AccuracySource>& sources,
+                              const AccuracyArguments& arguments) {
+  audit::AccuracyTable table;
+  for (const audit::AccuracySource& source : sources) table.families.push_back(source.family);
+  for (const Engine& engine : engines) {
+    table.engines.push_back(engine.name);
+    double worst = arguments.report.empty() ? std::numeric_limits<double>::infinity() : 0;
+    std::optional<report::PairFigure> figure;
+    for (const audit::AccuracySource& source : sources) {
+      table.rows.push_back(audit::run_accuracy(engine.program, engine.name, source, arguments.settings, worst));
+      if (!table.rows.back().figure) continue;
+      figure = std::move(table.rows.back().figure);
+      table.rows.back().figure.reset();
+      worst = std::max(worst, table.rows.back().worst);
+    }
+    if (figure) table.worst.push_back(std::move(*figure));
+  }
+  return table;
 }
 
 int run_accuracy_command(AccuracyArguments arguments) {
   arguments.settings.threads = number_of_threads(arguments.settings.threads);
-  if (arguments.families.empty()) arguments.families = all_families();
+  const bool own_pairs = !arguments.cases.empty() || !arguments.meshes.empty();
+  const auto families = arguments.only_families.empty() && !own_pairs ? all_families() : arguments.only_families;
+  std::vector<audit::AccuracySource> sources;
+  for (const std::string& family : families) sources.push_back({family, {}});
+  if (!arguments.cases.empty()) {
+    sources.push_back({std::filesystem::path(arguments.cases).stem(), std::filesystem::absolute(arguments.cases)});
+  }
+  std::optional<audit::MeshCases> meshes;
+  if (!arguments.meshes.empty()) {
+    meshes.emplace(arguments.meshes, arguments.settings);
+    for (const std::string& complaint : meshes->complaints()) fmt::print(stderr, "pdepth: {}\n", complaint);
+    if (!meshes->good()) return kBadUsage;
+    sources.push_back({"meshes", meshes->path()});
+  }
   if (arguments.recorders.empty()) arguments.recorders = recorders_beside();
   const std::vector<Engine> engines = engines_of(arguments);
   if (engines.empty()) {
     fmt::print(stderr, "pdepth: no engine to ask; build record_peers (PD_WITH_BENCH) or name a --recorder\n");
     return kBadUsage;
   }
-  std::vector<audit::AccuracyRow> rows;
-  std::vector<audit::AccuracyRow> totals;
-  bool failed = false;
-  for (const Engine& engine : engines) {
-    totals.emplace_back();
-    totals.back().engine = engine.name;
-    for (const std::string& family : arguments.families) {
-      rows.push_back(audit::run_accuracy(engine.program, engine.name, family, arguments.settings));
-      totals.back().add(rows.back());
-      failed = failed || rows.back().failed;
-    }
-  }
-  fmt::print("{}{}", engine_table(totals), family_table(engines, arguments.families, rows));
-  if (!arguments.csv.empty() && !write_csv(arguments.csv, rows)) {
+  const audit::AccuracyTable table = table_of(engines, sources, arguments);
+  fmt::print("{}", audit::accuracy_text(table));
+  if (!arguments.csv.empty() && !write_file(arguments.csv, audit::accuracy_csv(table))) {
     fmt::print(stderr, "pdepth: {} cannot be written\n", arguments.csv);
     return kFailed;
   }
-  return failed ? kBadUsage : kDone;
+  const char* judge =
+      "Recorder programs asked each engine, and the audit judged what they wrote; judge and pdepth's own row share a "
+      "library (pdepth-bench accuracy judges by one that shares no code).";
+  if (!arguments.report.empty() &&
+      !report::write_page(arguments.report,
+                          audit::accuracy_page(table, arguments.settings, judge, command_of(arguments)))) {
+    fmt::print(stderr, "pdepth: {}/report.html cannot be written\n", arguments.report);
+    return kFailed;
+  }
+  return table.any_failed() ? kBadUsage : kDone;
 }
 
 }  // namespace
@@ -166,7 +181,7 @@ void add_accuracy_command(CLI::App& app, Action& action) {
   command->add_option("--recorder", arguments->recorders, "Programs that record (default: those built beside this one)")
       ->delimiter(',');
   command->add_option("--engines", arguments->engines, "Only these")->delimiter(',');
-  command->add_option("--families", arguments->families, "Only these")
+  command->add_option("--families", arguments->only_families, "Only these")
       ->delimiter(',')
       ->check(CLI::IsMember(all_families()));
   command->add_option("--pairs", settings.pairs, "Pairs of a family at each of its four depths")
@@ -180,6 +195,11 @@ void add_accuracy_command(CLI::App& app, Action& action) {
       ->check(CLI::Range(1e-15, 1.0))
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "Write engine by family to this file");
+  command->add_option("--cases", arguments->cases, "The pairs of convex bodies of this contact record")
+      ->check(CLI::ExistingFile);
+  command->add_option("--meshes", arguments->meshes, "Pairs of hulls of the meshes of this folder")
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--report", arguments->report, "Write report.html, a page for people, into this folder");
   add_threads_option(*command, settings.threads, "judge");
   command->callback([arguments, &action] { action = [arguments] { return run_accuracy_command(*arguments); }; });
 }

@@ -13,6 +13,9 @@ namespace pd::report {
 
 namespace {
 
+/// Ways are cut off there, in units of half the picture: engines report depths of any size.
+constexpr double kLongestWay = 3;
+
 /// A rotation whose third row is the normal.
 Mat3 upright(const Vec3& normal) {
   Vec3 axis = Vec3::Zero();
@@ -61,6 +64,8 @@ PairView placed(const Mat3& frame, std::vector<DrawnBody> bodies, std::vector<Dr
   for (DrawnWay& way : ways) {
     way.from = place(way.from);
     way.to = place(way.to);
+    const Vec3 along = way.to - way.from;
+    if (along.stableNorm() > kLongestWay) way.to = way.from + kLongestWay * along.stableNormalized();
   }
   view.bodies = std::move(bodies);
   view.ways = std::move(ways);

@@ -2,13 +2,18 @@
 /// `pdepth accuracy`: recorder programs driven, their records counted by engine and family; programs that misbehave.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <pugixml.hpp>
 
 #include "audit/accuracy_run.hpp"
 #include "record_text.hpp"
 
 namespace pd::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 class Accuracy : public ::testing::Test, protected TemporaryFolder {
  protected:
@@ -33,6 +38,7 @@ while [ $# -gt 0 ]; do
     --engine) engine=$2; shift ;;
     --out) out=$2; shift ;;
     --family) family=$2; shift ;;
+    --cases) cp "$2" "$here/asked"; family=box; shift ;;
   esac
   shift
 done
@@ -47,12 +53,12 @@ cat "$here/$engine" > "$out" && echo 1234
 TEST_F(Accuracy, CountsWhatARecorderSays) {
   const std::string program = recorder();
   EXPECT_EQ(audit::engines_of(program), (std::vector<std::string>{"good", "bad"}));
-  const audit::AccuracyRow good = audit::run_accuracy(program, "good", "box", {});
+  const audit::AccuracyRow good = audit::run_accuracy(program, "good", {"box", ""}, {});
   EXPECT_FALSE(good.failed);
   EXPECT_EQ(good.contacts, 2);
   EXPECT_EQ(good.wrong() + good.above_small, 0);
   EXPECT_EQ(good.nanoseconds, 1234);
-  const audit::AccuracyRow bad = audit::run_accuracy(program, "bad", "box", {});
+  const audit::AccuracyRow bad = audit::run_accuracy(program, "bad", {"box", ""}, {});
   EXPECT_EQ(bad.contacts, 4);
   EXPECT_EQ(bad.missed, 1);
   EXPECT_EQ(bad.phantom, 1);
@@ -65,10 +71,10 @@ TEST_F(Accuracy, CountsWhatARecorderSays) {
 
 TEST_F(Accuracy, ProgramsThatFail) {
   EXPECT_TRUE(audit::engines_of(path() / "nobody").empty());
-  EXPECT_TRUE(audit::run_accuracy(path() / "nobody", "good", "box", {}).failed);
+  EXPECT_TRUE(audit::run_accuracy(path() / "nobody", "good", {"box", ""}, {}).failed);
   const std::string program = recorder();
-  EXPECT_TRUE(audit::run_accuracy(program, "good", "prism", {}).failed) << "it killed itself";
-  EXPECT_TRUE(audit::run_accuracy(program, "none", "box", {}).failed) << "it wrote no record";
+  EXPECT_TRUE(audit::run_accuracy(program, "good", {"prism", ""}, {}).failed) << "it killed itself";
+  EXPECT_TRUE(audit::run_accuracy(program, "none", {"box", ""}, {}).failed) << "it wrote no record";
 }
 
 TEST_F(Accuracy, TheCommand) {
@@ -80,6 +86,43 @@ TEST_F(Accuracy, TheCommand) {
   EXPECT_NE(read("table.csv").find("\nbad,box,0,4,1,1,2,1,1,"), std::string::npos) << read("table.csv");
   EXPECT_EQ(WEXITSTATUS(std::system((command + "box,prism" + out).c_str())), 2) << "a run failed";
   EXPECT_EQ(WEXITSTATUS(std::system((command + "nonsense" + out).c_str())), 2);
+}
+
+TEST_F(Accuracy, ThePageForPeople) {
+  const std::string command = "cd '" + path().string() + "' && '" PDEPTH_PROGRAM "' accuracy --recorder '" +
+                              recorder() + "' --families box --report page > out 2>&1";
+  ASSERT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << read("out");
+  const std::string page = read("page/report.html");
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(page.c_str(), pugi::parse_full));
+  EXPECT_EQ(document.select_nodes("//section[@id='engines']//tbody/tr").size(), 2U);
+  EXPECT_EQ(document.select_nodes("//section[@id='families']//tbody/tr").size(), 1U);
+  EXPECT_STREQ(document.select_node("//section[@id='families']//tbody/tr/td[3]").node().text().get(), "3");
+  EXPECT_EQ(document.select_nodes("//figure[@class='pair']").size(), 1U) << "the good one has no worst contact";
+  EXPECT_NE(page.find("bad, box: contact"), std::string::npos);
+}
+
+TEST_F(Accuracy, PairsOfARecordAndOfMeshes) {
+  fs::create_directory(path() / "meshes");
+  write("meshes/a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+  write("meshes/b.off", "OFF\n4 4 0\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n");
+  write("meshes/c.stl", "solid rubbish");
+  const std::string command = "cd '" + path().string() + "' && '" PDEPTH_PROGRAM "' accuracy --recorder '" +
+                              recorder() + "' --engines good --pairs 3 ";
+  ASSERT_EQ(WEXITSTATUS(std::system((command + "--meshes meshes > out 2>&1").c_str())), 0) << read("out");
+  EXPECT_NE(read("out").find("c.stl is left out"), std::string::npos) << read("out");
+  // The record that the recorder got: two hulls, each against the next at four depths.
+  const std::string asked = read("asked");
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), '\n'), 1 + 2 + 2 * 4 * 3);
+  write("record.jsonl", asked);
+  const std::string audit = "cd '" + path().string() + "' && '" PDEPTH_PROGRAM "' audit record.jsonl > out";
+  EXPECT_EQ(WEXITSTATUS(std::system(audit.c_str())), 0);
+  EXPECT_NE(read("out").find("24 judged of 24"), std::string::npos) << read("out");
+  write("mine.jsonl", asked);
+  ASSERT_EQ(WEXITSTATUS(std::system((command + "--cases mine.jsonl > out 2>&1").c_str())), 0) << read("out");
+  EXPECT_EQ(read("asked"), asked);
+  EXPECT_NE(read("out").find("mine "), std::string::npos) << read("out");
+  EXPECT_EQ(WEXITSTATUS(std::system((command + "--meshes nowhere > out 2>&1").c_str())), 2);
 }
 
 }  // namespace

@@ -3,10 +3,17 @@
 ///
 ///   record_peers --list
 ///   record_peers --engine fcl-contact --family prism --pairs 25 --out prism.jsonl    (prints its nanoseconds a query)
+///   record_peers --engine fcl-contact --cases contacts.jsonl --out fcl.jsonl         (the pairs of a record)
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
 #include <string>
 
 #include "bench/peers/solver.hpp"
@@ -20,8 +27,10 @@ namespace {
 struct RecordOptions {
   std::string engine;
   std::string family;
+  std::string cases;
   std::string out;
   int pairs = 25;
+  int bodies = 0;  ///< pairs of the family share the bodies of this many; 0: each has its own
   int vertices = 32;
   std::uint64_t seed = 1;
 };
@@ -83,46 +92,142 @@ pd_record_pose to_record(const Pose& pose) {
   return written;
 }
 
-void write_answer(pd_record& record, const std::string& name, const CorpusPair& pair, const Answer& answer) {
-  const std::string a = name + "a";
-  const std::string b = name + "b";
-  write_shape(record, a, pair.bodies.a);
-  write_shape(record, b, pair.bodies.b);
-  const pd_record_pose pose_a = to_record(pair.pose_a);
-  const pd_record_pose pose_b = to_record(pair.pose_b);
-  const Vec3 normal = answer.translation.stableNormalized();
-  const bool direction = normal.allFinite() && !normal.isZero(0);
-  const pd_record_report report{answer.depth, direction ? normal.data() : nullptr, nullptr, 0};
-  pd_record_contact(&record, a.c_str(), &pose_a, b.c_str(), &pose_b, answer.overlapping ? &report : nullptr);
-}
+/// A pair to ask about; the ids name bodies that several pairs may share.
+struct NamedPair {
+  scenes::PointPair points;
+  std::string id_a;
+  std::string id_b;
+};
 
-int record(const RecordOptions& options, Solver& solver, scenes::PairFamily family) {
-  pd_record file;
-  const Precision precision = solver.precision();
-  pd_record_open(&file, options.out.c_str(), options.engine.c_str(),
-                 precision == Precision::binary32 ? PD_RECORD_FLOAT32 : PD_RECORD_FLOAT64, nullptr);
-  double nanoseconds = 0;
-  int asked = 0;
+/// Asks the solver and writes what it says.
+class Recording {
+ public:
+  Recording(const RecordOptions& options, Solver& solver) : solver_(solver) {
+    pd_record_open(&file_, options.out.c_str(), options.engine.c_str(),
+                   solver.precision() == Precision::binary32 ? PD_RECORD_FLOAT32 : PD_RECORD_FLOAT64, nullptr);
+  }
+
+  void ask(const NamedPair& named) {
+    const auto pair = corpus_pair(named.points, solver_);
+    if (!pair) return;
+    const auto attempt = solver_.prepare(pair->bodies);
+    attempt->stand(pair->pose_a, pair->pose_b);
+    const auto start = std::chrono::steady_clock::now();
+    attempt->run();
+    nanoseconds_ += std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+    ++asked_;
+    if (written_.insert(named.id_a).second) write_shape(file_, named.id_a, pair->bodies.a);
+    if (written_.insert(named.id_b).second) write_shape(file_, named.id_b, pair->bodies.b);
+    write_answer(named, *pair, attempt->answer());
+  }
+
+  /// Closes the file and prints the nanoseconds of a query. @return the exit code
+  int close(const std::string& name) {
+    if (pd_record_close(&file_) == 0) {
+      std::fprintf(stderr, "record_peers: %s cannot be written\n", name.c_str());
+      return 1;
+    }
+    std::printf("%.0f\n", asked_ > 0 ? nanoseconds_ / asked_ : 0);
+    return 0;
+  }
+
+ private:
+  void write_answer(const NamedPair& named, const CorpusPair& pair, const Answer& answer) {
+    const pd_record_pose pose_a = to_record(pair.pose_a);
+    const pd_record_pose pose_b = to_record(pair.pose_b);
+    const Vec3 normal = answer.translation.stableNormalized();
+    const bool direction = normal.allFinite() && !normal.isZero(0);
+    const pd_record_report report{answer.depth, direction ? normal.data() : nullptr, nullptr, 0};
+    pd_record_contact(&file_, named.id_a.c_str(), &pose_a, named.id_b.c_str(), &pose_b,
+                      answer.overlapping ? &report : nullptr);
+  }
+
+  Solver& solver_;
+  pd_record file_{};
+  std::set<std::string> written_;
+  double nanoseconds_ = 0;
+  int asked_ = 0;
+};
+
+int record_family(const RecordOptions& options, Solver& solver, scenes::PairFamily family) {
+  Recording recording(options, solver);
   for (int d = 0; d < scenes::kDepthClasses; ++d) {
-    for (int i = 0; i < options.pairs; ++i) {
+    const auto pair_of = [&](int i) {
       const std::uint64_t seed = options.seed * 1'000'003U + static_cast<std::uint64_t>(i);
-      const auto pair =
-          corpus_pair(scenes::make_pair(family, options.vertices, static_cast<scenes::DepthClass>(d), seed), solver);
-      if (!pair) continue;
-      const auto attempt = solver.prepare(pair->bodies);
-      attempt->stand(pair->pose_a, pair->pose_b);
-      const auto start = std::chrono::steady_clock::now();
-      attempt->run();
-      nanoseconds += std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
-      write_answer(file, std::to_string(asked++), *pair, attempt->answer());
+      return scenes::make_pair(family, options.vertices, static_cast<scenes::DepthClass>(d), seed);
+    };
+    for (int i = 0; i < options.pairs; ++i) {
+      NamedPair named{pair_of(i), "", ""};
+      const int body = options.bodies > 0 ? i % options.bodies : i;
+      if (body != i) {
+        scenes::PointPair shared = pair_of(body);
+        named.points.a = std::move(shared.a);
+        named.points.b = std::move(shared.b);
+      }
+      const std::string name = std::to_string(d) + "_" + std::to_string(body);
+      named.id_a = name + "a";
+      named.id_b = name + "b";
+      recording.ask(named);
     }
   }
-  if (pd_record_close(&file) == 0) {
-    std::fprintf(stderr, "record_peers: %s cannot be written\n", options.out.c_str());
-    return 1;
+  return recording.close(options.out);
+}
+
+Vec3 vector_of(const nlohmann::json& numbers) {
+  const auto v = numbers.get<std::array<double, 3>>();
+  return {v[0], v[1], v[2]};
+}
+
+Pose pose_of(const nlohmann::json& contact, const char* key) {
+  if (!contact.contains(key)) return {};
+  const nlohmann::json& pose = contact.at(key);
+  const Vec3 at = pose.contains("translation") ? vector_of(pose.at("translation")) : Vec3(Vec3::Zero());
+  if (pose.contains("quaternion_wxyz")) {
+    return Pose::from_quaternion(pose.at("quaternion_wxyz").get<std::array<double, 4>>(), at).value();
   }
-  std::printf("%.0f\n", asked > 0 ? nanoseconds / asked : 0);
-  return 0;
+  if (!pose.contains("rotation_row_major")) return Pose::from_trusted_matrix(Mat3::Identity(), at);
+  const auto numbers = pose.at("rotation_row_major").get<std::array<double, 9>>();
+  Mat3 rotation;
+  for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = numbers[static_cast<std::size_t>(i)];
+  return Pose::from_matrix(rotation, at).value();
+}
+
+/// The points of a shape of a record that is the hull of points; empty for others.
+scenes::Points points_of(const nlohmann::json& shape) {
+  scenes::Points points;
+  if (shape.value("margin", 0.0) != 0) return points;
+  if (shape.at("type") == "box") return scenes::box(vector_of(shape.at("half_extents")));
+  if (shape.at("type") != "convex") return points;
+  for (const nlohmann::json& vertex : shape.at("vertices")) points.push_back(vector_of(vertex));
+  return points;
+}
+
+/// The pairs of hulls of a contact record; other lines are passed over and counted on stderr.
+int record_cases(const RecordOptions& options, Solver& solver) {
+  std::ifstream cases(options.cases);
+  std::map<std::string, scenes::Points> shapes;
+  Recording recording(options, solver);
+  int passed_over = 0;
+  for (std::string text; std::getline(cases, text);) {
+    const auto line = nlohmann::json::parse(text, nullptr, false);
+    try {
+      if (line.is_discarded() || line.contains("record")) continue;
+      if (line.contains("shape")) {
+        shapes[line.at("shape").get<std::string>()] = points_of(line.at("is"));
+        continue;
+      }
+      const NamedPair named{
+          scenes::PointPair{shapes.at(line.at("a").get<std::string>()), shapes.at(line.at("b").get<std::string>()),
+                            pose_of(line, "pose_a"), pose_of(line, "pose_b")},
+          line.at("a").get<std::string>(), line.at("b").get<std::string>()};
+      if (named.points.a.empty() || named.points.b.empty()) throw std::invalid_argument("no hull of points");
+      recording.ask(named);
+    } catch (const std::exception&) {
+      ++passed_over;
+    }
+  }
+  if (passed_over > 0) std::fprintf(stderr, "record_peers: %d lines are no pairs of hulls\n", passed_over);
+  return recording.close(options.out);
 }
 
 int run(const RecordOptions& options, bool list) {
@@ -139,9 +244,10 @@ int run(const RecordOptions& options, bool list) {
       continue;
     }
     if (solver->name() != options.engine && std::string(solver->name()) + "-double" != options.engine) continue;
+    if (!options.cases.empty()) return record_cases(options, *solver);
     for (int f = 0; f < scenes::kPairFamilies; ++f) {
       const auto family = static_cast<scenes::PairFamily>(f);
-      if (to_string(family) == options.family) return record(options, *solver, family);
+      if (to_string(family) == options.family) return record_family(options, *solver, family);
     }
     std::fprintf(stderr, "record_peers: there is no family \"%s\"\n", options.family.c_str());
     return 2;
@@ -161,6 +267,10 @@ int main(int argc, char** argv) {
   app.add_flag("--list", list, "names the engines");
   app.add_option("--engine", options.engine);
   app.add_option("--family", options.family);
+  app.add_option("--cases", options.cases, "the pairs of this contact record in place of a family")
+      ->check(CLI::ExistingFile);
+  app.add_option("--bodies", options.bodies, "pairs of the family share the bodies of this many")
+      ->check(CLI::PositiveNumber);
   app.add_option("--pairs", options.pairs, "for each of four depths")->check(CLI::PositiveNumber);
   app.add_option("--vertices", options.vertices)->check(CLI::Range(4, 100'000));
   app.add_option("--seed", options.seed);
