@@ -166,7 +166,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   }
   if (owns_manifold_) {
     PointSurroundings whole;
-    replace_points(*manifold_, *memory_, fresh_points(fresh), *result, whole);
+    replace_points(*manifold_, *memory_, fresh_points(fresh), info.m_timeStep, *result, whole);
   } else {
     add_points(*manifold_, fresh_points(fresh), *result);
   }

@@ -13,6 +13,14 @@ namespace {
 /// New point for each old one: -1 where none.
 using Matching = std::array<int, 4>;
 
+/// The number of a manifold's point in memory, recognised by its exact place; -1 where somebody else moved it.
+int remembered(const PairMemory& memory, const btManifoldPoint& point) {
+  for (int r = 0; r < memory.num_points; ++r) {
+    if (memory.points[r].local_a == point.m_localPointA) return r;
+  }
+  return -1;
+}
+
 /// Pairs last step's manifold points with this step's: by feature where the place is the same within the breaking
 /// threshold, else by place, nearest first, and then by feature wherever it has gone (what slides fast keeps its
 /// impulse). Place comes before a feature that is elsewhere: where the edges of two faces nearly coincide, a crossing
@@ -33,10 +41,8 @@ Matching match_points(const btPersistentManifold& manifold, const PairMemory& me
   const auto by_feature = [&](btScalar within) {
     for (int i = 0; i < count; ++i) {
       if (matching[i] >= 0) continue;
-      const btVector3& local = manifold.getContactPoint(i).m_localPointA;
-      int r = 0;
-      while (r < memory.num_points && !(memory.points[r].local_a == local)) ++r;
-      if (r == memory.num_points) continue;
+      const int r = remembered(memory, manifold.getContactPoint(i));
+      if (r < 0) continue;
       for (int k = 0; k < fresh.count; ++k) {
         if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id && gap(i, k) < within) {
           match(i, k);
@@ -112,7 +118,7 @@ void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btMani
   }
 }
 
-void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
+void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
                     btManifoldResult& result, PointSurroundings& surroundings) {
   std::array<btVector3, 4> local_a;
   for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(manifold, fresh.points[k]);
@@ -121,6 +127,7 @@ void replace_points(btPersistentManifold& manifold, PairMemory& memory, const Fr
   // matched old point is moved to its heir first; that keeps Bullet's contact callbacks right, which clearing would
   // not.
   std::array<FrictionAnchor, 4> anchors;
+  std::array<ImpulseTrend, 4> impulses;  // of the new points
   for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
     if (matching[i] < 0) {
       // Moves the last point into the gap: those behind are dealt with already.
@@ -130,6 +137,8 @@ void replace_points(btPersistentManifold& manifold, PairMemory& memory, const Fr
     } else {
       btManifoldPoint& old = manifold.getContactPoint(i);
       anchors[i] = anchor_of(old);
+      if (const int r = remembered(memory, old); r >= 0) impulses[matching[i]] = memory.points[r].impulse;
+      old.m_appliedImpulse = impulses[matching[i]].next(old.m_appliedImpulse, seconds == memory.seconds);
       old.m_localPointA = local_a[matching[i]];
     }
   }
@@ -140,8 +149,12 @@ void replace_points(btPersistentManifold& manifold, PairMemory& memory, const Fr
     const int entry = add_anchored_point(result, manifold, point.normal, point.point_on_b, point.distance, near,
                                          anchors[std::max(near, 0)]);
     surroundings.leave();
-    if (entry >= 0) memory.points[entry].feature_id = point.feature_id;
+    if (entry >= 0) {
+      memory.points[entry].feature_id = point.feature_id;
+      memory.points[entry].impulse = impulses[k];
+    }
   }
+  memory.seconds = seconds;
   memory.num_points = manifold.getNumContacts();
   for (int i = 0; i < memory.num_points; ++i) {
     memory.points[i].local_a = manifold.getContactPoint(i).m_localPointA;

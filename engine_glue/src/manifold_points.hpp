@@ -37,9 +37,11 @@ class PointSurroundings {
   virtual void leave() {}
 };
 
-/// Puts the points of this step in place of the manifold's, which nobody else writes to. Impulses, life times and
-/// anchors go from the old points to the new ones by feature, else by place; `memory` keeps the features.
-void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
+/// Puts the points of this step in place of the manifold's, which nobody else writes to. Impulses (with their trend,
+/// impulse_trend.hpp), life times and anchors go from the old points to the new ones by feature, else by place;
+/// `memory` keeps the features.
+/// @param seconds of the step
+void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
                     btManifoldResult& result, PointSurroundings& surroundings);
 
 /// Adds points to a manifold that other pairs write to as well.

@@ -133,7 +133,7 @@ class MeshContacts final : public UnionContacts {
   bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     TriangleOfPoint around(question.b, question.result, triangles_);
-    manifolds.replace(patches, question.result, around);
+    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
   }
 
  private:

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cached_shape.hpp"
+#include "impulse_trend.hpp"
 #include "pd/depth/warm_certificate.hpp"
 
 class btPersistentManifold;
@@ -23,6 +24,7 @@ namespace pd::detail {
 struct RememberedPoint {
   btVector3 local_a;
   std::int64_t feature_id;
+  ImpulseTrend impulse;
 };
 
 /// Of two children in a pair with compounds.
@@ -40,6 +42,7 @@ struct PairMemory {
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
+  btScalar seconds = 0;                   ///< of the step that the points' impulses belong to
   std::vector<ChildPairMemory> children;  ///< sorted by number
 };
 

@@ -48,7 +48,8 @@ void PatchManifolds::append_to(btManifoldArray& manifolds) const {
   for (const auto& kept : manifolds_) manifolds.push_back(kept->manifold);
 }
 
-void PatchManifolds::replace(Patches& patches, btManifoldResult& result, PointSurroundings& surroundings) {
+void PatchManifolds::replace(Patches& patches, btScalar seconds, btManifoldResult& result,
+                             PointSurroundings& surroundings) {
   btPersistentManifold& first = *manifolds_[0]->manifold;
   const btCollisionObject& a = *first.getBody0();
   const btCollisionObject& b = *first.getBody1();
@@ -69,7 +70,7 @@ void PatchManifolds::replace(Patches& patches, btManifoldResult& result, PointSu
     const Patch& patch = patches[heir];
     PieceOfPoint around(patch, surroundings);
     result.setPersistentManifold(kept.manifold);
-    replace_points(*kept.manifold, kept.memory, patch.fresh, result, around);
+    replace_points(*kept.manifold, kept.memory, patch.fresh, seconds, result, around);
   }
   result.setPersistentManifold(&first);
 }

@@ -33,7 +33,8 @@ class PatchManifolds {
 
   /// Puts this step's points in place of last step's: a patch goes to the manifold that had its normal. `surroundings`
   /// are entered with the number of the point's piece. Requires: `first` was called. Leaves `result` at the first.
-  void replace(Patches& patches, btManifoldResult& result, PointSurroundings& surroundings);
+  /// @param seconds of the step
+  void replace(Patches& patches, btScalar seconds, btManifoldResult& result, PointSurroundings& surroundings);
 
   void clear();
   void append_to(btManifoldArray& manifolds) const;

@@ -1,0 +1,37 @@
+/// @file
+/// The impulse that a lasting point begins the next step with: what it carried, and half of the way on that it is
+/// going.
+///
+/// Bullet's constraint solver starts from last step's impulses and takes a fixed number of sweeps. Through a tower of n
+/// bodies a sweep mends about (pi / n)^2 / 4 of the slowest error, .6 % at n = 20, so that after thirty sweeps the
+/// impulses are still those of some steps ago. A load that sways is answered late, and a late answer feeds the sway. A
+/// guess that leads makes up for it. A tower of 20 at 60 Hz with the recommended settings falls after 29, 41, 59 and 54
+/// s with shares of the trend of -.5, -.25, 0 and 1; with .25, .4, .5, .6 and .75 it stands and moves with 44, 40, 16,
+/// 7 and 130 mm/s after a minute.
+#pragma once
+
+#include <LinearMath/btScalar.h>
+
+#include <algorithm>
+
+namespace pd::detail {
+
+/// Of a point that lasts, what it carried before. Negative: not known.
+struct ImpulseTrend {
+  btScalar carried = -1;  ///< at the end of the last step
+  btScalar handed = -1;   ///< at its beginning
+
+  /// The point's impulse for the next step.
+  /// @param solved    what it carries now, >= 0
+  /// @param same_step whether the last step was as long as the next one: impulses are forces times steps
+  btScalar next(btScalar solved, bool same_step) {
+    // Nobody solved since: contacts were looked for twice in a step.
+    if (solved == handed) return solved;
+    constexpr btScalar kShare = btScalar(0.5);
+    handed = same_step && carried >= 0 ? std::max(btScalar(0), solved + kShare * (solved - carried)) : solved;
+    carried = solved;
+    return handed;
+  }
+};
+
+}  // namespace pd::detail
