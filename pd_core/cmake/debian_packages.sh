@@ -7,7 +7,8 @@ pd_build_packages=(
 # Loaded or run, not linked: the rasteriser, the fonts of the captions, the video encoder.
 pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)
 # chromium opens the pages of --report.
-pd_test_packages=(libgtest-dev libqhull-dev ccache chromium)
+# mkdocs and its theme build the documentation's site.
+pd_test_packages=(libgtest-dev libqhull-dev ccache chromium mkdocs mkdocs-material)
 
 # Prints those of the named packages that are not installed.
 pd_missing_packages() {

@@ -112,7 +112,12 @@ PenetrationDepth answer_of(const PosedPairCase& pair, Scratch& scratch) {
 /// Normal and witnesses as one vector.
 using Nine = std::array<Vec3, 3>;
 
-Nine features(const PenetrationDepth& answer) { return {answer.normal, answer.witness_a, answer.witness_b}; }
+Nine features_of(const PosedPairCase& pair, Scratch& scratch) {
+  const bool polytopes = pair.a.polytope() && pair.b.polytope();
+  const PenetrationDepth answer =
+      polytopes ? answer_of(pair, scratch) : depth_derivatives(pair.posed_a(), pair.posed_b(), scratch).answer;
+  return {answer.normal, answer.witness_a, answer.witness_b};
+}
 
 bool same_features(const PenetrationDepth& x, const PenetrationDepth& y) {
   const auto same = [](const Feature& f, const Feature& g) {
@@ -173,6 +178,9 @@ GradientJudgement judge_gradient(const PosedPairCase& pair, double step, Scratch
   GradientJudgement judged;
   judged.derivatives = depth_derivatives(pair.posed_a(), pair.posed_b(), scratch);
   const DepthDerivatives& d = judged.derivatives;
+  // A curved body's normal is known to sqrt(2e-12) radians: a wider step keeps that below the slope.
+  const bool curved = !pair.a.polytope() || !pair.b.polytope();
+  const double feature_step = curved ? 100 * step : step;
   double error = 0, size = 0, feature_error = 0, feature_size = 0;
   for (int k = 0; k < 12; ++k) {
     const PoseGradient& side = k < 6 ? d.by_a : d.by_b;
@@ -186,10 +194,11 @@ GradientJudgement judge_gradient(const PosedPairCase& pair, double step, Scratch
       size += central * central;
     }
     if (!d.stable_features) continue;
-    const Nine ahead = features(more), behind = features(less);
+    const Nine ahead = features_of(stepped(pair, k, feature_step), scratch);
+    const Nine behind = features_of(stepped(pair, k, -feature_step), scratch);
     for (int which = 0; which < 3; ++which) {
       const auto i = static_cast<std::size_t>(which);
-      const Vec3 slope = (ahead[i] - behind[i]) / (2 * step);
+      const Vec3 slope = (ahead[i] - behind[i]) / (2 * feature_step);
       feature_error += (slope - claimed_feature(d, which, k)).squaredNorm();
       feature_size += slope.squaredNorm();
     }

@@ -23,6 +23,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Curved bodies: the least relative error that the search reaches for every shape and size.
 constexpr double kCurvedDelta = 1e-12;
 
+/// Curved bodies: what leans from the normal by less belongs to the face across it, as the normal itself is known to
+/// sqrt(2e-12) radians only.
+constexpr double kCurvedLean = 1e-5;
+
 /// One body where it meets the other: lengths relative to A's translation.
 struct Side {
   PosedCore core;
@@ -42,6 +46,7 @@ struct Meeting {
   std::array<Vec3, 2> across;  ///< the plane across the normal
   double core_depth = 0;       ///< signed, of the cores
   double size = 0;             ///< L
+  bool curved = false;
   TieTolerance tolerance{};
 };
 
@@ -68,13 +73,16 @@ Meeting meet(const PosedShape& a, const PosedShape& b, const PenetrationDepth& a
             {u, n.cross(u)}};
   m.core_depth = -answer.signed_distance() - margin_a - margin_b;
   m.size = size_of_difference(m.sides[0].core, m.sides[1].core) + margin_a + margin_b;
-  m.tolerance = m.sides[0].core.curved() || m.sides[1].core.curved() ? kCurvedTie : kPolytopeTie;
+  m.curved = m.sides[0].core.curved() || m.sides[1].core.curved();
+  m.tolerance = m.curved ? kCurvedTie : kPolytopeTie;
   return m;
 }
 
+/// The face of a body across the normal, seen from its witness; sets the body's flats.
 PlaneFace face_of(Side& side, const Meeting& m) {
   std::vector<Vec3> points;
-  side.core.near_face(side.outward, m.tolerance.tie * m.size, m.tolerance.tie, points);
+  const double lean = m.curved ? kCurvedLean : m.tolerance.tie;
+  side.core.near_face(side.outward, lean * m.size, lean, points);
   PlaneFace face(points, side.witness, m.across);
   std::array<PlanePoint, 2> directions;
   side.flats = face.extent(m.tolerance.reach * m.size, directions);
@@ -86,6 +94,34 @@ PlaneFace face_of(Side& side, const Meeting& m) {
   return face;
 }
 
+/// Witnesses anew, from the supports in the normal's direction and the flats: the weights of a nearly flat triangle of
+/// P, from which a search at 1e-12 takes them, may be off by far more than the depth.
+void place_witnesses(Meeting& m) {
+  Side& a = m.sides[0];
+  Side& b = m.sides[1];
+  (void)face_of(a, m);
+  (void)face_of(b, m);
+  const int flats = a.flats + b.flats;
+  if (flats > 2) return;
+  const Vec3 on_a = a.core.support(a.outward), on_b = b.core.support(b.outward);
+  Eigen::Matrix<double, 2, 2, Eigen::DontAlign> along = Eigen::Matrix<double, 2, 2, Eigen::DontAlign>::Zero();
+  PlanePoint miss;
+  for (int row = 0; row < 2; ++row) {
+    const Vec3& across = m.across[static_cast<std::size_t>(row)];
+    miss[row] = -(on_b - on_a).dot(across);
+    for (int k = 0; k < a.flats; ++k) along(row, k) = -a.flat[k].dot(across);
+    for (int k = 0; k < b.flats; ++k) along(row, a.flats + k) = b.flat[k].dot(across);
+  }
+  const PlanePoint moves = along.completeOrthogonalDecomposition().solve(miss);
+  const auto place = [&](Side& side, Vec3 point, int first) {
+    for (int k = 0; k < side.flats; ++k) point += moves[first + k] * side.flat[k];
+    side.arm += point - side.witness;
+    side.witness = point;
+  };
+  place(a, on_a, 0);
+  place(b, on_b, a.flats);
+}
+
 void find_flags(Meeting& m, DepthDerivatives& out) {
   const PlaneFace face_a = face_of(m.sides[0], m), face_b = face_of(m.sides[1], m);
   const double tie = m.tolerance.tie * m.size, reach = m.tolerance.reach * m.size;
@@ -93,8 +129,9 @@ void find_flags(Meeting& m, DepthDerivatives& out) {
   out.unique_direction = m.core_depth < -tie;
   if (!out.unique_direction) {
     const double limit = m.core_depth + tie;
-    const double cone =
-        detail::cone_of_disc(m.core_depth, detail::disc_in_difference(face_a, face_b), limit, m.tolerance.reach);
+    // Faces that lean are no boundary of P: a disc of theirs excludes nothing.
+    const double disc = m.curved ? 0 : detail::disc_in_difference(face_a, face_b);
+    const double cone = detail::cone_of_disc(m.core_depth, disc, limit, m.tolerance.reach);
     out.unique_direction = !another_direction_within(m.sides[0].core, m.sides[1].core, {m.normal, cone}, limit,
                                                      out.answer.statistics.support_calls);
   }
@@ -107,7 +144,10 @@ class FirstOrder {
  public:
   /// Requires m.sides' flats to be two at most.
   explicit FirstOrder(const Meeting& m) : m_(m) {
-    for (int i = 0; i < 2; ++i) curvature_[i] = m.sides[i].core.curvature(m.sides[i].outward, m.sides[i].witness);
+    for (int i = 0; i < 2; ++i) {
+      const Side& side = m.sides[i];
+      curvature_[i] = side.flats < 2 ? side.core.curvature(side.outward, side.witness) : Mat3::Zero();
+    }
     for (const Side& side : m.sides) {
       for (int k = 0; k < side.flats; ++k) flats_.push_back({&side, side.flat[k]});
     }
@@ -235,6 +275,11 @@ DepthDerivatives depth_derivatives(const PosedShape& a, const PosedShape& b, Scr
   out.answer = penetration_depth(a, b, scratch, settings);
   out.signed_depth = -out.answer.signed_distance();
   Meeting m = meet(a, b, out.answer);
+  if (m.curved) {
+    place_witnesses(m);
+    out.answer.witness_a = m.sides[0].witness + a.pose.translation() - a.shape->margin() * m.normal;
+    out.answer.witness_b = m.sides[1].witness + a.pose.translation() + b.shape->margin() * m.normal;
+  }
   find_flags(m, out);
   if (out.unique_direction) {
     out.by_a.translation = -m.normal;

@@ -40,7 +40,9 @@ struct PoseJacobian {
 /// good up to `tie`. Ties that are exact in real arithmetic, and those that rounding of poses blurs, are thus both
 /// ties. Pairs between the two bounds of a tie may be flagged either way.
 struct DepthDerivatives {
-  PenetrationDepth answer;  ///< of the pair: tightest bracket; curved bodies with delta = 1e-12
+  /// Of the pair: tightest bracket; curved bodies with delta = 1e-12 (the bracket may end wider, which it says), and
+  /// their witnesses taken anew from the faces across the normal.
+  PenetrationDepth answer;
   double signed_depth = 0;  ///< depth, or minus the distance
 
   /// No direction that is more than `reach` radians from the normal separates at a depth within tie * L of the least.
@@ -74,9 +76,9 @@ struct TieTolerance {
 /// Doubles show a plane's distance to about 1e-15 L, poses that were rounded once hold parallel faces to 1e-16: a
 /// thousand times that. A facet through which the origin's foot lies farther than 1e-6 L inside its rim is told apart.
 inline constexpr TieTolerance kPolytopeTie{1e-12, 1e-6};
-/// A depth within (1 + 1e-12) of the least leaves the normal of a curved body open by sqrt(2e-12) radians; a body that
-/// curves like a ball of size L is 5e-9 L deeper at 1e-4 radians: five times the tie.
-inline constexpr TieTolerance kCurvedTie{1e-9, 1e-4};
+/// A depth within (1 + 1e-12) of the least leaves the normal of a curved body open by sqrt(2e-12) radians; 1e-4 radians
+/// from it a body that curves like a ball of L / 500 is a tie deeper.
+inline constexpr TieTolerance kCurvedTie{1e-11, 1e-4};
 
 /// Answers the pair and differentiates the answer.
 ///

@@ -2,27 +2,117 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <vector>
 
 namespace pd::detail {
 
 namespace {
 
+/// A direction and the point of P that is extreme in it.
+struct Probe {
+  Vec3 direction;
+  Vec3 extreme;
+};
+
 struct Triangle {
-  std::array<Vec3, 3> corners;
+  std::array<Probe, 3> corners;
 };
 
 /// Of two unit vectors, accurate for small angles.
 double angle(const Vec3& u, const Vec3& v) { return 2 * std::asin(std::min(1.0, (u - v).norm() / 2)); }
 
-std::vector<Triangle> octahedron() {
-  std::vector<Triangle> faces;
-  for (int octant = 0; octant < 8; ++octant) {
-    const auto axis = [&](int k) { return Vec3((octant >> k & 1 ? 1.0 : -1.0) * Vec3::Unit(k)); };
-    faces.push_back({{axis(0), axis(1), axis(2)}});
+/// The least <q, n> over the corners' directions, for the best q on a segment between two of their extreme points: a
+/// ridge of P, whose ends they are, is seen by no end alone. Every unit n of the triangle is a convex combination of
+/// the corners divided by its length, which is 1 at most: <q, n> is no less where the value is positive.
+double bound_below(const Triangle& t) {
+  double value[3][3];
+  for (std::size_t q = 0; q < 3; ++q) {
+    for (std::size_t n = 0; n < 3; ++n) value[q][n] = t.corners[q].extreme.dot(t.corners[n].direction);
   }
-  return faces;
+  double best = -std::numeric_limits<double>::infinity();
+  for (int q = 0; q < 3; ++q) {
+    const double* const from = value[q];
+    const double* const to = value[(q + 1) % 3];
+    const auto try_at = [&](double along) {
+      double least = std::numeric_limits<double>::infinity();
+      for (int n = 0; n < 3; ++n) least = std::min(least, from[n] + along * (to[n] - from[n]));
+      best = std::max(best, least);
+    };
+    try_at(0);
+    // The least of three linear functions is greatest at an end or where two of them cross.
+    for (int n = 0; n < 3; ++n) {
+      const int m = (n + 1) % 3;
+      const double slope = to[n] - from[n] - (to[m] - from[m]);
+      const double along = (from[m] - from[n]) / slope;
+      if (along > 0 && along < 1) try_at(along);
+    }
+  }
+  return best;
 }
+
+class DirectionSearch {
+ public:
+  DirectionSearch(const PosedCore& a, const PosedCore& b, const ExcludedCone& cone, double limit)
+      : a_(a), b_(b), cone_(cone), limit_(limit) {}
+
+  bool run() {
+    constexpr std::int64_t kMostTriangles = 200000;
+    constexpr double kLeastTriangle = 1e-14;
+    for (int octant = 0; octant < 8; ++octant) {
+      const auto corner = [&](int k) { return probe((octant >> k & 1 ? 1.0 : -1.0) * Vec3::Unit(k)); };
+      open_.push_back({{corner(0), corner(1), corner(2)}});
+    }
+    for (std::int64_t seen = 0; !open_.empty() && !found_; ++seen) {
+      const Triangle t = open_.back();
+      open_.pop_back();
+      const auto excluded = [&](const Probe& p) { return angle(p.direction, cone_.axis) <= cone_.radians; };
+      if (std::all_of(t.corners.begin(), t.corners.end(), excluded)) continue;
+      double size = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        size = std::max(size, angle(t.corners[i].direction, t.corners[(i + 1) % 3].direction));
+      }
+      // Seen from one of its corners, the triangle lies within `size`: the length of a combination is at least
+      // cos(size).
+      const double least = bound_below(t);
+      if ((least >= 0 ? least
+           : size < 1 ? least / std::cos(size)
+                      : -std::numeric_limits<double>::infinity()) > limit_) {
+        continue;
+      }
+      if (seen == kMostTriangles || size < kLeastTriangle) return true;
+      split(t);
+    }
+    return found_;
+  }
+
+  [[nodiscard]] std::int64_t supports() const { return supports_; }
+
+ private:
+  Probe probe(const Vec3& direction) {
+    ++supports_;
+    const Probe p{direction, b_.support(direction) - a_.support(-direction)};
+    if (p.extreme.dot(direction) <= limit_ && angle(direction, cone_.axis) > cone_.radians) found_ = true;
+    return p;
+  }
+
+  void split(const Triangle& t) {
+    const auto half = [&](std::size_t i, std::size_t j) {
+      return probe((t.corners[i].direction + t.corners[j].direction).normalized());
+    };
+    const std::array<Probe, 3> halves{half(0, 1), half(1, 2), half(2, 0)};
+    open_.push_back({halves});
+    for (std::size_t i = 0; i < 3; ++i) open_.push_back({{t.corners[i], halves[i], halves[(i + 2) % 3]}});
+  }
+
+  const PosedCore& a_;
+  const PosedCore& b_;
+  const ExcludedCone& cone_;
+  double limit_;
+  std::vector<Triangle> open_;
+  std::int64_t supports_ = 0;
+  bool found_ = false;
+};
 
 }  // namespace
 
@@ -31,37 +121,17 @@ double cone_of_disc(double distance, double disc, double limit, double reach) {
   const double size = std::hypot(distance, disc);
   if (limit >= size) return reach;
   const double middle = std::atan2(disc, distance), half = std::acos(limit / size);
-  // 1e-9 covers the rounding of the arc cosine.
-  return middle - half <= reach ? std::max(reach, (middle + half) * (1 - 1e-9) - 1e-9) : reach;
+  if (middle - half > reach) return reach;
+  // 1e-9 covers the rounding of the arc cosine; a cone below a right angle is convex.
+  return std::max(reach, std::min(1.5, (middle + half) * (1 - 1e-9) - 1e-9));
 }
 
 bool another_direction_within(const PosedCore& a, const PosedCore& b, const ExcludedCone& cone, double limit,
                               std::int64_t& supports) {
-  constexpr std::int64_t kMostTriangles = 200000;
-  constexpr double kLeastTriangle = 1e-14;
-  std::vector<Triangle> open = octahedron();
-  for (std::int64_t seen = 0; !open.empty(); ++seen) {
-    if (seen == kMostTriangles) return true;
-    const Triangle t = open.back();
-    open.pop_back();
-    const Vec3 middle = (t.corners[0] + t.corners[1] + t.corners[2]).normalized();
-    double radius = 0;
-    for (const Vec3& corner : t.corners) radius = std::max(radius, angle(middle, corner));
-    const double from_axis = angle(middle, cone.axis);
-    if (from_axis + radius <= cone.radians) continue;
-    const Vec3 p = b.support(middle) - a.support(-middle);
-    ++supports;
-    const double height = p.dot(middle);
-    if (height <= limit && from_axis > cone.radians) return true;
-    const double lean = std::atan2(p.cross(middle).norm(), height);
-    if (p.norm() * std::cos(std::min(std::numbers::pi, lean + radius)) > limit) continue;
-    if (radius < kLeastTriangle) return true;
-    std::array<Vec3, 3> halves;
-    for (std::size_t i = 0; i < 3; ++i) halves[i] = (t.corners[i] + t.corners[(i + 1) % 3]).normalized();
-    open.push_back({halves});
-    for (std::size_t i = 0; i < 3; ++i) open.push_back({{t.corners[i], halves[i], halves[(i + 2) % 3]}});
-  }
-  return false;
+  DirectionSearch search(a, b, cone, limit);
+  const bool found = search.run();
+  supports += search.supports();
+  return found;
 }
 
 }  // namespace pd::detail

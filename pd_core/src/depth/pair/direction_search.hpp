@@ -18,8 +18,9 @@ struct ExcludedCone {
 /// @return reach where the disc does not show it for all angles from `reach` on.
 [[nodiscard]] double cone_of_disc(double distance, double disc, double limit, double reach);
 
-/// Whether h_P(n) <= limit for some unit n outside the cone, P = b - a. A spherical triangle is dropped where
-/// <p, n> > limit on all of it for the point p of P that is extreme in its middle, else cut in four. Deterministic.
+/// Whether h_P(n) <= limit for some unit n outside the cone, P = b - a. A spherical triangle is dropped where the
+/// points of P that are extreme in its corners, or one between two of them, show h_P > limit on all of it; else it is
+/// cut in four. Deterministic. Requires a cone of less than a right angle.
 /// @param supports  counted up.
 /// @return true also where 2e5 triangles did not suffice, or one shrank to 1e-14 radians.
 [[nodiscard]] bool another_direction_within(const PosedCore& a, const PosedCore& b, const ExcludedCone& cone,

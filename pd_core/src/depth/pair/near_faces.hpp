@@ -19,8 +19,8 @@ class PosedCore {
   /// Points that span the part of the core within `height` of its supporting plane across the unit vector `outward`:
   /// a polytope's vertices there; of a curved core the supports in 32 directions that lean from `outward` by `lean`.
   void near_face(const Vec3& outward, double height, double lean, std::vector<Vec3>& points) const;
-  /// The second derivative of a curved core's support function where it is smooth at `outward` and `point` attains it,
-  /// along the flat directions of the core there 0; 0 for polytopes.
+  /// The second derivative of a curved core's support function at `outward`, across the flat directions that the core
+  /// has at its point `point` there; 0 for polytopes. Requires that the face there is no disc.
   [[nodiscard]] Mat3 curvature(const Vec3& outward, const Vec3& point) const;
   [[nodiscard]] bool curved() const { return polytope_ == nullptr; }
 
