@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to tested binaries: installs the packages that are missing (as root; otherwise it names them), builds
-# and tests the release build, the address and undefined-behaviour sanitizers, and engine_glue against Bullet in double
+# and tests the release build and its Python package, the address and undefined-behaviour sanitizers, and engine_glue against Bullet in double
 # precision. The last line is `N passed, N failed`; the exit code is 0 when nothing failed.
 #
 #   tests/run.sh [CMAKE_OPTION...]    options for the release builds, e.g. -DPD_WARNINGS_AS_ERRORS=ON
@@ -54,7 +54,34 @@ run_preset() {
   skipped=$((skipped + (total > good + bad ? total - good - bad : 0)))
 }
 
+# The Python package that the release build staged: every test of pytest counts as one.
+run_python() {
+  printf '== Python: test\n'
+  local report=${PWD}/build/release/pytest.xml status=0
+  rm -f "${report}"
+  if [[ ! -d build/release/python ]]; then
+    printf 'the Python package was not built\n' >&2
+    failed=$((failed + 1))
+    return
+  fi
+  /usr/bin/python3 -B -m pytest -q -p no:cacheprovider --junitxml="${report}" tests/python || status=$?
+  local total=0 bad=0 left_out=0
+  if [[ -s ${report} ]]; then
+    total=$(grep -o '<testcase ' "${report}" | wc -l)
+    bad=$(grep -oE '<(failure|error) ' "${report}" | wc -l)
+    left_out=$(grep -o '<skipped ' "${report}" | wc -l)
+  fi
+  if ((bad == 0 && (status != 0 || total == 0))); then
+    bad=1
+    total=$((total + 1))
+  fi
+  passed=$((passed + total - bad - left_out))
+  failed=$((failed + bad))
+  skipped=$((skipped + left_out))
+}
+
 run_preset release -- "$@"
+run_python
 # Of the undefined behaviours, null pointers and alignment are left out: looked for at every access, they double the time that
 # Eigen's templates take to compile; the address sanitizer stops at null, and x86 at a misaligned vector.
 run_preset asan-ubsan --

@@ -8,7 +8,11 @@ pd_build_packages=(
 pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)
 # chromium opens the pages of --report.
 # mkdocs and its theme build the documentation's site.
-pd_test_packages=(libgtest-dev libqhull-dev ccache chromium mkdocs mkdocs-material)
+pd_test_packages=(
+  libgtest-dev libqhull-dev ccache chromium mkdocs mkdocs-material
+  python3-dev pybind11-dev python3-numpy python3-pytest python3-venv python3-pip python3-setuptools python3-wheel python3-build
+  python3-distributed
+)
 
 # Prints those of the named packages that are not installed.
 pd_missing_packages() {

@@ -9,7 +9,7 @@ cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
 set(rooms CMakeLists.txt engine_glue pd_core demos tests render README.md)
-set(tool_files CMakePresets.json LICENSE CHANGELOG.md)
+set(tool_files CMakePresets.json LICENSE CHANGELOG.md pyproject.toml)
 set(ignored_by_git build out compile_commands.json)
 set(max_lines 500)
 
@@ -33,7 +33,7 @@ endforeach()
 
 set(patterns "")
 foreach(room pd_core engine_glue render demos tests)
-  foreach(kind *.cpp *.hpp *.cmake *.in *.sh CMakeLists.txt)
+  foreach(kind *.cpp *.hpp *.py *.pyi *.cmake *.in *.sh CMakeLists.txt)
     list(APPEND patterns ${ROOT}/${room}/${kind})
   endforeach()
 endforeach()

@@ -12,6 +12,7 @@
 #   3. engine_glue and render stand on pd_core's public headers and do not see each other; neither knows demos or tests.
 #   4. Nothing outside pd_core includes pd_core/src, except tests.
 #   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli, tests/audit and tests/fuzz the command's parts.
+#   6. demos/python stands on the core, the renderer and the demos' libraries (protocol, mesh, audit, support); nobody includes it.
 # With -DGRAPH=<file> it also writes those arrows, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
@@ -171,6 +172,11 @@ function(check_include file line path)
   endif()
   if(file MATCHES "^demos/scenes/" AND path MATCHES "^(cli|protocol|mesh|support|audit|agarwal|report|oracle)/|^pd/render/")
     report(${file} "${line}" "scenes are shared by demos and tests and include neither")
+  endif()
+  if(path MATCHES "^python/" AND NOT file MATCHES "^demos/python/")
+    report(${file} "${line}" "nobody includes demos/python")
+  elseif(file MATCHES "^demos/python/" AND path MATCHES "^(cli|scenes|agarwal|dobkin|rollback)/|^pd/bullet/|^(bt[A-Z]|Bullet|LinearMath)")
+    report(${file} "${line}" "demos/python stands on the core, the renderer and the demos' libraries")
   endif()
   if(room STREQUAL "demos" AND path MATCHES "^(oracle|bench)/")
     report(${file} "${line}" "demos do not include tests")

@@ -8,7 +8,7 @@ set(wrong 0)
 # expect(<script> <file> <content> <text that the report has to hold; empty = the tree keeps the rules>)
 macro(expect script file content report)
   file(REMOVE_RECURSE ${WORK})
-  foreach(entry CMakeLists.txt README.md CMakePresets.json LICENSE CHANGELOG.md engine_glue/CMakeLists.txt
+  foreach(entry CMakeLists.txt README.md pyproject.toml CMakePresets.json LICENSE CHANGELOG.md engine_glue/CMakeLists.txt
                 demos/CMakeLists.txt tests/CMakeLists.txt render/CMakeLists.txt pd_core/CMakeLists.txt)
     file(WRITE ${WORK}/${entry} "")
   endforeach()
@@ -55,6 +55,10 @@ expect(include_rules demos/scenes/a.cpp "#include \"cli/x.hpp\"\n" "shared by de
 expect(include_rules tests/cli/a.cpp "#include \"agarwal/agarwal_pictures.hpp\"\n" "nothing but scenes")
 expect(include_rules tests/cli/a.cpp "#include \"protocol/limits.hpp\"\n" "")
 expect(include_rules tests/depth/a.cpp "#include \"protocol/limits.hpp\"\n" "nothing but scenes")
+expect(include_rules demos/python/a.cpp "#include \"protocol/limits.hpp\"\n#include \"python/arrays.hpp\"\n" "")
+expect(include_rules demos/python/a.cpp "#include \"cli/options.hpp\"\n" "demos/python stands on the core")
+expect(include_rules demos/python/a.cpp "#include <pd/bullet/install.hpp>\n" "demos/python stands on the core")
+expect(include_rules demos/cli/a.cpp "#include \"python/arrays.hpp\"\n" "nobody includes demos/python")
 
 expect(file_rules tests/a.hpp "/// @file\n#pragma once\n" "")
 expect(file_rules tests/a.hpp "/// @file\n" "no #pragma once")

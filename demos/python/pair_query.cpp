@@ -1,0 +1,294 @@
+#include "python/pair_query.hpp"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+
+#include "pd/depth/derivatives.hpp"
+#include "pd/depth/directional_depth.hpp"
+#include "pd/depth/warm_certificate.hpp"
+
+namespace pd::python {
+
+namespace {
+
+/// An answer, and the bodies whose numbers it names.
+struct PairAnswer {
+  UnionDepth depth;
+  BodyRef a;
+  BodyRef b;
+};
+
+py::object feature_of(const Body& body, int part, const Feature& feature) {
+  if (feature.kind == Feature::Kind::none) return py::none();
+  constexpr const char* kWords[] = {"none", "vertex", "edge", "facet"};
+  return py::make_tuple(kWords[static_cast<int>(feature.kind)], py::tuple(py::cast(feature_ids(body, part, feature))));
+}
+
+py::dict statistics_of(const Statistics& statistics) {
+  py::dict fields;
+  fields["support_calls"] = statistics.support_calls;
+  fields["facets_visited"] = statistics.facets_visited;
+  fields["exact_signs"] = statistics.exact_signs;
+  return fields;
+}
+
+std::string repr_of(const PairAnswer& answer) {
+  const UnionDepth& depth = answer.depth;
+  const auto number = [](double x) { return py::repr(py::float_(x)).cast<std::string>(); };
+  std::string text = "<Depth " + std::string(to_string(depth.contact));
+  if (depth.contact == ContactClass::overlapping) {
+    text += " depth=" + number(depth.depth) + " in [" + number(depth.lower) + ", " + number(depth.upper) + "]";
+  } else if (depth.contact == ContactClass::separated) {
+    text += " distance=" + number(depth.distance);
+  }
+  return text + ">";
+}
+
+Expected<UnionDepth> ask_convex(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b, const Pose& pose_b,
+                                const QuerySettings& settings, Workspace& space, WarmCertificate* warm) {
+  if (!supports(settings.depth.method, a, b)) {
+    return Error{ErrorCode::unsupported,
+                 "the method '" + std::string(to_string(settings.depth.method)) +
+                     "' does not answer for these shapes; 'auto' does",
+                 "method"};
+  }
+  UnionDepth answer;
+  static_cast<PenetrationDepth&>(answer) =
+      penetration_depth({&a, pose_a}, {&b, pose_b}, space.scratch, settings.depth, warm);
+  return answer;
+}
+
+/// A pair whose memory the caller keeps: `Warm` of Python.
+PairAnswer ask_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::handle pose_b,
+                    const QuerySettings& settings, WarmCertificate* warm) {
+  const Pose first = read_pose(pose_a, "pose_a"), second = read_pose(pose_b, "pose_b");
+  const py::gil_scoped_release unlocked;
+  return {value_of(ask(*a, first, *b, second, settings, workspace(), warm), "pair"), a, b};
+}
+
+const ConvexShape& convex_of(const Body& body, const char* argument) {
+  if (body.convex() == nullptr) refuse("unsupported", "this query takes convex shapes", argument);
+  return *body.convex();
+}
+
+py::dict directional_pair(const BodyRef& a, const BodyRef& b, py::handle direction, py::handle pose_a,
+                          py::handle pose_b) {
+  const Pose first = read_pose(pose_a, "pose_a"), second = read_pose(pose_b, "pose_b");
+  const Vec3 along = read_vector(direction, "direction");
+  py::dict fields;
+  const auto fill = [&](const auto& answer) {
+    fields["contact"] = std::string(to_string(answer.contact));
+    fields["depth"] = answer.depth;
+    fields["lower"] = answer.lower;
+    fields["upper"] = answer.upper;
+    fields["normal"] = array_of(answer.normal);
+  };
+  if (a->convex() != nullptr && b->convex() != nullptr) {
+    fill(value_of(directional_depth({a->convex(), first}, {b->convex(), second}, along, workspace().scratch),
+                  "direction"));
+  } else {
+    const Compound whole_a = a->compound(), whole_b = b->compound();
+    fill(value_of(directional_depth({&whole_a, first}, {&whole_b, second}, along, workspace().scratch), "direction"));
+  }
+  return fields;
+}
+
+py::dict manifold_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::handle pose_b, double threshold) {
+  if (!(threshold >= 0)) refuse("bad_value", "a length >= 0", "breaking_threshold");
+  const PosedShape first{&convex_of(*a, "a"), read_pose(pose_a, "pose_a")};
+  const PosedShape second{&convex_of(*b, "b"), read_pose(pose_b, "pose_b")};
+  const PenetrationDepth answer = penetration_depth(first, second, workspace().scratch);
+  const ContactManifold manifold = contact_manifold(first, second, answer, threshold, workspace().manifold);
+  const auto count = static_cast<py::ssize_t>(manifold.count);
+  Array on_a({count, py::ssize_t{3}}), on_b({count, py::ssize_t{3}}), depths(count);
+  py::array_t<std::int64_t> ids(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k) {
+      on_a.mutable_at(i, k) = point.position_a[k];
+      on_b.mutable_at(i, k) = point.position_b[k];
+    }
+    depths.mutable_at(i) = point.depth;
+    ids.mutable_at(i) = point.feature_id;
+  }
+  py::dict fields;
+  fields["normal"] = array_of(manifold.normal);
+  fields["position_a"] = on_a;
+  fields["position_b"] = on_b;
+  fields["depth"] = depths;
+  fields["feature_id"] = ids;
+  return fields;
+}
+
+py::dict derivatives_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::handle pose_b) {
+  const PosedShape first{&convex_of(*a, "a"), read_pose(pose_a, "pose_a")};
+  const PosedShape second{&convex_of(*b, "b"), read_pose(pose_b, "pose_b")};
+  const DepthDerivatives found = [&] {
+    const py::gil_scoped_release unlocked;
+    return depth_derivatives(first, second, workspace().scratch);
+  }();
+  const auto six = [](const PoseGradient& gradient) {
+    Array array(6);
+    for (int k = 0; k < 3; ++k) {
+      array.mutable_at(k) = gradient.translation[k];
+      array.mutable_at(3 + k) = gradient.rotation[k];
+    }
+    return array;
+  };
+  const auto three_by_six = [](const PoseJacobian& jacobian) {
+    Array array({3, 6});
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        array.mutable_at(i, k) = jacobian.translation(i, k);
+        array.mutable_at(i, 3 + k) = jacobian.rotation(i, k);
+      }
+    }
+    return array;
+  };
+  py::dict fields;
+  UnionDepth depth;
+  static_cast<PenetrationDepth&>(depth) = found.answer;
+  fields["answer"] = PairAnswer{depth, a, b};
+  fields["signed_depth"] = found.signed_depth;
+  fields["unique_direction"] = found.unique_direction;
+  fields["unique_witness"] = found.unique_witness;
+  fields["stable_features"] = found.stable_features;
+  fields["by_a"] = six(found.by_a);
+  fields["by_b"] = six(found.by_b);
+  fields["normal_by_a"] = three_by_six(found.normal_by_a);
+  fields["normal_by_b"] = three_by_six(found.normal_by_b);
+  fields["witness_a_by_a"] = three_by_six(found.witness_a_by_a);
+  fields["witness_a_by_b"] = three_by_six(found.witness_a_by_b);
+  fields["witness_b_by_a"] = three_by_six(found.witness_b_by_a);
+  fields["witness_b_by_b"] = three_by_six(found.witness_b_by_b);
+  return fields;
+}
+
+void bind_answer(py::module_& module) {
+  py::class_<PairAnswer>(module, "Depth",
+                         "The answer for one pair. Lengths in the unit of the input, points and directions in the\n"
+                         "frame that A and B share. A moves by `translation`, B stays.")
+      .def_property_readonly(
+          "contact", [](const PairAnswer& x) { return std::string(to_string(x.depth.contact)); },
+          "'overlapping', 'touching' or 'separated', exact for polytopes.")
+      .def_property_readonly(
+          "depth", [](const PairAnswer& x) { return x.depth.depth; },
+          "Length of the shortest move of A that separates; 0 unless overlapping.")
+      .def_property_readonly(
+          "lower", [](const PairAnswer& x) { return x.depth.lower; }, "Certified: lower <= depth.")
+      .def_property_readonly(
+          "upper", [](const PairAnswer& x) { return x.depth.upper; }, "Certified: depth <= upper.")
+      .def_property_readonly(
+          "distance", [](const PairAnswer& x) { return x.depth.distance; }, "0 unless separated.")
+      .def_property_readonly(
+          "distance_lower", [](const PairAnswer& x) { return x.depth.distance_lower; }, "Certified.")
+      .def_property_readonly(
+          "distance_upper", [](const PairAnswer& x) { return x.depth.distance_upper; }, "Certified.")
+      .def_property_readonly(
+          "signed_depth", [](const PairAnswer& x) { return -x.depth.signed_distance(); },
+          "depth, or minus the distance.")
+      .def_property_readonly(
+          "translation", [](const PairAnswer& x) { return array_of(x.depth.translation); },
+          "[3]: moves A clear of B, exactly as stored.")
+      .def_property_readonly(
+          "normal", [](const PairAnswer& x) { return array_of(x.depth.normal); }, "[3], unit: the way A leaves B.")
+      .def_property_readonly(
+          "witness_a", [](const PairAnswer& x) { return array_of(x.depth.witness_a); },
+          "[3]: point of A; witness_b - witness_a = translation.")
+      .def_property_readonly(
+          "witness_b", [](const PairAnswer& x) { return array_of(x.depth.witness_b); }, "[3].")
+      .def_property_readonly(
+          "feature_a", [](const PairAnswer& x) { return feature_of(*x.a, x.depth.part_a, x.depth.feature_a); },
+          "(kind, row numbers of A's points), kind 'vertex', 'edge' or 'facet'; None where smooth.")
+      .def_property_readonly(
+          "feature_b", [](const PairAnswer& x) { return feature_of(*x.b, x.depth.part_b, x.depth.feature_b); },
+          "As feature_a, of B.")
+      .def_property_readonly(
+          "part_a", [](const PairAnswer& x) { return x.depth.part_a; }, "Part of a union, from 0.")
+      .def_property_readonly(
+          "part_b", [](const PairAnswer& x) { return x.depth.part_b; }, "Part of a union, from 0.")
+      .def_property_readonly(
+          "bracket_reached", [](const PairAnswer& x) { return x.depth.bracket_reached && x.depth.closed; },
+          "False: [lower, upper] is certified, but wider than asked.")
+      .def_property_readonly(
+          "method", [](const PairAnswer& x) { return std::string(to_string(x.depth.method)); },
+          "The engine that answered.")
+      .def_property_readonly(
+          "warm", [](const PairAnswer& x) { return x.depth.warm; }, "A warm start held.")
+      .def_property_readonly(
+          "stats", [](const PairAnswer& x) { return statistics_of(x.depth.statistics); }, "Counts of work.")
+      .def_property_readonly(
+          "shape_a", [](const PairAnswer& x) { return x.a; }, "A.")
+      .def_property_readonly(
+          "shape_b", [](const PairAnswer& x) { return x.b; }, "B.")
+      .def("__repr__", &repr_of);
+}
+
+}  // namespace
+
+Workspace& workspace() {
+  thread_local Workspace space;
+  return space;
+}
+
+QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket) {
+  QuerySettings settings;
+  if (!delta.is_none()) {
+    const Array number = read_array(delta, "delta", {});
+    if (!(*number.data() > 0 && *number.data() <= 1)) refuse("bad_value", "must lie in (0, 1]", "delta");
+    settings.depth.delta = settings.union_delta = *number.data();
+  }
+  constexpr std::array kMethods{Method::automatic,     Method::expansion, Method::overlay,
+                                Method::decomposition, Method::shallow,   Method::grid};
+  bool known = false;
+  for (const Method each : kMethods) {
+    if (method != to_string(each)) continue;
+    settings.depth.method = each;
+    known = true;
+  }
+  if (!known) {
+    refuse("bad_value", "known: auto, expansion, overlay, decomposition, shallow, grid; not '" + method + "'",
+           "method");
+  }
+  if (bracket == "certified") {
+    settings.depth.bracket = Bracket::certified;
+  } else if (bracket == "contact") {
+    settings.depth.bracket = Bracket::contact;
+  } else if (bracket != "tightest") {
+    refuse("bad_value", "known: tightest, certified, contact; not '" + bracket + "'", "bracket");
+  }
+  return settings;
+}
+
+Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
+                         const QuerySettings& settings, Workspace& space, WarmCertificate* warm) {
+  if (a.convex() != nullptr && b.convex() != nullptr) {
+    return ask_convex(*a.convex(), pose_a, *b.convex(), pose_b, settings, space, warm);
+  }
+  if (settings.depth.method != Method::automatic) {
+    return Error{ErrorCode::unsupported, "unions of parts are answered by the method 'auto'", "method"};
+  }
+  const Compound whole_a = a.compound(), whole_b = b.compound();
+  return penetration_depth({&whole_a, pose_a}, {&whole_b, pose_b}, space.scratch, {.delta = settings.union_delta});
+}
+
+void bind_pair_queries(py::module_& module) {
+  bind_answer(module);
+  py::class_<QuerySettings>(module, "Settings", "Settings of a query, read once.");
+  module.def("settings", &read_settings);
+  module.attr("DEFAULTS") = QuerySettings();
+  py::class_<WarmCertificate>(module, "Warm",
+                              "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
+                              "trusted; a warm answer has the same proof as a cold one. Not for two threads at once.")
+      .def(py::init<>())
+      .def("clear", &WarmCertificate::clear, "Forgets everything.")
+      .def_property_readonly("nbytes", &WarmCertificate::memory_bytes, "Bytes held.");
+  module.def("ask", &ask_pair);
+  module.def("directional", &directional_pair);
+  module.def("manifold", &manifold_pair);
+  module.def("derivatives", &derivatives_pair);
+}
+
+}  // namespace pd::python

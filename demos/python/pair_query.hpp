@@ -1,0 +1,43 @@
+/// @file
+/// One pair asked: the settings that Python names, the workspace of a thread, and the answer as an object.
+#pragma once
+
+#include <string>
+
+#include "pd/compound/compound_depth.hpp"
+#include "pd/contact/manifold.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "python/body.hpp"
+#include "python/pose_argument.hpp"
+
+namespace pd::python {
+
+/// What a thread keeps between queries.
+struct Workspace {
+  Scratch scratch;
+  ManifoldScratch manifold;
+};
+
+/// The calling thread's own.
+[[nodiscard]] Workspace& workspace();
+
+struct QuerySettings {
+  DepthSettings depth;
+  double union_delta = 1e-2;
+};
+
+/// @param delta  None: the protocol's defaults (exact; 1e-6 for curved bodies, 1e-2 for unions).
+/// @throws Refused bad_value with the known words.
+[[nodiscard]] QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket);
+
+/// Depth, or distance, of any two bodies. Holds no lock and may be called from any thread.
+/// @return unsupported where the method does not answer for these bodies; as `penetration_depth` of unions.
+[[nodiscard]] Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
+                                       const QuerySettings& settings, Workspace& space,
+                                       WarmCertificate* warm = nullptr);
+
+/// Declares `Depth` and the queries of one pair.
+void bind_pair_queries(py::module_& module);
+
+}  // namespace pd::python

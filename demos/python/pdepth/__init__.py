@@ -1,0 +1,21 @@
+"""Exact and certified penetration depth of convex bodies, and of unions of them.
+
+    import pdepth
+    die = pdepth.Box([1, 1, 1])
+    ball = pdepth.Sphere(1.0)
+    found = pdepth.depth(die, ball, pose_b=pdepth.Pose(translation=[1.5, 0, 0]))
+    found.depth, found.translation        # 0.5 [-0.5 0. 0.]: A moves, B stays
+
+Lengths are in the unit of the input, points and directions in the frame that the two poses share. Bad input raises
+pdepth.Refused, a ValueError that says which argument, which index, and what would be right.
+"""
+
+from ._core import ERRORS, Depth, Pose, Refused, Warm
+from ._lines import Answer, audit, hull, minkowski_difference, polygon_depth, query, time_of_impact, width
+from ._picture_call import picture, save_picture
+from ._queries import (CONTACTS, FEATURES, Batch, Derivatives, DirectionalDepth, Manifold, contact_manifold, cores, depth,
+                       derivatives, directional_depth, distance, intersects)
+from ._shapes import Box, Capsule, Compound, Cone, ConvexPolytope, Cylinder, Ellipsoid, Shape, Sphere, StarBody
+from ._sweep import Sweep, sweep
+
+__version__ = "0.1.0"

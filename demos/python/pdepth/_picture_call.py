@@ -1,0 +1,48 @@
+"""Pictures of bodies and answers, by the project's own renderer (off screen, no display needed)."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+
+from ._errors import refused
+from ._shapes import pose_fields
+
+
+def _compiled():
+    try:
+        from . import _picture
+    except ImportError as error:
+        raise refused(f"picture: this build cannot draw ({error}); it needs the renderer's packages (unsupported)") from error
+    return _picture
+
+
+def picture(a, b=None, pose_a=None, pose_b=None, *, size=(960, 540), azimuth=-58.0, elevation=20.0, difference=False):
+    """Draws one body, or two with what parts them, as [height, width, 3] uint8 (sRGB).
+
+    A is blue, B amber; the arrow is the translation that frees A, its label the depth and its certified bracket.
+    azimuth, elevation: the view, in degrees. difference=True draws the Minkowski difference P = B + (-A) beside two
+    polytopes. Raises Refused 'unsupported' where OSMesa (Debian: libosmesa6) or the renderer is missing.
+    """
+    if b is None and difference:
+        raise refused("b: a difference needs two bodies (missing_field)")
+    line = {"a": a.protocol(), "pose_a": pose_fields(pose_a, "pose_a")}
+    if b is not None:
+        line.update(b=b.protocol(), pose_b=pose_fields(pose_b, "pose_b"))
+    width, height = size
+    return _compiled().picture(json.dumps(line), int(width), int(height), float(azimuth), float(elevation), bool(difference))
+
+
+def save_picture(path, rgb):
+    """Writes a picture as a PNG."""
+    _compiled().write_png(rgb, os.fspath(path))
+
+
+def png(rgb):
+    """A picture as the bytes of a PNG."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "picture.png")
+        save_picture(path, rgb)
+        with open(path, "rb") as file:
+            return file.read()

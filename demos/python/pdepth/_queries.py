@@ -1,0 +1,245 @@
+"""Queries of pairs: one pair gives an object, many give a struct of arrays."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+
+from . import _core
+from ._errors import refused
+from ._core import DEFAULTS
+
+#: What the numbers of a batch's `contact` mean.
+CONTACTS = ("separated", "touching", "overlapping")
+#: What the first number of a batch's `feature_a` and `feature_b` means.
+FEATURES = ("none", "vertex", "edge", "facet")
+
+
+class Batch:
+    """A struct of arrays, one row a pair; the leading dimensions are those of the poses.
+
+    error is 0 for an answered row, else an index into pdepth.ERRORS; the numbers of such a row are NaN, and no exception
+    is raised. contact is an index into pdepth.CONTACTS. feature_a and feature_b are [..., 4]: an index into
+    pdepth.FEATURES, the part of a union, and the shape's own numbers of the vertex (rows of `shape.vertices`), the two
+    vertices of the edge, or the facet (of `shape.facets`).
+    """
+
+    def __init__(self, fields, lead):
+        for name, column in fields.items():
+            setattr(self, name, column.reshape(lead + column.shape[1:]))
+        self._names = tuple(fields)
+
+    def __iter__(self):
+        return iter(self._names)
+
+    def __len__(self):
+        return len(self.error)
+
+    def __getitem__(self, name):
+        return getattr(self, name)
+
+    def keys(self):
+        return self._names
+
+    def save(self, path):
+        """Writes all arrays to an npz file."""
+        np.savez(path, **{name: self[name] for name in self._names})
+
+    def __repr__(self):
+        failed = int(np.count_nonzero(self.error))
+        return f"<Batch of {self.error.size} pairs{f', {failed} refused' if failed else ''}: {', '.join(self._names)}>"
+
+
+def cores():
+    """The number of cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+_IDENTITY = np.eye(4)[None]
+
+
+def _many(pose):
+    if pose is None or isinstance(pose, (tuple, _core.Pose)):
+        return False
+    if isinstance(pose, list):
+        return np.ndim(pose) != 2 if not (pose and isinstance(pose[0], (_core.Pose, tuple))) else True
+    return getattr(pose, "ndim", 0) != 2
+
+
+def _stack(pose, argument):
+    """Poses as [n, 4, 4] and their leading dimensions (None for a single one)."""
+    if pose is None:
+        return _IDENTITY, None
+    if isinstance(pose, list) and pose and isinstance(pose[0], (_core.Pose, tuple)):
+        from ._shapes import as_pose
+
+        return np.stack([as_pose(each, f"{argument}[{i}]").matrix for i, each in enumerate(pose)]), (len(pose),)
+    if isinstance(pose, (tuple, _core.Pose)):
+        from ._shapes import as_pose
+
+        return as_pose(pose, argument).matrix[None], None
+    try:
+        array = np.asarray(pose)
+    except ValueError:
+        raise refused(f"{argument}: rows of different shapes; give [n, 4, 4] (bad_value)") from None
+    if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
+        raise refused(f"{argument}: dtype {array.dtype} is not taken; give float64 (bad_value)")
+    if array.ndim < 2 or array.shape[-2:] != (4, 4):
+        raise refused(f"{argument}: has shape {array.shape}, needs [4, 4] or [..., 4, 4] (bad_value)")
+    if array.ndim == 2:
+        return array[None], None
+    return array.reshape((-1, 4, 4)), array.shape[:-2]
+
+
+def _bodies(shapes, argument):
+    if isinstance(shapes, _core.Shape):
+        return [shapes], None
+    bodies = list(shapes)
+    for i, body in enumerate(bodies):
+        if not isinstance(body, _core.Shape):
+            raise refused(f"{argument}[{i}]: must be a pdepth shape, not {type(body).__name__} (bad_value)")
+    return bodies, (len(bodies),)
+
+
+def _rows(a, b, poses_a, poses_b):
+    parts = [_bodies(a, "a"), _bodies(b, "b"), _stack(poses_a, "poses_a"), _stack(poses_b, "poses_b")]
+    leads = {name: lead for name, (_, lead) in zip(("a", "b", "poses_a", "poses_b"), parts) if lead is not None}
+    if len(set(leads.values())) > 1:
+        told = ", ".join(f"{name} {lead}" for name, lead in leads.items())
+        raise refused(f"pairs: as many of each, or one for all; got {told} (bad_value)")
+    lead = next(iter(leads.values()), (1,))
+    return [part for part, _ in parts], lead, int(np.prod(lead))
+
+
+def _is_batch(a, b, pose_a, pose_b):
+    return not (isinstance(a, _core.Shape) and isinstance(b, _core.Shape)) or _many(pose_a) or _many(pose_b)
+
+
+def _threads(threads):
+    if threads is None:
+        return cores()
+    if not isinstance(threads, int) or not 1 <= threads <= 1024:
+        raise refused(f"threads: must be an integer from 1 to 1024, not {threads!r} (bad_value)")
+    return threads
+
+
+def _settings(method, delta, bracket):
+    if method == "auto" and delta is None and bracket == "tightest":
+        return DEFAULTS
+    return _core.settings(method, delta, bracket)
+
+
+def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket="tightest", warm=None, axis=0, threads=None):
+    """Penetration depth of two bodies with a proof, or their distance when they are apart.
+
+    a, b: shapes, or lists of n shapes. pose_a, pose_b: None (identity), a Pose, a [4, 4] matrix, (R, t); or [n, 4, 4]
+    (any leading dimensions), or a list of poses. World point = R * local + t. A moves by `translation`, B stays.
+
+    One pair answers a Depth: contact, depth, lower, upper, distance, translation, normal, witness_a, witness_b, feature_a,
+    feature_b. Several answer a Batch of arrays; rows are answered on `threads` cores (all of them by default) with the
+    interpreter's lock released, and give the same bits for any number of threads.
+
+    method: 'auto' (exact for polytopes, swept or not; 1 + delta for curved bodies and unions), 'expansion', 'overlay',
+    'decomposition', 'shallow', 'grid'. delta: relative error in (0, 1]. bracket: 'tightest', 'certified' or 'contact'.
+    warm: for one pair a Warm; for a batch True makes the rows along `axis` (0) frames of one pair, each started from the
+    last; other dimensions are pairs of their own.
+
+    Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
+    """
+    settings = _settings(method, delta, bracket)
+    if not _is_batch(a, b, pose_a, pose_b):
+        if warm is True:
+            raise refused("warm: one pair takes a pdepth.Warm; True is for a batch (bad_value)")
+        return _core.ask(a, b, pose_a, pose_b, settings, warm or None)
+    (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
+    if warm not in (None, True, False):
+        raise refused("warm: True or False for a batch (bad_value)")
+    if axis != 0:
+        raise refused(f"axis: warm starts run along axis 0, not {axis!r}; move it there with np.moveaxis (bad_value)")
+    chains = (count // lead[0] if lead[0] else 1) if warm else 0
+    return Batch(_core.depth_rows(bodies_a, bodies_b, poses_a, poses_b, count, settings, chains, _threads(threads)), lead)
+
+
+def distance(a, b, pose_a=None, pose_b=None, *, threads=None):
+    """Distance of two bodies, 0 when they meet: depth's `distance` with its certified bracket. A float, or [n] for many."""
+    found = depth(a, b, pose_a, pose_b, threads=threads)
+    return found.distance
+
+
+def intersects(a, b, pose_a=None, pose_b=None, *, threads=None):
+    """Whether the bodies have a point in common (touching counts): exact for polytopes. A bool, or [n] bools for many.
+
+    For many, a row that is refused is False; use depth to see why.
+    """
+    found = depth(a, b, pose_a, pose_b, threads=threads)
+    if isinstance(found, Batch):
+        return (found.contact != 0) & (found.error == 0)
+    return found.contact != "separated"
+
+
+class Fields:
+    """An answer by names."""
+
+    def __init__(self, fields):
+        self.__dict__.update(fields)
+
+    def __repr__(self):
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self.__dict__.items())})"
+
+
+class DirectionalDepth(Fields):
+    """contact, depth, lower, upper, normal."""
+
+
+class Manifold(Fields):
+    """normal [3]; position_a and position_b [k, 3], depth [k], feature_id [k] with k <= 4."""
+
+
+class Derivatives(Fields):
+    """answer (a Depth), signed_depth, flags, and derivatives by the two poses; see pdepth.derivatives."""
+
+
+def directional_depth(a, b, direction, pose_a=None, pose_b=None, *, threads=None):
+    """The least t >= 0 for which A moved by t d/|d| is clear of B, certified: contact, depth, lower, upper, normal.
+
+    direction: [3], or [n, 3] for many; shapes and poses as in depth. Refused: 'zero_direction', 'non_finite'.
+    """
+    along = np.asarray(direction)
+    if along.ndim <= 1 and not _is_batch(a, b, pose_a, pose_b):
+        return DirectionalDepth(_core.directional(a, b, direction, pose_a, pose_b))
+    (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
+    if along.ndim > 1:
+        if lead == (1,) and not _is_batch(a, b, pose_a, pose_b):
+            lead, count = along.shape[:-1], int(np.prod(along.shape[:-1]))
+        elif along.shape[:-1] != lead:
+            raise refused(f"direction: has shape {along.shape}, needs {lead + (3,)} (bad_value)")
+    if along.shape[-1:] != (3,):
+        raise refused(f"direction: has shape {along.shape}, needs [3] or [n, 3] (bad_value)")
+    rows = along.reshape((-1, 3))
+    return Batch(_core.directional_rows(bodies_a, bodies_b, poses_a, poses_b, rows, count, _threads(threads)), lead)
+
+
+def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0):
+    """At most four pairs of points where two convex bodies meet.
+
+    The normal points from B to A; depth > 0 inside, < 0 a gap of at most breaking_threshold; feature_id is the same while
+    the same two features meet.
+    """
+    return Manifold(_core.manifold(a, b, pose_a, pose_b, breaking_threshold))
+
+
+def derivatives(a, b, pose_a=None, pose_b=None, *, threads=None):
+    """The signed depth (> 0 inside, < 0 a gap) of convex bodies and its derivatives by both poses.
+
+    A pose has six numbers: translation, and a rotation vector about the pose's own translation, in the world's axes.
+    by_a, by_b: [6]. unique_direction: the least direction is unique, and the first three of each exist; unique_witness:
+    the pair of witnesses is, too, and the last three exist (parallel faces have the first and not the second). What does
+    not exist is NaN. For one pair also stable_features and, where it holds, normal_by_a, witness_a_by_b, ...: [3, 6].
+
+    For many: a Batch with signed_depth, the three flags, by_a and by_b beside the columns of depth.
+    """
+    if not _is_batch(a, b, pose_a, pose_b):
+        return Derivatives(_core.derivatives(a, b, pose_a, pose_b))
+    (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
+    return Batch(_core.derivative_rows(bodies_a, bodies_b, poses_a, poses_b, count, _threads(threads)), lead)

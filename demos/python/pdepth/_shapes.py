@@ -1,0 +1,256 @@
+"""Shapes: each is made from numbers, and says by them how to make it again (repr, pickle, copy, the line protocol)."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+
+from . import _core
+from ._errors import refused
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+
+
+def _plain(value):
+    """Numbers as lists and floats: what repr, pickle and JSON take."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    return value
+
+
+def _numbers(value):
+    """What a shape keeps of an argument that was taken: words, and numbers as floats."""
+    if isinstance(value, str):
+        return value
+    return np.asarray(value, dtype=float).tolist()
+
+
+def _axis(axis):
+    if axis not in _AXES:
+        raise refused(f"axis: must be 'x', 'y' or 'z', not {axis!r} (bad_value)")
+    return _AXES[axis]
+
+
+def pose_fields(pose, argument="pose"):
+    """A pose as the line protocol writes it."""
+    pose = as_pose(pose, argument)
+    fields = pose._keywords()
+    named = {}
+    if "wxyz" in fields:
+        named["quaternion_wxyz"] = list(fields["wxyz"])
+    elif "rotation" in fields:
+        named["rotation_row_major"] = [x for row in fields["rotation"] for x in row]
+    if "translation" in fields:
+        named["translation"] = fields["translation"]
+    return named
+
+
+def as_pose(pose, argument="pose"):
+    """A Pose of anything that stands for one: None, a Pose, a 4x4 matrix, (R, t)."""
+    if isinstance(pose, _core.Pose):
+        return pose
+    if pose is None:
+        return _core.Pose()
+    if isinstance(pose, tuple) and len(pose) == 2:
+        return _core.Pose(rotation=pose[0], translation=pose[1])
+    try:
+        return _core.Pose(pose)
+    except _core.Refused as error:
+        raise refused(str(error).replace("matrix", argument, 1)) from None
+
+
+class Shape(_core.Shape):
+    """A body in a frame of its own, immutable.
+
+    Equal when made from the same numbers. `repr` can be pasted; pickle and copy keep every bit. `margin` >= 0 sweeps the
+    body by a ball of that radius (in the unit of the world, whatever the pose).
+    """
+
+    def __init__(self, kind, numbers, margin, arguments):
+        super().__init__(kind, numbers, margin)  # which refuses what is no number
+        self._arguments = {name: _numbers(value) for name, value in arguments.items()}
+        if margin:
+            self._arguments["margin"] = _numbers(margin)
+
+    @property
+    def margin(self):
+        """Radius of the ball that the body is swept by."""
+        return self._arguments.get("margin", 0.0)
+
+    def protocol(self):
+        """The shape as a dictionary of the line protocol, for `pdepth query` and contact records."""
+        fields = {"type": self._type, **{key: value for key, value in self._arguments.items()}}
+        return fields
+
+    def __repr__(self):
+        inner = ", ".join(f"{name}={value!r}" for name, value in self._arguments.items())
+        return f"{type(self).__name__}({inner})"
+
+    def __eq__(self, other):
+        return type(self) is type(other) and self._arguments == other._arguments
+
+    def __hash__(self):
+        return hash(repr(self))
+
+    def __reduce__(self):
+        return _again, (type(self), self._arguments)
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def _repr_png_(self):
+        from ._picture_call import png, picture
+
+        return png(picture(self))
+
+
+def _again(kind, arguments):
+    return kind(**arguments)
+
+
+class ConvexPolytope(Shape):
+    """The convex hull of points, exact on the stored doubles.
+
+    points: [n, 3], n >= 1, finite; numpy array or nested lists. Flat hulls (points, segments, polygons) are bodies.
+    Raises Refused (a ValueError): 'non_finite' at points[i], 'out_of_range', 'too_few_points', 'bad_value' for a wrong
+    shape or dtype. Time O(n log n).
+    """
+
+    _type = "convex"
+
+    def __init__(self, points, *, margin=0.0):
+        super().__init__("points", (points,), margin, {"points": points})
+
+    def protocol(self):
+        fields = super().protocol()
+        fields["vertices"] = fields.pop("points")
+        return fields
+
+    @classmethod
+    def from_faces(cls, vertices, faces, *, margin=0.0):
+        """A closed convex surface, checked and not trusted: faces are loops of row numbers, counter-clockwise from outside.
+
+        Raises Refused: 'bad_faces', 'not_closed', 'not_convex' or 'not_full_dimensional' at faces[i].
+        """
+        _core.Shape("faces", (vertices, faces), margin)
+        used = sorted({int(i) for face in faces for i in face})
+        rows = np.asarray(vertices, dtype=float)
+        if len(used) < len(rows):
+            raise refused(f"vertices[{min(set(range(len(rows))) - set(used))}]: no face uses it (bad_faces)")
+        return cls(rows, margin=margin)
+
+    @classmethod
+    def from_halfspaces(cls, planes, *, margin=0.0):
+        """The points x with normal . x <= offset for every row (nx, ny, nz, offset) of planes [n, 4].
+
+        Vertices are rounded to the nearest doubles. Raises Refused: 'unbounded', 'bad_value' when empty.
+        """
+        return cls(_core.Shape("halfspaces", (planes,), 0.0).vertices, margin=margin)
+
+    @classmethod
+    def from_mesh(cls, mesh, *, margin=0.0):
+        """The hull of a mesh: a file (OBJ, STL, PLY, OFF, glTF) or an object with `.vertices` and `.faces` (trimesh's).
+
+        Vertices that no face refers to are left out. Feature ids are rows of the points that are kept.
+        Raises Refused: 'unreadable_file' with the line or byte at fault.
+        """
+        if isinstance(mesh, (str, os.PathLike)):
+            from . import _protocol
+
+            points, _ = _protocol.mesh_points(os.fspath(mesh))
+            return cls(points, margin=margin)
+        if not hasattr(mesh, "vertices"):
+            raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
+        points = np.asarray(mesh.vertices, dtype=float)
+        faces = np.asarray(getattr(mesh, "faces", ()), dtype=np.int64)
+        if faces.size:
+            points = points[np.unique(faces)]
+        return cls(points, margin=margin)
+
+
+class Box(Shape):
+    """The box [-hx, hx] x [-hy, hy] x [-hz, hz]; half_extents: [3], positive. Vertex ids are the bits of (x, y, z) > 0."""
+
+    _type = "box"
+
+    def __init__(self, half_extents, *, margin=0.0):
+        super().__init__("box", (half_extents,), margin, {"half_extents": half_extents})
+
+
+class Sphere(Shape):
+    """A ball about the origin; radius > 0."""
+
+    _type = "sphere"
+
+    def __init__(self, radius, *, margin=0.0):
+        super().__init__("sphere", (radius,), margin, {"radius": radius})
+
+
+class Ellipsoid(Shape):
+    """sum (x_i / radii_i)^2 <= 1; radii: [3], positive. Certified to (1 + delta), not exact."""
+
+    _type = "ellipsoid"
+
+    def __init__(self, radii, *, margin=0.0):
+        super().__init__("ellipsoid", (radii,), margin, {"radii": radii})
+
+
+class _Round(Shape):
+    def __init__(self, radius, half_height, axis="z", *, margin=0.0):
+        fields = {"radius": radius, "half_height": half_height, "axis": axis}
+        super().__init__(self._type, (radius, half_height, _axis(axis)), margin, fields)
+
+
+class Capsule(_Round):
+    """A segment from -half_height to +half_height along the axis ('x', 'y', 'z'), swept by a ball. Exact."""
+
+    _type = "capsule"
+
+
+class Cylinder(_Round):
+    """radius about the axis ('x', 'y', 'z'), from -half_height to +half_height. Certified to (1 + delta)."""
+
+    _type = "cylinder"
+
+
+class Cone(_Round):
+    """Base of the radius at -half_height, apex at +half_height along the axis. Certified to (1 + delta)."""
+
+    _type = "cone"
+
+
+class Compound(Shape):
+    """A union of convex parts; parts: a list of shapes or of (shape, pose)."""
+
+    _type = "compound"
+
+    def __init__(self, parts, *, margin=0.0):
+        placed = []
+        for i, part in enumerate(parts):
+            shape, pose = part if isinstance(part, (tuple, list)) and len(part) == 2 else (part, None)
+            placed.append((shape, as_pose(pose, f"parts[{i}].pose")))
+        Shape.__init__(self, "compound", (placed,), margin, {})
+        self._arguments = {"parts": placed, **self._arguments}
+
+    def protocol(self):
+        fields = super().protocol()
+        fields["parts"] = [{"shape": shape.protocol(), "pose": pose_fields(pose)} for shape, pose in fields["parts"]]
+        return fields
+
+
+class StarBody(Shape):
+    """A closed triangulated surface that every point of is seen from `center`: vertices [n, 3], faces [m, 3], center [3]."""
+
+    _type = "star"
+
+    def __init__(self, vertices, faces, center, *, margin=0.0):
+        super().__init__("star", (vertices, faces, center), margin, {"vertices": vertices, "center": center})
+        self._arguments["faces"] = [[int(i) for i in face] for face in faces]

@@ -1,0 +1,190 @@
+"""Many pairs in chunks: on this machine or on a Dask cluster, with the same bytes, resumed from what is on disk."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import pathlib
+import sys
+import time
+import zipfile
+
+import numpy as np
+
+from . import _queries
+from ._core import Shape
+from ._errors import refused
+
+
+class Sweep:
+    """What a sweep has written: `files` in the order of the pairs, `computed` of them by this call, the rest resumed."""
+
+    def __init__(self, folder, files, count, computed):
+        self.folder, self.files, self.count, self.computed = folder, files, count, computed
+
+    def __iter__(self):
+        """The chunks in order, each a dictionary of arrays; one in memory at a time."""
+        for file in self.files:
+            with np.load(file) as chunk:
+                yield {name: chunk[name] for name in chunk.files if name != "inputs"}
+
+    def __getitem__(self, name):
+        """One column of all pairs."""
+        return np.concatenate([chunk[name] for chunk in self])
+
+    def __repr__(self):
+        return f"<Sweep of {self.count} pairs in {len(self.files)} files, {self.computed} of them computed now: {self.folder}>"
+
+
+def _chunk(shapes, pairs, poses_a, poses_b, threads, options):
+    """One chunk's columns; runs on a worker."""
+    found = _queries.depth([shapes[i] for i in pairs[:, 0]], [shapes[i] for i in pairs[:, 1]], poses_a, poses_b,
+                           threads=threads, **options)
+    return {name: found[name] for name in found}
+
+
+def _inputs_digest(head, pairs, poses_a, poses_b):
+    digest = hashlib.sha256(head)
+    for part in (pairs, poses_a, poses_b):
+        digest.update(np.ascontiguousarray(part).tobytes())
+    return digest.hexdigest()
+
+
+def _is_done(path, digest):
+    try:
+        with np.load(path) as chunk:
+            return str(chunk["inputs"]) == digest
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):  # missing, or cut short
+        return False
+
+
+def _write(path, columns, digest):
+    """Whole or not at all: a reader, and a later sweep, never see half a file."""
+    partial = path.with_suffix(f".{os.getpid()}.partial")
+    with open(partial, "wb") as file:
+        np.savez(file, **columns, inputs=np.array(digest))
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(partial, path)
+
+
+class _Progress:
+    def __init__(self, total, shown):
+        self.total, self.shown, self.done, self.start, self.last = total, shown, 0, time.monotonic(), 0.0
+
+    def step(self, pairs):
+        self.done += pairs
+        now = time.monotonic()
+        if self.shown and (now - self.last > 0.5 or self.done == self.total):
+            self.last = now
+            end = "\n" if self.done == self.total else "\r"
+            print(f"{self.done} of {self.total} pairs, {now - self.start:.0f} s", end=end, file=sys.stderr, flush=True)
+
+
+class _Inputs:
+    """Pairs and poses by rows, whether they are arrays (memory-mapped ones stay on disk) or functions."""
+
+    def __init__(self, shapes, pairs, poses):
+        self.shapes = list(shapes)
+        for i, shape in enumerate(self.shapes):
+            if not isinstance(shape, Shape):
+                raise refused(f"shapes[{i}]: must be a pdepth shape, not {type(shape).__name__} (bad_value)")
+        self.pairs = np.asarray(pairs) if not isinstance(pairs, np.memmap) else pairs
+        if self.pairs.ndim != 2 or self.pairs.shape[1] != 2 or self.pairs.dtype.kind not in "iu":
+            raise refused(f"pairs: has shape {self.pairs.shape} and dtype {self.pairs.dtype}, needs [n, 2] integers (bad_value)")
+        outside = (self.pairs < 0) | (self.pairs >= len(self.shapes))
+        if outside.any():
+            row = int(np.argmax(outside.any(axis=1)))
+            raise refused(f"pairs[{row}]: shapes are numbered 0 to {len(self.shapes) - 1} (out_of_range)")
+        self.count = len(self.pairs)
+        self.poses = poses
+        if not callable(poses):
+            if len(poses) != 2:
+                raise refused("poses: (poses_a, poses_b), each [n, 4, 4], or a function of (begin, end) (bad_value)")
+            for name, column in zip(("poses[0]", "poses[1]"), poses):
+                if np.shape(column) != (self.count, 4, 4):
+                    raise refused(f"{name}: has shape {np.shape(column)}, needs {(self.count, 4, 4)} (bad_value)")
+
+    def rows(self, begin, end):
+        pairs = np.ascontiguousarray(self.pairs[begin:end], dtype=np.int64)
+        poses_a, poses_b = self.poses(begin, end) if callable(self.poses) else (each[begin:end] for each in self.poses)
+        return pairs, np.asarray(poses_a, dtype=float), np.asarray(poses_b, dtype=float)
+
+
+def _run_here(inputs, todo, finish, threads, options):
+    for begin, end, path, digest in todo:
+        pairs, poses_a, poses_b = inputs.rows(begin, end)
+        finish(path, _chunk(inputs.shapes, pairs, poses_a, poses_b, threads, options), digest, end - begin)
+
+
+def _run_on(client, inputs, todo, finish, threads, options):
+    """Twice as many chunks under way as the cluster has threads: workers never wait, memory stays bounded."""
+    from distributed import as_completed
+
+    shapes = client.scatter(inputs.shapes, broadcast=True, hash=False)
+    waiting, known = iter(todo), {}
+
+    def submit():
+        work = next(waiting, None)
+        if work is None:
+            return None
+        begin, end, path, digest = work
+        pairs, poses_a, poses_b = inputs.rows(begin, end)
+        future = client.submit(_chunk, shapes, pairs, poses_a, poses_b, threads, options, pure=False)
+        known[future] = (path, digest, end - begin)
+        return future
+
+    under_way = max(2, 2 * sum(client.nthreads().values()))
+    first = [future for future in (submit() for _ in range(under_way)) if future is not None]
+    queue = as_completed(first)
+    for future in queue:
+        path, digest, pairs = known.pop(future)
+        finish(path, future.result(), digest, pairs)
+        future.release()
+        following = submit()
+        if following is not None:
+            queue.add(following)
+
+
+def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None, progress=True, **options):
+    """Asks depth for many pairs and writes the answers to `out` as they come.
+
+    shapes: a list; pairs: [n, 2] rows of it; poses: (poses_a, poses_b), each [n, 4, 4] (np.memmap stays on disk), or a
+    function of (begin, end) that gives those rows. client: a distributed.Client, else this machine. chunk: pairs a file.
+    threads: of one chunk; by default all cores here and 1 on a cluster. options: method, delta, bracket of depth.
+
+    File chunk_K.npz holds the columns of depth's Batch for pairs [K * chunk, (K + 1) * chunk) and `inputs`, the SHA-256
+    of what was asked. A file whose inputs are the same is kept when the sweep is called again; anything else is computed
+    anew. The bytes are the same with and without a cluster. Answers a Sweep.
+    """
+    inputs = _Inputs(shapes, pairs, poses)
+    if not isinstance(chunk, int) or chunk < 1:
+        raise refused(f"chunk: must be an integer from 1, not {chunk!r} (bad_value)")
+    folder = pathlib.Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    head = json.dumps([[shape.protocol() for shape in inputs.shapes], options], sort_keys=True).encode()
+    shown = _Progress(inputs.count, progress)
+    files = [folder / f"chunk_{k:06d}.npz" for k in range(-(-inputs.count // chunk))]
+    computed = 0
+
+    def to_do():
+        for k, path in enumerate(files):
+            begin, end = k * chunk, min((k + 1) * chunk, inputs.count)
+            digest = _inputs_digest(head, *inputs.rows(begin, end))
+            if _is_done(path, digest):
+                shown.step(end - begin)
+            else:
+                yield begin, end, path, digest
+
+    def finish(path, columns, digest, count):
+        nonlocal computed
+        _write(path, columns, digest)
+        computed += 1
+        shown.step(count)
+
+    if client is None:
+        _run_here(inputs, to_do(), finish, threads, options)
+    else:
+        _run_on(client, inputs, to_do(), finish, threads or 1, options)
+    return Sweep(folder, files, inputs.count, computed)

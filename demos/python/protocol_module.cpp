@@ -1,0 +1,82 @@
+/// @file
+/// The module `pdepth._protocol`: lines of the protocol, mesh files, and the judge of contact records.
+#include <fcntl.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "audit/audit_answer.hpp"
+#include "mesh/mesh_file.hpp"
+#include "protocol/answer_line.hpp"
+#include "python/arrays.hpp"
+#include "support/refusal.hpp"
+
+namespace pd::python {
+
+namespace {
+
+std::string answer(const std::string& line) {
+  const py::gil_scoped_release unlocked;
+  thread_local query::Session session;
+  return query::answer_line(line, session);
+}
+
+/// Points [n, 3] and the file's own numbers of them.
+py::tuple mesh_points(const std::string& path) {
+  const query::Limits limits;
+  try {
+    const query::MeshPoints mesh = query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
+    Array points({static_cast<py::ssize_t>(mesh.points.size()), py::ssize_t{3}});
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+      for (int k = 0; k < 3; ++k) points.mutable_at(static_cast<py::ssize_t>(i), k) = mesh.points[i][k];
+    }
+    return py::make_tuple(points, mesh.ids);
+  } catch (const query::Refusal& refusal) {
+    refuse(refusal.code, refusal.message, path);
+  }
+}
+
+/// A record in a file, judged: the JSON answer of the protocol, and the table for people.
+py::tuple audit(const std::string& path, double tolerance, int threads, std::size_t worst, const std::string& fail_on) {
+  audit::AuditSettings settings;
+  settings.threads = threads;
+  settings.worst_kept = worst;
+  if (tolerance > 0) settings.tolerance = tolerance;
+  std::vector<audit::FailCondition> conditions;
+  try {
+    if (!fail_on.empty()) conditions = audit::parse_fail_conditions(fail_on);
+  } catch (const query::Refusal& refusal) {
+    refuse(refusal.code, refusal.message, "fail_on");
+  }
+  const int input = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (input < 0) refuse("unreadable_file", std::strerror(errno), path);
+  audit::Audit result;
+  {
+    const py::gil_scoped_release unlocked;
+    audit::audit_record(input, settings, {}, result);
+  }
+  ::close(input);
+  if (result.end == audit::Audit::End::unreadable) refuse("unreadable_file", "cannot be read to its end", path);
+  py::list refusals;
+  for (const audit::RefusedLine& line : result.summary.refusals()) {
+    refusals.append(py::make_tuple(line.line, line.refusal.code, line.refusal.message, line.refusal.where));
+  }
+  const auto outcomes = audit::check(conditions, result.summary);
+  if (result.end == audit::Audit::End::no_record) return py::make_tuple("", "", refusals);
+  return py::make_tuple(audit::audit_json(result, outcomes), audit::audit_table(result, outcomes, path), refusals);
+}
+
+}  // namespace
+
+}  // namespace pd::python
+
+PYBIND11_MODULE(_protocol, module) {
+  module.doc() = "The compiled part of pdepth that reads files and lines; use the package pdepth.";
+  pd::python::use_refused(pybind11::module_::import("pdepth._core").attr("Refused"));
+  module.def("answer", &pd::python::answer);
+  module.def("mesh_points", &pd::python::mesh_points);
+  module.def("audit", &pd::python::audit);
+}

@@ -1,0 +1,35 @@
+"""A wheel, and pip install of the source tree: what comes out runs without the tree."""
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+BUILT = TOP / "build" / "release"
+
+
+@pytest.mark.skipif(not (BUILT / "CMakeCache.txt").exists(), reason="needs the objects of build/release")
+def test_a_wheel_and_pip_install_run_without_the_source_tree(tmp_path):
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    environment["PDEPTH_BUILD_DIR"] = str(BUILT)
+
+    def run(*command, cwd=tmp_path):
+        done = subprocess.run([str(part) for part in command], cwd=cwd, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+        return done.stdout.strip()
+
+    run(sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv")
+    python = tmp_path / "venv" / "bin" / "python"
+    run(sys.executable, "-m", "build", "--no-isolation", "--wheel", "--outdir", tmp_path, TOP)
+    wheel, = tmp_path.glob("pdepth-*.whl")
+    assert "-linux_" in wheel.name
+    script = ("import pdepth; print(pdepth.__file__, pdepth.depth(pdepth.Sphere(1), pdepth.Sphere(1),"
+              " pose_b=pdepth.Pose(translation=[1.5, 0, 0])).depth, len(pdepth.hull(pdepth.Box([1, 1, 1])).facets))")
+    for source in ((wheel,), ("--no-build-isolation", TOP)):
+        run(python, "-m", "pip", "install", "--no-index", "--no-deps", "--force-reinstall", "--disable-pip-version-check", *source)
+        place, depth, facets = run(python, "-c", script).split()
+        assert place.startswith(str(tmp_path)) and (depth, facets) == ("0.5", "6")
+    linked = run("ldd", *(tmp_path / "venv").glob("lib/python*/site-packages/pdepth/_core*.so"))
+    assert "Bullet" not in linked and "not found" not in linked and str(TOP) not in linked

@@ -1,0 +1,165 @@
+"""Queries of pairs: against formulas, against each other, and one by one against a batch."""
+import numpy as np
+import pdepth
+import pytest
+
+BOX = pdepth.Box([1, 1, 1])
+GEM = pdepth.ConvexPolytope(np.random.default_rng(0).normal(size=(40, 3)))
+
+
+def at(x, y, z):
+    return pdepth.Pose(translation=[x, y, z])
+
+
+def test_a_box_and_a_ball():
+    found = pdepth.depth(BOX, pdepth.Sphere(1.0), pose_b=at(1.5, 0, 0))
+    assert (found.contact, found.depth, found.lower, found.upper) == ("overlapping", 0.5, 0.5, 0.5)
+    assert found.translation.tolist() == [-0.5, 0, 0] and found.normal.tolist() == [-1, 0, 0]
+    assert found.feature_a == ("facet", (1, 3, 7, 5)) and found.feature_b == ("vertex", (0,))
+    apart = pdepth.depth(BOX, BOX, pose_b=at(5, 0, 0))
+    assert (apart.contact, apart.distance, apart.signed_depth) == ("separated", 3, -3)
+    assert pdepth.intersects(BOX, BOX, pose_b=at(2, 0, 0)) and not pdepth.intersects(BOX, BOX, pose_b=at(2.5, 0, 0))
+
+
+def test_every_way_to_give_a_pose():
+    half = np.sqrt(0.5)
+    matrix = np.eye(4)
+    matrix[:3, 3] = [1.5, 0, 0]
+    for pose in (matrix, matrix.tolist(), np.asfortranarray(matrix), (np.eye(3), [1.5, 0, 0]), at(1.5, 0, 0)):
+        assert pdepth.depth(BOX, BOX, pose_b=pose).depth == 0.5
+    turned = pdepth.Pose(xyzw=[0, 0, half, half], translation=[1.5, 0, 0])
+    assert abs(pdepth.depth(BOX, BOX, pose_b=turned).depth - 0.5) < 1e-15
+
+
+def test_the_translation_separates_and_the_law_of_swapping_holds(poses):
+    for pose in poses(50, 1.5):
+        one, other = pdepth.depth(GEM, BOX, pose), pdepth.depth(BOX, GEM, pose_b=pose)
+        assert one.signed_depth == other.signed_depth and np.array_equal(one.normal, -other.normal)
+        moved = pose.copy()
+        moved[:3, 3] += one.translation * (1 + 1e-12)
+        assert pdepth.depth(GEM, BOX, moved).depth < 1e-12
+
+
+def test_a_batch_is_its_pairs_for_any_number_of_threads(poses):
+    shapes = [GEM, BOX, pdepth.Sphere(0.5), pdepth.Compound([BOX, (BOX, at(2, 0, 0))])]
+    a, b = [shapes[i % 4] for i in range(64)], [shapes[i // 4 % 2] for i in range(64)]
+    matrices = poses(64, 2)
+    found = pdepth.depth(a, b, matrices)
+    for name in found:
+        assert np.array_equal(found[name], pdepth.depth(a, b, matrices, threads=3)[name], equal_nan=True)
+    for i in range(64):
+        alone = pdepth.depth(a[i], b[i], matrices[i])
+        assert pdepth.CONTACTS[found.contact[i]] == alone.contact
+        for name in ("depth", "lower", "upper", "distance", "translation", "normal", "witness_a", "witness_b"):
+            assert np.array_equal(found[name][i], getattr(alone, name)), name
+
+
+def test_bad_rows_are_errors_of_their_own(poses):
+    matrices = poses(6)
+    matrices[1, 0, 0] = np.nan
+    matrices[2, :3, :3] *= -1
+    matrices[3] = matrices[3].T
+    matrices[4, 0, 3] = 1e301
+    found = pdepth.depth(GEM, BOX, matrices)
+    assert [pdepth.ERRORS[code] for code in found.error] == ["", "non_finite", "not_a_rotation", "bad_value", "out_of_range", ""]
+    assert np.isnan(found.depth[1:5]).all() and not np.isnan(found.depth[[0, 5]]).any()
+
+
+@pytest.mark.parametrize("call, where", [
+    (lambda p: pdepth.depth(GEM, BOX, p[:, :3]), "poses_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p.astype(complex)), "poses_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p, p[:2]), "pairs"),
+    (lambda p: pdepth.depth([GEM, 3], BOX), "a[1]"),
+    (lambda p: pdepth.depth(GEM, BOX, threads=0, pose_a=p), "threads"),
+    (lambda p: pdepth.depth(GEM, BOX, p, warm=True, axis=1), "axis"),
+    (lambda p: pdepth.depth(GEM, BOX, delta=2), "delta"),
+    (lambda p: pdepth.depth(GEM, BOX, method="best"), "method"),
+    (lambda p: pdepth.directional_depth(GEM, BOX, [0, 0, 0]), "direction"),
+    (lambda p: pdepth.directional_depth(GEM, BOX, [0, 0]), "direction"),
+    (lambda p: pdepth.depth(GEM, BOX, np.full((4, 4), np.nan)), "pose_a"),
+])
+def test_bad_questions_are_refused_by_name(call, where, poses):
+    with pytest.raises(pdepth.Refused) as caught:
+        call(poses(4))
+    assert caught.value.where == where
+
+
+def test_warm_rows_are_the_cold_ones_up_to_their_brackets(poses):
+    path = np.tile(poses(5, 0.5)[None], (40, 1, 1, 1))
+    path[:, :, 0, 3] += np.linspace(0, 0.4, 40)[:, None]
+    cold, warm = pdepth.depth(GEM, BOX, path), pdepth.depth(GEM, BOX, path, warm=True)
+    assert cold.depth.shape == (40, 5) and warm.warm[1:].mean() > 0.5
+    assert (warm.lower <= cold.upper).all() and (cold.lower <= warm.upper).all()
+    for name in warm:
+        assert np.array_equal(warm[name], pdepth.depth(GEM, BOX, path, warm=True, threads=1)[name])
+    memory = pdepth.Warm()
+    alone = [pdepth.depth(GEM, BOX, pose, warm=memory) for pose in path[:, 0]]
+    assert [each.depth for each in alone] == warm.depth[:, 0].tolist() and memory.nbytes > 0
+
+
+def test_directional_depths(poses):
+    matrices = poses(30, 1.0)
+    directions = np.random.default_rng(3).normal(size=(30, 3))
+    found = pdepth.directional_depth(GEM, BOX, directions, matrices)
+    least = pdepth.depth(GEM, BOX, matrices)
+    assert (found.upper >= least.lower).all()
+    for i in range(30):
+        assert pdepth.directional_depth(GEM, BOX, directions[i], matrices[i]).depth == found.depth[i]
+    assert pdepth.directional_depth(BOX, BOX, [0, 2, 0]).depth == 2
+
+
+def test_the_other_queries():
+    assert pdepth.width(pdepth.Box([3, 1, 2])).width == 2
+    sums = pdepth.minkowski_difference(BOX, BOX)
+    assert sums.K == 6 and np.abs(sums.vertices).max() == 2
+    assert len(pdepth.hull(BOX).facets) == 6
+    manifold = pdepth.contact_manifold(BOX, BOX, pose_b=at(0, 0, 1.875))
+    assert manifold.depth.tolist() == [0.125] * 4 and manifold.position_a.shape == (4, 3)
+    impact = pdepth.time_of_impact(BOX, BOX, pose_b=at(5, 0, 0), velocity_a=[2, 0, 0], duration=2.0)
+    assert impact.hit and abs(impact.time - 1.5) < 1e-8
+    square = [[0, 0], [2, 0], [2, 2], [0, 2]]
+    assert pdepth.polygon_depth(square, [[1, 0.5], [3, 0.5], [3, 1.5], [1, 1.5]]).depth == 1
+    kernel = pdepth.query("approx_width", a={"points": np.eye(4).tolist() + [[0, 0, 0, 0]]}, epsilon=0.1)
+    assert 0 < kernel.width <= 0.5 * 1.2
+    with pytest.raises(pdepth.Refused, match="unknown"):
+        pdepth.query("dept", a=BOX, b=BOX)
+
+
+def turned_about_own_translation(pose, w):
+    angle = np.linalg.norm(w)
+    k = w / angle
+    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    turned = pose.copy()
+    turned[:3, :3] = (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross) @ pose[:3, :3]
+    return turned
+
+
+def test_derivatives_against_central_differences(poses):
+    matrices = poses(40, 1.2, seed=5)
+    found = pdepth.derivatives(GEM, BOX, matrices)
+    step, checked = 1e-6, 0
+    for i, pose in enumerate(matrices):
+        alone = pdepth.derivatives(GEM, BOX, pose)
+        assert np.array_equal(alone.by_a, found.by_a[i], equal_nan=True) and alone.unique_witness == found.unique_witness[i]
+        if not alone.stable_features:
+            continue
+        differences = np.zeros(6)
+        for k in range(6):
+            for sign in (1, -1):
+                moved = pose.copy()
+                if k < 3:
+                    moved[k, 3] += sign * step
+                else:
+                    moved = turned_about_own_translation(pose, sign * step * np.eye(3)[k - 3])
+                differences[k] += sign * pdepth.depth(GEM, BOX, moved).signed_depth / (2 * step)
+        assert np.linalg.norm(differences - alone.by_a) < 1e-6 * np.linalg.norm(alone.by_a)
+        checked += 1
+    assert checked > 20
+
+
+def test_parallel_faces_have_a_direction_and_no_witness():
+    found = pdepth.derivatives(BOX, BOX, pose_b=at(0, 0, 1.9))
+    assert found.unique_direction and not found.unique_witness
+    assert found.by_b[:3].tolist() == [0, 0, -1] and np.isnan(found.by_b[3:]).all()
+    tie = pdepth.derivatives(BOX, BOX)
+    assert not tie.unique_direction and np.isnan(tie.by_a).all()

@@ -1,0 +1,91 @@
+"""Shapes and poses: what they take, what they refuse, and that they can be made again."""
+import copy
+import pickle
+from types import SimpleNamespace
+
+import numpy as np
+import pdepth
+import pytest
+
+CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+SHAPES = [
+    pdepth.ConvexPolytope(CUBE), pdepth.ConvexPolytope([[0.1, 0.2, 0.3]], margin=0.25), pdepth.Box([1, 2, 3]),
+    pdepth.Sphere(1 / 3), pdepth.Ellipsoid([1, 2, 3]), pdepth.Capsule(1, 2), pdepth.Cylinder(1, 2, "x"),
+    pdepth.Cone(1, 2, "y"), pdepth.Compound([pdepth.Box([1, 1, 1]), (pdepth.Sphere(1), pdepth.Pose(translation=[3, 0, 0]))]),
+    pdepth.StarBody([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], [0, 0, 0]),
+]
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: type(shape).__name__)
+def test_shapes_come_back_from_repr_pickle_copy_and_the_protocol(shape):
+    assert eval(repr(shape), vars(pdepth)) == shape
+    assert pickle.loads(pickle.dumps(shape)) == shape
+    assert copy.copy(shape) == shape and copy.deepcopy([shape])[0] == shape
+    here = pdepth.depth(shape, pdepth.Box([1, 1, 1]), pose_b=pdepth.Pose(translation=[0.5, 0, 0]))
+    line = pdepth.query("depth", a=shape, b=pdepth.Box([1, 1, 1]), pose_b=pdepth.Pose(translation=[0.5, 0, 0]))
+    assert (here.contact, here.depth, here.distance) == (getattr(line, "class"), line.depth, line.distance)
+
+
+def test_poses_come_back_and_name_the_order_of_quaternions():
+    half = np.sqrt(0.5)
+    for pose in (pdepth.Pose(), pdepth.Pose(wxyz=[half, 0, 0, half], translation=[1, 2, 3]), pdepth.Pose(np.eye(4)),
+                 pdepth.Pose(rotation=[[0, -1, 0], [1, 0, 0], [0, 0, 1]])):
+        assert eval(repr(pose), vars(pdepth)) == pose
+        assert pickle.loads(pickle.dumps(pose)) == pose
+        assert np.array_equal(pdepth.Pose(pose.matrix).matrix, pose.matrix)
+    assert pdepth.Pose(wxyz=[half, 0, 0, half]) == pdepth.Pose(xyzw=[0, 0, half, half])
+    turned = pdepth.Pose(wxyz=[half, 0, 0, half]).rotation @ [1, 0, 0]
+    assert np.allclose(turned, [0, 1, 0])
+
+
+def test_polytopes_from_faces_halfspaces_and_meshes(tmp_path):
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    assert len(pdepth.ConvexPolytope.from_faces(CUBE, faces).facets) == 6
+    planes = [[s * (k == 0), s * (k == 1), s * (k == 2), 1] for k in range(3) for s in (-1, 1)]
+    assert np.array_equal(pdepth.ConvexPolytope.from_halfspaces(planes).vertices, CUBE)
+    mesh = SimpleNamespace(vertices=np.vstack([CUBE, [[9, 9, 9]]]), faces=np.array([f[:3] for f in faces] + [[f[0], f[2], f[3]] for f in faces]))
+    assert np.array_equal(pdepth.ConvexPolytope.from_mesh(mesh).vertices, CUBE)
+    file = tmp_path / "cube.obj"
+    file.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in CUBE) + "".join("f " + " ".join(str(i + 1) for i in f) + "\n" for f in faces))
+    assert np.array_equal(pdepth.ConvexPolytope.from_mesh(file).vertices, CUBE)
+
+
+BAD = [
+    (lambda: pdepth.ConvexPolytope(CUBE.T), "points", "bad_value", "transposed"),
+    (lambda: pdepth.ConvexPolytope(np.zeros((0, 3))), "points", "too_few_points", ""),
+    (lambda: pdepth.ConvexPolytope(np.vstack([CUBE, [[0, np.nan, 0]]])), "points[8]", "non_finite", ""),
+    (lambda: pdepth.ConvexPolytope(CUBE.astype(complex)), "points", "bad_value", "complex128"),
+    (lambda: pdepth.ConvexPolytope(CUBE > 0), "points", "bad_value", "bool"),
+    (lambda: pdepth.ConvexPolytope([[1, 2, 3], [4, 5]]), "points", "bad_value", ""),
+    (lambda: pdepth.ConvexPolytope(np.full((1, 3), 2**60 + 1)), "points.flat[0]", "bad_value", "2^53"),
+    (lambda: pdepth.Box([1, 0, 1]), "half_extents[1]", "bad_value", ""),
+    (lambda: pdepth.Sphere(-1), "radius", "bad_value", ""),
+    (lambda: pdepth.Sphere(np.inf), "radius", "non_finite", ""),
+    (lambda: pdepth.Capsule(1, 1, "w"), "axis", "bad_value", "'x', 'y' or 'z'"),
+    (lambda: pdepth.Sphere(1, margin=-1), "margin", "bad_value", ""),
+    (lambda: pdepth.Compound([]), "parts", "too_few_points", ""),
+    (lambda: pdepth.Compound([(pdepth.Sphere(1), np.diag([1, 1, -1, 1]))]), "parts[0].pose", "not_a_rotation", "reflection"),
+    (lambda: pdepth.ConvexPolytope.from_mesh("no/such.obj"), "no/such.obj", "unreadable_file", ""),
+    (lambda: pdepth.ConvexPolytope.from_mesh(3), "mesh", "bad_value", "int"),
+    (lambda: pdepth.ConvexPolytope.from_halfspaces([[1, 0, 0, 1]] * 4), "planes", "unbounded", ""),
+    (lambda: pdepth.Pose(wxyz=[0, 0, 0, 0]), "wxyz", "bad_value", ""),
+    (lambda: pdepth.Pose(wxyz=[1, 0, 0]), "wxyz", "bad_value", "needs [4]"),
+    (lambda: pdepth.Pose(wxyz=[1, 0, 0, 0], xyzw=[0, 0, 0, 1]), "Pose", "bad_value", "one of"),
+    (lambda: pdepth.Pose(np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [1, 2, 3, 1.0]])), "matrix", "bad_value", "transposed"),
+    (lambda: pdepth.Pose(rotation=2 * np.eye(3)), "rotation", "not_a_rotation", ""),
+]
+
+
+@pytest.mark.parametrize("make, where, code, hint", BAD, ids=[f"{w}-{c}-{i}" for i, (_, w, c, _) in enumerate(BAD)])
+def test_bad_input_says_which_argument_and_what_would_be_right(make, where, code, hint):
+    with pytest.raises(ValueError) as caught:
+        make()
+    assert (caught.value.where, caught.value.code) == (where, code)
+    assert hint in str(caught.value)
+
+
+def test_strided_and_narrow_arrays_mean_the_same_numbers():
+    wide = np.zeros((8, 6))
+    wide[:, ::2] = CUBE
+    for points in (wide[:, ::2], np.asfortranarray(CUBE), CUBE.astype(np.float32), CUBE.astype(int), CUBE.astype(">f8"), CUBE.tolist()):
+        assert np.array_equal(pdepth.ConvexPolytope(points).vertices, CUBE)

@@ -1,0 +1,74 @@
+"""Sweeps: the same bytes however they are run, nothing lost or double when a worker is killed or the sweep is stopped."""
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pdepth
+import pytest
+
+RNG = np.random.default_rng(0)
+SHAPES = [pdepth.ConvexPolytope(RNG.normal(size=(20, 3))), pdepth.Box([1, 1, 1]), pdepth.Sphere(0.5)]
+
+
+def question(poses, n):
+    pairs = np.random.default_rng(1).integers(0, 3, (n, 2))
+    return pairs, (poses(n, 1.5, 2), poses(n, 1.5, 3))
+
+
+def bytes_of(done):
+    return [file.read_bytes() for file in done.files]
+
+
+def test_a_sweep_is_the_batch_in_files_and_resumes(poses, tmp_path):
+    pairs, (poses_a, poses_b) = question(poses, 1050)
+    done = pdepth.sweep(SHAPES, pairs, (poses_a, poses_b), out=tmp_path, chunk=100, progress=False)
+    assert (len(done.files), done.computed) == (11, 11)
+    found = pdepth.depth([SHAPES[i] for i in pairs[:, 0]], [SHAPES[i] for i in pairs[:, 1]], poses_a, poses_b)
+    for name in found:
+        assert np.array_equal(done[name], found[name], equal_nan=True)
+    before = bytes_of(done)
+    done.files[3].unlink()
+    done.files[5].write_bytes(before[5][:1000])
+    again = pdepth.sweep(SHAPES, pairs, lambda i, j: (poses_a[i:j], poses_b[i:j]), out=tmp_path, chunk=100, progress=False)
+    assert again.computed == 2 and bytes_of(again) == before
+    poses_a[250, 0, 3] += 1
+    assert pdepth.sweep(SHAPES, pairs, (poses_a, poses_b), out=tmp_path, chunk=100, progress=False).computed == 1
+
+
+def test_bad_sweeps_are_refused(poses, tmp_path):
+    pairs, both = question(poses, 10)
+    for bad in (lambda: pdepth.sweep(SHAPES, pairs + 2, both, out=tmp_path), lambda: pdepth.sweep([1], pairs, both, out=tmp_path),
+                lambda: pdepth.sweep(SHAPES, pairs.astype(float), both, out=tmp_path),
+                lambda: pdepth.sweep(SHAPES, pairs, (both[0][:3], both[1]), out=tmp_path),
+                lambda: pdepth.sweep(SHAPES, pairs, both, out=tmp_path, chunk=0)):
+        with pytest.raises(pdepth.Refused):
+            bad()
+
+
+def test_a_killed_worker_loses_nothing(poses, tmp_path, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    package = os.path.dirname(os.path.dirname(pdepth.__file__))
+    monkeypatch.setenv("PYTHONPATH", package)
+    pairs, both = question(poses, 40_000)
+    alone = pdepth.sweep(SHAPES, pairs, both, out=tmp_path / "alone", chunk=1000, progress=False)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                                  local_directory=str(tmp_path / "dask")) as cluster, distributed.Client(cluster) as client:
+        killed = []
+
+        def kill():
+            out = tmp_path / "cluster"
+            while len(list(out.glob("*.npz"))) < 5:
+                time.sleep(0.005)
+            process = next(iter(client.run(os.getpid).values()))
+            os.kill(process, signal.SIGKILL)
+            killed.append(len(list(out.glob("*.npz"))))
+
+        killer = threading.Thread(target=kill)
+        killer.start()
+        spread = pdepth.sweep(SHAPES, pairs, both, client, out=tmp_path / "cluster", chunk=1000, progress=False)
+        killer.join()
+    assert killed and killed[0] < 40
+    assert spread.computed == 40 and bytes_of(spread) == bytes_of(alone)
+    assert sorted(path.name for path in (tmp_path / "cluster").iterdir()) == [path.name for path in spread.files]
