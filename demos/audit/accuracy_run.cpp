@@ -66,7 +66,8 @@ double error_of(const Judgement& judgement) {
   return std::max(std::abs(judgement.depth_error.value_or(0)), judgement.normal_excess.value_or(0));
 }
 
-void judge_record(const std::string& file, const AccuracySettings& settings, double draw_above, AccuracyRow& row) {
+void judge_record(const std::string& file, const AccuracySettings& settings, double draw_above,
+                  const ContactJudge& judge, AccuracyRow& row) {
   const int input = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   row.failed = input < 0;
   if (row.failed) return;
@@ -77,7 +78,11 @@ void judge_record(const std::string& file, const AccuracySettings& settings, dou
   how.worst_kept = std::isfinite(draw_above) ? 1 : 0;
   audit_record(
       input, how,
-      [&](const RecordedContact&, const Judgement& judgement, std::int64_t) {
+      [&](const RecordedContact& contact, const Judgement& audited, std::int64_t) {
+        const Judgement judgement = judge ? judge(contact) : audited;
+        row.missed += judgement.missed ? 1 : 0;
+        row.phantom += judgement.phantom ? 1 : 0;
+        row.no_answer += judgement.answered ? 0 : 1;
         const double error = error_of(judgement);
         row.worst = std::max(row.worst, error);
         row.above_small += error > kSmallError ? 1 : 0;
@@ -89,9 +94,7 @@ void judge_record(const std::string& file, const AccuracySettings& settings, dou
   row.failed = audit.end != Audit::End::read;
   const Totals& total = audit.summary.total();
   row.contacts = total.contacts + audit.summary.refused();
-  row.missed = total.missed;
-  row.phantom = total.phantom;
-  row.no_answer = total.unanswered + audit.summary.refused();
+  row.no_answer += audit.summary.refused();
   for (const WorstContact& worst : audit.summary.worst()) {
     if (worst.error <= std::max(draw_above, kLargeError)) continue;
     row.figure = contact_figure(worst, settings.tolerance);
@@ -131,7 +134,7 @@ std::vector<std::string> engines_of(const std::string& program) {
 }
 
 AccuracyRow run_accuracy(const std::string& program, const std::string& engine, const AccuracySource& source,
-                         const AccuracySettings& settings, double draw_above) {
+                         const AccuracySettings& settings, double draw_above, const ContactJudge& judge) {
   AccuracyRow row;
   row.engine = engine;
   row.family = source.family;
@@ -144,7 +147,7 @@ AccuracyRow run_accuracy(const std::string& program, const std::string& engine, 
   row.failed = !file.good() || !text;
   if (row.failed) return row;
   row.nanoseconds = std::strtod(text->c_str(), nullptr);
-  judge_record(file.path(), settings, draw_above, row);
+  judge_record(file.path(), settings, draw_above, judge, row);
   return row;
 }
 

@@ -8,11 +8,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "audit/contact_judge.hpp"
 #include "report/pair_figure.hpp"
 
 namespace pd::audit {
@@ -63,9 +65,14 @@ struct AccuracySource {
   std::string cases;  ///< a record whose pairs are asked instead; empty: the generated family
 };
 
+/// Another judge than the audit's own.
+using ContactJudge = std::function<Judgement(const RecordedContact&)>;
+
 /// @param draw_above  the worst contact is drawn where its error is larger; infinity: never
+/// @param judge  whose counts and errors the row holds; empty: the audit's
 [[nodiscard]] AccuracyRow run_accuracy(const std::string& program, const std::string& engine,
                                        const AccuracySource& source, const AccuracySettings& settings,
-                                       double draw_above = std::numeric_limits<double>::infinity());
+                                       double draw_above = std::numeric_limits<double>::infinity(),
+                                       const ContactJudge& judge = {});
 
 }  // namespace pd::audit

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "audit/accuracy_engines.hpp"
 #include "audit/accuracy_report.hpp"
 #include "audit/mesh_cases.hpp"
 #include "commands.hpp"
@@ -58,38 +57,6 @@ std::vector<std::string> all_families() {
   return names;
 }
 
-/// The recorders that the build put beside this program.
-std::vector<std::string> recorders_beside() {
-  std::error_code error;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  std::vector<std::string> found;
-  for (const char* name : {"record_peers", "record_peers_double"}) {
-    if (std::filesystem::exists(here / name, error)) found.push_back(here / name);
-  }
-  return found;
-}
-
-struct Engine {
-  std::string program;
-  std::string name;
-};
-
-std::vector<Engine> engines_of(const AccuracyArguments& arguments) {
-  std::vector<Engine> engines;
-  for (const std::string& program : arguments.recorders) {
-    const std::vector<std::string> names = audit::engines_of(program);
-    if (names.empty()) fmt::print(stderr, "pdepth: {} names no engines (--list)\n", program);
-    for (const std::string& name : names) {
-      const bool wanted = arguments.engines.empty() || std::find(arguments.engines.begin(), arguments.engines.end(),
-                                                                 name) != arguments.engines.end();
-      const bool known =
-          std::any_of(engines.begin(), engines.end(), [&](const Engine& engine) { return engine.name == name; });
-      if (wanted && !known) engines.push_back({program, name});
-    }
-  }
-  return engines;
-}
-
 bool write_file(const std::string& path, const std::string& text) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) return false;
@@ -109,27 +76,6 @@ std::string command_of(const AccuracyArguments& arguments) {
   return text + fmt::format(" --report '{}'", arguments.report);
 }
 
-/// Runs every engine on every source.
-audit::AccuracyTable table_of(const std::vector<Engine>& engines, const std::vector<audit::AccuracySource>& sources,
-                              const AccuracyArguments& arguments) {
-  audit::AccuracyTable table;
-  for (const audit::AccuracySource& source : sources) table.families.push_back(source.family);
-  for (const Engine& engine : engines) {
-    table.engines.push_back(engine.name);
-    double worst = arguments.report.empty() ? std::numeric_limits<double>::infinity() : 0;
-    std::optional<report::PairFigure> figure;
-    for (const audit::AccuracySource& source : sources) {
-      table.rows.push_back(audit::run_accuracy(engine.program, engine.name, source, arguments.settings, worst));
-      if (!table.rows.back().figure) continue;
-      figure = std::move(table.rows.back().figure);
-      table.rows.back().figure.reset();
-      worst = std::max(worst, table.rows.back().worst);
-    }
-    if (figure) table.worst.push_back(std::move(*figure));
-  }
-  return table;
-}
-
 int run_accuracy_command(AccuracyArguments arguments) {
   arguments.settings.threads = number_of_threads(arguments.settings.threads);
   const bool own_pairs = !arguments.cases.empty() || !arguments.meshes.empty();
@@ -146,13 +92,15 @@ int run_accuracy_command(AccuracyArguments arguments) {
     if (!meshes->good()) return kBadUsage;
     sources.push_back({"meshes", meshes->path()});
   }
-  if (arguments.recorders.empty()) arguments.recorders = recorders_beside();
-  const std::vector<Engine> engines = engines_of(arguments);
+  std::vector<std::string> complaints;
+  const auto engines = audit::find_engines(arguments.recorders, arguments.engines, complaints);
+  for (const std::string& complaint : complaints) fmt::print(stderr, "pdepth: {}\n", complaint);
   if (engines.empty()) {
     fmt::print(stderr, "pdepth: no engine to ask; build record_peers (PD_WITH_BENCH) or name a --recorder\n");
     return kBadUsage;
   }
-  const audit::AccuracyTable table = table_of(engines, sources, arguments);
+  const audit::AccuracyTable table =
+      audit::run_engines(engines, sources, arguments.settings, !arguments.report.empty());
   fmt::print("{}", audit::accuracy_text(table));
   if (!arguments.csv.empty() && !write_file(arguments.csv, audit::accuracy_csv(table))) {
     fmt::print(stderr, "pdepth: {} cannot be written\n", arguments.csv);

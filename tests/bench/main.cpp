@@ -17,6 +17,9 @@
 #ifdef PD_BENCH_WITH_CONTACT
 #include "bench/contact/contact.hpp"
 #endif
+#ifdef PD_BENCH_WITH_ACCURACY
+#include "bench/accuracy/accuracy.hpp"
+#endif
 #ifdef PD_BENCH_WITH_RENDER
 #include "bench/plots/plots.hpp"
 #endif
@@ -175,6 +178,23 @@ void add_contact_options(CLI::App& command, ContactOptions& o) {
 }
 #endif
 
+#ifdef PD_BENCH_WITH_ACCURACY
+CLI::App* add_accuracy(CLI::App& app, AccuracyOptions& o) {
+  CLI::App* command = app.add_subcommand("accuracy", "who fails what: engines over families, judged by the oracle");
+  command->add_option("--families", o.families, "names of families (default: all)")->delimiter(',');
+  command->add_option("--engines", o.engines, "names of engines (default: all)")->delimiter(',');
+  command->add_option("--pairs", o.settings.pairs, "of a family at each of four depths")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--vertices", o.settings.vertices)->check(CLI::Range(4, 100'000))->capture_default_str();
+  command->add_option("--seed", o.settings.seed)->capture_default_str();
+  command->add_option("--cases", o.cases, "also the pairs of this contact record")->check(CLI::ExistingFile);
+  command->add_option("--csv", o.csv, "writes the table to this file");
+  command->add_option("--report", o.report, "writes report.html into this folder");
+  return command;
+}
+#endif
+
 CLI::App* add_pairs(CLI::App& app, Options& o) {
   CLI::App* command = app.add_subcommand("pairs", "cold single pairs: families x vertices x depth");
   add_common(*command, o);
@@ -273,7 +293,14 @@ int main(int argc, char** argv) {
   CLI::App* contact = app.add_subcommand("contact", "worlds: Bullet's ways to find contacts beside ours");
   add_contact_options(*contact, contact_options);
 #endif
+#ifdef PD_BENCH_WITH_ACCURACY
+  AccuracyOptions accuracy_options;
+  CLI::App* accuracy = add_accuracy(app, accuracy_options);
+#endif
   CLI11_PARSE(app, argc, argv);
+#ifdef PD_BENCH_WITH_ACCURACY
+  if (*accuracy) return run_accuracy_by_oracle(accuracy_options);
+#endif
 #ifdef PD_BENCH_WITH_CONTACT
   if (*contact) return run_contact(contact_options);
 #endif
