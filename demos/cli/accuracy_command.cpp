@@ -30,7 +30,7 @@ precision, libccd, FCL, ODE) and record_peers_double (Bullet in double precision
 they stand there, whatever its engine reported.
 
 Errors are the larger of depth error and normal excess, relative to the size of the pair. Our own row is judged by the
-same library; the program oracle_pairs judges our depths by an oracle that shares no code with it.
+same library; pdepth-bench accuracy judges every row by an oracle that shares no code with it.
 
 Examples:
   pdepth accuracy
