@@ -277,6 +277,52 @@ py::dict derivative_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::han
   return fields;
 }
 
+py::dict manifold_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handle poses_a, py::handle poses_b,
+                       std::int64_t rows, double threshold, int threads) {
+  if (!(threshold >= 0)) refuse("bad_value", "a length >= 0", "breaking_threshold");
+  const Pairs pairs = read_pairs(std::move(a), std::move(b), poses_a, poses_b, rows);
+  Words<std::uint8_t> error(rows, 1), count(rows, 1);
+  Words<std::int64_t> ids(rows, 4);
+  Column normal(rows, 3), on_a(rows, 12), on_b(rows, 12), depth(rows, 4);
+  const auto answer = [&](std::int64_t i, Workspace& space) {
+    const Expected<Pose> pose_a = pairs.pose_a(i), pose_b = pairs.pose_b(i);
+    const ConvexShape *const shape_a = pairs.body_a(i).convex(), *const shape_b = pairs.body_b(i).convex();
+    if (!pose_a || !pose_b) {
+      error.numbers[i] = code_of(pose_a ? pose_b.error() : pose_a.error());
+      return;
+    }
+    if (shape_a == nullptr || shape_b == nullptr) {
+      error.numbers[i] = code_of({ErrorCode::unsupported, "", ""});
+      return;
+    }
+    const PosedShape first{shape_a, *pose_a}, second{shape_b, *pose_b};
+    const PenetrationDepth found = penetration_depth(first, second, space.scratch);
+    const ContactManifold manifold = contact_manifold(first, second, found, threshold, space.manifold);
+    count.numbers[i] = static_cast<std::uint8_t>(manifold.count);
+    normal.put(i, manifold.normal);
+    for (int k = 0; k < manifold.count; ++k) {
+      const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
+      on_a.put(i, point.position_a, 3 * k);
+      on_b.put(i, point.position_b, 3 * k);
+      depth.numbers[4 * i + k] = point.depth;
+      ids.numbers[4 * i + k] = point.feature_id;
+    }
+  };
+  {
+    const py::gil_scoped_release unlocked;
+    for_each_row(rows, threads, answer);
+  }
+  py::dict fields;
+  fields["error"] = error.array;
+  fields["count"] = count.array;
+  fields["normal"] = normal.array;
+  fields["position_a"] = on_a.array;
+  fields["position_b"] = on_b.array;
+  fields["point_depth"] = depth.array;
+  fields["feature_id"] = ids.array;
+  return fields;
+}
+
 }  // namespace
 
 void for_each_row(std::int64_t count, int threads, const std::function<void(std::int64_t, Workspace&)>& row) {
@@ -310,6 +356,7 @@ void for_each_row(std::int64_t count, int threads, const std::function<void(std:
 void bind_batch_queries(py::module_& module) {
   module.def("depth_rows", &depth_rows);
   module.def("directional_rows", &directional_rows);
+  module.def("manifold_rows", &manifold_rows);
   module.def("derivative_rows", &derivative_rows);
   py::list names;
   names.append("");

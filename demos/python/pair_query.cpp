@@ -68,6 +68,17 @@ PairAnswer ask_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::h
   return {value_of(ask(*a, first, *b, second, settings, workspace(), warm), "pair"), a, b};
 }
 
+/// A single pair with the settings by default, as quickly as can be; None where something else was given.
+py::object ask_plain(py::handle a, py::handle b, py::handle pose_a, py::handle pose_b) {
+  const auto single = [](py::handle pose) {
+    return pose.is_none() || py::isinstance<Pose>(pose) || py::isinstance<py::tuple>(pose) ||
+           (py::isinstance<py::array>(pose) && py::reinterpret_borrow<py::array>(pose).ndim() == 2);
+  };
+  if (!py::isinstance<Body>(a) || !py::isinstance<Body>(b) || !single(pose_a) || !single(pose_b)) return py::none();
+  static const QuerySettings settings;
+  return py::cast(ask_pair(py::cast<BodyRef>(a), py::cast<BodyRef>(b), pose_a, pose_b, settings, nullptr));
+}
+
 const ConvexShape& convex_of(const Body& body, const char* argument) {
   if (body.convex() == nullptr) refuse("unsupported", "this query takes convex shapes", argument);
   return *body.convex();
@@ -286,6 +297,7 @@ void bind_pair_queries(py::module_& module) {
       .def("clear", &WarmCertificate::clear, "Forgets everything.")
       .def_property_readonly("nbytes", &WarmCertificate::memory_bytes, "Bytes held.");
   module.def("ask", &ask_pair);
+  module.def("ask_plain", &ask_plain);
   module.def("directional", &directional_pair);
   module.def("manifold", &manifold_pair);
   module.def("derivatives", &derivatives_pair);

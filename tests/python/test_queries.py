@@ -125,6 +125,17 @@ def test_the_other_queries():
         pdepth.query("dept", a=BOX, b=BOX)
 
 
+def test_manifolds_of_many_pairs(poses):
+    matrices = poses(40, 1.5)
+    found = pdepth.contact_manifold(GEM, BOX, matrices, breaking_threshold=0.1)
+    assert found.position_a.shape == (40, 4, 3) and found["count"].max() > 1
+    for i, pose in enumerate(matrices):
+        alone = pdepth.contact_manifold(GEM, BOX, pose, breaking_threshold=0.1)
+        k = found["count"][i]
+        assert k == len(alone.depth) and np.array_equal(found.position_b[i, :k], alone.position_b)
+        assert np.array_equal(found.feature_id[i, :k], alone.feature_id) and np.isnan(found.point_depth[i, k:]).all()
+
+
 def turned_about_own_translation(pose, w):
     angle = np.linalg.norm(w)
     k = w / angle

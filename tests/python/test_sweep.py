@@ -1,5 +1,6 @@
 """Sweeps: the same bytes however they are run, nothing lost or double when a worker is killed or the sweep is stopped."""
 import os
+import resource
 import signal
 import threading
 import time
@@ -72,3 +73,30 @@ def test_a_killed_worker_loses_nothing(poses, tmp_path, monkeypatch):
     assert killed and killed[0] < 40
     assert spread.computed == 40 and bytes_of(spread) == bytes_of(alone)
     assert sorted(path.name for path in (tmp_path / "cluster").iterdir()) == [path.name for path in spread.files]
+
+
+def test_memory_does_not_grow_with_the_number_of_pairs(tmp_path):
+    """PDEPTH_SWEEP_PAIRS sets another number than 1e5; 1e6 take 200 MB of disk."""
+    count = int(os.environ.get("PDEPTH_SWEEP_PAIRS", "100000"))
+    ball, chunk = pdepth.Sphere(0.5), 5000
+    pairs = np.zeros((count, 2), np.int8)
+    grid = np.linspace(0, 2, count)
+
+    def poses(begin, end):
+        matrices = np.tile(np.eye(4), (end - begin, 1, 1))
+        fixed = matrices.copy()
+        matrices[:, 0, 3] = grid[begin:end]
+        return fixed, matrices
+
+    pdepth.sweep([ball], pairs[:2 * chunk], poses, out=tmp_path, chunk=chunk, progress=False)
+    before = peak_bytes()
+    done = pdepth.sweep([ball], pairs, poses, out=tmp_path, chunk=chunk, progress=False)
+    grown = peak_bytes() - before
+    print(f"{count} pairs, peak memory grew by {grown / 1e6:.1f} MB")
+    assert done.computed == count // chunk - 2 and grown < 8 << 20
+    signed = np.concatenate([part["depth"] - part["distance"] for part in done])
+    assert np.abs(signed - (1 - grid)).max() < 1e-15
+
+
+def peak_bytes():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

@@ -147,6 +147,10 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
 
     Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
     """
+    if warm is None and delta is None and method == "auto" and bracket == "tightest":
+        found = _core.ask_plain(a, b, pose_a, pose_b)
+        if found is not None:
+            return found
     settings = _settings(method, delta, bracket)
     if not _is_batch(a, b, pose_a, pose_b):
         if warm is True:
@@ -220,12 +224,19 @@ def directional_depth(a, b, direction, pose_a=None, pose_b=None, *, threads=None
     return Batch(_core.directional_rows(bodies_a, bodies_b, poses_a, poses_b, rows, count, _threads(threads)), lead)
 
 
-def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0):
+def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, threads=None):
     """At most four pairs of points where two convex bodies meet.
 
     The normal points from B to A; depth > 0 inside, < 0 a gap of at most breaking_threshold; feature_id is the same while
-    the same two features meet.
+    the same two features meet. For many: a Batch with count, normal [n, 3], position_a and position_b [n, 4, 3],
+    point_depth [n, 4] and feature_id [n, 4], NaN and 0 beyond count.
     """
+    if _is_batch(a, b, pose_a, pose_b):
+        (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
+        fields = _core.manifold_rows(bodies_a, bodies_b, poses_a, poses_b, count, breaking_threshold, _threads(threads))
+        for name in ("position_a", "position_b"):
+            fields[name] = fields[name].reshape((count, 4, 3))
+        return Batch(fields, lead)
     return Manifold(_core.manifold(a, b, pose_a, pose_b, breaking_threshold))
 
 

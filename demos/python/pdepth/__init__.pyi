@@ -1,0 +1,195 @@
+"""Types of the package; the docstrings stand in the sources."""
+
+import os
+from typing import Any, Callable, Iterable, Iterator, Literal, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+ERRORS: Tuple[str, ...]
+CONTACTS: Tuple[str, str, str]
+FEATURES: Tuple[str, str, str, str]
+
+Floats = npt.NDArray[np.float64]
+Contact = Literal["separated", "touching", "overlapping"]
+Method = Literal["auto", "expansion", "overlay", "decomposition", "shallow", "grid"]
+Bracket = Literal["tightest", "certified", "contact"]
+Axis = Literal["x", "y", "z"]
+Feature = Optional[Tuple[Literal["vertex", "edge", "facet"], Tuple[int, ...]]]
+
+class Refused(ValueError):
+    code: str
+    where: str
+
+class Pose:
+    def __init__(self, matrix: Optional[npt.ArrayLike] = ..., *, rotation: Optional[npt.ArrayLike] = ...,
+                 translation: Optional[npt.ArrayLike] = ..., wxyz: Optional[npt.ArrayLike] = ...,
+                 xyzw: Optional[npt.ArrayLike] = ...) -> None: ...
+    @property
+    def matrix(self) -> Floats: ...
+    @property
+    def rotation(self) -> Floats: ...
+    @property
+    def translation(self) -> Floats: ...
+
+PoseLike = Union[None, Pose, npt.ArrayLike, Tuple[npt.ArrayLike, npt.ArrayLike]]
+PosesLike = Union[PoseLike, Sequence[Pose]]
+
+class Shape:
+    @property
+    def margin(self) -> float: ...
+    @property
+    def vertices(self) -> Floats: ...
+    @property
+    def facets(self) -> list[list[int]]: ...
+    @property
+    def is_convex(self) -> bool: ...
+    def protocol(self) -> dict[str, Any]: ...
+    def _repr_png_(self) -> bytes: ...
+
+ShapesLike = Union[Shape, Sequence[Shape]]
+
+class ConvexPolytope(Shape):
+    def __init__(self, points: npt.ArrayLike, *, margin: float = ...) -> None: ...
+    @classmethod
+    def from_faces(cls, vertices: npt.ArrayLike, faces: Iterable[Iterable[int]], *, margin: float = ...) -> ConvexPolytope: ...
+    @classmethod
+    def from_halfspaces(cls, planes: npt.ArrayLike, *, margin: float = ...) -> ConvexPolytope: ...
+    @classmethod
+    def from_mesh(cls, mesh: Union[str, os.PathLike[str], Any], *, margin: float = ...) -> ConvexPolytope: ...
+
+class Box(Shape):
+    def __init__(self, half_extents: npt.ArrayLike, *, margin: float = ...) -> None: ...
+
+class Sphere(Shape):
+    def __init__(self, radius: float, *, margin: float = ...) -> None: ...
+
+class Ellipsoid(Shape):
+    def __init__(self, radii: npt.ArrayLike, *, margin: float = ...) -> None: ...
+
+class Capsule(Shape):
+    def __init__(self, radius: float, half_height: float, axis: Axis = ..., *, margin: float = ...) -> None: ...
+
+class Cylinder(Shape):
+    def __init__(self, radius: float, half_height: float, axis: Axis = ..., *, margin: float = ...) -> None: ...
+
+class Cone(Shape):
+    def __init__(self, radius: float, half_height: float, axis: Axis = ..., *, margin: float = ...) -> None: ...
+
+class Compound(Shape):
+    def __init__(self, parts: Iterable[Union[Shape, Tuple[Shape, PoseLike]]], *, margin: float = ...) -> None: ...
+
+class StarBody(Shape):
+    def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike, center: npt.ArrayLike, *, margin: float = ...) -> None: ...
+
+class Warm:
+    def __init__(self) -> None: ...
+    def clear(self) -> None: ...
+    @property
+    def nbytes(self) -> int: ...
+
+class Depth:
+    contact: Contact
+    depth: float
+    lower: float
+    upper: float
+    distance: float
+    distance_lower: float
+    distance_upper: float
+    signed_depth: float
+    translation: Floats
+    normal: Floats
+    witness_a: Floats
+    witness_b: Floats
+    feature_a: Feature
+    feature_b: Feature
+    part_a: int
+    part_b: int
+    bracket_reached: bool
+    method: str
+    warm: bool
+    stats: dict[str, int]
+    shape_a: Shape
+    shape_b: Shape
+
+class Batch:
+    error: npt.NDArray[np.uint8]
+    def __getattr__(self, name: str) -> npt.NDArray[Any]: ...
+    def __getitem__(self, name: str) -> npt.NDArray[Any]: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __len__(self) -> int: ...
+    def keys(self) -> Tuple[str, ...]: ...
+    def save(self, path: Union[str, os.PathLike[str]]) -> None: ...
+
+class Answer:
+    def __getattr__(self, name: str) -> Any: ...
+
+class DirectionalDepth:
+    contact: Contact
+    depth: float
+    lower: float
+    upper: float
+    normal: Floats
+
+class Manifold:
+    normal: Floats
+    position_a: Floats
+    position_b: Floats
+    depth: Floats
+    feature_id: npt.NDArray[np.int64]
+
+class Derivatives:
+    answer: Depth
+    signed_depth: float
+    unique_direction: bool
+    unique_witness: bool
+    stable_features: bool
+    by_a: Floats
+    by_b: Floats
+    normal_by_a: Floats
+    normal_by_b: Floats
+    witness_a_by_a: Floats
+    witness_a_by_b: Floats
+    witness_b_by_a: Floats
+    witness_b_by_b: Floats
+
+class Sweep:
+    files: list[Any]
+    count: int
+    computed: int
+    def __iter__(self) -> Iterator[dict[str, npt.NDArray[Any]]]: ...
+    def __getitem__(self, name: str) -> npt.NDArray[Any]: ...
+
+def cores() -> int: ...
+def depth(a: ShapesLike, b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *, method: Method = ...,
+          delta: Optional[float] = ..., bracket: Bracket = ..., warm: Union[None, bool, Warm] = ..., axis: int = ...,
+          threads: Optional[int] = ...) -> Any: ...
+def distance(a: ShapesLike, b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *,
+             threads: Optional[int] = ...) -> Any: ...
+def intersects(a: ShapesLike, b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *,
+               threads: Optional[int] = ...) -> Any: ...
+def directional_depth(a: ShapesLike, b: ShapesLike, direction: npt.ArrayLike, pose_a: PosesLike = ...,
+                      pose_b: PosesLike = ..., *, threads: Optional[int] = ...) -> Any: ...
+def contact_manifold(a: ShapesLike, b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *,
+                     breaking_threshold: float = ..., threads: Optional[int] = ...) -> Any: ...
+def derivatives(a: ShapesLike, b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *,
+                threads: Optional[int] = ...) -> Any: ...
+def query(name: str, **fields: Any) -> Answer: ...
+def width(a: Shape, pose_a: PoseLike = ..., *, method: Optional[str] = ..., delta: Optional[float] = ...) -> Answer: ...
+def minkowski_difference(a: Shape, b: Shape, pose_a: PoseLike = ..., pose_b: PoseLike = ...) -> Answer: ...
+def hull(a: Shape, pose_a: PoseLike = ...) -> Answer: ...
+def time_of_impact(a: Shape, b: Shape, pose_a: PoseLike = ..., pose_b: PoseLike = ..., *,
+                   velocity_a: Optional[npt.ArrayLike] = ..., angular_velocity_a: Optional[npt.ArrayLike] = ...,
+                   velocity_b: Optional[npt.ArrayLike] = ..., angular_velocity_b: Optional[npt.ArrayLike] = ...,
+                   duration: float = ..., tolerance: Optional[float] = ...) -> Answer: ...
+def polygon_depth(p: Any, q: Any, **options: Any) -> Answer: ...
+def audit(records: Union[str, os.PathLike[str], Iterable[Union[str, Mapping[str, Any]]]], *, tolerance: Optional[float] = ...,
+          worst: int = ..., fail_on: Optional[str] = ..., threads: Optional[int] = ...) -> Answer: ...
+def picture(a: Shape, b: Optional[Shape] = ..., pose_a: PoseLike = ..., pose_b: PoseLike = ..., *, size: Tuple[int, int] = ...,
+            azimuth: float = ..., elevation: float = ..., difference: bool = ...) -> npt.NDArray[np.uint8]: ...
+def save_picture(path: Union[str, os.PathLike[str]], rgb: npt.NDArray[np.uint8]) -> None: ...
+def sweep(shapes: Sequence[Shape], pairs: npt.ArrayLike,
+          poses: Union[Tuple[npt.ArrayLike, npt.ArrayLike], Callable[[int, int], Tuple[npt.ArrayLike, npt.ArrayLike]]],
+          client: Any = ..., *, out: Union[str, os.PathLike[str]], chunk: int = ..., threads: Optional[int] = ...,
+          progress: bool = ..., **options: Any) -> Sweep: ...
