@@ -152,6 +152,27 @@ TEST(UnionDifference, StarsGiveAStarAndItsEnvelopeTheDepth) {
   EXPECT_EQ(swapped.part_a, answer.part_b);
 }
 
+// Deep inside each other nearly all pairs of parts overlap: the search by cubes finds what all of the boundary says,
+// and cuts next to nothing.
+TEST(UnionDifference, DeepRoughBallsAreAnsweredByTheirBoundaryAndFewCuts) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    scenes::Random random(seed);
+    const Compound a = compound_of(scenes::rough_ball(0, 0.3, random)),
+                   b = compound_of(scenes::rough_ball(0, 0.3, random)),
+                   large = compound_of(scenes::rough_ball(1, 0.3, random));
+    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.3, 0.1, 0.2});
+    Scratch scratch;
+    const UnionDepth answer = *penetration_depth(PosedCompound{&a, pose}, PosedCompound{&b, Pose()}, scratch);
+    const UnionDifference built = *minkowski_difference({&a, pose}, {&b, Pose()});
+    EXPECT_NEAR(distance(built), answer.depth, 1e-12) << "seed " << seed;
+    EXPECT_LT(answer.work.cuts, built.work.cuts / 10);
+
+    const UnionDepth deep = *penetration_depth(PosedCompound{&large, pose}, PosedCompound{&b, Pose()}, scratch);
+    EXPECT_GE(deep.depth, deep.lower);
+    EXPECT_LT(deep.work.cuts, 2000) << "of " << deep.work.facets << " facets";
+  }
+}
+
 TEST(UnionDifference, LimitsAndOtherShapesAreRefused) {
   const Compound cube(ConvexShape(*ConvexPolytope::box({0.5, 0.5, 0.5})));
   const Compound ball(*ConvexShape::sphere(1));

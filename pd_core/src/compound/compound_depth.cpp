@@ -55,9 +55,7 @@ Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, co
     }
     known_lower = 0;
   }
-  if (auto refused = answer.build(pair.box_exit())) return *std::move(refused);
-  answer.set_overlapping(answer.boundary().nearest(std::ldexp(known_lower, -pair.scale_exponent())), out);
-  answer.count();
+  if (auto refused = answer.solve_overlapping(known_lower, out)) return *std::move(refused);
   out.statistics.exact_signs += answer.exact_signs();
   return out;
 }

@@ -35,23 +35,24 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
     return Error{ErrorCode::unsupported, "a Minkowski difference is built for polytopes without a margin", ""};
   }
   const int exponent = pair->scale_exponent();
-  const auto differences =
+  auto built =
       detail::PartDifferences::build(pair->a, pair->boxes_a, pair->b, pair->boxes_b, exponent, HUGE_VAL, max_facets);
-  if (!differences) return too_many(max_facets);
+  if (!built) return too_many(max_facets);
+  detail::PartDifferences differences = std::move(built).value();
   UnionDifference result;
-  for (const detail::PartDifference& piece : differences->pieces()) {
+  for (const detail::PartDifference& piece : differences.pieces()) {
     ++result.work.pairs;
     result.work.facets += static_cast<std::int64_t>(piece.facets.size());
   }
-  detail::UnionBoundary boundary(*differences);
+  detail::UnionBoundary boundary(differences);
   std::vector<Vec3> corners;
   const bool complete = boundary.visit_all([&](const detail::UnionBoundary::BoundaryPoint& where) {
     if (static_cast<std::int64_t>(result.facets.size()) == max_facets) return false;
-    const detail::PartDifference& piece = differences->pieces()[where.piece];
+    const detail::PartDifference& piece = differences.pieces()[where.piece];
     const detail::DifferenceFacet& facet = piece.facets[where.facet];
     std::int32_t part_a = piece.part_a, part_b = piece.part_b;
     pair->name_parts(part_a, part_b);
-    result.facets.push_back({differences->planes().normal(where.polygon.plane).normalized(), part_a, part_b, facet.on_a,
+    result.facets.push_back({differences.planes().normal(where.polygon.plane).normalized(), part_a, part_b, facet.on_a,
                              facet.on_b, static_cast<std::int32_t>(corners.size()),
                              static_cast<std::int32_t>(where.polygon.corners.size())});
     for (const Vec3& x : where.polygon.corners) {

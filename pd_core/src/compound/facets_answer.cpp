@@ -63,18 +63,30 @@ std::optional<Error> FacetsAnswer::build(double reach) {
   const int exponent = pair_.scale_exponent();
   auto built = PartDifferences::build(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
                                       std::ldexp(reach, -exponent), settings_.max_facets);
-  if (!built) {
-    return Error{ErrorCode::limit_exceeded,
-                 "the differences of the parts have more than " + std::to_string(settings_.max_facets) +
-                     " facets; the octree answers within (1 + delta)",
-                 "max_facets"};
-  }
+  if (!built) return too_many_facets();
   differences_.emplace(*std::move(built));
   boundary_.emplace(*differences_);
-  work_.facets = 0;
-  for (const PartDifference& piece : differences_->pieces()) {
-    work_.facets += static_cast<std::int64_t>(piece.facets.size());
-  }
+  return std::nullopt;
+}
+
+Error FacetsAnswer::too_many_facets() const {
+  return {ErrorCode::limit_exceeded,
+          "the differences of the parts have more than " + std::to_string(settings_.max_facets) +
+              " facets; the octree answers within (1 + delta)",
+          "max_facets"};
+}
+
+std::optional<Error> FacetsAnswer::solve_overlapping(double known_lower, UnionDepth& out) {
+  const int exponent = pair_.scale_exponent();
+  const double reach = pair_.box_exit();
+  differences_.emplace(PartDifferences::find(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
+                                             std::ldexp(reach, -exponent), settings_.max_facets));
+  boundary_.emplace(*differences_);
+  const auto nearest = boundary_->nearest(std::ldexp(known_lower, -exponent), std::ldexp(reach, -exponent));
+  if (!nearest) return too_many_facets();
+  set_overlapping(*nearest, out);
+  if (differences_->limit_exceeded()) return too_many_facets();
+  count();
   return std::nullopt;
 }
 
@@ -88,6 +100,8 @@ Expected<ContactClass> FacetsAnswer::class_of_touching(std::optional<Where>& whe
 
 void FacetsAnswer::count() {
   exact_signs_ += differences_->planes().exact_signs();
+  work_.facets = differences_->num_facets();
+  work_.cells += boundary_->counts().cells;
   work_.polygons += boundary_->counts().polygons;
   work_.cuts += boundary_->counts().cuts;
 }

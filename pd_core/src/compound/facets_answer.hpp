@@ -46,14 +46,16 @@ class FacetsAnswer {
 
   [[nodiscard]] std::int64_t exact_signs() const { return exact_signs_; }
 
-  /// The depth from the boundary point nearest to the origin.
-  void set_overlapping(const UnionBoundary::Nearest& nearest, UnionDepth& out) const;
+  /// The depth of unions whose interiors meet, from the boundary point nearest to the origin. @return limit_exceeded.
+  [[nodiscard]] std::optional<Error> solve_overlapping(double known_lower, UnionDepth& out);
 
   /// The features of the facet at a point of it, as the protocol names them: a vertex stands for a larger face that is
   /// parallel to the other body's facet.
   void features(const Where& where, Feature& on_a, Feature& on_b) const;
 
  private:
+  void set_overlapping(const UnionBoundary::Nearest& nearest, UnionDepth& out) const;
+  [[nodiscard]] Error too_many_facets() const;
   void set_witnesses(const Where& where, UnionDepth& out) const;
 
   const UnionPair& pair_;

@@ -6,18 +6,41 @@
 #include <string>
 #include <utility>
 
-#include "pd/depth/minkowski_difference.hpp"
 #include "shape/posed_pair.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-/// Fills the facets of one P_ij from the built convex difference.
-PartDifference facets_of(const PosedShape& a, const PosedShape& b, const MinkowskiDifference& difference,
-                         PlaneSet& planes) {
+/// The plane of a facet in doubles. The normal is off by at most (how far corners lie from the plane) / (the least
+/// height of the triangle of three of them); that angle times the size of the differences bounds what is wrong
+/// anywhere.
+RoughPlane rough_plane(const MinkowskiDifference& difference, const MinkowskiDifference::Facet& facet, double scale,
+                       double extent) {
+  const auto position = [&](std::int32_t k) -> Vec3 {
+    const std::int32_t corner = difference.corners[static_cast<std::size_t>(facet.first + k % facet.count)];
+    return difference.vertices[static_cast<std::size_t>(corner)].position * scale;
+  };
+  RoughPlane plane{facet.normal, -HUGE_VAL, 0};
+  double lowest = HUGE_VAL;
+  for (std::int32_t k = 0; k < facet.count; ++k) {
+    const double height = plane.normal.dot(position(k));
+    plane.offset = std::max(plane.offset, height);
+    lowest = std::min(lowest, height);
+  }
+  const Vec3 v0 = position(0), u = position(facet.count / 3) - v0, v = position(2 * facet.count / 3) - v0;
+  const double longest = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
+  const double least_height = u.cross(v).norm() / longest - 0x1p-46 * extent;
+  const double off = plane.offset - lowest + 0x1p-48 * extent;
+  plane.slack = least_height > 0 ? 8 * off * (1 + extent / least_height) : HUGE_VAL;
+  return plane;
+}
+
+/// The facets of one P_ij exactly, from the built convex difference.
+std::vector<DifferenceFacet> facets_of(const PosedShape& a, const PosedShape& b, const MinkowskiDifference& difference,
+                                       PlaneSet& planes) {
   const PosedPair pair(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose);
-  PartDifference piece;
+  std::vector<DifferenceFacet> facets;
   // Edge from corner to corner -> the facet to its left.
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> left_of;
   std::vector<Side> sides;
@@ -37,11 +60,11 @@ PartDifference facets_of(const PosedShape& a, const PosedShape& b, const Minkows
     entry.on_a = facet.on_a;
     entry.on_b = facet.on_b;
     entry.polygon.plane = sides.back();
-    piece.facets.push_back(std::move(entry));
+    facets.push_back(std::move(entry));
   }
   for (std::size_t f = 0; f < difference.facets.size(); ++f) {
     const MinkowskiDifference::Facet& facet = difference.facets[f];
-    DifferenceFacet& entry = piece.facets[f];
+    DifferenceFacet& entry = facets[f];
     // Corner k lies between edge k and edge k + 1.
     for (std::int32_t k = 0; k < facet.count; ++k) {
       const auto from = difference.corners[static_cast<std::size_t>(facet.first + k)];
@@ -52,41 +75,81 @@ PartDifference facets_of(const PosedShape& a, const PosedShape& b, const Minkows
     }
     entry.polygon.update(planes);
   }
-  return piece;
+  return facets;
 }
 
 }  // namespace
 
-Expected<PartDifferences> PartDifferences::build(PosedParts a, std::span<const Box> boxes_a, PosedParts b,
-                                                 std::span<const Box> boxes_b, int scale_exponent, double reach,
-                                                 std::int64_t max_facets) {
-  PartDifferences result(scale_exponent);
+PartDifferences PartDifferences::find(PosedParts a, std::span<const Box> boxes_a, PosedParts b,
+                                      std::span<const Box> boxes_b, int scale_exponent, double reach,
+                                      std::int64_t max_facets) {
+  PartDifferences result(a, b, scale_exponent, max_facets);
   const double scale = std::ldexp(1.0, -scale_exponent);
-  std::int64_t facets = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Box& box_a = boxes_a[i];
     for (std::size_t j = 0; j < b.size(); ++j) {
       const Vec3 low = (boxes_b[j].low - box_a.high) * scale, high = (boxes_b[j].high - box_a.low) * scale;
       const Vec3 nearest = low.cwiseMax(Vec3::Zero()) + high.cwiseMin(Vec3::Zero());
       if (nearest.norm() > reach * (1 + 0x1p-40)) continue;
-      const auto difference = minkowski_difference(*a[i].shape->polytope(), a[i].pose, *b[j].shape->polytope(),
-                                                   b[j].pose, max_facets - facets);
-      if (!difference) return difference.error();
-      if (difference->affine_dimension < 3) continue;
-      facets += difference->num_facets();
-      PartDifference piece = facets_of(a[i], b[j], *difference, result.planes_);
+      PartDifference piece;
       piece.part_a = static_cast<std::int32_t>(i);
       piece.part_b = static_cast<std::int32_t>(j);
       piece.low = low;
       piece.high = high;
-      for (const DifferenceFacet& facet : piece.facets) {
-        for (const Vec3& x : facet.polygon.corners) {
-          result.extent_ = std::max(result.extent_, x.cwiseAbs().maxCoeff());
-        }
-      }
+      result.extent_ = std::max({result.extent_, low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()});
       result.pieces_.push_back(std::move(piece));
     }
   }
+  return result;
+}
+
+const PartDifference& PartDifferences::roughly(std::size_t k) {
+  PartDifference& piece = pieces_[k];
+  if (piece.made != PartDifference::Made::nothing) return piece;
+  piece.made = PartDifference::Made::roughly;
+  const PosedShape &a = a_[static_cast<std::size_t>(piece.part_a)], &b = b_[static_cast<std::size_t>(piece.part_b)];
+  auto difference = minkowski_difference(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose,
+                                         std::max<std::int64_t>(max_facets_ - num_facets_, 0));
+  limit_exceeded_ = limit_exceeded_ || !difference;
+  piece.flat = !difference || difference->affine_dimension < 3;
+  if (piece.flat) return piece;
+  num_facets_ += difference->num_facets();
+  const double scale = std::ldexp(1.0, -scale_exponent_);
+  piece.planes.reserve(difference->facets.size());
+  for (const MinkowskiDifference::Facet& facet : difference->facets) {
+    piece.planes.push_back(rough_plane(*difference, facet, scale, extent_));
+  }
+  piece.built = std::make_shared<const MinkowskiDifference>(*std::move(difference));
+  return piece;
+}
+
+const PartDifference& PartDifferences::exactly(std::size_t k) {
+  roughly(k);
+  PartDifference& piece = pieces_[k];
+  if (piece.made == PartDifference::Made::exactly) return piece;
+  piece.made = PartDifference::Made::exactly;
+  if (piece.flat) return piece;
+  piece.facets = facets_of(a_[static_cast<std::size_t>(piece.part_a)], b_[static_cast<std::size_t>(piece.part_b)],
+                           *piece.built, planes_);
+  piece.built.reset();
+  return piece;
+}
+
+Side PartDifferences::across_axis(int axis, int orientation, double at) {
+  const Dyadic sign(static_cast<double>(orientation)), zero(0.0);
+  const Dyadic3 normal{axis == 0 ? sign : zero, axis == 1 ? sign : zero, axis == 2 ? sign : zero};
+  return planes_.add(normal, (Dyadic(at) * sign).scaled(scale_exponent_));
+}
+
+Expected<PartDifferences> PartDifferences::build(PosedParts a, std::span<const Box> boxes_a, PosedParts b,
+                                                 std::span<const Box> boxes_b, int scale_exponent, double reach,
+                                                 std::int64_t max_facets) {
+  PartDifferences result = find(a, boxes_a, b, boxes_b, scale_exponent, reach, max_facets);
+  for (std::size_t k = 0; k < result.pieces_.size(); ++k) {
+    result.exactly(k);
+    if (result.limit_exceeded_) return Error{ErrorCode::limit_exceeded, "more facets than max_facets", "max_facets"};
+  }
+  std::erase_if(result.pieces_, [](const PartDifference& piece) { return piece.flat; });
   return result;
 }
 

@@ -1,13 +1,17 @@
 /// @file
 /// The pieces of a non-convex Minkowski difference: with A the union of convex parts A_i and B that of B_j,
-/// P = B + (-A) is the union of P_ij = B_j + (-A_i). Each P_ij that has an interior, as exact planes and polygons.
+/// P = B + (-A) is the union of P_ij = B_j + (-A_i). Each P_ij that has an interior, as planes in doubles with a bound
+/// of their errors, or as exact planes and polygons: either is made when it is asked for. Exact planes cost ten times
+/// what doubles do, and most P_ij of a deep overlap only cover others, which doubles tell.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "compound/plane_polygon.hpp"
+#include "pd/depth/minkowski_difference.hpp"
 #include "pd/numeric/expected.hpp"
 #include "pd/shape/convex_shape.hpp"
 #include "pd/shape/feature.hpp"
@@ -22,12 +26,25 @@ struct DifferenceFacet {
   std::vector<VertexPair> corners;  ///< of the loop, as the polygon's
 };
 
+/// A facet's plane in doubles (inside lengths). Beyond the plane of the facet where <normal, x> > offset + slack,
+/// inside it where <normal, x> < offset - slack, for every x no farther out than the extent of the differences.
+struct RoughPlane {
+  Vec3 normal;  ///< unit
+  double offset = 0;
+  double slack = 0;
+};
+
 /// One P_ij: the points inside every facet's plane.
 struct PartDifference {
+  enum class Made : std::uint8_t { nothing, roughly, exactly };
   std::int32_t part_a = 0;
   std::int32_t part_b = 0;
-  std::vector<DifferenceFacet> facets;
-  Vec3 low = Vec3::Zero();  ///< a box that holds it, rounded outwards
+  Made made = Made::nothing;
+  bool flat = false;                                 ///< it has no interior; known once it is made
+  std::vector<RoughPlane> planes;                    ///< one a facet
+  std::vector<DifferenceFacet> facets;               ///< exact
+  std::shared_ptr<const MinkowskiDifference> built;  ///< between the two
+  Vec3 low = Vec3::Zero();                           ///< a box that holds it, rounded outwards
   Vec3 high = Vec3::Zero();
 };
 
@@ -49,14 +66,34 @@ class PartDifferences {
                                          std::span<const Box> boxes_b, int scale_exponent, double reach,
                                          std::int64_t max_facets);
 
+  /// The same, none of them made yet. Refers to the parts.
+  static PartDifferences find(PosedParts a, std::span<const Box> boxes_a, PosedParts b, std::span<const Box> boxes_b,
+                              int scale_exponent, double reach, std::int64_t max_facets);
+  /// P_k with its planes in doubles; with exact facets. Where it would take more than `max_facets` facets in all, it
+  /// stays empty and `limit_exceeded` holds from then on.
+  const PartDifference& roughly(std::size_t k);
+  const PartDifference& exactly(std::size_t k);
+  [[nodiscard]] bool limit_exceeded() const { return limit_exceeded_; }
+  /// Facets made so far, in doubles or exactly.
+  [[nodiscard]] std::int64_t num_facets() const { return num_facets_; }
+  /// The halfspace {x : orientation * x[axis] <= orientation * at} (inside lengths).
+  Side across_axis(int axis, int orientation, double at);
+
   [[nodiscard]] const PlaneSet& planes() const { return planes_; }
   [[nodiscard]] const std::vector<PartDifference>& pieces() const { return pieces_; }
-  /// Largest |coordinate| of a corner.
+  /// At least |coordinate| of every point of theirs.
   [[nodiscard]] double extent() const { return extent_; }
 
  private:
-  explicit PartDifferences(int scale_exponent) : planes_(scale_exponent) {}
+  PartDifferences(PosedParts a, PosedParts b, int scale_exponent, std::int64_t max_facets)
+      : a_(a), b_(b), scale_exponent_(scale_exponent), max_facets_(max_facets), planes_(scale_exponent) {}
 
+  PosedParts a_;
+  PosedParts b_;
+  int scale_exponent_;
+  std::int64_t max_facets_;
+  std::int64_t num_facets_ = 0;
+  bool limit_exceeded_ = false;
   PlaneSet planes_;
   std::vector<PartDifference> pieces_;
   double extent_ = 0;

@@ -32,7 +32,7 @@ void PlanePolygon::update(const PlaneSet& planes) {
   }
 }
 
-Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner, PlanePolygon& outer) {
+Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner, PlanePolygon* outer) {
   if (side.plane() == polygon.plane.plane()) return Cut::inside;
   const std::size_t n = polygon.sides.size();
   // A filter that decides most polygons: every corner far on one side.
@@ -65,16 +65,17 @@ Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePol
   // Edge i runs from corner i - 1 to corner i. By convexity each open side of the line holds one run of corners; its
   // part keeps the edges from the one that enters the run to the one that leaves it.
   for (const int sign : {-1, 1}) {
+    if (sign > 0 && outer == nullptr) break;
     std::size_t enters = 0, leaves = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const bool from = signs[(i + n - 1) % n] == sign, to = signs[i] == sign;
       if (!from && to) enters = i;
       if (from && !to) leaves = i;
     }
-    take(polygon, enters, leaves, sign < 0 ? side : side.opposite(), sign < 0 ? inner : outer);
+    take(polygon, enters, leaves, sign < 0 ? side : side.opposite(), sign < 0 ? inner : *outer);
   }
   inner.update(planes);
-  outer.update(planes);
+  if (outer != nullptr) outer->update(planes);
   return Cut::split;
 }
 

@@ -30,8 +30,9 @@ enum class Cut : std::uint8_t {
 
 /// Cuts a polygon by the halfspace of `side`. Only when `split` are the two parts written; each has a nonempty
 /// relative interior. A polygon in the plane itself is `inside`.
+/// @param outer  nullptr: not wanted.
 [[nodiscard]] Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner,
-                      PlanePolygon& outer);
+                      PlanePolygon* outer);
 
 /// Whether a point given in doubles lies in the closed polygon, exactly.
 [[nodiscard]] bool contains_point(const PlaneSet& planes, const PlanePolygon& polygon, const Vec3& x);

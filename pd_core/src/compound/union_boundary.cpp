@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace pd::detail {
 
-UnionBoundary::UnionBoundary(const PartDifferences& differences)
-    : differences_(differences), planes_(differences.planes()) {
+UnionBoundary::UnionBoundary(PartDifferences& differences) : differences_(differences), planes_(differences.planes()) {
   for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
+  all_.resize(boxes_.size());
+  std::iota(all_.begin(), all_.end(), 0);
 }
 
 UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
@@ -28,7 +30,7 @@ bool UnionBoundary::subtract(const PlanePolygon& polygon, std::size_t own, std::
   PlanePolygon left = polygon;
   for (const DifferenceFacet& f : piece.facets) {
     PlanePolygon inner, outer;
-    switch (cut(planes_, left, f.polygon.plane, inner, outer)) {
+    switch (cut(planes_, left, f.polygon.plane, inner, &outer)) {
       case Cut::outside:
         rest_.clear();
         return false;
@@ -44,11 +46,13 @@ bool UnionBoundary::subtract(const PlanePolygon& polygon, std::size_t own, std::
   return true;
 }
 
-std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped, double tolerance) const {
+std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped, double tolerance,
+                                       std::span<const std::int32_t> among) const {
   const std::vector<PartDifference>& pieces = differences_.pieces();
   std::ptrdiff_t best = -1;
   double least = HUGE_VAL;
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
+  for (const std::int32_t which : among) {
+    const auto k = static_cast<std::size_t>(which);
     if (has(clipped, k)) continue;
     const Box& box = boxes_[k];
     if (box.low.x() - x.x() > tolerance || x.x() - box.high.x() > tolerance || box.low.y() - x.y() > tolerance ||
@@ -171,7 +175,8 @@ bool UnionBoundary::split_one(Cell& cell, std::vector<Cell>& open) {
     high = high.cwiseMax(x);
   }
   middle /= static_cast<double>(polygon.corners.size());
-  for (std::ptrdiff_t k = covering(middle, cell.clipped, 0); k >= 0; k = covering(middle, cell.clipped, 0)) {
+  for (std::ptrdiff_t k = covering(middle, cell.clipped, 0, all_); k >= 0;
+       k = covering(middle, cell.clipped, 0, all_)) {
     mark_recent(static_cast<std::size_t>(k));
     if (split_by(static_cast<std::size_t>(k))) return true;
   }
@@ -219,8 +224,16 @@ bool UnionBoundary::free_piece_near(const Vec3& low, const Vec3& high, const std
 }
 
 bool UnionBoundary::outside_all(const Vec3& x) const {
-  for (const PartDifference& piece : differences_.pieces()) {
-    if ((piece.low - x).maxCoeff() > 0 || (x - piece.high).maxCoeff() > 0) continue;
+  const double rounding = 0x1p-48 * differences_.extent();
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    if ((boxes_[k].low - x).maxCoeff() > 0 || (x - boxes_[k].high).maxCoeff() > 0) continue;
+    const auto& planes = differences_.roughly(k).planes;
+    if (std::any_of(planes.begin(), planes.end(),
+                    [&](const RoughPlane& p) { return p.normal.dot(x) - p.offset > p.slack + rounding; })) {
+      continue;
+    }
+    const PartDifference& piece = differences_.exactly(k);
+    if (piece.flat) continue;
     if (std::all_of(piece.facets.begin(), piece.facets.end(),
                     [&](const DifferenceFacet& f) { return planes_.sign_at_point(f.polygon.plane, x) <= 0; })) {
       return false;

@@ -8,12 +8,14 @@
 /// Searches are best first: facets wait in the order of their distance from the origin (or of the ray's parameter); the
 /// first is asked which P_k hold its nearest point; one of them is subtracted, exactly, and what is left goes back in
 /// the queue. A polygon whose nearest point no P_k holds ends the search. Each cut takes one P_k off a polygon's list
-/// for good, so that every search ends.
+/// for good, so that every search ends. The nearest point is sought cube by cube (`CoverCells`), among the P_k that
+/// meet the cube.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compound/part_differences.hpp"
@@ -22,8 +24,9 @@ namespace pd::detail {
 
 class UnionBoundary {
  public:
-  /// Refers to the differences.
-  explicit UnionBoundary(const PartDifferences& differences);
+  /// Refers to the differences. `nearest`, `outside_all` and `free_placement` make those that they need; the other
+  /// searches require all to be made exactly.
+  explicit UnionBoundary(PartDifferences& differences);
 
   /// A point of the union's boundary, and the facet that it lies on.
   struct BoundaryPoint {
@@ -33,16 +36,17 @@ class UnionBoundary {
     Vec3 x = Vec3::Zero();  ///< in doubles (inside lengths)
   };
 
-  /// The boundary point nearest to the origin and a lower bound of its distance; nothing when `known_lower` is above
-  /// every distance. Inside lengths. Requires the origin in the interior of the union, and the P_k of every facet
-  /// within the distance sought to be there.
+  /// The boundary point nearest to the origin and a lower bound of its distance; nothing when the limit of facets was
+  /// exceeded. Inside lengths. Requires the origin in the interior of the union, and the P_k of every facet within the
+  /// distance sought to be there.
   /// @param known_lower  no boundary point is nearer: what lies inside that ball is not looked at.
+  /// @param reach        a boundary point lies within this distance.
   struct Nearest {
     BoundaryPoint where;
     double lower = 0;         ///< the distance itself, rounded down
     bool projection = false;  ///< that point is the projection of the origin on the facet's plane, exactly
   };
-  [[nodiscard]] Nearest nearest(double known_lower);
+  [[nodiscard]] std::optional<Nearest> nearest(double known_lower, double reach);
 
   /// Whether a point (inside lengths, as stored) lies on the boundary, exactly. `held` tells whether a closed P_k holds
   /// it: held and not on the boundary is inside.
@@ -72,6 +76,7 @@ class UnionBoundary {
   struct Counts {
     std::int64_t polygons = 0;  ///< clipped from the queue
     std::int64_t cuts = 0;      ///< P_k subtracted from a polygon
+    std::int64_t cells = 0;     ///< cubes looked at
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
@@ -89,8 +94,9 @@ class UnionBoundary {
   /// Cuts P_k off a polygon of P_own. False when it covers none of it; else `rest_` holds what is left.
   /// @param once  of two facets that lie in one plane and look the same way, the later gives way.
   bool subtract(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once);
-  /// The deepest P_k, not subtracted yet, that holds x within the tolerance; -1: none.
-  [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const ClippedSet& clipped, double tolerance) const;
+  /// The deepest P_k of `among`, not subtracted yet, that holds x within the tolerance; -1: none.
+  [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const ClippedSet& clipped, double tolerance,
+                                        std::span<const std::int32_t> among) const;
 
   /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
   bool split_one(Cell& cell, std::vector<Cell>& open);
@@ -100,9 +106,10 @@ class UnionBoundary {
   void mark_recent(std::size_t k);
   static constexpr std::size_t kRecent = 12;
 
-  const PartDifferences& differences_;
+  PartDifferences& differences_;
   const PlaneSet& planes_;
-  std::vector<Box> boxes_;  ///< of the P_k
+  std::vector<Box> boxes_;         ///< of the P_k
+  std::vector<std::int32_t> all_;  ///< 0, 1, ...
   std::vector<std::size_t> recent_;
   std::vector<PlanePolygon> rest_;
   Counts counts_;

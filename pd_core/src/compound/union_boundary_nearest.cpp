@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compound/cover_cells.hpp"
 #include "compound/union_boundary.hpp"
 #include "numeric/quotient.hpp"
 #include "numeric/root_sum.hpp"
@@ -21,29 +22,30 @@ Vec3 rounded(const PlaneSet::ExactPoint& point) {
 
 }  // namespace
 
-/// Facets wait in the order of their distance. The first is clipped; where a P_k holds its nearest point, that P_k is
-/// subtracted and what is left waits again; else its nearest point is a boundary point, the nearest so far.
+/// Cubes come in the order of their distance. Of each, the parts of facets in it wait in the order of their distance.
+/// The first is clipped; where a P_k holds its nearest point, that P_k is subtracted and what is left waits again; else
+/// its nearest point is a boundary point, the nearest so far.
 class UnionBoundary::NearestSearch {
  public:
   NearestSearch(UnionBoundary& boundary, double known_lower)
       : boundary_(boundary), known_lower_(known_lower), scale_(boundary.differences_.extent()) {}
 
   /// Each subtraction takes one P_k off a polygon's list for good, so that this ends.
-  Nearest run() {
-    const std::vector<PartDifference>& pieces = boundary_.differences_.pieces();
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-      for (std::size_t f = 0; f < pieces[k].facets.size(); ++f) {
-        add({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, boundary_.own(k)});
+  std::optional<Nearest> run(double reach) {
+    CoverCells cells(boundary_.differences_, reach, known_lower_);
+    while (const auto cell = cells.next(best_key_)) {
+      enter(*cell);
+      while (!queue_.empty()) {
+        Waiting top = pop();
+        if (best_ && top.key >= best_key_) break;
+        ++boundary_.counts_.polygons;
+        if (!boundary_.contained_in_recent(top.cell.where.polygon)) visit(std::move(top));
       }
     }
-    while (!queue_.empty()) {
-      Waiting top = pop();
-      if (best_ && top.key >= best_key_) break;
-      ++boundary_.counts_.polygons;
-      if (!boundary_.contained_in_recent(top.cell.where.polygon)) visit(std::move(top));
-    }
+    boundary_.counts_.cells += cells.num_cells();
+    if (boundary_.differences_.limit_exceeded() || !best_) return std::nullopt;
     best_->lower = std::max(known_lower_, best_->lower);
-    return *std::move(best_);
+    return std::move(best_);
   }
 
  private:
@@ -63,6 +65,58 @@ class UnionBoundary::NearestSearch {
     Waiting top = std::move(queue_.back());
     queue_.pop_back();
     return top;
+  }
+
+  /// Lets the facets' parts in the closed cube wait. A boundary point of the union lies in the part of a facet of one
+  /// of the cubes that hold it, and any P_k that covers it meets that cube.
+  void enter(const CoverCell& cell) {
+    queue_.clear();
+    among_.clear();
+    PartDifferences& differences = boundary_.differences_;
+    // Most P_k of a cube end elsewhere: their facets' planes, in doubles, do not cross it.
+    std::vector<std::pair<std::size_t, std::size_t>> crossing;
+    for (const std::int32_t which : *cell.pieces) {
+      const auto k = static_cast<std::size_t>(which);
+      const PartDifference& piece = differences.roughly(k);
+      if (piece.flat) continue;
+      among_.push_back(which);
+      for (std::size_t f = 0; f < piece.planes.size(); ++f) {
+        if (crosses(piece.planes[f], cell)) crossing.emplace_back(k, f);
+      }
+    }
+    if (crossing.empty()) return;
+    std::vector<Side> walls;
+    for (int axis = 0; axis < 3; ++axis) {
+      walls.push_back(differences.across_axis(axis, 1, cell.centre[axis] + cell.half));
+      walls.push_back(differences.across_axis(axis, -1, cell.centre[axis] - cell.half));
+    }
+    for (const std::int32_t k : among_) differences.exactly(static_cast<std::size_t>(k));
+    for (const auto& [k, f] : crossing) {
+      if (auto part = part_inside(differences.pieces()[k].facets[f].polygon, walls)) {
+        add({{k, f, *std::move(part), Vec3::Zero()}, boundary_.own(k)});
+      }
+    }
+  }
+
+  [[nodiscard]] bool crosses(const RoughPlane& plane, const CoverCell& cell) const {
+    const double height = plane.normal.dot(cell.centre) - plane.offset;
+    return !(std::abs(height) > cell.half * plane.normal.lpNorm<1>() + plane.slack + 0x1p-48 * scale_);
+  }
+
+  [[nodiscard]] std::optional<PlanePolygon> part_inside(PlanePolygon polygon, const std::vector<Side>& walls) const {
+    for (const Side wall : walls) {
+      PlanePolygon inner;
+      switch (cut(boundary_.planes_, polygon, wall, inner, nullptr)) {
+        case Cut::outside:
+          return std::nullopt;
+        case Cut::inside:
+          break;
+        case Cut::split:
+          polygon = std::move(inner);
+          break;
+      }
+    }
+    return polygon;
   }
 
   /// A polygon that may hold a nearer point than the best so far waits.
@@ -87,7 +141,7 @@ class UnionBoundary::NearestSearch {
       if (compare(squared_length(exact->point), best_squared_) >= 0) return;
     }
     const double tolerance = 8 * cell.where.polygon.error + 0x1p-44 * scale_;
-    const std::ptrdiff_t k = boundary_.covering(cell.where.x, cell.clipped, tolerance);
+    const std::ptrdiff_t k = boundary_.covering(cell.where.x, cell.clipped, tolerance, among_);
     if (k >= 0) {
       subtract(std::move(top), static_cast<std::size_t>(k));
       return;
@@ -134,13 +188,16 @@ class UnionBoundary::NearestSearch {
   UnionBoundary& boundary_;
   const double known_lower_;
   const double scale_;
-  std::vector<Waiting> queue_;  ///< a heap
+  std::vector<Waiting> queue_;       ///< a heap
+  std::vector<std::int32_t> among_;  ///< the P_k that meet the cube
   std::int64_t order_ = 0;
   std::optional<Nearest> best_;
   SquaredRatio best_squared_;
   double best_key_ = HUGE_VAL;  ///< distance of the best point, at most this
 };
 
-UnionBoundary::Nearest UnionBoundary::nearest(double known_lower) { return NearestSearch(*this, known_lower).run(); }
+std::optional<UnionBoundary::Nearest> UnionBoundary::nearest(double known_lower, double reach) {
+  return NearestSearch(*this, known_lower).run(reach);
+}
 
 }  // namespace pd::detail

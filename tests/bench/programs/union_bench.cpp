@@ -88,6 +88,31 @@ void measure_stars(int largest, std::uint64_t seed) {
       exponent(sizes, boundary), exponent(sizes, time), exponent(sizes, search));
 }
 
+/// Two rough balls deep inside each other: m and n parts that meet in the middle, so that nearly all pairs overlap.
+void measure_balls(int levels, std::uint64_t seed) {
+  std::printf("rough balls deep in each other, turned\n%6s %10s %10s %10s %12s %10s\n", "mn", "depth", "facets",
+              "cells", "cuts", "ms");
+  std::vector<double> sizes, time;
+  for (int total = 0; total <= 2 * levels; ++total) {
+    scenes::Random random(seed);
+    const Compound a = compound_of(scenes::rough_ball(total / 2, 0.3, random)),
+                   b = compound_of(scenes::rough_ball((total + 1) / 2, 0.3, random));
+    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.3, 0.1, 0.2});
+    pd::Scratch scratch;
+    const double begin = processor_time();
+    const auto answer = pd::penetration_depth(pd::PosedCompound{&a, pose}, pd::PosedCompound{&b, Pose()}, scratch);
+    const double spent = processor_time() - begin;
+    if (!answer) continue;
+    sizes.push_back(static_cast<double>(a.parts().size() * b.parts().size()));
+    time.push_back(spent);
+    std::printf("%6.0f %10.6f %10lld %10lld %12lld %10.0f\n", sizes.back(), answer->depth,
+                static_cast<long long>(answer->work.facets), static_cast<long long>(answer->work.cells),
+                static_cast<long long>(answer->work.cuts), spent);
+    std::fflush(stdout);
+  }
+  if (sizes.size() > 1) std::printf("exponent of the time in mn: %.2f\n\n", exponent(sizes, time));
+}
+
 void measure_bracket(std::uint64_t seed) {
   scenes::Random random(seed);
   const std::vector<std::pair<std::string, Compound>> bodies = {{"L", compound_of(scenes::letter_l())},
@@ -125,8 +150,12 @@ int main(int argc, char** argv) {
   int largest = 4096;
   std::uint64_t seed = 1;
   app.add_option("--largest", largest, "Largest m n of the star-shaped bodies")->check(CLI::Range(256, 100000));
+  int levels = 1;
+  app.add_option("--levels", levels, "Rough balls of 20, 80, 320 ... parts up to this many subdivisions; -1: none")
+      ->check(CLI::Range(-1, 3));
   app.add_option("--seed", seed, "Seed of the random bodies");
   CLI11_PARSE(app, argc, argv);
+  measure_balls(levels, seed);
   measure_stars(largest, seed);
   measure_bracket(seed);
   return 0;

@@ -11,7 +11,8 @@
 ///
 /// Polytopes without margins are answered exactly: facets of the P_ij are cut by the other P_ij in exact arithmetic,
 /// the nearest first, until one is left uncovered (the explicit construction of [A] section 4 takes all of them: O(m^3
-/// n^3) cuts and O(m^3 n^3) pieces; here only those near the answer are touched). Swept and curved parts are answered
+/// n^3) cuts and O(m^3 n^3) pieces; here cubes of translations that one P_ij holds are passed over, nearest first, and
+/// only facets that cross what is left are made exactly). Swept and curved parts are answered
 /// by an octree over translations, certified to (1 + delta).
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
@@ -52,7 +53,7 @@ struct UnionStatistics {
   std::int64_t facets = 0;    ///< facets of P_ij built
   std::int64_t polygons = 0;  ///< uncovered candidates looked at
   std::int64_t cuts = 0;      ///< polygons cut by a P_ij
-  std::int64_t cells = 0;     ///< cells of the octree
+  std::int64_t cells = 0;     ///< cubes of translations looked at, by the octree or by the search of facets
 };
 
 /// The answer of `penetration_depth`, and which parts give it.

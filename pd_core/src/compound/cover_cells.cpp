@@ -1,0 +1,112 @@
+#include "compound/cover_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace pd::detail {
+
+namespace {
+
+bool later(const CoverCell& x, const CoverCell& y) { return x.key != y.key ? x.key > y.key : x.order > y.order; }
+
+/// Of the cube's points the distance of the nearest to the origin.
+double distance(const CoverCell& cell) { return (cell.centre.cwiseAbs().array() - cell.half).max(0.0).matrix().norm(); }
+
+}  // namespace
+
+CoverCells::CoverCells(PartDifferences& differences, double reach, double known_lower)
+    : differences_(differences), known_lower_(known_lower) {
+  std::vector<std::int32_t> all(differences.pieces().size());
+  std::iota(all.begin(), all.end(), 0);
+  CoverCell whole;
+  // Few digits, so that corners of cubes are exact and neighbours share their faces.
+  const int exponent = std::ilogb(reach) - 7;
+  whole.half = std::ldexp(std::ceil(std::ldexp(reach, -exponent)), exponent);
+  whole.pieces = std::make_shared<const std::vector<std::int32_t>>(std::move(all));
+  add(std::move(whole));
+}
+
+void CoverCells::add(CoverCell cell) {
+  cell.key = std::max(known_lower_, distance(cell) * (1 - 0x1p-48));
+  const double farthest = (cell.centre.cwiseAbs().array() + cell.half).matrix().norm();
+  if (cell.key > upper_ || farthest * (1 + 0x1p-48) < known_lower_) return;
+  cell.order = order_++;
+  queue_.push_back(std::move(cell));
+  std::push_heap(queue_.begin(), queue_.end(), later);
+}
+
+CoverCells::Place CoverCells::place(const CoverCell& cell, std::size_t k) {
+  const PartDifference& known = differences_.pieces()[k];
+  const Eigen::Array3d low = cell.centre.array() - cell.half, high = cell.centre.array() + cell.half;
+  const double rounding = 0x1p-48 * differences_.extent();
+  if ((known.low.array() - high).maxCoeff() > rounding || (low - known.high.array()).maxCoeff() > rounding) {
+    return Place::apart;
+  }
+  // Only a P_k whose box holds the cube can hold it; others are not worth making before the cube is small beside them.
+  const bool box_holds = (known.low.array() <= low).all() && (known.high.array() >= high).all();
+  if (!box_holds && known.made == PartDifference::Made::nothing &&
+      4 * cell.half > (known.high - known.low).minCoeff()) {
+    return Place::meets;
+  }
+  const PartDifference& piece = differences_.roughly(k);
+  if (piece.flat) return Place::apart;
+  Place result = Place::holds;
+  for (const RoughPlane& plane : piece.planes) {
+    const double height = plane.normal.dot(cell.centre) - plane.offset;
+    const double reach = cell.half * plane.normal.lpNorm<1>() + rounding;
+    if (height - reach > plane.slack) return Place::apart;
+    if (!(height + reach < -plane.slack)) result = Place::meets;
+  }
+  return result;
+}
+
+bool CoverCells::covered(const CoverCell& cell) {
+  for (std::size_t i = 0; i < recent_.size(); ++i) {
+    if (place(cell, static_cast<std::size_t>(recent_[i])) != Place::holds) continue;
+    std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
+                recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    return true;
+  }
+  meeting_.clear();
+  for (const std::int32_t k : *cell.pieces) {
+    const Place where = place(cell, static_cast<std::size_t>(k));
+    if (where == Place::meets) meeting_.push_back(k);
+    if (where != Place::holds) continue;
+    if (recent_.size() == kRecent) recent_.pop_back();
+    recent_.insert(recent_.begin(), k);
+    return true;
+  }
+  return false;
+}
+
+std::optional<CoverCell> CoverCells::next(double upper) {
+  upper_ = std::min(upper_, upper);
+  while (!queue_.empty() && queue_.front().key <= upper_ && !differences_.limit_exceeded()) {
+    std::pop_heap(queue_.begin(), queue_.end(), later);
+    CoverCell cell = std::move(queue_.back());
+    queue_.pop_back();
+    ++num_cells_;
+    if (covered(cell)) continue;
+    if (meeting_.empty()) {
+      // Free as a whole, its nearest point too.
+      upper_ = std::min(upper_, distance(cell) * (1 + 0x1p-48));
+      continue;
+    }
+    // Halving has stopped to tell P_k apart: walls on which they abut run through the cube, at any size.
+    const bool stuck = cell.depth > 0 && meeting_.size() == cell.pieces->size() && meeting_.size() <= kMany;
+    cell.pieces = std::make_shared<const std::vector<std::int32_t>>(meeting_);
+    if (meeting_.size() <= kFew || stuck || cell.depth == kMaxDepth || num_cells_ > kMaxCells) return cell;
+    for (int child = 0; child < 8; ++child) {
+      CoverCell part = cell;
+      part.half = cell.half / 2;
+      ++part.depth;
+      for (int axis = 0; axis < 3; ++axis) part.centre[axis] += (child >> axis & 1) != 0 ? part.half : -part.half;
+      add(std::move(part));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,69 @@
+/// @file
+/// Where the boundary of the union of the P_k can be nearest to the origin: cubes of translations, the nearest first,
+/// halved until one P_k holds a cube, none meets it, or few do.
+///
+/// Doubles with bounds decide (`RoughPlane`), one way only: a cube that is passed over holds no boundary point for
+/// certain. Cubes come in the order of their distance, and none beyond the bound known so far, so that of two bodies
+/// deep inside each other only the P_k near the answer are ever cut exactly.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "compound/part_differences.hpp"
+
+namespace pd::detail {
+
+/// A cube of translations (inside lengths), and the P_k that may meet it.
+struct CoverCell {
+  double key = 0;  ///< no point of the cube is nearer to the origin
+  std::int64_t order = 0;
+  int depth = 0;
+  Vec3 centre = Vec3::Zero();
+  double half = 0;
+  std::shared_ptr<const std::vector<std::int32_t>> pieces;
+};
+
+class CoverCells {
+ public:
+  /// Refers to the differences, and makes those it needs. The first cube holds the ball of radius `reach` about the
+  /// origin.
+  /// @param known_lower  no boundary point is nearer.
+  CoverCells(PartDifferences& differences, double reach, double known_lower);
+
+  /// The nearest cube left that may hold a boundary point no farther than `upper`, down to cubes of few P_k, cubes
+  /// that halving does not help, or 2^-kMaxDepth of the first; nothing when there is none. Every boundary point that is
+  /// nearer than every point of the cubes handed out so far and than `upper` is still to come.
+  std::optional<CoverCell> next(double upper);
+
+  [[nodiscard]] std::int64_t num_cells() const { return num_cells_; }
+
+ private:
+  static constexpr int kMaxDepth = 8;
+  /// Cutting a polygon exactly costs what some hundred cells do: cubes that more P_k meet are halved first.
+  static constexpr std::size_t kFew = 4;
+  /// More than these are worth another halving, even if the last one told none apart.
+  static constexpr std::size_t kMany = 48;
+  /// Beyond it cubes are handed out as they come: what is left to find then takes exact cuts, not more cubes.
+  static constexpr std::int64_t kMaxCells = 200'000;
+  static constexpr std::size_t kRecent = 16;
+
+  /// Whether a P_k holds the cube; else the P_k that may meet it are left in `meeting_`.
+  bool covered(const CoverCell& cell);
+  enum class Place : std::uint8_t { holds, meets, apart };
+  Place place(const CoverCell& cell, std::size_t k);
+  void add(CoverCell cell);
+
+  PartDifferences& differences_;
+  double known_lower_;
+  double upper_ = HUGE_VAL;       ///< a placement at this distance is free
+  std::vector<CoverCell> queue_;  ///< a heap
+  std::vector<std::int32_t> recent_;
+  std::vector<std::int32_t> meeting_;
+  std::int64_t order_ = 0;
+  std::int64_t num_cells_ = 0;
+};
+
+}  // namespace pd::detail
