@@ -155,7 +155,7 @@ TEST(UnionDifference, StarsGiveAStarAndItsEnvelopeTheDepth) {
 // Deep inside each other nearly all pairs of parts overlap: the search by cubes finds what all of the boundary says,
 // and cuts next to nothing.
 TEST(UnionDifference, DeepRoughBallsAreAnsweredByTheirBoundaryAndFewCuts) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     scenes::Random random(seed);
     const Compound a = compound_of(scenes::rough_ball(0, 0.3, random)),
                    b = compound_of(scenes::rough_ball(0, 0.3, random)),
