@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/union_worlds.hpp"
 #include "scenes/world_parts.hpp"
 
 namespace pd::scenes {
@@ -222,6 +223,8 @@ const std::vector<ContactSceneMaker>& contact_scenes() {
       {"chains", chains},
       {"ragdolls", ragdolls},
       {"compounds", compounds},
+      {"torus-peg", torus_on_peg},
+      {"torus-pour", torus_pour},
       {"mass-ratio", mass_ratio},
       {"rolling", rolling_cylinder},
       {"coin", spinning_coin},
