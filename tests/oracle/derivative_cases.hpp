@@ -37,8 +37,8 @@ struct GradientJudgement {
   double feature_error = 0;   ///< the same of normal and witnesses together; 0 unless stable_features
 };
 
-/// Central differences of `penetration_depth` with steps of `step` in every number of both poses; of normal and
-/// witnesses of curved bodies with 100 times the step, and those of `depth_derivatives`.
+/// Central differences of `penetration_depth` with steps of `step` and half of it, extrapolated, in every number of
+/// both poses; of normal and witnesses of curved bodies with 100 times the step, and those of `depth_derivatives`.
 [[nodiscard]] GradientJudgement judge_gradient(const PosedPairCase& pair, double step, Scratch& scratch);
 
 /// A tie, or its near miss, built so that its flags are known.

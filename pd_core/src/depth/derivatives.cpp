@@ -24,7 +24,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCurvedDelta = 1e-12;
 
 /// Curved bodies: what leans from the normal by less belongs to the face across it, as the normal itself is known to
-/// sqrt(2e-12) radians only.
+/// sqrt(2e-12) radians only; of bodies apart to the witnesses' error divided by the distance.
 constexpr double kCurvedLean = 1e-5;
 
 /// One body where it meets the other: lengths relative to A's translation.
@@ -85,7 +85,7 @@ PlaneFace face_of(Side& side, const Meeting& m) {
   side.core.near_face(side.outward, lean * m.size, lean, points);
   PlaneFace face(points, side.witness, m.across);
   std::array<PlanePoint, 2> directions;
-  side.flats = face.extent(m.tolerance.reach * m.size, directions);
+  side.flats = face.extent(m.tolerance.reach_of_points * m.size, directions);
   for (int k = 0; k < side.flats; ++k) {
     const PlanePoint& d = directions[static_cast<std::size_t>(k)];
     side.flat[k] = d.x() * m.across[0] + d.y() * m.across[1];
@@ -124,7 +124,7 @@ void place_witnesses(Meeting& m) {
 
 void find_flags(Meeting& m, DepthDerivatives& out) {
   const PlaneFace face_a = face_of(m.sides[0], m), face_b = face_of(m.sides[1], m);
-  const double tie = m.tolerance.tie * m.size, reach = m.tolerance.reach * m.size;
+  const double tie = m.tolerance.tie * m.size, reach = m.tolerance.reach_of_points * m.size;
   // P's outside sees one nearest point.
   out.unique_direction = m.core_depth < -tie;
   if (!out.unique_direction) {
@@ -135,7 +135,10 @@ void find_flags(Meeting& m, DepthDerivatives& out) {
     out.unique_direction = !another_direction_within(m.sides[0].core, m.sides[1].core, {m.normal, cone}, limit,
                                                      out.answer.statistics.support_calls);
   }
-  out.unique_witness = out.unique_direction && !share_more_than_the_centre(face_a, face_b, tie, reach);
+  // Inside, the foot lies within a facet of P: where the faces' dimensions add up to more than its two, it is the
+  // difference of many pairs.
+  const bool many = m.core_depth > tie && m.sides[0].flats + m.sides[1].flats > 2;
+  out.unique_witness = out.unique_direction && !many && !share_more_than_the_centre(face_a, face_b, tie, reach);
 }
 
 /// The linear conditions on the change of the normal (two numbers across it) and on the witnesses' moves along the
@@ -220,7 +223,7 @@ class FirstOrder {
 void differentiate_features(const Meeting& m, double margin_a, double margin_b, DepthDerivatives& out) {
   const Side& a = m.sides[0];
   const Side& b = m.sides[1];
-  const double reach = m.tolerance.reach * m.size;
+  const double reach = m.tolerance.reach_of_points * m.size;
   if (!out.unique_witness || a.flats + b.flats > 2) return;
   if ((a.flats > 0 && a.inside <= reach) || (b.flats > 0 && b.inside <= reach)) return;
   FirstOrder conditions(m);

@@ -35,7 +35,7 @@ struct PoseJacobian {
 /// What derivatives are taken for, and which of them exist. What does not exist is NaN, never a number that looks like
 /// one.
 ///
-/// L is the largest |coordinate| of b - a. A tie means, with (tie, reach) = `kPolytopeTie` (polytopes, rounded ones,
+/// L is the largest |coordinate| of b - a. A tie means, with `kPolytopeTie` (polytopes, rounded ones,
 /// spheres and capsules) or `kCurvedTie` (ellipsoids, cylinders, cones): something farther off than `reach` that is as
 /// good up to `tie`. Ties that are exact in real arithmetic, and those that rounding of poses blurs, are thus both
 /// ties. Pairs between the two bounds of a tie may be flagged either way.
@@ -50,11 +50,12 @@ struct DepthDerivatives {
   /// means that such a direction was found, or that 2e5 parts did not suffice to exclude one. Always true where the
   /// cores (the bodies without their margins) are apart.
   bool unique_direction = false;
-  /// `unique_direction`, and no other pair of points of the two faces across the normal, farther than reach * L from
-  /// the witnesses, faces each other within tie * L (sideways, too).
+  /// `unique_direction`, and no other pair of points of the two faces across the normal, farther than reach_of_points *
+  /// L from the witnesses, faces each other within tie * L (sideways, too).
   bool unique_witness = false;
-  /// `unique_witness`, each witness is farther than reach * L from the rim of its body's face across the normal, and
-  /// the conditions determine the derivatives of normal and witnesses (not the normal of a ball in a concentric one).
+  /// `unique_witness`, each witness is farther than reach_of_points * L from the rim of its body's face across the
+  /// normal, and the conditions determine the derivatives of normal and witnesses (not the normal of a ball in a
+  /// concentric one).
   bool stable_features = false;
 
   PoseGradient by_a;  ///< of signed_depth: translation where unique_direction, rotation where unique_witness
@@ -68,17 +69,18 @@ struct DepthDerivatives {
   PoseJacobian witness_b_by_b;
 };
 
-/// `tie` is relative to L; `reach` is relative to L for points, and in radians for directions.
 struct TieTolerance {
-  double tie;
-  double reach;
+  double tie;              ///< relative to L
+  double reach;            ///< of directions, radians
+  double reach_of_points;  ///< relative to L
 };
 /// Doubles show a plane's distance to about 1e-15 L, poses that were rounded once hold parallel faces to 1e-16: a
 /// thousand times that. A facet through which the origin's foot lies farther than 1e-6 L inside its rim is told apart.
-inline constexpr TieTolerance kPolytopeTie{1e-12, 1e-6};
+inline constexpr TieTolerance kPolytopeTie{1e-12, 1e-6, 1e-6};
 /// A depth within (1 + 1e-12) of the least leaves the normal of a curved body open by sqrt(2e-12) radians; 1e-4 radians
-/// from it a body that curves like a ball of L / 500 is a tie deeper.
-inline constexpr TieTolerance kCurvedTie{1e-11, 1e-4};
+/// from it a body that curves like a ball of L / 500 is a tie deeper. Faces that lean by 1e-5 radians count as across
+/// the normal, where curved ones have points up to 1e-5 L aside.
+inline constexpr TieTolerance kCurvedTie{1e-11, 1e-4, 1e-4};
 
 /// Answers the pair and differentiates the answer.
 ///
