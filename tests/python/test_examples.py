@@ -20,7 +20,8 @@ def test_examples_print_what_they_say(block, tmp_path):
     block = block.replace("/tmp/", f"{tmp_path}/")
     script = tmp_path / "example.py"
     script.write_text(block)
-    done = subprocess.run([sys.executable, "-B", script], env={**os.environ, "PYTHONPATH": PACKAGE}, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-B", script], env={**os.environ, "PYTHONPATH": PACKAGE}, capture_output=True,
+                          text=True)
     assert done.returncode == 0, done.stderr
     printed = iter(done.stdout.splitlines())
     for line in block.splitlines():

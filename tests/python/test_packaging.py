@@ -28,7 +28,8 @@ def test_a_wheel_and_pip_install_run_without_the_source_tree(tmp_path):
     script = ("import pdepth; print(pdepth.__file__, pdepth.depth(pdepth.Sphere(1), pdepth.Sphere(1),"
               " pose_b=pdepth.Pose(translation=[1.5, 0, 0])).depth, len(pdepth.hull(pdepth.Box([1, 1, 1])).facets))")
     for source in ((wheel,), ("--no-build-isolation", TOP)):
-        run(python, "-m", "pip", "install", "--no-index", "--no-deps", "--force-reinstall", "--disable-pip-version-check", *source)
+        run(python, "-m", "pip", "install", "--no-index", "--no-deps", "--force-reinstall", "--disable-pip-version-check",
+            *source)
         place, depth, facets = run(python, "-c", script).split()
         assert place.startswith(str(tmp_path)) and (depth, facets) == ("0.5", "6")
     linked = run("ldd", *(tmp_path / "venv").glob("lib/python*/site-packages/pdepth/_core*.so"))

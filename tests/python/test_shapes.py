@@ -43,10 +43,12 @@ def test_polytopes_from_faces_halfspaces_and_meshes(tmp_path):
     assert len(pdepth.ConvexPolytope.from_faces(CUBE, faces).facets) == 6
     planes = [[s * (k == 0), s * (k == 1), s * (k == 2), 1] for k in range(3) for s in (-1, 1)]
     assert np.array_equal(pdepth.ConvexPolytope.from_halfspaces(planes).vertices, CUBE)
-    mesh = SimpleNamespace(vertices=np.vstack([CUBE, [[9, 9, 9]]]), faces=np.array([f[:3] for f in faces] + [[f[0], f[2], f[3]] for f in faces]))
+    triangles = np.array([f[:3] for f in faces] + [[f[0], f[2], f[3]] for f in faces])
+    mesh = SimpleNamespace(vertices=np.vstack([CUBE, [[9, 9, 9]]]), faces=triangles)
     assert np.array_equal(pdepth.ConvexPolytope.from_mesh(mesh).vertices, CUBE)
     file = tmp_path / "cube.obj"
-    file.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in CUBE) + "".join("f " + " ".join(str(i + 1) for i in f) + "\n" for f in faces))
+    lines = [f"v {x} {y} {z}" for x, y, z in CUBE] + ["f " + " ".join(str(i + 1) for i in f) for f in faces]
+    file.write_text("\n".join(lines) + "\n")
     assert np.array_equal(pdepth.ConvexPolytope.from_mesh(file).vertices, CUBE)
 
 
@@ -71,7 +73,7 @@ BAD = [
     (lambda: pdepth.Pose(wxyz=[0, 0, 0, 0]), "wxyz", "bad_value", ""),
     (lambda: pdepth.Pose(wxyz=[1, 0, 0]), "wxyz", "bad_value", "needs [4]"),
     (lambda: pdepth.Pose(wxyz=[1, 0, 0, 0], xyzw=[0, 0, 0, 1]), "Pose", "bad_value", "one of"),
-    (lambda: pdepth.Pose(np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [1, 2, 3, 1.0]])), "matrix", "bad_value", "transposed"),
+    (lambda: pdepth.Pose(pdepth.Pose(translation=[1, 2, 3]).matrix.T), "matrix", "bad_value", "transposed"),
     (lambda: pdepth.Pose(rotation=2 * np.eye(3)), "rotation", "not_a_rotation", ""),
 ]
 
@@ -87,5 +89,6 @@ def test_bad_input_says_which_argument_and_what_would_be_right(make, where, code
 def test_strided_and_narrow_arrays_mean_the_same_numbers():
     wide = np.zeros((8, 6))
     wide[:, ::2] = CUBE
-    for points in (wide[:, ::2], np.asfortranarray(CUBE), CUBE.astype(np.float32), CUBE.astype(int), CUBE.astype(">f8"), CUBE.tolist()):
+    for points in (wide[:, ::2], np.asfortranarray(CUBE), CUBE.astype(np.float32), CUBE.astype(int), CUBE.astype(">f8"),
+                   CUBE.tolist()):
         assert np.array_equal(pdepth.ConvexPolytope(points).vertices, CUBE)
