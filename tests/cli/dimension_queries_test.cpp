@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "cli/protocol_lines.hpp"
+#include "cli/temporary_folder.hpp"
 
 namespace pd::test {
 namespace {
@@ -79,11 +80,9 @@ TEST(DimensionQueries, ApproximationsInEitherRepresentation) {
 
 class PointsFiles : public ::testing::Test {
  protected:
-  void TearDown() override {
-    for (const auto& path : {text_, npy_}) std::filesystem::remove(path);
-  }
-  const std::filesystem::path text_ = std::filesystem::temp_directory_path() / "pdepth_points_test.txt";
-  const std::filesystem::path npy_ = std::filesystem::temp_directory_path() / "pdepth_points_test.npy";
+  TemporaryFolder folder_;
+  const std::filesystem::path text_ = folder_.path() / "points.txt";
+  const std::filesystem::path npy_ = folder_.path() / "points.npy";
 };
 
 TEST_F(PointsFiles, TextAndNumpyGiveTheSameKernel) {

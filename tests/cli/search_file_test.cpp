@@ -5,10 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "cli/temporary_folder.hpp"
 #include "protocol/answer_line.hpp"
 
 namespace pd::query {
@@ -22,18 +21,9 @@ Pair two_boxes() {
           Pose()};
 }
 
-/// Through a file of this test's own, removed again.
-SearchFile read_back(const std::string& name, const std::string& text) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / name;
-  std::ofstream(path, std::ios::binary) << text;
-  try {
-    SearchFile out = read_search_file(path);
-    std::filesystem::remove(path);
-    return out;
-  } catch (...) {
-    std::filesystem::remove(path);
-    throw;
-  }
+SearchFile read_back(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return read_search_file(folder.write("search.jsonl", text));
 }
 
 TEST(SearchFile, ReadsBackWhatWasWritten) {
@@ -58,7 +48,7 @@ TEST(SearchFile, ReadsBackWhatWasWritten) {
   const PenetrationDepth answer = penetration_depth(pair.posed_a(), pair.posed_b(), scratch);
   recorder.add_answer(answer, pair, 1);
 
-  const SearchFile read = read_back("pdepth_search_file_test.jsonl", recorder.lines());
+  const SearchFile read = read_back(recorder.lines());
   ASSERT_EQ(read.steps.size(), both.steps.size());
   ASSERT_GT(read.steps.size(), 1U);
   for (std::size_t i = 0; i < read.steps.size(); ++i) {
@@ -92,7 +82,7 @@ TEST(SearchFile, SaysWhichLineIsWrong) {
   const std::string head = SearchRecorder(pair, "auto").lines();
   const auto refusal_of = [&](const std::string& rest) -> std::string {
     try {
-      (void)read_back("pdepth_search_file_broken.jsonl", head + rest);
+      (void)read_back(head + rest);
     } catch (const Refusal& refusal) {
       return refusal.message + " | " + refusal.where;
     }
