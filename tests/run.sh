@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to tested binaries: installs the packages that are missing (as root; otherwise it names them), builds
-# and tests the release build and its Python package, the address and undefined-behaviour sanitizers, and engine_glue against Bullet in double
-# precision. The last line is `N passed, N failed`; the exit code is 0 when nothing failed.
+# and tests the release build and its Python package, the address and undefined-behaviour sanitizers, and engine_glue against
+# Bullet in double precision. The last line is `N passed, N failed`; the exit code is 0 when nothing failed.
 #
 #   tests/run.sh [CMAKE_OPTION...]    options for the release builds, e.g. -DPD_WARNINGS_AS_ERRORS=ON
 set -euo pipefail

@@ -23,9 +23,8 @@ struct EyePolytope {
 };
 
 /// The body where the pose puts it; each part of a compound is one. Polytopes of at most 400 vertices as they are;
-/// cylinders
-/// and cones with rims of 48 corners; larger, swept and other curved ones as the hull of their supports in 642
-/// directions.
+/// cylinders and cones with rims of 48 corners; larger, swept and other curved ones as the hull of their supports in
+/// 642 directions.
 [[nodiscard]] std::vector<EyePolytope> eye_polytopes(const Compound& body, const Pose& pose);
 
 /// B + (-A) of what `eye_polytopes` gives for each pair of parts, at most 64 pairs.

@@ -232,7 +232,8 @@ class SideRule {
     const double cosine = best->normal.dot(n);
     if (cosine >= 1 - kSameNormal) return !own.flat && facet_contact(depth, best->normal, foot, points);
     const double sine = covered_here(foot, n);
-    if (sine <= kLevel || (sine < kDecided && cosine < kNearNormal)) return false;
+    if (sine <= kLevel) return false;
+    if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(n))) return false;
     points = own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot);
     return true;
   }
@@ -243,6 +244,17 @@ class SideRule {
     return is_flat(side_.own) &&
            std::abs((side_.own.pose.rotation() * side_.own.shape->polytope()->facet_normal(0)).dot(n)) >=
                1 - kSameNormal;
+  }
+
+  /// Whether the other body meets this one with a facet: -n is its normal then, and no noise.
+  [[nodiscard]] bool is_facet_of_other(const Vec3& n) const {
+    const ConvexPolytope* polytope = side_.other.shape->polytope();
+    if (polytope == nullptr) return false;
+    const Vec3 local = -(side_.other.pose.rotation().transpose() * n);
+    for (int f = 0; f < polytope->num_facets(); ++f) {
+      if (polytope->facet_normal(f).dot(local) >= 1 - kSameNormal) return true;
+    }
+    return false;
   }
 
   /// A contact in the middle of a triangle that does not push along its normal is the triangle's own.

@@ -162,6 +162,31 @@ TEST(UnionCorners, EdgesAndTipsCarry) {
   }
 }
 
+// The pieces of a body that leans a little go on against the floor's normal, each below the one before: its contacts
+// with the floor are right all the same.
+TEST(UnionCorners, ALeaningPlankMeetsTheFloorAllAlong) {
+  for (const double lean : {1e-4, 1e-3, 5e-3}) {
+    UnionWorld world;
+    world.fixed(box(world, 200, .5, 200), at(0, -.5, 0));
+    const btTransform pose(btQuaternion(at(0, 0, 1), btScalar(lean)), at(0, .999 + 1.5 * lean, 0));
+    world.moving(flush_boxes(world, 3, 1, .5), pose, at(0, 0, 0));
+    world.bullet.world().performDiscreteCollisionDetection();
+    double least = 1;
+    double most = -1;
+    btDispatcher& dispatcher = *world.bullet.world().getDispatcher();
+    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+      const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+      for (int i = 0; i < manifold.getNumContacts(); ++i) {
+        const double x = static_cast<double>(manifold.getContactPoint(i).getPositionWorldOnA().x());
+        least = std::min(least, x);
+        most = std::max(most, x);
+      }
+    }
+    EXPECT_LT(least, -1.48) << lean;
+    EXPECT_GT(most, 1.48) << lean;
+  }
+}
+
 TEST(UnionCorners, ACrestIsLeftAtFullSpeed) {
   UnionWorld world;
   world.fixed(world.mesh(strip({{-6, 0}, {-2, 0}, {0, 0}, {2, -1}, {8, -4}}, 3), 0));

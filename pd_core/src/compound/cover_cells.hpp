@@ -7,6 +7,7 @@
 /// deep inside each other only the P_k near the answer are ever cut exactly.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
