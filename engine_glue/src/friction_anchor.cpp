@@ -1,5 +1,7 @@
 #include "friction_anchor.hpp"
 
+#include <typeinfo>
+
 namespace pd::detail {
 
 namespace {
@@ -13,29 +15,47 @@ constexpr btScalar kReachShare = btScalar(0.5);
 /// Two anchors further apart than this share of the breaking threshold slid, slowly enough for the cone not to tell.
 constexpr btScalar kSlipShare = btScalar(0.1);
 
-btVector3 tangential(const btVector3& v, const btVector3& normal) { return v - normal * v.dot(normal); }
-
 /// Moves the point's local points back to the anchor, and its world point on A by the slip.
-void hold(btManifoldPoint& point, const FrictionAnchor& anchor, const btPersistentManifold& manifold) {
-  const btTransform& pose_a = manifold.getBody0()->getWorldTransform();
-  const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
-  const btVector3& normal = point.m_normalWorldOnB;
+void hold(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPoses& poses, btScalar threshold) {
+  Lanes normal, on_a, on_b, way_a, way_b;
+  load_lanes(point.m_normalWorldOnB, normal);
+  load_lanes(point.m_positionWorldOnA, on_a);
+  load_lanes(point.m_positionWorldOnB, on_b);
   // From today's points to the anchor's material points where they are today.
-  const btVector3 way_a = pose_a(anchor.local_a) - point.m_positionWorldOnA;
-  const btVector3 way_b = pose_b(anchor.local_b) - point.m_positionWorldOnB;
-  const btVector3 along_a = tangential(way_a, normal);
-  const btVector3 along_b = tangential(way_b, normal);
-  const btVector3 slip = along_a - along_b;
-  const btScalar threshold = manifold.getContactBreakingThreshold();
+  poses.a.apply(anchor.local_a, way_a);
+  poses.b.apply(anchor.local_b, way_b);
+  way_a -= on_a;
+  way_b -= on_b;
+  const btScalar height_a = dot(way_a, normal), height_b = dot(way_b, normal);
+  const Lanes along_a = way_a - normal * height_a;
+  const Lanes along_b = way_b - normal * height_b;
+  const Lanes slip = along_a - along_b;
   const btScalar reach = kReachShare * threshold;
   const btScalar allowed = kSlipShare * threshold;
-  if (along_a.length2() > reach * reach || along_b.length2() > reach * reach || slip.length2() > allowed * allowed) {
+  if (dot(along_a, along_a) > reach * reach || dot(along_b, along_b) > reach * reach ||
+      dot(slip, slip) > allowed * allowed) {
     return;
   }
-  point.m_localPointA = anchor.local_a - (normal * way_a.dot(normal)) * pose_a.getBasis();
-  point.m_localPointB = anchor.local_b - (normal * way_b.dot(normal)) * pose_b.getBasis();
-  point.m_positionWorldOnA += slip;
+  Lanes local_a, local_b, back_a, back_b;
+  load_lanes(anchor.local_a, local_a);
+  load_lanes(anchor.local_b, local_b);
+  poses.a.turn_back(normal * height_a, back_a);
+  poses.b.turn_back(normal * height_b, back_b);
+  point.m_localPointA = from_lanes(local_a - back_a);
+  point.m_localPointB = from_lanes(local_b - back_b);
+  point.m_positionWorldOnA = from_lanes(on_a + slip);
   point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
+}
+
+/// What the entry knew goes to the point that it holds now.
+void hand_on(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPoses& poses, btScalar threshold) {
+  point.m_appliedImpulseLateral1 = anchor.lateral_impulse_1;
+  point.m_appliedImpulseLateral2 = anchor.lateral_impulse_2;
+  // A host's moving surface (contact motion) has to slide.
+  const bool driven = point.m_contactMotion1 != 0 || point.m_contactMotion2 != 0;
+  if (!anchor.slid && !driven) {
+    hold(point, anchor, poses, threshold);
+  }
 }
 
 }  // namespace
@@ -61,9 +81,11 @@ FrictionAnchor anchor_of(const btManifoldPoint& point) {
           lateral > holding * holding};
 }
 
-int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const btVector3& normal,
-                       const btVector3& point_on_b, btScalar distance, int entry, const FrictionAnchor& anchor) {
-  if (entry >= 0 && distance <= manifold.getContactBreakingThreshold()) {
+int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,
+                       const btVector3& normal, const btVector3& point_on_b, btScalar distance, int entry,
+                       const FrictionAnchor& anchor) {
+  const btScalar threshold = manifold.getContactBreakingThreshold();
+  if (entry >= 0 && distance <= threshold) {
     // Bullet keeps the old point of a body that asks for anchors itself (CF_HAS_FRICTION_ANCHOR) unless it slid, with
     // last step's depth and normal. So the entry is made to look as if it had.
     btManifoldPoint& old = manifold.getContactPoint(entry);
@@ -78,15 +100,39 @@ int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold,
   if (entry < 0) {
     return -1;  // a contact test, or the point took the place of another one in a full manifold
   }
-  btManifoldPoint& point = manifold.getContactPoint(entry);
-  point.m_appliedImpulseLateral1 = anchor.lateral_impulse_1;
-  point.m_appliedImpulseLateral2 = anchor.lateral_impulse_2;
-  // A host's moving surface (contact motion) has to slide.
-  const bool driven = point.m_contactMotion1 != 0 || point.m_contactMotion2 != 0;
-  if (!anchor.slid && !driven) {
-    hold(point, anchor, manifold);
-  }
+  hand_on(manifold.getContactPoint(entry), anchor, poses, threshold);
   return entry;
+}
+
+bool points_are_alike(const btManifoldResult& result) {
+  const int flags = result.getBody0Internal()->getCollisionFlags() | result.getBody1Internal()->getCollisionFlags();
+  const bool told = gContactAddedCallback != nullptr && (flags & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK) != 0;
+  return !told && (flags & btCollisionObject::CF_HAS_FRICTION_ANCHOR) == 0 &&
+         typeid(result) == typeid(btManifoldResult);
+}
+
+void replace_like(const btManifoldPoint& pattern, const ManifoldPoses& poses, btScalar threshold,
+                  const btVector3& local_a, const btVector3& point_on_b, btScalar distance,
+                  const FrictionAnchor& anchor, btManifoldPoint& point) {
+  void* const user_data = point.m_userPersistentData;
+  const btScalar impulse = point.m_appliedImpulse;
+  const btScalar previous = point.m_prevRHS;
+  const int life_time = point.m_lifeTime;
+  point = pattern;
+  point.m_userPersistentData = user_data;
+  point.m_appliedImpulse = impulse;
+  point.m_prevRHS = previous;
+  point.m_lifeTime = life_time;
+  point.m_contactPointFlags &= ~BT_CONTACT_FLAG_FRICTION_ANCHOR;
+  point.m_localPointA = local_a;
+  Lanes on_b, local_b;
+  load_lanes(point_on_b, on_b);
+  poses.b.apply_inverse(on_b, local_b);
+  point.m_localPointB = from_lanes(local_b);
+  point.m_positionWorldOnA = point_on_b + point.m_normalWorldOnB * distance;
+  point.m_positionWorldOnB = point_on_b;
+  point.m_distance1 = distance;
+  hand_on(point, anchor, poses, threshold);
 }
 
 }  // namespace pd::detail

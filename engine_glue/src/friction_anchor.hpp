@@ -14,6 +14,8 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "lane_transform.hpp"
+
 namespace pd::detail {
 
 /// What one manifold entry knew before this step's points came.
@@ -38,7 +40,21 @@ struct FrictionAnchor {
 /// @param entry   where the point will go (`entry_near`); -1 for a new entry
 /// @param anchor  of that entry, before this step's points came; not read for a new entry
 /// @return the entry that holds the point now; -1 where `result` keeps its points elsewhere (contact tests)
-int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const btVector3& normal,
-                       const btVector3& point_on_b, btScalar distance, int entry, const FrictionAnchor& anchor);
+int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,
+                       const btVector3& normal, const btVector3& point_on_b, btScalar distance, int entry,
+                       const FrictionAnchor& anchor);
+
+/// Whether points of a manifold may be made `like` each other: Bullet's own result, no callback that is told of each
+/// point and may change it, and no body that asks for anchors itself.
+[[nodiscard]] bool points_are_alike(const btManifoldResult& result);
+
+/// What `add_anchored_point` does to an entry, without a second way through Bullet: materials, flags and friction
+/// directions are those of `pattern`, a point with the same normal that `result` took in this step.
+///
+/// @param threshold  of the manifold, at which contacts break
+/// @param local_a    of the point, in the first body's coordinates
+void replace_like(const btManifoldPoint& pattern, const ManifoldPoses& poses, btScalar threshold,
+                  const btVector3& local_a, const btVector3& point_on_b, btScalar distance,
+                  const FrictionAnchor& anchor, btManifoldPoint& point);
 
 }  // namespace pd::detail

@@ -10,11 +10,16 @@ namespace pd::detail {
 
 namespace {
 
-/// New point for each old one: -1 where none.
-using Matching = std::array<int, 4>;
+/// New point for each old one, and the old one's number in memory: -1 where none.
+struct Matching {
+  std::array<int, 4> heir{-1, -1, -1, -1};
+  std::array<int, 4> known{-1, -1, -1, -1};
+};
 
 /// The number of a manifold's point in memory, recognised by its exact place; -1 where somebody else moved it.
-int remembered(const PairMemory& memory, const btManifoldPoint& point) {
+/// @param i  of the point: the likeliest one
+int remembered(const PairMemory& memory, const btManifoldPoint& point, int i) {
+  if (i < memory.num_points && memory.points[i].local_a == point.m_localPointA) return i;
   for (int r = 0; r < memory.num_points; ++r) {
     if (memory.points[r].local_a == point.m_localPointA) return r;
   }
@@ -27,22 +32,24 @@ int remembered(const PairMemory& memory, const btManifoldPoint& point) {
 /// of theirs goes from one end to the other by rounding.
 Matching match_points(const btPersistentManifold& manifold, const PairMemory& memory, const FreshPoints& fresh,
                       const std::array<btVector3, 4>& fresh_local_a) {
-  Matching matching{-1, -1, -1, -1};
+  Matching matching;
   std::array<bool, 4> taken{};
   const int count = manifold.getNumContacts();
-  const btScalar reach = manifold.getContactBreakingThreshold() * manifold.getContactBreakingThreshold();
+  int left = std::min(count, fresh.count);
+  const btScalar threshold = manifold.getContactBreakingThreshold();
+  const btScalar reach = threshold * threshold;
   const auto gap = [&](int i, int k) {
     return (manifold.getContactPoint(i).m_localPointA - fresh_local_a[k]).length2();
   };
   const auto match = [&](int i, int k) {
-    matching[i] = k;
+    matching.heir[i] = k;
     taken[k] = true;
+    --left;
   };
   const auto by_feature = [&](btScalar within) {
     for (int i = 0; i < count; ++i) {
-      if (matching[i] >= 0) continue;
-      const int r = remembered(memory, manifold.getContactPoint(i));
-      if (r < 0) continue;
+      const int r = matching.known[i];
+      if (matching.heir[i] >= 0 || r < 0) continue;
       for (int k = 0; k < fresh.count; ++k) {
         if (!taken[k] && fresh.points[k].feature_id == memory.points[r].feature_id && gap(i, k) < within) {
           match(i, k);
@@ -51,14 +58,15 @@ Matching match_points(const btPersistentManifold& manifold, const PairMemory& me
       }
     }
   };
+  for (int i = 0; i < count; ++i) matching.known[i] = remembered(memory, manifold.getContactPoint(i), i);
   by_feature(reach);
-  for (;;) {
+  while (left > 0) {
     int best_old = -1;
     int best_new = -1;
     btScalar best = reach;
     for (int i = 0; i < count; ++i) {
       for (int k = 0; k < fresh.count; ++k) {
-        if (matching[i] < 0 && !taken[k] && gap(i, k) < best) {
+        if (matching.heir[i] < 0 && !taken[k] && gap(i, k) < best) {
           best = gap(i, k);
           best_old = i;
           best_new = k;
@@ -68,7 +76,7 @@ Matching match_points(const btPersistentManifold& manifold, const PairMemory& me
     if (best_old < 0) break;
     match(best_old, best_new);
   }
-  by_feature(std::numeric_limits<btScalar>::infinity());
+  if (left > 0) by_feature(std::numeric_limits<btScalar>::infinity());
   return matching;
 }
 
@@ -88,8 +96,17 @@ void forget_parted(btPersistentManifold& manifold) {
   }
 }
 
-btVector3 local_on_a(const btPersistentManifold& manifold, const FreshPoint& point) {
-  return manifold.getBody0()->getWorldTransform().invXform(point.point_on_b + point.normal * point.distance);
+btVector3 local_on_a(const ManifoldPoses& poses, const FreshPoint& point) {
+  Lanes on_b, normal, local;
+  load_lanes(point.point_on_b, on_b);
+  load_lanes(point.normal, normal);
+  poses.a.apply_inverse(on_b + normal * point.distance, local);
+  return from_lanes(local);
+}
+
+ManifoldPoses poses_of(const btPersistentManifold& manifold) {
+  return {LaneTransform(manifold.getBody0()->getWorldTransform()),
+          LaneTransform(manifold.getBody1()->getWorldTransform())};
 }
 
 }  // namespace
@@ -110,48 +127,84 @@ FreshPoints fresh_points(const ContactManifold& manifold) {
 
 void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result) {
   forget_parted(manifold);
+  const ManifoldPoses poses = poses_of(manifold);
   for (int k = 0; k < fresh.count; ++k) {
     const FreshPoint& point = fresh.points[k];
-    const int entry = entry_near(manifold, local_on_a(manifold, point));
+    const int entry = entry_near(manifold, local_on_a(poses, point));
     const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
-    add_anchored_point(result, manifold, point.normal, point.point_on_b, point.distance, entry, anchor);
+    add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, entry, anchor);
   }
 }
 
-void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
-                    btManifoldResult& result, PointSurroundings& surroundings) {
-  std::array<btVector3, 4> local_a;
-  for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(manifold, fresh.points[k]);
-  Matching matching = match_points(manifold, memory, fresh, local_a);
-  // Bullet's `addContactPoint` hands impulses, life time and user data to the new point that falls on an old one. So a
-  // matched old point is moved to its heir first; that keeps Bullet's contact callbacks right, which clearing would
-  // not.
-  std::array<FrictionAnchor, 4> anchors;
-  std::array<ImpulseTrend, 4> impulses;  // of the new points
+namespace {
+
+/// What the new points take over from the old ones.
+struct Heritage {
+  std::array<FrictionAnchor, 4> anchors;       ///< of entries
+  std::array<ImpulseTrend, 4> impulses;        ///< of new points
+  std::array<int, 4> entries{-1, -1, -1, -1};  ///< of new points; -1: no old point goes on in it
+};
+
+/// Takes points without an heir out of the manifold, and moves the others to theirs: Bullet's `addContactPoint` hands
+/// impulses, life time and user data to the new point that falls on an old one, which keeps Bullet's contact callbacks
+/// right, as clearing would not.
+void keep_matched(btPersistentManifold& manifold, const PairMemory& memory, Matching& matching, btScalar seconds,
+                  const std::array<btVector3, 4>& local_a, Heritage& heritage) {
   for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
-    if (matching[i] < 0) {
+    const int heir = matching.heir[i];
+    if (heir < 0) {
       // Moves the last point into the gap: those behind are dealt with already.
       const int last = manifold.getNumContacts() - 1;
-      anchors[i] = anchors[last];
+      heritage.anchors[i] = heritage.anchors[last];
+      matching.heir[i] = matching.heir[last];
       manifold.removeContactPoint(i);
     } else {
       btManifoldPoint& old = manifold.getContactPoint(i);
-      anchors[i] = anchor_of(old);
-      if (const int r = remembered(memory, old); r >= 0) impulses[matching[i]] = memory.points[r].impulse;
-      old.m_appliedImpulse = impulses[matching[i]].next(old.m_appliedImpulse, seconds == memory.seconds);
-      old.m_localPointA = local_a[matching[i]];
+      heritage.anchors[i] = anchor_of(old);
+      ImpulseTrend& impulse = heritage.impulses[heir];
+      if (const int r = matching.known[i]; r >= 0) impulse = memory.points[r].impulse;
+      old.m_appliedImpulse = impulse.next(old.m_appliedImpulse, seconds == memory.seconds);
+      old.m_localPointA = local_a[heir];
     }
   }
+  for (int i = 0; i < manifold.getNumContacts(); ++i) heritage.entries[matching.heir[i]] = i;
+}
+
+}  // namespace
+
+void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
+                    btManifoldResult& result, PointSurroundings& surroundings) {
+  const ManifoldPoses poses = poses_of(manifold);
+  std::array<btVector3, 4> local_a;
+  for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(poses, fresh.points[k]);
+  Matching matching = match_points(manifold, memory, fresh, local_a);
+  Heritage heritage;
+  keep_matched(manifold, memory, matching, seconds, local_a, heritage);
+  const btScalar threshold = manifold.getContactBreakingThreshold();
+  const bool alike = points_are_alike(result);
+  int pattern = -1;  // a point that went through Bullet
+  int pattern_entry = -1;
   for (int k = 0; k < fresh.count; ++k) {
     const FreshPoint& point = fresh.points[k];
-    const int near = entry_near(manifold, local_a[k]);
-    surroundings.enter(k);
-    const int entry = add_anchored_point(result, manifold, point.normal, point.point_on_b, point.distance, near,
-                                         anchors[std::max(near, 0)]);
-    surroundings.leave();
+    int entry = heritage.entries[k];
+    if (entry >= 0 && pattern_entry >= 0 && point.distance <= threshold && surroundings.same(k, pattern) &&
+        point.normal == fresh.points[pattern].normal) {
+      replace_like(manifold.getContactPoint(pattern_entry), poses, threshold, local_a[k], point.point_on_b,
+                   point.distance, heritage.anchors[entry], manifold.getContactPoint(entry));
+    } else {
+      const int near = entry_near(manifold, local_a[k]);
+      surroundings.enter(k);
+      entry = add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, near,
+                                 heritage.anchors[std::max(near, 0)]);
+      surroundings.leave();
+      if (alike && point.distance <= threshold) {
+        pattern = k;
+        pattern_entry = entry;
+      }
+    }
     if (entry >= 0) {
       memory.points[entry].feature_id = point.feature_id;
-      memory.points[entry].impulse = impulses[k];
+      memory.points[entry].impulse = heritage.impulses[k];
     }
   }
   memory.seconds = seconds;

@@ -35,6 +35,8 @@ class PointSurroundings {
   virtual ~PointSurroundings() = default;
   virtual void enter(int) {}
   virtual void leave() {}
+  /// Whether two points stand in the same surroundings.
+  [[nodiscard]] virtual bool same(int, int) const { return true; }
 };
 
 /// Puts the points of this step in place of the manifold's, which nobody else writes to. Impulses (with their trend,

@@ -15,6 +15,9 @@ class PieceOfPoint : public PointSurroundings {
   PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
   void enter(int point) override { pieces_.enter(patch_.pieces[static_cast<std::size_t>(point)]); }
   void leave() override { pieces_.leave(); }
+  [[nodiscard]] bool same(int i, int k) const override {
+    return patch_.pieces[static_cast<std::size_t>(i)] == patch_.pieces[static_cast<std::size_t>(k)];
+  }
 
  private:
   const Patch& patch_;

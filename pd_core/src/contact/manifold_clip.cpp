@@ -15,42 +15,59 @@ constexpr double kParallelSine = 0.05;
 /// Loop of a face across n, counter-clockwise about n; a segment is a loop of two.
 void load_polygon(const SupportingFace& face, const ContactFrame& frame, IdKind kind,
                   std::vector<ClipVertex>& polygon) {
-  polygon.clear();
-  double twice_area = 0;
   const std::size_t size = face.vertices.size();
+  polygon.resize(size);
+  const Vec3 u = frame.u, w = frame.w, origin = frame.origin;
   for (std::size_t i = 0; i < size; ++i) {
-    const auto& vertex = face.vertices[i];
+    const FaceVertex& vertex = face.vertices[i];
+    const Vec3 x = vertex.point - origin;
     const std::int64_t id = kind == IdKind::vertex_a ? make_id(kind, vertex.id, 0) : make_id(kind, 0, vertex.id);
-    polygon.push_back({frame.flatten(vertex.point), id, vertex.id, false});
+    polygon[i] = {{x.dot(u), x.dot(w)}, id, vertex.id, false};
   }
-  for (std::size_t i = 0; i < size; ++i) {
-    twice_area += cross(polygon[i].point, polygon[i + 1 < size ? i + 1 : 0].point);
+  double twice_area = 0;
+  const ClipVertex* last = &polygon[0];
+  for (std::size_t i = 1; i < size; ++i) {
+    twice_area += cross(last->point, polygon[i].point);
+    last = &polygon[i];
   }
+  twice_area += cross(last->point, polygon[0].point);
   if (twice_area < 0) {
     std::reverse(polygon.begin(), polygon.end());
   }
 }
 
-/// Sutherland-Hodgman: `polygon` cut to the left of the line from `from` to `to`, which is edge `edge` of the other
-/// loop.
-void clip(std::vector<ClipVertex>& polygon, std::vector<ClipVertex>& out, const Vec2& from, const Vec2& to,
-          std::int32_t edge, std::int64_t corner_id) {
-  out.clear();
+/// On which side of the line from `from` to `to` each corner lies, > 0 to the left. @return whether none is outside.
+bool find_sides(const std::vector<ClipVertex>& polygon, const Vec2& from, const Vec2& to, std::vector<double>& sides) {
   const Vec2 along = to - from;
   const std::size_t size = polygon.size();
-  double side_next = cross(along, polygon[0].point - from);
+  sides.resize(size);
+  bool all = true;
+  for (std::size_t i = 0; i < size; ++i) {
+    sides[i] = cross(along, polygon[i].point - from);
+    all &= sides[i] >= 0;
+  }
+  return all;
+}
+
+/// Sutherland-Hodgman: `polygon` cut to the left of the line from `from` to `to`, which is edge `edge` of the other
+/// loop.
+void clip(ClipBuffers& buffers, const Vec2& from, const Vec2& to, std::int32_t edge, std::int64_t corner_id) {
+  std::vector<ClipVertex>& polygon = buffers.polygon;
+  std::vector<ClipVertex>& out = buffers.clipped;
+  if (find_sides(polygon, from, to, buffers.sides)) return;
+  out.clear();
+  const std::size_t size = polygon.size();
   for (std::size_t i = 0; i < size; ++i) {
     const ClipVertex& here = polygon[i];
-    const ClipVertex& next = polygon[i + 1 < size ? i + 1 : 0];
-    const double side_here = side_next;
-    side_next = cross(along, next.point - from);
+    const std::size_t after = i + 1 < size ? i + 1 : 0;
+    const double side_here = buffers.sides[i], side_next = buffers.sides[after];
     if (side_here >= 0) {
       out.push_back(here);
     }
     if ((side_here > 0 && side_next < 0) || (side_here < 0 && side_next > 0)) {
       const double s = side_here / (side_here - side_next);
       const std::int64_t id = here.edge_of_b ? corner_id : make_id(IdKind::crossing, here.edge, edge);
-      ClipVertex crossing{here.point + s * (next.point - here.point), id, here.edge, here.edge_of_b};
+      ClipVertex crossing{here.point + s * (polygon[after].point - here.point), id, here.edge, here.edge_of_b};
       if (side_here > 0) {
         crossing.edge = edge;
         crossing.edge_of_b = true;
@@ -113,16 +130,6 @@ FaceHeight::FaceHeight(const SupportingFace& face, const ContactFrame& frame)
   }
 }
 
-double FaceHeight::above(const Vec2& p) const {
-  if (corners_ == 1) return height_;
-  const Vec2 offset = p - start_;
-  if (corners_ == 2) {
-    const double s = scale_ > 0 ? std::clamp(offset.dot(along_) / scale_, 0.0, 1.0) : 0.0;
-    return (1 - s) * height_ + s * end_;
-  }
-  return height_ - (offset.x() * along_.x() + offset.y() * along_.y()) / scale_;
-}
-
 void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
                      ClipBuffers& buffers) {
   buffers.polygon.clear();
@@ -141,8 +148,7 @@ void intersect_faces(const SupportingFace& a, const SupportingFace& b, const Con
   const std::vector<ClipVertex>& edges = buffers.window;
   load_polygon(subject, frame, cut_b ? IdKind::vertex_b : IdKind::vertex_a, buffers.polygon);
   for (std::size_t i = 0; i < edges.size() && !buffers.polygon.empty(); ++i) {
-    clip(buffers.polygon, buffers.clipped, edges[i].point, edges[i + 1 < edges.size() ? i + 1 : 0].point, edges[i].edge,
-         edges[i].id);
+    clip(buffers, edges[i].point, edges[i + 1 < edges.size() ? i + 1 : 0].point, edges[i].edge, edges[i].id);
   }
 }
 

@@ -6,6 +6,7 @@
 /// found again in the next frame.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -53,7 +54,15 @@ inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y()
 class FaceHeight {
  public:
   FaceHeight(const SupportingFace& face, const ContactFrame& frame);
-  [[nodiscard]] double above(const Vec2& p) const;
+  [[nodiscard]] double above(const Vec2& p) const {
+    if (corners_ == 1) return height_;
+    const Vec2 offset = p - start_;
+    if (corners_ == 2) {
+      const double s = scale_ > 0 ? std::clamp(offset.dot(along_) / scale_, 0.0, 1.0) : 0.0;
+      return (1 - s) * height_ + s * end_;
+    }
+    return height_ - (offset.x() * along_.x() + offset.y() * along_.y()) / scale_;
+  }
 
  private:
   std::size_t corners_;
@@ -69,6 +78,7 @@ struct ClipBuffers {
   std::vector<ClipVertex> polygon;  ///< the intersection
   std::vector<ClipVertex> window;
   std::vector<ClipVertex> clipped;
+  std::vector<double> sides;  ///< of the polygon's corners, of one edge of the window
 };
 
 /// The intersection of two faces across n: a polygon, a segment as a loop of two, or nothing where a face is a single

@@ -29,7 +29,8 @@ PD_INLINE void load(LaneVectors& to, const BoxGenerators& from, int i) {
 /// += |<n, (x, y, z)>|
 PD_INLINE void add_height(Lanes& sum, const LaneVectors& n, double x, double y, double z) {
   const Lanes height = n.x * x + n.y * y + n.z * z;
-  sum += height < Lanes{0, 0, 0, 0} ? -height : height;
+  constexpr std::int64_t kMagnitude = std::numeric_limits<std::int64_t>::max();  // all bits but the sign's
+  sum += (Lanes)((Flags)height & Flags{kMagnitude, kMagnitude, kMagnitude, kMagnitude});
 }
 
 }  // namespace
