@@ -157,14 +157,13 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
     return;
   }
-  ContactManifold fresh;
-  if (outcome == SolverCore::Outcome::answered) {
-    fresh = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold), buffers->manifold,
-                             DeepestPoint::as_lifted);
-    if (as_one && (is_piece(*a) || is_piece(*b))) {
-      keep_uncovered(*a, *b, answer, static_cast<double>(threshold), static_cast<double>(info.m_timeStep), stamp, core,
-                     *buffers, fresh);
-    }
+  const bool answered = outcome == SolverCore::Outcome::answered;
+  ContactManifold fresh = answered ? contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold),
+                                                      buffers->manifold, DeepestPoint::as_lifted)
+                                   : ContactManifold();
+  if (answered && as_one && (is_piece(*a) || is_piece(*b))) {
+    keep_uncovered(*a, *b, answer, static_cast<double>(threshold), static_cast<double>(info.m_timeStep), stamp, core,
+                   *buffers, fresh);
   }
   if (owns_manifold_) {
     PointSurroundings whole;

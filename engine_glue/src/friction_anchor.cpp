@@ -111,6 +111,28 @@ bool points_are_alike(const btManifoldResult& result) {
          typeid(result) == typeid(btManifoldResult);
 }
 
+btManifoldPoint pattern_of(const btManifoldResult& result, const btManifoldPoint& old, const btVector3& normal) {
+  const btCollisionObject* const a = result.getBody0Internal();
+  const btCollisionObject* const b = result.getBody1Internal();
+  btManifoldPoint pattern(old.m_localPointA, old.m_localPointB, normal, 0);
+  pattern.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
+  pattern.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
+  pattern.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
+  pattern.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
+  const int flags = a->getCollisionFlags() | b->getCollisionFlags();
+  if ((flags & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) {
+    pattern.m_combinedContactDamping1 = btManifoldResult::calculateCombinedContactDamping(a, b);
+    pattern.m_combinedContactStiffness1 = btManifoldResult::calculateCombinedContactStiffness(a, b);
+    pattern.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  }
+  btPlaneSpace1(normal, pattern.m_lateralFrictionDir1, pattern.m_lateralFrictionDir2);
+  pattern.m_partId0 = old.m_partId0;
+  pattern.m_partId1 = old.m_partId1;
+  pattern.m_index0 = old.m_index0;
+  pattern.m_index1 = old.m_index1;
+  return pattern;
+}
+
 void replace_like(const btManifoldPoint& pattern, const ManifoldPoses& poses, btScalar threshold,
                   const btVector3& local_a, const btVector3& point_on_b, btScalar distance,
                   const FrictionAnchor& anchor, btManifoldPoint& point) {

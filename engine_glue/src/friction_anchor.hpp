@@ -44,12 +44,17 @@ int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold,
                        const btVector3& normal, const btVector3& point_on_b, btScalar distance, int entry,
                        const FrictionAnchor& anchor);
 
-/// Whether points of a manifold may be made `like` each other: Bullet's own result, no callback that is told of each
-/// point and may change it, and no body that asks for anchors itself.
+/// Whether points of a manifold may be made without Bullet: its own result, no callback that is told of each point and
+/// may change it, and no body that asks for anchors itself.
 [[nodiscard]] bool points_are_alike(const btManifoldResult& result);
 
-/// What `add_anchored_point` does to an entry, without a second way through Bullet: materials, flags and friction
-/// directions are those of `pattern`, a point with the same normal that `result` took in this step.
+/// What Bullet would give a new point that takes over the place of `old`, apart from places: materials, flags and
+/// friction directions. Requires points_are_alike.
+[[nodiscard]] btManifoldPoint pattern_of(const btManifoldResult& result, const btManifoldPoint& old,
+                                         const btVector3& normal);
+
+/// What `add_anchored_point` does to an entry, without the way through Bullet.
+/// @param pattern    by `pattern_of`, or a point with the same normal that the pair's result took in this step
 ///
 /// @param threshold  of the manifold, at which contacts break
 /// @param local_a    of the point, in the first body's coordinates

@@ -182,24 +182,30 @@ void replace_points(btPersistentManifold& manifold, PairMemory& memory, const Fr
   keep_matched(manifold, memory, matching, seconds, local_a, heritage);
   const btScalar threshold = manifold.getContactBreakingThreshold();
   const bool alike = points_are_alike(result);
-  int pattern = -1;  // a point that went through Bullet
-  int pattern_entry = -1;
+  // What the points have in common: as Bullet gave it to one of them, or as it would.
+  btManifoldPoint pattern;
+  int pattern_of_point = -1;
   for (int k = 0; k < fresh.count; ++k) {
     const FreshPoint& point = fresh.points[k];
     int entry = heritage.entries[k];
-    if (entry >= 0 && pattern_entry >= 0 && point.distance <= threshold && surroundings.same(k, pattern) &&
-        point.normal == fresh.points[pattern].normal) {
-      replace_like(manifold.getContactPoint(pattern_entry), poses, threshold, local_a[k], point.point_on_b,
-                   point.distance, heritage.anchors[entry], manifold.getContactPoint(entry));
+    const bool lasts = alike && entry >= 0 && point.distance <= threshold;
+    if (lasts && pattern_of_point < 0 && surroundings.lasting()) {
+      pattern = pattern_of(result, manifold.getContactPoint(entry), point.normal);
+      pattern_of_point = k;
+    }
+    if (lasts && pattern_of_point >= 0 && surroundings.same(k, pattern_of_point) &&
+        point.normal == pattern.m_normalWorldOnB) {
+      replace_like(pattern, poses, threshold, local_a[k], point.point_on_b, point.distance, heritage.anchors[entry],
+                   manifold.getContactPoint(entry));
     } else {
       const int near = entry_near(manifold, local_a[k]);
       surroundings.enter(k);
       entry = add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, near,
                                  heritage.anchors[std::max(near, 0)]);
       surroundings.leave();
-      if (alike && point.distance <= threshold) {
-        pattern = k;
-        pattern_entry = entry;
+      if (alike && entry >= 0 && point.distance <= threshold) {
+        pattern = manifold.getContactPoint(entry);
+        pattern_of_point = k;
       }
     }
     if (entry >= 0) {

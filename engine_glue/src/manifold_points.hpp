@@ -37,6 +37,8 @@ class PointSurroundings {
   virtual void leave() {}
   /// Whether two points stand in the same surroundings.
   [[nodiscard]] virtual bool same(int, int) const { return true; }
+  /// Whether all points do, as those of the last step did.
+  [[nodiscard]] virtual bool lasting() const { return true; }
 };
 
 /// Puts the points of this step in place of the manifold's, which nobody else writes to. Impulses (with their trend,

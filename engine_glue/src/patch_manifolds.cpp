@@ -18,6 +18,7 @@ class PieceOfPoint : public PointSurroundings {
   [[nodiscard]] bool same(int i, int k) const override {
     return patch_.pieces[static_cast<std::size_t>(i)] == patch_.pieces[static_cast<std::size_t>(k)];
   }
+  [[nodiscard]] bool lasting() const override { return false; }
 
  private:
   const Patch& patch_;

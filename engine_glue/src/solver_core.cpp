@@ -27,6 +27,8 @@ double contact_tolerance(const PosedShape& a, const PosedShape& b) {
 }
 
 bool in_range(const btTransform& pose) {
+  // Single precision ends before the core does.
+  if (sizeof(btScalar) == sizeof(float)) return is_finite(pose);
   return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 

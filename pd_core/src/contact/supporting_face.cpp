@@ -92,8 +92,11 @@ void polytope_face(const ConvexPolytope& polytope, const Pose& pose, const Vec3&
       break;
   }
   if (choice.facet >= 0 && choice.cosine >= kFaceCosine) {
-    for (const std::int32_t v : polytope.facet_vertices(choice.facet)) {
-      push(v);
+    const auto loop = polytope.facet_vertices(choice.facet);
+    face.vertices.resize(loop.size());
+    const Pose placed = pose;  // a copy, which writing vertices cannot change
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      face.vertices[i] = {placed.apply(polytope.vertex(loop[i])), loop[i]};
     }
     face.plane_normal = (pose.rotation() * polytope.facet_normal(choice.facet)).normalized();
     return;

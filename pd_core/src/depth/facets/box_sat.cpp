@@ -308,17 +308,24 @@ class BoxPair {
   BoxGenerators of_b_;
 };
 
+// Eight coordinates are compared two at a time.
+typedef double Two __attribute__((vector_size(16)));
+typedef std::int64_t TwoFlags __attribute__((vector_size(16)));
+Two both(double x) { return Two{x, x}; }
+Two two(const double* x, int pair) { return Two{x[2 * pair], x[2 * pair + 1]}; }
+
 }  // namespace
 
 std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
   if (p.num_vertices() != 8) return std::nullopt;
-  // Vertices are in lexicographic order.
-  const double* const coordinates[3] = {p.x(), p.y(), p.z()};
-  bool box = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double* const x = coordinates[axis];
-    for (int v = 0; v < 8; ++v) box &= x[v] == ((v & (4 >> axis)) != 0 ? x[7] : x[0]);
-  }
+  // Vertices are in lexicographic order: z changes fastest.
+  const Two x0 = both(p.x()[0]), x1 = both(p.x()[7]), y0 = both(p.y()[0]), y1 = both(p.y()[7]);
+  const Two z = {p.z()[0], p.z()[7]};
+  const TwoFlags as_box = (two(p.x(), 0) == x0) & (two(p.x(), 1) == x0) & (two(p.x(), 2) == x1) &
+                          (two(p.x(), 3) == x1) & (two(p.y(), 0) == y0) & (two(p.y(), 1) == y1) &
+                          (two(p.y(), 2) == y0) & (two(p.y(), 3) == y1) & (two(p.z(), 0) == z) & (two(p.z(), 1) == z) &
+                          (two(p.z(), 2) == z) & (two(p.z(), 3) == z);
+  const bool box = (as_box[0] & as_box[1]) != 0;
   if (!box) return std::nullopt;
   const Vec3 least = p.vertex(0), most = p.vertex(7);
   if (!((most - least).minCoeff() > kLeastExtent)) return std::nullopt;

@@ -12,8 +12,9 @@ namespace pd::detail {
 
 namespace {
 
-/// Frames without a try after several that were of no use.
-constexpr int kLongestPause = 7;
+/// Two boxes have another way, at twice the cost of a try (box_sat.hpp).
+constexpr int kLongestPauseOfBoxes = 63;
+constexpr int kBoxVertices = 8;
 /// Polytopes of more facets are not searched for the one that faces the contact: only answers name it.
 constexpr int kMaxFacetsSearched = 32;
 /// cos 3 degrees: a facet turned farther from the normal is not what the bodies rest on.
@@ -117,8 +118,8 @@ bool may_try(WarmFacets& facets) {
   return false;
 }
 
-void count_try(WarmFacets& facets, bool answered) {
-  facets.pause_length = answered ? 0 : std::min(2 * facets.pause_length + 1, kLongestPause);
+void count_try(WarmFacets& facets, bool answered, int longest_pause) {
+  facets.pause_length = answered ? 0 : std::min(2 * facets.pause_length + 1, longest_pause);
   facets.pause = answered ? 0 : facets.pause_length - 1;
 }
 
@@ -136,10 +137,11 @@ bool answer_from_contact_facet(PolytopeQuery& query, PenetrationDepth& out) {
     if (!answer(query, of, facet, known.near, out, known.near)) continue;
     out.warm = true;
     facets.first = of;
-    count_try(facets, true);
+    count_try(facets, true, kLongestFacetPause);
     return true;
   }
-  if (tried) count_try(facets, false);
+  const bool boxes = query.vertices() == 2 * kBoxVertices;
+  if (tried) count_try(facets, false, boxes ? kLongestPauseOfBoxes : kLongestFacetPause);
   return !tried && answer_on_polygon(query, out);
 }
 

@@ -22,9 +22,11 @@ void learn_contact_facet(int of, const ConvexPolytope& owner, const Pose& pose, 
 
 /// The remembered facet of A (`of` 0) or B (1), where that is `owner`; else -1.
 [[nodiscard]] int known_facet(const WarmFacets& facets, int of, const ConvexPolytope& owner);
+/// Frames without a try after several that were of no use.
+inline constexpr int kLongestFacetPause = 7;
 /// Whether facets were of use lately: they pause for a few frames where not.
 [[nodiscard]] bool may_try(WarmFacets& facets);
-void count_try(WarmFacets& facets, bool answered);
+void count_try(WarmFacets& facets, bool answered, int longest_pause);
 
 /// Class, bracket, normal and witnesses. The contact's bounds are those of the cores.
 /// @param body_translation  of the body that lies on the facet.

@@ -94,7 +94,8 @@ void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, Scr
   PolytopeQuery query(pair, settings, buffers, warm);
   if (answer_from_contact_facet(query, out)) return;
   answer(query, out);
-  if (warm != nullptr && query.for_contact()) {
+  // What the next frame may try, where it will try.
+  if (warm != nullptr && query.for_contact() && warm->state().facets.pause == 0) {
     learn_contact_facet(0, *pair.a, *pair.pose_a, out, warm->state().facets);
     learn_contact_facet(1, *pair.b, *pair.pose_b, out, warm->state().facets);
   }

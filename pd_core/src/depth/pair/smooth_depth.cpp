@@ -345,7 +345,7 @@ class SmoothQuery {
                       });
     const bool narrow = contact.certified &&
                         contact.upper - contact.lower <= std::max(kAbsolute * contact.largest, width_) * (1 + 0x1p-48);
-    if (remembered) count_try(*facets, narrow);
+    if (remembered) count_try(*facets, narrow, kLongestFacetPause);
     if (!narrow) return false;
     set_contact_on_facet(contact, of == 0, {a_.shape->margin(), b_.shape->margin()},
                          of == 0 ? Vec3(b_.pose.translation() - a_.pose.translation()) : Vec3(Vec3::Zero()), out_);
