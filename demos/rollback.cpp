@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,6 +27,7 @@
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
+#include "support/scene_choice.hpp"
 
 namespace pd::demo {
 
@@ -36,6 +38,10 @@ constexpr int kFramesPerStep = 2;
 constexpr int kFramesPerImpact = 15;
 /// Depths below this are not worth an arrow.
 constexpr double kShownDepth = 2e-3;
+
+constexpr std::array<SceneChoice, 2> kScenes{
+    SceneChoice{"a crystal, a box and a stone meet a wall and each other", true, scenes::fast_throws},
+    SceneChoice{"spinning rods meet a wall of one millimetre", false, scenes::rods_at_a_foil}};
 
 double signed_depth(const MovingShape& a, const MovingShape& b, double time, Scratch& scratch) {
   return -penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch)
@@ -298,7 +304,7 @@ void advance(DemoWorld& world, RollbackStepper& stepper, double step, Course& co
 /// One of the two worlds at the end of a step.
 Half half_of(DemoWorld& world, const Measurement& now, const std::vector<double>& depths, double full_scale,
              const std::string& heading, const std::string& status) {
-  Half half{world.picture(now, kShownDepth), now.deepest, heading, status, {}};
+  Half half{world.picture(now, kShownDepth), now.deepest, {}, heading, status, {}};
   if (now.deepest > kShownDepth) {
     const PenetrationDepth& answer = now.deepest_answer;
     half.scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
@@ -338,8 +344,15 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
   RollbackStepper stepper(guarded.bullet(), guarded.solver());
   const render::Size whole{options.width, options.height};
   CloseUp close_up(renderer, whole);
-  DuelPlan duel{folder,     "rollback",  plan.title,   "below: penetration at the end of the step", whole, {},
-                {-102, 14}, kShownDepth, options.video};
+  DuelPlan duel{folder,
+                "rollback",
+                plan.title,
+                "below: penetration at the end of the step",
+                whole,
+                {},
+                {plan.view_azimuth, plan.view_elevation},
+                kShownDepth,
+                options.video};
   duel.view.include(plan.view_lower);
   duel.view.include(plan.view_upper);
   auto opened = DuelFilm::open(duel, renderer);
@@ -398,6 +411,12 @@ int run_rollback(const DemoOptions& options) {
     report_failure(kind.error());
     return kDemoBadUsage;
   }
+  const auto worlds = choose_scenes(options, kScenes);
+  if (!worlds) {
+    report_failure(worlds.error());
+    return kDemoBadUsage;
+  }
+  if (worlds.value().empty()) return kDemoDone;
   std::filesystem::path folder;
   if (const int code = open_output_folder(options, "rollback", folder); code != kDemoDone) return code;
   auto renderer = render::Renderer::create();
@@ -406,7 +425,7 @@ int run_rollback(const DemoOptions& options) {
   }
   auto device = std::move(renderer).value();
   note_interrupts();
-  const scenes::World plan = scenes::fast_throws(options.seed);
+  const scenes::World& plan = worlds.value().front();
   Course course;
   CourseRows rows;
   std::vector<std::string> figures;

@@ -1,8 +1,8 @@
 /// @file
 /// `pdepth demo stacking`: the same bodies under two solvers from the same start, side by side.
 ///
-/// Small bodies without margins, where a depth solver is asked at every contact (bullet notes: with Bullet's default
-/// margins an ordinary stack asks it never). What is drawn as penetration is measured by pd_core for both.
+/// Bodies without margins, where a depth solver is asked at every contact (bullet notes: with Bullet's default margins
+/// an ordinary stack asks it never). What is drawn as penetration is measured by pd_core for both.
 #include <btBulletDynamicsCommon.h>
 #include <fmt/core.h>
 
@@ -15,11 +15,13 @@
 #include "pd/render/renderer.hpp"
 #include "report/page.hpp"
 #include "report/scene_section.hpp"
+#include "scenes/union_worlds.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
 #include "support/report_parts.hpp"
+#include "support/scene_choice.hpp"
 
 namespace pd::demo {
 
@@ -29,6 +31,15 @@ namespace {
 constexpr std::array<double, 6> kTellingShares{0, 0.06, 0.14, 0.3, 0.6, 1};
 /// Depths below this are not worth an arrow.
 constexpr double kShownDepth = 2e-4;
+/// Contacts that brake a body nearer than this to one that is drawn already are not drawn again.
+constexpr double kGhostsApart = 0.4;
+
+constexpr std::array<SceneChoice, 5> kScenes{
+    SceneChoice{"two towers of 2 cm bodies that have to stand", true, scenes::small_towers},
+    SceneChoice{"a pile of small bodies that start inside each other", true, scenes::deep_pile},
+    SceneChoice{"a box slides over a flat mesh: contacts that brake it are drawn", false, scenes::slide_over_mesh},
+    SceneChoice{"a gear that was spun turns another", false, scenes::two_gears},
+    SceneChoice{"a torus of convex pieces slides down a peg", false, scenes::torus_and_peg}};
 /// Every so many steps contacts are recorded for the page's audit: a record of each step would be 100 MB.
 constexpr int kRecordedEvery = 24;
 
@@ -36,13 +47,28 @@ constexpr int kRecordedEvery = 24;
 struct Contender {
   Contender(const scenes::World& plan, SolverKind solver) : kind(solver), world(plan, solver) {
     history.push_back(world.measure());
+    ghosts_by.push_back(0);
   }
   SolverKind kind;
   DemoWorld world;
   std::optional<ContactRecorder> recorder;  ///< for a page
   std::vector<Measurement> history;
+  std::vector<Ghost> ghosts;           ///< drawn so far
+  std::vector<std::size_t> ghosts_by;  ///< how many were met by each step
   /// Bodies' poses at each frame, so that pictures can be drawn when the shared scale is known.
   std::vector<render::Scene> frames;
+
+  /// Counts the contacts that brake now, and keeps those that are worth drawing.
+  void meet_ghosts() {
+    const std::vector<Ghost> now = world.ghosts();
+    ghosts_by.push_back(ghosts_by.back() + now.size());
+    for (const Ghost& ghost : now) {
+      const bool near = std::any_of(ghosts.begin(), ghosts.end(), [&](const Ghost& other) {
+        return (other.point - ghost.point).norm() < kGhostsApart;
+      });
+      if (!near) ghosts.push_back(ghost);
+    }
+  }
 
   [[nodiscard]] double deepest() const {
     double result = 0;
@@ -107,6 +133,8 @@ nlohmann::json summary(const Run& run) {
                                  {"deepest_penetration_m", contender->deepest()},
                                  {"late_mean_penetration_m", contender->late_mean(&Measurement::deepest)},
                                  {"final_drift_m", contender->history.back().drift},
+                                 {"final_forward_speed_m_s", contender->history.back().forward_speed},
+                                 {"braking_contacts", contender->ghosts_by.back()},
                                  {"late_mean_kinetic_energy_J", contender->late_mean(&Measurement::kinetic_energy)},
                                  {"solver_calls_per_step", contender->calls_per_step()},
                                  {"solver_us_per_step", contender->mean(&Measurement::solver_microseconds)},
@@ -120,10 +148,28 @@ std::string statement(const Run& run, std::size_t step) {
   const Measurement& first = run.contenders[0]->history[step];
   const Measurement& second = run.contenders[1]->history[step];
   const std::string depth = fmt::format("penetration {} / {}", length_text(first.deepest), length_text(second.deepest));
+  if (run.plan.should_glide) {
+    return fmt::format("speed {:.2f} / {:.2f} m/s      contacts that brake {} / {}", first.forward_speed,
+                       second.forward_speed, run.contenders[0]->ghosts_by[step], run.contenders[1]->ghosts_by[step]);
+  }
   return run.plan.should_stand ? fmt::format("{}      moved from the start {} / {}", depth, length_text(first.drift),
                                              length_text(second.drift))
                                : fmt::format("{}      kinetic energy {} / {}", depth, energy_text(first.kinetic_energy),
                                              energy_text(second.kinetic_energy));
+}
+
+/// Where a body should keep its speed, that is what is said of its world.
+void show_speed(const Contender& contender, std::size_t step, Half& half) {
+  const double wanted = contender.history.front().forward_speed;
+  const double speed = contender.history[step].forward_speed;
+  half.headline = render::Headline{fmt::format("{:.2f} m/s", speed), "speed",
+                                   speed > 0.99 * wanted ? render::palette::kGood : render::palette::kTrouble};
+  for (std::size_t i = 0; i < contender.history.size(); ++i) {
+    half.curve.values[i] = std::max(contender.history[i].forward_speed, 0.0);
+  }
+  half.curve.meaning = "speed";
+  half.curve.full_scale = wanted;
+  half.curve.full_scale_text = fmt::format("{:.0f} m/s", wanted);
 }
 
 /// One of the two worlds at one of its frames.
@@ -141,6 +187,7 @@ Half half_of(const Contender& contender, const Run& run, std::size_t frame, doub
   half.curve.meaning = "deepest penetration";
   half.curve.full_scale = full_scale;
   half.curve.full_scale_text = length_text(full_scale);
+  if (run.plan.should_glide) show_speed(contender, step, half);
   return half;
 }
 
@@ -152,9 +199,12 @@ void simulate(Run& run, int steps) {
     for (const auto& contender : run.contenders) {
       const Measurement& now = contender->history[step];
       render::Scene scene = contender->world.picture(now, kShownDepth);
-      if (now.deepest > kShownDepth) {
+      if (now.deepest > kShownDepth && !run.plan.should_glide) {
         const PenetrationDepth& answer = now.deepest_answer;
         scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
+      }
+      for (const Ghost& ghost : contender->ghosts) {
+        scene.arrows.push_back({ghost.point, ghost.point + 0.8 * ghost.normal, {}, render::palette::kTrouble, 4});
       }
       contender->frames.push_back(std::move(scene));
     }
@@ -164,6 +214,7 @@ void simulate(Run& run, int steps) {
   for (int step = 1; step <= steps && !interrupted(); ++step) {
     for (const auto& contender : run.contenders) {
       contender->history.push_back(contender->world.step());
+      if (run.plan.should_glide) contender->meet_ghosts();
     }
     if (step % steps_per_frame == 0) {
       keep_frame(static_cast<std::size_t>(step));
@@ -177,10 +228,11 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
   DuelPlan plan{folder,
                 run.plan.name,
                 run.plan.title,
-                "below: deepest penetration of any two bodies",
+                run.plan.should_glide ? "below: speed; arrows: contacts that braked"
+                                      : "below: deepest penetration of any two bodies",
                 {options.width, options.height},
                 {},
-                {-62, 16},
+                {run.plan.view_azimuth, run.plan.view_elevation},
                 kShownDepth,
                 options.video};
   plan.view.include(run.plan.view_lower);
@@ -231,12 +283,11 @@ std::string deepest_pair(const Run& run, const Contender& contender) {
   if (deepest->deepest_a < 0) return {};
   const Measurement& m = *deepest;
   const auto step = static_cast<double>(deepest - contender.history.begin());
-  return report::pair_figure(
-      answered_pair({&contender.world.shape(m.deepest_a), m.deepest_pose_a},
-                    {&contender.world.shape(m.deepest_b), m.deepest_pose_b}, m.deepest_answer,
-                    fmt::format("{}: deepest pair of the run, {} at {:.2f} s", describe(contender.kind),
-                                length_text(m.deepest), step / run.plan.steps_per_second),
-                    fmt::format("{}_{}_deepest", run.plan.name, to_string(contender.kind))));
+  return report::pair_figure(answered_pair(
+      {m.deepest_piece_a.get(), m.deepest_pose_a}, {m.deepest_piece_b.get(), m.deepest_pose_b}, m.deepest_answer,
+      fmt::format("{}: deepest pair of the run, {} at {:.2f} s", describe(contender.kind), length_text(m.deepest),
+                  step / run.plan.steps_per_second),
+      fmt::format("{}_{}_deepest", run.plan.name, to_string(contender.kind))));
 }
 
 /// The scene as a section of the page: frames, curves, pairs and the audit of what was recorded.
@@ -260,6 +311,7 @@ std::string section_of(const Run& run, const DemoOptions& options, const std::fi
   };
   add("deepest penetration", "m", [](const Measurement& m) { return m.deepest; });
   add("moved from the start", "m", [](const Measurement& m) { return m.drift; });
+  if (run.plan.should_glide) add("speed forward", "m/s", [](const Measurement& m) { return m.forward_speed; });
   add("kinetic energy", "J", [](const Measurement& m) { return m.kinetic_energy; });
   add("contact points", "", [](const Measurement& m) { return m.contacts; });
   add("overlapping pairs", "", [](const Measurement& m) { return m.overlapping_pairs; });
@@ -318,6 +370,12 @@ int run_stacking(const DemoOptions& options) {
   // The rival of a pdepth solver is Bullet's EPA; Bullet's solvers are shown against the exact one.
   const bool ours = *first == SolverKind::exact || *first == SolverKind::approximate;
   const SolverKind second = ours ? SolverKind::bullet_epa : SolverKind::exact;
+  const auto worlds = choose_scenes(options, kScenes);
+  if (!worlds) {
+    report_failure(worlds.error());
+    return kDemoBadUsage;
+  }
+  if (worlds.value().empty()) return kDemoDone;
   std::filesystem::path folder;
   if (const int code = open_output_folder(options, "stacking", folder); code != kDemoDone) return code;
   auto renderer = render::Renderer::create();
@@ -327,7 +385,7 @@ int run_stacking(const DemoOptions& options) {
   auto device = std::move(renderer).value();
   note_interrupts();
   nlohmann::json figures = nlohmann::json::array();
-  for (const scenes::World& plan : {scenes::small_towers(options.seed), scenes::deep_pile(options.seed)}) {
+  for (const scenes::World& plan : worlds.value()) {
     Run run;
     run.plan = plan;
     run.contenders.push_back(std::make_unique<Contender>(plan, *first));

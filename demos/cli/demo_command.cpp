@@ -52,6 +52,7 @@ std::string command_of(const DemoArguments& arguments) {
   const demo::DemoOptions& options = arguments.options;
   std::string text = "pdepth demo " + arguments.name;
   for (const std::string& file : options.inputs) text += fmt::format(" '{}'", file);
+  if (!options.scene.empty()) text += " --scene " + options.scene;
   if (options.steps > 0) text += fmt::format(" --steps {}", options.steps);
   if (!arguments.size.empty()) text += " --size " + arguments.size;
   if (!options.solver.empty()) text += " --solver " + options.solver;
@@ -102,9 +103,13 @@ int run_demo(DemoArguments arguments) {
     fmt::print(stderr, "pdepth: --size must be WIDTHxHEIGHT, each from 64 to 7680, e.g. 1280x720\n");
     return kBadUsage;
   }
+  if (!options.scene.empty() && (all || !demo->has_scenes)) {
+    fmt::print(stderr, "pdepth: --scene belongs to the demos stacking and rollback\n");
+    return kBadUsage;
+  }
   options.out = arguments.out;
   if (all && arguments.report.empty()) arguments.report = "pdepth_out/all";
-  if (arguments.report.empty()) return demo->run(options);
+  if (arguments.report.empty() || options.scene == "list") return demo->run(options);
   if (!arguments.out.empty()) {
     fmt::print(stderr, "pdepth: --report makes the folder of the files itself: leave --out away\n");
     return kBadUsage;
@@ -132,11 +137,13 @@ void add_demo_command(CLI::App& app, Action& action) {
   command->footer(demo_list() + R"(
 Examples:
   pdepth demo stacking --steps 240 --video --out stacking
+  pdepth demo stacking --scene list
   pdepth demo all --report show
   pdepth demo difference a.obj b.obj --size 1920x1080
   pdepth demo difference --trace search.jsonl)");
   command->add_option("NAME", arguments->name, "Which demo, or `all`; without it they are listed");
   command->add_option("FILES", options.inputs, "Meshes, for the demos that take some");
+  command->add_option("--scene", options.scene, "One scene of stacking or rollback; `list` names them");
   command->add_option("--steps", options.steps, "Steps of the simulation; 0 = the demo's own choice")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();

@@ -1,5 +1,6 @@
 #include "scenes/union_worlds.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/world_parts.hpp"
@@ -71,6 +72,111 @@ ContactScene torus_pour(std::uint64_t perturbation) {
   }
   perturb(scene, perturbation);
   return scene;
+}
+
+WorldBody gear(int teeth, double pitch, double half_width, const Vec3& at) {
+  const double root = pitch - 0.075;
+  const double tip = pitch + 0.06;
+  WorldBody body;
+  body.kind = WorldBody::Kind::compound;
+  const auto at_angle = [&](double radius, double angle, double y) {
+    return Vec3(radius * std::cos(angle), y, radius * std::sin(angle));
+  };
+  WorldBody hub;
+  for (int i = 0; i < 2 * teeth; ++i) {
+    for (const double y : {-half_width, half_width}) {
+      hub.points.push_back(at_angle(root / std::cos(M_PI / (2 * teeth)), M_PI * (i + 0.5) / teeth, y));
+    }
+  }
+  body.parts.push_back(hub);
+  for (int i = 0; i < teeth; ++i) {
+    const double middle = 2 * M_PI * i / teeth;
+    WorldBody tooth;
+    tooth.position = at_angle(0.5 * (root + tip), middle, 0);
+    for (const double y : {-half_width, half_width}) {
+      for (const double side : {-1.0, 1.0}) {
+        // Two thirds of the pitch wide in the hub, a third at the tip.
+        tooth.points.push_back(at_angle(root - 0.02, middle + side * 0.32 * 2 * M_PI / teeth, y) - tooth.position);
+        tooth.points.push_back(at_angle(tip, middle + side * 0.14 * 2 * M_PI / teeth, y) - tooth.position);
+      }
+    }
+    body.parts.push_back(tooth);
+  }
+  body.mass = 700 * M_PI * pitch * pitch * 2 * half_width;
+  body.position = at;
+  return body;
+}
+
+World slide_over_mesh(std::uint64_t /*seed*/) {
+  World world = slide(SlideOver::mesh, 0).world;
+  world.name = "slide";
+  world.title = "A box slides over a flat mesh without friction, 3 m/s";
+  world.steps = 180;
+  world.steps_per_second = 60;
+  world.should_glide = true;
+  world.studio_floor = -0.05;
+  world.bodies[0].colour = 6;
+  // A lane is enough to look at.
+  std::erase_if(world.bodies[0].triangles, [&](const std::array<int, 3>& triangle) {
+    return std::any_of(triangle.begin(), triangle.end(), [&](int corner) {
+      const Vec3& point = world.bodies[0].points[static_cast<std::size_t>(corner)];
+      return std::abs(point.y()) > 2.5 || point.x() > 4.5;
+    });
+  });
+  world.view_lower = Vec3(-9.4, -1.2, 0);
+  world.view_upper = Vec3(0.6, 1.2, 1);
+  world.view_azimuth = -80;
+  world.view_elevation = 22;
+  return world;
+}
+
+World two_gears(std::uint64_t /*seed*/) {
+  constexpr double kPitch[] = {0.5, 0.75};
+  constexpr int kTeeth[] = {12, 18};
+  World world;
+  world.name = "gears";
+  world.title = "The large gear was spun at 6 rad/s and turns the small one";
+  world.friction = 0.1;
+  world.steps = 480;
+  world.bodies.push_back(ground_box(6));
+  world.bodies[0].drawn = false;
+  double x = -0.6;
+  for (int i = 0; i < 2; ++i) {
+    const Vec3 at(x, 0, 1);
+    WorldBody axle = box(Vec3(0.05, 0.3, 0.05), at);
+    axle.mass = 0;
+    axle.colour = 6;
+    WorldBody wheel = gear(kTeeth[i], kPitch[i], 0.12, at);
+    wheel.colour = i;
+    // A tooth of the first looks along x; the second has a gap there.
+    if (i == 1) {
+      wheel.angular_velocity = Vec3(0, 6, 0);
+      wheel.orientation = Eigen::AngleAxisd(M_PI / kTeeth[1], Vec3::UnitY());
+    }
+    const int first = static_cast<int>(world.bodies.size());
+    world.bodies.push_back(axle);
+    world.bodies.push_back(wheel);
+    for (const double y : {-0.3, 0.3}) world.joints.push_back({first, first + 1, at + Vec3(0, y, 0)});
+    x += kPitch[0] + kPitch[1] + 0.015;
+  }
+  world.view_lower = Vec3(-1.3, -0.3, 0);
+  world.view_upper = Vec3(1.6, 0.3, 1.9);
+  world.view_azimuth = -80;
+  world.view_elevation = 12;
+  return world;
+}
+
+World torus_and_peg(std::uint64_t /*seed*/) {
+  World world = torus_on_peg(0).world;
+  world.name = "peg";
+  world.title = "A torus of sixteen convex pieces slides down a peg";
+  world.steps = 240;
+  world.steps_per_second = 60;
+  world.bodies[0].drawn = false;
+  world.bodies[1].colour = 6;
+  world.view_lower = Vec3(-1.1, -0.9, 0);
+  world.view_upper = Vec3(1.1, 0.9, 4.2);
+  return world;
 }
 
 }  // namespace pd::scenes

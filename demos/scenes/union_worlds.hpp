@@ -15,4 +15,14 @@ namespace pd::scenes {
 /// Fifty tori of twelve pieces fall into a heap on a floor, some through each other's holes.
 [[nodiscard]] ContactScene torus_pour(std::uint64_t perturbation);
 
+/// A spur gear about the y axis: a hub and `teeth` wedges with straight flanks, flush in the hub. `pitch` is the radius
+/// at which it meets another.
+[[nodiscard]] WorldBody gear(int teeth, double pitch, double half_width, const Vec3& at);
+
+/// For the demos: a box that slides over a flat mesh without friction, two gears on axles of which one is turned, the
+/// torus on its peg.
+[[nodiscard]] World slide_over_mesh(std::uint64_t seed);
+[[nodiscard]] World two_gears(std::uint64_t seed);
+[[nodiscard]] World torus_and_peg(std::uint64_t seed);
+
 }  // namespace pd::scenes

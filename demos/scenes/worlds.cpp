@@ -131,6 +131,35 @@ World fast_throws(std::uint64_t seed) {
 
   world.view_lower = Vec3(-1.9, -0.75, 0);
   world.view_upper = Vec3(1.75, 0.75, 1.3);
+  world.view_azimuth = -102;
+  world.view_elevation = 14;
+  return world;
+}
+
+World rods_at_a_foil(std::uint64_t seed) {
+  World world;
+  world.name = "foil";
+  world.title = "Rods at 25 to 35 m/s against a wall of 1 mm";
+  world.steps = 12;
+  world.steps_per_second = 60;
+  world.restitution = 0.2;
+  Stream random(seed + 9);
+  world.bodies.push_back(floor_below(12));
+  WorldBody wall = box_hull(Vec3(0.0005, 1, 0.8), Vec3(1, 0, 0.8), 6);
+  wall.mass = 0;
+  world.bodies.push_back(wall);
+  for (int i = 0; i < 3; ++i) {
+    // Across its way, along it, and turning from one to the other.
+    WorldBody rod = box_hull(Vec3(0.02, 0.02, 0.3), Vec3(-1.3 - 0.07 * i, 0.55 * (i - 1), 0.75 + 0.2 * i), i);
+    rod.orientation = Eigen::AngleAxisd(0.5 * M_PI * i + 0.1 * random.next(), Vec3::UnitY());
+    rod.linear_velocity = Vec3(30 + 5 * random.next(), 0.3 * random.next(), 1);
+    rod.angular_velocity = Vec3(2 * random.next(), i == 1 ? 0.5 : 16, 2 * random.next());
+    world.bodies.push_back(rod);
+  }
+  world.view_lower = Vec3(-1.7, -0.9, 0);
+  world.view_upper = Vec3(1.6, 0.9, 1.6);
+  world.view_azimuth = -102;
+  world.view_elevation = 14;
   return world;
 }
 

@@ -50,10 +50,14 @@ struct World {
   double restitution = 0;
   int solver_iterations = 30;  ///< of the contact solver, with two friction directions, for every depth solver
   double steps_per_second = 240;
-  int steps = 0;                   ///< how long it is worth watching
-  bool should_stand = false;       ///< every move from the start is a fault
+  int steps = 0;              ///< how long it is worth watching
+  bool should_stand = false;  ///< every move from the start is a fault
+  bool should_glide = false;  ///< the first moving body keeps its speed: a contact that leans against its way is one
+  double studio_floor = 0;    ///< height of the floor that pictures show, which no body touches
   Vec3 view_lower = Vec3::Zero();  ///< what a camera should see
   Vec3 view_upper = Vec3::Zero();
+  double view_azimuth = -62;  ///< from where, degrees; 0 is along x
+  double view_elevation = 16;
 };
 
 /// The eight corners of a box, for engines whose boxes are a special case.
@@ -68,5 +72,8 @@ struct World {
 
 /// Spinning bodies thrown at each other and at a thin wall, faster than one body length a step.
 [[nodiscard]] World fast_throws(std::uint64_t seed);
+
+/// Spinning rods thrown at a wall of one millimetre.
+[[nodiscard]] World rods_at_a_foil(std::uint64_t seed);
 
 }  // namespace pd::scenes

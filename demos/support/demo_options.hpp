@@ -1,6 +1,6 @@
 /// @file
-/// What every demo is told on the command line: `pdepth demo NAME [--steps N] [--size WxH] [--out DIR] [--solver S]
-/// [--seed N] [--video] [--force]`. Filled by the command line, read by the demos.
+/// What every demo is told on the command line: `pdepth demo NAME [--scene S] [--steps N] [--size WxH] [--out DIR]
+/// [--solver S] [--seed N] [--video] [--force]`. Filled by the command line, read by the demos.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,8 @@ struct Page;
 namespace pd::demo {
 
 struct DemoOptions {
+  /// One scene of a demo that has several, or "list"; empty = the demo's own choice.
+  std::string scene;
   /// Steps of the simulation; 0 = the demo's own choice.
   int steps = 0;
   /// Size of one frame in pixels.

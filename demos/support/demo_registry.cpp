@@ -9,12 +9,15 @@ namespace pd::demo {
 namespace {
 
 constexpr std::array kDemos{
-    Demo{"stacking", "towers and piles where the solver matters: solver against solver from the same start",
+    Demo{"stacking", "bodies at rest, in heaps and on the move: solver against solver from the same start", true,
          run_stacking},
-    Demo{"rollback", "bodies thrown fast at each other, taken back to the exact time of first contact", run_rollback},
-    Demo{"difference", "one pair with its Minkowski difference: why the depth is what it is", run_difference},
-    Demo{"agarwal", "the constructions of Agarwal et al. 2000: normal diagrams, grids, searches, width", run_agarwal},
-    Demo{"dobkin", "the constructions of Dobkin et al. 1993: hierarchies, a descent, polygons with holes", run_dobkin},
+    Demo{"rollback", "bodies thrown fast at each other, taken back to the exact time of first contact", true,
+         run_rollback},
+    Demo{"difference", "one pair with its Minkowski difference: why the depth is what it is", false, run_difference},
+    Demo{"agarwal", "the constructions of Agarwal et al. 2000: normal diagrams, grids, searches, width", false,
+         run_agarwal},
+    Demo{"dobkin", "the constructions of Dobkin et al. 1993: hierarchies, a descent, polygons with holes", false,
+         run_dobkin},
 };
 
 }  // namespace

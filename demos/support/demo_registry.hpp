@@ -12,6 +12,7 @@ namespace pd::demo {
 struct Demo {
   std::string_view name;
   std::string_view description;  ///< one line, for the help
+  bool has_scenes;               ///< whether it takes `options.scene`
   /// Runs to the end, writes its files below `options.out`, prints progress to stderr and headline figures to stdout.
   /// @return one of DemoExit.
   int (*run)(const DemoOptions& options);

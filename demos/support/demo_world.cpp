@@ -6,17 +6,16 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
-#include "pd/bullet/install.hpp"
-#include "pd/bullet/pair_answer.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pd/bullet/shape_cache.hpp"
-#include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/render/mesh.hpp"
 #include "pd/render/palette.hpp"
 #include "scenes/bullet/bullet_scene.hpp"
+#include "scenes/bullet/convex_pieces.hpp"
 
 namespace pd::demo {
 
@@ -91,99 +90,96 @@ std::string_view describe(SolverKind kind) {
 
 namespace {
 
+scenes::ContactRun run_of(SolverKind kind) {
+  const bool ours = kind == SolverKind::exact || kind == SolverKind::approximate;
+  return ours ? scenes::ContactRun::pdepth_sharp : scenes::ContactRun::bullet_sharp;
+}
+
 BulletSolverSettings settings_for(SolverKind kind) {
   BulletSolverSettings settings;
   settings.delta = kind == SolverKind::approximate ? kApproximateDelta : 0;
   return settings;
 }
 
+/// What is drawn of a body: a convex piece, or all of a mesh.
+struct Drawn {
+  int body;
+  render::MeshRef mesh;
+  Pose local;
+};
+
+std::vector<Drawn> drawn_bodies(const scenes::World& world, const std::vector<scenes::ConvexPiece>& pieces) {
+  std::vector<Drawn> result;
+  for (const scenes::ConvexPiece& piece : pieces) {
+    const scenes::WorldBody& body = world.bodies[static_cast<std::size_t>(piece.body)];
+    if (body.drawn && body.triangles.empty()) {
+      result.push_back({piece.body, render::shape_mesh(*piece.shape), piece.local});
+    }
+  }
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const scenes::WorldBody& body = world.bodies[i];
+    if (body.drawn && !body.triangles.empty()) {
+      // Triangles of their own corners: what bodies catch on are edges between coplanar ones, which are to be seen.
+      std::vector<Vec3> corners;
+      std::vector<std::array<std::int32_t, 3>> triangles;
+      for (const auto& triangle : body.triangles) {
+        const auto first = static_cast<std::int32_t>(corners.size());
+        triangles.push_back({first, first + 1, first + 2});
+        for (const int corner : triangle) corners.push_back(body.points[static_cast<std::size_t>(corner)]);
+      }
+      result.push_back({static_cast<int>(i), render::triangle_mesh(corners, triangles), Pose()});
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 struct DemoWorld::State {
-  State(const scenes::World& description, SolverKind solver_kind_in)
-      : plan(description),
-        kind(solver_kind_in),
-        solver(settings_for(kind)),
+  State(const scenes::World& world, SolverKind solver_kind_in)
+      : kind(solver_kind_in),
         bullet_solver(kind == SolverKind::bullet_minkowski ? std::unique_ptr<btConvexPenetrationDepthSolver>(
                                                                  std::make_unique<btMinkowskiPenetrationDepthSolver>())
                                                            : std::make_unique<btGjkEpaPenetrationDepthSolver>()),
-        dispatcher(&configuration),
-        world(&dispatcher, &broadphase, &constraint_solver, &configuration) {}
+        scene(world, run_of(kind), settings_for(kind)),
+        pieces(scenes::convex_pieces(world)),
+        drawn(drawn_bodies(world, pieces)) {}
 
   [[nodiscard]] bool ours() const { return kind == SolverKind::exact || kind == SolverKind::approximate; }
+  [[nodiscard]] const scenes::WorldBody& plan(int i) const { return scene.plan(i); }
 
-  scenes::World plan;
   SolverKind kind;
-  BulletPenetrationDepthSolver solver;
   CountedSolver bullet_solver;
-  btDefaultCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher;
-  btDbvtBroadphase broadphase;
-  btSequentialImpulseConstraintSolver constraint_solver;
-  btDiscreteDynamicsWorld world;
-  std::vector<std::unique_ptr<btConvexShape>> bullet_shapes;
-  std::vector<std::unique_ptr<btRigidBody>> bodies;
-  std::vector<std::shared_ptr<const ConvexShape>> shapes;
-  std::vector<double> radii;
-  std::vector<render::MeshRef> meshes;
+  scenes::BulletScene scene;
+  std::vector<scenes::ConvexPiece> pieces;
+  std::vector<Drawn> drawn;
   std::vector<Vec3> starts;
   Scratch scratch;
 };
 
 DemoWorld::DemoWorld(const scenes::World& world, SolverKind kind) : state_(std::make_unique<State>(world, kind)) {
   State& s = *state_;
-  if (s.ours()) {
-    install(s.world, s.solver);
-  } else {
-    static_cast<btConvexConvexAlgorithm::CreateFunc*>(
-        s.configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE))
+  if (!s.ours()) {
+    static_cast<btConvexConvexAlgorithm::CreateFunc*>(s.scene.configuration().getCollisionAlgorithmCreateFunc(
+                                                          CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE))
         ->m_pdSolver = &s.bullet_solver;
   }
-  s.world.setGravity(to_bullet(world.gravity));
-  s.world.getSolverInfo().m_numIterations = world.solver_iterations;
-  s.world.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-  for (const scenes::WorldBody& plan : world.bodies) {
-    s.bullet_shapes.push_back(scenes::convex_bullet_shape(plan, false, 0));
-    btConvexShape& shape = *s.bullet_shapes.back();
-    btVector3 inertia(0, 0, 0);
-    if (plan.mass > 0) {
-      shape.calculateLocalInertia(static_cast<btScalar>(plan.mass), inertia);
-    }
-    btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(plan.mass), nullptr, &shape, inertia);
-    const Eigen::Quaterniond& q = plan.orientation;
-    info.m_startWorldTransform = btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
-                                                          static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
-                                             to_bullet(plan.position));
-    info.m_friction = static_cast<btScalar>(world.friction);
-    info.m_restitution = static_cast<btScalar>(world.restitution);
-    s.bodies.push_back(std::make_unique<btRigidBody>(info));
-    btRigidBody& body = *s.bodies.back();
-    body.setLinearVelocity(to_bullet(plan.linear_velocity));
-    body.setAngularVelocity(to_bullet(plan.angular_velocity));
-    body.setActivationState(DISABLE_DEACTIVATION);  // nothing is put to sleep: the figures show the solvers alone
-    s.world.addRigidBody(&body);
-    s.shapes.push_back(s.solver.cache().find_or_convert(shape));
-    s.radii.push_back(bounding_radius(*s.shapes.back()));
-    s.meshes.push_back(render::shape_mesh(*s.shapes.back()));
-    s.starts.push_back(to_pd(body.getWorldTransform().getOrigin()));
-  }
+  bullet().getSolverInfo().m_numIterations = world.solver_iterations;
+  bullet().getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  for (int i = 0; i < num_bodies(); ++i) s.starts.push_back(to_pd(body(i).getWorldTransform().getOrigin()));
 }
 
-DemoWorld::~DemoWorld() {
-  for (auto& body : state_->bodies) {
-    state_->world.removeRigidBody(body.get());
-  }
-}
+DemoWorld::~DemoWorld() = default;
 
 Measurement DemoWorld::step() {
   State& s = *state_;
-  const BulletSolverStatistics before = s.solver.statistics();
+  const BulletSolverStatistics before = solver().statistics();
   const std::int64_t bullet_calls = s.bullet_solver.calls;
   const double bullet_microseconds = s.bullet_solver.microseconds;
   const auto start = std::chrono::steady_clock::now();
-  s.world.stepSimulation(static_cast<btScalar>(1 / s.plan.steps_per_second), 0);
+  s.scene.step(s.scene.plan().steps_per_second);
   const double spent = microseconds_since(start);
-  const BulletSolverStatistics after = s.solver.statistics();
+  const BulletSolverStatistics after = solver().statistics();
   Measurement result = measure();
   result.step_microseconds = spent;
   result.solver_calls = s.ours() ? after.calls - before.calls : s.bullet_solver.calls - bullet_calls;
@@ -192,23 +188,27 @@ Measurement DemoWorld::step() {
   return result;
 }
 
-Measurement DemoWorld::measure() {
+void DemoWorld::measure_depths(Measurement& result) {
   State& s = *state_;
-  Measurement result;
-  const int count = num_bodies();
+  const scenes::World& world = s.scene.plan();
   std::vector<Pose> poses;
-  for (const auto& body : s.bodies) {
-    poses.push_back(to_pd(body->getWorldTransform()));
+  std::vector<Vec3> centres;
+  for (const scenes::ConvexPiece& piece : s.pieces) {
+    const Pose pose = to_pd(body(piece.body).getWorldTransform());
+    poses.push_back(piece.posed(pose));
+    centres.push_back(pose.apply(piece.centre));
   }
-  for (int i = 0; i < count; ++i) {
-    for (int j = i + 1; j < count; ++j) {
-      const double reach = s.radii[i] + s.radii[j];
-      if ((s.plan.bodies[i].mass == 0 && s.plan.bodies[j].mass == 0) ||
-          (poses[i].translation() - poses[j].translation()).squaredNorm() > reach * reach) {
+  for (std::size_t i = 0; i < s.pieces.size(); ++i) {
+    for (std::size_t j = i + 1; j < s.pieces.size(); ++j) {
+      const scenes::ConvexPiece& a = s.pieces[i];
+      const scenes::ConvexPiece& b = s.pieces[j];
+      const double reach = a.radius + b.radius;
+      if (a.body == b.body || (s.plan(a.body).mass == 0 && s.plan(b.body).mass == 0) ||
+          (centres[i] - centres[j]).squaredNorm() > reach * reach || scenes::jointed(world, a.body, b.body)) {
         continue;
       }
       const PenetrationDepth answer =
-          penetration_depth({s.shapes[i].get(), poses[i]}, {s.shapes[j].get(), poses[j]}, s.scratch);
+          penetration_depth({a.shape.get(), poses[i]}, {b.shape.get(), poses[j]}, s.scratch);
       if (answer.contact != ContactClass::overlapping) {
         continue;
       }
@@ -216,32 +216,63 @@ Measurement DemoWorld::measure() {
       result.total_depth += answer.depth;
       if (answer.depth > result.deepest) {
         result.deepest = answer.depth;
-        result.deepest_a = i;
-        result.deepest_b = j;
+        result.deepest_a = a.body;
+        result.deepest_b = b.body;
+        result.deepest_piece_a = a.shape;
+        result.deepest_piece_b = b.shape;
         result.deepest_pose_a = poses[i];
         result.deepest_pose_b = poses[j];
         result.deepest_answer = answer;
       }
     }
   }
-  for (int i = 0; i < count; ++i) {
-    const btRigidBody& body = *s.bodies[i];
-    const double mass = s.plan.bodies[i].mass;
+}
+
+Measurement DemoWorld::measure() {
+  State& s = *state_;
+  Measurement result;
+  measure_depths(result);
+  for (int i = 0; i < num_bodies(); ++i) {
+    const btRigidBody& body = s.scene.body(i);
+    const double mass = s.plan(i).mass;
     if (mass == 0) {
       continue;
     }
-    result.drift = std::max(result.drift, (poses[i].translation() - s.starts[i]).norm());
+    const Pose pose = to_pd(body.getWorldTransform());
+    result.drift = std::max(result.drift, (pose.translation() - s.starts[static_cast<std::size_t>(i)]).norm());
     const Vec3 omega = to_pd(body.getAngularVelocity());
     const Vec3 inverse_inertia = to_pd(body.getInvInertiaDiagLocal());
-    const Vec3 local_omega = poses[i].rotation().transpose() * omega;
+    const Vec3 local_omega = pose.rotation().transpose() * omega;
     result.kinetic_energy += 0.5 * mass * to_pd(body.getLinearVelocity()).squaredNorm();
     for (int k = 0; k < 3; ++k) {
       result.kinetic_energy += inverse_inertia[k] > 0 ? 0.5 * local_omega[k] * local_omega[k] / inverse_inertia[k] : 0;
     }
-    result.potential_energy -= mass * s.plan.gravity.dot(poses[i].translation());
+    result.potential_energy -= mass * s.scene.plan().gravity.dot(pose.translation());
   }
-  for (int i = 0; i < s.dispatcher.getNumManifolds(); ++i) {
-    result.contacts += s.dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+  result.forward_speed = static_cast<double>(body(s.scene.first_moving()).getLinearVelocity().x());
+  for (int i = 0; i < s.scene.dispatcher().getNumManifolds(); ++i) {
+    result.contacts += s.scene.dispatcher().getManifoldByIndexInternal(i)->getNumContacts();
+  }
+  return result;
+}
+
+std::vector<Ghost> DemoWorld::ghosts() {
+  constexpr double kDegree = 0.0175;
+  State& s = *state_;
+  const btRigidBody& moving = body(s.scene.first_moving());
+  const Vec3 way = to_pd(moving.getLinearVelocity()).normalized();
+  std::vector<Ghost> result;
+  for (int m = 0; m < s.scene.dispatcher().getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *s.scene.dispatcher().getManifoldByIndexInternal(m);
+    const bool second = manifold.getBody1() == &moving;
+    if (manifold.getBody0() != &moving && !second) continue;
+    for (int i = 0; i < manifold.getNumContacts(); ++i) {
+      const btManifoldPoint& point = manifold.getContactPoint(i);
+      const Vec3 normal = (second ? -1.0 : 1.0) * to_pd(point.m_normalWorldOnB);
+      if (point.m_appliedImpulse > 0 && normal.dot(way) < -kDegree) {
+        result.push_back({to_pd(point.getPositionWorldOnB()), normal});
+      }
+    }
   }
   return result;
 }
@@ -250,35 +281,41 @@ render::Scene DemoWorld::picture(const Measurement& measurement, double shown_de
   const State& s = *state_;
   render::Scene scene;
   const bool shown = measurement.deepest > shown_depth;
-  for (int i = 0; i < num_bodies(); ++i) {
-    if (!s.plan.bodies[i].drawn) {
-      continue;
-    }
+  for (const Drawn& drawn : s.drawn) {
+    const scenes::WorldBody& plan = s.plan(drawn.body);
+    const Pose pose = to_pd(state_->scene.body(drawn.body).getWorldTransform());
     render::Body body;
-    body.mesh = s.meshes[i];
-    body.pose = to_pd(s.bodies[i]->getWorldTransform());
-    body.colour = render::palette::varied(
-        render::palette::categorical(static_cast<std::size_t>(s.plan.bodies[i].colour)), static_cast<std::uint32_t>(i));
-    body.highlight = shown && (i == measurement.deepest_a || i == measurement.deepest_b);
+    body.mesh = drawn.mesh;
+    body.pose =
+        Pose::from_trusted_matrix(pose.rotation() * drawn.local.rotation(), pose.apply(drawn.local.translation()));
+    body.colour = render::palette::varied(render::palette::categorical(static_cast<std::size_t>(plan.colour)),
+                                          static_cast<std::uint32_t>(drawn.body));
+    body.highlight = shown && (drawn.body == measurement.deepest_a || drawn.body == measurement.deepest_b);
     // What stands still is glass: what goes on behind it and inside it is the point of the picture.
-    body.opacity = s.plan.bodies[i].mass > 0 ? 1.0f : 0.45f;
+    body.opacity = plan.mass > 0 ? 1.0f : 0.45f;
     scene.bodies.push_back(std::move(body));
   }
-  scene.focus.include(s.plan.view_lower);
-  scene.focus.include(s.plan.view_upper);
+  scene.ground.height = s.scene.plan().studio_floor;
+  scene.focus.include(s.scene.plan().view_lower);
+  scene.focus.include(s.scene.plan().view_upper);
   return scene;
 }
 
-btDiscreteDynamicsWorld& DemoWorld::bullet() { return state_->world; }
-BulletPenetrationDepthSolver& DemoWorld::solver() { return state_->solver; }
-int DemoWorld::num_bodies() const { return static_cast<int>(state_->bodies.size()); }
-btRigidBody& DemoWorld::body(int i) { return *state_->bodies[i]; }
-const ConvexShape& DemoWorld::shape(int i) const { return *state_->shapes[i]; }
-const scenes::WorldBody& DemoWorld::description(int i) const { return state_->plan.bodies[i]; }
+btDiscreteDynamicsWorld& DemoWorld::bullet() { return state_->scene.world(); }
+BulletPenetrationDepthSolver& DemoWorld::solver() { return state_->scene.solver(); }
+int DemoWorld::num_bodies() const { return state_->scene.num_bodies(); }
+btRigidBody& DemoWorld::body(int i) { return state_->scene.body(i); }
+const scenes::WorldBody& DemoWorld::description(int i) const { return state_->plan(i); }
+
+const ConvexShape& DemoWorld::shape(int i) const {
+  const auto found = std::find_if(state_->pieces.begin(), state_->pieces.end(),
+                                  [&](const scenes::ConvexPiece& piece) { return piece.body == i; });
+  return *found->shape;
+}
 
 int DemoWorld::index_of(const void* collision_object) const {
   for (int i = 0; i < num_bodies(); ++i) {
-    if (static_cast<const btCollisionObject*>(state_->bodies[i].get()) == collision_object) {
+    if (static_cast<const btCollisionObject*>(&state_->scene.body(i)) == collision_object) {
       return i;
     }
   }

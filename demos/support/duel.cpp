@@ -9,6 +9,7 @@ namespace pd::demo {
 namespace {
 
 render::Headline figure(const Half& half, double shown_depth) {
+  if (half.headline) return *half.headline;
   return {length_text(half.depth), "deepest penetration",
           half.depth > shown_depth ? render::palette::kTrouble : render::palette::kGood};
 }

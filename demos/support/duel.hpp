@@ -19,11 +19,12 @@ inline constexpr int kFramesPerSecond = 30;
 
 /// What one of the two worlds shows at one step.
 struct Half {
-  render::Scene scene;      ///< with its arrows
-  double depth = 0;         ///< deepest penetration, metres
-  std::string heading;      ///< which world
-  std::string status;       ///< time and step
-  render::Sparkline curve;  ///< of the deepest penetration
+  render::Scene scene;                            ///< with its arrows
+  double depth = 0;                               ///< deepest penetration, metres
+  std::optional<render::Headline> headline = {};  ///< what is said of it; none: its deepest penetration
+  std::string heading;                            ///< which world
+  std::string status;                             ///< time and step
+  render::Sparkline curve;                        ///< of the deepest penetration
 };
 
 struct DuelPlan {

@@ -69,6 +69,36 @@ TEST_F(Demos, StackingStandsWhereBulletFalls) {
   }
 }
 
+TEST_F(Demos, ABoxKeepsItsSpeedOverAMeshThatBrakesItUnderBullet) {
+  ASSERT_EQ(run("stacking --scene slide --steps 60"), 0);
+  const nlohmann::json figures = read("stacking.json");
+  ASSERT_EQ(figures.size(), 1u);
+  const auto& ours = figures[0]["solvers"][0];
+  const auto& theirs = figures[0]["solvers"][1];
+  EXPECT_NEAR(double(ours["final_forward_speed_m_s"]), 3, 0.005);
+  EXPECT_EQ(ours["braking_contacts"], 0);
+  EXPECT_LT(double(theirs["final_forward_speed_m_s"]), 2.5);
+  EXPECT_GT(theirs["braking_contacts"], 0);
+  EXPECT_TRUE(fs::exists(folder_ / "slide_strip.png"));
+}
+
+TEST_F(Demos, NoRodPassesAWallOfAMillimetre) {
+  ASSERT_EQ(run("rollback --scene foil --steps 6"), 0);
+  const nlohmann::json figures = read("rollback.json");
+  EXPECT_GT(figures["deepest_plain_m"], 0.1);
+  EXPECT_LT(figures["deepest_rollback_m"], 0.005);
+}
+
+TEST_F(Demos, ScenesAreChosenByName) {
+  EXPECT_EQ(run("stacking --scene list"), 0);
+  EXPECT_FALSE(fs::exists(folder_)) << "nothing is drawn";
+  EXPECT_EQ(run("stacking --scene foil"), 2);
+  EXPECT_EQ(run("dobkin --scene slide"), 2);
+  EXPECT_EQ(run("stacking --scene peg --steps 4"), 0);
+  EXPECT_EQ(run("stacking --scene gears --steps 4 --force"), 0);
+  EXPECT_EQ(read("stacking.json")[0]["scene"], "gears");
+}
+
 TEST_F(Demos, RollbackMeetsAtFirstContactAndReplaysTheSameBits) {
   ASSERT_EQ(run("rollback --steps 10"), 0);
   const nlohmann::json figures = read("rollback.json");

@@ -74,6 +74,8 @@ std::string_view to_string(ContactRun run) {
       return "pdepth";
     case ContactRun::pdepth_hulls:
       return "pdepth-hulls";
+    case ContactRun::pdepth_sharp:
+      return "pdepth-margin-0";
   }
   return "";
 }
@@ -161,7 +163,8 @@ btCollisionShape* BulletScene::make_shape(const WorldBody& body, ContactRun run)
     default: {
       const bool box = body.kind == WorldBody::Kind::box;
       const bool sharp = run == ContactRun::bullet_sharp || run == ContactRun::persistent ||
-                         run == ContactRun::pdepth_hulls || (run == ContactRun::pdepth && !box);
+                         run == ContactRun::pdepth_hulls || run == ContactRun::pdepth_sharp ||
+                         (run == ContactRun::pdepth && !box);
       shapes_.push_back(convex_bullet_shape(body, hulls, sharp ? 0 : default_margin(body)));
       break;
     }

@@ -23,13 +23,15 @@ enum class ContactRun {
   persistent,    ///< Bullet's persistent manifolds, our depth; margin 0
   pdepth,        ///< our contact algorithm; boxes with default margins, hulls with margin 0
   pdepth_hulls,  ///< the same, boxes as hulls with margin 0
+  pdepth_sharp,  ///< the same, boxes with margin 0; as bodies are drawn, so for the demos (not among `kContactRuns`)
 };
 inline constexpr ContactRun kContactRuns[] = {
     ContactRun::bullet_best, ContactRun::bullet_sharp, ContactRun::bullet_hulls, ContactRun::bullet_edges,
     ContactRun::persistent,  ContactRun::pdepth,       ContactRun::pdepth_hulls};
 [[nodiscard]] std::string_view to_string(ContactRun run);
 [[nodiscard]] constexpr bool is_ours(ContactRun run) {
-  return run == ContactRun::persistent || run == ContactRun::pdepth || run == ContactRun::pdepth_hulls;
+  return run == ContactRun::persistent || run == ContactRun::pdepth || run == ContactRun::pdepth_hulls ||
+         run == ContactRun::pdepth_sharp;
 }
 
 /// A convex body without children as a Bullet shape. A margin lies inside the body: hulls are shrunk by it first.
@@ -48,6 +50,7 @@ class BulletScene {
 
   [[nodiscard]] btDiscreteDynamicsWorld& world() { return *world_; }
   [[nodiscard]] btCollisionDispatcher& dispatcher() { return dispatcher_; }
+  [[nodiscard]] btDefaultCollisionConfiguration& configuration() { return configuration_; }
   [[nodiscard]] BulletPenetrationDepthSolver& solver() { return solver_; }
   [[nodiscard]] int num_bodies() const { return static_cast<int>(bodies_.size()); }
   [[nodiscard]] btRigidBody& body(int i) { return *bodies_[i]; }

@@ -5,11 +5,10 @@
 
 #include "bench/measure/stopwatch.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pd/bullet/shape_conversion.hpp"
 #include "pd/bullet/solver_settings.hpp"
-#include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "scenes/bullet/convex_pieces.hpp"
 
 namespace pd::bench {
 
@@ -18,57 +17,7 @@ namespace {
 using scenes::BulletScene;
 using scenes::ContactGoal;
 using scenes::ContactScene;
-using scenes::WorldBody;
-
-/// A convex piece of a body, as measured: sharp and without margins.
-struct Piece {
-  int body;
-  ConvexShape shape;
-  Pose local;
-  Vec3 centre;
-  double radius;
-};
-
-Pose pose_of(const WorldBody& body) {
-  return Pose::from_trusted_matrix(body.orientation.toRotationMatrix(), body.position);
-}
-
-Piece piece_of(int body, ConvexShape shape, const Pose& local) {
-  Vec3 lower = Vec3::Constant(1e30);
-  Vec3 upper = -lower;
-  if (const ConvexPolytope* polytope = shape.polytope()) {
-    for (int i = 0; i < polytope->num_vertices(); ++i) {
-      lower = lower.cwiseMin(polytope->vertex(i));
-      upper = upper.cwiseMax(polytope->vertex(i));
-    }
-  } else {
-    lower = upper = Vec3::Zero();
-  }
-  const Vec3 middle = 0.5 * (lower + upper);
-  const double radius =
-      shape.polytope() != nullptr ? 0.5 * (upper - lower).norm() + shape.margin() : bounding_radius(shape);
-  return {body, std::move(shape), local, local.apply(middle), radius};
-}
-
-void collect(int index, const WorldBody& body, const Pose& local, std::vector<Piece>& pieces) {
-  if (body.kind == WorldBody::Kind::compound) {
-    for (const WorldBody& part : body.parts) {
-      collect(index, part, pose_of(part), pieces);
-    }
-  } else if (!body.triangles.empty()) {
-    // The ground under each triangle, one size deep: a body that passes through the surface is deep inside it.
-    for (const auto& triangle : body.triangles) {
-      std::vector<Vec3> points;
-      for (const int corner : triangle) {
-        points.push_back(body.points[corner]);
-        points.emplace_back(body.points[corner] - Vec3::UnitZ());
-      }
-      pieces.push_back(piece_of(index, ConvexShape(*ConvexPolytope::from_points(points)), local));
-    }
-  } else {
-    pieces.push_back(piece_of(index, *to_convex_shape(*scenes::convex_bullet_shape(body, false, 0)), local));
-  }
-}
+using scenes::ConvexPiece;
 
 double quantile_or_zero(const std::vector<double>& values, double q) {
   return values.empty() ? 0 : quantile(values, q);
@@ -88,10 +37,10 @@ class Runner {
       bullet_.world().getSolverInfo().m_numIterations = setting.iterations;
     }
     for (int i = 0; i < bullet_.num_bodies(); ++i) {
-      collect(i, scene.world.bodies[i], Pose(), pieces_);
       starts_.push_back(to_pd(bullet_.body(i).getWorldTransform().getOrigin()));
       weight_ += scene.world.bodies[i].mass * scene.world.gravity.norm() * scene.size;
     }
+    pieces_ = scenes::convex_pieces(scene.world);
     start_energy_ = scenes::mechanical_energy(bullet_);
     figures_.fall_seconds = seconds;
     sample_every_ = std::max(1, static_cast<int>(setting.steps_per_second / 30));
@@ -169,10 +118,9 @@ class Runner {
     const std::size_t count = pieces_.size();
     std::vector<Pose> poses;
     std::vector<Vec3> centres;
-    for (const Piece& piece : pieces_) {
+    for (const ConvexPiece& piece : pieces_) {
       const Pose body = to_pd(bullet_.body(piece.body).getWorldTransform());
-      poses.push_back(
-          Pose::from_trusted_matrix(body.rotation() * piece.local.rotation(), body.apply(piece.local.translation())));
+      poses.push_back(piece.posed(body));
       centres.push_back(body.apply(piece.centre));
     }
     double deepest = 0;
@@ -184,23 +132,18 @@ class Runner {
         const bool fixed = scene_.world.bodies[pieces_[j].body].mass == 0;
         const double reach = pieces_[i].radius + pieces_[j].radius;
         if (pieces_[i].body == pieces_[j].body || (!fixed && j < i) ||
-            (centres[i] - centres[j]).squaredNorm() > reach * reach || jointed(pieces_[i].body, pieces_[j].body)) {
+            (centres[i] - centres[j]).squaredNorm() > reach * reach ||
+            scenes::jointed(scene_.world, pieces_[i].body, pieces_[j].body)) {
           continue;
         }
         DepthSettings settings;
         settings.bracket = Bracket::certified;
-        deepest = std::max(
-            deepest,
-            penetration_depth({&pieces_[i].shape, poses[i]}, {&pieces_[j].shape, poses[j]}, scratch_, settings).depth);
+        deepest = std::max(deepest, penetration_depth({pieces_[i].shape.get(), poses[i]},
+                                                      {pieces_[j].shape.get(), poses[j]}, scratch_, settings)
+                                        .depth);
       }
     }
     return deepest / scene_.size;
-  }
-
-  [[nodiscard]] bool jointed(int a, int b) const {
-    return std::any_of(scene_.world.joints.begin(), scene_.world.joints.end(), [&](const auto& joint) {
-      return (joint.body_a == a && joint.body_b == b) || (joint.body_a == b && joint.body_b == a);
-    });
   }
 
   void count_points() {
@@ -227,7 +170,7 @@ class Runner {
   ContactSetting setting_;
   int num_steps_;
   BulletScene bullet_;
-  std::vector<Piece> pieces_;
+  std::vector<ConvexPiece> pieces_;
   std::vector<Vec3> starts_;
   Scratch scratch_;
   ContactFigures figures_;
