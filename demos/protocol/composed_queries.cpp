@@ -165,14 +165,17 @@ void answer_approx_minkowski_sum(const Node& line, Session& session, JsonWriter&
   }
   for_dimension(composed_dimension(line.at("a"), session.limits), [&]<int D>() {
     const Stopwatch watch;
-    // A quarter of epsilon for sums. Hulls ask for more, by the shape of the whole, which is known once it stands.
+    // A quarter of epsilon for sums. Hulls ask for more, by the shape of the whole, which is known once it stands, and
+    // intersections by how thin they are.
     double share = epsilon / 4;
     Expected<dimension::ApproximateSum<D>> sum = Error{ErrorCode::bad_value, "", ""};
-    for (int attempt = 0; attempt < 3 && !sum; ++attempt, share /= 8) {
+    for (int attempt = 0; attempt < 4 && !sum; ++attempt, share /= 8) {
       const auto whole = ComposedBody<D>::sum_of(read_all<D>(line, session.limits, {share, backend}));
       if (!whole) line.refuse(whole.error());
       sum = dimension::approximate_minkowski_sum<D>(*whole, epsilon, representation, side);
-      if (!sum && !(sum.error().code == ErrorCode::bad_value && epsilon >= 1e-6)) break;
+      if (!sum && !(sum.error().code == ErrorCode::bad_value && sum.error().where == "epsilon" && epsilon >= 1e-5)) {
+        break;
+      }
     }
     if (!sum) line.refuse(sum.error());
     const std::int64_t nanoseconds = watch.nanoseconds();

@@ -62,6 +62,19 @@ TEST(ComposedQueries, MinkowskiSums) {
   EXPECT_EQ(hull["halfspaces"].size(), 4u);
 }
 
+TEST(ComposedQueries, SumsWithAnIntersectionInside) {
+  // [.5, 1] x [.25, 1] and a square.
+  const Json sum =
+      ask("approx_minkowski_sum", R"("a":{"intersection_of":[)" + square(0, 0) + "," + square(0.5, 0.25) +
+                                      R"(]},"b":)" + square(0, 0) + R"(,"epsilon":0.01,"representation":"points")");
+  ASSERT_EQ(code_of(sum), "") << sum;
+  ASSERT_EQ(sum["points"].size(), 4u);
+  for (const Json& p : sum["points"]) {
+    EXPECT_NEAR(std::abs(p[0].get<double>() - 1.25), 0.75, 0.005);
+    EXPECT_NEAR(std::abs(p[1].get<double>() - 1.125), 0.875, 0.005);
+  }
+}
+
 TEST(ComposedQueries, Membership) {
   const Json r = ask("approx_membership", R"("a":{"intersection_of":[)" + square(0, 0) + "," + square(0.5, 0.5) +
                                               R"(]},"epsilon":0.01,"points":[[0.75,0.75],[0.25,0.25],[1,1],[1.1,1]])");
@@ -90,10 +103,12 @@ TEST(ComposedQueries, RefusalsByName) {
           "b");
   refused("approx_membership", R"("a":)" + square(0, 0) + R"(,"epsilon":0.1,"points":[[0,0,0]])", "bad_value",
           "points[0]");
-  refused("approx_minkowski_sum",
-          R"("a":{"intersection_of":[)" + square(0, 0) + "," + square(0, 0) + R"(]},"b":)" + square(0, 0) +
-              R"(,"epsilon":0.1,"representation":"points")",
-          "unsupported", "");
+  const auto sum = [](double x) {
+    return R"("a":{"intersection_of":[)" + square(0, 0) + "," + square(x, 0) + R"(]},"b":)" + square(0, 0) +
+           R"(,"epsilon":0.1,"representation":"points")";
+  };
+  refused("approx_minkowski_sum", sum(1.5), "bad_value", "");
+  refused("approx_minkowski_sum", sum(1), "bad_value", "epsilon");
 }
 
 }  // namespace

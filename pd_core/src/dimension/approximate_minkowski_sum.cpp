@@ -5,108 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "dimension/composed_node.hpp"
 #include "dimension/equal_planes.hpp"
-#include "dimension/joggle.hpp"
-#include "dimension/radial_hull.hpp"
+#include "dimension/flattened_body.hpp"
+#include "dimension/growing_sum.hpp"
 #include "numeric/floating_point_guard.hpp"
-#include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension {
 
 namespace {
 
-/// Rounding in the frame, relative; far below the least epsilon.
-constexpr double kRoom = 1e-9;
-
-/// Grows a polytope inside K until it holds K shrunk by `limit`.
-template <int D>
-class GrowingSum {
- public:
-  explicit GrowingSum(const ComposedBody<D>& sum) : sum_(sum), hull_(0.5) {
-    const detail::EllipsoidBounds<D> bounds = sum.node().template bounds<D>(Matrix<D>::Identity(), 0);
-    frame_.linear = inverse_of<D>(bounds.inner);
-    frame_.translation = -(frame_.linear * bounds.center);
-    ratio_ = (frame_.linear * bounds.outer).norm();
-  }
-
-  /// How far K reaches in the frame, in which it holds the unit ball.
-  [[nodiscard]] double ratio() const { return ratio_; }
-
-  /// @return false where rounding leaves no surface.
-  bool grow(double limit) {
-    enter_facets(0);
-    while (!waiting_.empty()) {
-      std::pop_heap(waiting_.begin(), waiting_.end());
-      const Waiting next = waiting_.back();
-      waiting_.pop_back();
-      if (!hull_.alive(next.facet)) continue;
-      if (certify(next) <= limit) continue;
-      const std::size_t before = hull_.facets().size();
-      const double nearer = detail::joggle<D>(static_cast<std::int64_t>(hull_.vertices().size()), limit);
-      const Vector<D> point = (1 - nearer) * next.support;
-      if (!hull_.insert(point, next.facet)) return false;
-      enter_facets(before);
-    }
-    return true;
-  }
-
-  [[nodiscard]] const detail::RadialHull<D>& hull() const { return hull_; }
-  [[nodiscard]] const AffineMap<D>& frame() const { return frame_; }
-  /// Bounds h_K over a living facet's normal, whose plane is at 1.
-  [[nodiscard]] double upper(std::int32_t facet) const { return upper_[static_cast<std::size_t>(facet)]; }
-  [[nodiscard]] const QueryCounters& counters() const { return counters_; }
-  [[nodiscard]] std::int64_t supports() const { return supports_; }
-
- private:
-  struct Waiting {
-    double height;
-    std::int32_t facet;
-    Vector<D> support;
-    friend bool operator<(const Waiting& a, const Waiting& b) {
-      return a.height != b.height ? a.height < b.height : a.facet > b.facet;
-    }
-  };
-
-  Vector<D> support(const Vector<D>& normal) {
-    ++supports_;
-    return frame_.apply(sum_.support(frame_.pull_back(normal), counters_).point);
-  }
-
-  void enter_facets(std::size_t from) {
-    upper_.resize(hull_.facets().size(), 0.0);
-    for (std::size_t f = from; f < hull_.facets().size(); ++f) {
-      const auto id = static_cast<std::int32_t>(f);
-      if (!hull_.alive(id)) continue;
-      const Vector<D> normal = hull_.facets()[f].normal;
-      const Vector<D> p = support(normal);
-      waiting_.push_back({normal.dot(p), id, p});
-      std::push_heap(waiting_.begin(), waiting_.end());
-    }
-  }
-
-  /// An upper bound of h_K over the facet's normal.
-  double certify(const Waiting& facet) {
-    const double error = sum_.epsilon();
-    double bound = facet.height;
-    if (sum_.node().radial) {
-      bound /= 1 - error;
-    } else if (error > 0) {
-      const Vector<D> normal = hull_.facets()[static_cast<std::size_t>(facet.facet)].normal;
-      bound += error / (1 - error) * (facet.height + (-normal).dot(support(-normal)));
-    }
-    return upper_[static_cast<std::size_t>(facet.facet)] = std::max(bound, 1.0) * (1 + kRoom);
-  }
-
-  const ComposedBody<D>& sum_;
-  AffineMap<D> frame_;
-  double ratio_ = 1;
-  detail::RadialHull<D> hull_;
-  std::vector<Waiting> waiting_;  ///< a heap
-  std::vector<double> upper_;     ///< per facet, once certified
-  QueryCounters counters_;
-  std::int64_t supports_ = 0;
-};
+using detail::GrowingSum;
+using detail::kRoom;
 
 template <int D>
 std::vector<Vector<D>> points_of(const GrowingSum<D>& grown, double factor) {
@@ -149,11 +58,18 @@ Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum
   if (!(epsilon >= 1e-6 && epsilon < 1)) {
     return Error{ErrorCode::bad_value, "epsilon must lie in [1e-6, 1)", "epsilon"};
   }
+  if (sum.equations() > 0 && epsilon < 1e-5) {
+    return Error{ErrorCode::bad_value, "epsilon must be 1e-5 or more with an intersection inside", "epsilon"};
+  }
   if (sum.equations() > 0) {
-    return Error{ErrorCode::unsupported, "an intersection has no support without a search; its parts can be asked", ""};
+    // A fifth of epsilon of the width for the intersections, half of epsilon for the polytope, the rest for their
+    // product.
+    const auto flat = detail::without_intersections<D>(sum, side, epsilon / 5, epsilon / 4);
+    if (!flat) return flat.error();
+    return approximate_minkowski_sum<D>(*flat, epsilon / 2, representation, side);
   }
   GrowingSum<D> grown(sum);
-  const double needed = sum.node().radial ? epsilon / 4 : epsilon / (8 * (1 + grown.ratio()));
+  const double needed = detail::allowed_error(sum, grown.ratio(), epsilon / 2);
   if (sum.epsilon() > needed) {
     return Error{ErrorCode::bad_value,
                  "the bodies are preprocessed at epsilon " + std::to_string(sum.epsilon()) + "; this query needs " +

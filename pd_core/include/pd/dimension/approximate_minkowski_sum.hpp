@@ -1,5 +1,5 @@
 /// @file
-/// Minkowski sums, and other compositions without intersections, as small polytopes ([M] Theorem 2).
+/// Minkowski sums and other compositions as small polytopes ([M] Theorem 2 and section 1.4).
 ///
 /// Outer: K is in K', and h_{K'}(v) <= h_K(v) + (epsilon / 2) width_K(v) for all v, so K' is in K_epsilon. Inner: K' is
 /// in K, every directional width of K' at least 1 - epsilon times that of K. As points or as halfspaces, by choice.
@@ -9,6 +9,10 @@
 /// fattening ([M] Lemma 10), the facet with the farthest support first, until the support over every facet is certified
 /// to be within 1 + epsilon / 2 of its plane. Points and halfspaces are O(1 / epsilon^((d-1)/2)) as measured
 /// (`pdepth-bench arya`), the sampling's order, and fewer where K is flat.
+///
+/// Intersections inside become bodies of halfspaces first, between the supports of polytopes inside their parts and
+/// those that hold them, as fine as the intersection asks for (`src/dimension/flattened_body.hpp`). The promise is that
+/// of all sums, relative to the widths of the composed body itself. Thin intersections of large parts are dear.
 #pragma once
 
 #include "pd/dimension/approximate_body.hpp"
@@ -25,11 +29,13 @@ struct ApproximateSum {
   QueryCounters counters;
 };
 
-/// @param sum      `ComposedBody::sum_of`, `hull_of`, affine images and their compositions
+/// @param sum      `ComposedBody::sum_of`, `hull_of`, `intersection_of`, affine images and their compositions
 /// @param epsilon  in [1e-6, 1), at least 4 times that of every structure inside; with hulls inside 8 (1 + r) times, r
-/// the ratio of the composed sandwich.
-/// @return ErrorCode::bad_value ("epsilon"); unsupported for an intersection inside, which has no support without a
-/// search; out_of_range for bodies too slender for doubles.
+/// the ratio of the composed sandwich; with intersections inside at least 1e-5 and at least 20 times, and more the
+/// thinner they are beside their parts.
+/// @return ErrorCode::bad_value ("epsilon"; "" where an intersection is empty); not_full_dimensional for one that has
+/// no interior, or none that doubles tell; limit_exceeded for one too thin beside its parts; out_of_range for bodies
+/// too slender for doubles.
 template <int D>
 [[nodiscard]] Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum, double epsilon,
                                                                     Representation representation,

@@ -1,0 +1,118 @@
+/// @file
+/// A polytope that grows inside a composed body, the facet with the farthest support first, until every facet's support
+/// is certified to be near its plane ([M] Theorem 2; `pd/dimension/approximate_minkowski_sum.hpp` says where it
+/// departs).
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "dimension/composed_node.hpp"
+#include "dimension/joggle.hpp"
+#include "dimension/radial_hull.hpp"
+#include "pd/dimension/matrix_inverse.hpp"
+
+namespace pd::dimension::detail {
+
+/// Rounding in the frame, relative; far below the least epsilon.
+inline constexpr double kRoom = 1e-9;
+
+/// The largest epsilon of K's structures at which a polytope can be grown until it holds K / (1 + growth).
+/// @param ratio  of the frame, as `GrowingSum` tells
+template <int D>
+[[nodiscard]] double allowed_error(const ComposedBody<D>& body, double ratio, double growth) {
+  return body.node().radial ? growth / 2 : growth / (4 * (1 + ratio));
+}
+
+/// Grows a polytope inside K until it holds K shrunk by `limit`.
+template <int D>
+class GrowingSum {
+ public:
+  explicit GrowingSum(const ComposedBody<D>& sum) : sum_(sum), hull_(0.5) {
+    const EllipsoidBounds<D> bounds = sum.node().template bounds<D>(Matrix<D>::Identity(), 0);
+    frame_.linear = inverse_of<D>(bounds.inner);
+    frame_.translation = -(frame_.linear * bounds.center);
+    ratio_ = (frame_.linear * bounds.outer).norm();
+  }
+
+  /// How far K reaches in the frame, in which it holds the unit ball.
+  [[nodiscard]] double ratio() const { return ratio_; }
+
+  /// @return false where rounding leaves no surface, or where there are `most_vertices`.
+  bool grow(double limit, std::size_t most_vertices = std::numeric_limits<std::size_t>::max()) {
+    enter_facets(0);
+    while (!waiting_.empty()) {
+      if (hull_.vertices().size() >= most_vertices) return false;
+      std::pop_heap(waiting_.begin(), waiting_.end());
+      const Waiting next = waiting_.back();
+      waiting_.pop_back();
+      if (!hull_.alive(next.facet)) continue;
+      if (certify(next) <= limit) continue;
+      const std::size_t before = hull_.facets().size();
+      const double nearer = joggle<D>(static_cast<std::int64_t>(hull_.vertices().size()), limit);
+      const Vector<D> point = (1 - nearer) * next.support;
+      if (!hull_.insert(point, next.facet)) return false;
+      enter_facets(before);
+    }
+    return true;
+  }
+
+  [[nodiscard]] const RadialHull<D>& hull() const { return hull_; }
+  [[nodiscard]] const AffineMap<D>& frame() const { return frame_; }
+  /// Bounds h_K over a living facet's normal, whose plane is at 1.
+  [[nodiscard]] double upper(std::int32_t facet) const { return upper_[static_cast<std::size_t>(facet)]; }
+  [[nodiscard]] const QueryCounters& counters() const { return counters_; }
+  [[nodiscard]] std::int64_t supports() const { return supports_; }
+
+ private:
+  struct Waiting {
+    double height;
+    std::int32_t facet;
+    Vector<D> support;
+    friend bool operator<(const Waiting& a, const Waiting& b) {
+      return a.height != b.height ? a.height < b.height : a.facet > b.facet;
+    }
+  };
+
+  Vector<D> support(const Vector<D>& normal) {
+    ++supports_;
+    return frame_.apply(sum_.support(frame_.pull_back(normal), counters_).point);
+  }
+
+  void enter_facets(std::size_t from) {
+    upper_.resize(hull_.facets().size(), 0.0);
+    for (std::size_t f = from; f < hull_.facets().size(); ++f) {
+      const auto id = static_cast<std::int32_t>(f);
+      if (!hull_.alive(id)) continue;
+      const Vector<D> normal = hull_.facets()[f].normal;
+      const Vector<D> p = support(normal);
+      waiting_.push_back({normal.dot(p), id, p});
+      std::push_heap(waiting_.begin(), waiting_.end());
+    }
+  }
+
+  /// An upper bound of h_K over the facet's normal.
+  double certify(const Waiting& facet) {
+    const double error = sum_.epsilon();
+    double bound = facet.height;
+    if (sum_.node().radial) {
+      bound /= 1 - error;
+    } else if (error > 0) {
+      const Vector<D> normal = hull_.facets()[static_cast<std::size_t>(facet.facet)].normal;
+      bound += error / (1 - error) * (facet.height + (-normal).dot(support(-normal)));
+    }
+    return upper_[static_cast<std::size_t>(facet.facet)] = std::max(bound, 1.0) * (1 + kRoom);
+  }
+
+  const ComposedBody<D>& sum_;
+  AffineMap<D> frame_;
+  double ratio_ = 1;
+  RadialHull<D> hull_;
+  std::vector<Waiting> waiting_;  ///< a heap
+  std::vector<double> upper_;     ///< per facet, once certified
+  QueryCounters counters_;
+  std::int64_t supports_ = 0;
+};
+
+}  // namespace pd::dimension::detail
