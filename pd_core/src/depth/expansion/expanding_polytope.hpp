@@ -126,14 +126,18 @@ class ExpandingPolytope {
   }
 
   /// Steps 3 to 9, at most `goal.max_steps` times.
-  ExpansionResult grow(const ExpansionGoal& goal, ExpansionResult result) {
+  ExpansionResult grow(const ExpansionGoal& asked, ExpansionResult result) {
+    ExpansionGoal goal = asked;
     double largest = 0;
     for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     const double error = lower_error();
     double highest = goal.loss_from;
     ExpansionBudget budget(goal.vertices);
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 least_unit = Vec3::UnitX();
     int f = surface_.nearest();
     for (int step = 0; step < goal.max_steps; ++step) {
+      if (step == goal.close_after) goal.relative = std::max(goal.relative, goal.close);
       // 3.
       ++facets_visited_;
       const double key = surface_.key(f);
@@ -151,6 +155,10 @@ class ExpandingPolytope {
       ++support_calls_;
       const Vec3 unit = normal / std::sqrt(squared);
       double height = s.x.dot(unit);
+      if (height < least) {
+        least = height;
+        least_unit = unit;
+      }
       if (surface_.watch) [[unlikely]]
         report_step(surface_.watch, kDoubleArithmetic, step, surface_, result, unit, s.x);
       // 6. and 7.
@@ -170,7 +178,19 @@ class ExpandingPolytope {
       if (f < 0) return undecided(result);
     }
     result.status = ExpansionStatus::over_budget;
+    if (goal.close > 0) take_least(least, least_unit, result);
     return result;
+  }
+
+  /// The least height met on the way bounds the depth, too, where nothing decided.
+  void take_least(double least, const Vec3& unit, ExpansionResult& result) {
+    if (!(least + bound_error() < result.upper)) return;
+    const DifferenceVertex s = difference_.certified_support(unit, difference_.search_support_along(unit), stack_);
+    ++support_calls_;
+    const double upper = s.x.dot(unit) + bound_error();
+    if (!(upper < result.upper)) return;
+    result.upper = upper;
+    result.normal = unit;
   }
 
   /// Steps 6 and 7: whether the support s, at `height` along `unit`, ends the search. It is certified, and `height`

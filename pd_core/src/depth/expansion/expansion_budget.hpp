@@ -61,4 +61,21 @@ class ExpansionBudget {
   double lowest_ = std::numeric_limits<double>::infinity();
 };
 
+/// Steps of an expansion for Bracket::contact, counted and never timed: a query costs what it costs on any machine.
+struct ContactBudget {
+  /// Steps that go for the bracket asked for; after them a thousandth of the depth is enough (`kContactClose`). Most
+  /// pairs need a tenth of them.
+  static constexpr int kStepsToFull = 128;
+  /// Then the search ends with the bracket that it has. .25 to .35 us a step. Two balls of a thousand vertices each
+  /// need some 350 for a thousandth, whatever order their supports come in: so many facets of P are as near as that.
+  static int max_steps(int vertices) { return std::max(kStepsToFull, 64 + vertices / 8); }
+  /// Curved bodies, about .2 us a step.
+  static constexpr int kCurvedStepsToFull = 64;
+  static constexpr int kCurvedSteps = 128;
+  /// Of them, on an exact hull, where the surface in doubles has folded again and again: up to 2 us each.
+  static constexpr int kExactSteps = 24;
+  /// Of the closest points of curved bodies in double-double, as far apart as rounding: up to .7 us each.
+  static constexpr int kDoubleDoubleSteps = 40;
+};
+
 }  // namespace pd::detail

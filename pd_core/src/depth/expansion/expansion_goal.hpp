@@ -27,6 +27,9 @@ struct ExpansionResult {
   int face = -1;                ///< nearest face of the polytope, -1 when separated
 };
 
+/// `ExpansionGoal::close` of Bracket::contact: a thousandth of the depth.
+inline constexpr double kContactClose = 1e-3;
+
 struct ExpansionGoal {
   double relative = 0;        ///< stop when upper <= (1 + relative) lower
   double absolute = 0;        ///< or when upper - lower <= absolute times the largest |coordinate| seen
@@ -34,6 +37,10 @@ struct ExpansionGoal {
   double touching = 0;        ///< see ExpansionStatus::touching
   double touching_width = 0;  ///< the same, as a length
   int max_steps = std::numeric_limits<int>::max();
+  /// After so many steps upper <= (1 + close) lower is enough: what a contact may leave open where more would cost it
+  /// its bound.
+  int close_after = std::numeric_limits<int>::max();
+  double close = 0;
   int vertices = 0;  ///< of both bodies, for ExpansionBudget; 0: given up after `max_steps` only
   /// `undecided` when a lower bound above `loss_from` falls by more than `max_loss`: the surface has lost its
   /// convexity.

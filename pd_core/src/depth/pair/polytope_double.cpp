@@ -105,6 +105,10 @@ ExpansionGoal expansion_goal(const PolytopeQuery& query) {
   goal.relative = query.settings.delta;
   goal.vertices = query.vertices();
   goal.max_steps = ExpansionBudget::max_steps(goal.vertices);
+  if (!query.for_contact()) return goal;
+  goal.close = kContactClose;
+  goal.close_after = ContactBudget::kStepsToFull;
+  goal.max_steps = std::min(goal.max_steps, ContactBudget::max_steps(goal.vertices));
   return goal;
 }
 
@@ -161,6 +165,7 @@ bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, P
   if (!bound_is_of_face(query.buffers.surface, surface)) return false;
   set_depth(query.pair, surface.lower, surface.upper, surface.normal, out);
   set_contact_of_face(query, surface.face, surface.normal, out);
+  if (query.for_contact()) out.bracket_reached = narrow_enough(query, surface);
   return true;
 }
 
@@ -176,6 +181,15 @@ void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& neares
   DifferenceVertex corners[3];
   for (int i = 0; i < 3; ++i) corners[i] = nearest.simplex[std::min(i, nearest.count - 1)];
   set_features(pair, corners, out);
+}
+
+bool narrow_enough(const PolytopeQuery& query, const ExpansionResult& found) {
+  double largest = 0;
+  for (const DifferenceVertex& v : query.buffers.surface.vertices) {
+    largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+  }
+  return found.upper - found.lower <= query.width().limit(largest) ||
+         found.upper <= (1 + query.settings.delta) * found.lower;
 }
 
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {

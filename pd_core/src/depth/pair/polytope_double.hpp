@@ -21,7 +21,10 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
 /// from. The faces are left in the scratch (`buffers.surface`). Sizes out of range give `undecided` without a face.
 [[nodiscard]] ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out);
 
-/// The surface's nearest face, where its bracket is as narrow as asked.
+/// Whether a bracket of the surface in the scratch is as narrow as the caller asked, whatever ended its search.
+[[nodiscard]] bool narrow_enough(const PolytopeQuery& query, const ExpansionResult& found);
+
+/// The surface's nearest face, where its bracket ended the search.
 bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
 /// Witnesses and features of a face of the surface, or of those in its plane where the origin projects.

@@ -24,8 +24,8 @@ namespace {
 
 constexpr double kDefaultDelta = 1e-6;
 constexpr double kAbsolute = 1e-12;  ///< of L: where a bracket, and `touching`, stop
-/// Bracket::contact: of the depth; what rounding leaves wider is searched again on an exact hull.
-constexpr double kCloseBounds = 1e-3;
+/// Bracket::contact: searches in doubles before an exact hull is made.
+constexpr int kMostSearches = 4;
 
 class SmoothQuery {
  public:
@@ -93,22 +93,25 @@ class SmoothQuery {
     goal.touching = kAbsolute;
     goal.width = width_;
     goal.touching_width = 0.5 * width_;
-    goal.max_steps = for_contact_ ? kMaxContactSteps : kMaxSmoothSteps;
+    goal.max_steps = kMaxSmoothSteps;
+    if (for_contact_) {
+      goal.close = kContactClose;
+      goal.close_after = ContactBudget::kCurvedStepsToFull;
+      goal.max_steps = ContactBudget::kCurvedSteps;
+    }
     ExpandingPolytope<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
     goal.max_loss = 4 * difference_.point_error();
     ExpansionResult best = expansion.run(Vec3::Zero(), goal);
+    if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
+    if (for_contact_ && best.status == ExpansionStatus::undecided) search_again(expansion, goal, best);
     out_.statistics.support_calls += expansion.support_calls();
     out_.statistics.facets_visited += expansion.facets_visited();
     if (best.face >= 0) {
       const SurfaceTriangle& face = buffers_.surface.face(best.face);
       for (int i = 0; i < 3; ++i) corners_[i] = buffers_.surface.vertices[face.v[i]];
     }
-    if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
-    if (best.status != ExpansionStatus::undecided) return best;
-    if (for_contact_) {
-      tighten_upper(best);
-      if (best.face >= 0 && best.lower > 0 && best.upper - best.lower <= kCloseBounds * best.upper) return best;
-    }
+    if (best.status != ExpansionStatus::undecided || (for_contact_ && is_close(best))) return best;
+    if (for_contact_) goal.max_steps = ContactBudget::kExactSteps;
     best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
                              buffers_.surface.watch);
     if (best.face >= 0) {
@@ -118,6 +121,30 @@ class SmoothQuery {
       }
     }
     return best;
+  }
+
+  static bool is_close(const ExpansionResult& found) {
+    return found.face >= 0 && found.lower > 0 && found.upper - found.lower <= kContactClose * found.upper;
+  }
+
+  /// Where rounding folded the surface (corners of discs, all in one plane): on from the hull of its points, which
+  /// does for nine of ten, or anew from the nearest way out so far. All searches share one budget.
+  void search_again(ExpandingPolytope<SmoothDifference>& expansion, ExpansionGoal goal, ExpansionResult& best) {
+    const double max_loss = goal.max_loss;
+    for (int search = 1; search < kMostSearches; ++search) {
+      tighten_upper(best);
+      if (is_close(best)) return;
+      const int left = ContactBudget::kCurvedSteps - static_cast<int>(expansion.support_calls());
+      if (left <= 0) return;
+      const Vec3 normal = best.normal;
+      goal.max_steps = left;
+      goal.max_loss = max_loss;
+      best = search % 2 == 1 ? expansion.resume(goal) : expansion.run(normal, goal);
+      if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
+      if (best.status != ExpansionStatus::undecided) return;
+      if (!(best.upper < std::numeric_limits<double>::infinity())) best.normal = normal;
+    }
+    tighten_upper(best);
   }
 
   /// A search that was ended has bounds from below only, but for those that looked decisive: any support is one.
@@ -264,8 +291,9 @@ class SmoothQuery {
     Vec3 proven = nearest.normal;
     if (!nearest.certified) {
       const ClosestPointWithNormal near = closest_point_double_double(
-          difference_, first, relative, width, for_contact_ ? kMaxContactSteps : std::numeric_limits<int>::max(),
-          buffers_.stack, out_.statistics.support_calls);
+          difference_, first, relative, width,
+          for_contact_ ? ContactBudget::kDoubleDoubleSteps : std::numeric_limits<int>::max(), buffers_.stack,
+          out_.statistics.support_calls);
       nearest = near.nearest;
       proven = near.normal;
     }

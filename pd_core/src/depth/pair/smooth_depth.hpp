@@ -15,9 +15,6 @@ namespace pd::detail {
 /// Supports of one expansion. Two near-balls tied to 1e-4 need as many; each takes about a microsecond.
 inline constexpr int kMaxSmoothSteps = 16384;
 
-/// The same for Bracket::contact: what more steps would gain is below what a contact can use.
-inline constexpr int kMaxContactSteps = 96;
-
 /// Expansion over analytic supports, stopped at upper <= (1 + delta) lower or upper - lower <= 1e-12 L; no curved shape
 /// is tessellated.
 ///
