@@ -10,7 +10,15 @@ struct BracketWidth {
   double of_size = 0;  ///< in units of the largest |coordinate| seen
   double length = 0;   ///< in the unit of the input; the wider of both is enough
 
+  /// Around the cores: relative errors are of the distance, or of the depth, that is left between the margins.
+  double margin = 0;
+
   [[nodiscard]] double limit(double largest) const { return std::max(of_size * largest, length); }
+  /// Whether the bracket of the cores' distance is within `relative` of what is left of it.
+  [[nodiscard]] bool is_within(double relative, double lower, double upper) const {
+    if (margin == 0) return upper <= (1 + relative) * lower;
+    return upper - lower <= relative * std::max(lower - margin, margin - upper);
+  }
 };
 
 }  // namespace pd::detail

@@ -49,25 +49,42 @@ Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction) {
   return std::visit(SupportOf{direction}, core);
 }
 
-SmoothDifference::Body SmoothDifference::body(const PosedShape& posed) {
+double rolling_radius(const ConvexShape::Core& core) {
+  const auto* ellipsoid = std::get_if<Ellipsoid>(&core);
+  if (ellipsoid == nullptr) return 0;
+  const double least = ellipsoid->radii.minCoeff();
+  return least * (least / ellipsoid->radii.maxCoeff()) * (1 - 4 * kUnitRoundoff);
+}
+
+SmoothDifference::Body SmoothDifference::body(const PosedShape& posed, Rolling rolling) {
   const ConvexShape::Core& core = posed.shape->core();
   const ConvexPolytope* polytope = posed.shape->polytope();
   return {&core, polytope ? posed.pose.rotation() : posed.pose.nearest_rotation(),
-          polytope ? polytope->centre() : Vec3(Vec3::Zero()), core_radius(core)};
+          polytope ? polytope->centre() : Vec3(Vec3::Zero()), core_radius(core),
+          rolling == Rolling::taken_out ? rolling_radius(core) : 0.0};
 }
 
-SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points)
-    : a_(body(a)),
-      b_(body(b)),
+SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points,
+                                   Rolling rolling)
+    : a_(body(a, rolling)),
+      b_(body(b, rolling)),
       offset_(b.pose.translation() - a.pose.translation()),
       reach_(a_.radius + b_.radius + offset_.norm()),
+      point_error_(32 * kUnitRoundoff * reach_ + 8 * kUnitRoundoff * (a_.taken_out + b_.taken_out)),
       points_(points) {
   points_.clear();
 }
 
 DifferenceVertex SmoothDifference::support(const Vec3& direction, const DifferenceVertex*) const {
-  return vertex(support_point(*a_.core, -(a_.rotation.transpose() * direction)),
-                support_point(*b_.core, b_.rotation.transpose() * direction));
+  return vertex(support_of_rest(a_, -(a_.rotation.transpose() * direction)),
+                support_of_rest(b_, b_.rotation.transpose() * direction));
+}
+
+Vec3 SmoothDifference::support_of_rest(const Body& body, const Vec3& direction) {
+  const Vec3 point = support_point(*body.core, direction);
+  if (body.taken_out == 0) return point;
+  const double length = direction.norm();
+  return length > 0 ? Vec3(point - (body.taken_out / length) * direction) : Vec3(Vec3::Zero());
 }
 
 DifferenceVertex SmoothDifference::vertex(const Vec3& local_a, const Vec3& local_b) const {

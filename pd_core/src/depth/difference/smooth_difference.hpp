@@ -21,11 +21,23 @@ struct PointPair {
 /// point).
 [[nodiscard]] Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction);
 
+/// A radius of a ball that rolls freely inside a core, rounded down: r_min^2 / r_max of an ellipsoid, its least radius
+/// of curvature; 0 of every other core. By Blaschke's rolling theorem h(n) less that radius is the support function of
+/// a convex body for unit n: the core is that body swept by the ball (W. Blaschke, Kreis und Kugel, 1916, section 24).
+[[nodiscard]] double rolling_radius(const ConvexShape::Core& core);
+
+/// Whether the balls that roll inside the cores are taken out of them.
+enum class Rolling : std::uint8_t { kept, taken_out };
+
 /// The same interface as PolytopeDifference; the "ids" of a support are its index in `points`.
+///
+/// With the rolling balls taken out, A and B stand for the bodies that are left. Balls become points and near-balls
+/// small bodies, so that their nearly tied directions fall apart.
 class SmoothDifference {
  public:
   /// @param points  buffer, grown by one a support; relative to the translation of A.
-  SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points);
+  SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points,
+                   Rolling rolling = Rolling::kept);
 
   /// The difference of two points of the cores, each in its body's frame.
   [[nodiscard]] DifferenceVertex vertex(const Vec3& local_a, const Vec3& local_b) const;
@@ -59,8 +71,11 @@ class SmoothDifference {
   /// t_B - t_A.
   [[nodiscard]] const Vec3& offset() const { return offset_; }
   [[nodiscard]] double reach() const { return reach_; }
-  /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach.
-  [[nodiscard]] double point_error() const { return 32 * kUnitRoundoff * reach_; }
+  /// The radius of the ball taken out of A (`of` 0) or B (1).
+  [[nodiscard]] double taken_out(int of) const { return of == 0 ? a_.taken_out : b_.taken_out; }
+  /// Rotation by the nearest rotation (orthogonal to a few u), the formula and the sums: below 32u of the reach. A unit
+  /// vector errs by 4u, and what is taken out along it by 8u with its sum.
+  [[nodiscard]] double point_error() const { return point_error_; }
   [[nodiscard]] double support_error() const { return 32 * kUnitRoundoff * reach_; }
 
  private:
@@ -69,13 +84,16 @@ class SmoothDifference {
     Mat3 rotation;
     Vec3 centre;    ///< local
     double radius;  ///< >= |x| for every local point
+    double taken_out;
   };
-  static Body body(const PosedShape& posed);
+  static Body body(const PosedShape& posed, Rolling rolling);
+  static Vec3 support_of_rest(const Body& body, const Vec3& direction);
 
   Body a_;
   Body b_;
   Vec3 offset_;
   double reach_;
+  double point_error_;
   std::vector<PointPair>& points_;
 };
 

@@ -48,7 +48,7 @@ inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, co
 }
 
 /// @param start     one to three vertices of P to begin with, affinely independent.
-/// @param relative  stop when upper <= (1 + relative) lower ...
+/// @param relative  stop when upper <= (1 + relative) lower, both less `width.margin` ...
 /// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 template <class Difference>
 ClosestPoint closest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
@@ -74,7 +74,7 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
     double height = -s.x.dot(toward);
     const auto narrow = [&] {
       r.lower = height - lower_error;
-      return r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || r.upper <= (1 + relative) * r.lower);
+      return r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || width.is_within(relative, r.lower, r.upper));
     };
     if (!narrow() && !seen_far_side) {
       // What is near the origin says little about L: look at P's far side once.

@@ -139,7 +139,8 @@ ClosestPointWithNormal closest_point_double_double(const Difference& difference,
       r.lower = height - lower_error;
       out.normal = toward;
     }
-    r.certified = r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || r.upper <= (1 + relative) * r.lower);
+    r.certified =
+        r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || width.is_within(relative, r.lower, r.upper));
     // What the formula's own rounding makes of a support on the simplex is no progress.
     if (r.certified || length - height <= 0.5 * rounding || step >= max_steps || !simplex.add(s)) return out;
   }

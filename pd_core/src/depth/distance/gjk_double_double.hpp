@@ -19,7 +19,7 @@ struct ClosestPointWithNormal {
 };
 
 /// @param first     a vertex of P to begin with.
-/// @param relative  stop when upper <= (1 + relative) lower ...
+/// @param relative  stop when upper <= (1 + relative) lower, both less `width.margin` ...
 /// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 /// `certified` is false where P holds the origin within rounding, or rounding left the bracket wider than asked.
 /// Ends: each step but the last is strictly nearer, and there are at most `max_steps`.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "depth/pair/point_in_ellipsoid.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -51,6 +53,7 @@ std::optional<InscribedBallsDepth> inscribed_balls_depth(const PosedShape& a, co
   // The centres err as points do, the radii by the rounding of their formula.
   out.lower = ball_a.radius + ball_b.radius - apart.norm() - difference.point_error();
   if (!(out.lower > 0)) return std::nullopt;
+  out.lower -= difference.taken_out(0) + difference.taken_out(1);
   out.upper = std::numeric_limits<double>::infinity();
   const double error = support_plane_error(difference);
   const auto try_along = [&](const Vec3& direction) {
@@ -82,6 +85,56 @@ std::optional<InscribedBallsDepth> inscribed_balls_depth(const PosedShape& a, co
   out.on_a = centre_a - ball_a.radius * out.normal;
   out.on_b = centre_b + ball_b.radius * out.normal;
   return out;
+}
+
+namespace {
+
+/// Farther from a ball, the search that the ball would spare is short.
+constexpr double kMaxBallRatio = 1 + 1e-4;
+
+std::optional<InscribedBallsDepth> ball_of_one_in_other(const PosedShape& inner, const PosedShape& outer,
+                                                        bool outer_is_a, const SmoothDifference& difference) {
+  const auto* ellipsoid = std::get_if<Ellipsoid>(&outer.shape->core());
+  if (ellipsoid == nullptr) return std::nullopt;
+  const auto* round = std::get_if<Ellipsoid>(&inner.shape->core());
+  if (round != nullptr && round->radii.maxCoeff() > kMaxBallRatio * round->radii.minCoeff()) return std::nullopt;
+  if (round == nullptr && (inner.shape->polytope() == nullptr || inner.shape->polytope()->num_vertices() > 1)) {
+    return std::nullopt;
+  }
+  const Ball ball = std::visit(InscribedBall{}, inner.shape->core());
+  const Mat3 turn_inner = inner.shape->polytope() ? inner.pose.rotation() : inner.pose.nearest_rotation();
+  const Mat3 turn_outer = outer.pose.nearest_rotation();
+  const Vec3 offset = inner.pose.translation() - outer.pose.translation();
+  const Vec3 local = turn_outer.transpose() * (turn_inner * ball.centre + offset);
+  if (!(local.cwiseQuotient(ellipsoid->radii).squaredNorm() < 1)) return std::nullopt;
+  const PointInEllipsoid found = point_in_ellipsoid(ellipsoid->radii, local);
+  const Vec3 outward = turn_outer * found.outward;
+  const double length = outward.norm();
+  if (!(found.lower > 0) || !(length > 0)) return std::nullopt;
+  InscribedBallsDepth out;
+  out.normal = outward / (outer_is_a ? -length : length);
+  // The centre errs as points do.
+  out.lower = ball.radius + found.lower - difference.point_error() - difference.taken_out(0) - difference.taken_out(1);
+  out.upper = difference.support(out.normal, nullptr).x.dot(out.normal) + support_plane_error(difference);
+  out.lower = std::min(out.lower, out.upper);
+  const Vec3 centre = turn_inner * ball.centre;
+  const Vec3 surface = turn_outer * support_point(*ellipsoid, found.outward);
+  const Vec3 between = outer_is_a ? offset : Vec3(-offset);  // t_B - t_A
+  out.on_a = outer_is_a ? surface : Vec3(centre - ball.radius * out.normal);
+  out.on_b = between + (outer_is_a ? Vec3(centre + ball.radius * out.normal) : surface);
+  return out;
+}
+
+}  // namespace
+
+std::optional<InscribedBallsDepth> ball_in_ellipsoid_depth(const PosedShape& a, const PosedShape& b,
+                                                           const SmoothDifference& difference,
+                                                           std::int64_t& support_calls) {
+  std::optional<InscribedBallsDepth> in_a = ball_of_one_in_other(b, a, true, difference);
+  std::optional<InscribedBallsDepth> in_b = ball_of_one_in_other(a, b, false, difference);
+  support_calls += (in_a ? 1 : 0) + (in_b ? 1 : 0);
+  if (!in_a || !in_b) return in_a ? in_a : in_b;
+  return in_a->upper - in_a->lower <= in_b->upper - in_b->lower ? in_a : in_b;
 }
 
 }  // namespace pd::detail

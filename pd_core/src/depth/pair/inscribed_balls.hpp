@@ -9,7 +9,8 @@
 
 namespace pd::detail {
 
-/// A certified bracket of the depth of the cores, and the points of both balls that face each other across it.
+/// A certified bracket of the depth of the difference that was asked, and the points of the cores, or of the balls in
+/// them, that face each other across it.
 struct InscribedBallsDepth {
   double lower = 0;
   double upper = 0;
@@ -21,9 +22,16 @@ struct InscribedBallsDepth {
 /// P holds the ball of radius r_a + r_b about c_b - c_a, so that the depth is at least r_a + r_b - |c_b - c_a|; it is
 /// at most h_P(n) for every n, tried along both bodies' axes, across their axes of revolution, and along c_b - c_a.
 /// Nothing where a core has no ball at hand (polytopes other than points) or the balls do not hold the origin.
-/// Time: at most eighteen supports.
+/// What the difference has taken out of the cores is taken off the balls. Time: at most eighteen supports.
 [[nodiscard]] std::optional<InscribedBallsDepth> inscribed_balls_depth(const PosedShape& a, const PosedShape& b,
                                                                        const SmoothDifference& difference,
                                                                        std::int64_t& support_calls);
+
+/// Of an ellipsoid and the ball in a point, or in an ellipsoid that is nearly one: the ball's radius and the depth of
+/// its centre in the ellipsoid (point_in_ellipsoid.hpp). Exact but for rounding where the ball is all of its core.
+/// Nothing for other cores, or where the centre lies outside.
+[[nodiscard]] std::optional<InscribedBallsDepth> ball_in_ellipsoid_depth(const PosedShape& a, const PosedShape& b,
+                                                                         const SmoothDifference& difference,
+                                                                         std::int64_t& support_calls);
 
 }  // namespace pd::detail

@@ -14,7 +14,9 @@
 #include "depth/pair/contact_facets.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/inscribed_balls.hpp"
+#include "depth/pair/same_core.hpp"
 #include "depth/pair/scaled_shape.hpp"
+#include "depth/pair/thinnest_axis.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/warm_certificate.hpp"
 
@@ -23,24 +25,28 @@ namespace pd::detail {
 namespace {
 
 constexpr double kDefaultDelta = 1e-6;
-constexpr double kAbsolute = 1e-12;  ///< of L: where a bracket, and `touching`, stop
+constexpr double kAbsolute = 1e-12;            ///< of L: where a bracket, and `touching`, stop
+constexpr double kShareOfDelta = 1 - 0x1p-10;  ///< the rest is left to the rounding of sums with margins
 /// Bracket::contact: searches in doubles before an exact hull is made.
 constexpr int kMostSearches = 4;
 
 class SmoothQuery {
  public:
   SmoothQuery(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
-              PenetrationDepth& out, WarmCertificate* warm)
+              PenetrationDepth& out, WarmCertificate* warm, Rolling rolling)
       : a_(a),
         b_(b),
         buffers_(buffers),
         out_(out),
-        difference_(a, b, buffers.points),
         for_contact_(settings.bracket == Bracket::contact &&
                      (settings.method == Method::automatic || settings.method == Method::expansion)),
+        difference_(a, b, buffers.points, for_contact_ ? Rolling::kept : rolling),
         width_(for_contact_ ? settings.contact_tolerance : 0),
         delta_(settings.delta > 0 ? settings.delta : kDefaultDelta),
-        margin_(a.shape->margin() + b.shape->margin()),
+        taken_out_(difference_.taken_out(0) + difference_.taken_out(1)),
+        margin_a_(a.shape->margin() + difference_.taken_out(0)),
+        margin_b_(b.shape->margin() + difference_.taken_out(1)),
+        margin_(margin_a_ + margin_b_),
         warm_(warm) {}
 
   void solve() {
@@ -60,6 +66,12 @@ class SmoothQuery {
         learn_contact_facet(of, *owner.shape->polytope(), owner.pose, out_, warm_->state().facets);
       }
     }
+  }
+
+  /// What is left of a near-ball may be thinner than rounding lets a search see: the bracket is wide, and need not be.
+  bool asks_for_whole_cores() const {
+    return !out_.bracket_reached && out_.contact == ContactClass::overlapping && taken_out_ > 0 &&
+           out_.upper - out_.lower > kAbsolute * size();
   }
 
  private:
@@ -87,11 +99,11 @@ class SmoothQuery {
 
   ExpansionResult expand() {
     ExpansionGoal goal;
-    // With margins the error relative to core depth + margins is smaller still.
     goal.relative = delta_;
     goal.absolute = kAbsolute;
     goal.touching = kAbsolute;
-    goal.width = width_;
+    // Relative to the whole cores.
+    goal.width = std::max(width_, kShareOfDelta * delta_ * taken_out_);
     goal.touching_width = 0.5 * width_;
     goal.max_steps = kMaxSmoothSteps;
     if (for_contact_) {
@@ -149,7 +161,7 @@ class SmoothQuery {
 
   /// A search that was ended has bounds from below only, but for those that looked decisive: any support is one.
   void tighten_upper(ExpansionResult& best) const {
-    WayOut out = thinnest_axis();
+    WayOut out = thinnest_axis(a_, b_, difference_);
     if (best.face >= 0) {
       const Vec3 unit = buffers_.surface.normal(best.face).normalized();
       const double height = difference_.support(unit, nullptr).x.dot(unit) + support_plane_error(difference_);
@@ -165,12 +177,17 @@ class SmoothQuery {
   double size() const {
     double largest = 0;
     for (const DifferenceVertex& v : buffers_.surface.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
-    return std::max(largest, 0x1p-1000);
+    return std::max(largest + taken_out_, 0x1p-1000);
   }
 
   bool solve_by_inscribed_balls() {
-    const auto balls = inscribed_balls_depth(a_, b_, difference_, out_.statistics.support_calls);
-    if (!balls || !(balls->upper <= (1 + delta_) * balls->lower)) return false;
+    std::int64_t& calls = out_.statistics.support_calls;
+    const auto is_narrow = [&](const std::optional<InscribedBallsDepth>& balls) {
+      return balls && balls->upper - balls->lower <= kShareOfDelta * delta_ * (balls->lower + taken_out_);
+    };
+    auto balls = ball_in_ellipsoid_depth(a_, b_, difference_, calls);
+    if (!is_narrow(balls)) balls = inscribed_balls_depth(a_, b_, difference_, calls);
+    if (!is_narrow(balls)) return false;
     out_.contact = ContactClass::overlapping;
     set_depth(balls->lower + margin_, balls->upper + margin_, balls->normal);
     out_.witness_a = balls->on_a - a_.shape->margin() * out_.normal;
@@ -184,12 +201,12 @@ class SmoothQuery {
     if (!warm_ || warm_->state().smooth.count == 0) return false;
     WarmSmoothPoints& last = warm_->state().smooth;
     const int count = std::exchange(last.count, 0);
-    if (!same_shape(*last.a, *a_.shape) || !same_shape(*last.b, *b_.shape)) return false;
+    if (!same_core(*last.a, *a_.shape) || !same_core(*last.b, *b_.shape)) return false;
     DifferenceVertex start[3];
     for (int i = 0; i < count; ++i) start[i] = difference_.vertex(last.on_a[i], last.on_b[i]);
     const ClosestPoint nearest =
-        closest_point(difference_, std::span(start).first(static_cast<std::size_t>(count)), margin_ > 0 ? 0.0 : delta_,
-                      {0.25 * kAbsolute, 0.5 * width_}, buffers_.stack, out_.statistics.support_calls);
+        closest_point(difference_, std::span(start).first(static_cast<std::size_t>(count)), relative_of_distance(),
+                      width_of_distance(), buffers_.stack, out_.statistics.support_calls);
     if (!nearest.certified) return false;
     const double unclear = 2 * kAbsolute * difference_.reach();
     if (!for_contact_ && nearest.lower - margin_ <= unclear && nearest.upper - margin_ >= -unclear) return false;
@@ -198,22 +215,11 @@ class SmoothQuery {
     return true;
   }
 
-  static bool same_shape(const ConvexShape& x, const ConvexShape& y) {
-    if (x.core().index() != y.core().index()) return false;
-    if (x.polytope()) return x.polytope()->same_storage(*y.polytope());
-    if (const auto* e = std::get_if<Ellipsoid>(&x.core())) return e->radii == std::get<Ellipsoid>(y.core()).radii;
-    const auto same = [](const auto& p, const auto& q) {
-      return p.radius == q.radius && p.half_height == q.half_height && p.axis == q.axis;
-    };
-    if (const auto* c = std::get_if<Cylinder>(&x.core())) return same(*c, std::get<Cylinder>(y.core()));
-    return same(std::get<Cone>(x.core()), std::get<Cone>(y.core()));
-  }
-
   void remember_apart(const ClosestPoint& nearest) {
     if (!warm_ || nearest.count > 3) return;
     WarmSmoothPoints& memory = warm_->state().smooth;
-    if (!memory.a || !same_shape(*memory.a, *a_.shape)) memory.a = *a_.shape;
-    if (!memory.b || !same_shape(*memory.b, *b_.shape)) memory.b = *b_.shape;
+    if (!memory.a || !same_core(*memory.a, *a_.shape)) memory.a = *a_.shape;
+    if (!memory.b || !same_core(*memory.b, *b_.shape)) memory.b = *b_.shape;
     memory.count = nearest.count;
     for (int i = 0; i < nearest.count; ++i) {
       memory.on_a[i] = difference_.points(nearest.simplex[i]).local_a;
@@ -248,28 +254,8 @@ class SmoothQuery {
       b += w * difference_.points(corners[i]).b;
       total += w;
     }
-    out_.witness_a = a / total - a_.shape->margin() * out_.normal;
-    out_.witness_b = b / total + b_.shape->margin() * out_.normal;
-  }
-
-  struct WayOut {
-    Vec3 normal;
-    double upper;
-  };
-
-  /// The least h(n) over the axes of both bodies: cores thinner than rounding leave the expansion without a facet, and
-  /// what is that thin is thin along an axis of its own.
-  WayOut thinnest_axis() const {
-    WayOut best{Vec3::UnitX(), std::numeric_limits<double>::infinity()};
-    for (const PosedShape* body : {&a_, &b_}) {
-      const Mat3 rotation = body->pose.nearest_rotation();
-      for (int axis = 0; axis < 6; ++axis) {
-        const Vec3 n = axis < 3 ? Vec3(rotation.col(axis)) : Vec3(-rotation.col(axis - 3));
-        const double h = difference_.support(n, nullptr).x.dot(n) + support_plane_error(difference_);
-        if (h < best.upper) best = {n, std::max(0.0, h)};
-      }
-    }
-    return best;
+    out_.witness_a = a / total - margin_a_ * out_.normal;
+    out_.witness_b = b / total + margin_b_ * out_.normal;
   }
 
   void fill_touching(const Vec3& normal) {
@@ -281,11 +267,18 @@ class SmoothQuery {
     out_.witness_b = out_.witness_a;
   }
 
+  /// Of the cores' distance. What is left after the shapes' own margins may be far smaller: no relative error would do.
+  double relative_of_distance() const {
+    if (margin_ > taken_out_) return 0;
+    return taken_out_ > 0 ? kShareOfDelta * delta_ : delta_;
+  }
+  BracketWidth width_of_distance() const { return {0.25 * kAbsolute, 0.5 * width_, margin_}; }
+
   /// The cores are apart, or so close that only their distance (within kAbsolute of zero) is known.
   void solve_apart(const ExpansionResult& core) {
     const DifferenceVertex first = difference_.support(core.normal, nullptr);
-    const double relative = margin_ > 0 ? 0.0 : delta_;
-    const BracketWidth width{0.25 * kAbsolute, 0.5 * width_};
+    const double relative = relative_of_distance();
+    const BracketWidth width = width_of_distance();
     ClosestPoint nearest =
         closest_point(difference_, {&first, 1}, relative, width, buffers_.stack, out_.statistics.support_calls);
     Vec3 proven = nearest.normal;
@@ -300,6 +293,10 @@ class SmoothQuery {
     // The cores' signed distance is at most h(normal), certified by the expansion where they are not apart.
     const bool directed = nearest.lower > 0;
     WayOut out{directed ? proven : core.normal, directed ? -nearest.lower : std::max(0.0, core.upper)};
+    if (!directed && !for_contact_) {
+      const WayOut thin = thinnest_axis(a_, b_, difference_);
+      if (thin.upper < out.upper) out = thin;
+    }
     answer_apart(nearest, out.normal, out);
   }
 
@@ -328,7 +325,7 @@ class SmoothQuery {
       return;
     }
     out_.contact = ContactClass::overlapping;
-    if (!std::isfinite(out.upper)) out = thinnest_axis();
+    if (!std::isfinite(out.upper)) out = thinnest_axis(a_, b_, difference_);
     set_depth(margin_ - nearest.upper, margin_ + out.upper, out.normal);
     set_witnesses(nearest.simplex, nearest.weights, nearest.count);
     out_.witness_b = out_.witness_a + out_.translation;
@@ -336,7 +333,7 @@ class SmoothQuery {
 
   /// The same for Bracket::contact: the signed distance lies between -out.upper and nearest.upper, less the margins.
   void answer_contact(const ClosestPoint& nearest, const Vec3& normal, WayOut out) {
-    if (!std::isfinite(out.upper)) out = thinnest_axis();
+    if (!std::isfinite(out.upper)) out = thinnest_axis(a_, b_, difference_);
     const bool apart = nearest.lower > 0;
     out_.normal = apart ? normal : out.normal;
     set_witnesses(nearest.simplex, nearest.weights, nearest.count);
@@ -385,10 +382,13 @@ class SmoothQuery {
   const PosedShape& b_;
   ScratchBuffers& buffers_;
   PenetrationDepth& out_;
-  SmoothDifference difference_;
   bool for_contact_;
+  SmoothDifference difference_;
   double width_;  ///< Bracket::contact: of the interval
   double delta_;
+  double taken_out_;
+  double margin_a_;  ///< with the balls that are taken out of the cores
+  double margin_b_;
   double margin_;
   WarmCertificate* warm_;
   DifferenceVertex corners_[3];  ///< of the nearest face
@@ -404,13 +404,31 @@ void move_witnesses(const Vec3& translation_a, PenetrationDepth& out) {
   out.witness_b += translation_a;
 }
 
+/// The narrower one of this answer and one for the whole cores.
+[[gnu::noinline]] void narrow_by_whole_cores(const PosedShape& a, const PosedShape& b, const DepthSettings& settings,
+                                             ScratchBuffers& buffers, PenetrationDepth& out) {
+  PenetrationDepth whole;
+  SmoothQuery(a, b, settings, buffers, whole, nullptr, Rolling::kept).solve();
+  whole.statistics.support_calls += out.statistics.support_calls;
+  whole.statistics.facets_visited += out.statistics.facets_visited;
+  if (whole.upper - whole.lower < out.upper - out.lower) out = whole;
+}
+
+inline void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
+                  PenetrationDepth& out, WarmCertificate* warm) {
+  SmoothQuery query(a, b, settings, buffers, out, warm, Rolling::taken_out);
+  query.solve();
+  if (query.asks_for_whole_cores()) [[unlikely]]
+    narrow_by_whole_cores(a, b, settings, buffers, out);
+}
+
 }  // namespace
 
 void smooth_depth(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
                   PenetrationDepth& out, WarmCertificate* warm) {
   const int exponent = extreme_exponent(a, b);
   if (exponent == 0) {
-    SmoothQuery(a, b, settings, buffers, out, warm).solve();
+    solve(a, b, settings, buffers, out, warm);
     move_witnesses(a.pose.translation(), out);
     return;
   }
@@ -418,7 +436,7 @@ void smooth_depth(const PosedShape& a, const PosedShape& b, const DepthSettings&
   const PosedShape near_a = near.a(), near_b = near.b();
   DepthSettings near_settings = settings;
   near_settings.contact_tolerance = std::ldexp(settings.contact_tolerance, -exponent);
-  SmoothQuery(near_a, near_b, near_settings, buffers, out, nullptr).solve();
+  solve(near_a, near_b, near_settings, buffers, out, nullptr);
   scale_answer(out, exponent);
   move_witnesses(a.pose.translation(), out);
 }
