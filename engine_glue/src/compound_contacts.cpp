@@ -2,70 +2,20 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "child_tree.hpp"
+#include "compound_children.hpp"
 #include "covered_contact.hpp"
+#include "deep_union.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-/// A child of a compound, or the convex body itself (index -1).
-struct Child {
-  const btCollisionShape* shape;
-  btTransform pose;
-  int index;
-};
-
-struct Box {
-  btVector3 lower;
-  btVector3 upper;
-};
-
-Box box_of(const btCollisionShape& shape, const btTransform& pose) {
-  Box box;
-  shape.getAabb(pose, box.lower, box.upper);
-  return box;
-}
-
-bool apart(const Box& a, const Box& b, btScalar reach) {
-  for (int i = 0; i < 3; ++i) {
-    if (a.lower[i] > b.upper[i] + reach || b.lower[i] > a.upper[i] + reach) return true;
-  }
-  return false;
-}
-
-/// The children whose boxes come within `reach` of a box in the compound's frame, by number.
-void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
-                   std::vector<Child>& children) {
-  children.clear();
-  const btCollisionShape& shape = *wrapper.getCollisionShape();
-  const btTransform& pose = wrapper.getWorldTransform();
-  if (!shape.isCompound()) {
-    children.push_back({&shape, pose, -1});
-    return;
-  }
-  const auto& compound = static_cast<const btCompoundShape&>(shape);
-  const auto visit = [&](int i) {
-    const Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i};
-    if (!apart(box_of(*child.shape, child.pose), world, reach)) children.push_back(child);
-  };
-  if (const btDbvt* tree = compound.getDynamicAabbTree()) {
-    const btVector3 extra(reach, reach, reach);
-    for_each_leaf(*tree, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
-    // The tree's order depends on its history.
-    std::sort(children.begin(), children.end(), [](const Child& x, const Child& y) { return x.index < y.index; });
-  } else {
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) visit(i);
-  }
-}
 
 /// Two children in place of their bodies in the result, as Bullet's own algorithms do, and back.
 class ChildrenInResult {
@@ -141,6 +91,15 @@ class ChildrenOfPoint : public PointSurroundings {
   std::optional<ChildrenInResult> inside_;
 };
 
+/// Where a child stands in a list, at whose end it is put if it is not there.
+int place_of(const Child& child, std::vector<Child>& children) {
+  const auto same = [&](const Child& other) { return other.index == child.index; };
+  const auto found = std::find_if(children.begin(), children.end(), same);
+  const auto place = static_cast<int>(found - children.begin());
+  if (found == children.end()) children.push_back(child);
+  return place;
+}
+
 bool all_convex(const std::vector<Child>& children) {
   return std::all_of(children.begin(), children.end(), [](const Child& child) { return child.shape->isConvex(); });
 }
@@ -156,7 +115,9 @@ class CompoundContacts final : public UnionContacts {
  private:
   /// One pair's points. @return false where a child has no exact form
   bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, ChildPairMemory& memory,
-           ThreadBuffers& buffers, Patches& patches) const;
+           ThreadBuffers& buffers, Patches& patches);
+  /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
+  void leave_as_one(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
   /// What the pair remembers of two children: taken from last step's memory, or new.
   ChildPairMemory& remember(std::vector<ChildPairMemory>& old, std::uint64_t number);
 
@@ -164,6 +125,7 @@ class CompoundContacts final : public UnionContacts {
   std::vector<Child> children_b_;
   std::vector<ChildPair> pairs_;
   std::vector<ChildPairMemory> fresh_memory_;
+  DeepUnion deep_;
 };
 
 ChildPairMemory& CompoundContacts::remember(std::vector<ChildPairMemory>& old, std::uint64_t number) {
@@ -183,6 +145,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   const auto& [a, b, seconds, threshold, stamp, result] = question;
   pairs_.clear();
   fresh_memory_.clear();
+  deep_.clear();
   const btTransform& pose_a = a.getWorldTransform();
   const btTransform& pose_b = b.getWorldTransform();
   if (!is_finite(pose_a) || !is_finite(pose_b)) return true;
@@ -210,11 +173,34 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
     }
   }
   memory.children.swap(fresh_memory_);
+  if (deep_.needed() && pairs_.size() > 1) leave_as_one(question, core, *buffers, patches);
   return true;
 }
 
+void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
+                                    Patches& patches) {
+  DeepUnion::Way way;
+  switch (deep_.find_way(question, core, buffers, way)) {
+    case DeepUnion::Outcome::found:
+      break;
+    case DeepUnion::Outcome::over_budget:
+      buffers.counters.deep_unions_left.add();
+      return;
+    case DeepUnion::Outcome::apart:
+    case DeepUnion::Outcome::unsupported:
+      return;
+  }
+  buffers.counters.deep_unions.add();
+  // The children that touch last need not touch yet.
+  const ChildPair last(place_of(way.a, children_a_), place_of(way.b, children_b_));
+  auto pair = std::find(pairs_.begin(), pairs_.end(), last);
+  if (pair == pairs_.end()) pair = pairs_.insert(pairs_.end(), last);
+  patches.keep_along(way.points.normal);
+  patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.a.index, way.b.index);
+}
+
 bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core,
-                           ChildPairMemory& memory, ThreadBuffers& buffers, Patches& patches) const {
+                           ChildPairMemory& memory, ThreadBuffers& buffers, Patches& patches) {
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
@@ -227,6 +213,7 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   ContactManifold points =
       contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
   keep_uncovered(pair.a(), pair.b(), answer, threshold, question.seconds, question.stamp, core, buffers, points);
+  deep_.add(answer, points);
   patches.add(points, static_cast<int>(pairs_.size()) - 1, pair.a().m_index, pair.b().m_index);
   return true;
 }

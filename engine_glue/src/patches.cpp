@@ -8,6 +8,8 @@ namespace {
 
 /// cos 25 degrees.
 constexpr double kOnePatch = 0.9;
+/// cos 60 degrees.
+constexpr double kAlong = 0.5;
 /// Of the breaking threshold: depths of a resting contact differ by so much from step to step.
 constexpr double kNoise = 1e-3;
 /// Of the breaking threshold: points that near are one. (Bullet merges what lies within the whole of it.)
@@ -34,6 +36,10 @@ void Patches::add(const ContactManifold& manifold, int piece, int i, int j) {
     std::int64_t& feature = points_.back().contact.feature_id;
     feature = feature_of_piece(feature, i, j);
   }
+}
+
+void Patches::keep_along(const Vec3& normal) {
+  std::erase_if(points_, [&](const Point& point) { return point.normal.dot(normal) < kAlong; });
 }
 
 void Patches::choose(int most, double breaking_threshold) {

@@ -25,6 +25,9 @@ class Patches {
   /// @param i, j  numbers of the piece that do not change from step to step: features are told apart by them
   void add(const ContactManifold& manifold, int piece, int i, int j);
 
+  /// Drops the points whose normals are more than 60 degrees off `normal`.
+  void keep_along(const Vec3& normal);
+
   /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees (the
   /// last ones take what fits nowhere), drops those that coincide, and keeps four of each patch: the deepest, the
   /// farthest from it, and those that span the largest triangles with these two, one to each side. Of points that are

@@ -85,6 +85,8 @@ BulletSolverStatistics BulletPenetrationDepthSolver::statistics() const {
     result.wider_brackets += counters.wider.read();
     result.covered_contacts += counters.covered.read();
     result.skipped_triangles += counters.skipped_triangles.read();
+    result.deep_unions += counters.deep_unions.read();
+    result.deep_unions_left += counters.deep_unions_left.read();
   });
   return result;
 }

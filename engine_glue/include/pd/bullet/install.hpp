@@ -35,14 +35,15 @@ enum class BulletContacts {
 ///
 /// Meshes, heightfields and compounds are one body each (one_shot; `BulletSolverSettings::unions_as_one`): a contact
 /// with an edge or face that other triangles or children cover, as far as the bodies move in a step, is dropped, or
-/// turned to the nearest facet of the same piece that is not covered. Flush children, seams that meet up to 1e-7 and
-/// T-junctions are flat; steps, valleys and corners keep every wall. Children of compounds are btBoxShapes without
-/// margin there: rounded, flush boxes would have grooves between them. Separate bodies that lie flush, and children
-/// without flat faces, are not looked at. Contacts of a mesh, heightfield (of triangles; not GImpact or SDF) or
-/// compound (of convex children with exact form) are chosen from all its pieces together, up to four for each of up to
-/// eight directions, each direction in a manifold of its own, and begin at the breaking threshold from the surface,
-/// margins included. Triangles without area or with corners that are no numbers are left out and counted;
-/// `pd::check_mesh` (mesh_check.hpp) finds them, and what Bullet would read past, beforehand.
+/// turned to the nearest facet of the same piece that is not covered. Compounds that are deep in each other leave by
+/// the shortest way of the whole, within a budget. Flush children, seams that meet up to 1e-7 and T-junctions are flat;
+/// steps, valleys and corners keep every wall. Children of compounds are btBoxShapes without margin there: rounded,
+/// flush boxes would have grooves between them. Separate bodies that lie flush, and children without flat faces, are
+/// not looked at. Contacts of a mesh, heightfield (of triangles; not GImpact or SDF) or compound (of convex children
+/// with exact form) are chosen from all its pieces together, up to four for each of up to eight directions, each
+/// direction in a manifold of its own, and begin at the breaking threshold from the surface, margins included.
+/// Triangles without area or with corners that are no numbers are left out and counted; `pd::check_mesh`
+/// (mesh_check.hpp) finds them, and what Bullet would read past, beforehand.
 ///
 /// A world that steps (btDynamicsWorld) gets an action (`addAction`) that tells the solver when a step has ended;
 /// shapes are compared with what they were converted from once a step (shape_cache.hpp).

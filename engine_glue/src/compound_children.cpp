@@ -1,0 +1,48 @@
+#include "compound_children.hpp"
+
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <algorithm>
+
+#include "child_tree.hpp"
+
+namespace pd::detail {
+
+Box box_of(const btCollisionShape& shape, const btTransform& pose) {
+  Box box;
+  shape.getAabb(pose, box.lower, box.upper);
+  return box;
+}
+
+bool apart(const Box& a, const Box& b, btScalar reach) {
+  for (int i = 0; i < 3; ++i) {
+    if (a.lower[i] > b.upper[i] + reach || b.lower[i] > a.upper[i] + reach) return true;
+  }
+  return false;
+}
+
+void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
+                   std::vector<Child>& children) {
+  children.clear();
+  const btCollisionShape& shape = *wrapper.getCollisionShape();
+  const btTransform& pose = wrapper.getWorldTransform();
+  if (!shape.isCompound()) {
+    children.push_back({&shape, pose, -1});
+    return;
+  }
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  const auto visit = [&](int i) {
+    const Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i};
+    if (!apart(box_of(*child.shape, child.pose), world, reach)) children.push_back(child);
+  };
+  if (const btDbvt* tree = compound.getDynamicAabbTree()) {
+    const btVector3 extra(reach, reach, reach);
+    for_each_leaf(*tree, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
+    // The tree's order depends on its history.
+    std::sort(children.begin(), children.end(), [](const Child& x, const Child& y) { return x.index < y.index; });
+  } else {
+    for (int i = 0; i < compound.getNumChildShapes(); ++i) visit(i);
+  }
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,34 @@
+/// @file
+/// The children of a compound that come near another body.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <LinearMath/btTransform.h>
+
+#include <vector>
+
+namespace pd::detail {
+
+/// A child of a compound, or the convex body itself (index -1).
+struct Child {
+  const btCollisionShape* shape;
+  btTransform pose;
+  int index;
+};
+
+struct Box {
+  btVector3 lower;
+  btVector3 upper;
+};
+
+/// Of a shape as it stands, with what Bullet adds.
+Box box_of(const btCollisionShape& shape, const btTransform& pose);
+
+bool apart(const Box& a, const Box& b, btScalar reach);
+
+/// The children whose boxes come within `reach` of a box (`local`: in the compound's frame), by number. Of a shape that
+/// is no compound: itself.
+void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
+                   std::vector<Child>& children);
+
+}  // namespace pd::detail

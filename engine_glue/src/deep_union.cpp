@@ -1,0 +1,112 @@
+#include "deep_union.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "pd/bullet/scalar.hpp"
+#include "pd/compound/compound_depth.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "solver_core.hpp"
+#include "union_algorithm.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Of the radius of the smaller child: contacts that solvers leave behind are far below.
+constexpr double kDeep = 0.25;
+/// cos 45 degrees.
+constexpr double kTogether = 0.7;
+/// What one answer may take.
+constexpr std::size_t kMostPairs = 1 << 10;
+constexpr std::int64_t kMostFacets = 1 << 12;
+
+/// Cores as one body in the world.
+std::optional<Compound> union_of_cores(const std::vector<PosedShape>& posed) {
+  std::vector<Compound::Part> parts;
+  for (const PosedShape& child : posed) parts.push_back({ConvexShape(*child.shape->polytope()), child.pose});
+  auto compound = Compound::from_parts(std::move(parts));
+  if (!compound) return std::nullopt;
+  return std::move(compound).value();
+}
+
+}  // namespace
+
+void DeepUnion::clear() {
+  deepest_ = 0;
+  normals_.clear();
+  torn_ = false;
+}
+
+void DeepUnion::add(const PairAnswer& answer, const ContactManifold& left) {
+  if (answer.depth.contact != ContactClass::overlapping) return;
+  const double radius = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
+  if (answer.depth.depth < kDeep * radius) return;
+  deepest_ = std::max(deepest_, answer.depth.depth);
+  if (left.count == 0) return;
+  torn_ = torn_ || std::any_of(normals_.begin(), normals_.end(),
+                               [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
+  normals_.push_back(left.normal);
+}
+
+bool DeepUnion::collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach,
+                        const UnionQuestion& question, SolverCore& core, Side& side) {
+  const btTransform& pose = body.getWorldTransform();
+  const btTransform& other_pose = other.getWorldTransform();
+  const btCollisionShape& other_shape = *other.getCollisionShape();
+  children_near(body, box_of(other_shape, pose.inverseTimes(other_pose)), box_of(other_shape, other_pose),
+                static_cast<btScalar>(reach), side.children);
+  side.posed.clear();
+  side.held.clear();
+  for (const Child& child : side.children) {
+    if (!child.shape->isConvex()) return false;
+    const auto found = core.cache.find(static_cast<const btConvexShape&>(*child.shape), question.stamp);
+    if (!found->body || found->body->polytope() == nullptr) return false;
+    const bool part = child.index >= 0;
+    side.held.push_back(found);
+    side.posed.push_back({(part && found->sharp ? found->sharp : found->body).get(), to_pd(child.pose)});
+  }
+  return !side.posed.empty();
+}
+
+DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
+                                       Way& way) {
+  UnionSettings settings;
+  settings.method = UnionMethod::facets;
+  settings.max_facets = kMostFacets;
+  // A way of length d meets no child that is farther than d from the other body now.
+  for (double reach = 2 * deepest_;;) {
+    if (!collect(question.a, question.b, reach, question, core, a_) ||
+        !collect(question.b, question.a, reach, question, core, b_)) {
+      return Outcome::unsupported;
+    }
+    if (a_.posed.size() * b_.posed.size() > kMostPairs) return Outcome::over_budget;
+    const std::optional<Compound> a = union_of_cores(a_.posed);
+    const std::optional<Compound> b = union_of_cores(b_.posed);
+    if (!a || !b) return Outcome::unsupported;
+    const auto found =
+        penetration_depth(PosedCompound{&*a, Pose()}, PosedCompound{&*b, Pose()}, buffers.scratch, settings);
+    if (!found) return found.error().code == ErrorCode::limit_exceeded ? Outcome::over_budget : Outcome::unsupported;
+    const UnionDepth& depth = found.value();
+    if (depth.contact != ContactClass::overlapping) return Outcome::apart;
+    if (depth.depth > reach) {
+      reach = 2 * depth.depth;
+      continue;
+    }
+    const auto i = static_cast<std::size_t>(depth.part_a);
+    const auto j = static_cast<std::size_t>(depth.part_b);
+    const double margin_a = a_.posed[i].shape->margin();
+    const double margin_b = b_.posed[j].shape->margin();
+    PenetrationDepth rounded = depth;
+    rounded.witness_a -= margin_a * depth.normal;
+    rounded.witness_b += margin_b * depth.normal;
+    rounded.depth += margin_a + margin_b;
+    way.points = contact_manifold(a_.posed[i], b_.posed[j], rounded, static_cast<double>(question.threshold),
+                                  buffers.manifold, DeepestPoint::as_lifted);
+    way.a = a_.children[i];
+    way.b = b_.children[j];
+    return Outcome::found;
+  }
+}
+
+}  // namespace pd::detail

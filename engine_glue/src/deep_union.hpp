@@ -1,0 +1,64 @@
+/// @file
+/// Two unions of convex pieces that are deep in each other: out the shortest way of the whole, not torn between pieces.
+///
+/// A piece that is far inside another union has no answer of its own that holds for the whole: its nearest exits lead
+/// into other pieces, and pairs of pieces push against each other. There the exact depth of the unions
+/// (pd/compound/compound_depth.hpp) answers, within a budget.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cached_shape.hpp"
+#include "compound_children.hpp"
+#include "pd/contact/manifold.hpp"
+
+namespace pd::detail {
+
+class SolverCore;
+struct PairAnswer;
+struct ThreadBuffers;
+struct UnionQuestion;
+
+class DeepUnion {
+ public:
+  void clear();
+  /// Takes note of what two children said about each other, and of what the rule of covered_contact.hpp left of it.
+  void add(const PairAnswer& answer, const ContactManifold& left);
+  /// Whether children are in each other by a quarter of the smaller one's radius or more, and either nothing of what
+  /// they say is left, or what is left leads apart by more than 45 degrees.
+  [[nodiscard]] bool needed() const { return deepest_ > 0 && (normals_.empty() || torn_); }
+
+  struct Way {
+    ContactManifold points;  ///< of the two children that touch last, along the way out
+    Child a;                 ///< those children
+    Child b;
+  };
+  enum class Outcome {
+    found,
+    apart,        ///< only margins meet
+    over_budget,  ///< more pairs of children within reach, or facets of their differences, than one answer may take
+    unsupported   ///< a child within reach is smooth
+  };
+  /// The shortest way out of b's cores for a's, all children that it could meet included; rounded children go on by
+  /// their margins. Time as said in compound_depth.hpp for the children within reach.
+  Outcome find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Way& way);
+
+ private:
+  struct Side {
+    std::vector<Child> children;
+    std::vector<PosedShape> posed;
+    std::vector<std::shared_ptr<CachedShape>> held;  ///< as long as they are posed
+  };
+  /// @return whether all children within `reach` of the other body are polytopes
+  static bool collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach,
+                      const UnionQuestion& question, SolverCore& core, Side& side);
+
+  double deepest_ = 0;         ///< of the children that are deep
+  std::vector<Vec3> normals_;  ///< of their contacts that are left
+  bool torn_ = false;
+  Side a_;
+  Side b_;
+};
+
+}  // namespace pd::detail

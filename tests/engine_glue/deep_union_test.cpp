@@ -1,0 +1,92 @@
+// Bodies that start deep inside a union of many pieces leave it the shortest way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine_glue/union_worlds.hpp"
+
+namespace pd::test {
+namespace {
+
+btVector3 at(double x, double y, double z) { return {btScalar(x), btScalar(y), btScalar(z)}; }
+
+/// A cube of `side` flush unit boxes to each side, centred.
+btCompoundShape* block(UnionWorld& world, int side) {
+  auto* compound = world.bullet.shape<btCompoundShape>();
+  auto* box = world.bullet.shape<btBoxShape>(at(.5, .5, .5));
+  const double first = 0.5 - 0.5 * side;
+  for (int i = 0; i < side * side * side; ++i) {
+    const btVector3 place = at(first + i % side, first + i / side % side, first + i / (side * side));
+    compound->addChildShape(btTransform(btQuaternion::getIdentity(), place), box);
+  }
+  return compound;
+}
+
+/// Boxes or rounded hulls of .8 x .6 x .7, one or two in a row along x.
+btCollisionShape* brick(UnionWorld& world, int count, bool rounded) {
+  btConvexShape* piece = world.bullet.shape<btBoxShape>(at(.4, .3, .35));
+  if (rounded) {
+    auto* hull = world.bullet.shape<btConvexHullShape>();
+    for (int i = 0; i < 8; ++i) {
+      hull->addPoint(at(i & 1 ? .36 : -.36, i & 2 ? .26 : -.26, i & 4 ? .31 : -.31));
+    }
+    hull->setMargin(btScalar(.04));
+    piece = hull;
+  }
+  if (count == 1) return piece;
+  auto* compound = world.bullet.shape<btCompoundShape>();
+  for (int i = 0; i < count; ++i) {
+    compound->addChildShape(btTransform(btQuaternion::getIdentity(), at(.8 * (i - 0.5 * (count - 1)), 0, 0)), piece);
+  }
+  return compound;
+}
+
+TEST(DeepUnions, ABodyInABlockLeavesItTheShortestWay) {
+  for (const double x : {0.6, 1.0, 1.4}) {
+    for (const int count : {1, 2}) {
+      for (const bool rounded : {false, true}) {
+        SCOPED_TRACE(testing::Message() << x << ' ' << count << ' ' << rounded);
+        UnionWorld world;
+        world.bullet.world().setGravity(at(0, 0, 0));
+        world.fixed(block(world, 4));
+        const btQuaternion turned(at(1, 2, 3).normalized(), btScalar(.2));
+        const btRigidBody* body =
+            world.moving(brick(world, count, rounded), btTransform(turned, at(x, .2, -.1)), at(0, 0, 0));
+        world.step(240);
+        const btVector3& end = body->getWorldTransform().getOrigin();
+        // Two in a row are .8 long to each side: from x = .6 it is nearer to leave upwards.
+        const bool up = count == 2 && x < 0.7;
+        EXPECT_GT(up ? end.y() : end.x(), 2.3);
+        EXPECT_NEAR(static_cast<double>(up ? end.x() : end.y()), up ? x : .2, .1);
+        EXPECT_NEAR(static_cast<double>(end.z()), -.1, .1);
+        EXPECT_LT(body->getAngularVelocity().length(), 0.5);
+        // From x = 1.4 what the outermost boxes say can be enough.
+        EXPECT_TRUE(x > 1.2 || world.solver.statistics().deep_unions > 0);
+        EXPECT_EQ(world.solver.statistics().deep_unions_left, 0);
+      }
+    }
+  }
+}
+
+TEST(DeepUnions, WhatRestsIsNotAsked) {
+  UnionWorld world;
+  world.fixed(block(world, 4));
+  btRigidBody* body = world.moving(brick(world, 2, false), at(0, 2.3, 0), at(0, 0, 0));
+  world.step(120);
+  EXPECT_NEAR(static_cast<double>(body->getWorldTransform().getOrigin().y()), 2.3, 1e-3);
+  EXPECT_EQ(world.solver.statistics().deep_unions, 0);
+}
+
+TEST(DeepUnions, BeyondTheBudgetPiecesAnswerAndItIsCounted) {
+  UnionWorld world;
+  world.bullet.world().setGravity(at(0, 0, 0));
+  world.fixed(block(world, 6));
+  const btRigidBody* body = world.moving(block(world, 5), at(.3, .2, .1), at(0, 0, 0));
+  world.step(1);
+  EXPECT_GT(world.solver.statistics().deep_unions_left, 0);
+  EXPECT_TRUE(std::isfinite(static_cast<double>(body->getWorldTransform().getOrigin().length())));
+}
+
+}  // namespace
+}  // namespace pd::test
