@@ -140,7 +140,8 @@ int add_descent(const ConvexPolytope& body, const PolyhedralHierarchy& hierarchy
     last = v;
   }
   scene.lines.push_back({.points = path, .colour = palette::kDepth, .width_pixels = 4});
-  scene.arrows.push_back({.from = path.back(), .to = path.back() + 0.5 * direction, .label = "direction"});
+  // Named in the legend: beside the arrow a word would stand on the caps.
+  scene.arrows.push_back({.from = path.back(), .to = path.back() + 0.5 * direction, .colour = palette::kGood});
   return caps;
 }
 
@@ -227,7 +228,8 @@ Expected<render::Image> descent_picture(render::Renderer& renderer, render::Size
                            .legend = {{kTones[0], "coarsest level: where the search begins"},
                                       {palette::kFacetVertex, "plane that supports a level"},
                                       {palette::kBodyB, "cap: a vertex that a finer level adds beyond it"},
-                                      {palette::kDepth, "way of the farthest vertex"}}});
+                                      {palette::kDepth, "way of the farthest vertex"},
+                                      {palette::kGood, "direction in which it is farthest"}}});
   return image;
 }
 

@@ -1,13 +1,16 @@
 /// @file
 /// Queries about one body of any dimension: directional widths, width, approximations, kernels.
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 #include "pd/dimension/approximate_body.hpp"
 #include "pd/dimension/approximate_width.hpp"
 #include "pd/dimension/epsilon_kernel.hpp"
 #include "protocol/dimension_body.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/pair_reader.hpp"
-#include "protocol/points_file.hpp"
-#include "support/refusal.hpp"
+#include "protocol/streamed_kernel.hpp"
 
 namespace pd::query {
 
@@ -42,36 +45,44 @@ void write_end(const dimension::SupportPoint<D>& end, JsonWriter& answer) {
   }
 }
 
-/// The kernel of points in a file, which are never all in memory.
+/// A file whose points are read one chunk after the other: the kernel takes this share of epsilon, what follows the
+/// rest. Affine images, other backends and the least epsilons hold all points.
+constexpr double kStreamedShare = 0.7;
+constexpr double kLeastStreamed = 1e-6;
+
+std::optional<Node> streamed_file(const Node& body, double epsilon, Backend backend) {
+  if (backend != Backend::kernel || epsilon < kLeastStreamed || body.find("affine")) return std::nullopt;
+  return body.find("points_file");
+}
+
+/// The kernel's points as a body, and which points of the file they are.
 template <int D>
-dimension::EpsilonKernel<D> kernel_of_file(const Node& node, double epsilon) {
-  constexpr std::size_t kChunk = 65536;
-  Expected<EpsilonKernelStream<D>> made = EpsilonKernelStream<D>::create(epsilon);
-  if (!made) node.refuse(made.error());
-  EpsilonKernelStream<D> kernel = *std::move(made);
-  try {
-    PointsFile file(read_string(node));
-    std::vector<double> numbers;
-    std::vector<Vector<D>> chunk;
-    const auto next = [&] {
-      chunk.clear();
-      if (!file.next(numbers, kChunk)) return false;
-      for (std::size_t i = 0; i < numbers.size(); i += D) {
-        chunk.push_back(Eigen::Map<const Eigen::Matrix<double, D, 1>>(numbers.data() + i));
-      }
-      return true;
-    };
-    while (next()) {
-      if (const auto error = kernel.survey(chunk)) node.refuse(*error);
-    }
-    if (const auto error = kernel.end_survey()) node.refuse(*error);
-    file.rewind();
-    while (next()) kernel.select(chunk);
-  } catch (const Refusal& refusal) {
-    if (!refusal.where.empty()) throw;
-    node.refuse(refusal.code, refusal.message);
-  }
-  return kernel.finish();
+struct Streamed {
+  Body<D> body;
+  std::vector<std::int64_t> indices;
+};
+
+template <int D>
+Streamed<D> body_of_file(const Node& file, double epsilon) {
+  EpsilonKernelStream<D> kernel = kernel_of_file<D>(file, epsilon);
+  Expected<Body<D>> body = Body<D>::from_points(kernel.kernel_points());
+  if (!body) file.refuse(body.error());
+  return {*std::move(body), kernel.finish().indices};
+}
+
+/// (1 + a) / (1 - share) = 1 + epsilon for the width of a kernel, which is the least of few points; the direction that
+/// it finds is measured on all of them.
+template <int D>
+Expected<dimension::ApproximateWidth<D>> width_of_file(const Node& file, double epsilon) {
+  const double share = epsilon * (1 - 1e-4);
+  const Streamed<D> kernel = body_of_file<D>(file, kStreamedShare * share / (1 + share));
+  const auto found = dimension::approximate_width<D>(kernel.body, (1 - kStreamedShare) * share, Backend::kernel);
+  if (!found) return found;
+  dimension::ApproximateWidth<D> width = *found;
+  constexpr double kRoom = 1e-10;  // what the sums of products may lose
+  width.upper = std::max(width.upper, extent_of_file<D>(file, width.direction) * (1 + kRoom));
+  width.width = width.upper;
+  return width;
 }
 
 }  // namespace
@@ -91,14 +102,23 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
       if (length == 0) nodes.element(i).refuse("zero_direction", "a direction must not be zero");
       directions.back() /= length;
     }
-    const Body<D> body = read_dimension_body<D>(a, session.limits);
     const Stopwatch watch;
-    const auto structure = DirectionalWidth<D>::build(body, epsilon, backend);
+    const auto file = streamed_file(a, epsilon, backend);
+    // (1 - share) (1 - rest) >= 1 - epsilon.
+    const Streamed<D> input = file ? body_of_file<D>(*file, kStreamedShare * epsilon)
+                                   : Streamed<D>{read_dimension_body<D>(a, session.limits), {}};
+    const auto structure =
+        DirectionalWidth<D>::build(input.body, file ? (1 - kStreamedShare) * epsilon : epsilon, backend);
     if (!structure) line.refuse(structure.error());
     const std::int64_t build = watch.nanoseconds();
     QueryCounters counters;
     std::vector<dimension::DirectionalWidthAnswer<D>> widths;
-    for (const Vector<D>& v : directions) widths.push_back(structure->width(v, counters));
+    for (const Vector<D>& v : directions) {
+      widths.push_back(structure->width(v, counters));
+      for (dimension::SupportPoint<D>* const end : {&widths.back().most, &widths.back().least}) {
+        if (file && end->index >= 0) end->index = input.indices[static_cast<std::size_t>(end->index)];
+      }
+    }
     const std::int64_t total = watch.nanoseconds();
     answer.key("widths").begin_array();
     for (const auto& w : widths) answer.number(w.width);
@@ -122,9 +142,11 @@ void answer_approx_width(const Node& line, Session& session, JsonWriter& answer)
   const double epsilon = read_epsilon(line);
   const Backend backend = read_backend(line);
   for_dimension(read_dimension(a, session.limits), [&]<int D>() {
-    const Body<D> body = read_dimension_body<D>(a, session.limits);
     const Stopwatch watch;
-    const auto width = dimension::approximate_width<D>(body, epsilon, backend);
+    const auto file = streamed_file(a, epsilon, backend);
+    const auto width =
+        file ? width_of_file<D>(*file, epsilon)
+             : dimension::approximate_width<D>(read_dimension_body<D>(a, session.limits), epsilon, backend);
     if (!width) line.refuse(width.error());
     const std::int64_t nanoseconds = watch.nanoseconds();
     answer.key("width").number(width->width).key("lower").number(width->lower).key("upper").number(width->upper);
@@ -186,7 +208,7 @@ void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answe
     };
     // Kernels are those of the affine image, too: streaming needs no map.
     if (const auto file = a.find("points_file"); file && !a.find("affine")) {
-      return write(kernel_of_file<D>(*file, epsilon));
+      return write(kernel_of_file<D>(*file, epsilon).finish());
     }
     const auto kernel = dimension::epsilon_kernel<D>(read_dimension_body<D>(a, session.limits), epsilon);
     if (!kernel) line.refuse(kernel.error());

@@ -1,9 +1,12 @@
 // Queries of any dimension through the line protocol: answers against hand-made bodies, refusals by name.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "cli/protocol_lines.hpp"
 #include "cli/temporary_folder.hpp"
@@ -26,6 +29,8 @@ const std::string kSquareHalfspaces = R"({"halfspaces":[[1,0,2],[-1,0,0],[0,1,1]
 std::string line(const std::string& query, const std::string& body, const std::string& more) {
   return R"({"id":7,"query":")" + query + R"(","a":)" + body + "," + more + "}";
 }
+
+std::string number(double x) { return Json(x).dump(); }
 
 TEST(DimensionQueries, DirectionalWidths) {
   for (const char* method : {"kernel", "exact"}) {
@@ -115,6 +120,60 @@ TEST_F(PointsFiles, TextAndNumpyGiveTheSameKernel) {
   query::Limits limits;
   limits.files = false;
   EXPECT_EQ(code_of(answer(wide, limits)), "unsupported");
+}
+
+TEST_F(PointsFiles, StreamedWidthsAreThoseOfAllPoints) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::string points;
+  std::vector<std::array<double, 3>> all;
+  for (int i = 0; i < 4000; ++i) {
+    const double x = normal(random), y = normal(random), z = normal(random), r = std::sqrt(x * x + y * y + z * z);
+    all.push_back({x / r, 2 * y / r, 3 * z / r});
+    points +=
+        (i == 0 ? "[" : ",[") + number(all.back()[0]) + "," + number(all.back()[1]) + "," + number(all.back()[2]) + "]";
+  }
+  std::ofstream text(text_);
+  for (const auto& p : all) text << number(p[0]) << " " << number(p[1]) << " " << number(p[2]) << "\n";
+  text.close();
+  const std::string file = R"({"points_file":")" + text_.string() + "\"}";
+  const std::string given = R"({"points":[)" + points + "]}";
+  const auto extent = [&](const Json& v) {
+    double most = -10, least = 10;
+    for (const auto& p : all) {
+      const double at = p[0] * v[0].get<double>() + p[1] * v[1].get<double>() + p[2] * v[2].get<double>();
+      most = std::max(most, at);
+      least = std::min(least, at);
+    }
+    return most - least;
+  };
+  for (const double epsilon : {0.1, 0.01, 1e-3}) {
+    const std::string rest = "\"epsilon\":" + number(epsilon);
+    const Json streamed = answer(line("approx_width", file, rest)), held = answer(line("approx_width", given, rest));
+    ASSERT_EQ(code_of(streamed), "") << streamed;
+    const double lower = streamed["lower"].get<double>(), upper = streamed["upper"].get<double>();
+    EXPECT_LE(upper, (1 + epsilon) * lower);
+    EXPECT_NEAR(upper, extent(streamed["direction"]), 1e-8);
+    EXPECT_LE(lower, held["upper"].get<double>());
+    EXPECT_LE(held["lower"].get<double>(), upper);
+    // The ends are points of the file.
+    const std::string directions = R"(,"directions":[[1,0,0],[0,1,2],[1,-1,1]])";
+    const Json widths = answer(line("approx_directional_width", file, rest + directions));
+    ASSERT_EQ(code_of(widths), "") << widths;
+    const Json asked = Json::parse(
+        "[[1,0,0],[0,0.4472135954999579,0.8944271909999159],"
+        "[0.5773502691896258,-0.5773502691896258,0.5773502691896258]]");
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double width = widths["widths"][i].get<double>(), truth = extent(asked[i]);
+      EXPECT_LE(width, truth * (1 + 1e-12));
+      EXPECT_GE(width, (1 - epsilon) * truth);
+      const auto& p = all[widths["pairs"][i][0].get<std::size_t>()];
+      const auto& q = all[widths["pairs"][i][1].get<std::size_t>()];
+      double between = 0;
+      for (std::size_t k = 0; k < 3; ++k) between += asked[i][k].get<double>() * (p[k] - q[k]);
+      EXPECT_NEAR(between, width, 1e-12);
+    }
+  }
 }
 
 TEST_F(PointsFiles, RefusesBadFiles) {

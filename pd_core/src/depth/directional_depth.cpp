@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "depth/certificate/rounded_ray_crossing.hpp"
 #include "depth/certificate/support_faces.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "depth/pair/scratch_buffers.hpp"
@@ -105,10 +106,16 @@ void fill_depth(const PosedPair& pair, const Dyadic3& direction, const Crossing&
   out.depth = std::clamp(detail::to_double(exact.approximate()), out.lower, out.upper);
 }
 
+/// The unit vector, rounded; whatever the length of v, the same bits.
+Vec3 rounded_unit(const Dyadic3& v) {
+  const detail::Vec3DD unit = detail::unit_double_double(v);
+  return {to_double(unit.x), to_double(unit.y), to_double(unit.z)};
+}
+
 void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, DirectionalDepth& out) {
   fill_depth(pair, direction, c, out);
   const ExactDirection normal(c.normal);
-  out.normal = normal.unit;
+  out.normal = rounded_unit(c.normal);
   const detail::FacetOfDifference facet = facet_of_direction(pair, normal);
   out.feature_a = facet.on_a;
   out.feature_b = facet.on_b;
@@ -155,7 +162,7 @@ bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHier
   out.contact = ContactClass::overlapping;
   fill_depth(pair, detail::to_dyadic(direction), crossings[0], out);
   const ExactDirection normal(crossings[0].normal);
-  out.normal = normal.unit;
+  out.normal = rounded_unit(crossings[0].normal);
   const auto level = [&](const PairVector& edge) {
     const Vec3 e = pair.approximate(edge);
     if (std::abs(e.dot(normal.unit)) > 16 * (pair.vector_error() + 0x1p-50 * e.cwiseAbs().sum())) return false;
@@ -222,11 +229,92 @@ Crossing by_portal(const PosedPair& pair, const detail::DirectionSigns& ray, Dir
   return crossing_of(pair, ray.exact(), portal.corners);
 }
 
+/// The sign of an edge along the normal of a plane through three points of P.
+class CornersSign final : public detail::NormalSign {
+ public:
+  CornersSign(const PosedPair& pair, const Corners& v)
+      : pair_(pair),
+        u_(PairVector::difference(v[0].a, v[0].b, v[1].a, v[1].b)),
+        w_(PairVector::difference(v[0].a, v[0].b, v[2].a, v[2].b)) {}
+  [[nodiscard]] int along(const PairVector& edge) const override { return pair_.sign_determinant(edge, u_, w_); }
+
+ private:
+  const PosedPair& pair_;
+  PairVector u_, w_;
+};
+
+/// Depth, normal and features at a portal: rounded where the error bound allows it, else exact; the same bits.
+void fill(const detail::DirectionSigns& ray, const Corners& corners, DirectionalDepth& out) {
+  const PosedPair& pair = ray.pair();
+  detail::SupportFaces faces;
+  const auto rounded = rounded_ray_crossing(ray, corners);
+  if (!rounded || !collect_faces(pair, rounded->plane, CornersSign(pair, corners), corners, faces)) {
+    fill(pair, ray.exact(), crossing_of(pair, ray.exact(), corners), out);
+    return;
+  }
+  out.lower = rounded->lower;
+  out.upper = rounded->upper;
+  out.depth = rounded->depth;
+  out.normal = rounded->normal;
+  const detail::FacetFeatures features = features_of(pair, faces, out.normal);
+  out.feature_a = features.on_a;
+  out.feature_b = features.on_b;
+}
+
+/// The ends of a portal as the caller keeps them; not known where a vertex is none of these bodies'.
+detail::PortalEnds ends_of(const PosedPair& pair, const DirectionalCertificate& certificate) {
+  detail::PortalEnds ends;
+  if (certificate.triangles < 1 || certificate.triangles > DirectionalCertificate::kMostTriangles) return ends;
+  for (std::int32_t k = 0; k < certificate.triangles; ++k) {
+    const auto& ids = certificate.vertices[static_cast<std::size_t>(k)];
+    Corners v;
+    for (std::size_t i = 0; i < 3; ++i) {
+      v[i] = {ids[2 * i], ids[2 * i + 1]};
+      if (v[i].a < 0 || v[i].b < 0 || v[i].a >= pair.a().num_vertices() || v[i].b >= pair.b().num_vertices()) return {};
+    }
+    if (k == 0) {
+      ends.back = v;
+    } else {
+      ends.push(v);
+    }
+  }
+  ends.known = true;
+  return ends;
+}
+
+void keep(const detail::PortalEnds& ends, DirectionalCertificate& certificate) {
+  static_assert(DirectionalCertificate::kMostTriangles == detail::PortalEnds::kMost + 1);
+  certificate.triangles = ends.known ? ends.count + 1 : 0;
+  for (std::int32_t k = 0; k < certificate.triangles; ++k) {
+    const Corners& v = k == 0 ? ends.back : ends.portals[static_cast<std::size_t>(k - 1)];
+    for (std::size_t i = 0; i < 3; ++i) {
+      certificate.vertices[static_cast<std::size_t>(k)][2 * i] = v[i].a;
+      certificate.vertices[static_cast<std::size_t>(k)][2 * i + 1] = v[i].b;
+    }
+  }
+}
+
+/// Solids by a portal whose ends tell the class. False where they do not; then nothing is filled but the counts.
+bool inside_by_portal(const PosedPair& pair, const Vec3& direction, DirectionalCertificate* certificate,
+                      DirectionalDepth& out) {
+  const detail::DirectionSigns ray(pair, direction);
+  detail::PortalEnds ends;
+  if (certificate != nullptr) ends = ends_of(pair, *certificate);
+  const std::optional<detail::Portal> portal = find_inside_portal(ray, direction, ends);
+  if (certificate != nullptr) keep(ends, *certificate);
+  if (!portal) return false;
+  out.contact = ContactClass::overlapping;
+  out.statistics.support_calls += portal->support_calls;
+  fill(ray, portal->corners, out);
+  return true;
+}
+
 }  // namespace
 
 Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction,
                                              Scratch& scratch, DirectionalMethod method,
-                                             const DirectionalHierarchies* hierarchies) {
+                                             const DirectionalHierarchies* hierarchies,
+                                             DirectionalCertificate* certificate) {
   const detail::FloatingPointGuard guard;
   if (!direction.allFinite()) {
     return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
@@ -247,6 +335,14 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
     const Expected<bool> answered = by_hierarchies(pair, *polytope_a, *polytope_b, direction, hierarchies, out);
     if (!answered) return answered.error();
     if (*answered) {
+      out.statistics.exact_signs += pair.stages().double_double + pair.stages().exact;
+      return out;
+    }
+  }
+  if (exact && method == DirectionalMethod::portal && polytope_a->affine_dimension() == 3 &&
+      polytope_b->affine_dimension() == 3) {
+    const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose);
+    if (inside_by_portal(pair, direction, certificate, out)) {
       out.statistics.exact_signs += pair.stages().double_double + pair.stages().exact;
       return out;
     }

@@ -8,6 +8,7 @@
 /// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "pd/depth/penetration_depth.hpp"
@@ -29,6 +30,15 @@ enum class DirectionalMethod : std::uint8_t {
 struct DirectionalHierarchies {
   const PolyhedralHierarchy* a;
   const PolyhedralHierarchy* b;
+};
+
+/// What a query by portal leaves for the next one of the same two polytopes, in a direction or pose near its own:
+/// triangles of vertices of P that the line crossed. Nothing in it is trusted: a warm answer is the cold one bit for
+/// bit, whatever stands here.
+struct DirectionalCertificate {
+  static constexpr std::int32_t kMostTriangles = 25;
+  std::int32_t triangles = 0;  ///< one behind the origin, then from wide to narrow those before it
+  std::array<std::array<std::int32_t, 6>, kMostTriangles> vertices{};  ///< of A and B in turn
 };
 
 /// What a descent of two hierarchies did; zero for other methods.
@@ -61,15 +71,18 @@ struct DirectionalDepth {
 /// @param direction  any finite length but zero.
 /// @param hierarchies  for DirectionalMethod::hierarchy: those of the two bodies' polytopes, or nullptr (they are built
 /// for this ray, in linear time).
+/// @param certificate  where a portal starts and what it leaves, or nullptr; for DirectionalMethod::portal and solids.
 /// @return ErrorCode::zero_direction or non_finite ("direction"); unsupported for another method than portal when a
 /// shape is smooth or has a margin; not_full_dimensional for hierarchies of flat bodies.
 ///
+/// By portal the class of solids comes out of the same search, wherever the line crosses P away from its edges.
 /// By hierarchy the class comes out of two descents, along the ray and against it, where the bodies overlap; the exact
 /// classification of touching and separated bodies is that of `penetration_depth`. Departures from [D]:
 /// src/depth/rays/hierarchy_descent.hpp.
 [[nodiscard]] Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedShape& b,
                                                            const Vec3& direction, Scratch& scratch,
                                                            DirectionalMethod method = DirectionalMethod::portal,
-                                                           const DirectionalHierarchies* hierarchies = nullptr);
+                                                           const DirectionalHierarchies* hierarchies = nullptr,
+                                                           DirectionalCertificate* certificate = nullptr);
 
 }  // namespace pd

@@ -38,7 +38,61 @@ class PortalSearch {
     return portal;
   }
 
+  /// `find_inside_portal`.
+  std::optional<Portal> run_inside(const Vec3& direction, PortalEnds& ends) {
+    Portal portal;
+    PortalCorners& v = portal.corners;
+    if (!start_at(ends, v)) return std::nullopt;
+    bool behind = ends.known && is_behind(ends.back);
+    ends.known = false;
+    const PortalCorners first = v;
+    if (!behind) behind = keep_if_behind(first, ends.back);
+    push_outwards(v, [&] {
+      ends.push(v);
+      return false;
+    });
+    // Of P the line leaves at t > 0: the plane supports P.
+    if (ray_.turn(step(v[0], v[1]), step(v[0], v[2])) <= 0 || offset_sign(v) <= 0) return std::nullopt;
+    if (!behind) {
+      const DirectionSigns backwards(pair_, -direction);
+      PortalSearch search(backwards, hierarchies_);
+      PortalCorners w = {first[0], first[2], first[1]};
+      search.push_outwards(w, [&] { return keep_if_behind({w[0], w[2], w[1]}, ends.back); });
+      support_calls_ += search.support_calls_;
+      if (!is_behind(ends.back)) return std::nullopt;
+    }
+    ends.known = true;
+    portal.support_calls = support_calls_;
+    return portal;
+  }
+
  private:
+  /// The last of the portals that the line crosses still, or a new one. Those after it are dropped.
+  bool start_at(PortalEnds& ends, PortalCorners& v) {
+    if (!ends.known) ends.count = 0;
+    while (ends.count > 0) {
+      v = ends.portals[static_cast<std::size_t>(--ends.count)];
+      if (crosses(v)) return true;
+    }
+    return enclose(v) && crosses(v);
+  }
+  /// Whether the line itself crosses the inside of the triangle, seen counter-clockwise against it.
+  bool crosses(const PortalCorners& v) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (ray_.turn(point(v[i]), point(v[(i + 1) % 3])) <= 0) return false;
+    }
+    return true;
+  }
+  /// Sign of <v[0], normal>: on which side of the plane the origin lies, 1 for behind it.
+  int offset_sign(const PortalCorners& v) const {
+    return pair_.sign_determinant(point(v[0]), step(v[0], v[1]), step(v[0], v[2]));
+  }
+  bool is_behind(const PortalCorners& v) const { return crosses(v) && offset_sign(v) < 0; }
+  bool keep_if_behind(const PortalCorners& v, PortalCorners& back) const {
+    back = v;
+    return is_behind(v);
+  }
+
   /// A vertex of P that is extreme up to rounding, where hierarchies tell; else the one at hand.
   VertexPair start(const Vec3& direction, const VertexPair& near) const {
     if (hierarchies_.a == nullptr) return near;
@@ -58,7 +112,7 @@ class PortalSearch {
   /// A triangle of vertices of P that the line crosses. In the projection along d this is the planar portal search from
   /// v[0] through the origin: v[1] to its left, v[2] to its right, and the side between them moves outwards.
   /// False when some support shows the projection of P on one side of the origin.
-  bool enclose(std::array<VertexPair, 3>& v) {
+  bool enclose(PortalCorners& v) {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
     const DirectionSigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
@@ -86,8 +140,10 @@ class PortalSearch {
 
   /// The support s in the normal of the triangle projects to one side of each of the three half-lines from the origin
   /// through the corners' projections; the line crosses the triangle over the side where the sign turns from - to +.
-  void push_outwards(std::array<VertexPair, 3>& v) {
-    for (;;) {
+  /// `enough` may end it earlier.
+  template <class Enough>
+  void push_outwards(PortalCorners& v, Enough&& enough) {
+    while (!enough()) {
       const PairVector u = step(v[0], v[1]), w = step(v[0], v[2]);
       ++support_calls_;
       const double error = pair_.vector_error();
@@ -110,6 +166,10 @@ class PortalSearch {
     }
   }
 
+  void push_outwards(PortalCorners& v) {
+    push_outwards(v, [] { return false; });
+  }
+
   const DirectionSigns& ray_;
   const PosedPair& pair_;
   const PortalHierarchies& hierarchies_;
@@ -120,6 +180,10 @@ class PortalSearch {
 
 Portal find_portal(const DirectionSigns& ray, const PortalHierarchies& hierarchies) {
   return *PortalSearch(ray, hierarchies).run();
+}
+
+std::optional<Portal> find_inside_portal(const DirectionSigns& ray, const Vec3& direction, PortalEnds& ends) {
+  return PortalSearch(ray, {}).run_inside(direction, ends);
 }
 
 std::optional<Portal> find_line_portal(const DirectionSigns& ray) { return PortalSearch(ray, {}).run(); }
