@@ -1,10 +1,9 @@
 #include "contact/separation_along.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "depth/difference/smooth_difference.hpp"
+#include "numeric/turn.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "shape/core_radius.hpp"
 #include "shape/support/polytope_support.hpp"
@@ -15,15 +14,6 @@ namespace {
 
 /// A few roundings on the way to a radius or a curvature.
 constexpr double kRoundedUp = 1 + 32 * kUnitRoundoff;
-
-/// The vector n as a frame sees it that has turned by `angle` about the unit vector `axis` (Rodrigues' formula).
-Vec3 turned_back(const Vec3& n, const Vec3& axis, double angle) {
-  if (angle == 0) return n;
-  const double sine = std::sin(angle);
-  const double half = std::sin(0.5 * angle);
-  const Vec3 across = axis.cross(n);
-  return n - sine * across + 2 * half * half * axis.cross(across);
-}
 
 }  // namespace
 
@@ -50,8 +40,9 @@ MovingSupport::MovingSupport(const MovingShape& body)
 }
 
 double MovingSupport::least_along(const Vec3& n, double time, int& near) const {
-  const Vec3 turned = turned_back(n, axis_, speed_ * time);
-  const Vec3 local = rotation_.transpose() * turned;
+  // As the frame sees it that has turned.
+  const Vec3 turned_back = speed_ * time == 0 ? n : turned(n, axis_, -(speed_ * time));
+  const Vec3 local = rotation_.transpose() * turned_back;
   Vec3 point;
   if (const ConvexPolytope* polytope = body_.start.shape->polytope()) {
     near = support_vertex(*polytope, -local, near);
@@ -59,7 +50,7 @@ double MovingSupport::least_along(const Vec3& n, double time, int& near) const {
   } else {
     point = support_point(body_.start.shape->core(), -local);
   }
-  return turned.dot(body_.arm) + local.dot(point);
+  return turned_back.dot(body_.arm) + local.dot(point);
 }
 
 MovingSeparation::MovingSeparation(const MovingShape& a, const MovingShape& b, double duration)

@@ -1,11 +1,11 @@
 #include "pd/contact/time_of_impact.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "contact/separation_along.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/turn.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shape/core_radius.hpp"
 
@@ -117,7 +117,7 @@ Pose pose_at(const MovingShape& body, double time) {
   const double speed = body.motion.angular_velocity.stableNorm();
   const double angle = speed * time;
   if (angle == 0) return moved(body.start.pose, body.start.pose.translation() + way);
-  const Mat3 turn = Eigen::AngleAxisd(angle, body.motion.angular_velocity / speed).toRotationMatrix();
+  const Mat3 turn = detail::rotation_about(body.motion.angular_velocity / speed, angle);
   const Vec3 translation = body.start.pose.translation() + way + (turn * body.arm - body.arm);
   return Pose::from_trusted_matrix(turn * body.start.pose.rotation(), translation);
 }
