@@ -261,6 +261,7 @@ TEST(ApproximateWidth, OverMacbeathHierarchies) {
   check_width_over_macbeath<2>(0.01, 60);
   check_width_over_macbeath<3>(0.5, 40);
   check_width_over_macbeath<4>(0.95, 30);
+  check_width_over_macbeath<4>(0.5, 30);
 }
 
 TEST(ApproximateWidth, OfAnalyticBodies) {

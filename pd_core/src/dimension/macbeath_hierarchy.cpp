@@ -127,16 +127,25 @@ class HierarchyBuilder {
   /// Subdivides the cell until every part lies in one cover shadow; regions enter where a middle is in no core shadow.
   /// @param near  nodes of this layer before `seen` that may meet the cell
   bool cover(std::size_t cell, const DirectionBox<D>& box, const std::vector<std::int32_t>& outer, std::size_t seen) {
+    // Most boxes lie in one shadow and are not split: the lists of those that may meet a box are for its parts alone.
+    const Vector<D> middle = box.middle();
+    const auto holds = [&](std::int32_t id) {
+      const ShadowCone<D>& shadow = hierarchy_.nodes[static_cast<std::size_t>(id)].shadow;
+      return shadow.contains(middle) && covers(shadow, box);
+    };
+    for (const std::int32_t id : outer) {
+      if (holds(id)) return settle(cell, id);
+    }
+    for (std::size_t k = seen; k < cores_.size(); ++k) {
+      const std::int32_t id = first_ + static_cast<std::int32_t>(k);
+      if (holds(id)) return settle(cell, id);
+    }
     std::vector<std::int32_t> near;
     const auto consider = [&](std::int32_t id) {
       if (sections_[static_cast<std::size_t>(id - first_)].may_meet(box)) near.push_back(id);
     };
     for (const std::int32_t id : outer) consider(id);
     for (std::size_t k = seen; k < cores_.size(); ++k) consider(first_ + static_cast<std::int32_t>(k));
-    for (const std::int32_t id : near) {
-      if (covers(hierarchy_.nodes[static_cast<std::size_t>(id)].shadow, box)) return settle(cell, id);
-    }
-    const Vector<D> middle = box.middle();
     const bool held = std::any_of(near.begin(), near.end(), [&](std::int32_t id) {
       return cores_[static_cast<std::size_t>(id - first_)].contains(middle);
     });
@@ -199,16 +208,17 @@ class HierarchyBuilder {
       node.first_child = static_cast<std::int32_t>(hierarchy_.links.size());
       for (int face = 0; face < 2 * D; ++face) {
         const DirectionBox<D> box = cube_face<D>(face);
-        collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, mark);
+        collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, false, mark);
       }
       node.children = static_cast<std::int32_t>(hierarchy_.links.size()) - node.first_child;
       hierarchy_.max_out_degree = std::max<std::int64_t>(hierarchy_.max_out_degree, node.children);
     }
   }
 
+  /// @param inside  the box lies in the parent's shadow, and so do its parts: nothing is left to ask
   void collect(std::size_t cell, const DirectionBox<D>& box, const ShadowSection<D>& shadow, std::int32_t parent,
-               std::vector<std::int32_t>& mark) {
-    if (!shadow.may_meet(box)) return;
+               bool inside, std::vector<std::int32_t>& mark) {
+    if (!inside && !shadow.may_meet(box)) return;
     const std::int64_t content = cells_[cell];
     if (content < 0) {
       const auto id = static_cast<std::int32_t>(-1 - content);
@@ -218,8 +228,13 @@ class HierarchyBuilder {
       hierarchy_.links.push_back(id);
       return;
     }
+    if (!inside) {
+      const ShadowCone<D>& cone = hierarchy_.nodes[static_cast<std::size_t>(parent)].shadow;
+      inside = cone.contains(box.middle()) && covers(cone, box);
+    }
     for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
-      collect(static_cast<std::size_t>(content) + static_cast<std::size_t>(k), box.child(k), shadow, parent, mark);
+      collect(static_cast<std::size_t>(content) + static_cast<std::size_t>(k), box.child(k), shadow, parent, inside,
+              mark);
     }
   }
 
@@ -252,9 +267,14 @@ Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(const std:
   // Leaves lose (1 + cover scale) delta of h (macbeath_region.hpp).
   constexpr double kFirst = 0.5;
   const double last = std::min(kFirst, epsilon / (1 + kCoverScale));
-  const int steps = static_cast<int>(std::ceil(std::log2(kFirst / last)));
-  for (int i = 0; i <= steps; ++i) {
-    const double delta = i == steps ? last : std::ldexp(kFirst, -i);
+  // Doubled from the leaves' upwards: a last layer that hardly differs from the one above would cost as much as it. The
+  // first one is left out where the second is near it.
+  constexpr double kNear = 0.7;
+  int doublings = 0;
+  while (std::ldexp(last, doublings + 1) <= kFirst) ++doublings;
+  const bool first = std::ldexp(last, doublings) < kNear * kFirst;
+  for (int i = first ? doublings + 1 : doublings; i >= 0; --i) {
+    const double delta = std::min(kFirst, std::ldexp(last, i));
     if (!builder.add_layer(delta)) {
       return Error{ErrorCode::limit_exceeded,
                    "the hierarchy of Macbeath regions takes more than 4000000 nodes at this epsilon; take a larger one",

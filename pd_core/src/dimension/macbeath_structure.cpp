@@ -10,17 +10,18 @@ namespace pd::dimension::detail {
 
 template <int D>
 Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body, double epsilon) {
-  if (epsilon / 2 < kLeastEpsilon) {
-    return Error{ErrorCode::bad_value, "the macbeath backend needs epsilon >= 2e-7", "epsilon"};
+  if (epsilon / 8 < kLeastEpsilon) {
+    return Error{ErrorCode::bad_value, "the macbeath backend needs epsilon >= 8e-7", "epsilon"};
   }
-  // The kernel falls short of h by epsilon / 2 of it, about the sandwich's centre; the hierarchy by as much of the
-  // kernel's h.
-  const auto kernel = KernelStructure<D>::build(body, epsilon / 2);
+  // The kernel falls short of h by its share of epsilon, about the sandwich's centre; the hierarchy by the rest of the
+  // kernel's h. In R^4 and R^5 regions are much dearer than points of the kernel.
+  constexpr double kKernelShare = D < 4 ? 0.5 : 0.125;
+  const auto kernel = KernelStructure<D>::build(body, kKernelShare * epsilon);
   std::vector<SupportPoint<D>> points;
   for (const auto* list : {&kernel->nodes(), &kernel->loose()}) {
     for (const auto& node : *list) points.push_back({node.point, 0, node.index});
   }
-  auto hierarchy = build_macbeath_hierarchy<D>(points, body.sandwich().fattening(), epsilon / 2);
+  auto hierarchy = build_macbeath_hierarchy<D>(points, body.sandwich().fattening(), (1 - kKernelShare) * epsilon);
   if (!hierarchy) return hierarchy.error();
   return std::shared_ptr<const WidthStructure<D>>(std::move(hierarchy).value());
 }
