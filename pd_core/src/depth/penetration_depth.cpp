@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "depth/pair/beyond.hpp"
 #include "depth/pair/canonical_order.hpp"
 #include "depth/pair/grid_depth.hpp"
 #include "depth/pair/polytope_depth.hpp"
@@ -16,6 +17,10 @@ namespace {
 
 void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, detail::ScratchBuffers& buffers,
            WarmCertificate* warm, PenetrationDepth& out) {
+  if (settings.beyond < std::numeric_limits<double>::infinity() &&
+      detail::answer_beyond(a, b, settings, buffers, warm, out)) {
+    return;
+  }
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};

@@ -59,6 +59,15 @@ constexpr FixedRest kRests[] = {
     {"rest_box_triangle", RestingBody::box, RestingGround::triangle, 2},
 };
 
+/// Bodies apart by a tenth of their size, asked whether by more than a hundredth.
+struct FixedGap {
+  const char* name;
+  int vertices;
+  bool warm;
+};
+constexpr FixedGap kGaps[] = {
+    {"beyond_8", 8, false}, {"beyond_8_warm", 8, true}, {"beyond_128", 128, false}, {"beyond_128_warm", 128, true}};
+
 /// Two bricks flush on each other, cold, for contacts.
 struct FixedFlush {
   const char* name;
@@ -125,6 +134,26 @@ int main(int argc, char** argv) {
                 answer.distance_upper - answer.lower);
     return 0;
   }
+  for (const FixedGap& c : kGaps) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::scenes::PointPair pair = pd::scenes::make_pair(PairFamily::sphere, c.vertices, DepthClass::gap, 1);
+    const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
+    const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
+    pd::Scratch scratch;
+    pd::WarmCertificate certificate;
+    const pd::PenetrationDepth near = pd::penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, kHotPath);
+    const pd::PosedShape posed_a{
+        &a, pd::Pose::from_trusted_matrix(pair.pose_a.rotation(), pair.pose_a.translation() + 0.2 * near.normal)};
+    const pd::PosedShape posed_b{&b, pair.pose_b};
+    pd::DepthSettings settings = kHotPath;
+    settings.beyond = 0.02;
+    pd::WarmCertificate* const warm = c.warm ? &certificate : nullptr;
+    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, settings, warm);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, warm, &answer, &settings);
+    std::printf("%s: distance in [%.17g, %.17g], %lld supports\n", c.name, answer.distance_lower, answer.distance_upper,
+                static_cast<long long>(answer.statistics.support_calls));
+    return 0;
+  }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     const pd::bench::FlushBricks bricks(c.gap);
@@ -139,6 +168,7 @@ int main(int argc, char** argv) {
   std::fprintf(stderr, "fixed_cases NAME, one of:");
   for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
+  for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;

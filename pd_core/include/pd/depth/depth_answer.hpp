@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "pd/numeric/vector.hpp"
@@ -62,6 +63,11 @@ struct DepthSettings {
   /// Of Bracket::contact: an interval of this width is narrow enough, in the unit of the input, >= 0. An engine whose
   /// poses are single precision knows them to 2^-24 max(|t_A|, |t_B|).
   double contact_tolerance = 0;
+  /// Bodies farther apart than this (>= 0, in the unit of the input) need not be told apart any further: the answer may
+  /// be `separated` with distance_lower > beyond, certified by the plane across `normal`, and a distance_upper that is
+  /// wide. Witnesses are points of the bodies, then, not the closest ones. What a hit of a broadphase asks; anything
+  /// nearer is answered as ever. Infinity: closest points at any distance.
+  double beyond = std::numeric_limits<double>::infinity();
 };
 
 struct Statistics {

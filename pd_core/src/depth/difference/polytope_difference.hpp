@@ -67,6 +67,12 @@ class PolytopeDifference {
     return vertex(ia, ib);
   }
 
+  /// The same without transformed vertices: for a query of a few supports.
+  [[nodiscard]] DifferenceVertex support_in_bodies(const Vec3& direction) const {
+    return posed_vertex(support_vertex(a_, -(rotation_a_.transpose() * direction), -1),
+                        support_vertex(b_, rotation_b_.transpose() * direction, -1));
+  }
+
   /// The same up to single precision where it is found in a table: for an expansion, which checks what it inserts.
   /// @param normal  of a face of P, the product of two edges.
   [[nodiscard]] PD_INLINE DifferenceVertex search_support(const Vec3& normal) const {

@@ -42,6 +42,7 @@ class SmoothDifference {
   /// The difference of two points of the cores, each in its body's frame.
   [[nodiscard]] DifferenceVertex vertex(const Vec3& local_a, const Vec3& local_b) const;
   [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const;
+  [[nodiscard]] DifferenceVertex support_in_bodies(const Vec3& direction) const { return support(direction, nullptr); }
   /// A formula is within its error of the maximum wherever it is asked.
   [[nodiscard]] DifferenceVertex search_support(const Vec3& direction) const {
     return support(direction / direction.norm(), nullptr);
