@@ -90,12 +90,13 @@ PD_CLONES NearestBoxAxis nearest_box_axis(const BoxEdges& edges_a, const BoxEdge
     best = nearer ? key : best;
     lower = lowers ? lower_key : lower;
   }
-  NearestBoxAxis out{best[0], lower[0], static_cast<int>(best_axis[0]), slivers[0] + slivers[1] + slivers[2]};
-  for (int lane = 1; lane < 3; ++lane) {
-    const int axis = static_cast<int>(best_axis[lane]);
-    if (best[lane] < out.key || (best[lane] == out.key && axis < out.axis)) {
+  // Lane 1 holds the facets across x, lane 2 those across y. Of equal ones the first of them wins: of cubes in one
+  // place no axis is nearer than another, and x is no host's way up.
+  NearestBoxAxis out{best[1], lower[1], static_cast<int>(best_axis[1]), slivers[0] + slivers[1] + slivers[2]};
+  for (const int lane : {2, 0}) {
+    if (best[lane] < out.key) {
       out.key = best[lane];
-      out.axis = axis;
+      out.axis = static_cast<int>(best_axis[lane]);
     }
     out.lower_key = lower[lane] < out.lower_key ? lower[lane] : out.lower_key;
   }
