@@ -225,6 +225,8 @@ const std::vector<ContactSceneMaker>& contact_scenes() {
       {"compounds", compounds},
       {"torus-peg", torus_on_peg},
       {"torus-pour", torus_pour},
+      {"bowls-pour", bowl_pour},
+      {"gears", gear_pair},
       {"mass-ratio", mass_ratio},
       {"rolling", rolling_cylinder},
       {"coin", spinning_coin},

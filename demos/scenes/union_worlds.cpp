@@ -74,6 +74,79 @@ ContactScene torus_pour(std::uint64_t perturbation) {
   return scene;
 }
 
+WorldBody open_bowl(int pieces, double radius, const Vec3& at) {
+  // Of the wall, from the bottom's edge to the rim: radius and height outside, and inside.
+  constexpr double kWall[3][4] = {{0.5, 0, 0.5, 0.1}, {0.85, 0.25, 0.75, 0.3}, {1, 0.65, 0.9, 0.65}};
+  const auto corner = [&](int piece, double r, double z) {
+    const double around = 2 * M_PI * (piece % pieces) / pieces;
+    return Vec3(radius * r * std::cos(around), radius * r * std::sin(around), radius * z);
+  };
+  WorldBody body;
+  body.kind = WorldBody::Kind::compound;
+  const auto add = [&](std::vector<Vec3> points) {
+    WorldBody part;
+    for (const Vec3& point : points) part.position += point / static_cast<double>(points.size());
+    for (Vec3& point : points) point -= part.position;
+    part.points = std::move(points);
+    body.parts.push_back(std::move(part));
+  };
+  std::vector<Vec3> disc;
+  for (int piece = 0; piece < pieces; ++piece) {
+    for (const double z : {0.0, 0.1}) disc.push_back(corner(piece, 0.5, z));
+  }
+  add(std::move(disc));
+  for (int ring = 0; ring < 2; ++ring) {
+    for (int piece = 0; piece < pieces; ++piece) {
+      std::vector<Vec3> wedge;
+      for (const int end : {piece, piece + 1}) {
+        for (const auto& level : {kWall[ring], kWall[ring + 1]}) {
+          wedge.push_back(corner(end, level[0], level[1]));
+          wedge.push_back(corner(end, level[2], level[3]));
+        }
+      }
+      add(std::move(wedge));
+    }
+  }
+  body.mass = 700 * 2 * M_PI * radius * radius * 0.09 * radius;
+  body.position = at;
+  return body;
+}
+
+ContactScene bowl_pour(std::uint64_t perturbation) {
+  ContactScene scene;
+  scene.name = "bowls-pour";
+  scene.title = "Twenty bowls in 25 pieces each fall into a heap";
+  scene.goal = ContactGoal::rest;
+  scene.seconds = 8;
+  scene.quick_seconds = 3;
+  scene.size = 1;
+  scene.world.bodies.push_back(ground_box(20));
+  Stream random(37);
+  for (int i = 0; i < 20; ++i) {
+    const int place = i % 4;
+    WorldBody body = open_bowl(
+        12, 0.5, Vec3(1.2 * (place % 2) - 0.6 + 0.05 * random.next(), 1.2 * (place / 2) - 0.6, 0.8 + 0.9 * (i / 4)));
+    // Every other one falls upright.
+    if (i % 2 == 0) body.orientation = random.orientation();
+    scene.world.bodies.push_back(body);
+  }
+  perturb(scene, perturbation);
+  return scene;
+}
+
+ContactScene gear_pair(std::uint64_t perturbation) {
+  ContactScene scene;
+  scene.name = "gears";
+  scene.title = "A gear that was spun turns another";
+  scene.goal = ContactGoal::bounce;
+  scene.seconds = 4;
+  scene.quick_seconds = 2;
+  scene.size = 1;
+  scene.world = two_gears(0);
+  perturb(scene, perturbation);
+  return scene;
+}
+
 WorldBody gear(int teeth, double pitch, double half_width, const Vec3& at) {
   const double root = pitch - 0.075;
   const double tip = pitch + 0.06;

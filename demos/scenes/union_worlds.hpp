@@ -15,6 +15,14 @@ namespace pd::scenes {
 /// Fifty tori of twelve pieces fall into a heap on a floor, some through each other's holes.
 [[nodiscard]] ContactScene torus_pour(std::uint64_t perturbation);
 
+/// A bowl about the z axis, open upwards: a disc and two rings of `pieces` wedges each that share their faces, `radius`
+/// at the rim, walls a tenth of that thick.
+[[nodiscard]] WorldBody open_bowl(int pieces, double radius, const Vec3& at);
+/// Twenty bowls of 25 pieces each fall into a heap on a floor, some into each other.
+[[nodiscard]] ContactScene bowl_pour(std::uint64_t perturbation);
+/// Two gears of 13 and 19 pieces on axles: one was spun and turns the other.
+[[nodiscard]] ContactScene gear_pair(std::uint64_t perturbation);
+
 /// A spur gear about the y axis: a hub and `teeth` wedges with straight flanks, flush in the hub. `pitch` is the radius
 /// at which it meets another.
 [[nodiscard]] WorldBody gear(int teeth, double pitch, double half_width, const Vec3& at);
