@@ -75,6 +75,43 @@ TEST(Derivatives, ScaleWithThePair) {
   }
 }
 
+/// Witnesses placed anew are so at every size.
+TEST(Derivatives, WitnessesOfCurvedBodiesScaleWithThePair) {
+  Scratch scratch;
+  const auto times = [](const ConvexShape& shape, double scale) {
+    if (const auto* e = std::get_if<Ellipsoid>(&shape.core())) return *ConvexShape::ellipsoid(scale * e->radii);
+    if (const auto* c = std::get_if<Cylinder>(&shape.core())) {
+      return *ConvexShape::cylinder(scale * c->radius, scale * c->half_height, c->axis);
+    }
+    if (const auto* c = std::get_if<Cone>(&shape.core())) {
+      return *ConvexShape::cone(scale * c->radius, scale * c->half_height, c->axis);
+    }
+    std::vector<Vec3> points;
+    for (int v = 0; v < shape.polytope()->num_vertices(); ++v) points.push_back(scale * shape.polytope()->vertex(v));
+    return ConvexShape(*ConvexPolytope::from_points(points));
+  };
+  int judged = 0;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const oracle::PosedPairCase pair = oracle::derivative_case(DerivativeFamily::curved, 3, i);
+    if (pair.a.margin() > 0 || pair.b.margin() > 0) continue;
+    // About A's translation, so that rounding of places does not count.
+    const Vec3 offset = pair.pose_b.translation() - pair.pose_a.translation();
+    const auto posed = [&](const ConvexShape& a, const ConvexShape& b, double scale) {
+      return depth_derivatives({&a, *Pose::from_matrix(pair.pose_a.rotation(), Vec3::Zero())},
+                               {&b, *Pose::from_matrix(pair.pose_b.rotation(), scale * offset)}, scratch);
+    };
+    const DepthDerivatives one = posed(pair.a, pair.b, 1);
+    if (!one.stable_features) continue;
+    for (const double scale : {0x1p-400, 0x1p300}) {
+      const DepthDerivatives d = posed(times(pair.a, scale), times(pair.b, scale), scale);
+      EXPECT_LT((d.answer.witness_a / scale - one.answer.witness_a).norm(), 1e-12) << i;
+      EXPECT_LT((d.answer.witness_b / scale - one.answer.witness_b).norm(), 1e-12) << i;
+      ++judged;
+    }
+  }
+  EXPECT_GT(judged, 20);
+}
+
 /// The command `derivative_pairs` judges the same by the hundred thousand.
 TEST(Derivatives, AgreeWithCentralDifferences) {
   Scratch scratch;

@@ -266,8 +266,13 @@ DepthDerivatives depth_derivatives(const PosedShape& a, const PosedShape& b, Scr
     const detail::ScaledPair near(a, b, exponent);
     DepthDerivatives out = depth_derivatives(near.a(), near.b(), scratch);
     scale_derivatives(out, exponent);
+    const Vec3 on_a = out.answer.witness_a, on_b = out.answer.witness_b;
     out.answer = penetration_depth(a, b, scratch, settings);
     out.signed_depth = -out.answer.signed_distance();
+    if (!near.a().shape->polytope() || !near.b().shape->polytope()) {
+      out.answer.witness_a = detail::times_power(on_a, exponent) + a.pose.translation();
+      out.answer.witness_b = detail::times_power(on_b, exponent) + a.pose.translation();
+    }
     return out;
   }
   DepthDerivatives out;

@@ -88,6 +88,36 @@ TEST(Smooth, BracketsAgreeWithTheSweep) {
 }
 
 /// Pairs moved about contact by their own answer: slivers of nearly equal supports, from both sides.
+/// A last triangle that is nearly a segment has weights that mean nothing.
+TEST(Smooth, WitnessesLieOnTheirBodies) {
+  Scratch scratch;
+  scenes::Random random(77);
+  const ConvexShape point(*ConvexPolytope::from_points(std::vector<Vec3>{Vec3::Zero()}));
+  const auto off_surface = [&](const PosedShape& body, const Vec3& at) {
+    DepthSettings fine;
+    fine.delta = 1e-3;
+    const PenetrationDepth found =
+        penetration_depth({&point, *Pose::from_matrix(Mat3::Identity(), at)}, body, scratch, fine);
+    return found.contact == ContactClass::overlapping ? found.lower : found.distance_lower;
+  };
+  int judged = 0;
+  double worst = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const ConvexShape a = random_shape(i % 3, random), b = random_shape(random.integer(0, 6), random);
+    const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
+    const PosedShape posed_b{
+        &b, *Pose::from_quaternion(random.quaternion(), random.uniform(0.1, 1.2) * random.direction())};
+    DepthSettings settings;
+    settings.delta = 1e-6;
+    const PenetrationDepth answer = penetration_depth(posed_a, posed_b, scratch, settings);
+    if (answer.contact != ContactClass::overlapping) continue;
+    ++judged;
+    worst = std::max({worst, off_surface(posed_a, answer.witness_a), off_surface(posed_b, answer.witness_b)});
+  }
+  EXPECT_GT(judged, 900);
+  EXPECT_LT(worst, 1e-4);
+}
+
 TEST(Smooth, NearContactIsAnsweredInBoundedWork) {
   Scratch scratch;
   int asked = 0;

@@ -19,8 +19,11 @@ struct Triangle {
   std::array<Probe, 3> corners;
 };
 
-/// Of two unit vectors, accurate for small angles.
-double angle(const Vec3& u, const Vec3& v) { return 2 * std::asin(std::min(1.0, (u - v).norm() / 2)); }
+/// Of two unit vectors: grows with their angle, and is the angle where that is small.
+double chord(const Vec3& u, const Vec3& v) { return (u - v).norm(); }
+
+/// Of a right angle, less .07 radians: a cone below a right angle is convex.
+constexpr double kWidestChord = 1.363;
 
 /// The least <q, n> over the corners' directions, for the best q on a segment between two of their extreme points: a
 /// ridge of P, whose ends they are, is seen by no end alone. Every unit n of the triangle is a convex combination of
@@ -66,20 +69,13 @@ class DirectionSearch {
     for (std::int64_t seen = 0; !open_.empty() && !found_; ++seen) {
       const Triangle t = open_.back();
       open_.pop_back();
-      const auto excluded = [&](const Probe& p) { return angle(p.direction, cone_.axis) <= cone_.radians; };
+      const auto excluded = [&](const Probe& p) { return chord(p.direction, cone_.axis) <= cone_.chord; };
       if (std::all_of(t.corners.begin(), t.corners.end(), excluded)) continue;
       double size = 0;
       for (std::size_t i = 0; i < 3; ++i) {
-        size = std::max(size, angle(t.corners[i].direction, t.corners[(i + 1) % 3].direction));
+        size = std::max(size, chord(t.corners[i].direction, t.corners[(i + 1) % 3].direction));
       }
-      // Seen from one of its corners, the triangle lies within `size`: the length of a combination is at least
-      // cos(size).
-      const double least = bound_below(t);
-      if ((least >= 0 ? least
-           : size < 1 ? least / std::cos(size)
-                      : -std::numeric_limits<double>::infinity()) > limit_) {
-        continue;
-      }
+      if (least_depth(t, size) > limit_) continue;
       if (seen == kMostTriangles || size < kLeastTriangle) return true;
       split(t);
     }
@@ -89,10 +85,20 @@ class DirectionSearch {
   [[nodiscard]] std::int64_t supports() const { return supports_; }
 
  private:
+  /// A bound of h_P from below on a triangle whose corners are at most the chord `size` apart. Seen from one of its
+  /// corners the triangle lies within that angle, so that a convex combination of the corners is no shorter than its
+  /// cosine.
+  static double least_depth(const Triangle& t, double size) {
+    const double least = bound_below(t);
+    if (least >= 0) return least;
+    const double cosine = 1 - 0.5 * size * size;
+    return cosine > 0.5 ? least / cosine : -std::numeric_limits<double>::infinity();
+  }
+
   Probe probe(const Vec3& direction) {
     ++supports_;
     const Probe p{direction, b_.support(direction) - a_.support(-direction)};
-    if (p.extreme.dot(direction) <= limit_ && angle(direction, cone_.axis) > cone_.radians) found_ = true;
+    if (p.extreme.dot(direction) <= limit_ && chord(direction, cone_.axis) > cone_.chord) found_ = true;
     return p;
   }
 
@@ -118,12 +124,17 @@ class DirectionSearch {
 
 double cone_of_disc(double distance, double disc, double limit, double reach) {
   if (!(disc > 0) || !(distance > 0)) return reach;
-  const double size = std::hypot(distance, disc);
+  const double size = std::sqrt(distance * distance + disc * disc);
   if (limit >= size) return reach;
-  const double middle = std::atan2(disc, distance), half = std::acos(limit / size);
-  if (middle - half > reach) return reach;
-  // 1e-9 covers the rounding of the arc cosine; a cone below a right angle is convex.
-  return std::max(reach, std::min(1.5, (middle + half) * (1 - 1e-9) - 1e-9));
+  // The bound is size cos(phi - middle): it exceeds the limit from middle - half to middle + half, both acute.
+  const double cos_middle = distance / size, sin_middle = disc / size;
+  const double cos_half = limit / size, sin_half = std::sqrt((size - limit) * (size + limit)) / size;
+  if (sin_middle * cos_half - cos_middle * sin_half > reach) return reach;
+  const double cosine = cos_middle * cos_half - sin_middle * sin_half;
+  const double sine = sin_middle * cos_half + cos_middle * sin_half;
+  const double end = std::sqrt((1 - cosine) * (1 - cosine) + sine * sine);
+  // 1e-9 covers the rounding.
+  return std::max(reach, std::min(kWidestChord, end * (1 - 1e-9) - 1e-9));
 }
 
 bool another_direction_within(const PosedCore& a, const PosedCore& b, const ExcludedCone& cone, double limit,

@@ -9,12 +9,12 @@ namespace pd::detail {
 /// A cone of directions about a unit vector that need no search.
 struct ExcludedCone {
   Vec3 axis;
-  double radians;
+  double chord;  ///< |u - axis| of the unit vectors u at its rim: the angle in radians where that is small
 };
 
-/// The cone about a facet's normal in which P is deeper than `limit`, as the facet alone shows, or the one of `reach`.
-/// With a disc of radius r of P's boundary at distance s along the normal, h_P at the angle phi from it is at least
-/// s cos(phi) + r sin(phi).
+/// The chord of the cone about a facet's normal in which P is deeper than `limit`, as the facet alone shows, or the one
+/// of `reach`. With a disc of radius r of P's boundary at distance s along the normal, h_P at the angle phi from it is
+/// at least s cos(phi) + r sin(phi).
 /// @return reach where the disc does not show it for all angles from `reach` on.
 [[nodiscard]] double cone_of_disc(double distance, double disc, double limit, double reach);
 

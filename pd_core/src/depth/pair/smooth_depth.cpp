@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "depth/difference/barycentric.hpp"
+#include "depth/difference/foot_weights.hpp"
 #include "depth/distance/gjk_double_double.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/expansion/expanding_hull.hpp"
@@ -29,6 +30,11 @@ constexpr double kAbsolute = 1e-12;            ///< of L: where a bracket, and `
 constexpr double kShareOfDelta = 1 - 0x1p-10;  ///< the rest is left to the rounding of sums with margins
 /// Bracket::contact: searches in doubles before an exact hull is made.
 constexpr int kMostSearches = 4;
+
+/// Of L: what witnesses may differ by across the normal.
+constexpr double kAcross = 1e-9;
+/// Of L: how far below the supporting plane points of its face may be.
+constexpr double kAside = 1e-2;
 
 class SmoothQuery {
  public:
@@ -127,6 +133,7 @@ class SmoothQuery {
     best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
                              buffers_.surface.watch);
     if (best.face >= 0) {
+      searched_ = &buffers_.exact_hull.vertices;
       const ExactHull::Face& face = buffers_.exact_hull.face(best.face);
       for (int i = 0; i < 3; ++i) {
         corners_[i] = buffers_.exact_hull.vertices[static_cast<std::size_t>(face.v[i])];
@@ -232,6 +239,21 @@ class SmoothQuery {
     set_depth(core.lower + margin_, core.upper + margin_, core.normal);
     double weights[3];
     project_origin(corners_, core.normal, weights);
+    const double near = kAcross * size();
+    if (miss_across(corners_, core.normal, weights) > near) {
+      // The last triangle is thin, one of several in a plane, or not across the normal that proves the depth, which is
+      // open by the root of the bracket's width: kAside covers its corners all the same.
+      double least_height = core.lower - near;
+      for (DifferenceVertex& corner : corners_) {
+        const double height = corner.x.dot(core.normal);
+        if (height < core.lower - kAside * size()) {
+          corner = difference_.support(core.normal, nullptr);
+        } else {
+          least_height = std::min(least_height, height);
+        }
+      }
+      find_foot(*searched_, core.normal, least_height, corners_, weights);
+    }
     set_witnesses(corners_, weights, 3);
     out_.witness_b = out_.witness_a + out_.translation;
   }
@@ -391,12 +413,9 @@ class SmoothQuery {
   double margin_b_;
   double margin_;
   WarmCertificate* warm_;
-  DifferenceVertex corners_[3];  ///< of the nearest face
+  DifferenceVertex corners_[3];                                                 ///< of the nearest face
+  const std::vector<DifferenceVertex>* searched_ = &buffers_.surface.vertices;  ///< what the face is of
 };
-
-}  // namespace
-
-namespace {
 
 /// Points of an answer are relative to the translation of A until here.
 void move_witnesses(const Vec3& translation_a, PenetrationDepth& out) {
