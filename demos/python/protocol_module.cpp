@@ -5,8 +5,15 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "audit/audit_answer.hpp"
 #include "mesh/mesh_file.hpp"
@@ -22,6 +29,34 @@ std::string answer(const std::string& line) {
   const py::gil_scoped_release unlocked;
   thread_local query::Session session;
   return query::answer_line(line, session);
+}
+
+/// Lines answered by several threads, in their order; the same bytes for any number of threads.
+std::vector<std::string> answer_many(const std::vector<std::string>& lines, int threads) {
+  const py::gil_scoped_release unlocked;
+  std::vector<std::string> answers(lines.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      query::Session session;
+      for (std::size_t i = next++; i < lines.size(); i = next++) answers[i] = query::answer_line(lines[i], session);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      if (!failure) failure = std::current_exception();
+      next = lines.size();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(threads), lines.size()); ++t) {
+      others.emplace_back(work);
+    }
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+  return answers;
 }
 
 /// Points [n, 3] and the file's own numbers of them.
@@ -77,6 +112,7 @@ PYBIND11_MODULE(_protocol, module) {
   module.doc() = "The compiled part of pdepth that reads files and lines; use the package pdepth.";
   pd::python::use_refused(pybind11::module_::import("pdepth._core").attr("Refused"));
   module.def("answer", &pd::python::answer);
+  module.def("answer_many", &pd::python::answer_many);
   module.def("mesh_points", &pd::python::mesh_points);
   module.def("audit", &pd::python::audit);
 }

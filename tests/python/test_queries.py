@@ -92,6 +92,11 @@ def test_warm_rows_are_the_cold_ones_up_to_their_brackets(poses):
     assert (warm.lower <= cold.upper).all() and (cold.lower <= warm.upper).all()
     for name in warm:
         assert np.array_equal(warm[name], pdepth.depth(GEM, BOX, path, warm=True, threads=1)[name])
+    turned = pdepth.depth(GEM, BOX, np.ascontiguousarray(np.moveaxis(path, 0, 1)), warm=True, axis=1)
+    for name in warm:
+        assert np.array_equal(np.moveaxis(turned[name], 1, 0), warm[name]), name
+    with pytest.raises(pdepth.Refused, match="axis"):
+        pdepth.depth(GEM, BOX, path, warm=True, axis=2)
     memory = pdepth.Warm()
     alone = [pdepth.depth(GEM, BOX, pose, warm=memory) for pose in path[:, 0]]
     assert [each.depth for each in alone] == warm.depth[:, 0].tolist() and memory.nbytes > 0

@@ -32,10 +32,23 @@ def test_a_sweep_is_the_batch_in_files_and_resumes(poses, tmp_path):
     before = bytes_of(done)
     done.files[3].unlink()
     done.files[5].write_bytes(before[5][:1000])
-    again = pdepth.sweep(SHAPES, pairs, lambda i, j: (poses_a[i:j], poses_b[i:j]), out=tmp_path, chunk=100, progress=False)
-    assert again.computed == 2 and bytes_of(again) == before
+    asked = []
+
+    def rows(begin, end):
+        asked.append(begin)
+        return poses_a[begin:end], poses_b[begin:end]
+
+    again = pdepth.sweep(SHAPES, pairs, rows, out=tmp_path, chunk=100, progress=False)
+    assert again.computed == 2 and bytes_of(again) == before and asked == list(range(0, 1050, 100))
     poses_a[250, 0, 3] += 1
     assert pdepth.sweep(SHAPES, pairs, (poses_a, poses_b), out=tmp_path, chunk=100, progress=False).computed == 1
+
+
+def test_answers_of_another_version_are_computed_anew(poses, tmp_path, monkeypatch):
+    pairs, both = question(poses, 200)
+    assert pdepth.sweep(SHAPES, pairs, both, out=tmp_path, chunk=100, progress=False).computed == 2
+    monkeypatch.setattr(pdepth, "__version__", "0.0.0")
+    assert pdepth.sweep(SHAPES, pairs, both, out=tmp_path, chunk=100, progress=False).computed == 2
 
 
 def test_bad_sweeps_are_refused(poses, tmp_path):

@@ -11,7 +11,8 @@ pdepth.Refused, a ValueError that says which argument, which index, and what wou
 """
 
 from ._core import ERRORS, Depth, Pose, Refused, Warm
-from ._lines import Answer, audit, hull, minkowski_difference, polygon_depth, query, time_of_impact, width
+from ._line_batches import RowBatch
+from ._lines import Answer, audit, hull, minkowski_difference, polygon_depth, query, query_many, time_of_impact, width
 from ._picture_call import picture, save_picture
 from ._queries import (CONTACTS, FEATURES, Batch, Derivatives, DirectionalDepth, Manifold, contact_manifold, cores, depth,
                        derivatives, directional_depth, distance, intersects)

@@ -8,9 +8,10 @@ import tempfile
 
 import numpy as np
 
-from ._core import Pose, Refused, Shape
+from ._core import ERRORS, Pose, Refused, Shape
 from ._errors import refused
-from ._queries import Fields, cores
+from ._line_batches import ask_lines, ask_rows, bodies, rows_of, spread
+from ._queries import Fields, _is_batch, cores
 from ._shapes import _plain, pose_fields
 
 #: Fields that hold lists of unequal lengths, or of words: they stay lists.
@@ -64,43 +65,115 @@ def query(name, **fields):
     return Answer({key: _value(key, value) for key, value in answer.items()})
 
 
-def width(a, pose_a=None, *, method=None, delta=None):
-    """The least distance of two parallel planes that hold the body between them: width, lower, upper, normal."""
-    if pose_a is not None:
-        return query("width", a=a, pose_a=pose_a, method=method, delta=delta)
-    return query("width", a=a, method=method, delta=delta)
+_MEETING = {"class": "separated", "depth": 0.0, "lower": 0.0, "upper": 0.0, "distance": 0.0, "distance_lower": 0.0,
+            "distance_upper": 0.0, "translation": [0.0] * 3, "normal": [0.0] * 3, "witness_a": [0.0] * 3, "witness_b": [0.0] * 3}
+_WIDTH = {"width": 0.0, "lower": 0.0, "upper": 0.0, "normal": [0.0] * 3}
+_SUM = {"vertices": [[0.0] * 3], "facets": [[0]], "K": 0, "facet_kinds": [""]}
+_HULL = {"vertices": [[0.0] * 3], "vertex_ids": [0], "facets": [[0]], "affine_dim": 0}
+_IMPACT = {"hit": False, "time": 0.0, "certified": 0.0, **_MEETING}
+_PLANAR = {"class": "separated", "depth": 0.0, "lower": 0.0, "upper": 0.0, "translation": [0.0] * 2, "normal": [0.0] * 2}
 
 
-def minkowski_difference(a, b, pose_a=None, pose_b=None):
-    """P = B + (-A), built: vertices [n, 3], facets (loops of rows of vertices), facet_kinds, K."""
+def query_many(name, rows, *, threads=None):
+    """Many questions of one query of the line protocol: a RowBatch, answered on `threads` cores (all of them by default)
+    with the interpreter's lock released.
+
+        pdepth.query_many("approx_width", [{"a": {"points": p}, "epsilon": 0.1} for p in clouds]).width
+
+    rows: dictionaries of the query's fields, shapes and poses may be objects. What a row's bodies refuse is that row's
+    `error`, an index into pdepth.ERRORS; a row that is no such question raises Refused. `stats` and features are left out.
+    """
+    return ask_lines([_row_line(name, row) for row in rows], threads)
+
+
+def _row_line(name, row):
+    line = {"query": name, **{key: _field(key, value) for key, value in row.items() if value is not None}}
+    try:
+        return json.dumps(line, allow_nan=False)
+    except ValueError:
+        return ERRORS.index("non_finite")
+
+
+def _options(parts, count, options):
+    for key, value in options.items():
+        if value is not None:
+            parts[key] = [json.dumps(_plain(value))] * count
+    return parts
+
+
+def width(a, pose_a=None, *, method=None, delta=None, threads=None):
+    """The least distance of two parallel planes that hold the body between them: width, lower, upper, normal.
+
+    A list of shapes, or poses [n, 4, 4], answer a RowBatch.
+    """
+    if _is_batch(a, a, pose_a, None):
+        parts, count = bodies(a, None, pose_a, None)
+        return ask_rows("width", _options(parts, count, {"method": method, "delta": delta}), count, threads, _WIDTH)
+    return query("width", a=a, pose_a=pose_a, method=method, delta=delta)
+
+
+def minkowski_difference(a, b, pose_a=None, pose_b=None, *, threads=None):
+    """P = B + (-A), built: vertices [n, 3], facets (loops of rows of vertices), facet_kinds, K.
+
+    Lists of shapes, or poses [n, 4, 4], answer a RowBatch: arrays of all rows with offsets; rows of vertices in facets
+    are those of the row's own.
+    """
+    if _is_batch(a, b, pose_a, pose_b):
+        return ask_rows("minkowski_difference", *bodies(a, b, pose_a, pose_b), threads, _SUM)
     return query("minkowski_difference", a=a, b=b, pose_a=pose_a, pose_b=pose_b)
 
 
-def hull(a, pose_a=None):
-    """The posed hull: vertices [n, 3], vertex_ids, facets (loops of rows of vertices), affine_dim."""
+def hull(a, pose_a=None, *, threads=None):
+    """The posed hull: vertices [n, 3], vertex_ids, facets (loops of rows of vertices), affine_dim.
+
+    A list of shapes, or poses [n, 4, 4], answer a RowBatch: arrays of all rows with offsets.
+    """
+    if _is_batch(a, a, pose_a, None):
+        return ask_rows("hull", *bodies(a, None, pose_a, None), threads, _HULL)
     return query("hull", a=a, pose_a=pose_a)
 
 
 def time_of_impact(a, b, pose_a=None, pose_b=None, *, velocity_a=None, angular_velocity_a=None, velocity_b=None,
-                   angular_velocity_b=None, duration=1.0, tolerance=None):
+                   angular_velocity_b=None, duration=1.0, tolerance=None, threads=None):
     """The first contact of two moving bodies within duration: hit, time, certified, and depth's fields at that time.
 
-    Velocities in units of length and radians per unit of time, about each body's own origin, constant.
+    Velocities in units of length and radians per unit of time, about each body's own origin, constant. Lists of shapes,
+    or poses [n, 4, 4], answer a RowBatch; velocities are then [3] or [n, 3], duration and tolerance numbers or [n].
     """
-    return query("time_of_impact", a=a, b=b, pose_a=pose_a, pose_b=pose_b, velocity_a=velocity_a,
-                 angular_velocity_a=angular_velocity_a, velocity_b=velocity_b, angular_velocity_b=angular_velocity_b,
-                 duration=duration, tolerance=tolerance)
+    vectors = {"velocity_a": velocity_a, "angular_velocity_a": angular_velocity_a, "velocity_b": velocity_b,
+               "angular_velocity_b": angular_velocity_b}
+    if not _is_batch(a, b, pose_a, pose_b):
+        return query("time_of_impact", a=a, b=b, pose_a=pose_a, pose_b=pose_b, **vectors, duration=duration,
+                     tolerance=tolerance)
+    parts, count = bodies(a, b, pose_a, pose_b)
+    for name, value, size in [*((*each, 3) for each in vectors.items()), ("duration", duration, 0), ("tolerance", tolerance, 0)]:
+        if value is not None:
+            parts[name] = rows_of(value, count, size, name)
+    return ask_rows("time_of_impact", parts, count, threads, _IMPACT)
 
 
-def polygon_depth(p, q, **options):
+def polygon_depth(p, q, *, threads=None, **options):
     """Depth of two polygons in the plane; q moves. p, q: [n, 2] outlines, or {"outer": ..., "holes": [...]}.
 
-    options: direction, complete, direction_set, placements, slots, method: see the protocol's planar queries.
+    options: direction, complete, direction_set, placements, slots, method: see the protocol's planar queries. Lists of
+    polygons (one for all, or one a row) answer a RowBatch; the options then hold for every row.
     """
+    def listed(value):
+        return not isinstance(value, dict) and len(value) > 0 and (isinstance(value[0], dict) or np.ndim(value[0]) == 2)
+
     def polygon(value):
         return value if isinstance(value, dict) else {"outer": value}
 
-    return query("polygon_depth", p=polygon(p), q=polygon(q), **options)
+    if not (listed(p) or listed(q)):
+        return query("polygon_depth", p=polygon(p), q=polygon(q), **options)
+    sides = [list(each) if listed(each) else [each] for each in (p, q)]
+    count = max(len(each) for each in sides)
+    if any(len(each) not in (1, count) for each in sides):
+        raise refused(f"polygons: as many of each, or one for all; got {len(sides[0])} and {len(sides[1])} (bad_value)")
+    rows = zip(*(spread(each, count) for each in sides))
+    lines = [_row_line("polygon_depth", {"p": polygon(one), "q": polygon(other), **options}) for one, other in rows]
+    plain = not {"direction", "direction_set", "placements", "slots", "complete"} & options.keys()
+    return ask_lines(lines, threads, _PLANAR if plain else None)
 
 
 def audit(records, *, tolerance=None, worst=5, fail_on=None, threads=None):

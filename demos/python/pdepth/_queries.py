@@ -142,8 +142,8 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
 
     method: 'auto' (exact for polytopes, swept or not; 1 + delta for curved bodies and unions), 'expansion', 'overlay',
     'decomposition', 'shallow', 'grid'. delta: relative error in (0, 1]. bracket: 'tightest', 'certified' or 'contact'.
-    warm: for one pair a Warm; for a batch True makes the rows along `axis` (0) frames of one pair, each started from the
-    last; other dimensions are pairs of their own.
+    warm: for one pair a Warm; for a batch True makes the rows along `axis` (a leading dimension) frames of one pair, each
+    started from the last; other dimensions are pairs of their own.
 
     Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
     """
@@ -159,10 +159,21 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
     (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
     if warm not in (None, True, False):
         raise refused("warm: True or False for a batch (bad_value)")
-    if axis != 0:
-        raise refused(f"axis: warm starts run along axis 0, not {axis!r}; move it there with np.moveaxis (bad_value)")
-    chains = (count // lead[0] if lead[0] else 1) if warm else 0
-    return Batch(_core.depth_rows(bodies_a, bodies_b, poses_a, poses_b, count, settings, chains, _threads(threads)), lead)
+    if not isinstance(axis, int) or not -len(lead) <= axis < len(lead):
+        raise refused(f"axis: {axis!r} is none of the {len(lead)} leading dimensions (out_of_range)")
+    axis %= len(lead)
+    chains, order = 0, None
+    if warm and count:
+        chains = count // lead[axis]
+        order = None if axis == 0 else np.moveaxis(np.arange(count).reshape(lead), axis, 0).ravel()
+    if order is not None:  # frames first; rows that all share one body or pose stay as they are
+        bodies_a, bodies_b = ([each[i] for i in order] if len(each) > 1 else each for each in (bodies_a, bodies_b))
+        poses_a, poses_b = (each[order] if len(each) > 1 else each for each in (poses_a, poses_b))
+    fields = _core.depth_rows(bodies_a, bodies_b, poses_a, poses_b, count, settings, chains, _threads(threads))
+    if order is not None:
+        back = np.argsort(order)
+        fields = {name: column[back] for name, column in fields.items()}
+    return Batch(fields, lead)
 
 
 def distance(a, b, pose_a=None, pose_b=None, *, threads=None):

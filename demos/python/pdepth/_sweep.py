@@ -113,9 +113,8 @@ class _Inputs:
 
 
 def _run_here(inputs, todo, finish, threads, options):
-    for begin, end, path, digest in todo:
-        pairs, poses_a, poses_b = inputs.rows(begin, end)
-        finish(path, _chunk(inputs.shapes, pairs, poses_a, poses_b, threads, options), digest, end - begin)
+    for rows, path, digest in todo:
+        finish(path, _chunk(inputs.shapes, *rows, threads, options), digest, len(rows[0]))
 
 
 def _run_on(client, inputs, todo, finish, threads, options):
@@ -129,10 +128,9 @@ def _run_on(client, inputs, todo, finish, threads, options):
         work = next(waiting, None)
         if work is None:
             return None
-        begin, end, path, digest = work
-        pairs, poses_a, poses_b = inputs.rows(begin, end)
-        future = client.submit(_chunk, shapes, pairs, poses_a, poses_b, threads, options, pure=False)
-        known[future] = (path, digest, end - begin)
+        rows, path, digest = work
+        future = client.submit(_chunk, shapes, *rows, threads, options, pure=False)
+        known[future] = (path, digest, len(rows[0]))
         return future
 
     under_way = max(2, 2 * sum(client.nthreads().values()))
@@ -151,11 +149,11 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
     """Asks depth for many pairs and writes the answers to `out` as they come.
 
     shapes: a list; pairs: [n, 2] rows of it; poses: (poses_a, poses_b), each [n, 4, 4] (np.memmap stays on disk), or a
-    function of (begin, end) that gives those rows. client: a distributed.Client, else this machine. chunk: pairs a file.
+    function of (begin, end) that gives those rows, called once a chunk. client: a distributed.Client, else this machine. chunk: pairs a file.
     threads: of one chunk; by default all cores here and 1 on a cluster. options: method, delta, bracket of depth.
 
     File chunk_K.npz holds the columns of depth's Batch for pairs [K * chunk, (K + 1) * chunk) and `inputs`, the SHA-256
-    of what was asked. A file whose inputs are the same is kept when the sweep is called again; anything else is computed
+    of what was asked and of pdepth's version. A file whose inputs are the same is kept when the sweep is called again; anything else is computed
     anew. The bytes are the same with and without a cluster. Answers a Sweep.
     """
     inputs = _Inputs(shapes, pairs, poses)
@@ -163,7 +161,10 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
         raise refused(f"chunk: must be an integer from 1, not {chunk!r} (bad_value)")
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    head = json.dumps([[shape.protocol() for shape in inputs.shapes], options], sort_keys=True).encode()
+    from . import __version__
+
+    asked = [__version__, [shape.protocol() for shape in inputs.shapes], options]
+    head = json.dumps(asked, sort_keys=True).encode()
     shown = _Progress(inputs.count, progress)
     files = [folder / f"chunk_{k:06d}.npz" for k in range(-(-inputs.count // chunk))]
     computed = 0
@@ -171,11 +172,12 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
     def to_do():
         for k, path in enumerate(files):
             begin, end = k * chunk, min((k + 1) * chunk, inputs.count)
-            digest = _inputs_digest(head, *inputs.rows(begin, end))
+            rows = inputs.rows(begin, end)
+            digest = _inputs_digest(head, *rows)
             if _is_done(path, digest):
                 shown.step(end - begin)
             else:
-                yield begin, end, path, digest
+                yield rows, path, digest
 
     def finish(path, columns, digest, count):
         nonlocal computed
