@@ -34,7 +34,7 @@ constexpr int kMostSearches = 4;
 /// Of L: what witnesses may differ by across the normal.
 constexpr double kAcross = 1e-9;
 /// Of L: how far below the supporting plane points of its face may be.
-constexpr double kAside = 1e-2;
+constexpr double kAside = 0.05;
 
 class SmoothQuery {
  public:
