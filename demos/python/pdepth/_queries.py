@@ -257,7 +257,8 @@ def derivatives(a, b, pose_a=None, pose_b=None, *, threads=None):
     A pose has six numbers: translation, and a rotation vector about the pose's own translation, in the world's axes.
     by_a, by_b: [6]. unique_direction: the least direction is unique, and the first three of each exist; unique_witness:
     the pair of witnesses is, too, and the last three exist (parallel faces have the first and not the second). What does
-    not exist is NaN. For one pair also stable_features and, where it holds, normal_by_a, witness_a_by_b, ...: [3, 6].
+    not exist is NaN. For one pair also stable_features and, where it holds, normal_by_a, witness_a_by_b, ...: [3, 6];
+    those of curved bodies have no bound on their error.
 
     For many: a Batch with signed_depth, the three flags, by_a and by_b beside the columns of depth.
     """
