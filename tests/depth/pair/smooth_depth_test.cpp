@@ -118,6 +118,30 @@ TEST(Smooth, WitnessesLieOnTheirBodies) {
   EXPECT_LT(worst, 1e-4);
 }
 
+// A search for a contact that met its budget on a face without area once took its direction, none, for a way out.
+TEST(Smooth, ContactBracketsHoldTheDepth) {
+  Scratch scratch;
+  scenes::Random random(77);
+  int judged = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const ConvexShape a = random_shape(i % 3, random), b = random_shape(random.integer(0, 6), random);
+    const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
+    const PosedShape posed_b{
+        &b, *Pose::from_quaternion(random.quaternion(), random.uniform(0.1, 1.2) * random.direction())};
+    DepthSettings settings;
+    settings.bracket = Bracket::contact;
+    settings.contact_tolerance = 4e-9;
+    const PenetrationDepth contact = penetration_depth(posed_a, posed_b, scratch, settings);
+    if (contact.contact != ContactClass::overlapping) continue;
+    ++judged;
+    const PenetrationDepth exact = penetration_depth(posed_a, posed_b, scratch);
+    ASSERT_NEAR(contact.normal.norm(), 1, 1e-12) << i;
+    ASSERT_LE(contact.lower, exact.upper + 1e-8) << i;
+    ASSERT_GE(contact.upper, exact.lower - 1e-8) << i;
+  }
+  EXPECT_GT(judged, 5000);
+}
+
 TEST(Smooth, NearContactIsAnsweredInBoundedWork) {
   Scratch scratch;
   int asked = 0;

@@ -246,6 +246,9 @@ class ExpandingPolytope {
   std::int64_t facets_visited_ = 0;
 };
 
+/// False for what a face without area has in place of a unit normal.
+inline bool is_direction(const Vec3& unit) { return std::abs(unit.squaredNorm() - 1) < 1e-12; }
+
 /// An upper bound on the depth: the height of P along a face's normal.
 struct HeightOfFace {
   double upper = std::numeric_limits<double>::infinity();
@@ -273,6 +276,7 @@ inline HeightOfFace upper_bound_of_nearest_faces(const PolytopeDifference& diffe
   for (const auto& [key, f] : nearest) {
     if (f < 0) break;
     const Vec3 unit = surface.normal(f).normalized();
+    if (!is_direction(unit)) continue;
     const DifferenceVertex s = difference.certified_support(unit, difference.support(unit, nullptr), stack);
     ++support_calls;
     const double height = s.x.dot(unit) + support_plane_error(difference);

@@ -169,8 +169,8 @@ class SmoothQuery {
   /// A search that was ended has bounds from below only, but for those that looked decisive: any support is one.
   void tighten_upper(ExpansionResult& best) const {
     WayOut out = thinnest_axis(a_, b_, difference_);
-    if (best.face >= 0) {
-      const Vec3 unit = buffers_.surface.normal(best.face).normalized();
+    const Vec3 unit = best.face >= 0 ? Vec3(buffers_.surface.normal(best.face).normalized()) : Vec3(Vec3::Zero());
+    if (is_direction(unit)) {
       const double height = difference_.support(unit, nullptr).x.dot(unit) + support_plane_error(difference_);
       if (height < out.upper) out = {unit, height};
     }
