@@ -48,6 +48,7 @@ class RandomWorld {
 
   btDiscreteDynamicsWorld& world() { return scene_.world(); }
   pd::BulletPenetrationDepthSolver& solver() { return solver_; }
+  [[nodiscard]] bool has_joint() const { return !joints_.empty(); }
 
   [[nodiscard]] double kinetic_energy() const {
     double sum = 0;
@@ -282,14 +283,22 @@ double plain_gain(std::uint64_t seed, int steps, double start, Totals& totals) {
   return gain;
 }
 
-/// One scene under the stepper. @return by what share of E_ref it breaks the law (negative where it keeps it)
-double run_scene(std::uint64_t seed, int steps, Totals& totals) {
+/// What one scene came to.
+struct Outcome {
+  double excess = 0;  ///< share of E_ref by which it breaks the law (negative where it keeps it)
+  int step = 0;       ///< when it was largest
+  bool joint = false;
+};
+
+/// One scene under the stepper.
+Outcome run_scene(std::uint64_t seed, int steps, Totals& totals) {
   RandomWorld guarded(seed);
   const double start = guarded.energy();
   const double reference = guarded.kinetic_energy() + guarded.potential_range();
   const double gain = plain_gain(seed, steps, start, totals);
   pd::RollbackStepper stepper(guarded.world(), guarded.solver());
   double excess = -HUGE_VAL;
+  int last = 0;
   const auto clock = std::chrono::steady_clock::now();
   for (int k = 0; k < steps; ++k) {
     const pd::RollbackReport report = stepper.step(btScalar(1.0 / 60));
@@ -300,12 +309,16 @@ double run_scene(std::uint64_t seed, int steps, Totals& totals) {
     totals.bounded += report.bounded ? 1 : 0;
     totals.least_parts += report.least_parts;
     totals.deepest_run_in = std::max(totals.deepest_run_in, report.deepest_run_in);
-    excess = std::max(excess, guarded.energy() - start - gain);
+    const double over = guarded.energy() - start - gain;
+    if (over > excess) {
+      excess = over;
+      last = k;
+    }
   }
   totals.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   totals.lost += guarded.lost();
   totals.worst = std::max(totals.worst, excess / reference);
-  return excess / reference;
+  return {excess / reference, last, guarded.has_joint()};
 }
 
 void print(const Totals& totals, int scenes, int steps) {
@@ -330,7 +343,9 @@ int main(int argc, char** argv) {
   int steps = 60;
   std::uint64_t seed = 1;
   CLI::App app{"Random worlds under pd::RollbackStepper: no energy may be gained."};
+  int first = 0;
   app.add_option("--scenes", scenes)->capture_default_str();
+  app.add_option("--first", first, "scene to begin with")->capture_default_str();
   app.add_option("--seed", seed)->capture_default_str();
   app.add_option("--steps", steps, "of 1/60 s")->capture_default_str();
   bool cost = false;
@@ -343,12 +358,13 @@ int main(int argc, char** argv) {
     return 0;
   }
   Totals totals;
-  for (int i = 0; i < scenes; ++i) {
-    const double excess = run_scene(seed * 1000003 + static_cast<std::uint64_t>(i), steps, totals);
-    if (excess <= 1e-3) continue;
+  for (int i = first; i < first + scenes; ++i) {
+    const Outcome outcome = run_scene(seed * 1000003 + static_cast<std::uint64_t>(i), steps, totals);
+    if (outcome.excess <= 1e-3) continue;
     ++totals.broken;
-    std::printf("BROKEN seed=%llu scene=%d: %.3g of E_ref above the law\n", static_cast<unsigned long long>(seed), i,
-                excess);
+    std::printf("BROKEN seed=%llu scene=%d, step %d%s: %.3g of E_ref above the law\n",
+                static_cast<unsigned long long>(seed), i, outcome.step, outcome.joint ? ", with a joint" : "",
+                outcome.excess);
   }
   print(totals, scenes, steps);
   return totals.broken == 0 ? 0 : 1;
