@@ -115,14 +115,14 @@ btManifoldPoint pattern_of(const btManifoldResult& result, const btManifoldPoint
   const btCollisionObject* const a = result.getBody0Internal();
   const btCollisionObject* const b = result.getBody1Internal();
   btManifoldPoint pattern(old.m_localPointA, old.m_localPointB, normal, 0);
-  pattern.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
-  pattern.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
-  pattern.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
-  pattern.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
+  pattern.m_combinedFriction = gCalculateCombinedFrictionCallback(a, b);
+  pattern.m_combinedRestitution = gCalculateCombinedRestitutionCallback(a, b);
+  pattern.m_combinedRollingFriction = gCalculateCombinedRollingFrictionCallback(a, b);
+  pattern.m_combinedSpinningFriction = gCalculateCombinedSpinningFrictionCallback(a, b);
   const int flags = a->getCollisionFlags() | b->getCollisionFlags();
   if ((flags & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) {
-    pattern.m_combinedContactDamping1 = btManifoldResult::calculateCombinedContactDamping(a, b);
-    pattern.m_combinedContactStiffness1 = btManifoldResult::calculateCombinedContactStiffness(a, b);
+    pattern.m_combinedContactDamping1 = gCalculateCombinedContactDampingCallback(a, b);
+    pattern.m_combinedContactStiffness1 = gCalculateCombinedContactStiffnessCallback(a, b);
     pattern.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
   }
   btPlaneSpace1(normal, pattern.m_lateralFrictionDir1, pattern.m_lateralFrictionDir2);

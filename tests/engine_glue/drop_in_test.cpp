@@ -35,8 +35,8 @@ struct Seen {
 };
 Seen seen;
 
-/// A box that falls on a floor, rests, and is lifted again.
-Seen fall_rest_and_lift(bool ours) {
+/// A box that falls on a floor, rests, and is lifted again. `material`: the floor asks for `gContactAddedCallback`.
+Seen fall_rest_and_lift(bool ours, bool material = true) {
   seen = Seen();
   static int tag;
   gContactAddedCallback = [](btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
@@ -65,7 +65,7 @@ Seen fall_rest_and_lift(bool ours) {
     }
     auto* box = scene.shape<btBoxShape>(btVector3(1, 1, 1));
     btRigidBody* floor = scene.body(box, 0, at(0, 0, 0));
-    floor->setCollisionFlags(floor->getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+    if (material) floor->setCollisionFlags(floor->getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     btRigidBody* body = scene.body(box, 1, at(0, 2.05, 0));
     for (int i = 0; i < 60; ++i) {
       scene.world().stepSimulation(kStep, 0);
@@ -97,6 +97,45 @@ TEST(DropIn, EveryContactCallback) {
   EXPECT_EQ(ours.tagged, ours.processed);  // user data stays with its point
   EXPECT_GE(ours.oldest, bullet.oldest);
   EXPECT_LE(ours.oldest, 60);
+}
+
+TEST(DropIn, PointsAreProcessedThatNobodyAskedToAdd) {
+  const Seen bullet = fall_rest_and_lift(false, false);
+  const Seen ours = fall_rest_and_lift(true, false);
+  EXPECT_EQ(ours.added, 0);
+  EXPECT_EQ(ours.started, bullet.started);
+  EXPECT_EQ(ours.ended, bullet.ended);
+  EXPECT_GT(ours.processed, 4 * 50);
+  EXPECT_NEAR(ours.processed, bullet.processed, 4 * 5);
+  EXPECT_GE(ours.oldest, bullet.oldest);
+  EXPECT_LE(ours.oldest, 60);
+}
+
+/// Friction and restitution as the host combines them, and as they are on the points of a box that rests.
+TEST(DropIn, TheHostCombinesFrictionAndRestitution) {
+  gCalculateCombinedFrictionCallback = [](const btCollisionObject*, const btCollisionObject*) {
+    return btScalar(0.125);
+  };
+  gCalculateCombinedRestitutionCallback = [](const btCollisionObject*, const btCollisionObject*) {
+    return btScalar(0.0625);
+  };
+  for (const bool ours : {false, true}) {
+    BulletPenetrationDepthSolver solver;
+    BulletWorld scene;
+    if (ours) install(scene.world(), solver);
+    auto* box = scene.shape<btBoxShape>(btVector3(1, 1, 1));
+    scene.body(box, 0, at(0, 0, 0));
+    scene.body(box, 1, at(0, 2, 0));
+    for (int i = 0; i < 10; ++i) scene.world().stepSimulation(kStep, 0);
+    const btPersistentManifold& manifold = *scene.world().getDispatcher()->getManifoldByIndexInternal(0);
+    ASSERT_EQ(manifold.getNumContacts(), 4) << ours;
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_EQ(manifold.getContactPoint(i).m_combinedFriction, btScalar(0.125)) << ours;
+      EXPECT_EQ(manifold.getContactPoint(i).m_combinedRestitution, btScalar(0.0625)) << ours;
+    }
+  }
+  gCalculateCombinedFrictionCallback = &btManifoldResult::calculateCombinedFriction;
+  gCalculateCombinedRestitutionCallback = &btManifoldResult::calculateCombinedRestitution;
 }
 
 struct Points : btCollisionWorld::ContactResultCallback {
