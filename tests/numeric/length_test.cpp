@@ -34,6 +34,19 @@ TEST(Length, WithinTwoBitsOfTheExactOneAtEveryScale) {
   EXPECT_TRUE(std::isnan(length(std::numeric_limits<double>::quiet_NaN(), 1)));
 }
 
+// Two ways to the same bits: squares as they are, and scaled where they would leave the range.
+TEST(Length, ScalesByPowersOfTwo) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> mantissa(-2, 2);
+  for (int i = 0; i < 20000; ++i) {
+    const double x = mantissa(random), y = std::ldexp(mantissa(random), -(i % 500));
+    const double unscaled = length(x, y);
+    for (const int exponent : {-402, -401, -400, -399, 0, 398, 399, 400, 401, 500}) {
+      ASSERT_EQ(length(std::ldexp(x, exponent), std::ldexp(y, exponent)), std::ldexp(unscaled, exponent)) << x << y;
+    }
+  }
+}
+
 }  // namespace
 
 }  // namespace pd::detail

@@ -11,6 +11,8 @@ namespace pd::detail {
 [[nodiscard]] inline double length(double x, double y) {
   const double largest = std::max(std::abs(x), std::abs(y));
   if (!(largest > 0) || !std::isfinite(x) || !std::isfinite(y)) return std::abs(x) + std::abs(y);
+  // No square overflows, and what underflows is nothing beside the other: the same bits as below.
+  if (largest > 0x1p-400 && largest < 0x1p400) return std::sqrt(x * x + y * y);
   const int exponent = std::ilogb(largest);
   x = std::ldexp(x, -exponent);
   y = std::ldexp(y, -exponent);
