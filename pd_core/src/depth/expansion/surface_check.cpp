@@ -74,7 +74,10 @@ class Check {
       if (!(f.distance > rounding())) return true;
       const Vec3 &p = point(f.v[0]), &q = point(f.v[1]), &r = point(f.v[2]);
       const double a = p.norm(), b = q.norm(), c = r.norm();
-      angles += 2 * std::atan2(p.dot(q.cross(r)), a * b * c + p.dot(q) * c + q.dot(r) * a + r.dot(p) * b);
+      // The origin lies behind the face, as its distance says; beside it, the product may have lost its sign.
+      const double volume = p.dot(q.cross(r));
+      const double sure = std::abs(volume) > 16 * kUnitRoundoff * a * b * c ? volume : std::abs(volume);
+      angles += 2 * std::atan2(sure, a * b * c + p.dot(q) * c + q.dot(r) * a + r.dot(p) * b);
     }
     return std::round(angles / (4 * std::numbers::pi)) >= 1;
   }

@@ -1,6 +1,7 @@
 #include "depth/facets/box_sat_kernels.hpp"
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 
 #include "numeric/instruction_sets.hpp"
