@@ -173,7 +173,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
     }
   }
   memory.children.swap(fresh_memory_);
-  if (deep_.needed() && pairs_.size() > 1) leave_as_one(question, core, *buffers, patches);
+  if (deep_.needed()) leave_as_one(question, core, *buffers, patches);
   return true;
 }
 

@@ -44,8 +44,10 @@ void DeepUnion::add(const PairAnswer& answer, const ContactManifold& left) {
   if (answer.depth.depth < kDeep * radius) return;
   deepest_ = std::max(deepest_, answer.depth.depth);
   if (left.count == 0) return;
-  torn_ = torn_ || std::any_of(normals_.begin(), normals_.end(),
-                               [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
+  // A facet that stands in for a covered one is far, and what lies round it was not looked at.
+  torn_ = torn_ || answer.depth.normal.dot(left.normal) < kTogether ||
+          std::any_of(normals_.begin(), normals_.end(),
+                      [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
   normals_.push_back(left.normal);
 }
 

@@ -26,7 +26,7 @@ class DeepUnion {
   /// Takes note of what two children said about each other, and of what the rule of covered_contact.hpp left of it.
   void add(const PairAnswer& answer, const ContactManifold& left);
   /// Whether children are in each other by a quarter of the smaller one's radius or more, and either nothing of what
-  /// they say is left, or what is left leads apart by more than 45 degrees.
+  /// they say is left, or what is left leads more than 45 degrees apart or aside of what two of them said.
   [[nodiscard]] bool needed() const { return deepest_ > 0 && (normals_.empty() || torn_); }
 
   struct Way {

@@ -69,6 +69,21 @@ TEST(DeepUnions, ABodyInABlockLeavesItTheShortestWay) {
   }
 }
 
+TEST(DeepUnions, ABodyInsideASinglePieceLeavesTheWhole) {
+  for (const double x : {0.05, 0.3, 0.6, 0.7, 0.95}) {
+    SCOPED_TRACE(x);
+    UnionWorld world;
+    world.bullet.world().setGravity(at(0, 0, 0));
+    world.fixed(block(world, 3));
+    auto* piece = world.bullet.shape<btBoxShape>(at(.1, .1, .1));
+    const btRigidBody* body = world.moving(piece, btTransform(btQuaternion::getIdentity(), at(x, .02, 0)), at(0, 0, 0));
+    world.step(240);
+    const btVector3& end = body->getWorldTransform().getOrigin();
+    EXPECT_GT(end.x(), 1.55);
+    EXPECT_NEAR(static_cast<double>(end.y()), .02, 1e-3);
+  }
+}
+
 TEST(DeepUnions, WhatRestsIsNotAsked) {
   UnionWorld world;
   world.fixed(block(world, 4));

@@ -1,5 +1,6 @@
 #include "dimension/macbeath_structure.hpp"
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,12 +11,13 @@ namespace pd::dimension::detail {
 
 template <int D>
 Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body, double epsilon) {
-  if (epsilon / 8 < kLeastEpsilon) {
-    return Error{ErrorCode::bad_value, "the macbeath backend needs epsilon >= 8e-7", "epsilon"};
-  }
   // The kernel falls short of h by its share of epsilon, about the sandwich's centre; the hierarchy by the rest of the
   // kernel's h. In R^4 and R^5 regions are much dearer than points of the kernel.
   constexpr double kKernelShare = D < 4 ? 0.5 : 0.125;
+  if (kKernelShare * epsilon < kLeastEpsilon) {
+    return Error{ErrorCode::bad_value,
+                 std::string("the macbeath backend needs epsilon >= ") + (D < 4 ? "2e-7" : "8e-7"), "epsilon"};
+  }
   const auto kernel = KernelStructure<D>::build(body, kKernelShare * epsilon);
   std::vector<SupportPoint<D>> points;
   for (const auto* list : {&kernel->nodes(), &kernel->loose()}) {

@@ -8,7 +8,8 @@
 
 namespace pd::dimension::detail {
 
-/// @param epsilon  in [2e-7, 1): half of it goes into the kernel, half into the hierarchy.
+/// @param epsilon  in [2e-7, 1) for D < 4, in [8e-7, 1) above: .5 or .125 of it goes into the kernel, the rest into the
+///                 hierarchy.
 /// @return bad_value, limit_exceeded ("epsilon").
 template <int D>
 [[nodiscard]] Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body,

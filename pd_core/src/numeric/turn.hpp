@@ -2,15 +2,14 @@
 /// Sines and rotations with the same bits everywhere: libraries differ in the last bit of std::sin.
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include "pd/numeric/vector.hpp"
 
 namespace pd::detail {
 
-/// The series of the sine, or of the cosine less one, over x^`first`: alternating, each term over the next two numbers.
-/// For |x| <= pi/4 what is left out is below 2^-63 of the sum.
+/// sin(x) / x - 1 (`first` 1) or cos(x) - 1 (`first` 0) by their series in `square` = x^2. For |x| <= pi/4 what is left
+/// out is below 2^-63 of the sum.
 [[nodiscard]] inline double alternating_series(double square, int first) {
   double sum = 0;
   for (int k = first + 16; k > first; k -= 2) sum = -square / (k * (k - 1)) * (1 + sum);

@@ -77,7 +77,7 @@ struct BulletSolverStatistics {
   std::int64_t skipped_triangles = 0;
   /// Pairs of bodies with compounds, deep in each other, that were answered by the exact depth of the whole unions.
   std::int64_t deep_unions = 0;
-  /// The same, left to their pieces since the whole would have taken more than the budget of facets.
+  /// The same, left to their pieces since the whole would have taken more than its budget of pairs or facets.
   std::int64_t deep_unions_left = 0;
 };
 
