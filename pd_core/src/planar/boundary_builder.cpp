@@ -197,6 +197,7 @@ void BoundaryBuilder::flood(const Candidate& candidate, int triangle, ArcCover& 
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const Triangle& t = triangulation_.triangles[at(queue_[i])];
     if (t.inside && queue_[i] != candidate.sum) {
+      near_.push_back({index_of(candidate), queue_[i]});
       count_crossings(queue_[i], cutter.cut(queue_[i], cover));
       if (cover.covered.whole()) return;
     }
@@ -208,8 +209,12 @@ void BoundaryBuilder::flood(const Candidate& candidate, int triangle, ArcCover& 
   }
 }
 
+std::int32_t BoundaryBuilder::index_of(const Candidate& candidate) const {
+  return static_cast<std::int32_t>(&candidate - r_.candidates_.data());
+}
+
 void BoundaryBuilder::keep(const Candidate& candidate, const CandidateCover& cover) {
-  const auto index = static_cast<std::int32_t>(&candidate - r_.candidates_.data());
+  const std::int32_t index = index_of(candidate);
   CoveredIntervals all = cover.covered;
   CoveredIntervals slots = cover.covered;
   for (const auto& interval : cover.abutting) {
@@ -217,7 +222,10 @@ void BoundaryBuilder::keep(const Candidate& candidate, const CandidateCover& cov
     slots.add(interval);
     all.add(interval);
   }
-  for (const auto& part : all.rest()) r_.stretches_.push_back({index, part.from, part.to});
+  const auto rest = all.rest();
+  for (const auto& part : rest) r_.stretches_.push_back({index, part.from, part.to});
+  if (!rest.empty()) return;
+  while (!near_.empty() && near_.back().candidate == index) near_.pop_back();
 }
 
 /// Drops the candidates of which nothing is left.
@@ -235,7 +243,11 @@ void BoundaryBuilder::compact() {
     }
   }
   r_.candidates_ = std::move(kept);
-  r_.stretches_ = split_where_touched(r_, r_.stretches_);
+  for (NearSum& near : near_) near.candidate = number[at(near.candidate)];
+  std::sort(near_.begin(), near_.end(), [](const NearSum& a, const NearSum& b) {
+    return a.candidate != b.candidate ? a.candidate < b.candidate : a.sum < b.sum;
+  });
+  r_.stretches_ = split_where_touched(r_, r_.stretches_, near_);
   r_.stretches_.shrink_to_fit();
   r_.counts_.sums = static_cast<std::int64_t>(r_.sums_.size());
   r_.num_loops_ = link_loops(r_, r_.stretches_, r_.counts_.reflex_points);
@@ -280,7 +292,9 @@ void BoundaryBuilder::build_explicit() {
     box = box.widened();
     tree.visit([&](const Box2& b) { return b.meets(box) && !cover.covered.whole(); },
                [&](std::int32_t sum) {
-                 if (sum != candidate.sum && boxes[at(sum)].meets(box)) cutter.cut(sum, cover);
+                 if (sum == candidate.sum || !boxes[at(sum)].meets(box)) return;
+                 near_.push_back({index_of(candidate), sum});
+                 cutter.cut(sum, cover);
                });
     keep(candidate, cover);
   }
