@@ -1,10 +1,16 @@
 /// @file
-/// [D] section 3: probes of the search in two convex polygons, work and probes of the medial axis.
+/// [D] section 3: probes of the search in two convex polygons, its time beside binary searches in arrays of their
+/// length, work and probes of the medial axis.
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/dobkin/dobkin.hpp"
+#include "bench/measure/stopwatch.hpp"
+#include "pd/planar/convex_depth.hpp"
 #include "pd/planar/medial_axis.hpp"
 #include "scenes/shape_families.hpp"
 
@@ -13,6 +19,7 @@ namespace pd::bench {
 namespace {
 
 const Claim kDirection{"Section 3", "directional depth of convex polygons in O(log n + log m)"};
+const Claim kSearch{"Section 3, time", "directional depth of convex polygons beside binary searches"};
 const Claim kAxis{"Theorem 3.2", "depth of any placement in O(log n) after linear preprocessing"};
 
 ConvexPolygon ellipse(int n, double phase, double squash) {
@@ -24,7 +31,41 @@ ConvexPolygon ellipse(int n, double phase, double squash) {
   return *ConvexPolygon::from_points(points);
 }
 
+struct Search {
+  Point2 values, direction;
+};
+
 }  // namespace
+
+// Two random binary searches in arrays of the polygons' lengths: the bare cost of finding something among so many.
+void measure_searches(const DobkinSettings& settings, ClaimTable& table) {
+  const int n = settings.full ? 1 << 20 : 1 << 15;
+  const ConvexPolygon p = ellipse(n, 0.3, 0.7), q = ellipse(n, 0.1, 0.4);
+  std::vector<double> first, second;
+  for (int i = 0; i < n; ++i) {
+    first.push_back(i);
+    second.push_back(i + 0.5);
+  }
+  scenes::Random random(settings.seed);
+  std::vector<Search> searches;
+  for (int i = 0; i < 4000; ++i) {
+    const scenes::Turn t = scenes::turn(random.uniform());
+    searches.push_back({{random.uniform(0, n), random.uniform(0, n)}, {t.cosine, t.sine}});
+  }
+  double sum = 0;
+  const double ours = least_mean_ns(searches, 9, [&](const Search& s) {
+    sum += convex_directional_depth(p, q, {0.1, 0.2}, s.direction).value().depth;
+  });
+  const double bare = least_mean_ns(searches, 9, [&](const Search& s) {
+    sum += *std::lower_bound(first.begin(), first.end() - 1, s.values[0]);
+    sum += *std::lower_bound(second.begin(), second.end() - 1, s.values[1]);
+  });
+  if (sum < 0) std::abort();
+  const std::string range = "n = m = " + std::to_string(n);
+  table.add_value(kSearch, "ellipses", "time of a directional query, ns", range, ours);
+  table.add_value(kSearch, "ellipses", "time of two std::lower_bound, ns", range, bare);
+  table.add_value(kSearch, "ellipses", "time / that of two std::lower_bound", range, ours / bare, 4);
+}
 
 void measure_convex_polygons(const DobkinSettings& settings, ClaimTable& table) {
   const int most = settings.full ? 1 << 20 : 1 << 15;

@@ -17,8 +17,8 @@ struct Chapter {
   void (*measure)(const DobkinSettings&, ClaimTable&);
 };
 constexpr Chapter kChapters[] = {
-    {"hierarchy", measure_hierarchy},       {"convex", measure_convex_polygons}, {"climb", measure_against_climb},
-    {"boundary", measure_polygon_boundary}, {"rays", measure_polygon_rays},
+    {"hierarchy", measure_hierarchy}, {"convex", measure_convex_polygons},    {"searches", measure_searches},
+    {"climb", measure_against_climb}, {"boundary", measure_polygon_boundary}, {"rays", measure_polygon_rays},
 };
 
 bool write_files(const DobkinSettings& settings, const ClaimTable& table) {

@@ -30,7 +30,10 @@ void measure_convex_polygons(const DobkinSettings& settings, ClaimTable& table);
 void measure_against_climb(const DobkinSettings& settings, ClaimTable& table);
 /// The implicit boundary of [D] section 4 beside GEOS, Boost.Geometry and CGAL, where they are; holes and memory.
 void measure_polygon_boundary(const DobkinSettings& settings, ClaimTable& table);
-/// Directional queries after preprocessing beside ray casts and binary searches.
+/// The search in two convex polygons beside two random binary searches: the bare cost of finding something among so
+/// many.
+void measure_searches(const DobkinSettings& settings, ClaimTable& table);
+/// Directional queries after preprocessing beside ray casts.
 void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table);
 
 /// @return the exit code, as `run_agarwal`.

@@ -1,6 +1,5 @@
 /// @file
-/// [D] Theorem 4.5: directional queries after preprocessing, beside a ray cast on P's own edges; and the search in two
-/// convex polygons beside binary searches in arrays of their length.
+/// [D] Theorem 4.5: directional queries after preprocessing, beside a ray cast on P's own edges.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -11,7 +10,6 @@
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/dobkin/dobkin.hpp"
 #include "bench/measure/stopwatch.hpp"
-#include "pd/planar/convex_depth.hpp"
 #include "pd/planar/direction_set.hpp"
 #include "pd/planar/polygon_depth.hpp"
 #include "planar/box_tree.hpp"
@@ -24,7 +22,6 @@ namespace {
 const Claim kRays{"Theorem 4.5", "directional depth of a placement in sublinear time after preprocessing"};
 const Claim kSet{"Section 6, directions", "directional depth in O(log n) for a fixed set of directions"};
 const Claim kStraight{"Section 6, straight", "the least way straight out, over all directions"};
-const Claim kSearch{"Section 3, time", "directional depth of convex polygons beside binary searches"};
 
 /// First hit of a ray with P's edges down a tree of boxes, all in doubles: what a robot planner has at hand.
 class EdgeCaster {
@@ -144,44 +141,6 @@ void measure_rays(const std::string& family, const Make& make, double q_radius, 
                   most_ratio);
 }
 
-ConvexPolygon ellipse(int n, double phase, double squash) {
-  std::vector<Point2> points;
-  for (int i = 0; i < n; ++i) {
-    const scenes::Turn t = scenes::turn((i + phase) / n);
-    points.push_back({t.cosine, squash * t.sine});
-  }
-  return ConvexPolygon::from_points(points).value();
-}
-
-/// Two random binary searches in arrays of the polygons' lengths: the bare cost of finding something among so many.
-void measure_searches(const DobkinSettings& settings, ClaimTable& table) {
-  const int n = settings.full ? 1 << 20 : 1 << 15;
-  const ConvexPolygon p = ellipse(n, 0.3, 0.7), q = ellipse(n, 0.1, 0.4);
-  std::vector<double> first, second;
-  for (int i = 0; i < n; ++i) {
-    first.push_back(i);
-    second.push_back(i + 0.5);
-  }
-  scenes::Random random(settings.seed);
-  std::vector<Ray> rays;
-  for (int i = 0; i < 4000; ++i) {
-    const scenes::Turn t = scenes::turn(random.uniform());
-    rays.push_back({{random.uniform(0, n), random.uniform(0, n)}, {t.cosine, t.sine}});
-  }
-  double sum = 0;
-  const double ours = least_mean_ns(rays, 5, [&](const Ray& ray) {
-    sum += convex_directional_depth(p, q, {0.1, 0.2}, ray.direction).value().depth;
-  });
-  const double searches = least_mean_ns(rays, 5, [&](const Ray& ray) {
-    sum += *std::lower_bound(first.begin(), first.end() - 1, ray.from[0]);
-    sum += *std::lower_bound(second.begin(), second.end() - 1, ray.from[1]);
-  });
-  if (sum < 0) std::abort();
-  const std::string range = "n = m = " + std::to_string(n);
-  table.add_value(kSearch, "ellipses", "time of a directional query, ns", range, ours);
-  table.add_value(kSearch, "ellipses", "time / that of two std::lower_bound", range, ours / searches, 4);
-}
-
 }  // namespace
 
 void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table) {
@@ -197,7 +156,6 @@ void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table) {
       [](int n) { return scenes::plate_with_holes(std::max(2, static_cast<int>(std::sqrt(n / 4)))); }, 0.3, 1.5, 0.2,
       settings, table);
   measure_directions(settings, table);
-  measure_searches(settings, table);
 }
 
 }  // namespace pd::bench

@@ -1,19 +1,34 @@
 /// @file
-/// The extreme vertex of an inner hierarchy's levels in one direction, followed from coarse to fine ([D] Lemma 5.4).
-///
-/// Let v be extreme in level i. In the shadow along a second direction, v has two neighbours on the shadow's boundary.
-/// A vertex u of level i - 1 beyond v's plane lies beyond the line of one of these two edges; the plane over that line
-/// supports level i along the edge, so that u lies beyond one of the two triangles at the edge, which is therefore no
-/// triangle of level i - 1: u is its creator. Four pointers tell, whatever the degree of v. Rounding may choose another
-/// vertex within rounding of the best; who needs the exact one climbs on from there.
+/// The extreme vertex of an inner hierarchy's levels in one direction, followed from coarse to fine ([D] Lemma 5.4), by
+/// the shadow along a second direction (`shadow_descent.hpp`). Rounding may choose another vertex within rounding of
+/// the best; who needs the exact one climbs on from there.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "pd/structure/polyhedral_hierarchy.hpp"
+#include "structure/hierarchy/shadow_descent.hpp"
 
 namespace pd::detail {
+
+/// Vertices seen across a direction that is up.
+class DirectionView {
+ public:
+  DirectionView(const ConvexPolytope& polytope, const Vec3& direction);
+
+  void stand_at(int vertex) { at_ = polytope_->vertex(vertex); }
+  [[nodiscard]] ShadowStep step_to(int vertex) const {
+    const Vec3 step = polytope_->vertex(vertex) - at_;
+    return {step.dot(sideways_), step.dot(direction_)};
+  }
+  [[nodiscard]] static bool blocked() { return false; }
+
+ private:
+  const ConvexPolytope* polytope_;
+  Vec3 direction_;
+  Vec3 sideways_;
+  Vec3 at_ = Vec3::Zero();
+};
 
 class PlaneDescent {
  public:
@@ -22,41 +37,20 @@ class PlaneDescent {
   /// At the coarsest level that has this vertex, which must be extreme there up to rounding.
   PlaneDescent(const PolyhedralHierarchy& hierarchy, const Vec3& direction, int vertex);
 
-  [[nodiscard]] int vertex() const { return vertex_; }
+  [[nodiscard]] int vertex() const { return descent_.element(); }
   /// The coarsest level for which `vertex` is known to be extreme.
-  [[nodiscard]] int level() const { return level_; }
+  [[nodiscard]] int level() const { return descent_.level(); }
   /// Goes on to the next finer level with another extreme vertex. False when there is none down to `finest`.
-  bool next(int finest = 0);
+  bool next(int finest = 0) { return descent_.next(finest); }
 
   /// Vertices evaluated.
-  [[nodiscard]] std::int64_t evaluations() const { return evaluations_; }
+  [[nodiscard]] std::int64_t evaluations() const { return descent_.evaluations(); }
 
  private:
-  /// An edge of the shadow's boundary at `vertex`.
-  struct Edge {
-    std::int32_t to = -1;
-    std::array<std::int32_t, 2> faces{-1, -1};  ///< to its right and to its left
-    double along = 0, up = 0;                   ///< of the step from `vertex` in the shadow's plane
-  };
-  struct Shadow {
-    double along, up;
-  };
-
-  void choose_sideways();
-  [[nodiscard]] Shadow shadow(int v);
-  void enter(int vertex);
-  /// Sees to what the removal of u hid at an edge; `side` 0: the left end of the shadow, 1: the right end.
-  void refine(int side, int u);
-  void set_edge(int side, std::size_t spoke, int of);
-
-  const PolyhedralHierarchy& hierarchy_;
-  Vec3 direction_;
-  Vec3 sideways_;
-  Vec3 at_ = Vec3::Zero();
-  int vertex_ = -1;
-  int level_ = 0;
-  std::array<Edge, 2> edges_;
-  std::int64_t evaluations_ = 0;
+  ShadowDescent<DirectionView> descent_;
 };
+
+/// Across `direction`, in no simple ratio to the edges of most bodies.
+[[nodiscard]] Vec3 sideways_of(const Vec3& direction);
 
 }  // namespace pd::detail
