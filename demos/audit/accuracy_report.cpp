@@ -55,7 +55,7 @@ std::string totals_section(const AccuracyTable& table) {
                     fmt::format("{}", row.above_large), fmt::format("{}", row.no_answer), short_number(row.worst),
                     escaped(report::quantity(1e-9 * row.nanoseconds, "s"))});
   }
-  return "<section id=\"engines\"><h2>Engines</h2>\n" + report::table(rows) +
+  return "<section id=\"engines\"><h2>Engines</h2>\n" + report::table(rows, true) +
          "<p class=\"quiet\">Errors are the larger of depth error and normal excess, relative to a pair's "
          "size.</p></section>\n";
 }
@@ -76,7 +76,7 @@ std::string families_section(const AccuracyTable& table) {
   std::string text =
       "<section id=\"families\"><h2>Who fails what</h2>\n<p class=\"quiet\">Contacts missed, phantom, wrong by more "
       "than 1e-3 or without an answer; the darker, the larger their share.</p>\n<div class=\"scroll\" "
-      "tabindex=\"0\"><table><thead><tr><th>family</th>";
+      "tabindex=\"0\"><table class=\"sortable\"><thead><tr><th>family</th>";
   for (const std::string& engine : table.engines) text += fmt::format("<th>{}</th>", escaped(engine));
   text += "</tr></thead>\n<tbody>\n";
   for (std::size_t f = 0; f < table.families.size(); ++f) {

@@ -48,12 +48,14 @@ std::string table_row(std::string_view kind, const Totals& totals) {
 
 std::string kinds(const AuditSummary& summary) {
   std::string text =
-      "<h2>By kind of shapes</h2>\n<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr><th>kind</th>"
+      "<h2>By kind of shapes</h2>\n<div class=\"scroll\" tabindex=\"0\"><table "
+      "class=\"sortable\">\n<thead><tr><th>kind</th>"
       "<th>contacts</th><th>missed</th><th>phantom</th><th>no answer</th><th>depth error p99</th><th>max</th>"
       "<th>normal excess p99</th><th>max</th><th>points off p99</th><th>max</th></tr></thead>\n<tbody>\n";
   for (const auto& [kind, totals] : summary.by_kind()) text += table_row(kind, totals);
-  text += table_row("all", summary.total());
-  return text + "</tbody></table></div>\n";
+  // The foot stays where it is when the reader sorts.
+  text += "</tbody>\n<tfoot>" + table_row("all", summary.total());
+  return text + "</tfoot></table></div>\n";
 }
 
 /// Contacts by the power of ten of an error: exact ones, then [1e-17, 1e-16) up to [1, 10), the ends open.

@@ -51,6 +51,7 @@ std::string script_json(std::string_view json) {
 std::string short_number(double value) {
   if (value == 0) return "0";
   const double size = std::abs(value);
+  if (size >= 1e3 && size < 1e4) return fmt::format("{:.0f}", value);
   return size >= 1e-3 && size < 1e4 ? fmt::format("{:.3g}", value) : fmt::format("{:.1e}", value);
 }
 

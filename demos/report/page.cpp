@@ -52,8 +52,9 @@ std::string script(std::string_view text) { return fmt::format("<script>//<![CDA
 
 }  // namespace
 
-std::string table(const std::vector<std::vector<std::string>>& rows) {
-  std::string text = "<div class=\"scroll\" tabindex=\"0\"><table>\n";
+std::string table(const std::vector<std::vector<std::string>>& rows, bool sortable) {
+  std::string text =
+      fmt::format("<div class=\"scroll\" tabindex=\"0\"><table{}>\n", sortable ? " class=\"sortable\"" : "");
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const char* cell = r == 0 ? "th" : "td";
     text += r == 0 ? "<thead><tr>" : "<tr>";
@@ -90,13 +91,16 @@ std::string to_html(const Page& page) {
   }
   bool turns = false;
   bool moves = false;
+  bool sorts = false;
   for (const std::string& section : page.sections) {
     turns = turns || section.find("<figure class=\"pair\"") != std::string::npos;
     moves = moves || section.find("<section class=\"scene\"") != std::string::npos;
+    sorts = sorts || section.find("<table class=\"sortable\"") != std::string::npos;
     text += section;
   }
   text += how_to_reproduce(page) + "</main>\n";
   if (moves) text += script(kPageJs);
+  if (sorts) text += script(kTableJs);
   if (turns) text += script(kThreeJs) + script(kPairJs);
   return text + "</body>\n</html>\n";
 }

@@ -32,7 +32,8 @@ struct Page {
 [[nodiscard]] std::string to_html(const Page& page);
 
 /// A table that scrolls within the page. @param rows  of escaped cells; the first is the head
-[[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
+/// @param sortable  by the reader (page/table.js)
+[[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows, bool sortable = false);
 
 /// A still picture of a file beside the page. @param alt  for screen readers, and its caption
 [[nodiscard]] std::string picture(std::string_view file, std::string_view alt);

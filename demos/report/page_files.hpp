@@ -8,6 +8,7 @@ namespace pd::report {
 
 extern const std::string_view kPageCss;
 extern const std::string_view kPageJs;
+extern const std::string_view kTableJs;
 extern const std::string_view kPairJs;
 extern const std::string_view kThreeJs;  ///< three.js, MIT licence: page/three.LICENSE
 

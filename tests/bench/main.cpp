@@ -14,6 +14,7 @@
 #include "bench/pairs/coherent.hpp"
 #include "bench/pairs/meshes.hpp"
 #include "bench/pairs/pairs.hpp"
+#include "bench/report/bench_report.hpp"
 #ifdef PD_BENCH_WITH_CONTACT
 #include "bench/contact/contact.hpp"
 #endif
@@ -44,13 +45,19 @@ struct Options {
   AryaSettings arya;
   DobkinSettings dobkin;
   HashSettings hash;
+  ReportTarget report;
 };
+
+void add_report(CLI::App& command, std::string& folder) {
+  command.add_option("--report", folder, "writes report.html, a page for people, into this folder");
+}
 
 void add_common(CLI::App& command, Options& o) {
   command.add_option("--seed", o.seed, "repeats a run (default: drawn, and printed)");
   command.add_option("--solvers", o.solvers, "names of solvers (default: all)")->delimiter(',');
   command.add_option("--csv", o.csv, "writes the table to this file");
   command.add_flag("--quick", o.quick, "under a minute: fewer pairs, no dear cells");
+  add_report(command, o.report.folder);
 }
 
 void add_family_options(CLI::App& command, Options& o) {
@@ -93,9 +100,10 @@ void print_preamble(const Options& o) {
 int pairs_of(const Options& o) { return o.pairs > 0 ? o.pairs : o.quick ? 12 : 72; }
 
 /// The summary and the files that were asked for. 1 where one of ours was wrong or a file could not be written.
-int finish(const std::vector<Row>& rows, const Options& o) {
+int finish(const std::vector<Row>& rows, const std::string& what, const Options& o) {
   print_summary(rows);
   bool good = o.csv.empty() || write_text(o.csv, to_csv(rows));
+  good = write_report(o.report, report_of_pairs(rows, what)) && good;
   if (!o.plots.empty()) {
 #ifdef PD_BENCH_WITH_RENDER
     good = write_plots(rows, o.plots) && good;
@@ -120,7 +128,7 @@ int pairs_command(const Options& o) {
   settings.cells = *cells;
   settings.seed = o.seed;
   settings.pairs = pairs_of(o);
-  return finish(run_pairs(settings, solvers), o);
+  return finish(run_pairs(settings, solvers), "Cold single pairs", o);
 }
 
 int meshes_command(const Options& o) {
@@ -131,7 +139,7 @@ int meshes_command(const Options& o) {
   add_peers(solvers);
   if (!select(solvers, o.solvers)) return 2;
   print_preamble(o);
-  return finish(run_meshes(*meshes, pairs_of(o), o.seed, solvers), o);
+  return finish(run_meshes(*meshes, pairs_of(o), o.seed, solvers), "Hulls of your meshes", o);
 }
 
 /// Without options of its own: the quick cells, ours beside Bullet's EPA.
@@ -139,7 +147,10 @@ int compare_command(Options o) {
   fmt::print("seed {}\n", o.seed);
   if (o.compare.arguments.empty()) o.compare.arguments = {"--quick", "--solvers", "pdepth-auto,bullet-epa"};
   o.compare.arguments.insert(o.compare.arguments.end(), {"--seed", std::to_string(o.seed)});
-  return run_compare(o.compare);
+  std::vector<Comparison> comparisons;
+  if (const int code = run_compare(o.compare, comparisons); code != 0) return code;
+  const std::string words = fmt::format("Before: {}. After: {}.", o.compare.before.string(), o.compare.after.string());
+  return write_report(o.report, report_of_comparison(comparisons, words)) ? 0 : 1;
 }
 
 int coherent_command(const Options& o) {
@@ -155,8 +166,16 @@ int coherent_command(const Options& o) {
   print_preamble(o);
   const std::vector<CoherentRow> rows = run_coherent({*sequences, o.frames, o.seed}, solvers);
   bool good = o.csv.empty() || write_text(o.csv, to_csv(rows));
+  good = write_report(o.report, report_of_coherent(rows)) && good;
   for (const CoherentRow& r : rows) good = good && (r.wrong == 0 || !r.solver.starts_with("pdepth"));
   return good ? 0 : 1;
+}
+
+int hash_command(const Options& o) {
+  HashOutcome outcome;
+  const int code = run_hash(o.hash, &outcome);
+  if (outcome.rows == 0) return code;
+  return write_report(o.report, report_of_hash(outcome)) ? code : 1;
 }
 
 #ifdef PD_BENCH_WITH_CONTACT
@@ -175,6 +194,7 @@ void add_contact_options(CLI::App& command, ContactOptions& o) {
   command.add_flag("--quick", o.quick, "a few minutes: short runs from one start");
   command.add_option("--csv", o.csv, "writes the table to this file");
   command.add_option("--plots", o.plots, "writes pictures into this folder");
+  add_report(command, o.report.folder);
 }
 #endif
 
@@ -227,6 +247,7 @@ CLI::App* add_compare(CLI::App& app, Options& o) {
   command->add_option("after", o.compare.after, "the newer program")->required()->check(CLI::ExistingFile);
   command->add_option("--rounds", o.compare.rounds)->check(CLI::PositiveNumber)->capture_default_str();
   command->add_option("--seed", o.seed, "repeats a run (default: drawn, and printed)");
+  add_report(*command, o.report.folder);
   command->add_option("pairs", o.compare.arguments, "options of `pairs` for both, after --");
   return command;
 }
@@ -238,6 +259,7 @@ CLI::App* add_agarwal(CLI::App& app, AgarwalSettings& o) {
   command->add_option("--out", o.out, "folder for the table (CSV, Markdown), the points and the plots");
   command->add_option("--pairs", o.pairs, "of the exactness chapter (default: 100000, quick 2000)");
   command->add_flag("--quick", o.quick, "under a minute: smaller sizes, fewer pairs");
+  add_report(*command, o.report.folder);
   return command;
 }
 
@@ -250,6 +272,7 @@ CLI::App* add_arya(CLI::App& app, AryaSettings& o) {
   command->add_option("--chapters", o.chapters, arya_chapters())->delimiter(',');
   command->add_option("--out", o.out, "folder for the table (CSV, Markdown), the points and the plots");
   command->add_flag("--full", o.full, "up to 1e7 points; otherwise under a minute");
+  add_report(*command, o.report.folder);
   return command;
 }
 
@@ -260,10 +283,11 @@ CLI::App* add_dobkin(CLI::App& app, DobkinSettings& o) {
   command->add_option("--chapters", o.chapters, dobkin_chapters())->delimiter(',');
   command->add_option("--out", o.out, "folder for the table (CSV, Markdown) and the points");
   command->add_flag("--full", o.full, "up to 2^20 vertices; otherwise under a minute");
+  add_report(*command, o.report.folder);
   return command;
 }
 
-CLI::App* add_hash(CLI::App& app, HashSettings& o) {
+CLI::App* add_hash(CLI::App& app, HashSettings& o, std::string& report) {
   CLI::App* command = app.add_subcommand("hash", "the bits of answers, hashed: equal on every compiler and machine");
   command->add_option("--pairs", o.pairs, "generated pairs, each asked in about ten ways")
       ->check(CLI::PositiveNumber)
@@ -271,6 +295,7 @@ CLI::App* add_hash(CLI::App& app, HashSettings& o) {
   command->add_option("--seed", o.seed)->capture_default_str();
   command->add_option("--out", o.out, "writes the rows to this file");
   command->add_option("--check", o.check, "compares them with this file");
+  add_report(*command, report);
   return command;
 }
 
@@ -287,7 +312,7 @@ int main(int argc, char** argv) {
   CLI::App* agarwal = add_agarwal(app, options.agarwal);
   CLI::App* arya = add_arya(app, options.arya);
   CLI::App* dobkin = add_dobkin(app, options.dobkin);
-  CLI::App* hash = add_hash(app, options.hash);
+  CLI::App* hash = add_hash(app, options.hash, options.report.folder);
 #ifdef PD_BENCH_WITH_CONTACT
   ContactOptions contact_options;
   CLI::App* contact = app.add_subcommand("contact", "worlds: Bullet's ways to find contacts beside ours");
@@ -301,14 +326,29 @@ int main(int argc, char** argv) {
 #ifdef PD_BENCH_WITH_ACCURACY
   if (*accuracy) return run_accuracy_by_oracle(accuracy_options);
 #endif
+  // What a page says of how it was made. Seeds of claims and of hashes have defaults, others are drawn.
+  const auto told = [&](const std::string& folder, const std::string& seed) {
+    return ReportTarget{folder, command_line(argc, argv, seed), seed};
+  };
 #ifdef PD_BENCH_WITH_CONTACT
-  if (*contact) return run_contact(contact_options);
+  if (*contact) {
+    contact_options.report = told(contact_options.report.folder, "");
+    return run_contact(contact_options);
+  }
 #endif
-  if (*hash) return run_hash(options.hash);
-  if (*agarwal) return run_agarwal(options.agarwal);
-  if (*arya) return run_arya(options.arya);
-  if (*dobkin) return run_dobkin(options.dobkin);
+  if (*hash) {
+    options.report = told(options.report.folder, std::to_string(options.hash.seed));
+    return hash_command(options);
+  }
+  const auto run_claims = [&](auto& settings, auto run) {
+    settings.report = told(settings.report.folder, std::to_string(settings.seed));
+    return run(settings);
+  };
+  if (*agarwal) return run_claims(options.agarwal, run_agarwal);
+  if (*arya) return run_claims(options.arya, run_arya);
+  if (*dobkin) return run_claims(options.dobkin, run_dobkin);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
+  options.report = told(options.report.folder, std::to_string(options.seed));
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);
   if (*compare) return compare_command(options);

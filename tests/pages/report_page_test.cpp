@@ -6,10 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <numeric>
 
 #include "pages/browser.hpp"
 
@@ -44,6 +46,13 @@ class ReportPage : public ::testing::Test {
 #ifdef PDEPTH_WITH_DEMOS
     status_demo_ = run("demo stacking --steps 48 --size 320x180 --report stacking");
 #endif
+#ifdef PDEPTH_BENCH_PROGRAM
+    status_bench_ = run(
+        "pairs --quick --families box,sphere --vertices 8,32 --pairs 3 --solvers pdepth-auto,pdepth-tightest --seed 3 "
+        "--report pairs",
+        PDEPTH_BENCH_PROGRAM);
+    status_claims_ = run("agarwal --quick --chapters sizes --report claims", PDEPTH_BENCH_PROGRAM);
+#endif
     browser_ = std::make_unique<Browser>(folder_ / "profile");
   }
   static void TearDownTestSuite() {
@@ -55,8 +64,8 @@ class ReportPage : public ::testing::Test {
     if (browser_ == nullptr) GTEST_SKIP() << "Chromium is not installed (Debian: chromium), so no page is opened";
   }
 
-  static int run(const std::string& arguments) {
-    const std::string command = "cd '" + folder_.string() + "' && '" PDEPTH_PROGRAM "' " + arguments + " > out 2> err";
+  static int run(const std::string& arguments, const std::string& program = PDEPTH_PROGRAM) {
+    const std::string command = "cd '" + folder_.string() + "' && '" + program + "' " + arguments + " > out 2> err";
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -87,6 +96,8 @@ class ReportPage : public ::testing::Test {
   static inline std::unique_ptr<Browser> browser_;
   static inline int status_audit_ = -1;
   static inline int status_demo_ = -1;
+  static inline int status_bench_ = -1;
+  static inline int status_claims_ = -1;
 };
 
 TEST_F(ReportPage, AnAuditShowsTheWorstContactsAndTheirLines) {
@@ -136,7 +147,7 @@ TEST_F(ReportPage, APairIsTurnedWithMouseAndKeys) {
 }
 
 TEST_F(ReportPage, FitsAPhoneAndTheDark) {
-  for (const char* name : {"audit", "stacking"}) {
+  for (const char* name : {"audit", "stacking", "pairs", "claims"}) {
     if (!fs::exists(folder_ / name / "report.html")) continue;
     Browser& page = open(name, 390, "dark");
     EXPECT_LE(page.evaluate("document.documentElement.scrollWidth"), 390) << name;
@@ -148,6 +159,70 @@ TEST_F(ReportPage, FitsAPhoneAndTheDark) {
     expect_quiet();
   }
 }
+
+#ifdef PDEPTH_BENCH_PROGRAM
+
+TEST_F(ReportPage, ABenchShowsItsFiguresAndSortsItsTables) {
+  ASSERT_EQ(status_bench_, 0);
+  Browser& page = open("pairs");
+  EXPECT_EQ(page.evaluate("document.querySelector('.cards .good').textContent"), "0of pdepth's answers wrong");
+  EXPECT_EQ(page.evaluate("document.querySelectorAll('.bars li').length"), 4) << "two solvers in two charts";
+  EXPECT_EQ(page.evaluate("[...document.querySelectorAll('svg.chart')].every(s => s.getAttribute('aria-label'))"),
+            true);
+  EXPECT_EQ(page.evaluate("document.querySelectorAll('#sizes svg.chart').length"), 1) << "only spheres come in sizes";
+  // The command that makes the page again.
+  EXPECT_NE(page.evaluate("document.querySelector('#reproduce pre').textContent")
+                .get<std::string>()
+                .find("pdepth-bench pairs --quick --families box,sphere --vertices 8,32 --pairs 3 --solvers "
+                      "pdepth-auto,pdepth-tightest --seed 3 --report pairs"),
+            std::string::npos);
+  // Sorted by a press of a key: the largest time first, then the smallest, then as the program has them.
+  const std::string times =
+      "[...document.querySelectorAll('#cells tbody tr')].map(r => Number(r.cells[5].dataset.value))";
+  const auto given = page.evaluate(times).get<std::vector<double>>();
+  ASSERT_EQ(given.size(), 18U) << "three cells of sizes, three depths, two solvers";
+  auto sorted = given;
+  std::sort(sorted.begin(), sorted.end());
+  page.evaluate("document.querySelectorAll('#cells th button')[5].focus()");
+  page.press("Enter");
+  EXPECT_EQ(page.evaluate(times).get<std::vector<double>>(), std::vector<double>(sorted.rbegin(), sorted.rend()));
+  EXPECT_EQ(page.evaluate("document.querySelectorAll('#cells th')[5].getAttribute('aria-sort')"), "descending");
+  page.press("Enter");
+  EXPECT_EQ(page.evaluate(times).get<std::vector<double>>(), sorted);
+  page.press("Enter");
+  EXPECT_EQ(page.evaluate(times).get<std::vector<double>>(), given);
+  // Filtered by words of a row.
+  page.evaluate(
+      "(f => { f.value = 'tightest 8'; f.dispatchEvent(new Event('input')); })(document.querySelector('.filter "
+      "input'))");
+  EXPECT_EQ(page.evaluate("[...document.querySelectorAll('#cells tbody tr')].filter(r => !r.hidden).length"), 6);
+  EXPECT_EQ(page.evaluate("document.querySelector('.filter output').textContent"), "6 of 18");
+  // The table lies beside the page.
+  std::ifstream csv(folder_ / "pairs" / page.evaluate("document.querySelector('#cells a').getAttribute('href')"));
+  std::string line;
+  int lines = 0;
+  while (std::getline(csv, line)) ++lines;
+  EXPECT_EQ(lines, 1 + 18);
+  expect_quiet();
+}
+
+TEST_F(ReportPage, ClaimsShowWhatGrows) {
+  ASSERT_EQ(status_claims_, 0);
+  Browser& page = open("claims");
+  EXPECT_GE(page.evaluate("document.querySelectorAll('#growth svg.chart path').length"), 2);
+  const auto findings = page.evaluate("document.querySelectorAll('#findings tbody tr').length");
+  std::vector<int> counted;
+  for (int card = 0; card < 4; ++card) {
+    const std::string value =
+        page.evaluate("document.querySelectorAll('.cards b')[" + std::to_string(card) + "].textContent");
+    counted.push_back(std::stoi(value));
+  }
+  EXPECT_EQ(std::accumulate(counted.begin(), counted.end(), 0), findings);
+  EXPECT_TRUE(fs::exists(folder_ / "claims" / "points.csv"));
+  expect_quiet();
+}
+
+#endif
 
 #ifdef PDEPTH_WITH_DEMOS
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/measure/claims.hpp"
+#include "bench/report/report_target.hpp"
 #include "scenes/agarwal_families.hpp"
 
 namespace pd::bench {
@@ -24,7 +25,8 @@ struct AgarwalSettings {
   std::uint64_t seed = 1;
   std::string out;  ///< folder for agarwal.csv, agarwal_points.csv, agarwal.md and the plots; or empty
   std::vector<std::string> chapters;  ///< names of chapters; empty = all
-  std::int64_t pairs = 0;             ///< of the exactness chapter; 0 = 100,000, quick 2,000
+  ReportTarget report = {};
+  std::int64_t pairs = 0;  ///< of the exactness chapter; 0 = 100,000, quick 2,000
 };
 
 /// The chapters, each a few claims.

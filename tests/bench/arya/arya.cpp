@@ -9,6 +9,7 @@
 
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/measure/table.hpp"
+#include "bench/report/bench_report.hpp"
 #ifdef PD_BENCH_WITH_RENDER
 #include "bench/plots/claim_plots.hpp"
 #endif
@@ -74,6 +75,7 @@ int run_arya(const AryaSettings& settings) {
   }
   fmt::print("\n{} rows, {} bounds fail\n", table.findings().size(), table.failures());
   bool good = settings.out.empty() || write_files(settings, table);
+  good = write_report(settings.report, report_of_claims(table, "The bounds of [M], measured")) && good;
   for (const Finding& f : table.findings()) good = good && !(f.counter == kWrongAnswers && f.figure > 0);
   return good ? 0 : 1;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/measure/claims.hpp"
+#include "bench/report/report_target.hpp"
 
 namespace pd::bench {
 
@@ -19,6 +20,7 @@ struct AryaSettings {
   int pairs = 0;    ///< bodies or pairs a promise is tried on for d <= 3; 0 = 1e5 when full, else some hundreds
   std::string out;  ///< folder for arya.csv, arya_points.csv, arya.md and the plots; or empty
   std::vector<std::string> chapters;  ///< names of chapters; empty = all
+  ReportTarget report = {};
 };
 
 /// Sizes of kernels and of their structures against (1/epsilon)^((d-1)/2); work of queries.

@@ -130,7 +130,8 @@ int run_contact(const ContactOptions& options) {
   }
   print_verdicts(rows);
   const bool in_doubles = totals.print();
-  bool good = options.csv.empty() || write_contact_csv(rows, options.csv);
+  bool good = options.csv.empty() || write_text(options.csv, to_csv(rows));
+  good = write_report(options.report, report_of_contact(rows)) && good;
   if (!options.plots.empty()) {
 #ifdef PD_BENCH_WITH_RENDER
     good = plot_contact(rows, options.plots) && good;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/report/report_target.hpp"
+
 namespace pd::bench {
 
 struct ContactOptions {
@@ -18,6 +20,7 @@ struct ContactOptions {
   bool quick = false;
   std::string csv;
   std::string plots;
+  ReportTarget report = {};
 };
 
 /// Prints a table and its verdicts, writes the files that were asked for. @return the program's exit code.

@@ -176,7 +176,7 @@ void print_verdicts(const std::vector<ContactRow>& rows) {
   fmt::print("{} of {} hold\n", good, verdicts.size());
 }
 
-bool write_contact_csv(const std::vector<ContactRow>& rows, const std::string& path) {
+std::string to_csv(const std::vector<ContactRow>& rows) {
   std::string text = "scene,steps_per_second,settings,run,starts,seconds";
   for (const FigureColumn& column : figure_columns()) {
     text += fmt::format(",{}", column.name);
@@ -190,7 +190,7 @@ bool write_contact_csv(const std::vector<ContactRow>& rows, const std::string& p
     }
     text += "\n";
   }
-  return write_text(path, text);
+  return text;
 }
 
 }  // namespace pd::bench

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/contact/contact_run.hpp"
+#include "bench/report/bench_report.hpp"
 
 namespace pd::bench {
 
@@ -48,7 +49,10 @@ struct ContactVerdict {
 [[nodiscard]] std::vector<ContactVerdict> judge_contact(const std::vector<ContactRow>& rows);
 
 void print_verdicts(const std::vector<ContactRow>& rows);
-bool write_contact_csv(const std::vector<ContactRow>& rows, const std::string& path);
+/// Columns scene,steps_per_second,settings,run,starts,seconds and the figures.
+[[nodiscard]] std::string to_csv(const std::vector<ContactRow>& rows);
+/// Runs beside each other, verdicts, all figures.
+[[nodiscard]] BenchReport report_of_contact(const std::vector<ContactRow>& rows);
 /// Bar-like charts of ms a step and of drift over the scenes, as PNG files in `folder`.
 bool plot_contact(const std::vector<ContactRow>& rows, const std::string& folder);
 

@@ -7,6 +7,7 @@
 
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/measure/table.hpp"
+#include "bench/report/bench_report.hpp"
 
 namespace pd::bench {
 
@@ -57,6 +58,7 @@ int run_dobkin(const DobkinSettings& settings) {
   }
   fmt::print("\n{} rows, {} bounds fail\n", table.findings().size(), table.failures());
   bool good = settings.out.empty() || write_files(settings, table);
+  good = write_report(settings.report, report_of_claims(table, "The bounds of [D], measured")) && good;
   for (const Finding& f : table.findings()) good = good && !(f.counter == kWrongAnswers && f.figure > 0);
   return good ? 0 : 1;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/measure/claims.hpp"
+#include "bench/report/report_target.hpp"
 
 namespace pd::bench {
 
@@ -17,6 +18,7 @@ struct DobkinSettings {
   std::uint64_t seed = 1;
   std::string out;                    ///< folder for dobkin.csv, dobkin_points.csv and dobkin.md; or empty
   std::vector<std::string> chapters;  ///< names of chapters; empty = all
+  ReportTarget report = {};
 };
 
 /// Counted steps of the descent of two hierarchies, the worst direction searched for, answers against the portal

@@ -1,5 +1,6 @@
 #include "bench/hash/answer_hash.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cinttypes>
@@ -7,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <vector>
 
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/directional_depth.hpp"
@@ -199,17 +201,46 @@ class Hasher {
   std::map<std::string, Row> rows_;
 };
 
+std::string hash_text(const Row& row) {
+  std::array<char, 20> text{};
+  std::snprintf(text.data(), text.size(), "%016" PRIx64, row.hash.value());
+  return text.data();
+}
+
+std::string line_of(const std::string& name, const Row& row) {
+  std::array<char, 96> line{};
+  std::snprintf(line.data(), line.size(), "%-24s %9" PRId64 "  %s", name.c_str(), row.answers, hash_text(row).c_str());
+  return line.data();
+}
+
 std::string to_text(const HashSettings& settings, const std::map<std::string, Row>& rows) {
   std::string text = "pairs " + std::to_string(settings.pairs) + ", seed " + std::to_string(settings.seed) + "\n";
   std::int64_t answers = 0;
   for (const auto& [name, row] : rows) {
-    std::array<char, 96> line{};
-    std::snprintf(line.data(), line.size(), "%-24s %9" PRId64 "  %016" PRIx64 "\n", name.c_str(), row.answers,
-                  row.hash.value());
-    text += line.data();
+    text += line_of(name, row) + "\n";
     answers += row.answers;
   }
   return text + "answers " + std::to_string(answers) + "\n";
+}
+
+/// The rows for a page. @param expected  empty: rows are compared with nothing
+void describe(const std::map<std::string, Row>& rows, const std::string& expected, HashOutcome& outcome) {
+  outcome.compared = !expected.empty();
+  outcome.rows = static_cast<int>(rows.size());
+  outcome.csv = outcome.compared ? "question,answers,hash,same\n" : "question,answers,hash\n";
+  std::istringstream lines(expected);
+  std::vector<std::string> known;
+  for (std::string line; std::getline(lines, line);) known.push_back(line);
+  for (const auto& [name, row] : rows) {
+    outcome.answers += row.answers;
+    outcome.csv += "\"" + name + "\"," + std::to_string(row.answers) + ",0x" + hash_text(row);
+    if (outcome.compared) {
+      const bool same = std::find(known.begin(), known.end(), line_of(name, row)) != known.end();
+      outcome.differing += same ? 0 : 1;
+      outcome.csv += same ? ",equal" : ",differs";
+    }
+    outcome.csv += "\n";
+  }
 }
 
 /// Names the rows in which two texts differ. @return the exit code.
@@ -233,8 +264,9 @@ int compare(const std::string& expected, const std::string& found) {
 
 }  // namespace
 
-int run_hash(const HashSettings& settings) {
-  const std::string text = to_text(settings, Hasher(settings).run());
+int run_hash(const HashSettings& settings, HashOutcome* outcome) {
+  const std::map<std::string, Row> rows = Hasher(settings).run();
+  const std::string text = to_text(settings, rows);
   std::fputs(text.c_str(), stdout);
   if (!settings.out.empty()) {
     std::ofstream file(settings.out);
@@ -243,15 +275,17 @@ int run_hash(const HashSettings& settings) {
       return 1;
     }
   }
-  if (settings.check.empty()) return 0;
-  std::ifstream file(settings.check);
-  if (!file) {
-    std::fprintf(stderr, "%s: cannot be read\n", settings.check.c_str());
-    return 2;
-  }
   std::ostringstream expected;
-  expected << file.rdbuf();
-  return compare(expected.str(), text);
+  if (!settings.check.empty()) {
+    std::ifstream file(settings.check);
+    if (!file) {
+      std::fprintf(stderr, "%s: cannot be read\n", settings.check.c_str());
+      return 2;
+    }
+    expected << file.rdbuf();
+  }
+  if (outcome != nullptr) describe(rows, expected.str(), *outcome);
+  return settings.check.empty() ? 0 : compare(expected.str(), text);
 }
 
 }  // namespace pd::bench

@@ -17,8 +17,18 @@ struct HashSettings {
   std::string check;  ///< file of rows that these must be equal to, or empty
 };
 
-/// Prints the rows. @return the exit code: 0, 1 where a row differs from `check` or a file cannot be written, 2 where
-/// `check` cannot be read or was made with other pairs or another seed.
-int run_hash(const HashSettings& settings);
+/// What was found, for a page.
+struct HashOutcome {
+  std::string csv;  ///< question,answers,hash and, where rows were compared, same
+  std::int64_t answers = 0;
+  int rows = 0;
+  int differing = 0;
+  bool compared = false;
+};
+
+/// Prints the rows. @param outcome  is filled where it is not null. @return the exit code: 0, 1 where a row differs
+/// from `check` or a file cannot be written, 2 where `check` cannot be read or was made with other pairs or another
+/// seed.
+int run_hash(const HashSettings& settings, HashOutcome* outcome = nullptr);
 
 }  // namespace pd::bench

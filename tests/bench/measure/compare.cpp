@@ -102,7 +102,12 @@ std::vector<Comparison> compare_tables(const std::vector<std::vector<Row>>& befo
   return result;
 }
 
-int run_compare(const CompareSettings& settings) {
+std::string_view verdict_of(const Comparison& comparison) {
+  if (comparison.largest < 0.98) return "faster";
+  return comparison.least > 1.02 ? "SLOWER" : "";
+}
+
+int run_compare(const CompareSettings& settings, std::vector<Comparison>& comparisons) {
   std::vector<std::vector<Row>> before;
   std::vector<std::vector<Row>> after;
   const std::filesystem::path csv =
@@ -122,12 +127,11 @@ int run_compare(const CompareSettings& settings) {
   fmt::print("{:<7} {:>8} {:<8} {:<17} {:>10} {:>10} {:>8} {:>15}\n", "family", "vertices", "depth", "solver",
              "before ns", "after ns", "ratio", "least..largest");
   std::vector<double> ratios;
-  for (const Comparison& c : compare_tables(before, after)) {
+  comparisons = compare_tables(before, after);
+  for (const Comparison& c : comparisons) {
     if (c.solver == kBulletEpa) continue;
-    // A cell has changed when every round says so.
-    const char* word = c.largest < 0.98 ? "faster" : c.least > 1.02 ? "SLOWER" : "";
     fmt::print("{:<7} {:>8} {:<8} {:<17} {:>10.0f} {:>10.0f} {:>8.3f} {:>7.3f}..{:<6.3f} {}\n", c.family, c.vertices,
-               c.depth, c.solver, c.before_ns, c.after_ns, c.ratio, c.least, c.largest, word);
+               c.depth, c.solver, c.before_ns, c.after_ns, c.ratio, c.least, c.largest, verdict_of(c));
     ratios.push_back(c.ratio);
   }
   fmt::print("geometric mean of {} cells: {:.3f}\n", ratios.size(), geometric_mean(ratios));

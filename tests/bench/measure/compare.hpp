@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/measure/table.hpp"
@@ -38,7 +39,11 @@ struct Comparison {
 [[nodiscard]] std::vector<Comparison> compare_tables(const std::vector<std::vector<Row>>& before,
                                                      const std::vector<std::vector<Row>>& after);
 
-/// Runs both programs and prints the comparison. @return the exit code.
-int run_compare(const CompareSettings& settings);
+/// "faster" or "SLOWER" where every round says so, else empty.
+[[nodiscard]] std::string_view verdict_of(const Comparison& comparison);
+
+/// Runs both programs and prints the comparison. @param comparisons  is filled
+/// @return the exit code.
+int run_compare(const CompareSettings& settings, std::vector<Comparison>& comparisons);
 
 }  // namespace pd::bench
