@@ -190,42 +190,23 @@ Measurement DemoWorld::step() {
 
 void DemoWorld::measure_depths(Measurement& result) {
   State& s = *state_;
-  const scenes::World& world = s.scene.plan();
-  std::vector<Pose> poses;
-  std::vector<Vec3> centres;
-  for (const scenes::ConvexPiece& piece : s.pieces) {
-    const Pose pose = to_pd(body(piece.body).getWorldTransform());
-    poses.push_back(piece.posed(pose));
-    centres.push_back(pose.apply(piece.centre));
-  }
-  for (std::size_t i = 0; i < s.pieces.size(); ++i) {
-    for (std::size_t j = i + 1; j < s.pieces.size(); ++j) {
-      const scenes::ConvexPiece& a = s.pieces[i];
-      const scenes::ConvexPiece& b = s.pieces[j];
-      const double reach = a.radius + b.radius;
-      if (a.body == b.body || (s.plan(a.body).mass == 0 && s.plan(b.body).mass == 0) ||
-          (centres[i] - centres[j]).squaredNorm() > reach * reach || scenes::jointed(world, a.body, b.body)) {
-        continue;
-      }
-      const PenetrationDepth answer =
-          penetration_depth({a.shape.get(), poses[i]}, {b.shape.get(), poses[j]}, s.scratch);
-      if (answer.contact != ContactClass::overlapping) {
-        continue;
-      }
-      ++result.overlapping_pairs;
-      result.total_depth += answer.depth;
-      if (answer.depth > result.deepest) {
-        result.deepest = answer.depth;
-        result.deepest_a = a.body;
-        result.deepest_b = b.body;
-        result.deepest_piece_a = a.shape;
-        result.deepest_piece_b = b.shape;
-        result.deepest_pose_a = poses[i];
-        result.deepest_pose_b = poses[j];
-        result.deepest_answer = answer;
-      }
+  scenes::for_each_near_pair(s.scene, s.pieces, [&](const scenes::PosedPiece& a, const scenes::PosedPiece& b) {
+    const PenetrationDepth answer =
+        penetration_depth({a.piece.shape.get(), a.pose}, {b.piece.shape.get(), b.pose}, s.scratch);
+    if (answer.contact != ContactClass::overlapping) return;
+    ++result.overlapping_pairs;
+    result.total_depth += answer.depth;
+    if (answer.depth > result.deepest) {
+      result.deepest = answer.depth;
+      result.deepest_a = a.piece.body;
+      result.deepest_b = b.piece.body;
+      result.deepest_piece_a = a.piece.shape;
+      result.deepest_piece_b = b.piece.shape;
+      result.deepest_pose_a = a.pose;
+      result.deepest_pose_b = b.pose;
+      result.deepest_answer = answer;
     }
-  }
+  });
 }
 
 Measurement DemoWorld::measure() {
@@ -233,22 +214,13 @@ Measurement DemoWorld::measure() {
   Measurement result;
   measure_depths(result);
   for (int i = 0; i < num_bodies(); ++i) {
-    const btRigidBody& body = s.scene.body(i);
-    const double mass = s.plan(i).mass;
-    if (mass == 0) {
-      continue;
-    }
-    const Pose pose = to_pd(body.getWorldTransform());
-    result.drift = std::max(result.drift, (pose.translation() - s.starts[static_cast<std::size_t>(i)]).norm());
-    const Vec3 omega = to_pd(body.getAngularVelocity());
-    const Vec3 inverse_inertia = to_pd(body.getInvInertiaDiagLocal());
-    const Vec3 local_omega = pose.rotation().transpose() * omega;
-    result.kinetic_energy += 0.5 * mass * to_pd(body.getLinearVelocity()).squaredNorm();
-    for (int k = 0; k < 3; ++k) {
-      result.kinetic_energy += inverse_inertia[k] > 0 ? 0.5 * local_omega[k] * local_omega[k] / inverse_inertia[k] : 0;
-    }
-    result.potential_energy -= mass * s.scene.plan().gravity.dot(pose.translation());
+    if (s.plan(i).mass == 0) continue;
+    const Vec3 at = to_pd(s.scene.body(i).getWorldTransform().getOrigin());
+    result.drift = std::max(result.drift, (at - s.starts[static_cast<std::size_t>(i)]).norm());
   }
+  const scenes::MechanicalEnergy energy = scenes::mechanical_energy(s.scene);
+  result.kinetic_energy = energy.kinetic;
+  result.potential_energy = energy.potential;
   result.forward_speed = static_cast<double>(body(s.scene.first_moving()).getLinearVelocity().x());
   for (int i = 0; i < s.scene.dispatcher().getNumManifolds(); ++i) {
     result.contacts += s.scene.dispatcher().getManifoldByIndexInternal(i)->getNumContacts();

@@ -233,8 +233,8 @@ int BulletScene::first_moving() const {
   return static_cast<int>(found - plan_.bodies.begin());
 }
 
-double mechanical_energy(BulletScene& scene) {
-  double energy = 0;
+MechanicalEnergy mechanical_energy(BulletScene& scene) {
+  MechanicalEnergy energy;
   for (int i = 0; i < scene.num_bodies(); ++i) {
     const btRigidBody& body = scene.body(i);
     const double mass = scene.plan(i).mass;
@@ -243,10 +243,10 @@ double mechanical_energy(BulletScene& scene) {
     }
     const Vec3 inverse_inertia = to_pd(body.getInvInertiaDiagLocal());
     const Vec3 turning = to_pd(body.getWorldTransform().getBasis()).transpose() * to_pd(body.getAngularVelocity());
-    energy += 0.5 * mass * to_pd(body.getLinearVelocity()).squaredNorm() -
-              mass * scene.plan().gravity.dot(to_pd(body.getWorldTransform().getOrigin()));
+    energy.potential -= mass * scene.plan().gravity.dot(to_pd(body.getWorldTransform().getOrigin()));
+    energy.kinetic += 0.5 * mass * to_pd(body.getLinearVelocity()).squaredNorm();
     for (int k = 0; k < 3; ++k) {
-      energy += inverse_inertia[k] > 0 ? 0.5 * turning[k] * turning[k] / inverse_inertia[k] : 0;
+      energy.kinetic += inverse_inertia[k] > 0 ? 0.5 * turning[k] * turning[k] / inverse_inertia[k] : 0;
     }
   }
   return energy;

@@ -78,7 +78,12 @@ class BulletScene {
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
 };
 
-/// Mechanical energy of all bodies that move: kinetic and in the field of gravity; J.
-[[nodiscard]] double mechanical_energy(BulletScene& scene);
+/// Energy of all bodies that move, in J.
+struct MechanicalEnergy {
+  double kinetic = 0;    ///< of moving and turning
+  double potential = 0;  ///< in the field of gravity, from the origin
+  [[nodiscard]] double total() const { return kinetic + potential; }
+};
+[[nodiscard]] MechanicalEnergy mechanical_energy(BulletScene& scene);
 
 }  // namespace pd::scenes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pd/bullet/scalar.hpp"
 #include "pd/bullet/shape_conversion.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "scenes/bullet/bullet_scene.hpp"
@@ -50,6 +51,12 @@ void collect(int index, const WorldBody& body, const Pose& local, std::vector<Co
   }
 }
 
+bool jointed(const World& world, int a, int b) {
+  return std::any_of(world.joints.begin(), world.joints.end(), [&](const WorldJoint& joint) {
+    return (joint.body_a == a && joint.body_b == b) || (joint.body_a == b && joint.body_b == a);
+  });
+}
+
 }  // namespace
 
 std::vector<ConvexPiece> convex_pieces(const World& world) {
@@ -60,10 +67,30 @@ std::vector<ConvexPiece> convex_pieces(const World& world) {
   return pieces;
 }
 
-bool jointed(const World& world, int a, int b) {
-  return std::any_of(world.joints.begin(), world.joints.end(), [&](const WorldJoint& joint) {
-    return (joint.body_a == a && joint.body_b == b) || (joint.body_a == b && joint.body_b == a);
-  });
+void for_each_near_pair(BulletScene& scene, const std::vector<ConvexPiece>& pieces,
+                        const std::function<void(const PosedPiece& a, const PosedPiece& b)>& visit) {
+  std::vector<Pose> poses;
+  std::vector<Vec3> centres;
+  for (const ConvexPiece& piece : pieces) {
+    const Pose body = to_pd(scene.body(piece.body).getWorldTransform());
+    poses.push_back(piece.posed(body));
+    centres.push_back(body.apply(piece.centre));
+  }
+  const auto is_fixed = [&](std::size_t i) { return scene.plan(pieces[i].body).mass == 0; };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (is_fixed(i)) continue;
+    for (std::size_t j = 0; j < pieces.size(); ++j) {
+      const double reach = pieces[i].radius + pieces[j].radius;
+      if (pieces[i].body == pieces[j].body || (j < i && !is_fixed(j)) ||
+          (centres[i] - centres[j]).squaredNorm() > reach * reach ||
+          jointed(scene.plan(), pieces[i].body, pieces[j].body)) {
+        continue;
+      }
+      const std::size_t first = std::min(i, j);
+      const std::size_t second = std::max(i, j);
+      visit({pieces[first], poses[first]}, {pieces[second], poses[second]});
+    }
+  }
 }
 
 }  // namespace pd::scenes

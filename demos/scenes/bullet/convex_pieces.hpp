@@ -2,6 +2,7 @@
 /// The bodies of a world as they are measured: sharp convex pieces without margins, whoever found the contacts.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,7 +28,17 @@ struct ConvexPiece {
 /// through the surface counts as deep inside it.
 [[nodiscard]] std::vector<ConvexPiece> convex_pieces(const World& world);
 
-/// Whether two bodies of a world are held together by a joint: what they share of space is no penetration.
-[[nodiscard]] bool jointed(const World& world, int a, int b);
+class BulletScene;
+
+struct PosedPiece {
+  const ConvexPiece& piece;
+  const Pose& pose;  ///< of the piece in the world
+};
+/// Visits the pairs of pieces that could be in each other now, each once, the lower body first: of two bodies that are
+/// not held together by a joint (what those share of space is no penetration), one of which at least can move.
+/// @param pieces  of the scene's plan
+/// Time: O(n m) for n pieces, m of them of bodies that can move.
+void for_each_near_pair(BulletScene& scene, const std::vector<ConvexPiece>& pieces,
+                        const std::function<void(const PosedPiece& a, const PosedPiece& b)>& visit);
 
 }  // namespace pd::scenes

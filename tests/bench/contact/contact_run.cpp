@@ -41,7 +41,7 @@ class Runner {
       weight_ += scene.world.bodies[i].mass * scene.world.gravity.norm() * scene.size;
     }
     pieces_ = scenes::convex_pieces(scene.world);
-    start_energy_ = scenes::mechanical_energy(bullet_);
+    start_energy_ = scenes::mechanical_energy(bullet_).total();
     figures_.fall_seconds = seconds;
     sample_every_ = std::max(1, static_cast<int>(setting.steps_per_second / 30));
   }
@@ -102,8 +102,9 @@ class Runner {
       fastest = std::max(fastest, static_cast<double>(bullet_.body(i).getLinearVelocity().length()));
     }
     figures_.drift = farthest / scene_.size;
-    figures_.energy_gained = std::max(figures_.energy_gained,
-                                      (scenes::mechanical_energy(bullet_) - start_energy_) / std::max(weight_, 1e-30));
+    figures_.energy_gained =
+        std::max(figures_.energy_gained,
+                 (scenes::mechanical_energy(bullet_).total() - start_energy_) / std::max(weight_, 1e-30));
     if (10 * steps_ > 9 * num_steps_) {
       tail_speed_ += fastest;
       ++tail_steps_;
@@ -115,34 +116,14 @@ class Runner {
   }
 
   double deepest_penetration() {
-    const std::size_t count = pieces_.size();
-    std::vector<Pose> poses;
-    std::vector<Vec3> centres;
-    for (const ConvexPiece& piece : pieces_) {
-      const Pose body = to_pd(bullet_.body(piece.body).getWorldTransform());
-      poses.push_back(piece.posed(body));
-      centres.push_back(body.apply(piece.centre));
-    }
+    DepthSettings settings;
+    settings.bracket = Bracket::certified;
     double deepest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (scene_.world.bodies[pieces_[i].body].mass == 0) {
-        continue;
-      }
-      for (std::size_t j = 0; j < count; ++j) {
-        const bool fixed = scene_.world.bodies[pieces_[j].body].mass == 0;
-        const double reach = pieces_[i].radius + pieces_[j].radius;
-        if (pieces_[i].body == pieces_[j].body || (!fixed && j < i) ||
-            (centres[i] - centres[j]).squaredNorm() > reach * reach ||
-            scenes::jointed(scene_.world, pieces_[i].body, pieces_[j].body)) {
-          continue;
-        }
-        DepthSettings settings;
-        settings.bracket = Bracket::certified;
-        deepest = std::max(deepest, penetration_depth({pieces_[i].shape.get(), poses[i]},
-                                                      {pieces_[j].shape.get(), poses[j]}, scratch_, settings)
-                                        .depth);
-      }
-    }
+    scenes::for_each_near_pair(bullet_, pieces_, [&](const scenes::PosedPiece& a, const scenes::PosedPiece& b) {
+      deepest = std::max(
+          deepest,
+          penetration_depth({a.piece.shape.get(), a.pose}, {b.piece.shape.get(), b.pose}, scratch_, settings).depth);
+    });
     return deepest / scene_.size;
   }
 

@@ -10,13 +10,12 @@
 #include "depth/difference/foot_weights.hpp"
 #include "depth/distance/gjk_double_double.hpp"
 #include "depth/expansion/cached_surface.hpp"
-#include "depth/expansion/expanding_hull.hpp"
-#include "depth/expansion/expanding_polytope.hpp"
 #include "depth/pair/contact_facets.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/inscribed_balls.hpp"
 #include "depth/pair/same_core.hpp"
 #include "depth/pair/scaled_shape.hpp"
+#include "depth/pair/smooth_face.hpp"
 #include "depth/pair/thinnest_axis.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -28,8 +27,6 @@ namespace {
 constexpr double kDefaultDelta = 1e-6;
 constexpr double kAbsolute = 1e-12;            ///< of L: where a bracket, and `touching`, stop
 constexpr double kShareOfDelta = 1 - 0x1p-10;  ///< the rest is left to the rounding of sums with margins
-/// Bracket::contact: searches in doubles before an exact hull is made.
-constexpr int kMostSearches = 4;
 
 /// Of L: what witnesses may differ by across the normal.
 constexpr double kAcross = 1e-9;
@@ -82,7 +79,8 @@ class SmoothQuery {
 
  private:
   void solve_by_expansion() {
-    const ExpansionResult core = expand();
+    SmoothFace nearest = nearest_face();
+    const ExpansionResult& core = nearest.found;
     switch (core.status) {
       case ExpansionStatus::separated:
         solve_apart(core);
@@ -96,14 +94,14 @@ class SmoothQuery {
         return;
       default:
         if (core.face >= 0 && core.lower > 0) {
-          fill_overlapping(core);
+          fill_overlapping(nearest);
         } else {
           solve_apart(core);
         }
     }
   }
 
-  ExpansionResult expand() {
+  SmoothFace nearest_face() {
     ExpansionGoal goal;
     goal.relative = delta_;
     goal.absolute = kAbsolute;
@@ -111,73 +109,7 @@ class SmoothQuery {
     // Relative to the whole cores.
     goal.width = std::max(width_, kShareOfDelta * delta_ * taken_out_);
     goal.touching_width = 0.5 * width_;
-    goal.max_steps = kMaxSmoothSteps;
-    if (for_contact_) {
-      goal.close = kContactClose;
-      goal.close_after = ContactBudget::kCurvedStepsToFull;
-      goal.max_steps = ContactBudget::kCurvedSteps;
-    }
-    ExpandingPolytope<SmoothDifference> expansion(difference_, buffers_.surface, buffers_.stack);
-    goal.max_loss = 4 * difference_.point_error();
-    ExpansionResult best = expansion.run(Vec3::Zero(), goal);
-    if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
-    if (for_contact_ && best.status == ExpansionStatus::undecided) search_again(expansion, goal, best);
-    out_.statistics.support_calls += expansion.support_calls();
-    out_.statistics.facets_visited += expansion.facets_visited();
-    if (best.face >= 0) {
-      const SurfaceTriangle& face = buffers_.surface.face(best.face);
-      for (int i = 0; i < 3; ++i) corners_[i] = buffers_.surface.vertices[face.v[i]];
-    }
-    if (best.status != ExpansionStatus::undecided || (for_contact_ && is_close(best))) return best;
-    if (for_contact_) goal.max_steps = ContactBudget::kExactSteps;
-    best = expand_exact_hull(difference_, buffers_.exact_hull, best.normal, goal, out_.statistics.support_calls,
-                             buffers_.surface.watch);
-    if (best.face >= 0) {
-      searched_ = &buffers_.exact_hull.vertices;
-      const ExactHull::Face& face = buffers_.exact_hull.face(best.face);
-      for (int i = 0; i < 3; ++i) {
-        corners_[i] = buffers_.exact_hull.vertices[static_cast<std::size_t>(face.v[i])];
-      }
-    }
-    return best;
-  }
-
-  static bool is_close(const ExpansionResult& found) {
-    return found.face >= 0 && found.lower > 0 && found.upper - found.lower <= kContactClose * found.upper;
-  }
-
-  /// Where rounding folded the surface (corners of discs, all in one plane): on from the hull of its points, which
-  /// does for nine of ten, or anew from the nearest way out so far. All searches share one budget.
-  void search_again(ExpandingPolytope<SmoothDifference>& expansion, ExpansionGoal goal, ExpansionResult& best) {
-    const double max_loss = goal.max_loss;
-    for (int search = 1; search < kMostSearches; ++search) {
-      tighten_upper(best);
-      if (is_close(best)) return;
-      const int left = ContactBudget::kCurvedSteps - static_cast<int>(expansion.support_calls());
-      if (left <= 0) return;
-      const Vec3 normal = best.normal;
-      goal.max_steps = left;
-      goal.max_loss = max_loss;
-      best = search % 2 == 1 ? expansion.resume(goal) : expansion.run(normal, goal);
-      if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
-      if (best.status != ExpansionStatus::undecided) return;
-      if (!(best.upper < std::numeric_limits<double>::infinity())) best.normal = normal;
-    }
-    tighten_upper(best);
-  }
-
-  /// A search that was ended has bounds from below only, but for those that looked decisive: any support is one.
-  void tighten_upper(ExpansionResult& best) const {
-    WayOut out = thinnest_axis(a_, b_, difference_);
-    const Vec3 unit = best.face >= 0 ? Vec3(buffers_.surface.normal(best.face).normalized()) : Vec3(Vec3::Zero());
-    if (is_direction(unit)) {
-      const double height = difference_.support(unit, nullptr).x.dot(unit) + support_plane_error(difference_);
-      if (height < out.upper) out = {unit, height};
-    }
-    if (out.upper < best.upper) {
-      best.upper = out.upper;
-      best.normal = out.normal;
-    }
+    return nearest_smooth_face(a_, b_, difference_, goal, for_contact_, buffers_, out_.statistics);
   }
 
   /// Largest |coordinate| that the search has seen: L from below.
@@ -234,17 +166,18 @@ class SmoothQuery {
     }
   }
 
-  void fill_overlapping(const ExpansionResult& core) {
+  void fill_overlapping(SmoothFace& nearest) {
+    const ExpansionResult& core = nearest.found;
     out_.contact = ContactClass::overlapping;
     set_depth(core.lower + margin_, core.upper + margin_, core.normal);
     double weights[3];
-    project_origin(corners_, core.normal, weights);
+    project_origin(nearest.corners, core.normal, weights);
     const double near = kAcross * size();
-    if (miss_across(corners_, core.normal, weights) > near) {
+    if (miss_across(nearest.corners, core.normal, weights) > near) {
       // The last triangle is thin, one of several in a plane, or not across the normal that proves the depth, which is
       // open by the root of the bracket's width: kAside covers its corners all the same.
       double least_height = core.lower - near;
-      for (DifferenceVertex& corner : corners_) {
+      for (DifferenceVertex& corner : nearest.corners) {
         const double height = corner.x.dot(core.normal);
         if (height < core.lower - kAside * size()) {
           corner = difference_.support(core.normal, nullptr);
@@ -252,9 +185,9 @@ class SmoothQuery {
           least_height = std::min(least_height, height);
         }
       }
-      find_foot(*searched_, core.normal, least_height, corners_, weights);
+      find_foot(*nearest.searched, core.normal, least_height, nearest.corners, weights);
     }
-    set_witnesses(corners_, weights, 3);
+    set_witnesses(nearest.corners, weights, 3);
     out_.witness_b = out_.witness_a + out_.translation;
   }
 
@@ -413,8 +346,6 @@ class SmoothQuery {
   double margin_b_;
   double margin_;
   WarmCertificate* warm_;
-  DifferenceVertex corners_[3];                                                 ///< of the nearest face
-  const std::vector<DifferenceVertex>* searched_ = &buffers_.surface.vertices;  ///< what the face is of
 };
 
 /// Points of an answer are relative to the translation of A until here.

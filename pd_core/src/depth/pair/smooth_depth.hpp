@@ -12,10 +12,6 @@ class WarmCertificate;
 
 namespace pd::detail {
 
-/// Supports of one expansion; each takes about a microsecond. Directions tied along a circle, as of a ball in the
-/// middle of a cone, take some thousand at a delta of 1e-6.
-inline constexpr int kMaxSmoothSteps = 16384;
-
 /// Expansion over analytic supports, stopped at upper <= (1 + delta) lower or upper - lower <= 1e-12 L; no curved shape
 /// is tessellated.
 ///
