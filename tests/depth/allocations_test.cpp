@@ -1,47 +1,11 @@
 /// @file
-/// The hot path allocates nothing once its scratch has grown: every allocation of the program is counted.
+/// The hot path allocates nothing once its scratch has grown.
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "depth/allocator.hpp"
 #include "oracle/judged_pair.hpp"
 #include "pd/depth/warm_certificate.hpp"
-
-namespace {
-
-std::atomic<std::int64_t> allocations{0};
-
-void* counted(std::size_t size) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  void* p = std::malloc(size == 0 ? 1 : size);
-  if (p == nullptr) throw std::bad_alloc();
-  return p;
-}
-void* counted(std::size_t size, std::align_val_t alignment) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  const auto a = static_cast<std::size_t>(alignment);
-  void* p = std::aligned_alloc(a, (size + a - 1) / a * a);
-  if (p == nullptr) throw std::bad_alloc();
-  return p;
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, alignment); }
-void* operator new[](std::size_t size, std::align_val_t alignment) { return counted(size, alignment); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
 
 namespace pd {
 namespace {
@@ -62,9 +26,9 @@ TEST(Allocations, NoneAfterTheFirstCall) {
         const PosedShape a = pair.a();
         const PosedShape b = pair.b();
         (void)penetration_depth(a, b, scratch, hot);
-        const std::int64_t before = allocations.load();
+        const std::int64_t before = test::allocations();
         const PenetrationDepth answer = penetration_depth(a, b, scratch, hot);
-        const std::int64_t after = allocations.load();
+        const std::int64_t after = test::allocations();
         ++pairs;
         // Numbers of unbounded length may allocate; the filter decides nearly always.
         if (answer.statistics.exact_signs > 0) {
@@ -90,9 +54,9 @@ TEST(Allocations, NoneForContacts) {
         const PosedShape b = pair.b();
         const DepthSettings settings{.bracket = Bracket::contact, .contact_tolerance = 0x1p-30};
         (void)penetration_depth(a, b, scratch, settings);
-        const std::int64_t before = allocations.load();
+        const std::int64_t before = test::allocations();
         const PenetrationDepth answer = penetration_depth(a, b, scratch, settings);
-        EXPECT_EQ(allocations.load() - before, 0) << pair.name();
+        EXPECT_EQ(test::allocations() - before, 0) << pair.name();
         EXPECT_EQ(answer.statistics.exact_signs, 0) << pair.name();
       }
     }
@@ -111,10 +75,10 @@ TEST(Allocations, NoneForNeedles) {
       for (const Bracket bracket : {Bracket::certified, Bracket::tightest}) {
         const DepthSettings settings{.bracket = bracket};
         (void)penetration_depth({&a, points.pose_a}, {&b, points.pose_b}, scratch, settings);
-        const std::int64_t before = allocations.load();
+        const std::int64_t before = test::allocations();
         const PenetrationDepth d = penetration_depth({&a, points.pose_a}, {&b, points.pose_b}, scratch, settings);
         overlapping += d.contact == ContactClass::overlapping;
-        EXPECT_EQ(allocations.load() - before, 0) << scenes::to_string(depth) << ", seed " << seed;
+        EXPECT_EQ(test::allocations() - before, 0) << scenes::to_string(depth) << ", seed " << seed;
       }
     }
   }
@@ -133,9 +97,9 @@ TEST(Allocations, NoneWhenWarm) {
   std::int64_t counted_in_loop = 0;
   for (int k = 1; k <= 100; ++k) {
     b.pose = *Pose::from_quaternion(q, pair.b().pose.translation() + 1e-4 * k * Vec3(1, -1, 0.5));
-    const std::int64_t before = allocations.load();
+    const std::int64_t before = test::allocations();
     (void)penetration_depth(a, b, scratch, {.bracket = Bracket::certified}, &certificate);
-    if (k > 10) counted_in_loop += allocations.load() - before;
+    if (k > 10) counted_in_loop += test::allocations() - before;
   }
   EXPECT_EQ(counted_in_loop, 0);
 }

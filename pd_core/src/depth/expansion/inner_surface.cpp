@@ -36,8 +36,7 @@ constexpr std::array<std::array<std::int32_t, kPlaneLanes>, 3> corners_by_place(
 }  // namespace
 
 void InnerSurface::clear() {
-  if (triangles_.empty()) {
-    reserve(kFirstRoom);
+  if (room_ == 0) {
     vertices.reserve(kFirstRoom);
     free_.reserve(kFirstRoom / 2);
     kept_.reserve(kFirstRoom);
@@ -45,6 +44,7 @@ void InnerSurface::clear() {
     open_edges_.reserve(4 * kFirstRoom);
     face_numbers_.reserve(kFirstRoom);
     vertex_numbers_.reserve(kFirstRoom);
+    reserve(kFirstRoom);
   }
   clear_faces();
   vertices.clear();
@@ -63,8 +63,8 @@ void InnerSurface::clear_faces() {
 
 void InnerSurface::reserve(int count) {
   if (count + kPlaneBlock <= room_) return;
-  room_ = padded_to_block(2 * count + kPlaneBlock);
-  const auto room = static_cast<std::size_t>(room_);
+  const int wanted = padded_to_block(2 * count + kPlaneBlock);
+  const auto room = static_cast<std::size_t>(wanted);
   triangles_.resize(room);
   for (auto* values : {&nx_, &ny_, &nz_}) values->resize(room, 0);
   levels_.resize(room, kRemoved);
@@ -73,6 +73,7 @@ void InnerSurface::reserve(int count) {
   removed_bits_.resize(room / 64 + 1, 0);
   for (auto* ids : {&from_, &to_, &outside_, &removed_}) ids->resize(room);
   for (auto* values : {&fan_nx_, &fan_ny_, &fan_nz_, &fan_levels_, &fan_keys_}) values->resize(room);
+  room_ = wanted;  // last: an allocation that fails leaves lists of several sizes
 }
 
 void InnerSurface::compute_planes() {

@@ -33,8 +33,8 @@ PD_INLINE int InnerSurface::insert_vertex(int from, int v, double x, double y, d
   // A horizon has at most three edges for every face that goes.
   if (3 * slots_ + kPlaneBlock > room_ || vertices.size() > leaving_.size()) {
     reserve(3 * slots_);
-    leaving_.resize(vertices.capacity());
     reaching_.resize(vertices.capacity());
+    leaving_.resize(vertices.capacity());
   }
   if (slots_ > kFewSlots) return insert_among_many(from, v) ? nearest_ : -1;
   std::uint64_t removed = planes_below(planes(), slots_, x, y, z) | std::uint64_t{1} << from;

@@ -108,8 +108,7 @@ class SmoothFaceSearch {
 }  // namespace
 
 SmoothFace nearest_smooth_face(const PosedShape& a, const PosedShape& b, const SmoothDifference& difference,
-                               ExpansionGoal goal, bool for_contact, ScratchBuffers& buffers,
-                               Statistics& statistics) {
+                               ExpansionGoal goal, bool for_contact, ScratchBuffers& buffers, Statistics& statistics) {
   return SmoothFaceSearch(a, b, difference, for_contact, buffers).run(goal, statistics);
 }
 

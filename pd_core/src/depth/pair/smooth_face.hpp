@@ -27,7 +27,6 @@ struct SmoothFace {
 /// @param goal         how near; the steps and losses that it allows are set here
 /// @param for_contact  within the budget of contacts (contact_budget.hpp), with the bracket that it leaves
 SmoothFace nearest_smooth_face(const PosedShape& a, const PosedShape& b, const SmoothDifference& difference,
-                               ExpansionGoal goal, bool for_contact, ScratchBuffers& buffers,
-                               Statistics& statistics);
+                               ExpansionGoal goal, bool for_contact, ScratchBuffers& buffers, Statistics& statistics);
 
 }  // namespace pd::detail
