@@ -13,12 +13,14 @@ namespace pd::python {
 
 namespace {
 
-/// An answer, and the bodies whose numbers it names.
+/// An answer, and the shapes whose numbers it names: Python's own objects, which alone know their class and arguments.
 struct PairAnswer {
   UnionDepth depth;
-  BodyRef a;
-  BodyRef b;
+  py::object a;
+  py::object b;
 };
+
+const Body& body_of(const py::object& shape) { return *shape.cast<const BodyRef&>(); }
 
 py::object feature_of(const Body& body, int part, const Feature& feature) {
   if (feature.kind == Feature::Kind::none) return py::none();
@@ -61,22 +63,26 @@ Expected<UnionDepth> ask_convex(const ConvexShape& a, const Pose& pose_a, const 
 }
 
 /// A pair whose memory the caller keeps: `Warm` of Python.
-PairAnswer ask_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::handle pose_b,
+PairAnswer ask_pair(const py::object& a, const py::object& b, py::handle pose_a, py::handle pose_b,
                     const QuerySettings& settings, WarmCertificate* warm) {
+  const Body &body_a = body_of(a), &body_b = body_of(b);
   const Pose first = read_pose(pose_a, "pose_a"), second = read_pose(pose_b, "pose_b");
-  const py::gil_scoped_release unlocked;
-  return {value_of(ask(*a, first, *b, second, settings, workspace(), warm), "pair"), a, b};
+  Expected<UnionDepth> answer = [&] {
+    const py::gil_scoped_release unlocked;
+    return ask(body_a, first, body_b, second, settings, workspace(), warm);
+  }();
+  return {value_of(std::move(answer), "pair"), a, b};
 }
 
 /// A single pair with the settings by default, as quickly as can be; None where something else was given.
-py::object ask_plain(py::handle a, py::handle b, py::handle pose_a, py::handle pose_b) {
+py::object ask_plain(const py::object& a, const py::object& b, py::handle pose_a, py::handle pose_b) {
   const auto single = [](py::handle pose) {
     return pose.is_none() || py::isinstance<Pose>(pose) || py::isinstance<py::tuple>(pose) ||
            (py::isinstance<py::array>(pose) && py::reinterpret_borrow<py::array>(pose).ndim() == 2);
   };
   if (!py::isinstance<Body>(a) || !py::isinstance<Body>(b) || !single(pose_a) || !single(pose_b)) return py::none();
   static const QuerySettings settings;
-  return py::cast(ask_pair(py::cast<BodyRef>(a), py::cast<BodyRef>(b), pose_a, pose_b, settings, nullptr));
+  return py::cast(ask_pair(a, b, pose_a, pose_b, settings, nullptr));
 }
 
 const ConvexShape& convex_of(const Body& body, const char* argument) {
@@ -133,9 +139,9 @@ py::dict manifold_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py
   return fields;
 }
 
-py::dict derivatives_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::handle pose_b) {
-  const PosedShape first{&convex_of(*a, "a"), read_pose(pose_a, "pose_a")};
-  const PosedShape second{&convex_of(*b, "b"), read_pose(pose_b, "pose_b")};
+py::dict derivatives_pair(const py::object& shape_a, const py::object& shape_b, py::handle pose_a, py::handle pose_b) {
+  const PosedShape first{&convex_of(body_of(shape_a), "a"), read_pose(pose_a, "pose_a")};
+  const PosedShape second{&convex_of(body_of(shape_b), "b"), read_pose(pose_b, "pose_b")};
   const DepthDerivatives found = [&] {
     const py::gil_scoped_release unlocked;
     return depth_derivatives(first, second, workspace().scratch);
@@ -161,7 +167,7 @@ py::dict derivatives_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a,
   py::dict fields;
   UnionDepth depth;
   static_cast<PenetrationDepth&>(depth) = found.answer;
-  fields["answer"] = PairAnswer{depth, a, b};
+  fields["answer"] = PairAnswer{depth, shape_a, shape_b};
   fields["signed_depth"] = found.signed_depth;
   fields["unique_direction"] = found.unique_direction;
   fields["unique_witness"] = found.unique_witness;
@@ -175,6 +181,52 @@ py::dict derivatives_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a,
   fields["witness_b_by_a"] = three_by_six(found.witness_b_by_a);
   fields["witness_b_by_b"] = three_by_six(found.witness_b_by_b);
   return fields;
+}
+
+/// Calls `field` with every member of an answer that Python shows, in an order that states keep.
+template <class Answer, class Field>
+void for_each_member(Answer& x, const Field& field) {
+  field(x.contact), field(x.method), field(x.warm), field(x.bracket_reached);
+  for (auto* number : {&x.depth, &x.lower, &x.upper, &x.distance, &x.distance_lower, &x.distance_upper}) field(*number);
+  for (auto* vector : {&x.translation, &x.normal, &x.witness_a, &x.witness_b}) {
+    for (int k = 0; k < 3; ++k) field((*vector)[k]);
+  }
+  for (auto* feature : {&x.feature_a, &x.feature_b}) {
+    field(feature->kind), field(feature->first), field(feature->second);
+  }
+  auto& counts = x.statistics;
+  field(counts.support_calls), field(counts.facets_visited), field(counts.exact_signs);
+  field(counts.pair_evaluations), field(counts.block_bounds), field(counts.lines_scanned);
+  field(x.part_a), field(x.part_b), field(x.exact), field(x.closed);
+}
+
+py::tuple state_of(const PairAnswer& answer) {
+  py::list state;
+  state.append(answer.a);
+  state.append(answer.b);
+  for_each_member(answer.depth, [&](const auto& member) {
+    using Member = std::decay_t<decltype(member)>;
+    if constexpr (std::is_enum_v<Member>) {
+      state.append(static_cast<int>(member));
+    } else {
+      state.append(member);
+    }
+  });
+  return py::tuple(state);
+}
+
+PairAnswer answer_of_state(const py::tuple& state) {
+  PairAnswer answer{{}, state[0], state[1]};
+  std::size_t next = 2;
+  for_each_member(answer.depth, [&](auto& member) {
+    using Member = std::decay_t<decltype(member)>;
+    if constexpr (std::is_enum_v<Member>) {
+      member = static_cast<Member>(state[next++].cast<int>());
+    } else {
+      member = state[next++].template cast<Member>();
+    }
+  });
+  return answer;
 }
 
 void bind_answer(py::module_& module) {
@@ -211,10 +263,10 @@ void bind_answer(py::module_& module) {
       .def_property_readonly(
           "witness_b", [](const PairAnswer& x) { return array_of(x.depth.witness_b); }, "[3].")
       .def_property_readonly(
-          "feature_a", [](const PairAnswer& x) { return feature_of(*x.a, x.depth.part_a, x.depth.feature_a); },
+          "feature_a", [](const PairAnswer& x) { return feature_of(body_of(x.a), x.depth.part_a, x.depth.feature_a); },
           "(kind, row numbers of A's points), kind 'vertex', 'edge' or 'facet'; None where smooth.")
       .def_property_readonly(
-          "feature_b", [](const PairAnswer& x) { return feature_of(*x.b, x.depth.part_b, x.depth.feature_b); },
+          "feature_b", [](const PairAnswer& x) { return feature_of(body_of(x.b), x.depth.part_b, x.depth.feature_b); },
           "As feature_a, of B.")
       .def_property_readonly(
           "part_a", [](const PairAnswer& x) { return x.depth.part_a; }, "Part of a union, from 0.")
@@ -234,7 +286,8 @@ void bind_answer(py::module_& module) {
           "shape_a", [](const PairAnswer& x) { return x.a; }, "A.")
       .def_property_readonly(
           "shape_b", [](const PairAnswer& x) { return x.b; }, "B.")
-      .def("__repr__", &repr_of);
+      .def("__repr__", &repr_of)
+      .def(py::pickle(&state_of, &answer_of_state));
 }
 
 }  // namespace
@@ -244,8 +297,14 @@ Workspace& workspace() {
   return space;
 }
 
-QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket) {
+QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket,
+                            py::handle beyond) {
   QuerySettings settings;
+  if (!beyond.is_none()) {
+    const Array number = read_array(beyond, "beyond", {});
+    if (!(*number.data() >= 0)) refuse("bad_value", "must be a distance >= 0, or None", "beyond");
+    settings.depth.beyond = *number.data();
+  }
   if (!delta.is_none()) {
     const Array number = read_array(delta, "delta", {});
     if (!(*number.data() > 0 && *number.data() <= 1)) refuse("bad_value", "must lie in (0, 1]", "delta");

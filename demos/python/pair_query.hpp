@@ -27,9 +27,11 @@ struct QuerySettings {
   double union_delta = 1e-2;
 };
 
-/// @param delta  None: the protocol's defaults (exact; 1e-6 for curved bodies, 1e-2 for unions).
+/// @param delta   None: the protocol's defaults (exact; 1e-6 for curved bodies, 1e-2 for unions).
+/// @param beyond  None: closest points at any distance. Unions are answered as if it were.
 /// @throws Refused bad_value with the known words.
-[[nodiscard]] QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket);
+[[nodiscard]] QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket,
+                                          py::handle beyond);
 
 /// Depth, or distance, of any two bodies. Holds no lock and may be called from any thread.
 /// @return unsupported where the method does not answer for these bodies; as `penetration_depth` of unions.

@@ -116,7 +116,7 @@ TEST(Derivatives, WitnessesOfCurvedBodiesScaleWithThePair) {
 TEST(Derivatives, AgreeWithCentralDifferences) {
   Scratch scratch;
   constexpr double kStep = 1e-5;
-  int judged = 0;
+  int judged = 0, features = 0;
   for (const auto family :
        {DerivativeFamily::polytopes, DerivativeFamily::rounded, DerivativeFamily::round, DerivativeFamily::curved}) {
     const bool curved = family == DerivativeFamily::curved;
@@ -124,12 +124,30 @@ TEST(Derivatives, AgreeWithCentralDifferences) {
       const oracle::PosedPairCase pair = oracle::derivative_case(family, 1, i);
       if (runner_up_within(pair, 1e-3, kStep, scratch)) continue;
       const oracle::GradientJudgement g = judge_gradient(pair, kStep, scratch);
+      EXPECT_TRUE(g.one_slope) << pair.kind << " " << i;
       ++judged;
+      if (g.derivatives.stable_features && g.one_feature_slope) {
+        ++features;
+        EXPECT_LE(g.feature_error, curved ? 6e-2 : 1e-4) << pair.kind << " " << i;
+      }
       EXPECT_TRUE(g.derivatives.unique_direction) << pair.kind << " " << i;
       EXPECT_LE(g.gradient_error, curved ? 1e-4 : 1e-6) << pair.kind << " " << i;
     }
   }
   EXPECT_GT(judged, 200);
+  EXPECT_GT(features, 200);
+}
+
+/// A cylinder with two ways out whose depths differ by less than a step: each has its derivatives, and the differences
+/// have none.
+TEST(Derivatives, DifferencesAcrossARunnerUpAreNoDerivative) {
+  Scratch scratch;
+  const oracle::PosedPairCase pair = oracle::derivative_case(DerivativeFamily::curved, 2303, 53);
+  const oracle::GradientJudgement g = judge_gradient(pair, 1e-5, scratch);
+  EXPECT_TRUE(g.derivatives.unique_direction);
+  EXPECT_FALSE(g.one_slope);
+  EXPECT_FALSE(g.one_feature_slope);
+  EXPECT_GT(g.gradient_error, 1e-2);
 }
 
 TEST(Derivatives, FlagTiesAsTheyWereBuilt) {

@@ -181,14 +181,17 @@ GradientJudgement judge_gradient(const PosedPairCase& pair, double step, Scratch
   // A curved body's normal is known to sqrt(2e-12) radians: a wider step keeps that below the slope.
   const bool curved = !pair.a.polytope() || !pair.b.polytope();
   const double feature_step = curved ? 100 * step : step;
-  double error = 0, size = 0, feature_error = 0, feature_size = 0;
+  const Nine here{d.answer.normal, d.answer.witness_a, d.answer.witness_b};
+  double error = 0, size = 0, bend = 0, feature_error = 0, feature_size = 0, feature_bend = 0;
   for (int k = 0; k < 12; ++k) {
     const PoseGradient& side = k < 6 ? d.by_a : d.by_b;
     const double claimed = (k % 6 < 3 ? side.translation : side.rotation)[k % 3];
+    double bends = 0;
     const auto slope_over = [&](double width) {
-      const PenetrationDepth more = answer_of(stepped(pair, k, width), scratch);
-      const PenetrationDepth less = answer_of(stepped(pair, k, -width), scratch);
-      return (less.signed_distance() - more.signed_distance()) / (2 * width);
+      const double more = -answer_of(stepped(pair, k, width), scratch).signed_distance();
+      const double less = -answer_of(stepped(pair, k, -width), scratch).signed_distance();
+      bends = (more - 2 * d.signed_depth + less) / width;
+      return (more - less) / (2 * width);
     };
     // Richardson: a distance bends as 1 / distance, which a plain difference shows.
     const double central = (4 * slope_over(step / 2) - slope_over(step)) / 3;
@@ -196,6 +199,7 @@ GradientJudgement judge_gradient(const PosedPairCase& pair, double step, Scratch
     if (exists) {
       error += (claimed - central) * (claimed - central);
       size += central * central;
+      bend += bends * bends;
     }
     if (!d.stable_features) continue;
     const Nine ahead = features_of(stepped(pair, k, feature_step), scratch);
@@ -205,8 +209,11 @@ GradientJudgement judge_gradient(const PosedPairCase& pair, double step, Scratch
       const Vec3 slope = (ahead[i] - behind[i]) / (2 * feature_step);
       feature_error += (slope - claimed_feature(d, which, k)).squaredNorm();
       feature_size += slope.squaredNorm();
+      feature_bend += ((ahead[i] - 2 * here[i] + behind[i]) / feature_step).squaredNorm();
     }
   }
+  judged.one_slope = bend <= 1e-4 * size;
+  judged.one_feature_slope = feature_bend <= 1e-2 * feature_size;
   if (size > 0) judged.gradient_error = std::sqrt(error / size);
   if (!(error >= 0)) judged.gradient_error = std::numeric_limits<double>::infinity();
   if (feature_size > 0) judged.feature_error = std::sqrt(feature_error / feature_size);

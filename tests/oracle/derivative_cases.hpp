@@ -28,13 +28,18 @@ struct PosedPairCase {
 
 /// Whether a facet of P (built by `minkowski_difference`) other than the nearest is within `gap` of it, as a distance
 /// of planes from the origin; of cores that are apart, whether their features change within a step of the differences.
-/// False for curved bodies, whose runner-up has no name.
+/// False for curved bodies, whose runner-up has no name: `GradientJudgement::one_slope` leaves them out.
 [[nodiscard]] bool runner_up_within(const PosedPairCase& pair, double gap, double step, Scratch& scratch);
 
 struct GradientJudgement {
   DepthDerivatives derivatives;
   double gradient_error = 0;  ///< |claimed - central| / |central| of all 12 numbers; those that do not exist left out
   double feature_error = 0;   ///< the same of normal and witnesses together; 0 unless stable_features
+  /// Whether the slopes ahead and behind agree to 1e-2 (of features: to 1e-1), so that the middle of both is a
+  /// derivative: false where another direction takes over, or a witness passes a rim, within the step. Seen by the
+  /// differences alone, whatever is claimed.
+  bool one_slope = true;
+  bool one_feature_slope = true;
 };
 
 /// Central differences of `penetration_depth` with steps of `step` and half of it, extrapolated, in every number of

@@ -1,12 +1,17 @@
 /// @file
 /// The same pairs in plain C++, for `bench_throughput.py`: hulls of two point files at poses of a third.
 ///
-///   pair_loop POINTS_A POINTS_B POSES THREADS    files of doubles; prints seconds and the sum of the signed depths
+///   pair_loop POINTS_A POINTS_B POSES THREADS SINGLE
+///
+/// Files of doubles. Prints the seconds of all pairs, the sum of their signed depths, and the least seconds a call of
+/// the first SINGLE pairs asked one by one with poses made before, in pieces of 500.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -39,10 +44,35 @@ pd::Pose pose_of(const double* n) {
   return pd::Pose::from_matrix(rotation, {n[3], n[7], n[11]}).value();
 }
 
+/// Least of the pieces: what is left when nothing else ran.
+double seconds_of_a_single_call(const pd::ConvexShape& a, const pd::ConvexShape& b, const std::vector<double>& numbers,
+                                std::size_t count) {
+  constexpr std::size_t kPiece = 500;
+  constexpr int kRounds = 8;
+  std::vector<pd::Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) poses.push_back(pose_of(numbers.data() + 16 * i));
+  std::vector<double> least(count / kPiece, std::numeric_limits<double>::infinity());
+  std::vector<pd::PenetrationDepth> answers(count);
+  pd::Scratch scratch;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t piece = 0; piece < least.size(); ++piece) {
+      const auto start = std::chrono::steady_clock::now();
+      for (std::size_t i = piece * kPiece; i < (piece + 1) * kPiece; ++i) {
+        answers[i] = pd::penetration_depth({&a, poses[i]}, {&b, {}}, scratch);
+      }
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+      least[piece] = std::min(least[piece], spent.count() / kPiece);
+    }
+  }
+  double sum = 0;
+  for (const double seconds : least) sum += seconds;
+  return sum / static_cast<double>(least.size());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) return 2;
+  if (argc != 6) return 2;
   const pd::ConvexShape a = hull_of(argv[1]), b = hull_of(argv[2]);
   const std::vector<double> poses = read_doubles(argv[3]);
   const std::size_t count = poses.size() / 16;
@@ -65,5 +95,7 @@ int main(int argc, char** argv) {
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   double sum = 0;
   for (const pd::PenetrationDepth& answer : answers) sum -= answer.signed_distance();
-  std::printf("%.9g %.17g\n", spent.count(), sum);
+  const double single =
+      seconds_of_a_single_call(a, b, poses, std::min<std::size_t>(count, std::strtoul(argv[5], nullptr, 10)));
+  std::printf("%.9g %.17g %.9g\n", spent.count(), sum, single);
 }

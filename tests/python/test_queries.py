@@ -1,4 +1,7 @@
 """Queries of pairs: against formulas, against each other, and one by one against a batch."""
+import copy
+import pickle
+
 import numpy as np
 import pdepth
 import pytest
@@ -66,8 +69,27 @@ def test_bad_rows_are_errors_of_their_own(poses):
 
 
 @pytest.mark.parametrize("call, where", [
-    (lambda p: pdepth.depth(GEM, BOX, p[:, :3]), "poses_a"),
-    (lambda p: pdepth.depth(GEM, BOX, p.astype(complex)), "poses_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p[:, :3]), "pose_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p.astype(complex)), "pose_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p.astype(object)), "pose_a"),
+    (lambda p: pdepth.depth(GEM, BOX, None, np.zeros((4, 4, 7))), "pose_b"),
+    (lambda p: pdepth.depth(GEM, BOX, pose_b=[1.0, 2.0, 3.0]), "pose_b"),
+    (lambda p: pdepth.depth(GEM, BOX, pose_b=[np.eye(3), [1, 0, 0]]), "pose_b"),
+    (lambda p: pdepth.depth(GEM, BOX, [None, np.diag([1, 1, -1, 1])]), "pose_a[1]"),
+    (lambda p: pdepth.depth(GEM, BOX, np.diag([1, 1, -1, 1])), "pose_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p[0].T), "pose_a"),
+    (lambda p: pdepth.depth(GEM, BOX, p[0].astype(bool)), "pose_a"),
+    (lambda p: pdepth.depth(3, BOX), "a"),
+    (lambda p: pdepth.depth(GEM, "box"), "b"),
+    (lambda p: pdepth.depth(GEM, BOX, beyond=-1), "beyond"),
+    (lambda p: pdepth.depth(GEM, BOX, beyond=np.nan), "beyond"),
+    (lambda p: pdepth.depth(GEM, BOX, p, beyond="far"), "beyond"),
+    (lambda p: pdepth.contact_manifold(GEM, BOX, breaking_threshold=np.nan), "breaking_threshold"),
+    (lambda p: pdepth.derivatives(pdepth.Compound([BOX]), BOX), "a"),
+    (lambda p: pdepth.time_of_impact(GEM, BOX, velocity_b=[0, np.nan, 0]), "velocity_b[1]"),
+    (lambda p: pdepth.query("depth", a=GEM, b=BOX, pose_b={"translation": [0, 0, np.inf]}), "pose_b.translation[2]"),
+    (lambda p: pdepth.polygon_depth([[0, 0], [1, np.nan], [0, 1]], [[0, 0], [1, 0], [0, 1]]), "p.outer[1][1]"),
+    (lambda p: pdepth.polygon_depth(np.zeros((2, 5)), [[0, 0], [1, 0], [0, 1]]), "p"),
     (lambda p: pdepth.depth(GEM, BOX, p, p[:2]), "pairs"),
     (lambda p: pdepth.depth([GEM, 3], BOX), "a[1]"),
     (lambda p: pdepth.depth(GEM, BOX, threads=0, pose_a=p), "threads"),
@@ -82,6 +104,64 @@ def test_bad_questions_are_refused_by_name(call, where, poses):
     with pytest.raises(pdepth.Refused) as caught:
         call(poses(4))
     assert caught.value.where == where
+
+
+def test_refusals_hint_at_what_was_meant():
+    for pose, hint in (([1.0, 2, 3], "Pose(translation=...)"), (np.zeros(4), "Pose(wxyz=...)"),
+                       (np.zeros(7), "Pose(wxyz=..., translation=...)"), (np.zeros((4, 4, 9)), "transposed"),
+                       ([np.eye(3), [1, 0, 0]], "(R, t)")):
+        with pytest.raises(ValueError) as caught:
+            pdepth.depth(BOX, BOX, pose_b=pose)
+        assert hint in str(caught.value)
+    with pytest.raises(pdepth.Refused, match="transposed"):
+        pdepth.depth(BOX, BOX, at(1, 2, 3).matrix.T)
+
+
+def test_lists_of_poses_in_any_form_and_empty_ones(poses):
+    matrix = poses(1)[0]
+    mixed = [None, at(1, 0, 0), (np.eye(3), [1, 0, 0]), matrix]
+    found = pdepth.depth(GEM, BOX, mixed)
+    assert found.depth.tolist() == [pdepth.depth(GEM, BOX, pose).depth for pose in mixed]
+    for none in ([], np.zeros((0, 4, 4))):
+        empty = pdepth.depth(GEM, BOX, none)
+        assert empty.depth.shape == (0,) and empty.normal.shape == (0, 3) and len(empty) == 0
+    for same in (np.asfortranarray(poses(6)), np.repeat(poses(6), 2, axis=0)[::2], poses(6).astype(">f8")):
+        assert np.array_equal(pdepth.depth(GEM, BOX, same).depth, pdepth.depth(GEM, BOX, poses(6)).depth)
+
+
+def test_beyond_bodies_farther_apart_are_told_apart_and_no_further(poses):
+    matrices = poses(200, 6.0)
+    plain, far = pdepth.depth(GEM, BOX, matrices), pdepth.depth(GEM, BOX, matrices, beyond=0.5)
+    near = plain.distance <= 0.5
+    assert 20 < near.sum() < 180
+    for name in ("contact", "depth", "lower", "upper", "distance", "normal", "witness_a"):
+        assert np.array_equal(plain[name][near], far[name][near]), name
+    assert (far.contact == plain.contact).all() and (far.distance_lower[~near] > 0.5).all()
+    assert (far.distance_lower <= plain.distance_upper).all() and (plain.distance_lower <= far.distance_upper).all()
+    assert (far.distance_upper > plain.distance_upper)[~near].any()
+    for i in range(0, 200, 10):
+        assert pdepth.depth(GEM, BOX, matrices[i], beyond=0.5).distance_upper == far.distance_upper[i]
+        assert pdepth.intersects(GEM, BOX, matrices[i]) == (plain.contact[i] != 0)
+    assert np.array_equal(pdepth.intersects(GEM, BOX, matrices), plain.contact != 0)
+    assert pdepth.depth(GEM, BOX, matrices[0], beyond=None).distance == plain.distance[0]
+
+
+def test_rows_of_a_batch_by_number(poses):
+    found = pdepth.depth(GEM, BOX, poses(6).reshape(2, 3, 4, 4))
+    assert found.of_row((1, 2))["depth"] == found.depth[1, 2] and found.of_row(0)["normal"].shape == (3, 3)
+    with pytest.raises(KeyError, match="of_row"):
+        found[0]
+
+
+def test_an_answer_keeps_its_shapes_and_can_be_sent_to_another_process():
+    answer = pdepth.depth(pdepth.Box([1, 1, 1]), pdepth.Sphere(1.0), pose_b=at(1.5, 0, 0))
+    assert repr(answer.shape_a) == "Box(half_extents=[1.0, 1.0, 1.0])" and answer.shape_b == pdepth.Sphere(1.0)
+    union = pdepth.depth(pdepth.Compound([BOX, (BOX, at(3, 0, 0))]), GEM, pose_b=at(3, 0, 0))
+    names = [name for name in dir(pdepth.Depth) if not name.startswith("_")]
+    for one in (answer, union, pdepth.derivatives(GEM, BOX).answer):
+        for again in (pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one)):
+            for name in names:
+                assert repr(getattr(again, name)) == repr(getattr(one, name)), name
 
 
 def test_warm_rows_are_the_cold_ones_up_to_their_brackets(poses):
@@ -128,6 +208,21 @@ def test_the_other_queries():
     assert 0 < kernel.width <= 0.5 * 1.2
     with pytest.raises(pdepth.Refused, match="unknown"):
         pdepth.query("dept", a=BOX, b=BOX)
+
+
+def test_the_protocols_own_forms_of_shapes_and_poses():
+    half = np.sqrt(0.5)
+    forms = ({"quaternion_wxyz": [half, 0, 0, half], "translation": np.array([1.5, 0, 0])},
+             pdepth.Pose(wxyz=[half, 0, 0, half], translation=[1.5, 0, 0]),
+             {"rotation_row_major": [0, -1, 0, 1, 0, 0, 0, 0, 1], "translation": [1.5, 0, 0]})
+    for pose in forms:
+        line = pdepth.query("depth", a=BOX, b={"type": "sphere", "radius": 1}, pose_b=pose)
+        assert line.depth == pdepth.query_many("depth", [{"a": BOX, "b": pdepth.Sphere(1), "pose_b": pose}]).depth[0] == 0.5
+    union = {"type": "compound", "parts": [{"shape": BOX, "pose": at(3, 0, 0)}, {"shape": BOX, "pose": at(3, 0, 0).matrix}]}
+    assert pdepth.query("distance", a=union, b=BOX).distance == 1
+    with pytest.raises(pdepth.Refused) as caught:
+        pdepth.query("depth", a=BOX, b=BOX, pose_b={"place": [1, 0, 0]})
+    assert caught.value.where == "pose_b.place"
 
 
 def test_manifolds_of_many_pairs(poses):

@@ -86,7 +86,9 @@ def _column(name, values, like):
 
 def _has_column(value):
     """Numbers, words and lists of them; not the counts of `stats`, nor features, which are objects."""
-    return isinstance(value, (bool, int, float, str)) or (isinstance(value, list) and bool(value) and not isinstance(value[0], dict))
+    if isinstance(value, list):
+        return bool(value) and not isinstance(value[0], dict)
+    return isinstance(value, (bool, int, float, str))
 
 
 def batch_of(answers, errors, like=None):
@@ -114,7 +116,8 @@ def ask_lines(lines, threads, like=None):
         answer = json.loads(next(found)) if isinstance(line, str) else None
         error = answer.get("error") if answer else None
         if error and error["code"] not in _CODES:  # the question itself cannot be read
-            raise refused(f"rows[{row}]{'.' + error['where'] if error.get('where') else ''}: {error['message']} ({error['code']})")
+            where = f"rows[{row}]{'.' + error['where'] if error.get('where') else ''}"
+            raise refused(f"{where}: {error['message']} ({error['code']})")
         answers.append(None if error else answer)
         errors.append(_CODES[error["code"]] if error else (0 if answer else line))
     return batch_of(answers, errors, like)

@@ -17,6 +17,9 @@ from ._shapes import _plain, pose_fields
 #: Fields that hold lists of unequal lengths, or of words: they stay lists.
 _RAGGED = {"facets", "facet_kinds", "classes", "levels", "size_classes", "indices_of_parts", "slots", "feature", "stats"}
 
+#: Fields that place a body.
+_POSES = {"pose", "pose_a", "pose_b"}
+
 
 class Answer(Fields):
     """An answer of the line protocol: its fields as attributes, lists of numbers as arrays."""
@@ -34,13 +37,24 @@ def _value(name, value):
 def _field(name, value):
     if isinstance(value, Shape):
         return value.protocol()
-    if isinstance(value, Pose) or name.startswith("pose_"):
+    if isinstance(value, Pose) or (name in _POSES and not isinstance(value, dict)):
         return pose_fields(value, name)
-    if isinstance(value, dict):
+    if isinstance(value, dict):  # the protocol's own form, of a pose, too
         return {key: _field(key, each) for key, each in value.items()}
     if isinstance(value, (list, tuple)) and value and isinstance(value[0], dict):
         return [_field(name, each) for each in value]
     return _plain(value)
+
+
+def _not_finite(value, path=""):
+    """Where the first number stands that is not finite."""
+    if isinstance(value, dict):
+        inner = ((f"{path}.{key}" if path else key, each) for key, each in value.items())
+    elif isinstance(value, list):
+        inner = ((f"{path}[{i}]", each) for i, each in enumerate(value))
+    else:
+        return path if isinstance(value, float) and not np.isfinite(value) else None
+    return next(filter(None, (_not_finite(each, key) for key, each in inner)), None)
 
 
 def query(name, **fields):
@@ -56,7 +70,7 @@ def query(name, **fields):
     try:
         text = json.dumps(line, allow_nan=False)
     except ValueError:
-        raise refused(f"{name}: a number is not finite; give finite ones (non_finite)") from None
+        raise refused(f"{_not_finite(line)}: must be finite (non_finite)") from None
     answer = json.loads(_protocol.answer(text))
     if "error" in answer:
         error = answer["error"]
@@ -161,17 +175,23 @@ def polygon_depth(p, q, *, threads=None, **options):
     def listed(value):
         return not isinstance(value, dict) and len(value) > 0 and (isinstance(value[0], dict) or np.ndim(value[0]) == 2)
 
-    def polygon(value):
-        return value if isinstance(value, dict) else {"outer": value}
+    def polygon(value, name):
+        if isinstance(value, dict):
+            return value
+        outline = np.asarray(value)
+        if outline.ndim == 2 and outline.shape[0] == 2 < outline.shape[1]:
+            raise refused(f"{name}: has shape {outline.shape}, needs [n, 2]; it looks transposed: pass its .T (bad_value)")
+        return {"outer": value}
 
     if not (listed(p) or listed(q)):
-        return query("polygon_depth", p=polygon(p), q=polygon(q), **options)
+        return query("polygon_depth", p=polygon(p, "p"), q=polygon(q, "q"), **options)
     sides = [list(each) if listed(each) else [each] for each in (p, q)]
     count = max(len(each) for each in sides)
     if any(len(each) not in (1, count) for each in sides):
         raise refused(f"polygons: as many of each, or one for all; got {len(sides[0])} and {len(sides[1])} (bad_value)")
-    rows = zip(*(spread(each, count) for each in sides))
-    lines = [_row_line("polygon_depth", {"p": polygon(one), "q": polygon(other), **options}) for one, other in rows]
+    rows = enumerate(zip(*(spread(each, count) for each in sides)))
+    lines = [_row_line("polygon_depth", {"p": polygon(one, f"p[{i}]"), "q": polygon(other, f"q[{i}]"), **options})
+             for i, (one, other) in rows]
     plain = not {"direction", "direction_set", "placements", "slots", "complete"} & options.keys()
     return ask_lines(lines, threads, _PLANAR if plain else None)
 
@@ -190,10 +210,11 @@ def audit(records, *, tolerance=None, worst=5, fail_on=None, threads=None):
         return _audit_file(_protocol, os.fspath(records), tolerance, worst, fail_on, threads)
     with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
         for i, record in enumerate(records):
+            plain = record if isinstance(record, str) else _record(record)
             try:
-                text = record if isinstance(record, str) else json.dumps(_record(record), allow_nan=False)
+                text = plain if isinstance(plain, str) else json.dumps(plain, allow_nan=False)
             except ValueError:
-                raise refused(f"records[{i}]: a number is not finite; give finite ones (non_finite)") from None
+                raise refused(f"records[{i}].{_not_finite(plain)}: must be finite (non_finite)") from None
             file.write(text.rstrip("\n") + "\n")
         file.flush()
         return _audit_file(_protocol, file.name, tolerance, worst, fail_on, threads)

@@ -37,10 +37,16 @@ class Batch:
         return len(self.error)
 
     def __getitem__(self, name):
+        if name not in self._names:
+            raise KeyError(f"no column {name!r}: {', '.join(self._names)}; of_row(i) is a row")
         return getattr(self, name)
 
     def keys(self):
         return self._names
+
+    def of_row(self, i):
+        """One row, or the rows of an index of the leading dimensions, as a dictionary."""
+        return {name: self[name][i] for name in self._names}
 
     def save(self, path):
         """Writes all arrays to an npz file."""
@@ -59,34 +65,48 @@ def cores():
 _IDENTITY = np.eye(4)[None]
 
 
+def _listed(pose):
+    """Whether a list holds poses, each in a form of its own."""
+    return isinstance(pose, list) and (not pose or any(each is None or isinstance(each, (_core.Pose, tuple)) for each in pose))
+
+
 def _many(pose):
     if pose is None or isinstance(pose, (tuple, _core.Pose)):
         return False
-    if isinstance(pose, list):
-        return np.ndim(pose) != 2 if not (pose and isinstance(pose[0], (_core.Pose, tuple))) else True
-    return getattr(pose, "ndim", 0) != 2
+    if _listed(pose):
+        return True
+    if not isinstance(pose, list):
+        return getattr(pose, "ndim", 0) != 2
+    try:
+        return np.ndim(pose) != 2
+    except ValueError:  # rows of different shapes, which _stack refuses by name
+        return True
+
+
+_HINTS = {(3,): "; a place alone is Pose(translation=...)", (4,): "; a quaternion is Pose(wxyz=...) or Pose(xyzw=...)",
+          (7,): "; a quaternion is Pose(wxyz=..., translation=...) or Pose(xyzw=..., translation=...)"}
 
 
 def _stack(pose, argument):
     """Poses as [n, 4, 4] and their leading dimensions (None for a single one)."""
+    from ._shapes import as_pose
+
     if pose is None:
         return _IDENTITY, None
-    if isinstance(pose, list) and pose and isinstance(pose[0], (_core.Pose, tuple)):
-        from ._shapes import as_pose
-
-        return np.stack([as_pose(each, f"{argument}[{i}]").matrix for i, each in enumerate(pose)]), (len(pose),)
+    if _listed(pose):
+        matrices = [as_pose(each, f"{argument}[{i}]").matrix for i, each in enumerate(pose)]
+        return np.array(matrices).reshape((-1, 4, 4)), (len(pose),)
     if isinstance(pose, (tuple, _core.Pose)):
-        from ._shapes import as_pose
-
         return as_pose(pose, argument).matrix[None], None
     try:
         array = np.asarray(pose)
     except ValueError:
-        raise refused(f"{argument}: rows of different shapes; give [n, 4, 4] (bad_value)") from None
+        raise refused(f"{argument}: rows of different shapes; give [n, 4, 4], or a tuple (R, t) (bad_value)") from None
     if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
         raise refused(f"{argument}: dtype {array.dtype} is not taken; give float64 (bad_value)")
     if array.ndim < 2 or array.shape[-2:] != (4, 4):
-        raise refused(f"{argument}: has shape {array.shape}, needs [4, 4] or [..., 4, 4] (bad_value)")
+        hint = _HINTS.get(array.shape, "; it looks transposed" if array.shape[:2] == (4, 4) else "")
+        raise refused(f"{argument}: has shape {array.shape}, needs [4, 4] or [..., 4, 4]{hint} (bad_value)")
     if array.ndim == 2:
         return array[None], None
     return array.reshape((-1, 4, 4)), array.shape[:-2]
@@ -95,6 +115,8 @@ def _stack(pose, argument):
 def _bodies(shapes, argument):
     if isinstance(shapes, _core.Shape):
         return [shapes], None
+    if not hasattr(shapes, "__iter__") or isinstance(shapes, (str, bytes, dict)):
+        raise refused(f"{argument}: must be a pdepth shape, or a list of them, not {type(shapes).__name__} (bad_value)")
     bodies = list(shapes)
     for i, body in enumerate(bodies):
         if not isinstance(body, _core.Shape):
@@ -103,8 +125,8 @@ def _bodies(shapes, argument):
 
 
 def _rows(a, b, poses_a, poses_b):
-    parts = [_bodies(a, "a"), _bodies(b, "b"), _stack(poses_a, "poses_a"), _stack(poses_b, "poses_b")]
-    leads = {name: lead for name, (_, lead) in zip(("a", "b", "poses_a", "poses_b"), parts) if lead is not None}
+    parts = [_bodies(a, "a"), _bodies(b, "b"), _stack(poses_a, "pose_a"), _stack(poses_b, "pose_b")]
+    leads = {name: lead for name, (_, lead) in zip(("a", "b", "pose_a", "pose_b"), parts) if lead is not None}
     if len(set(leads.values())) > 1:
         told = ", ".join(f"{name} {lead}" for name, lead in leads.items())
         raise refused(f"pairs: as many of each, or one for all; got {told} (bad_value)")
@@ -124,13 +146,14 @@ def _threads(threads):
     return threads
 
 
-def _settings(method, delta, bracket):
-    if method == "auto" and delta is None and bracket == "tightest":
+def _settings(method, delta, bracket, beyond):
+    if method == "auto" and delta is None and bracket == "tightest" and beyond is None:
         return DEFAULTS
-    return _core.settings(method, delta, bracket)
+    return _core.settings(method, delta, bracket, beyond)
 
 
-def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket="tightest", warm=None, axis=0, threads=None):
+def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket="tightest", beyond=None, warm=None, axis=0,
+          threads=None):
     """Penetration depth of two bodies with a proof, or their distance when they are apart.
 
     a, b: shapes, or lists of n shapes. pose_a, pose_b: None (identity), a Pose, a [4, 4] matrix, (R, t); or [n, 4, 4]
@@ -142,16 +165,19 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
 
     method: 'auto' (exact for polytopes, swept or not; 1 + delta for curved bodies and unions), 'expansion', 'overlay',
     'decomposition', 'shallow', 'grid'. delta: relative error in (0, 1]. bracket: 'tightest', 'certified' or 'contact'.
+    beyond: bodies farther apart than this distance need not be told apart any further; such a pair may be answered as
+    'separated' with distance_lower > beyond, certified, a wide distance_upper, and witnesses that are points of the bodies
+    but not the closest (what a broadphase's hit asks; unions take no notice). Anything nearer is answered as ever.
     warm: for one pair a Warm; for a batch True makes the rows along `axis` (a leading dimension) frames of one pair, each
     started from the last; other dimensions are pairs of their own.
 
     Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
     """
-    if warm is None and delta is None and method == "auto" and bracket == "tightest":
+    if warm is None and delta is None and method == "auto" and bracket == "tightest" and beyond is None:
         found = _core.ask_plain(a, b, pose_a, pose_b)
         if found is not None:
             return found
-    settings = _settings(method, delta, bracket)
+    settings = _settings(method, delta, bracket, beyond)
     if not _is_batch(a, b, pose_a, pose_b):
         if warm is True:
             raise refused("warm: one pair takes a pdepth.Warm; True is for a batch (bad_value)")
@@ -185,9 +211,9 @@ def distance(a, b, pose_a=None, pose_b=None, *, threads=None):
 def intersects(a, b, pose_a=None, pose_b=None, *, threads=None):
     """Whether the bodies have a point in common (touching counts): exact for polytopes. A bool, or [n] bools for many.
 
-    For many, a row that is refused is False; use depth to see why.
+    For many, a row that is refused is False; use depth to see why. No distance is searched for (depth's beyond=0).
     """
-    found = depth(a, b, pose_a, pose_b, threads=threads)
+    found = depth(a, b, pose_a, pose_b, beyond=0.0, threads=threads)
     if isinstance(found, Batch):
         return (found.contact != 0) & (found.error == 0)
     return found.contact != "separated"

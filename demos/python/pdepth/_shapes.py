@@ -170,8 +170,14 @@ class ConvexPolytope(Shape):
         if not hasattr(mesh, "vertices"):
             raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
         points = np.asarray(mesh.vertices, dtype=float)
-        faces = np.asarray(getattr(mesh, "faces", ()), dtype=np.int64)
+        faces = np.asarray(getattr(mesh, "faces", ()))
         if faces.size:
+            if faces.dtype.kind not in "iu":
+                raise refused(f"mesh.faces: dtype {faces.dtype} is not taken; give integers (bad_value)")
+            outside = ((faces < 0) | (faces >= len(points))).reshape((len(faces), -1)).any(axis=1)
+            if outside.any():
+                row = int(np.argmax(outside))
+                raise refused(f"mesh.faces[{row}]: vertices are numbered 0 to {len(points) - 1} (out_of_range)")
             points = points[np.unique(faces)]
         return cls(points, margin=margin)
 

@@ -112,17 +112,17 @@ class _Inputs:
         return pairs, np.asarray(poses_a, dtype=float), np.asarray(poses_b, dtype=float)
 
 
-def _run_here(inputs, todo, finish, threads, options):
-    for rows, path, digest in todo:
+def _run_here(inputs, missing, finish, threads, options):
+    for rows, path, digest in missing:
         finish(path, _chunk(inputs.shapes, *rows, threads, options), digest, len(rows[0]))
 
 
-def _run_on(client, inputs, todo, finish, threads, options):
+def _run_on(client, inputs, missing, finish, threads, options):
     """Twice as many chunks under way as the cluster has threads: workers never wait, memory stays bounded."""
     from distributed import as_completed
 
     shapes = client.scatter(inputs.shapes, broadcast=True, hash=False)
-    waiting, known = iter(todo), {}
+    waiting, known = iter(missing), {}
 
     def submit():
         work = next(waiting, None)
@@ -149,12 +149,13 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
     """Asks depth for many pairs and writes the answers to `out` as they come.
 
     shapes: a list; pairs: [n, 2] rows of it; poses: (poses_a, poses_b), each [n, 4, 4] (np.memmap stays on disk), or a
-    function of (begin, end) that gives those rows, called once a chunk. client: a distributed.Client, else this machine. chunk: pairs a file.
-    threads: of one chunk; by default all cores here and 1 on a cluster. options: method, delta, bracket of depth.
+    function of (begin, end) that gives those rows, called once a chunk. client: a distributed.Client, else this machine.
+    chunk: pairs a file. threads: of one chunk; by default all cores here and 1 on a cluster. options: method, delta,
+    bracket, beyond of depth.
 
     File chunk_K.npz holds the columns of depth's Batch for pairs [K * chunk, (K + 1) * chunk) and `inputs`, the SHA-256
-    of what was asked and of pdepth's version. A file whose inputs are the same is kept when the sweep is called again; anything else is computed
-    anew. The bytes are the same with and without a cluster. Answers a Sweep.
+    of what was asked and of pdepth's version. A file whose inputs are the same is kept when the sweep is called again;
+    anything else is computed anew. The bytes are the same with and without a cluster. Answers a Sweep.
     """
     inputs = _Inputs(shapes, pairs, poses)
     if not isinstance(chunk, int) or chunk < 1:
@@ -169,7 +170,7 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
     files = [folder / f"chunk_{k:06d}.npz" for k in range(-(-inputs.count // chunk))]
     computed = 0
 
-    def to_do():
+    def missing():
         for k, path in enumerate(files):
             begin, end = k * chunk, min((k + 1) * chunk, inputs.count)
             rows = inputs.rows(begin, end)
@@ -186,7 +187,7 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
         shown.step(count)
 
     if client is None:
-        _run_here(inputs, to_do(), finish, threads, options)
+        _run_here(inputs, missing(), finish, threads, options)
     else:
-        _run_on(client, inputs, to_do(), finish, threads or 1, options)
+        _run_on(client, inputs, missing(), finish, threads or 1, options)
     return Sweep(folder, files, inputs.count, computed)

@@ -31,16 +31,17 @@ struct Options {
   std::uint64_t seed = 1;
   double gap = 1e-3;
   double step = 1e-5;
+  double show_features = 1e300;
 };
 
 /// @return pairs beyond the bound.
 int judge_family(DerivativeFamily family, const Options& options, pd::Scratch& scratch) {
   const bool curved = family == DerivativeFamily::curved;
   const double bound = curved ? 1e-4 : 1e-6;
-  std::vector<double> errors, feature_errors;
+  std::vector<double> errors, feature_errors, bent_features;
   std::string kind;
   int wrong = 0;
-  std::int64_t flagged = 0;
+  std::int64_t flagged = 0, left_out = 0;
   double seconds = 0, query_seconds = 0;
   const auto wanted = static_cast<std::size_t>(curved ? options.curved : options.pairs);
   for (std::uint64_t i = 0; errors.size() < wanted; ++i) {
@@ -48,8 +49,19 @@ int judge_family(DerivativeFamily family, const Options& options, pd::Scratch& s
     kind = pair.kind;
     if (runner_up_within(pair, options.gap, options.step, scratch)) continue;
     const auto judged = judge_gradient(pair, options.step, scratch);
+    if (curved && !judged.one_slope) {
+      ++left_out;
+      continue;
+    }
     errors.push_back(judged.gradient_error);
-    if (judged.derivatives.stable_features) feature_errors.push_back(judged.feature_error);
+    if (judged.derivatives.stable_features) {
+      (judged.one_feature_slope ? feature_errors : bent_features).push_back(judged.feature_error);
+    }
+    if (judged.feature_error > options.show_features && judged.one_feature_slope) {
+      std::printf("FEATURES %s seed=%llu pair=%llu error %.3g\n", kind.c_str(),
+                  static_cast<unsigned long long>(options.seed), static_cast<unsigned long long>(i),
+                  judged.feature_error);
+    }
     const bool flag = !judged.derivatives.unique_direction || !judged.derivatives.unique_witness;
     if (flag) ++flagged;
     // Of curved bodies nobody knows the runner-up: a flag is no mistake there.
@@ -67,10 +79,12 @@ int judge_family(DerivativeFamily family, const Options& options, pd::Scratch& s
     query_seconds += std::chrono::duration<double>(between - start).count();
     seconds += std::chrono::duration<double>(end - between).count();
   }
-  std::printf("%-20s %8zu %7lld %10.1e %10.1e %8.0e %8zu %10.1e %10.1e %8.1f %8.1f %6d\n", kind.c_str(), errors.size(),
-              static_cast<long long>(flagged), quantile(errors, .99), quantile(errors, 1), bound, feature_errors.size(),
-              quantile(feature_errors, .99), quantile(feature_errors, 1),
-              1e6 * query_seconds / static_cast<double>(wanted), 1e6 * seconds / static_cast<double>(wanted), wrong);
+  if (errors.empty()) return 0;
+  std::printf("%-20s %8zu %8lld %7lld %10.1e %10.1e %8.0e %8zu %8zu %10.1e %10.1e %8.1f %8.1f %6d\n", kind.c_str(),
+              errors.size(), static_cast<long long>(left_out), static_cast<long long>(flagged), quantile(errors, .99),
+              quantile(errors, 1), bound, feature_errors.size(), bent_features.size(), quantile(feature_errors, .99),
+              quantile(feature_errors, 1), 1e6 * query_seconds / static_cast<double>(wanted),
+              1e6 * seconds / static_cast<double>(wanted), wrong);
   return wrong;
 }
 
@@ -111,10 +125,12 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed)->capture_default_str();
   app.add_option("--gap", options.gap, "least distance of the runner-up facet from the nearest")->capture_default_str();
   app.add_option("--step", options.step, "of the central differences")->capture_default_str();
+  app.add_option("--show-features", options.show_features, "names pairs whose normal and witnesses err by more");
   CLI11_PARSE(app, argc, argv);
   pd::Scratch scratch;
-  std::printf("%-20s %8s %7s %10s %10s %8s %8s %10s %10s %8s %8s %6s\n", "family", "pairs", "flagged", "error p99",
-              "error max", "bound", "stable", "feat. p99", "feat. max", "query us", "deriv us", "wrong");
+  std::printf("%-20s %8s %8s %7s %10s %10s %8s %8s %8s %10s %10s %8s %8s %6s\n", "family", "pairs", "left out",
+              "flagged", "error p99", "error max", "bound", "stable", "bent", "feat. p99", "feat. max", "query us",
+              "deriv us", "wrong");
   int wrong = 0;
   for (const auto family :
        {DerivativeFamily::polytopes, DerivativeFamily::rounded, DerivativeFamily::round, DerivativeFamily::curved}) {
