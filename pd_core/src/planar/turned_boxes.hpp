@@ -18,17 +18,22 @@ namespace pd::detail {
 /// A ray from y along d with what bounds its roundings. d != 0.
 struct RoundedRay {
   Point2 y, d;
-  Point2 inverse;  ///< 1 / d
-  double reach;    ///< |y|_1
-  double speed;    ///< |d|_1
-  double air;      ///< more than the roundings of y and of differences with it
+  Point2 inverse;       ///< 1 / d
+  double reach;         ///< |y|_1
+  double speed;         ///< |d|_1
+  double slow;          ///< 2^-12 of that
+  double air;           ///< more than the roundings of y and of differences with it
+  Point2 above, below;  ///< y moved by it up and down
   RoundedRay(const Point2& from, const Point2& along)
       : y(from),
         d(along),
         inverse{1 / d[0], 1 / d[1]},
         reach(std::abs(y[0]) + std::abs(y[1])),
         speed(std::abs(d[0]) + std::abs(d[1])),
-        air(0x1p-48 * reach) {}
+        slow(0x1p-12 * speed),
+        air(0x1p-48 * reach),
+        above{y[0] + air, y[1] + air},
+        below{y[0] - air, y[1] - air} {}
 };
 
 class TurnedBoxes {
@@ -64,8 +69,8 @@ class TurnedBoxes {
       Waiting near{w.node + 1, entry(node_[static_cast<std::size_t>(w.node) + 1], ray, limit)};
       Waiting far{node.right, entry(node_[static_cast<std::size_t>(node.right)], ray, limit)};
       if (far.entry < near.entry) std::swap(near, far);
-      if (std::isfinite(far.entry)) stack[top++] = far;
-      if (std::isfinite(near.entry)) stack[top++] = near;
+      if (far.entry < kNever) stack[top++] = far;
+      if (near.entry < kNever) stack[top++] = near;
     }
   }
   [[nodiscard]] std::size_t memory_bytes() const {
@@ -88,7 +93,7 @@ class TurnedBoxes {
     double low = 0, high = limit;
     if (node.axis[0] == 1) {
       for (std::size_t k = 0; k < 2; ++k) {
-        const double before = node.low[k] - ray.y[k] - ray.air, behind = node.high[k] - ray.y[k] + ray.air;
+        const double before = node.low[k] - ray.above[k], behind = node.high[k] - ray.below[k];
         if (ray.d[k] != 0) {
           clip(before * ray.inverse[k], behind * ray.inverse[k], low, high);
         } else if (before > 0 || behind < 0) {
@@ -101,18 +106,19 @@ class TurnedBoxes {
       const Point2 speed = {u[0] * d[0] + u[1] * d[1], u[0] * d[1] - u[1] * d[0]};
       for (std::size_t k = 0; k < 2; ++k) {
         // The speed is within 2^-50 of |d|: below 2^-12 of it nothing is concluded.
-        if (std::abs(speed[k]) <= 0x1p-12 * ray.speed) continue;
+        if (std::abs(speed[k]) <= ray.slow) continue;
         const double inverse = 1 / speed[k];
         clip((node.low[k] - from[k] - ray.air) * inverse, (node.high[k] - from[k] + ray.air) * inverse, low, high);
       }
     }
-    return low <= high ? low : kNever;
+    // Parameters are within 2^-37 of themselves. A `high` below 0 stays there, and the box lies behind.
+    low *= 1 - 0x1p-36;
+    return low <= high * (1 + 0x1p-36) ? low : kNever;
   }
-  /// Cuts [low, high] to the parameters between a and b, which are within 2^-37 of themselves (or not numbers).
+  /// Cuts [low, high] to the parameters between a and b (or not at all by what is not a number).
   static void clip(double a, double b, double& low, double& high) {
-    const double first = std::min(a, b), last = std::max(a, b);
-    low = std::max(low, first - 0x1p-36 * std::abs(first));
-    high = std::min(high, last + 0x1p-36 * std::abs(last));
+    low = std::max(low, std::min(a, b));
+    high = std::min(high, std::max(a, b));
   }
 
   [[nodiscard]] static double area(const Node& n) { return (n.high[0] - n.low[0]) * (n.high[1] - n.low[1]); }
