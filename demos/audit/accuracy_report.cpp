@@ -14,6 +14,14 @@ namespace {
 using report::escaped;
 using report::short_number;
 
+/// What else is to be said of an engine: a program that wrote no record, pairs at which the engine ended.
+std::string words_of(const AccuracyRow& row) {
+  std::string text = row.failed ? "a run failed" : "";
+  if (row.aborted == 0) return text;
+  if (!text.empty()) text += ", ";
+  return text + fmt::format("{} of \"no answer\" ended the program", row.aborted);
+}
+
 std::string engine_table(const AccuracyTable& table) {
   std::string text = fmt::format("{:<24} {:>8} {:>7} {:>8} {:>7} {:>7} {:>9} {:>9} {:>9}\n", "engine", "contacts",
                                  "missed", "phantom", "> 1e-6", "> 1e-3", "no answer", "worst", "us");
@@ -21,7 +29,7 @@ std::string engine_table(const AccuracyTable& table) {
     const AccuracyRow row = table.total(e);
     text += fmt::format("{:<24} {:>8} {:>7} {:>8} {:>7} {:>7} {:>9} {:>9.2g} {:>9.1f}{}\n", row.engine, row.contacts,
                         row.missed, row.phantom, row.above_small, row.above_large, row.no_answer, row.worst,
-                        row.nanoseconds / 1e3, row.failed ? "  a run failed" : "");
+                        row.nanoseconds / 1e3, words_of(row).empty() ? "" : "  " + words_of(row));
   }
   return text;
 }
@@ -50,7 +58,8 @@ std::string totals_section(const AccuracyTable& table) {
                                               "error &gt; 1e-3", "no answer", "worst error", "a query"}};
   for (std::size_t e = 0; e < table.engines.size(); ++e) {
     const AccuracyRow row = table.total(e);
-    rows.push_back({escaped(row.engine) + (row.failed ? " (a run failed)" : ""), fmt::format("{}", row.contacts),
+    const std::string words = words_of(row);
+    rows.push_back({escaped(row.engine + (words.empty() ? "" : " (" + words + ")")), fmt::format("{}", row.contacts),
                     fmt::format("{}", row.missed), fmt::format("{}", row.phantom), fmt::format("{}", row.above_small),
                     fmt::format("{}", row.above_large), fmt::format("{}", row.no_answer), short_number(row.worst),
                     escaped(report::quantity(1e-9 * row.nanoseconds, "s"))});
@@ -68,8 +77,9 @@ std::string shaded_cell(const AccuracyRow& row) {
   const int strength = row.wrong() == 0 ? 0 : 12 + static_cast<int>(58 * share);
   return fmt::format(
       "<td style=\"background:color-mix(in srgb,var(--bad) {}%,transparent)\" title=\"{} of {} wrong, worst "
-      "{}\">{}</td>",
-      strength, row.wrong(), row.contacts, short_number(row.worst), row.wrong());
+      "{}{}\">{}</td>",
+      strength, row.wrong(), row.contacts, short_number(row.worst),
+      row.aborted > 0 ? fmt::format("; {} ended the program", row.aborted) : "", row.wrong());
 }
 
 std::string families_section(const AccuracyTable& table) {

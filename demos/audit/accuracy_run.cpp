@@ -119,6 +119,7 @@ void AccuracyRow::add(const AccuracyRow& other) {
   above_large += other.above_large;
   only_large += other.only_large;
   no_answer += other.no_answer;
+  aborted += other.aborted;
   worst = std::max(worst, other.worst);
 }
 
@@ -146,8 +147,13 @@ AccuracyRow run_accuracy(const std::string& program, const std::string& engine, 
                               " --seed " + std::to_string(settings.seed) + " --out " + quoted(file.path()));
   row.failed = !file.good() || !text;
   if (row.failed) return row;
-  row.nanoseconds = std::strtod(text->c_str(), nullptr);
+  // Nanoseconds a query and, from programs that survive that, how often the engine aborted: pairs without a line.
+  char* rest = nullptr;
+  row.nanoseconds = std::strtod(text->c_str(), &rest);
+  row.aborted = std::max(0LL, std::strtoll(rest, nullptr, 10));
   judge_record(file.path(), settings, draw_above, judge, row);
+  row.contacts += row.aborted;
+  row.no_answer += row.aborted;
   return row;
 }
 

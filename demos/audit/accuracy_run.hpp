@@ -42,7 +42,8 @@ struct AccuracyRow {
   std::int64_t above_small = 0;
   std::int64_t above_large = 0;
   std::int64_t only_large = 0;  ///< of above_large, those that are neither missed nor phantom
-  std::int64_t no_answer = 0;   ///< numbers that are not finite, and pairs that could not be judged
+  std::int64_t no_answer = 0;   ///< numbers that are not finite, pairs that could not be judged, and `aborted`
+  std::int64_t aborted = 0;     ///< pairs at which the engine ended on an assertion of its own, as the program says
   double worst = 0;             ///< the largest error, relative to L
   double nanoseconds = 0;       ///< a query, in the mean
   /// The contact with the largest error, where it was asked for and is above kLargeError.

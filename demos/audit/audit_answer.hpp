@@ -19,6 +19,10 @@ namespace pd::audit {
 [[nodiscard]] std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>& conditions,
                                       std::string_view record);
 
+/// What a recorder rather than an engine seems to have got wrong, a sentence each: more than half of all normals, or of
+/// all depths that are far off, fit with the other sign.
+[[nodiscard]] std::vector<std::string> recorder_hints(const AuditSummary& summary);
+
 /// A JUnit file: one test for every condition, and one that says whether every line was judged.
 [[nodiscard]] std::string audit_junit(const Audit& audit, const std::vector<ConditionOutcome>& conditions,
                                       std::string_view record);

@@ -128,6 +128,14 @@ std::string conditions_list(const std::vector<ConditionOutcome>& conditions) {
   return text + "</ul>\n";
 }
 
+std::string hints(const AuditSummary& summary) {
+  std::string text;
+  for (const std::string& hint : recorder_hints(summary)) {
+    text += fmt::format("<p class=\"fails\">The recorder may be wrong, not the engine: {}.</p>\n", escaped(hint));
+  }
+  return text;
+}
+
 std::string refused_lines(const AuditSummary& summary) {
   if (summary.refused() == 0) return {};
   std::string text = fmt::format("<h2>Lines refused: {}</h2>\n<ul>\n", summary.refused());
@@ -148,7 +156,8 @@ report::Page audit_report(const Audit& audit, const std::vector<ConditionOutcome
   page.text = fmt::format("{} ({}), judged against the exact answer; counts beyond {:g} of a pair's size.", record,
                           audit.header.single_precision ? "float32" : "float64", audit.tolerance);
   page.cards = cards(audit);
-  page.sections = {conditions_list(conditions),
+  page.sections = {hints(audit.summary),
+                   conditions_list(conditions),
                    worst_contacts(audit),
                    kinds(audit.summary),
                    chart("Depth error", total.of(Column::depth_error)),

@@ -54,6 +54,10 @@ void parse(Line& line, const query::Limits& limits) {
     line.parsed = query::parse_line_within(line.text, limits.max_vertices);
     if (line.parsed.refusal) {
       line.refusal = std::move(line.parsed.refusal);
+      // The reader's own words are those of another protocol.
+      if (line.refusal->message.starts_with("a line must be one JSON object")) {
+        line.refusal->message = "a line must be one JSON object with a \"shape\" or a \"contact\"";
+      }
       return;
     }
     line.kind = kind_of_line(line.parsed.object);

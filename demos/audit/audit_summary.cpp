@@ -71,6 +71,8 @@ void Totals::add(const Judgement& judgement) {
   ++judged;
   missed += judgement.missed ? 1 : 0;
   phantom += judgement.phantom ? 1 : 0;
+  normals_turned += judgement.normal_turned ? 1 : 0;
+  depths_turned += judgement.depth_turned ? 1 : 0;
   for (const Column column : kColumns) {
     if (const auto& value = value_of(judgement, column)) errors[static_cast<std::size_t>(column)].add(std::abs(*value));
   }

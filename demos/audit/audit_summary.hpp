@@ -36,6 +36,8 @@ struct Totals {
   std::int64_t missed = 0;
   std::int64_t phantom = 0;
   std::int64_t unanswered = 0;
+  std::int64_t normals_turned = 0;  ///< reported normals and depths that fit with the other sign only
+  std::int64_t depths_turned = 0;
   std::array<ErrorQuantiles, kColumns.size()> errors;  ///< of absolute values
 
   [[nodiscard]] const ErrorQuantiles& of(Column column) const { return errors[static_cast<std::size_t>(column)]; }

@@ -41,6 +41,23 @@ std::string not_judged(const AuditSummary& summary) {
 
 }  // namespace
 
+std::vector<std::string> recorder_hints(const AuditSummary& summary) {
+  const Totals& total = summary.total();
+  std::vector<std::string> hints;
+  if (2 * total.normals_turned > total.of(Column::normal_excess).count()) {
+    hints.push_back(fmt::format(
+        "{} of {} normals of overlapping pairs fit only when turned round: a record's normals point from B to "
+        "A, the way A moves out",
+        total.normals_turned, total.of(Column::normal_excess).count()));
+  }
+  if (2 * total.depths_turned > total.of(Column::depth_error).count()) {
+    hints.push_back(fmt::format(
+        "{} of {} depths fit only with the other sign: a record's depths are > 0 where bodies overlap, < 0 for a gap",
+        total.depths_turned, total.of(Column::depth_error).count()));
+  }
+  return hints;
+}
+
 std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>& conditions, std::string_view record) {
   const AuditSummary& summary = audit.summary;
   std::string text = fmt::format("record    {}  ({}, {})\n", record, audit.header.engine,
@@ -61,6 +78,9 @@ std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>&
         fmt::format("  line {}  contact {}  {} {}  ({}, {})\n", worst.line, query::shortened(worst.contact.id_text, 40),
                     worst.column, short_number(worst.error), kind_of(worst.contact), said(worst));
   }
+  if (!summary.worst().empty())
+    text += "  --report DIR draws them, with the line that asks for each again; --json has it, too\n";
+  for (const std::string& hint : recorder_hints(summary)) text += fmt::format("\nhint: {}\n", hint);
   if (!summary.all_judged()) text += fmt::format("\nnot judged: {}\n", not_judged(summary));
   if (!conditions.empty()) text += "\n";
   for (const ConditionOutcome& outcome : conditions) {

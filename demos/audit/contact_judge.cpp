@@ -107,8 +107,15 @@ Judgement judge(const RecordedContact& contact, double tolerance, Scratch& scrat
   result.depth_error_absolute = error;
   const double smaller = std::min(contact.a->extent, contact.b->extent);
   if (smaller > 0) result.depth_error_of_smaller = error / smaller;
+  const auto fits_turned = [](double as_it_stands, double turned) {
+    return std::abs(as_it_stands) > kFarOff && std::abs(turned) < 0.25 * std::abs(as_it_stands);
+  };
+  result.depth_turned = fits_turned(*result.depth_error, beyond(-contact.report->depth, *x) / result.scale);
   if (contact.report->normal && x->lower > 0) {
-    result.normal_excess = normal_excess(contact, contact.report->normal->stableNormalized(), *x, result.scale);
+    const Vec3 n = contact.report->normal->stableNormalized();
+    result.normal_excess = normal_excess(contact, n, *x, result.scale);
+    result.normal_turned = *result.normal_excess > kFarOff &&
+                           fits_turned(*result.normal_excess, normal_excess(contact, -n, *x, result.scale));
   }
   if (has_positions(*contact.report)) result.point_error = point_error(contact, tolerance, result.scale, scratch);
   return result;

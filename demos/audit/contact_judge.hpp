@@ -30,7 +30,14 @@ struct Judgement {
   std::optional<double> depth_error_absolute;    ///< in the unit of the record
   std::optional<double> normal_excess;           ///< (h_P(n) - x) / L, >= 0 up to rounding, for x > 0
   std::optional<double> point_error;             ///< largest distance of a reported position from its surface, / L
+
+  // What a recorder may have got wrong, not the engine: far off as it stands, near with the other sign.
+  bool normal_turned = false;
+  bool depth_turned = false;
 };
+
+/// Errors from here on, relative to L, are looked at with the other sign.
+inline constexpr double kFarOff = 1e-3;
 
 /// Ways that lead nowhere out of a half-space are as bad as one this many times L long.
 inline constexpr double kNoWayOut = 1e9;

@@ -42,8 +42,8 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ "$family" = box ] || kill -9 $$
-cat "$here/$engine" > "$out" && echo 1234
+[ "$family" = box ] || [ "$family" = sphere ] || kill -9 $$
+cat "$here/$engine" > "$out" && echo 1234 $([ "$family" = sphere ] && echo 3)
 )");
     EXPECT_EQ(::chmod(program.c_str(), 0700), 0);
     return program;
@@ -67,6 +67,16 @@ TEST_F(Accuracy, CountsWhatARecorderSays) {
   EXPECT_EQ(bad.no_answer, 1);
   EXPECT_EQ(bad.wrong(), 3);
   EXPECT_NEAR(bad.worst, 1.25 / 5, 1e-12);
+}
+
+TEST_F(Accuracy, PairsAtWhichAnEngineAborts) {
+  const audit::AccuracyRow row = audit::run_accuracy(recorder(), "good", {"sphere", ""}, {});
+  EXPECT_FALSE(row.failed) << "the other pairs count";
+  EXPECT_EQ(row.nanoseconds, 1234);
+  EXPECT_EQ(row.aborted, 3);
+  EXPECT_EQ(row.contacts, 2 + 3);
+  EXPECT_EQ(row.no_answer, 3);
+  EXPECT_EQ(row.wrong(), 3);
 }
 
 TEST_F(Accuracy, ProgramsThatFail) {

@@ -110,6 +110,28 @@ TEST_F(AuditProgram, RefusesLinesByNameAndJudgesTheRest) {
   }
   EXPECT_NE(result.err.find("record.jsonl:4: not_a_rotation: "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("at pose_b.rotation_row_major"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(":15: bad_json: a line must be one JSON object with a \"shape\" or a \"contact\""),
+            std::string::npos)
+      << result.err;
+}
+
+// The two mistakes that recorders make are named; one bad contact of an engine among good ones is none of them.
+TEST_F(AuditProgram, SaysWhenTheRecorderSeemsWrong) {
+  const auto outcome = [&](const char* wrong, int bad, int good) {
+    RecordText record = cubes();
+    for (int i = 0; i < bad; ++i) record.contact("s", "s", at("1.5"), wrong);
+    for (int i = 0; i < good; ++i) record.contact("s", "s", at("1.5"), R"({"depth":0.5,"normal":[-1,0,0]})");
+    return audit(record.text(), "--report page").out;
+  };
+  const char* normal = R"({"depth":0.5,"normal":[1,0,0]})";
+  const char* depth = R"({"depth":-0.5,"normal":[-1,0,0]})";
+  EXPECT_NE(outcome(normal, 3, 1).find("hint: 3 of 4 normals"), std::string::npos);
+  EXPECT_NE(read("page/report.html").find("The recorder may be wrong"), std::string::npos);
+  EXPECT_NE(outcome(depth, 3, 1).find("hint: 3 of 4 depths"), std::string::npos);
+  EXPECT_EQ(outcome(normal, 1, 3).find("hint"), std::string::npos);
+  EXPECT_EQ(outcome(depth, 1, 3).find("hint"), std::string::npos);
+  EXPECT_EQ(outcome(R"({"depth":0.1,"normal":[0,1,0]})", 3, 0).find("hint"), std::string::npos) << "wrong either way";
+  EXPECT_EQ(read("page/report.html").find("The recorder may be wrong"), std::string::npos);
 }
 
 TEST_F(AuditProgram, RefusesWhatIsNoRecord) {

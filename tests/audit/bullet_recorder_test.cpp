@@ -65,6 +65,16 @@ const std::vector<btCollisionShape* (*)(BulletWorld&)>& every_shape() {
       [](BulletWorld& w) -> btCollisionShape* { return w.shape<btCapsuleShape>(btScalar(0.5), btScalar(2)); },
       [](BulletWorld& w) -> btCollisionShape* { return w.shape<btCylinderShape>(btVector3(1, 2, 1)); },
       [](BulletWorld& w) -> btCollisionShape* { return w.shape<btConeShape>(btScalar(1), btScalar(2)); },
+      [](BulletWorld& w) -> btCollisionShape* { return w.shape<btCapsuleShapeX>(btScalar(0.5), btScalar(2)); },
+      [](BulletWorld& w) -> btCollisionShape* { return w.shape<btCapsuleShapeZ>(btScalar(0.5), btScalar(2)); },
+      [](BulletWorld& w) -> btCollisionShape* { return w.shape<btCylinderShapeX>(btVector3(2, 1, 1)); },
+      [](BulletWorld& w) -> btCollisionShape* { return w.shape<btCylinderShapeZ>(btVector3(1, 1, 2)); },
+      [](BulletWorld& w) -> btCollisionShape* { return w.shape<btConeShapeX>(btScalar(1), btScalar(2)); },
+      [](BulletWorld& w) -> btCollisionShape* { return w.shape<btConeShapeZ>(btScalar(1), btScalar(2)); },
+      [](BulletWorld& w) -> btCollisionShape* {
+        return w.shape<btBU_Simplex1to4>(btVector3(1, -1, 0), btVector3(-1, -1, 1), btVector3(-1, -1, -1),
+                                         btVector3(0, 1, 0));
+      },
       [](BulletWorld& w) -> btCollisionShape* { return box_hull(w, btVector3(1, 1, 1), btScalar(0.04)); },
       [](BulletWorld& w) -> btCollisionShape* {
         auto* compound = w.shape<btCompoundShape>();

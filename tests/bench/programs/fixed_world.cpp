@@ -1,15 +1,17 @@
 /// @file
-/// One visit to a pair of a world whose instructions callgrind counts (`instruction_budget.cmake`): a brick that lies
-/// half on another one, as in a pyramid, after a second of steps. `fixed_world brick` counts the whole of
-/// `processCollision`: bounding boxes, query, manifold, and points with their impulses and anchors.
+/// Parts of a world whose instructions callgrind counts (`instruction_budget.cmake`): bricks that lie half on others,
+/// as in a pyramid, after a second of steps. `fixed_world brick` counts the whole of `processCollision` of one pair:
+/// bounding boxes, query, manifold, and points with their impulses and anchors. `step` counts a step of the world, and
+/// `step_recorder_gone` one after a `pd::ContactRecorder` has come and gone: no instruction more.
 
 #include <btBulletDynamicsCommon.h>
 
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <string_view>
 #include <vector>
 
+#include "pd/bullet/contact_recorder.hpp"
 #include "pd/bullet/install.hpp"
 #include "pd/bullet/penetration_depth_solver.hpp"
 
@@ -18,8 +20,12 @@ extern "C" {
 /// By its plain name in callgrind's option --toggle-collect.
 __attribute__((noinline)) void pdepth_counted_call(btCollisionAlgorithm* algorithm, const btCollisionObjectWrapper* a,
                                                    const btCollisionObjectWrapper* b, const btDispatcherInfo* info,
-                                                   btManifoldResult* result) {
-  algorithm->processCollision(a, b, *info, result);
+                                                   btManifoldResult* result, btDynamicsWorld* world) {
+  if (world != nullptr) {
+    world->stepSimulation(btScalar(1) / 60, 0);
+  } else {
+    algorithm->processCollision(a, b, *info, result);
+  }
 }
 }
 
@@ -42,6 +48,14 @@ class Bricks {
     for (int i = 0; i < steps; ++i) world_.stepSimulation(btScalar(1) / 60, 0);
   }
 
+  /// Records nothing for long. False where it could not.
+  bool record_and_stop() {
+    pd::ContactRecorder recorder(world_, "/dev/null");
+    return recorder.close();
+  }
+
+  void counted_step() { pdepth_counted_call(nullptr, nullptr, nullptr, nullptr, nullptr, &world_); }
+
   /// The pair of the upper brick and the first lower one. @return the points that it has.
   int visit() {
     btBroadphasePair* const pair =
@@ -51,7 +65,7 @@ class Bricks {
     const btCollisionObjectWrapper wrapper_a(nullptr, a->getCollisionShape(), a, a->getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper wrapper_b(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
     btManifoldResult result(&wrapper_a, &wrapper_b);
-    pdepth_counted_call(pair->m_algorithm, &wrapper_a, &wrapper_b, &world_.getDispatchInfo(), &result);
+    pdepth_counted_call(pair->m_algorithm, &wrapper_a, &wrapper_b, &world_.getDispatchInfo(), &result, nullptr);
     return result.getPersistentManifold()->getNumContacts();
   }
 
@@ -79,13 +93,19 @@ class Bricks {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2 || std::strcmp(argv[1], "brick") != 0) {
-    std::fprintf(stderr, "fixed_world NAME, one of: brick\n");
-    return 2;
-  }
+  const std::string_view name = argc == 2 ? argv[1] : "";
   Bricks bricks;
   bricks.step(60);
-  const int points = bricks.visit();
-  std::printf("brick: %d points\n", points);
-  return points == 4 ? 0 : 1;
+  if (name == "brick") {
+    const int points = bricks.visit();
+    std::printf("brick: %d points\n", points);
+    return points == 4 ? 0 : 1;
+  }
+  if (name == "step" || name == "step_recorder_gone") {
+    if (name == "step_recorder_gone" && !bricks.record_and_stop()) return 1;
+    bricks.counted_step();
+    return 0;
+  }
+  std::fprintf(stderr, "fixed_world NAME, one of: brick, step, step_recorder_gone\n");
+  return 2;
 }

@@ -2,15 +2,26 @@
 /// What a peer says of generated pairs, as a contact record for `pdepth audit` and `pdepth accuracy`.
 ///
 ///   record_peers --list
-///   record_peers --engine fcl-contact --family prism --pairs 25 --out prism.jsonl    (prints its nanoseconds a query)
+///   record_peers --engine fcl-contact --family prism --pairs 25 --out prism.jsonl
 ///   record_peers --engine fcl-contact --cases contacts.jsonl --out fcl.jsonl         (the pairs of a record)
+///
+/// Prints the nanoseconds of a query and how many pairs have no line, because the engine ended on an assertion of its
+/// own or crashed: the work is done by a child, and after such an end by another one that leaves that pair out.
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -99,10 +110,17 @@ struct NamedPair {
   std::string id_b;
 };
 
+/// The pairs at which the engine ended, and the one that it works on, in memory that outlives the child.
+struct Progress {
+  std::set<int> ended_at;
+  std::atomic<int>* current;
+};
+
 /// Asks the solver and writes what it says.
 class Recording {
  public:
-  Recording(const RecordOptions& options, Solver& solver) : solver_(solver) {
+  Recording(const RecordOptions& options, Solver& solver, const Progress& progress)
+      : solver_(solver), progress_(progress) {
     pd_record_open(&file_, options.out.c_str(), options.engine.c_str(),
                    solver.precision() == Precision::binary32 ? PD_RECORD_FLOAT32 : PD_RECORD_FLOAT64, nullptr);
   }
@@ -110,6 +128,8 @@ class Recording {
   void ask(const NamedPair& named) {
     const auto pair = corpus_pair(named.points, solver_);
     if (!pair) return;
+    *progress_.current = number_++;
+    if (progress_.ended_at.contains(*progress_.current)) return;
     const auto attempt = solver_.prepare(pair->bodies);
     attempt->stand(pair->pose_a, pair->pose_b);
     const auto start = std::chrono::steady_clock::now();
@@ -121,13 +141,13 @@ class Recording {
     write_answer(named, *pair, attempt->answer());
   }
 
-  /// Closes the file and prints the nanoseconds of a query. @return the exit code
+  /// Closes the file and prints the nanoseconds of a query and the pairs without a line. @return the exit code
   int close(const std::string& name) {
     if (pd_record_close(&file_) == 0) {
       std::fprintf(stderr, "record_peers: %s cannot be written\n", name.c_str());
       return 1;
     }
-    std::printf("%.0f\n", asked_ > 0 ? nanoseconds_ / asked_ : 0);
+    std::printf("%.0f %zu\n", asked_ > 0 ? nanoseconds_ / asked_ : 0, progress_.ended_at.size());
     return 0;
   }
 
@@ -143,14 +163,16 @@ class Recording {
   }
 
   Solver& solver_;
+  const Progress& progress_;
+  int number_ = 0;  ///< of pairs that the engine takes
   pd_record file_{};
   std::set<std::string> written_;
   double nanoseconds_ = 0;
   int asked_ = 0;
 };
 
-int record_family(const RecordOptions& options, Solver& solver, scenes::PairFamily family) {
-  Recording recording(options, solver);
+int record_family(const RecordOptions& options, Solver& solver, const Progress& progress, scenes::PairFamily family) {
+  Recording recording(options, solver, progress);
   for (int d = 0; d < scenes::kDepthClasses; ++d) {
     const auto pair_of = [&](int i) {
       const std::uint64_t seed = options.seed * 1'000'003U + static_cast<std::uint64_t>(i);
@@ -203,10 +225,10 @@ scenes::Points points_of(const nlohmann::json& shape) {
 }
 
 /// The pairs of hulls of a contact record; other lines are passed over and counted on stderr.
-int record_cases(const RecordOptions& options, Solver& solver) {
+int record_cases(const RecordOptions& options, Solver& solver, const Progress& progress) {
   std::ifstream cases(options.cases);
   std::map<std::string, scenes::Points> shapes;
-  Recording recording(options, solver);
+  Recording recording(options, solver, progress);
   int passed_over = 0;
   for (std::string text; std::getline(cases, text);) {
     const auto line = nlohmann::json::parse(text, nullptr, false);
@@ -230,6 +252,37 @@ int record_cases(const RecordOptions& options, Solver& solver) {
   return recording.close(options.out);
 }
 
+/// Whether a child ended by the engine's own doing, and not by a limit or by a hand from outside.
+bool ended_by_itself(int status) {
+  return WIFSIGNALED(status) && (WTERMSIG(status) == SIGABRT || WTERMSIG(status) == SIGSEGV ||
+                                 WTERMSIG(status) == SIGFPE || WTERMSIG(status) == SIGBUS);
+}
+
+/// Calls `record(progress)` in a child, and again without the pair at which one ended. @return the exit code
+template <class Record>
+int in_children(Record&& record) {
+  void* shared = ::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) return 1;
+  Progress progress{{}, new (shared) std::atomic<int>(-1)};
+  for (;;) {
+    *progress.current = -1;
+    const pid_t child = ::fork();
+    if (child < 0) return 1;
+    if (child == 0) {
+      const int code = record(progress);
+      std::fflush(stdout);
+      std::_Exit(code);
+    }
+    int status = 0;
+    if (::waitpid(child, &status, 0) != child) return 1;
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    // Before the first pair, or at one that was left out: no pair is to blame.
+    if (!ended_by_itself(status) || *progress.current < 0 || !progress.ended_at.insert(*progress.current).second) {
+      return 1;
+    }
+  }
+}
+
 int run(const RecordOptions& options, bool list) {
   Solvers solvers;
   add_ours(solvers, false, false);
@@ -244,10 +297,13 @@ int run(const RecordOptions& options, bool list) {
       continue;
     }
     if (solver->name() != options.engine && std::string(solver->name()) + "-double" != options.engine) continue;
-    if (!options.cases.empty()) return record_cases(options, *solver);
+    if (!options.cases.empty()) {
+      return in_children([&](const Progress& progress) { return record_cases(options, *solver, progress); });
+    }
     for (int f = 0; f < scenes::kPairFamilies; ++f) {
       const auto family = static_cast<scenes::PairFamily>(f);
-      if (to_string(family) == options.family) return record_family(options, *solver, family);
+      if (to_string(family) != options.family) continue;
+      return in_children([&](const Progress& progress) { return record_family(options, *solver, progress, family); });
     }
     std::fprintf(stderr, "record_peers: there is no family \"%s\"\n", options.family.c_str());
     return 2;
