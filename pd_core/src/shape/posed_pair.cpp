@@ -178,6 +178,9 @@ Dyadic3 PosedPair::exact(const PairVector& v) const {
   Dyadic3 r =
       rotate(*b_, body_b_.rotation_exact, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation_exact, v.a_to, v.a_from);
   if (v.translated) r = r + offset_exact_;
+  std::int64_t words = 0;
+  for (const Dyadic* x : {&r.x, &r.y, &r.z}) words = std::max<std::int64_t>(words, x->mantissa().backend().size());
+  exact_work_ += words * words;
   return r;
 }
 

@@ -107,5 +107,37 @@ TEST(Grid, IsMonotoneInDeltaAndNearlyProportionalToItsInverse) {
   }
 }
 
+/// Signs of coordinates that span 440 decades take long numbers: the search is ended by what they cost, not only by its
+/// 100,000 rays, and says so.
+TEST(Grid, WildExponentsHaveABudget) {
+  constexpr double kSizes[] = {1e-300, 1e-200, 1e-100, 1e-30, 1, 1, 1, 1e30, 1e100, 1e140};
+  scenes::Random random(5);
+  Scratch scratch;
+  int ended = 0;
+  for (int pair = 0; pair < 12; ++pair) {
+    scenes::Points points[2];
+    for (scenes::Points& body : points) {
+      for (int i = random.integer(4, 8); i > 0; --i) {
+        const Vec3 p = random.point(-1, 1);
+        const double x = kSizes[random.integer(0, 9)], y = kSizes[random.integer(0, 9)];
+        body.emplace_back(x * p.x(), y * p.y(), kSizes[random.integer(0, 9)] * p.z());
+      }
+    }
+    const ConvexShape a(*ConvexPolytope::from_points(points[0]));
+    const ConvexShape b(*ConvexPolytope::from_points(points[1]));
+    const PenetrationDepth exact = penetration_depth({&a, Pose()}, {&b, Pose()}, scratch);
+    const PenetrationDepth grid =
+        penetration_depth({&a, Pose()}, {&b, Pose()}, scratch, {.method = Method::grid, .delta = 1e-2});
+    ASSERT_EQ(grid.contact, exact.contact);
+    if (exact.contact != ContactClass::overlapping) continue;
+    EXPECT_LE(grid.lower, exact.upper);
+    EXPECT_GE(grid.upper, exact.lower);
+    EXPECT_EQ(grid.bracket_reached, grid.upper <= 1.01 * grid.lower * (1 + 1e-12));
+    EXPECT_LT(grid.statistics.facets_visited, 20000);
+    ended += grid.bracket_reached ? 0 : 1;
+  }
+  EXPECT_GT(ended, 2);
+}
+
 }  // namespace
 }  // namespace pd

@@ -33,9 +33,12 @@ inline constexpr double kLeastDelta = 1e-12;
 
 /// Rays of one search. A covering of the sphere at 1 part in 10^4 takes as many; a ray takes 5 to 50 microseconds.
 inline constexpr std::int64_t kMaxRays = 100'000;
+/// The same for rays whose signs need long numbers, as coordinates of 600 decades do: a second or two
+/// (PosedPair::exact_work).
+inline constexpr std::int64_t kMaxExactWork = std::int64_t{1} << 26;
 
 struct DirectionRefinementResult {
-  bool reached = true;  ///< false: rounding or kMaxRays ended the search with a wider bracket
+  bool reached = true;  ///< false: rounding or the budget ended the search with a wider bracket
   double lower = 0;     ///< certified: lower <= pi
   double upper = 0;     ///< least plane distance, rounded up
   Vec3 normal = Vec3::UnitX();
@@ -58,7 +61,7 @@ class DirectionRefinement {
     while (!cells_.empty()) {
       const Cell cell = cells_.top();
       if (best_.upper <= (1 + delta_) * cell.lower || best_.upper - cell.lower <= shooter_.absolute_error()) break;
-      if (shooter_.shots() >= kMaxRays) break;
+      if (is_spent()) break;
       cells_.pop();
       if (cell.level == kFinestLevel) {
         finished = std::min(finished, cell.lower);
@@ -97,6 +100,8 @@ class DirectionRefinement {
     double lower;
   };
 
+  [[nodiscard]] bool is_spent() const { return shooter_.shots() >= kMaxRays || shooter_.exact_work() >= kMaxExactWork; }
+
   std::int32_t add_corner(const Vec3& direction) {
     const RayShot shot = shooter_.shoot(direction);
     corners_.push_back({direction, shot.lower});
@@ -111,7 +116,7 @@ class DirectionRefinement {
       best_.upper = shot.height;
       best_.normal = shot.normal;
       shooter_.keep();
-      if (by_little || shooter_.shots() >= kMaxRays) return;
+      if (by_little || is_spent()) return;
       shot = shooter_.shoot(shot.normal);
     }
   }

@@ -44,6 +44,7 @@ class PolytopeShooter {
   [[nodiscard]] const Plane& kept() const { return kept_; }
   [[nodiscard]] std::int64_t support_calls() const { return support_calls_; }
   [[nodiscard]] std::int64_t shots() const { return shots_; }
+  [[nodiscard]] std::int64_t exact_work() const { return pair_->exact_work(); }  ///< see there
   /// Brackets narrower than this, times a length, are not to be had.
   [[nodiscard]] double absolute_error() const { return 0; }
 
@@ -82,6 +83,7 @@ class SweptShooter {
   void keep() const {}
   [[nodiscard]] std::int64_t support_calls() const { return support_calls_; }
   [[nodiscard]] std::int64_t shots() const { return shots_; }
+  [[nodiscard]] static std::int64_t exact_work() { return 0; }
   /// What is below this is not distinguished: 1e-12 of P's reach, as for every answer about smooth bodies.
   [[nodiscard]] double absolute_error() const { return 1e-12 * reach_; }
 
