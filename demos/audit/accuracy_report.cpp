@@ -54,8 +54,8 @@ std::string family_table(const AccuracyTable& table) {
 }
 
 std::string totals_section(const AccuracyTable& table) {
-  std::vector<std::vector<std::string>> rows{{"engine", "contacts", "missed", "phantom", "error &gt; 1e-6",
-                                              "error &gt; 1e-3", "no answer", "worst error", "a query"}};
+  std::vector<std::vector<std::string>> rows{{"engine", "contacts", "missed", "phantom", "error &gt; 1e&#8209;6",
+                                              "error &gt; 1e&#8209;3", "no answer", "worst error", "a query"}};
   for (std::size_t e = 0; e < table.engines.size(); ++e) {
     const AccuracyRow row = table.total(e);
     const std::string words = words_of(row);
