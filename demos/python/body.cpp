@@ -194,8 +194,12 @@ std::vector<int> feature_ids(const Body& body, int part, const Feature& feature)
 }
 
 void bind_shapes(py::module_& module) {
+  // Python's shapes have arguments of their own: help() would show these for theirs.
+  py::options options;
+  options.disable_function_signatures();
   py::class_<Body, BodyRef>(module, "Shape", py::dynamic_attr(), "A body in a frame of its own. Immutable.")
-      .def(py::init(&make_body), py::arg("kind"), py::arg("numbers"), py::arg("margin"))
+      .def(py::init(&make_body), py::arg("kind"), py::arg("numbers"), py::arg("margin"),
+           "Arguments and errors: see the class.")
       .def_property_readonly("vertices", &vertices_of,
                              "[n, 3] float64: the hull's vertices in lexicographic order, in the shape's frame.")
       .def_property_readonly("facets", &facets_of,

@@ -1,4 +1,4 @@
-"""Every example of the README runs and prints what its comments promise, and the example test file passes."""
+"""Every example of the READMEs runs and prints what its comments promise, and the example test file passes."""
 import os
 import pathlib
 import re
@@ -9,7 +9,8 @@ import pdepth
 import pytest
 
 ROOM = pathlib.Path(__file__).resolve().parents[2] / "demos" / "python"
-BLOCKS = re.findall(r"```python\n(.*?)```", (ROOM / "README.md").read_text(), re.S)
+BLOCKS = [block for readme in (ROOM / "README.md", ROOM.parents[1] / "README.md")
+          for block in re.findall(r"```python\n(.*?)```", readme.read_text(), re.S)]
 PACKAGE = os.path.dirname(os.path.dirname(pdepth.__file__))
 
 

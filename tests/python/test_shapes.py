@@ -12,6 +12,10 @@ SHAPES = [
     pdepth.ConvexPolytope(CUBE), pdepth.ConvexPolytope([[0.1, 0.2, 0.3]], margin=0.25), pdepth.Box([1, 2, 3]),
     pdepth.Sphere(1 / 3), pdepth.Ellipsoid([1, 2, 3]), pdepth.Capsule(1, 2), pdepth.Cylinder(1, 2, "x"),
     pdepth.Cone(1, 2, "y"), pdepth.Compound([pdepth.Box([1, 1, 1]), (pdepth.Sphere(1), pdepth.Pose(translation=[3, 0, 0]))]),
+    pdepth.Compound([(pdepth.Cone(1, 2, margin=0.1), pdepth.Pose(wxyz=[0.5, 0.5, 0.5, 0.5], translation=[0.1, 0, 0])),
+                     (pdepth.Ellipsoid([0.1, 0.2, 0.3]), (np.eye(3)[[1, 2, 0]], [1 / 3, 0, 0]))], margin=0.2),
+    pdepth.ConvexPolytope.from_halfspaces([[s * (k == 0), s * (k == 1), s * (k == 2), 1 / 3] for k in range(3) for s in (-1, 1)]),
+    pdepth.Sphere(np.float32(0.1)), pdepth.Box(np.array([1, 2, 3], dtype=np.int16)),
     pdepth.StarBody([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], [0, 0, 0]),
 ]
 
@@ -71,7 +75,8 @@ BAD = [
     (lambda: pdepth.ConvexPolytope.from_mesh(3), "mesh", "bad_value", "int"),
     (lambda: pdepth.ConvexPolytope.from_mesh(SimpleNamespace(vertices=CUBE, faces=np.array([[0, 1, 2], [1, 2, 8]]))),
      "mesh.faces[1]", "out_of_range", "0 to 7"),
-    (lambda: pdepth.ConvexPolytope.from_mesh(SimpleNamespace(vertices=CUBE, faces=np.eye(3))), "mesh.faces", "bad_value", "float64"),
+    (lambda: pdepth.ConvexPolytope.from_mesh(SimpleNamespace(vertices=CUBE, faces=np.eye(3))), "mesh.faces", "bad_value",
+     "float64"),
     (lambda: pdepth.ConvexPolytope.from_halfspaces([[1, 0, 0, 1]] * 4), "planes", "unbounded", ""),
     (lambda: pdepth.Pose(wxyz=[0, 0, 0, 0]), "wxyz", "bad_value", ""),
     (lambda: pdepth.Pose(wxyz=[1, 0, 0]), "wxyz", "bad_value", "needs [4]"),

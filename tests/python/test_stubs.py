@@ -2,6 +2,7 @@
 import ast
 import inspect
 import pathlib
+import pydoc
 
 import pdepth
 
@@ -39,3 +40,11 @@ def test_classes_have_the_members_of_their_stubs():
 def test_everything_public_says_what_it_is():
     for name in public_names() - {"ERRORS", "CONTACTS", "FEATURES"}:
         assert inspect.getdoc(getattr(pdepth, name)), name
+
+
+def test_help_shows_the_packages_own_arguments():
+    for name in public_names() - {"ERRORS", "CONTACTS", "FEATURES"}:
+        told = pydoc.render_doc(getattr(pdepth, name), renderer=pydoc.plaintext)
+        assert "_core.Shape, kind" not in told, name
+    for shape in (pdepth.Box, pdepth.Sphere, pdepth.Cone, pdepth.Compound, pdepth.StarBody, pdepth.ConvexPolytope):
+        assert "Raises Refused" in inspect.getdoc(shape), shape

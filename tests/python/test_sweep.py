@@ -4,6 +4,7 @@ import resource
 import signal
 import threading
 import time
+import warnings
 
 import numpy as np
 import pdepth
@@ -83,6 +84,10 @@ def test_a_killed_worker_loses_nothing(poses, tmp_path, monkeypatch):
         killer.start()
         spread = pdepth.sweep(SHAPES, pairs, both, client, out=tmp_path / "cluster", chunk=1000, progress=False)
         killer.join()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            large = pdepth.sweep(SHAPES, pairs, both, client, out=tmp_path / "large", chunk=10_000, progress=False)
+        assert large.computed == 4 and np.array_equal(large["depth"], alone["depth"])
     assert killed and killed[0] < 40
     assert spread.computed == 40 and bytes_of(spread) == bytes_of(alone)
     assert sorted(path.name for path in (tmp_path / "cluster").iterdir()) == [path.name for path in spread.files]

@@ -203,7 +203,10 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
 
 
 def distance(a, b, pose_a=None, pose_b=None, *, threads=None):
-    """Distance of two bodies, 0 when they meet: depth's `distance` with its certified bracket. A float, or [n] for many."""
+    """Distance of two bodies, 0 when they meet: `distance` of depth, which knows its certified bracket too.
+
+    Shapes and poses as in depth. A float, or [n] for many, NaN where a row is refused. Raises Refused as depth.
+    """
     found = depth(a, b, pose_a, pose_b, threads=threads)
     return found.distance
 
@@ -212,6 +215,7 @@ def intersects(a, b, pose_a=None, pose_b=None, *, threads=None):
     """Whether the bodies have a point in common (touching counts): exact for polytopes. A bool, or [n] bools for many.
 
     For many, a row that is refused is False; use depth to see why. No distance is searched for (depth's beyond=0).
+    Shapes and poses as in depth. Raises Refused as depth.
     """
     found = depth(a, b, pose_a, pose_b, beyond=0.0, threads=threads)
     if isinstance(found, Batch):
@@ -267,6 +271,7 @@ def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, 
     The normal points from B to A; depth > 0 inside, < 0 a gap of at most breaking_threshold; feature_id is the same while
     the same two features meet. For many: a Batch with count, normal [n, 3], position_a and position_b [n, 4, 3],
     point_depth [n, 4] and feature_id [n, 4], NaN and 0 beyond count.
+    Lengths and frames as in depth. Raises Refused: 'unsupported' for unions, 'bad_value' at breaking_threshold.
     """
     if _is_batch(a, b, pose_a, pose_b):
         (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
@@ -284,9 +289,10 @@ def derivatives(a, b, pose_a=None, pose_b=None, *, threads=None):
     by_a, by_b: [6]. unique_direction: the least direction is unique, and the first three of each exist; unique_witness:
     the pair of witnesses is, too, and the last three exist (parallel faces have the first and not the second). What does
     not exist is NaN. For one pair also stable_features and, where it holds, normal_by_a, witness_a_by_b, ...: [3, 6];
-    those of curved bodies have no bound on their error.
+    those of curved bodies were measured, not bounded.
 
     For many: a Batch with signed_depth, the three flags, by_a and by_b beside the columns of depth.
+    Raises Refused: 'unsupported' for unions.
     """
     if not _is_batch(a, b, pose_a, pose_b):
         return Derivatives(_core.derivatives(a, b, pose_a, pose_b))

@@ -68,7 +68,10 @@ class Shape(_core.Shape):
     """A body in a frame of its own, immutable.
 
     Equal when made from the same numbers. `repr` can be pasted; pickle and copy keep every bit. `margin` >= 0 sweeps the
-    body by a ball of that radius (in the unit of the world, whatever the pose).
+    body by a ball of that radius (in the unit of the world, whatever the pose). Lengths are in one unit of the caller's.
+
+    What is no such body is Refused, a ValueError whose `.where` names the argument and index: 'bad_value' (a wrong shape,
+    dtype or sign), 'non_finite', 'out_of_range' (beyond 1e300).
     """
 
     def __init__(self, kind, numbers, margin, arguments):
@@ -183,7 +186,10 @@ class ConvexPolytope(Shape):
 
 
 class Box(Shape):
-    """The box [-hx, hx] x [-hy, hy] x [-hz, hz]; half_extents: [3], positive. Vertex ids are the bits of (x, y, z) > 0."""
+    """The box [-hx, hx] x [-hy, hy] x [-hz, hz]; half_extents: [3], positive. Vertex ids are the bits of (x, y, z) > 0.
+
+    Raises Refused: 'bad_value' or 'non_finite' at half_extents[i].
+    """
 
     _type = "box"
 
@@ -192,7 +198,7 @@ class Box(Shape):
 
 
 class Sphere(Shape):
-    """A ball about the origin; radius > 0."""
+    """A ball about the origin; radius > 0. Exact. Raises Refused: 'bad_value' or 'non_finite' at radius."""
 
     _type = "sphere"
 
@@ -201,7 +207,10 @@ class Sphere(Shape):
 
 
 class Ellipsoid(Shape):
-    """sum (x_i / radii_i)^2 <= 1; radii: [3], positive. Certified to (1 + delta), not exact."""
+    """sum (x_i / radii_i)^2 <= 1; radii: [3], positive. Certified to (1 + delta), not exact.
+
+    Raises Refused: 'bad_value' or 'non_finite' at radii[i].
+    """
 
     _type = "ellipsoid"
 
@@ -216,25 +225,38 @@ class _Round(Shape):
 
 
 class Capsule(_Round):
-    """A segment from -half_height to +half_height along the axis ('x', 'y', 'z'), swept by a ball. Exact."""
+    """A segment from -half_height to +half_height along the axis ('x', 'y', 'z'), swept by a ball. Exact.
+
+    Raises Refused: 'bad_value' or 'non_finite' at radius, half_height or axis.
+    """
 
     _type = "capsule"
 
 
 class Cylinder(_Round):
-    """radius about the axis ('x', 'y', 'z'), from -half_height to +half_height. Certified to (1 + delta)."""
+    """radius about the axis ('x', 'y', 'z'), from -half_height to +half_height. Certified to (1 + delta).
+
+    Raises Refused: 'bad_value' or 'non_finite' at radius, half_height or axis.
+    """
 
     _type = "cylinder"
 
 
 class Cone(_Round):
-    """Base of the radius at -half_height, apex at +half_height along the axis. Certified to (1 + delta)."""
+    """Base of the radius at -half_height, apex at +half_height along the axis. Certified to (1 + delta).
+
+    Raises Refused: 'bad_value' or 'non_finite' at radius, half_height or axis.
+    """
 
     _type = "cone"
 
 
 class Compound(Shape):
-    """A union of convex parts; parts: a list of shapes or of (shape, pose)."""
+    """A union of convex parts; parts: a list of shapes or of (shape, pose).
+
+    Poses place parts in the union's frame. Raises Refused: 'too_few_points' without parts, 'bad_value' at parts[i],
+    'not_a_rotation' at parts[i].pose.
+    """
 
     _type = "compound"
 
@@ -253,7 +275,10 @@ class Compound(Shape):
 
 
 class StarBody(Shape):
-    """A closed triangulated surface that every point of is seen from `center`: vertices [n, 3], faces [m, 3], center [3]."""
+    """A closed triangulated surface that every point of is seen from `center`: vertices [n, 3], faces [m, 3], center [3].
+
+    Faces are rows of vertices, counter-clockwise from outside. Raises Refused where the surface is not closed or not seen.
+    """
 
     _type = "star"
 

@@ -8,6 +8,7 @@ import os
 import pathlib
 import sys
 import time
+import warnings
 import zipfile
 
 import numpy as np
@@ -129,7 +130,9 @@ def _run_on(client, inputs, missing, finish, threads, options):
         if work is None:
             return None
         rows, path, digest = work
-        future = client.submit(_chunk, shapes, *rows, threads, options, pure=False)
+        with warnings.catch_warnings():  # rows are large, sent once, and kept here until a worker has answered them
+            warnings.filterwarnings("ignore", "Large object", UserWarning)
+            future = client.submit(_chunk, shapes, *rows, threads, options, pure=False)
         known[future] = (path, digest, len(rows[0]))
         return future
 

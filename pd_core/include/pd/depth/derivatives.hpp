@@ -87,8 +87,9 @@ inline constexpr TieTolerance kCurvedTie{1e-11, 1e-4, 1e-4};
 /// Error of the gradient, relative to its norm: about 1e-14 L / |lever| for polytopes (witness points in doubles),
 /// about 1e-5 for curved bodies (their normal is known to sqrt(2e-12) radians); `derivative_pairs` measures both. The
 /// derivatives of normal and witnesses of curved bodies come from the curvature at a normal known to that only, and are
-/// measured (its columns "feat."), not bounded.
-/// Time: the query, and some hundred supports of P for the flags where the cores overlap; more for near ties.
+/// measured (its columns "feat."), not bounded: differences over steps of 1e-3 agree to 9e-3 for 99 % of the pairs,
+/// which is the noise of these differences, and to .29 at worst. Time: the query, and some hundred supports of P for
+/// the flags where the cores overlap; more for near ties.
 [[nodiscard]] DepthDerivatives depth_derivatives(const PosedShape& a, const PosedShape& b, Scratch& scratch);
 
 }  // namespace pd
