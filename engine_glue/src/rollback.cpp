@@ -53,6 +53,11 @@ struct RollbackStepper::State {
   void try_part(double from, double length, RollbackReport& report) {
     parts.move(from, length, settings.gap);
     ++report.simulation_steps;
+    while (parts.lessen_restitution(length)) {
+      start->restore();
+      parts.move(from, length, settings.gap);
+      ++report.simulation_steps;
+    }
   }
 
   void accept(double from, double length, RollbackReport& report) {
@@ -171,6 +176,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     const double remaining = whole - done;
     detail::WorldStep::pre_tick(world, static_cast<btScalar>(remaining));
     save();
+    parts.begin_part();
     search.mark_start();
     try_part(done, remaining, report);
     const bool bounded = cuts >= settings.max_contacts_per_step;

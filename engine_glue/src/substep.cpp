@@ -29,16 +29,16 @@ btScalar total_impulse(const btPersistentManifold& manifold) {
 }
 
 /// While it lives, the dispatcher's narrow phase drops contact points at a distance above `farthest` of pairs that
-/// bounce.
+/// bounce, and gives the others the restitution that their impact may have.
 class BouncingContacts {
  public:
-  BouncingContacts(btDispatcher* dispatcher, btScalar farthest)
+  BouncingContacts(btDispatcher* dispatcher, btScalar farthest, ImpactEnergy& energy)
       : dispatcher_(dynamic_cast<btCollisionDispatcher*>(dispatcher)) {
     if (dispatcher_ == nullptr) return;
     host_ = dispatcher_->getNearCallback();
     {
       const std::unique_lock lock(mutex());
-      active()[dispatcher_] = {host_, farthest};
+      active()[dispatcher_] = {host_, farthest, &energy};
     }
     dispatcher_->setNearCallback(&BouncingContacts::near);
   }
@@ -55,6 +55,7 @@ class BouncingContacts {
   struct Rule {
     btNearCallback host;
     btScalar farthest;
+    ImpactEnergy* energy;
   };
   /// Bullet's callback has no word of whom it works for but the dispatcher; worlds may step on several threads.
   static std::map<const btCollisionDispatcher*, Rule>& active() {
@@ -86,6 +87,7 @@ class BouncingContacts {
         const btManifoldPoint& point = manifolds[i]->getContactPoint(k);
         if (point.m_combinedRestitution > 0 && point.getDistance() > rule.farthest) manifolds[i]->removeContactPoint(k);
       }
+      if (rule.energy->any()) rule.energy->apply(*manifolds[i]);
     }
   }
 
@@ -148,9 +150,19 @@ void SubStepper::place_kinematics(double time) {
   }
 }
 
+void SubStepper::begin_part() { energy_.begin_part(); }
+
 void SubStepper::move(double from, double step, double gap) {
+  energy_.note_start(world_);
+  move_bodies(from, step, gap);
+  energy_.restore();
+}
+
+bool SubStepper::lessen_restitution(double step) { return energy_.lessen(world_, static_cast<btScalar>(step)); }
+
+void SubStepper::move_bodies(double from, double step, double gap) {
   const auto h = static_cast<btScalar>(step);
-  const BouncingContacts bouncing(world_.getDispatcher(), static_cast<btScalar>(2 * gap));
+  const BouncingContacts bouncing(world_.getDispatcher(), static_cast<btScalar>(2 * gap), energy_);
   if (from == 0 && step >= frame_ && !driven_) {
     if (last_cut_) scale_warm_starts(step);
     WorldStep::move(world_, h);

@@ -11,12 +11,15 @@
 ///   - pairs that bounce and are farther apart than that do not brake each other: Bullet would let them come as near as
 ///     their gap in this part, and take the speed that is left over without giving it back;
 ///   - warm starts are scaled to h, and never above the force that the pair carried before the frame was cut: an
-///     impact's impulse is no force to start the next part with.
+///     impact's impulse is no force to start the next part with;
+///   - impacts whose restitution would add energy have less of it (`impact_energy.hpp`).
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <vector>
+
+#include "impact_energy.hpp"
 
 namespace pd::detail {
 
@@ -29,6 +32,10 @@ class SubStepper {
   /// Moves from `from` to `from + step` seconds of the frame: Bullet's own step where that is all of it, no kinematic
   /// body moves and the last frame was not cut.
   void move(double from, double step, double gap);
+  /// A part begins, of which all moves are trials.
+  void begin_part();
+  /// Whether impacts of the last move added energy by their restitution; they have less of it in the part's next moves.
+  bool lessen_restitution(double step);
   /// The state that `move` left is kept: its impulses are of a step of that length, and forces begin anew.
   void accept(double from, double step);
   /// After the frame's last part.
@@ -53,6 +60,7 @@ class SubStepper {
     btScalar force;
   };
 
+  void move_bodies(double from, double step, double gap);
   void scale_warm_starts(double step);
   void note_pair_forces();
   [[nodiscard]] btScalar pair_force(const btPersistentManifold& manifold) const;
@@ -67,6 +75,7 @@ class SubStepper {
   std::vector<Forces> forces_;
   std::vector<Kinematic> kinematics_;
   std::vector<PairForce> pair_forces_;  ///< of the last frame that was not cut, sorted
+  ImpactEnergy energy_;
 };
 
 /// Bullet has no setter for the accumulated force, only additions that it multiplies by the body's factors.

@@ -85,8 +85,10 @@ class RollbackStepper {
   ///
   /// Pairs that are in contact (nearer than twice the gap) when a part of the step begins are Bullet's, up to
   /// `contact_slop`. Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken
-  /// per unit of time (`src/substep.hpp`). Time: Bullet's own for each simulation step; a snapshot a part; a collision
-  /// query or more for each pair whose swept boxes meet and that moves by more than the slop.
+  /// per unit of time (`src/substep.hpp`), and where friction with restitution would add energy, as Bullet's law of
+  /// impact allows, the impact has so much less restitution that it does not (`src/impact_energy.hpp`). Time: Bullet's
+  /// own for each simulation step; a snapshot a part; a collision query or more for each pair whose swept boxes meet
+  /// and that moves by more than the slop.
   RollbackReport step(btScalar step);
 
   /// As `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most `max_steps`, and
