@@ -9,6 +9,7 @@
 #include "numeric/double_double.hpp"
 #include "numeric/dyadic.hpp"
 #include "numeric/root_sum.hpp"
+#include "numeric/unrounded.hpp"
 
 namespace {
 
@@ -43,6 +44,44 @@ TEST(Dyadic, SumsAndProductsAreExactAtEveryScale) {
     EXPECT_EQ(value.sign(), expected.sign());
     EXPECT_EQ((value + Dyadic(c) - Dyadic(a) * Dyadic(b)).sign(), 0);
   }
+}
+
+TEST(Dyadic, SumsAreExactAcrossTheLengthOfALimb) {
+  using Integer = Dyadic::Integer;
+  const Integer most = (Integer(1) << 64) - 1;
+  for (const Integer& m : {most, Integer(-most), Integer(1), Integer(-3)}) {
+    for (unsigned shift = 0; shift <= 80; ++shift) {
+      const Dyadic high = Dyadic::from_integer(m, static_cast<int>(shift) - 7), low = Dyadic::from_integer(most, -7);
+      const auto expect = [&](const Dyadic& value, const Integer& whole) {
+        EXPECT_EQ((value - Dyadic::from_integer(whole, -7)).sign(), 0) << m << " << " << shift;
+        EXPECT_EQ(value.sign(), whole.sign());
+      };
+      expect(high + low, Integer((m << shift) + most));
+      expect(low + high, Integer((m << shift) + most));
+      expect(high - low, Integer((m << shift) - most));
+      expect(low - high, Integer(most - (m << shift)));
+    }
+  }
+}
+
+TEST(UnroundedSum, KnowsWhetherAStepRounds) {
+  const auto exact = [](const auto& steps) {
+    pd::detail::UnroundedSum sum;
+    steps(sum);
+    return sum.exact();
+  };
+  pd::detail::UnroundedSum whole;
+  whole.add_product(3, 0.125);
+  whole.add_product(-1, 0.25);
+  whole.add(0.25);
+  whole.add_product(0, 1e300);
+  EXPECT_TRUE(whole.exact());
+  EXPECT_EQ(whole.value(), 0.375);
+  EXPECT_FALSE(exact([](auto& s) { s.add(1), s.add(0x1p-60), s.add(-1); }));
+  EXPECT_FALSE(exact([](auto& s) { s.add_product(0.1, 0.1); }));
+  EXPECT_FALSE(exact([](auto& s) { s.add_product(0x1p-500, 0x1p-500); }));  // the error of such a product may be lost
+  EXPECT_FALSE(exact([](auto& s) { s.add_product(0x1p600, 0x1p600); }));
+  EXPECT_FALSE(exact([](auto& s) { s.add(0x1p1023), s.add(0x1p1023); }));
 }
 
 TEST(Dyadic, RoundsDownAndUpToNeighbours) {

@@ -9,6 +9,7 @@
 namespace {
 
 using pd::ConvexPolytope;
+using pd::Mat3;
 using pd::Pose;
 using pd::Vec3;
 using pd::detail::Dyadic;
@@ -88,6 +89,51 @@ TEST(PosedPair, EveryStageAgreesWithTheExactOne) {
   expect_exact_signs(PosedPair(a, identity, b, turned), 400);
   expect_exact_signs(PosedPair(a, generic, b, generic), 400);
   expect_exact_signs(PosedPair(a, generic, b, turned), 400);
+}
+
+/// The vector by big numbers alone. Requires rotations whose matrix of doubles is exact.
+Dyadic3 by_hand(const PosedPair& pair, const PairVector& v) {
+  const auto rotated = [](const ConvexPolytope& body, const Pose& pose, int to, int from) {
+    const Vec3 zero = Vec3::Zero();
+    const Dyadic3 d = pd::detail::to_dyadic(to >= 0 ? body.vertex(to) : zero) -
+                      pd::detail::to_dyadic(from >= 0 ? body.vertex(from) : zero);
+    const auto row = [&](int i) { return dot(pd::detail::to_dyadic(Vec3(pose.rotation().row(i))), d); };
+    return Dyadic3{row(0), row(1), row(2)};
+  };
+  Dyadic3 r = rotated(pair.b(), pair.pose_b(), v.b_to, v.b_from) - rotated(pair.a(), pair.pose_a(), v.a_to, v.a_from);
+  if (v.translated) {
+    r = r + (pd::detail::to_dyadic(pair.pose_b().translation()) - pd::detail::to_dyadic(pair.pose_a().translation()));
+  }
+  return r;
+}
+
+TEST(PosedPair, NumbersThatDoNotRoundGiveTheSameSigns) {
+  const ConvexPolytope whole = box(1, 2, 0.5), tenths = box(0.1, 0.7, 1.3);
+  const Mat3 cycle{{0, 1, 0}, {0, 0, -1}, {-1, 0, 0}};
+  const Mat3 thirds{{1.0 / 3, 2.0 / 3, 2.0 / 3}, {-2.0 / 3, 2.0 / 3, -1.0 / 3}, {-2.0 / 3, -1.0 / 3, 2.0 / 3}};
+  const auto matrix = [](const Mat3& m, const Vec3& t) { return Pose::from_trusted_matrix(m, t); };
+  const Pose poses[] = {Pose(), quaternion(0, 1, 0, 0, Vec3(0.25, 0.5, -1)), matrix(cycle, Vec3(-2, 0.125, 1)),
+                        matrix(Mat3::Identity(), Vec3(1e-30, 0.1, 3)), matrix(thirds, Vec3(1, 2, 3))};
+  std::int64_t exact = 0;
+  for (const Pose& pose_a : poses) {
+    for (const Pose& pose_b : poses) {
+      for (const ConvexPolytope* const b : {&whole, &tenths}) {
+        const PosedPair pair(whole, pose_a, *b, pose_b);
+        std::mt19937_64 bits(11);
+        for (int i = 0; i < 60; ++i) {
+          const PairVector u = any_vector(bits), v = any_vector(bits), w = any_vector(bits);
+          const Dyadic3 x = by_hand(pair, u), y = by_hand(pair, v), z = by_hand(pair, w);
+          EXPECT_EQ(pair.sign_determinant(u, v, w), determinant(x, y, z).sign());
+          const Dyadic3 c = cross(x, y);
+          EXPECT_EQ(pair.parallel(u, v), c.x.sign() == 0 && c.y.sign() == 0 && c.z.sign() == 0);
+          const Dyadic3 gap = pair.exact(u) - x * pair.homogeneous_factor();
+          EXPECT_TRUE(gap.x.sign() == 0 && gap.y.sign() == 0 && gap.z.sign() == 0);
+        }
+        exact += pair.stages().exact;
+      }
+    }
+  }
+  EXPECT_GT(exact, 1000);
 }
 
 TEST(PosedPair, NoScaleOverflowsOrUnderflows) {

@@ -4,6 +4,19 @@
 
 namespace pd::detail {
 
+namespace {
+
+static_assert(sizeof(boost::multiprecision::limb_type) == sizeof(std::uint64_t));
+__extension__ typedef __int128 Wide;
+
+/// A mantissa of one limb, times a small power of two.
+Wide widened(const Dyadic::Integer& x, int shift) {
+  const Wide magnitude = static_cast<Wide>(x.backend().limbs()[0]) << shift;
+  return x.backend().sign() ? -magnitude : magnitude;
+}
+
+}  // namespace
+
 Dyadic Dyadic::sum(const Dyadic& a, const Dyadic& b, bool subtract) {
   if (b.sign() == 0) return a;
   if (a.sign() == 0) return subtract ? -b : b;
@@ -11,6 +24,16 @@ Dyadic Dyadic::sum(const Dyadic& a, const Dyadic& b, bool subtract) {
   r.exponent_ = std::min(a.exponent_, b.exponent_);
   const Integer& x = a.mantissa_;
   const Integer& y = b.mantissa_;
+  // 64 bits, shifted by less than 62, and a carry: 127 bits at most.
+  constexpr int kMostShift = 61;
+  if (x.backend().size() == 1 && y.backend().size() == 1 && a.exponent_ - r.exponent_ <= kMostShift &&
+      b.exponent_ - r.exponent_ <= kMostShift) {
+    const Wide left = widened(x, a.exponent_ - r.exponent_);
+    const Wide right = widened(y, b.exponent_ - r.exponent_);
+    r.mantissa_ = subtract ? left - right : left + right;
+    if (r.mantissa_.is_zero()) r.exponent_ = 0;
+    return r;
+  }
   if (a.exponent_ == r.exponent_) {
     const Integer shifted = y << static_cast<unsigned>(b.exponent_ - r.exponent_);
     r.mantissa_ = subtract ? Integer(x - shifted) : Integer(x + shifted);

@@ -31,7 +31,7 @@ class Dyadic {
     // An odd mantissa: boxes and grids have short numbers, and products of short numbers are short.
     const auto whole = static_cast<std::int64_t>(fraction * 0x1p53);
     const int zeros = std::countr_zero(static_cast<std::uint64_t>(whole));
-    mantissa_ = whole / (std::int64_t{1} << zeros);
+    mantissa_ = whole >> zeros;
     exponent_ = exponent - 53 + zeros;
   }
 

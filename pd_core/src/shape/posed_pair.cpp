@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "numeric/unit_roundoff.hpp"
+#include "numeric/unrounded.hpp"
+#include "pd/numeric/predicates.hpp"
 
 namespace pd::detail {
 
@@ -57,6 +59,7 @@ double reach(const ConvexPolytope& polytope, const DoubleDouble (&rotation)[9], 
 
 /// R (scale (to - from)) in doubles; an absent index stands for the local origin.
 Vec3 rotate(const ConvexPolytope& p, const double (&r)[9], double scale, int to, int from) {
+  if (to < 0 && from < 0) return Vec3::Zero();
   double v[3] = {0, 0, 0};
   if (to >= 0) {
     v[0] = p.x()[to];
@@ -74,6 +77,7 @@ Vec3 rotate(const ConvexPolytope& p, const double (&r)[9], double scale, int to,
 }
 
 Vec3DD rotate(const ConvexPolytope& p, const DoubleDouble (&r)[9], double scale, int to, int from) {
+  if (to < 0 && from < 0) return {};
   const double* const coordinates[3] = {p.x(), p.y(), p.z()};
   DoubleDouble v[3];
   for (int i = 0; i < 3; ++i) {
@@ -85,7 +89,38 @@ Vec3DD rotate(const ConvexPolytope& p, const DoubleDouble (&r)[9], double scale,
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
+/// Whether R is `rotation`, hi parts alone, exactly: a matrix, or a quaternion of one component, whose rotation is a
+/// turn by 0 or a half about an axis.
+bool stored_in_doubles(const Pose& pose, const DoubleDouble (&rotation)[9]) {
+  if (!pose.is_quaternion()) return true;
+  const std::array<double, 4>& q = pose.quaternion_wxyz();
+  const auto entry = [](const DoubleDouble& r) { return r.lo == 0 && (r.hi == 0 || std::abs(r.hi) == 1); };
+  return std::count(q.begin(), q.end(), 0.0) == 3 && std::all_of(std::begin(rotation), std::end(rotation), entry);
+}
+
+bool equal_rotations(const Pose& a, const Pose& b) {
+  if (a.is_quaternion() != b.is_quaternion()) return false;
+  return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
+}
+
+/// Adds sign R (to - from), or sign (to - from) without a rotation. Each coordinate of the difference must be exact.
+bool add_rotated(const ConvexPolytope& p, const double* r, double sign, int to, int from, UnroundedSum (&sums)[3]) {
+  if (to < 0 && from < 0) return true;
+  const double* const coordinates[3] = {p.x(), p.y(), p.z()};
+  for (int j = 0; j < 3; ++j) {
+    const DoubleDouble d = two_sum(to >= 0 ? coordinates[j][to] : 0, from >= 0 ? -coordinates[j][from] : 0);
+    if (d.lo != 0) return false;
+    if (r == nullptr) {
+      sums[j].add(sign * d.hi);
+    } else {
+      for (int i = 0; i < 3; ++i) sums[i].add_product(r[3 * i + j], sign * d.hi);
+    }
+  }
+  return true;
+}
+
 Dyadic3 rotate(const ConvexPolytope& p, const Dyadic (&r)[9], int to, int from) {
+  if (to < 0 && from < 0) return {};
   const Vec3 zero = Vec3::Zero();
   const Dyadic3 v = to_dyadic(to >= 0 ? p.vertex(to) : zero) - to_dyadic(from >= 0 ? p.vertex(from) : zero);
   return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
@@ -121,6 +156,10 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   }
   offset_ = Vec3(offset_scaled[0], offset_scaled[1], offset_scaled[2]);
   offset_dd_ = {offset_exact[0], offset_exact[1], offset_exact[2]};
+  same_rotation_ = equal_rotations(pose_a, pose_b);
+  doubles_rotate_ = scale_exponent_ == 0 && origin.isZero(0) && stored_in_doubles(pose_a, body_a_.rotation_dd) &&
+                    stored_in_doubles(pose_b, body_b_.rotation_dd) && offset_exact[0].lo == 0 &&
+                    offset_exact[1].lo == 0 && offset_exact[2].lo == 0;
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
@@ -173,8 +212,44 @@ const Dyadic& PosedPair::homogeneous_factor() const {
   return homogeneous_factor_;
 }
 
+bool PosedPair::unrounded(const PairVector& v, bool rotated, Vec3& out) const {
+  UnroundedSum sums[3];
+  if (!add_rotated(*b_, rotated ? body_b_.rotation : nullptr, 1, v.b_to, v.b_from, sums) ||
+      !add_rotated(*a_, rotated ? body_a_.rotation : nullptr, -1, v.a_to, v.a_from, sums)) {
+    return false;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (v.translated) sums[i].add(offset_[i]);
+    if (!sums[i].exact()) return false;
+    out[i] = sums[i].value();
+  }
+  return true;
+}
+
+template <int N>
+bool PosedPair::unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N]) const {
+  // Signs of products of vectors that turn together do not see the turn.
+  bool shifted = false, of_a = false, of_b = false;
+  for (const PairVector* const v : vectors) {
+    shifted = shifted || v->translated;
+    of_a = of_a || v->a_to >= 0 || v->a_from >= 0;
+    of_b = of_b || v->b_to >= 0 || v->b_from >= 0;
+  }
+  const bool one_frame = !shifted && (same_rotation_ || !of_a || !of_b);
+  if (!one_frame && !doubles_rotate_) return false;
+  for (int i = 0; i < N; ++i) {
+    if (!unrounded(*vectors[i], !one_frame, out[i])) return false;
+  }
+  return true;
+}
+
 Dyadic3 PosedPair::exact(const PairVector& v) const {
   prepare_exact();
+  Vec3 whole;
+  if (doubles_rotate_ && unrounded(v, true, whole)) {
+    const Dyadic3 x = to_dyadic(whole);
+    return pose_a_->is_quaternion() || pose_b_->is_quaternion() ? x * homogeneous_factor_ : x;
+  }
   Dyadic3 r =
       rotate(*b_, body_b_.rotation_exact, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation_exact, v.a_to, v.a_from);
   if (v.translated) r = r + offset_exact_;
@@ -210,6 +285,11 @@ int PosedPair::sign_determinant(const PairVector& u, const PairVector& v, const 
       ++stages_.filtered;
       return sign(value);
     }
+  }
+  Vec3 whole[3];
+  if (unrounded<3>({&u, &v, &w}, whole) && orient3d(Vec3::Zero(), whole[1], whole[2], whole[0]) == 0) {
+    ++stages_.exact;  // double-double could not have told
+    return 0;
   }
   {
     const Vec3DD x = approximate_dd(u), y = approximate_dd(v), z = approximate_dd(w);
@@ -259,6 +339,8 @@ bool PosedPair::parallel(const PairVector& u, const PairVector& v) const {
     return false;
   }
   ++stages_.exact;
+  Vec3 whole[2];
+  if (unrounded<2>({&u, &v}, whole)) return collinear(Vec3::Zero(), whole[0], whole[1]);
   const Dyadic3 e = cross(exact(u), exact(v));
   return e.x.sign() == 0 && e.y.sign() == 0 && e.z.sign() == 0;
 }

@@ -5,6 +5,7 @@
 /// Every such vector is R_B (b_to - b_from) - R_A (a_to - a_from), or for points of P with t_B - t_A added. Its stages:
 /// 1. doubles with an error bound, 2. double-double with an error bound, 3. dyadic numbers on the stored input (a
 /// quaternion's rotation is homogeneous: all vectors of a pair are multiplied by the same positive |q_A|^2 |q_B|^2).
+/// Where no step of a vector rounds, in the bodies' own frame if that is one and the same, doubles serve as stage 3.
 ///
 /// Inside, lengths are scaled by a power of two so that the largest coordinate of P is about 1: no stage over- or
 /// underflows, and every decision obeys the law of powers of two. `scale_exponent` turns results back.
@@ -94,6 +95,11 @@ class PosedPair {
     bool exact_ready = false;
   };
   void prepare_exact() const;
+  /// R^-1 times the vectors, for one rotation R of all of them (the identity in the common frame), where no step
+  /// rounds.
+  template <int N>
+  [[nodiscard]] bool unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N]) const;
+  [[nodiscard]] bool unrounded(const PairVector& v, bool rotated, Vec3& out) const;
 
   const ConvexPolytope* a_;
   const ConvexPolytope* b_;
@@ -109,6 +115,8 @@ class PosedPair {
   Vec3 origin_;
   Vec3 offset_;  ///< (t_B - t_A - origin) scaled, rounded
   Vec3DD offset_dd_;
+  bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
+  bool same_rotation_ = false;   ///< of A and B, exactly
   mutable Dyadic3 offset_exact_;
   mutable StageCounts stages_;
   mutable std::int64_t exact_work_ = 0;

@@ -5,6 +5,7 @@
 ///
 /// Instruction counts repeat where times do not, so that a slower hot path is seen in review.
 
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 
@@ -36,6 +37,21 @@ constexpr FixedCase kCases[] = {
     {"sphere_128_deep", PairFamily::sphere, 128, DepthClass::deep, 0},
     {"sphere_2048_shallow", PairFamily::sphere, 2048, DepthClass::shallow, 0},
     {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, 0.01},
+};
+
+/// Cold, in the tightest bracket.
+struct FixedTightest {
+  const char* name;
+  PairFamily family;
+  int vertices;
+  DepthClass depth;
+  std::uint64_t seed;
+};
+constexpr FixedTightest kTightest[] = {
+    {"tightest_sphere_8", PairFamily::sphere, 8, DepthClass::shallow, 1},
+    {"tightest_cubes_deep", PairFamily::cubes, 8, DepthClass::deep, 1},    // facets tied exactly
+    {"tightest_grid_128", PairFamily::grid, 128, DepthClass::mid, 1},      // edges in the facet's plane
+    {"tightest_no_translation", PairFamily::box, 8, DepthClass::mid, 33},  // none as short as the depth rounded up
 };
 
 /// Bodies at rest, warm, for contacts.
@@ -118,6 +134,19 @@ int main(int argc, char** argv) {
                 static_cast<long long>(answer.statistics.exact_signs));
     return 0;
   }
+  for (const FixedTightest& c : kTightest) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::scenes::PointPair pair = pd::scenes::make_pair(c.family, c.vertices, c.depth, c.seed);
+    const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
+    const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
+    const pd::PosedShape posed_a{&a, pair.pose_a}, posed_b{&b, pair.pose_b};
+    const pd::DepthSettings settings;
+    pd::Scratch scratch;
+    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, settings);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &settings);
+    std::printf("%s: depth in [%.17g, %.17g]\n", c.name, answer.lower, answer.upper);
+    return 0;
+  }
   for (const FixedRest& c : kRests) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     const pd::bench::RestingCase rest(c.body, c.ground, c.width, 8);
@@ -167,6 +196,7 @@ int main(int argc, char** argv) {
   }
   std::fprintf(stderr, "fixed_cases NAME, one of:");
   for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
+  for (const FixedTightest& c : kTightest) std::fprintf(stderr, " %s", c.name);
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
   for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "numeric/expansion.hpp"
+#include "numeric/instruction_sets.hpp"
 #include "numeric/root_sum.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "shape/support/polytope_support.hpp"
@@ -40,6 +42,52 @@ bool no_longer_than(const Vec3& t, double length) {
   return (Dyadic(length) * Dyadic(length) - dot(exact, exact)).sign() >= 0;
 }
 
+constexpr int kMostSteps = 64;  ///< of a coordinate, either way
+constexpr int kWidth = 4;
+constexpr int kRowLanes = (2 * kMostSteps + 1 + kWidth - 1) / kWidth * kWidth;
+
+/// Candidates that differ in one coordinate only, by -inner .. inner ulps, before another is solved for.
+struct RowOfCandidates {
+  double excess = 0;      ///< how far beyond the plane the middle one lies, the solved coordinate unchanged
+  double base = 0;        ///< its coordinate,
+  double ulp = 0;         ///< the steps of that,
+  double component = 0;   ///< and the normal's
+  double rise = 0;        ///< how far a step of the solved coordinate leads beyond the plane
+  double most_steps = 0;  ///< of the solved coordinate within its leeway
+  double height = 0;      ///< of the cap
+  double doubt = 0;       ///< nearer than this to the plane `reached` must be asked
+  int inner = 0;
+};
+
+/// Where `solve` may succeed: not 0 in the lane of such a candidate. A candidate lands on the first multiple of `rise`
+/// beyond the plane, which may be too far out, or not beyond it at all where the solved coordinate would leave its
+/// leeway; whatever rounding leaves open may succeed. Nearly all candidates of a search that finds none end here.
+/// @return whether any lane is not 0.
+PD_CLONES bool hopeful_candidates(const RowOfCandidates& row, std::int64_t (&hopeful)[kRowLanes]) {
+  typedef double Lanes __attribute__((vector_size(8 * kWidth)));
+  typedef std::int64_t Mask __attribute__((vector_size(8 * kWidth)));
+  const auto magnitude = [](const Lanes& x) __attribute__((always_inline)) { return x < 0.0 ? -x : x; };
+  Mask any = {0, 0, 0, 0};
+  Lanes j = Lanes{0, 1, 2, 3} - static_cast<double>(row.inner);
+  for (int i = 0; i <= 2 * row.inner; i += kWidth, j += static_cast<double>(kWidth)) {
+    const Lanes aside = row.component * ((row.base + j * row.ulp) - row.base);
+    const Lanes excess = row.excess + aside;
+    const Lanes error = 0x1p-49 * (std::abs(row.excess) + magnitude(aside)) + 0x1p-96;
+    const Lanes room = 1.001 * row.height + 2.0 * error;
+    const Lanes steps = -excess / row.rise;
+    const Lanes count = magnitude(steps);
+    const Lanes fraction = steps - ((steps + 0x1.8p52) - 0x1.8p52);  // from the nearest whole number
+    const Lanes landed = (fraction > 0.0 ? 1.0 - fraction : -fraction) * row.rise;
+    const Mask held =
+        (count > row.most_steps + 2) & ((excess > room) | (excess + 3.0 * row.rise < -(error + row.doubt)));
+    const Mask free = (count < row.most_steps - 2) & (landed > room) & (landed < row.rise - 2.0 * error);
+    const Mask open = ~((count < 0x1p50) & (held | free));
+    __builtin_memcpy(hopeful + i, &open, sizeof(open));
+    any |= open;
+  }
+  return (any[0] | any[1] | any[2] | any[3]) != 0;
+}
+
 /// The search for one `upper`. The cap between plane and sphere is less than an ulp high but about 1e8 ulps wide, so it
 /// holds many triples: two coordinates walk near the exact translation, the third (the one with the finest ulps) is
 /// solved for. Candidates are sifted in double-double before they are proved.
@@ -57,6 +105,7 @@ class TranslationSearch {
     const double room = to_double(DoubleDouble{upper_, 0} - depth_);
     const double slack = std::ldexp(separation.slack(depth), -exponent_);
     if (slack < 0.25 * room) depth_ = depth_ + DoubleDouble{slack, 0};
+    slack_ = slack;
     const Vec3DD& unit = separation.unit();
     components_[0] = unit.x;
     components_[1] = unit.y;
@@ -89,10 +138,17 @@ class TranslationSearch {
     if (live == 1) return false;
     // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.
     if (!(height_ > 0)) return false;
+    return walk(order, live);
+  }
+
+ private:
+  /// Steps of the coordinates that are not solved for, from the exact translation's.
+  bool walk(const int (&order)[3], int live) {
     const int first = order[0];
     const int second = order[1];
     const int steps = reach(first);
     const int inner = live == 3 ? reach(second) : 0;
+    if (live == 3) prepare_rows(second, inner);
     // What the other coordinates can make up for once the first is chosen.
     double range = height_;
     for (int i = 1; i < live; ++i) range += 1.01 * std::abs(components_[order[i]].hi) * (leeway_ + ulp(order[i]));
@@ -101,19 +157,43 @@ class TranslationSearch {
       t[first] += i * ulp(first);
       DoubleDouble rest = depth_;
       for (int k = 0; k < 3; ++k) rest = rest - components_[k] * t[k];
-      if (std::abs(to_double(rest)) > range) continue;
+      const double excess = -to_double(rest);
+      if (std::abs(excess) > range) continue;
+      if (live < 3) {
+        if (solve(t)) return true;
+        continue;
+      }
+      row_.excess = excess;
+      if (row_.rise > 0 && !hopeful_candidates(row_, hopeful_)) continue;
       for (int j = -inner; j <= inner; ++j) {
         Vec3 candidate = t;
-        if (live == 3) candidate[second] += j * ulp(second);
-        if (solve(candidate)) return true;
+        candidate[second] += j * ulp(second);
+        if ((row_.rise > 0 && hopeful_[j + inner] == 0) || !solve(candidate)) continue;
+        return true;
       }
     }
     return false;
   }
 
- private:
+  /// What all rows of `hopeful_candidates` share. No rise where the steps of the solved coordinate are not all alike.
+  void prepare_rows(int second, int inner) {
+    const double size = std::abs(base_[solved_]);
+    const double step = ulp(solved_);
+    const double margin = leeway_ + 4 * step;
+    const double binade = std::ldexp(1.0, std::ilogb(size));
+    const bool alike = size - margin > binade && size + margin < 2 * binade;
+    row_.rise = alike ? std::abs(components_[solved_].hi) * step : 0;
+    row_.base = base_[second];
+    row_.ulp = ulp(second);
+    row_.component = components_[second].hi;
+    row_.inner = inner;
+    row_.most_steps = leeway_ / step;
+    row_.height = height_;
+    row_.doubt = (2 * slack_ + 0x1p-90) * (1 + base_.cwiseAbs().sum() + 3 * kMostSteps * leeway_);
+  }
+
   [[nodiscard]] double ulp(int i) const { return std::nextafter(std::abs(base_[i]), HUGE_VAL) - std::abs(base_[i]); }
-  [[nodiscard]] int reach(int i) const { return std::clamp(static_cast<int>(leeway_ / ulp(i)), 4, 64); }
+  [[nodiscard]] int reach(int i) const { return std::clamp(static_cast<int>(leeway_ / ulp(i)), 4, kMostSteps); }
 
   bool accept(const Vec3& candidate) {
     const Vec3 t(std::ldexp(candidate.x(), exponent_), std::ldexp(candidate.y(), exponent_),
@@ -156,7 +236,10 @@ class TranslationSearch {
   DoubleDouble components_[3];
   Vec3 base_;
   double height_;
+  double slack_;  ///< of the plane (Separation::slack)
   double leeway_ = 0;
+  RowOfCandidates row_;
+  std::int64_t hopeful_[kRowLanes];
   int solved_ = 0;
   Vec3 translation_ = Vec3::Zero();
 };

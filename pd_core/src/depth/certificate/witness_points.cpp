@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "depth/distance/gjk.hpp"
 
@@ -23,17 +24,47 @@ Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& f
           coordinate(translation.z(), first.z, rest.z())};
 }
 
-Vec3 point_of_a(const PosedPair& pair, const VertexPair* ids, const double* weights, int count) {
+/// -R_A v.
+Vec3DD negated_vertex_a(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd({v, -1, -1, -1, false}); }
+/// R_B v.
+Vec3DD vertex_b(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd({-1, -1, v, -1, false}); }
+
+/// The last few rotated vertices of a body: a search comes back to them, and each takes nine products.
+class RecentVertices {
+ public:
+  explicit RecentVertices(const PosedPair& pair, Vec3DD (*rotated)(const PosedPair&, std::int32_t))
+      : pair_(pair), rotated_(rotated) {}
+
+  const Vec3DD& operator()(std::int32_t v) {
+    for (int i = 0; i < kMost; ++i) {
+      if (ids_[i] == v) return points_[i];
+    }
+    const int i = next_;
+    next_ = (next_ + 1) % kMost;
+    ids_[i] = v;
+    return points_[i] = rotated_(pair_, v);
+  }
+
+ private:
+  static constexpr int kMost = 4;
+
+  const PosedPair& pair_;
+  Vec3DD (*rotated_)(const PosedPair&, std::int32_t);
+  std::int32_t ids_[kMost] = {-1, -1, -1, -1};
+  Vec3DD points_[kMost];
+  int next_ = 0;
+};
+
+Vec3 point_of_a(const PosedPair& pair, const VertexPair* ids, const double* weights, int count, const Vec3DD& negated) {
   Vec3 rest = Vec3::Zero();
   for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_a(ids[0].a, ids[i].a));
-  const Vec3DD negated = pair.approximate_dd({ids[0].a, -1, -1, -1, false});
   return world_point(pair, pair.pose_a().translation(), {-negated.x, -negated.y, -negated.z}, rest);
 }
 
 Vec3 point_of_b(const PosedPair& pair, const VertexPair* ids, const double* weights, int count) {
   Vec3 rest = Vec3::Zero();
   for (int i = 1; i < count; ++i) rest += weights[i] * pair.approximate(PairVector::edge_b(ids[0].b, ids[i].b));
-  return world_point(pair, pair.pose_b().translation(), pair.approximate_dd({-1, -1, ids[0].b, -1, false}), rest);
+  return world_point(pair, pair.pose_b().translation(), vertex_b(pair, ids[0].b), rest);
 }
 
 }  // namespace
@@ -47,15 +78,24 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
   const SupportFace& on_a = faces.on_a;
   const SupportFace& on_b = faces.on_b;
   const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
+  RecentVertices negated_a(pair, negated_vertex_a), of_b(pair, vertex_b);
+  const Vec3DD offset = pair.approximate_dd({-1, -1, -1, -1, true});
   const auto difference = [&](std::int32_t a, std::int32_t b) {
-    const Vec3DD p = pair.approximate_dd(PairVector::point(a, b));  // local coordinates may be large and cancel
+    const Vec3DD p = of_b(b) + negated_a(a) + offset;  // local coordinates may be large and cancel
     const Vec3 x = high(p - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
     return DifferenceVertex{x - x.dot(unit) * unit, a, b};
   };
   const auto extreme = [&](const SupportFace& face, const Vec3& direction, const auto& value) {
-    return *std::max_element(face.begin(), face.end(), [&](std::int32_t v, std::int32_t w) {
-      return value(v).dot(direction) < value(w).dot(direction);
-    });
+    std::int32_t farthest = face.front();
+    if (face.size() == 1) return farthest;
+    double most = value(farthest).dot(direction);
+    for (const std::int32_t v : std::span(face).subspan(1)) {
+      const double height = value(v).dot(direction);
+      if (!(most < height)) continue;
+      most = height;
+      farthest = v;
+    }
+    return farthest;
   };
   const auto edge_b = [&](std::int32_t v) { return pair.approximate(PairVector::edge_b(on_b.front(), v)); };
   const auto edge_a = [&](std::int32_t v) { return Vec3(-pair.approximate(PairVector::edge_a(on_a.front(), v))); };
@@ -79,13 +119,14 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
   }
   VertexPair ids[3];
   for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
-  const Vec3 a = point_of_a(pair, ids, weights, count);
+  const Vec3 a = point_of_a(pair, ids, weights, count, negated_a(ids[0].a));
   return {a, a + translation};
 }
 
 CorePoints witness_points_separated(const PosedPair& pair, const VertexPair* simplex, const double* weights,
                                     int count) {
-  return {point_of_a(pair, simplex, weights, count), point_of_b(pair, simplex, weights, count)};
+  return {point_of_a(pair, simplex, weights, count, negated_vertex_a(pair, simplex[0].a)),
+          point_of_b(pair, simplex, weights, count)};
 }
 
 }  // namespace pd::detail
