@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "numeric/double_double.hpp"
@@ -21,8 +23,14 @@ constexpr double kSmallestProduct = 0x1p-900;
 /// The power of two that brings the largest coordinate of v into [1/2, 1), as near as doubles allow. Normals then have
 /// the same bits at every magnitude, and nothing that matters under- or overflows.
 double unit_scale(const Vec3& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (largest >= 0x1p-900 && largest <= 0x1p900) {
+    // 2^(e - 1) <= largest < 2^e: its biased exponent b is e + 1022, that of 2^-e is 1023 - e = 2045 - b.
+    const std::uint64_t biased = std::bit_cast<std::uint64_t>(largest) >> 52;
+    return std::bit_cast<double>((2045 - biased) << 52);
+  }
   int exponent = 0;
-  std::frexp(v.cwiseAbs().maxCoeff(), &exponent);
+  std::frexp(largest, &exponent);
   return std::ldexp(1.0, -std::max(exponent, -1000));
 }
 

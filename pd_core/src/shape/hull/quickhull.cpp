@@ -68,6 +68,8 @@ void Quickhull::align_with_axis(HullTriangle& t, int axis) const {
 Quickhull::Quickhull(HullPoints& points, const AffineFrame& frame) : points_(points) {
   auto [a, b, c, d] = frame.points;
   if (points.orient3d(a, b, c, d) > 0) std::swap(b, c);  // d below (a, b, c)
+  // A hull of n vertices has 2n - 4 triangles; few points more than that are ever seen where all of many are vertices.
+  triangles_.reserve(std::min(2 * static_cast<std::size_t>(points.size()), kFrontierSize) + 4);
   triangles_ = {make_triangle(a, b, c), make_triangle(a, d, b), make_triangle(b, d, c), make_triangle(c, d, a)};
   constexpr std::int32_t neighbours[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
   for (int t = 0; t < 4; ++t) {

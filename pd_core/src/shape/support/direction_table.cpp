@@ -1,9 +1,11 @@
 #include "shape/support/direction_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "numeric/instruction_sets.hpp"
 #include "shape/support/vertex_arrays.hpp"
 
 namespace pd::detail {
@@ -20,11 +22,67 @@ constexpr std::int32_t kMostCells = 64;
 /// 192 bytes a vertex at most, as much as the rest of a hull takes; round bodies need 110.
 std::size_t most_blocks(const Storage& p) { return 64 + static_cast<std::size_t>(p.num_vertices) * 3 / 2; }
 
+typedef double Lanes __attribute__((vector_size(32)));
+
+/// The corners of a cell, coordinate by coordinate.
+struct Corners {
+  Lanes x, y, z;
+};
+
+struct Rises {
+  bool everywhere;  ///< more than 0 in all four corners
+  bool somewhere;   ///< not less than 0 in one of them
+};
+
+/// How an edge rises in the directions of the corners.
+PD_INLINE Rises rises_of(double x, double y, double z, const Corners& corners) {
+  const Lanes rise = x * corners.x + (y * corners.y + z * corners.z);
+  // The lanes' masks folded in halves: without extracting each of them.
+  const auto up = rise > 0.0, level = rise >= 0.0;
+  const auto up2 = up & __builtin_shufflevector(up, up, 2, 3, 0, 1);
+  const auto level2 = level | __builtin_shufflevector(level, level, 2, 3, 0, 1);
+  return {(up2[0] & up2[1]) != 0, (level2[0] | level2[1]) != 0};
+}
+
+/// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on. `open` and
+/// `list` have room for all vertices. @return how many
+PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, std::int32_t first, std::int32_t cell,
+                                     std::int32_t* seen, std::int32_t* open, std::int32_t* list) {
+  std::int32_t opened = 1, listed = 0;
+  open[0] = first;
+  seen[first] = cell;
+  for (std::int32_t k = 0; k < opened; ++k) {
+    const std::int32_t v = open[k];
+    const double x = p.x[v], y = p.y[v], z = p.z[v];
+    bool beaten = false;
+    for (std::int32_t i = p.neighbour_offsets[v]; i < p.neighbour_offsets[v + 1]; ++i) {
+      const std::int32_t w = p.neighbours[i];
+      if (beaten && seen[w] == cell) continue;  // nothing more to learn
+      const Rises rises = rises_of(p.x[w] - x, p.y[w] - y, p.z[w] - z, corners);
+      beaten |= rises.everywhere;
+      if (!rises.somewhere || seen[w] == cell) continue;
+      seen[w] = cell;
+      open[opened++] = w;
+    }
+    if (!beaten) list[listed++] = v;
+  }
+  return listed;
+}
+
 class TableBuilder {
  public:
   explicit TableBuilder(const Storage& polytope)
-      : p_(polytope), seen_(static_cast<std::size_t>(polytope.num_vertices), -1) {
-    std::frexp(p_.radius, &exponent_);
+      : p_(polytope),
+        seen_(static_cast<std::size_t>(polytope.num_vertices), -1),
+        open_(seen_.size()),
+        list_(seen_.size()),
+        scaled_(seen_.size()) {
+    int exponent = 0;
+    std::frexp(p_.radius, &exponent);
+    const auto scaled = [&](double value) { return static_cast<float>(std::ldexp(value, -exponent)); };
+    for (int v = 0; v < p_.num_vertices; ++v) {
+      scaled_[static_cast<std::size_t>(v)] = {scaled(p_.x[v]), scaled(p_.y[v]), scaled(p_.z[v])};
+    }
   }
 
   /// False when the lists take too much memory.
@@ -42,9 +100,17 @@ class TableBuilder {
       first = climb(direction(side, (row + 0.5) / cells, (column + 0.5) / cells), first);
       const double u[2] = {static_cast<double>(row) / cells, (row + 1.0) / cells};
       const double v[2] = {static_cast<double>(column) / cells, (column + 1.0) / cells};
-      const Vec3 corners[4] = {direction(side, u[0], v[0]), direction(side, u[0], v[1]), direction(side, u[1], v[0]),
-                               direction(side, u[1], v[1])};
-      list_vertices(corners, first, cell);
+      Corners corners;
+      for (int k = 0; k < 4; ++k) {
+        const Vec3 corner = direction(side, u[k / 2], v[k % 2]);
+        corners.x[k] = corner.x();
+        corners.y[k] = corner.y();
+        corners.z[k] = corner.z();
+      }
+      listed_ = list_vertices(p_, corners, first, cell, seen_.data(), open_.data(), list_.data());
+      // Rounding must not leave a cell without any.
+      if (listed_ == 0) list_[static_cast<std::size_t>(listed_++)] = first;
+      std::sort(list_.begin(), list_.begin() + listed_);
       append(cell, table);
       if (table.blocks.size() > most_blocks(p_)) return false;
     }
@@ -53,7 +119,6 @@ class TableBuilder {
 
  private:
   [[nodiscard]] Vec3 vertex(std::int32_t v) const { return {p_.x[v], p_.y[v], p_.z[v]}; }
-  [[nodiscard]] float scaled(double value) const { return static_cast<float>(std::ldexp(value, -exponent_)); }
 
   /// @param u, v  in [0, 1].
   static Vec3 direction(std::int32_t side, double u, double v) {
@@ -79,40 +144,16 @@ class TableBuilder {
     }
   }
 
-  void list_vertices(const Vec3 (&corners)[4], std::int32_t first, std::int32_t cell) {
-    list_.clear();
-    open_.assign(1, first);
-    seen_[static_cast<std::size_t>(first)] = cell;
-    for (std::size_t k = 0; k < open_.size(); ++k) {
-      const std::int32_t v = open_[k];
-      const Vec3 from = vertex(v);
-      bool beaten = false;
-      for (std::int32_t i = p_.neighbour_offsets[v]; i < p_.neighbour_offsets[v + 1]; ++i) {
-        const std::int32_t w = p_.neighbours[i];
-        const Vec3 edge = vertex(w) - from;
-        const double rises[4] = {edge.dot(corners[0]), edge.dot(corners[1]), edge.dot(corners[2]),
-                                 edge.dot(corners[3])};
-        beaten |= (rises[0] > 0) & (rises[1] > 0) & (rises[2] > 0) & (rises[3] > 0);
-        const bool reaches = (rises[0] >= 0) | (rises[1] >= 0) | (rises[2] >= 0) | (rises[3] >= 0);
-        if (!reaches || seen_[static_cast<std::size_t>(w)] == cell) continue;
-        seen_[static_cast<std::size_t>(w)] = cell;
-        open_.push_back(w);
-      }
-      if (!beaten) list_.push_back(v);
-    }
-    // Rounding must not leave a cell without any.
-    if (list_.empty()) list_.push_back(first);
-    std::sort(list_.begin(), list_.end());
-  }
-
   void append(std::int32_t cell, DirectionTable& table) const {
-    for (std::size_t k = 0; k < list_.size(); k += kBlock) {
+    const auto listed = static_cast<std::size_t>(listed_);
+    for (std::size_t k = 0; k < listed; k += kBlock) {
       VertexBlock block;
       for (std::size_t i = 0; i < kBlock; ++i) {
-        const std::int32_t v = k + i < list_.size() ? list_[k + i] : list_[0];
-        block.x[i] = scaled(p_.x[v]);
-        block.y[i] = scaled(p_.y[v]);
-        block.z[i] = scaled(p_.z[v]);
+        const std::int32_t v = k + i < listed ? list_[k + i] : list_[0];
+        const std::array<float, 3>& point = scaled_[static_cast<std::size_t>(v)];
+        block.x[i] = point[0];
+        block.y[i] = point[1];
+        block.z[i] = point[2];
         block.id[i] = v;
       }
       if (k == 0) {
@@ -125,10 +166,11 @@ class TableBuilder {
   }
 
   const Storage& p_;
-  int exponent_ = 0;
   std::vector<std::int32_t> seen_;  ///< the cell in which a vertex was visited last
   std::vector<std::int32_t> open_;
   std::vector<std::int32_t> list_;
+  std::int32_t listed_ = 0;  ///< of list_
+  std::vector<std::array<float, 3>> scaled_;
 };
 
 }  // namespace
