@@ -1,10 +1,10 @@
 /// @file
 /// Queries about several bodies of any dimension, and bodies composed of them: intersection, Minkowski sum, membership.
-#include <array>
-#include <optional>
+#include <vector>
 
 #include "pd/dimension/approximate_intersection.hpp"
 #include "pd/dimension/approximate_minkowski_sum.hpp"
+#include "protocol/composed_body.hpp"
 #include "protocol/dimension_body.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/pair_reader.hpp"
@@ -19,68 +19,6 @@ using dimension::DirectionalWidth;
 using dimension::Representation;
 using dimension::Side;
 using dimension::Vector;
-
-constexpr int kMaxNesting = 8;
-constexpr std::string_view kCompositions[] = {"sum_of", "hull_of", "intersection_of"};
-
-/// The list of a composed body, and which it is; nothing for a body of points or halfspaces.
-struct Composition {
-  int kind;
-  Node parts;
-};
-
-std::optional<Composition> find_composition(const Node& body) {
-  require_object(body);
-  for (int kind = 0; kind < 3; ++kind) {
-    const auto parts = body.find(kCompositions[kind]);
-    if (!parts) continue;
-    allow_only(body, {kCompositions[kind]});
-    require_array(*parts, "a list of bodies");
-    if (parts->size() == 0) parts->refuse("bad_value", "an empty list of bodies; at least one is needed");
-    return Composition{kind, *parts};
-  }
-  return std::nullopt;
-}
-
-int composed_dimension(const Node& body, const Limits& limits, int nesting = 0) {
-  if (nesting > kMaxNesting) body.refuse("limit_exceeded", "bodies nest at most 8 deep");
-  const auto composition = find_composition(body);
-  if (!composition) return read_dimension(body, limits);
-  const Node first = composition->parts.element(0);
-  return composed_dimension(first, limits, nesting + 1);
-}
-
-/// What the structures inside are built with.
-struct Preparation {
-  double epsilon;
-  Backend backend;
-};
-
-template <int D>
-ComposedBody<D> read_composed(const Node& body, const Limits& limits, const Preparation& preparation, int nesting = 0) {
-  if (nesting > kMaxNesting) body.refuse("limit_exceeded", "bodies nest at most 8 deep");
-  const auto composition = find_composition(body);
-  if (!composition) {
-    if (read_dimension(body, limits) != D) {
-      body.refuse("bad_value", "bodies of one query live in one dimension, here " + std::to_string(D));
-    }
-    const auto structure =
-        DirectionalWidth<D>::build(read_dimension_body<D>(body, limits), preparation.epsilon, preparation.backend);
-    if (!structure) body.refuse(structure.error());
-    Expected<ComposedBody<D>> leaf = ComposedBody<D>::of(*structure);
-    if (!leaf) body.refuse(leaf.error());
-    return *std::move(leaf);
-  }
-  std::vector<ComposedBody<D>> parts;
-  for (std::size_t i = 0; i < composition->parts.size(); ++i) {
-    parts.push_back(read_composed<D>(composition->parts.element(i), limits, preparation, nesting + 1));
-  }
-  Expected<ComposedBody<D>> made = composition->kind == 0   ? ComposedBody<D>::sum_of(std::move(parts))
-                                   : composition->kind == 1 ? ComposedBody<D>::hull_of(std::move(parts))
-                                                            : ComposedBody<D>::intersection_of(std::move(parts));
-  if (!made) body.refuse(made.error());
-  return *std::move(made);
-}
 
 /// "a" and "b", which may be a list.
 template <int D>
@@ -157,26 +95,14 @@ void answer_approx_minkowski_sum(const Node& line, Session& session, JsonWriter&
   const double epsilon = read_epsilon(line);
   const Backend backend = read_backend(line);
   const Representation representation = read_representation(line);
-  Side side = Side::outer;
-  if (const auto node = line.find("side")) {
-    const std::string word = read_string(*node);
-    if (word != "inner" && word != "outer") node->refuse("bad_value", "unknown side; known: inner, outer");
-    if (word == "inner") side = Side::inner;
-  }
+  const Side side = read_side(line);
   for_dimension(composed_dimension(line.at("a"), session.limits), [&]<int D>() {
     const Stopwatch watch;
-    // A quarter of epsilon for sums. Hulls ask for more, by the shape of the whole, which is known once it stands, and
-    // intersections by how thin they are.
-    double share = epsilon / 4;
-    Expected<dimension::ApproximateSum<D>> sum = Error{ErrorCode::bad_value, "", ""};
-    for (int attempt = 0; attempt < 4 && !sum; ++attempt, share /= 8) {
+    const auto sum = with_fine_structures(epsilon, [&](double share) {
       const auto whole = ComposedBody<D>::sum_of(read_all<D>(line, session.limits, {share, backend}));
       if (!whole) line.refuse(whole.error());
-      sum = dimension::approximate_minkowski_sum<D>(*whole, epsilon, representation, side);
-      if (!sum && !(sum.error().code == ErrorCode::bad_value && sum.error().where == "epsilon" && epsilon >= 1e-5)) {
-        break;
-      }
-    }
+      return dimension::approximate_minkowski_sum<D>(*whole, epsilon, representation, side);
+    });
     if (!sum) line.refuse(sum.error());
     const std::int64_t nanoseconds = watch.nanoseconds();
     answer.key(representation == Representation::points ? "points" : "halfspaces").begin_array();

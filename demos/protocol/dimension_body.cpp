@@ -159,6 +159,14 @@ dimension::Backend read_backend(const Node& line, std::string_view key) {
   node->refuse("bad_value", "unknown backend; known: exact, kernel, macbeath");
 }
 
+dimension::Side read_side(const Node& line) {
+  const auto node = line.find("side");
+  if (!node) return dimension::Side::outer;
+  const std::string word = read_string(*node);
+  if (word != "inner" && word != "outer") node->refuse("bad_value", "unknown side; known: inner, outer");
+  return word == "inner" ? dimension::Side::inner : dimension::Side::outer;
+}
+
 dimension::Representation read_representation(const Node& line) {
   const Node node = line.at("representation");
   const std::string word = read_string(node);

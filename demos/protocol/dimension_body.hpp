@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pd/dimension/approximate_body.hpp"
 #include "pd/dimension/directional_width.hpp"
 #include "protocol/field_reader.hpp"
 #include "protocol/json_writer.hpp"
@@ -39,6 +40,8 @@ template <int D>
 [[nodiscard]] dimension::Backend read_backend(const Node& line, std::string_view key = "backend");
 /// "representation": points or halfspaces.
 [[nodiscard]] dimension::Representation read_representation(const Node& line);
+/// "side": outer where it is missing.
+[[nodiscard]] dimension::Side read_side(const Node& line);
 
 template <int D>
 void write_row(const dimension::Vector<D>& row, JsonWriter& answer) {

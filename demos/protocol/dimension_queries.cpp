@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "pd/dimension/approximate_body.hpp"
+#include "pd/dimension/approximate_minkowski_sum.hpp"
 #include "pd/dimension/approximate_width.hpp"
 #include "pd/dimension/epsilon_kernel.hpp"
+#include "protocol/composed_body.hpp"
 #include "protocol/dimension_body.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/pair_reader.hpp"
@@ -85,6 +87,39 @@ Expected<dimension::ApproximateWidth<D>> width_of_file(const Node& file, double 
   return width;
 }
 
+/// Of what is composed: the polytope inside it takes this share, what follows the rest.
+constexpr double kComposedShare = 0.7;
+
+template <int D>
+Expected<dimension::ApproximateBody<D>> approximate_composed(const Node& a, const Limits& limits, double epsilon,
+                                                             Backend backend, Representation representation,
+                                                             Side side) {
+  auto made = with_fine_structures(epsilon, [&](double share) {
+    return dimension::approximate_minkowski_sum<D>(read_composed<D>(a, limits, {share, backend}), epsilon,
+                                                   representation, side);
+  });
+  if (!made) return made.error();
+  return (*std::move(made)).body;
+}
+
+/// A polytope inside, every width at least 1 - epsilon of the composed body's.
+template <int D>
+Body<D> body_of_composed(const Node& a, const Limits& limits, double epsilon, Backend backend) {
+  const auto made = approximate_composed<D>(a, limits, epsilon, backend, Representation::points, Side::inner);
+  if (!made) a.refuse(made.error());
+  Expected<Body<D>> body = Body<D>::from_points(made->points);
+  if (!body) a.refuse(body.error());
+  return *std::move(body);
+}
+
+template <int D>
+Expected<dimension::ApproximateWidth<D>> width_of_composed(const Node& a, const Limits& limits, double epsilon,
+                                                           Backend backend) {
+  return with_fine_structures(0.69 * epsilon / (1 + epsilon), [&](double share) {
+    return dimension::approximate_width<D>(read_composed<D>(a, limits, {share, backend}), epsilon);
+  });
+}
+
 }  // namespace
 
 void answer_approx_directional_width(const Node& line, Session& session, JsonWriter& answer) {
@@ -92,7 +127,7 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
   const Node a = line.at("a");
   const double epsilon = read_epsilon(line);
   const Backend backend = read_backend(line, "method");
-  for_dimension(read_dimension(a, session.limits), [&]<int D>() {
+  for_dimension(composed_dimension(a, session.limits), [&]<int D>() {
     const Node nodes = line.at("directions");
     require_array(nodes, "an array of directions");
     std::vector<Vector<D>> directions;
@@ -103,12 +138,15 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
       directions.back() /= length;
     }
     const Stopwatch watch;
+    const bool composed = is_composed(a);
     const auto file = streamed_file(a, epsilon, backend);
     // (1 - share) (1 - rest) >= 1 - epsilon.
-    const Streamed<D> input = file ? body_of_file<D>(*file, kStreamedShare * epsilon)
-                                   : Streamed<D>{read_dimension_body<D>(a, session.limits), {}};
-    const auto structure =
-        DirectionalWidth<D>::build(input.body, file ? (1 - kStreamedShare) * epsilon : epsilon, backend);
+    const Streamed<D> input =
+        composed ? Streamed<D>{body_of_composed<D>(a, session.limits, kComposedShare * epsilon, backend), {}}
+        : file   ? body_of_file<D>(*file, kStreamedShare * epsilon)
+                 : Streamed<D>{read_dimension_body<D>(a, session.limits), {}};
+    const double rest = (composed ? 1 - kComposedShare : file ? 1 - kStreamedShare : 1) * epsilon;
+    const auto structure = DirectionalWidth<D>::build(input.body, rest, backend);
     if (!structure) line.refuse(structure.error());
     const std::int64_t build = watch.nanoseconds();
     QueryCounters counters;
@@ -117,6 +155,7 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
       widths.push_back(structure->width(v, counters));
       for (dimension::SupportPoint<D>* const end : {&widths.back().most, &widths.back().least}) {
         if (file && end->index >= 0) end->index = input.indices[static_cast<std::size_t>(end->index)];
+        if (composed) end->index = -1;  // of no list that the asker gave: its coordinates are written
       }
     }
     const std::int64_t total = watch.nanoseconds();
@@ -141,12 +180,13 @@ void answer_approx_width(const Node& line, Session& session, JsonWriter& answer)
   const Node a = line.at("a");
   const double epsilon = read_epsilon(line);
   const Backend backend = read_backend(line);
-  for_dimension(read_dimension(a, session.limits), [&]<int D>() {
+  for_dimension(composed_dimension(a, session.limits), [&]<int D>() {
     const Stopwatch watch;
     const auto file = streamed_file(a, epsilon, backend);
     const auto width =
-        file ? width_of_file<D>(*file, epsilon)
-             : dimension::approximate_width<D>(read_dimension_body<D>(a, session.limits), epsilon, backend);
+        is_composed(a) ? width_of_composed<D>(a, session.limits, epsilon, backend)
+        : file         ? width_of_file<D>(*file, epsilon)
+                       : dimension::approximate_width<D>(read_dimension_body<D>(a, session.limits), epsilon, backend);
     if (!width) line.refuse(width.error());
     const std::int64_t nanoseconds = watch.nanoseconds();
     answer.key("width").number(width->width).key("lower").number(width->lower).key("upper").number(width->upper);
@@ -165,19 +205,17 @@ void answer_approximate(const Node& line, Session& session, JsonWriter& answer) 
   const Node a = line.at("a");
   const double epsilon = read_epsilon(line);
   const Representation representation = read_representation(line);
-  Side side = Side::outer;
-  if (const auto node = line.find("side")) {
-    const std::string word = read_string(*node);
-    if (word != "inner" && word != "outer") node->refuse("bad_value", "unknown side; known: inner, outer");
-    if (word == "inner") side = Side::inner;
-  }
-  if (read_backend(line) != Backend::kernel) {
+  const Side side = read_side(line);
+  const Backend backend = read_backend(line);
+  const bool composed = is_composed(a);
+  if (backend != Backend::kernel && !composed) {
     line.at("backend").refuse("unsupported", "approximations are made from kernels; \"kernel\" answers");
   }
-  for_dimension(read_dimension(a, session.limits), [&]<int D>() {
-    const Body<D> body = read_dimension_body<D>(a, session.limits);
+  for_dimension(composed_dimension(a, session.limits), [&]<int D>() {
     const Stopwatch watch;
-    const auto small = dimension::approximate_body<D>(body, epsilon, representation, side);
+    const auto small = composed ? approximate_composed<D>(a, session.limits, epsilon, backend, representation, side)
+                                : dimension::approximate_body<D>(read_dimension_body<D>(a, session.limits), epsilon,
+                                                                 representation, side);
     if (!small) line.refuse(small.error());
     const std::int64_t nanoseconds = watch.nanoseconds();
     answer.key(representation == Representation::points ? "points" : "halfspaces").begin_array();
@@ -195,6 +233,10 @@ void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answe
   const double epsilon = read_epsilon(line);
   if (read_backend(line) != Backend::kernel) {
     line.at("backend").refuse("unsupported", "a kernel is what the backend \"kernel\" builds");
+  }
+  if (is_composed(a)) {
+    a.refuse("unsupported",
+             "a kernel is some of the points given, and a composed body has none; \"approximate\" answers");
   }
   for_dimension(read_dimension(a, session.limits), [&]<int D>() {
     const Stopwatch watch;

@@ -83,6 +83,47 @@ TEST(DimensionQueries, ApproximationsInEitherRepresentation) {
   }
 }
 
+// Bodies composed of others are queried as those of points are. kSquare is [0, 2] x [0, 1].
+TEST(DimensionQueries, ComposedBodiesHaveWidthsAndApproximations) {
+  const std::string moved = R"({"points":[[1,0],[5,0],[5,4],[1,4]]})";  // [1, 5] x [0, 4]
+  const auto composed = [&](const std::string& kind) { return "{\"" + kind + "\":[" + kSquare + "," + moved + "]}"; };
+  struct Case {
+    const char* kind;
+    double width, along_x, along_y;
+  };
+  // The hull's thinnest extent is along y, whose lower corners are in a line; the intersection is [1, 2] x [0, 1].
+  for (const Case& c : {Case{"sum_of", 5, 6, 5}, Case{"hull_of", 4, 5, 4}, Case{"intersection_of", 1, 1, 1}}) {
+    SCOPED_TRACE(c.kind);
+    for (const char* backend : {"kernel", "exact"}) {
+      const std::string more = R"("epsilon":0.01,"backend":")" + std::string(backend) + "\"";
+      const Json width = answer(line("approx_width", composed(c.kind), more));
+      ASSERT_EQ(code_of(width), "") << width;
+      EXPECT_LE(width["lower"].get<double>(), c.width * (1 + 1e-9));
+      EXPECT_GE(width["upper"].get<double>(), c.width * (1 - 1e-9));
+      EXPECT_LE(width["upper"].get<double>(), 1.01 * width["lower"].get<double>());
+      const Json small = answer(line("approximate", composed(c.kind), more + R"(,"representation":"points")"));
+      ASSERT_EQ(code_of(small), "") << small;
+      double least = 1e9, most = -1e9;
+      for (const Json& p : small["points"]) {
+        least = std::min(least, p[0].get<double>());
+        most = std::max(most, p[0].get<double>());
+      }
+      EXPECT_GE(most - least, c.along_x * (1 - 1e-9));
+      EXPECT_LE(most - least, c.along_x * 1.01);
+    }
+    const Json widths =
+        answer(line("approx_directional_width", composed(c.kind), R"("epsilon":0.01,"directions":[[1,0],[0,-2]])"));
+    ASSERT_EQ(code_of(widths), "") << widths;
+    EXPECT_NEAR(widths["widths"][0].get<double>(), c.along_x, 0.01 * c.along_x);
+    EXPECT_NEAR(widths["widths"][1].get<double>(), c.along_y, 0.01 * c.along_y);
+    EXPECT_EQ(widths["pairs"][0][0].size(), 2u) << "coordinates: such points are in no list";
+    EXPECT_EQ(code_of(answer(line("epsilon_kernel", composed(c.kind), R"("epsilon":0.1)"))), "unsupported");
+  }
+  const std::string apart = "{\"intersection_of\":[" + kSquare + R"(,{"points":[[7,0],[8,0],[7,1]]}]})";
+  EXPECT_EQ(code_of(answer(line("approx_width", apart, R"("epsilon":0.1)"))), "bad_value");
+  EXPECT_EQ(code_of(answer(line("approx_width", R"({"sum_of":[]})", R"("epsilon":0.1)"))), "bad_value");
+}
+
 class PointsFiles : public ::testing::Test {
  protected:
   TemporaryFolder folder_;

@@ -8,6 +8,7 @@
 #include "dimension/radial_hull.hpp"
 #include "dimension/validate.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "pd/dimension/approximate_minkowski_sum.hpp"
 
 namespace pd::dimension {
 
@@ -118,6 +119,35 @@ Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsi
   return WidthSearch<D>(body, *structure, (1 - kStructureShare) * share).run();
 }
 
+template <int D>
+Expected<ApproximateWidth<D>> approximate_width(const ComposedBody<D>& body, double epsilon) {
+  const pd::detail::FloatingPointGuard guard;
+  if (const auto error = detail::check_epsilon(epsilon)) return *error;
+  // The inner polytope's share; the rest is the search's. Inside K, every width at least 1 - inner times K's:
+  // (1 + rest) / (1 - inner) = 1 + epsilon, a hair less for rounding.
+  constexpr double kInnerShare = 0.7;
+  const double share = epsilon * (1 - 1e-4);
+  const double inner = kInnerShare * share / (1 + share);
+  if (inner < (body.equations() > 0 ? 1e-5 : 1e-6)) {
+    return Error{ErrorCode::bad_value,
+                 "the width of a composed body needs a larger epsilon: 2e-6, 2e-5 with intersections", "epsilon"};
+  }
+  const auto polytope = approximate_minkowski_sum<D>(body, inner, Representation::points, Side::inner);
+  if (!polytope) return polytope.error();
+  const auto solid = Body<D>::from_points(polytope->body.points);
+  if (!solid) return solid.error();
+  const auto found = approximate_width<D>(*solid, (1 - kInnerShare) * share, Backend::kernel);
+  if (!found) return found;
+  ApproximateWidth<D> width = *found;
+  width.upper = width.upper / (1 - inner) * (1 + kRoom);
+  width.width = width.upper;
+  return width;
+}
+
+template Expected<ApproximateWidth<2>> approximate_width<2>(const ComposedBody<2>&, double);
+template Expected<ApproximateWidth<3>> approximate_width<3>(const ComposedBody<3>&, double);
+template Expected<ApproximateWidth<4>> approximate_width<4>(const ComposedBody<4>&, double);
+template Expected<ApproximateWidth<5>> approximate_width<5>(const ComposedBody<5>&, double);
 template Expected<ApproximateWidth<2>> approximate_width<2>(const Body<2>&, double, Backend);
 template Expected<ApproximateWidth<3>> approximate_width<3>(const Body<3>&, double, Backend);
 template Expected<ApproximateWidth<4>> approximate_width<4>(const Body<4>&, double, Backend);

@@ -9,6 +9,7 @@
 /// Dudley's number.
 #pragma once
 
+#include "pd/dimension/composed_body.hpp"
 #include "pd/dimension/directional_width.hpp"
 
 namespace pd::dimension {
@@ -32,5 +33,15 @@ struct ApproximateWidth {
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
                                                               Backend backend = Backend::kernel);
+
+/// Of a body composed of others (sums, hulls of unions, intersections, affine images): the width of a small polytope
+/// inside, which every directional width exceeds by a known factor at most. `structure` and `queries` are those of that
+/// polytope.
+///
+/// @param epsilon  in [2e-6, 1), with an intersection inside [2e-5, 1); the structures inside at least as fine as
+/// `approximate_minkowski_sum` asks at .7 epsilon / (1 + epsilon).
+/// @return those of `approximate_minkowski_sum`.
+template <int D>
+[[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const ComposedBody<D>& body, double epsilon);
 
 }  // namespace pd::dimension
