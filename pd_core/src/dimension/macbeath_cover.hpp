@@ -120,17 +120,6 @@ class ShadowSection {
     }
   }
 
-  /// False only where the direction, on this face, is not in the cone: most are told by a coordinate or two.
-  [[nodiscard]] bool may_hold(const Vector<D>& v, int axis) const {
-    if (kind_ != Kind::ellipse) return kind_ == Kind::unbounded;
-    for (int i = 0, row = 0; i < D; ++i) {
-      if (i == axis) continue;
-      if (std::abs(v[i] - center_[row]) > extent_[row]) return false;
-      ++row;
-    }
-    return true;
-  }
-
   /// False only where no direction of the box, on this face, is in the cone.
   [[nodiscard]] bool may_meet(const DirectionBox<D>& box) const {
     if (kind_ == Kind::empty) return false;
@@ -143,8 +132,7 @@ class ShadowSection {
       if (std::abs(away[row]) > half + extent_[row]) return false;
       ++row;
     }
-    const double reach = 1 + half * width_;
-    return away.dot(form_ * away) <= reach * reach;
+    return std::sqrt(away.dot(form_ * away)) <= 1 + half * width_;
   }
 
  private:
@@ -157,11 +145,11 @@ class ShadowSection {
     return middle.dot(image) + 2 * radius * image.norm() + radius * radius * cone_.axis.squaredNorm() >= 0;
   }
 
+  ShadowCone<D> cone_;
   enum class Kind { unbounded, empty, ellipse } kind_ = Kind::unbounded;
   Vector<D - 1> center_, extent_;
   Eigen::Matrix<double, D - 1, D - 1, Eigen::DontAlign> form_;
   double width_ = 0;  ///< of the box [-1, 1]^(D-1) in the ellipse's norm, at most
-  ShadowCone<D> cone_;
 };
 
 }  // namespace pd::dimension::detail

@@ -130,7 +130,6 @@ class HierarchyBuilder {
     // Most boxes lie in one shadow and are not split: the lists of those that may meet a box are for its parts alone.
     const Vector<D> middle = box.middle();
     const auto holds = [&](std::int32_t id) {
-      if (!sections_[static_cast<std::size_t>(id - first_)].may_hold(middle, box.axis)) return false;
       const ShadowCone<D>& shadow = hierarchy_.nodes[static_cast<std::size_t>(id)].shadow;
       return shadow.contains(middle) && covers(shadow, box);
     };
@@ -148,8 +147,7 @@ class HierarchyBuilder {
     for (const std::int32_t id : outer) consider(id);
     for (std::size_t k = seen; k < cores_.size(); ++k) consider(first_ + static_cast<std::int32_t>(k));
     const bool held = std::any_of(near.begin(), near.end(), [&](std::int32_t id) {
-      const auto k = static_cast<std::size_t>(id - first_);
-      return sections_[k].may_hold(middle, box.axis) && cores_[k].contains(middle);
+      return cores_[static_cast<std::size_t>(id - first_)].contains(middle);
     });
     if (!held) {
       const std::int32_t id = insert(middle);
