@@ -11,6 +11,7 @@
 #include "bench/dobkin/dobkin.hpp"
 #include "bench/hash/answer_hash.hpp"
 #include "bench/measure/compare.hpp"
+#include "bench/pairs/apart.hpp"
 #include "bench/pairs/coherent.hpp"
 #include "bench/pairs/meshes.hpp"
 #include "bench/pairs/pairs.hpp"
@@ -171,6 +172,18 @@ int coherent_command(const Options& o) {
   return good ? 0 : 1;
 }
 
+int apart_command(const Options& o) {
+  const auto cells = choose_apart(o.families, o.vertices, o.quick);
+  if (!cells) return refuse(cells.error());
+  Solvers solvers;
+  add_ours_apart(solvers);
+  add_peers_apart(solvers);
+  if (!select(solvers, o.solvers)) return 2;
+  print_preamble(o);
+  const int pairs = o.pairs > 0 ? o.pairs : o.quick ? 4 : 24;
+  return finish(run_apart({*cells, pairs, o.seed}, solvers), "Bodies apart (ratios to Bullet's pair detector)", o);
+}
+
 int hash_command(const Options& o) {
   HashOutcome outcome;
   const int code = run_hash(o.hash, &outcome);
@@ -220,6 +233,14 @@ CLI::App* add_pairs(CLI::App& app, Options& o) {
   add_common(*command, o);
   add_family_options(*command, o);
   add_pair_options(*command, o);
+  return command;
+}
+
+CLI::App* add_apart(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("apart", "bodies apart: how far, and by more than half of the gap?");
+  add_common(*command, o);
+  add_family_options(*command, o);
+  command->add_option("--pairs", o.pairs, "pairs in each cell, of three frames (default: 24, quick 4)");
   return command;
 }
 
@@ -306,6 +327,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Exact penetration depth beside the peers; every answer is judged by an exact oracle."};
   app.require_subcommand(1);
   add_pairs(app, options);
+  CLI::App* apart = add_apart(app, options);
   CLI::App* coherent = add_coherent(app, options);
   CLI::App* meshes = add_meshes(app, options);
   CLI::App* compare = add_compare(app, options);
@@ -349,6 +371,7 @@ int main(int argc, char** argv) {
   if (*dobkin) return run_claims(options.dobkin, run_dobkin);
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
   options.report = told(options.report.folder, std::to_string(options.seed));
+  if (*apart) return apart_command(options);
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);
   if (*compare) return compare_command(options);

@@ -28,23 +28,24 @@ std::string number_text(double value, int digits) {
 
 }  // namespace
 
-void set_ratios(std::vector<Row>& cell) {
+void set_ratios(std::vector<Row>& cell, std::string_view baseline) {
   double bullet = kUnknown;
   for (const Row& row : cell) {
-    if (row.solver == kBulletEpa) bullet = row.p50_ns;
+    if (row.solver == baseline) bullet = row.p50_ns;
   }
   for (Row& row : cell) row.ratio_to_bullet = row.p50_ns / bullet;
 }
 
 void print_header() {
-  fmt::print("{:<7} {:>8} {:<8} {:<17} {:>5} {:>10} {:>10} {:>9} {:>6} {:>9} {:>9} {:>7}\n", "family", "vertices",
-             "depth", "solver", "pairs", "p50", "p99", "x bullet", "wrong", "error/L", "supports", "allocs");
+  fmt::print("{:<7} {:>8} {:<8} {:<20} {:>5} {:>10} {:>10} {:>10} {:>9} {:>6} {:>9} {:>9} {:>7}\n", "family",
+             "vertices", "depth", "solver", "pairs", "p50", "p99", "max", "x bullet", "wrong", "error/L", "supports",
+             "allocs");
 }
 
 void print_rows(const std::vector<Row>& cell) {
   for (const Row& r : cell) {
-    fmt::print("{:<7} {:>8} {:<8} {:<17} {:>5} {:>10} {:>10} {:>9} {:>6} {:>9.1e} {:>9} {:>7}{}\n", r.family,
-               r.vertices, r.depth, r.solver, r.pairs, time_text(r.p50_ns), time_text(r.p99_ns),
+    fmt::print("{:<7} {:>8} {:<8} {:<20} {:>5} {:>10} {:>10} {:>10} {:>9} {:>6} {:>9.1e} {:>9} {:>7}{}\n", r.family,
+               r.vertices, r.depth, r.solver, r.pairs, time_text(r.p50_ns), time_text(r.p99_ns), time_text(r.max_ns),
                number_text(r.ratio_to_bullet, 3), r.wrong, r.worst_error, number_text(r.supports, 1),
                number_text(r.allocations, 1), r.wrong > 0 ? "  WRONG" : "");
   }
@@ -69,7 +70,7 @@ void print_summary(const std::vector<Row>& rows) {
       wrong += r.wrong;
       allocations += r.allocations * r.pairs;
     }
-    fmt::print("  {:<17} {:>7}   {:>6} of {} wrong ({:.2f} %)   {:.1f} allocations a call\n", name,
+    fmt::print("  {:<20} {:>7}   {:>6} of {} wrong ({:.2f} %)   {:.1f} allocations a call\n", name,
                number_text(geometric_mean(ratios), 3), wrong, pairs,
                100.0 * static_cast<double>(wrong) / static_cast<double>(std::max<std::int64_t>(pairs, 1)),
                allocations / static_cast<double>(std::max<std::int64_t>(pairs, 1)));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pd/numeric/expected.hpp"
@@ -28,10 +29,11 @@ struct Row {
   double allocations = 0;      ///< in one call, mean
   double worst_error = 0;      ///< |depth - truth| / truth
   double supports = kUnknown;  ///< in one call, mean
+  double max_ns = kUnknown;    ///< the slowest pair
 };
 
-/// Sets ratio_to_bullet of rows that belong to one cell.
-void set_ratios(std::vector<Row>& cell);
+/// Sets ratio_to_bullet of rows that belong to one cell, from the row of the solver `baseline`.
+void set_ratios(std::vector<Row>& cell, std::string_view baseline);
 
 /// A header line, then the rows of a cell under it. A row with wrong answers is marked.
 void print_header();

@@ -23,6 +23,7 @@ Row Tally::row() const {
   row.pairs = count();
   row.p50_ns = quantile(times_, 0.5);
   row.p99_ns = quantile(times_, 0.99);
+  row.max_ns = quantile(times_, 1);
   row.allocations = allocations_ / row.pairs;
   row.supports = supports_ / row.pairs;
   row.wrong = wrong_;
@@ -103,7 +104,7 @@ std::vector<Row> rows_of(const Solvers& solvers, const std::vector<Tally>& talli
     row.solver = solvers[s]->name();
     block.push_back(std::move(row));
   }
-  set_ratios(block);
+  set_ratios(block, kBulletEpa);
   return block;
 }
 

@@ -4,7 +4,9 @@
 
 #include "BulletCollision/CollisionShapes/btConvexHullShape.h"
 #include "BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h"
+#include "BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h"
 #include "BulletCollision/NarrowPhaseCollision/btMinkowskiPenetrationDepthSolver.h"
+#include "BulletCollision/NarrowPhaseCollision/btPointCollector.h"
 #include "BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h"
 #include "bench/peers/solver.hpp"
 
@@ -25,6 +27,12 @@ btTransform to_bullet(const Pose& pose) {
 
 Vec3 from_bullet(const btVector3& v) {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+
+void fill(btConvexHullShape& hull, const ConvexShape& shape) {
+  for (const Vec3& p : vertices_of(shape)) hull.addPoint(to_bullet(p), false);
+  hull.setMargin(0);
+  hull.recalcLocalAabb();
 }
 
 /// `calcPenDepth` as the pair detector calls it, on hulls with margin 0.
@@ -49,12 +57,6 @@ class BulletAttempt final : public Attempt {
   }
 
  private:
-  static void fill(btConvexHullShape& hull, const ConvexShape& shape) {
-    for (const Vec3& p : vertices_of(shape)) hull.addPoint(to_bullet(p), false);
-    hull.setMargin(0);
-    hull.recalcLocalAabb();
-  }
-
   DepthSolver& solver_;
   btConvexHullShape a_;
   btConvexHullShape b_;
@@ -84,7 +86,63 @@ class BulletSolver final : public Solver {
   DepthSolver solver_;
 };
 
+/// The pair detector as Bullet's convex algorithm sets it up, on hulls with margin 0 and without a penetration solver.
+class BulletApart final : public Attempt {
+ public:
+  BulletApart(const Bodies& bodies, bool limited) : limited_(limited) {
+    fill(a_, bodies.a);
+    fill(b_, bodies.b);
+  }
+  void stand(const Pose& a, const Pose& b) override {
+    input_.m_transformA = to_bullet(a);
+    input_.m_transformB = to_bullet(b);
+  }
+  void limit(double distance) override {
+    if (limited_) input_.m_maximumDistanceSquared = static_cast<btScalar>(distance * distance);
+  }
+  void run() override {
+    result_ = btPointCollector();
+    btGjkPairDetector detector(&a_, &b_, &simplex_, nullptr);
+    detector.getClosestPoints(input_, result_, nullptr);
+  }
+  [[nodiscard]] Answer answer() const override {
+    // Without a result it says that nothing is within the limit; without a limit it has lost its way.
+    if (!result_.m_hasResult) return {false, 0, Vec3::Zero(), limited_ ? std::numeric_limits<double>::infinity() : 0};
+    const double distance = static_cast<double>(result_.m_distance);
+    return {distance < 0, 0, -distance * from_bullet(result_.m_normalOnBInWorld), std::max(distance, 0.0)};
+  }
+
+ private:
+  bool limited_;
+  btConvexHullShape a_;
+  btConvexHullShape b_;
+  btVoronoiSimplexSolver simplex_;
+  btDiscreteCollisionDetectorInterface::ClosestPointInput input_;
+  btPointCollector result_;
+};
+
+class BulletApartSolver final : public Solver {
+ public:
+  BulletApartSolver(std::string_view name, bool limited) : name_(name), limited_(limited) {}
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] Precision precision() const override {
+    return sizeof(btScalar) == sizeof(float) ? Precision::binary32 : Precision::binary64;
+  }
+  [[nodiscard]] std::unique_ptr<Attempt> prepare(const Bodies& bodies) override {
+    return std::make_unique<BulletApart>(bodies, limited_);
+  }
+
+ private:
+  std::string_view name_;
+  bool limited_;
+};
+
 }  // namespace
+
+void add_bullet_apart(Solvers& solvers) {
+  solvers.push_back(std::make_unique<BulletApartSolver>(kBulletGjk, false));
+  solvers.push_back(std::make_unique<BulletApartSolver>("bullet-beyond", true));
+}
 
 void add_bullet(Solvers& solvers) {
   solvers.push_back(std::make_unique<BulletSolver<btGjkEpaPenetrationDepthSolver>>(kBulletEpa));

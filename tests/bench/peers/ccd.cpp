@@ -49,7 +49,7 @@ void centre(const void* object, ccd_vec3_t* out) {
   store(hull.rotation * hull.centre + hull.translation, out);
 }
 
-enum class CcdMethod : std::uint8_t { epa, mpr };
+enum class CcdMethod : std::uint8_t { epa, mpr, gjk };
 
 class CcdAttempt final : public Attempt {
  public:
@@ -67,11 +67,18 @@ class CcdAttempt final : public Attempt {
   }
   void run() override {
     a_.supports = b_.supports = 0;
+    if (method_ == CcdMethod::gjk) {
+      status_ = ccdGJKIntersect(&a_, &b_, &ccd_) != 0 ? 0 : -1;
+      return;
+    }
     ccd_vec3_t position;
     const auto solve = method_ == CcdMethod::epa ? ccdGJKPenetration : ccdMPRPenetration;
     status_ = solve(&a_, &b_, &ccd_, &depth_, &direction_, &position);
   }
   [[nodiscard]] Answer answer() const override {
+    if (method_ == CcdMethod::gjk) {
+      return {status_ == 0, 0, Vec3::Zero(), status_ == 0 ? 0 : std::numeric_limits<double>::infinity()};
+    }
     if (status_ != 0) return {};
     // libccd's direction moves B.
     return {true, depth_, Vec3(-depth_ * Vec3(direction_.v[0], direction_.v[1], direction_.v[2]))};
@@ -109,5 +116,7 @@ void add_ccd(Solvers& solvers) {
   solvers.push_back(std::make_unique<CcdSolver>("ccd-epa", CcdMethod::epa));
   solvers.push_back(std::make_unique<CcdSolver>("ccd-mpr", CcdMethod::mpr));
 }
+
+void add_ccd_apart(Solvers& solvers) { solvers.push_back(std::make_unique<CcdSolver>("ccd-gjk", CcdMethod::gjk)); }
 
 }  // namespace pd::bench

@@ -29,7 +29,7 @@ fcl::Transform3d to_fcl(const Pose& pose) {
   return t;
 }
 
-enum class FclQuery : std::uint8_t { signed_distance, contact };
+enum class FclQuery : std::uint8_t { signed_distance, contact, distance_libccd, distance_own };
 
 class FclAttempt final : public Attempt {
  public:
@@ -44,8 +44,10 @@ class FclAttempt final : public Attempt {
     try {
       if (query_ == FclQuery::signed_distance) {
         signed_distance();
-      } else {
+      } else if (query_ == FclQuery::contact) {
         contact();
+      } else {
+        distance(query_ == FclQuery::distance_own ? fcl::GST_INDEP : fcl::GST_LIBCCD);
       }
     } catch (const std::exception&) {
       answer_ = {};
@@ -60,6 +62,13 @@ class FclAttempt final : public Attempt {
     const double distance = fcl::distance(&a_, &b_, request, result);
     if (!(distance < 0)) return;
     answer_ = {true, -distance, Vec3(result.nearest_points[1] - result.nearest_points[0])};
+  }
+  void distance(fcl::GJKSolverType solver) {
+    fcl::DistanceRequestd request(true);
+    request.gjk_solver_type = solver;
+    fcl::DistanceResultd result;
+    const double distance = fcl::distance(&a_, &b_, request, result);
+    answer_ = {distance < 0, 0, Vec3(result.nearest_points[1] - result.nearest_points[0]), std::max(distance, 0.0)};
   }
   void contact() {
     const fcl::CollisionRequestd request(1, true);
@@ -95,6 +104,11 @@ class FclSolver final : public Solver {
 void add_fcl(Solvers& solvers) {
   solvers.push_back(std::make_unique<FclSolver>("fcl-distance", FclQuery::signed_distance));
   solvers.push_back(std::make_unique<FclSolver>("fcl-contact", FclQuery::contact));
+}
+
+void add_fcl_apart(Solvers& solvers) {
+  solvers.push_back(std::make_unique<FclSolver>("fcl-libccd", FclQuery::distance_libccd));
+  solvers.push_back(std::make_unique<FclSolver>("fcl-own-gjk", FclQuery::distance_own));
 }
 
 std::string fcl_note() { return "FCL " FCL_VERSION " (double, libccd below)"; }

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "bench/peers/solver.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
@@ -16,10 +18,19 @@ class OurAttempt final : public Attempt {
     a_.pose = a;
     b_.pose = b;
   }
+  // Only a solver that was made with a finite limit asks for less than the distance.
+  void limit(double distance) override {
+    if (std::isfinite(settings_.beyond)) settings_.beyond = distance;
+  }
   void run() override {
     answer_ = penetration_depth(a_, b_, scratch_, settings_, remembering_ ? &certificate_ : nullptr);
   }
   [[nodiscard]] Answer answer() const override {
+    if (answer_.contact == ContactClass::separated) {
+      const bool farther = answer_.distance_lower > settings_.beyond;
+      return {false, 0, answer_.witness_b - answer_.witness_a,
+              farther ? std::numeric_limits<double>::infinity() : answer_.distance};
+    }
     return {answer_.contact == ContactClass::overlapping, answer_.depth, answer_.translation};
   }
   [[nodiscard]] double supports() const override { return static_cast<double>(answer_.statistics.support_calls); }
@@ -67,6 +78,16 @@ void add_ours(Solvers& solvers, bool every_engine, bool remembering) {
   add("pdepth-expansion", certified(Method::expansion), false);
   add("pdepth-overlay", certified(Method::overlay), false);
   add("pdepth-decomposition", certified(Method::decomposition), false);
+}
+
+void add_ours_apart(Solvers& solvers) {
+  for (const bool remembering : {false, true}) {
+    const std::string warm = remembering ? "-warm" : "";
+    const DepthSettings distance{.bracket = Bracket::certified};
+    solvers.push_back(std::make_unique<OurSolver>("pdepth-distance" + warm, distance, remembering));
+    const DepthSettings beyond{.bracket = Bracket::certified, .beyond = 0};
+    solvers.push_back(std::make_unique<OurSolver>("pdepth-beyond" + warm, beyond, remembering));
+  }
 }
 
 }  // namespace pd::bench

@@ -21,6 +21,18 @@ void add_peers([[maybe_unused]] Solvers& solvers) {
 #endif
 }
 
+void add_peers_apart([[maybe_unused]] Solvers& solvers) {
+#ifdef PD_BENCH_WITH_BULLET
+  add_bullet_apart(solvers);
+#endif
+#ifdef PD_BENCH_WITH_CCD
+  add_ccd_apart(solvers);
+#endif
+#ifdef PD_BENCH_WITH_FCL
+  add_fcl_apart(solvers);
+#endif
+}
+
 std::vector<std::string> peer_notes() {
   std::vector<std::string> notes;
 #ifdef PD_BENCH_WITH_BULLET

@@ -27,7 +27,8 @@ struct Bodies {
 struct Answer {
   bool overlapping = false;  ///< false: the solver saw no overlap, or gave up
   double depth = 0;
-  Vec3 translation = Vec3::Zero();  ///< of A; out of B
+  Vec3 translation = Vec3::Zero();  ///< of A; out of B, or onto B where they are apart
+  double distance = 0;              ///< of bodies apart; infinity: farther than the limit, and no more was asked
 };
 
 /// A solver at work on one pair of bodies; `run` is what is timed.
@@ -36,6 +37,8 @@ class Attempt {
   virtual ~Attempt() = default;
   /// Sets where the bodies stand from the next run on, in the solver's own types.
   virtual void stand(const Pose& a, const Pose& b) = 0;
+  /// Those that answer "apart by more than this?" heed it; 0 asks whether the bodies are apart at all.
+  virtual void limit(double) {}
   virtual void run() = 0;
   [[nodiscard]] virtual Answer answer() const = 0;
   /// Support points asked for in the last run; NaN where the solver does not tell.
@@ -57,6 +60,7 @@ using Solvers = std::vector<std::unique_ptr<Solver>>;
 
 inline constexpr std::string_view kOurs = "pdepth-auto";
 inline constexpr std::string_view kBulletEpa = "bullet-epa";
+inline constexpr std::string_view kBulletGjk = "bullet-gjk";
 inline constexpr std::string_view kOde = "ode";
 
 /// Vertices of the hull in its canonical order.
@@ -72,12 +76,21 @@ void add_ours(Solvers& solvers, bool every_engine, bool remembering);
 /// signed distance and contact query: those whose packages were there when the bench was built.
 void add_peers(Solvers& solvers);
 
+/// Bodies apart: "how far" (pdepth-distance) and "by more than the limit?" (pdepth-beyond), each with and without the
+/// memory of the pair.
+void add_ours_apart(Solvers& solvers);
+/// Bullet's pair detector, FCL's distance by both of its solvers, and libccd's GJK, which says only whether they meet.
+void add_peers_apart(Solvers& solvers);
+
 /// One line for each package: its version, or that it is missing.
 [[nodiscard]] std::vector<std::string> peer_notes();
 
 /// The peers of one package; each is defined where its package was found.
 void add_bullet(Solvers& solvers);
 void add_ccd(Solvers& solvers);
+void add_bullet_apart(Solvers& solvers);
+void add_ccd_apart(Solvers& solvers);
+void add_fcl_apart(Solvers& solvers);
 void add_fcl(Solvers& solvers);
 /// Bodies must be solids round the origin of their frames.
 void add_ode(Solvers& solvers);
