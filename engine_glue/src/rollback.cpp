@@ -127,6 +127,8 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
       if (closing > 0) next = time + (clearance - 0.5 * settings.gap) / closing;
     }
     if (!(next > low && next < high)) next = 0.5 * (low + high);
+    // Where no trial was free yet, the least part says whether any is.
+    if (meets && low == 0 && result.trials == 4) next = std::min(next, least);
     const bool no_finer = static_cast<btScalar>(next) == static_cast<btScalar>(time);
     if (next >= least && result.trials < settings.max_trials && !no_finer) {
       time = next;
