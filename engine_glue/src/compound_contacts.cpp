@@ -212,7 +212,8 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   const auto threshold = static_cast<double>(question.threshold);
   ContactManifold points =
       contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
-  keep_uncovered(pair.a(), pair.b(), answer, threshold, question.seconds, question.stamp, core, buffers, points);
+  keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
+                 points);
   deep_.add(answer, points);
   patches.add(points, static_cast<int>(pairs_.size()) - 1, pair.a().m_index, pair.b().m_index);
   return true;

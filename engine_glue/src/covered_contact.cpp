@@ -32,6 +32,7 @@ struct Side {
   PosedShape own;
   PosedShape other;
   bool is_b;
+  Vec3 front = Vec3::Zero();  ///< the only side of a triangle, zero: both
   /// From the piece outward, for the answer's normal.
   [[nodiscard]] Vec3 outward(const Vec3& normal) const { return is_b ? normal : Vec3(-normal); }
   [[nodiscard]] const Vec3& on_piece(const ContactPoint& point) const {
@@ -303,7 +304,7 @@ class SideRule {
     Vec3 farthest;
     for (int f = 0; f < count; ++f) {
       const Plane& facet = own.planes[static_cast<std::size_t>(f)];
-      if (facet.normal.dot(n) >= 1 - kSameNormal) continue;
+      if (facet.normal.dot(n) >= 1 - kSameNormal || facet.normal.dot(side_.front) < 0) continue;
       const double along = depth_along(facet, farthest);
       if (along < -threshold_) return {};  // apart along a facet: nothing of this piece is near
       if (along <= limit) facets.emplace_back(along, f);
@@ -329,6 +330,15 @@ class SideRule {
   Cover cover_;
 };
 
+/// Seams agree to 1e-7 of the bodies, poses to half a unit in the last place.
+double slack_of(const PairAnswer& answer) {
+  const double farthest =
+      answer.a.pose.translation().cwiseAbs().cwiseMax(answer.b.pose.translation().cwiseAbs()).maxCoeff();
+  const double size = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
+  constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
+  return 0x1p-18 * size + kRounding * farthest;
+}
+
 Vec3 velocity(const btCollisionObjectWrapper& wrapper) {
   const btRigidBody* body = btRigidBody::upcast(wrapper.getCollisionObject());
   return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
@@ -337,20 +347,15 @@ Vec3 velocity(const btCollisionObjectWrapper& wrapper) {
 }  // namespace
 
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
-                    double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
-                    ContactManifold& points) {
+                    const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
+                    ThreadBuffers& buffers, ContactManifold& points) {
   if (points.count == 0) return;
-  const double farthest =
-      answer.a.pose.translation().cwiseAbs().cwiseMax(answer.b.pose.translation().cwiseAbs()).maxCoeff();
-  const double size = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
-  // Seams agree to 1e-7 of the bodies, poses to half a unit in the last place.
-  constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
-  const double slack = 0x1p-18 * size + kRounding * farthest;
+  const double slack = slack_of(answer);
   double depth = -answer.depth.signed_distance();
   const double window = threshold + std::abs(depth) + seconds * (velocity(a) - velocity(b)).norm();
   Vec3 witness_b = answer.depth.witness_b;
   if (is_piece(b)) {
-    SideRule rule({b, answer.b, answer.a, true}, threshold, window, slack, stamp, core, buffers);
+    SideRule rule({b, answer.b, answer.a, true, front}, threshold, window, slack, stamp, core, buffers);
     if (rule.apply(depth, witness_b, points)) {
       buffers.counters.covered.add();
       if (points.count == 0) return;
@@ -364,6 +369,18 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
     SideRule rule({a, answer.a, answer.b, false}, threshold, window, slack, stamp, core, buffers);
     if (rule.apply(depth, witness_b - depth * points.normal, points)) buffers.counters.covered.add();
   }
+}
+
+ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer, const Vec3& front,
+                            double threshold, ThreadBuffers& buffers) {
+  UnionPiece& own = buffers.cover.own;
+  set_piece(answer.b, own);
+  if (own.planes.empty()) return {};
+  const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];
+  const Vec3 farthest = farthest_against(answer.a, side.normal);
+  const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
+  return along_facet({triangle, answer.b, answer.a, true, front}, side, depth, farthest, threshold, slack_of(answer),
+                     own, buffers.manifold);
 }
 
 }  // namespace pd::detail

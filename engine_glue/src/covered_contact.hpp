@@ -39,12 +39,18 @@ struct CoverBuffers {
 
 /// Changes `points`, the manifold of `answer`, to what holds for the unions that a and b are pieces of.
 ///
+/// @param front  zero, or: b is a triangle that has this side only (unit, in the world)
 /// @param threshold  up to which gap a pair of points is a contact
 /// @param seconds    of the step: how far bodies may move before contacts are found again
 /// Time: a query of the mesh's or compound's tree where a contact is suspect, and O(k f) in the k pieces near it and
 /// their f facets.
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
-                    double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
-                    ContactManifold& points);
+                    const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
+                    ThreadBuffers& buffers, ContactManifold& points);
+
+/// The contact of a body A that stands through or behind triangle B and is to leave by B's side `front`: points over
+/// the triangle, each as deep as A lies behind its plane.
+[[nodiscard]] ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer,
+                                          const Vec3& front, double threshold, ThreadBuffers& buffers);
 
 }  // namespace pd::detail

@@ -12,12 +12,16 @@
 #include <vector>
 
 #include "covered_contact.hpp"
+#include "one_sided.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
 
 namespace {
+
+/// Of a way out of a triangle: so much farther, a body that follows it is off the triangle beyond rounding.
+constexpr double kClear = 1 + 0x1p-6;
 
 struct MetTriangle {
   btVector3 corners[3];
@@ -137,8 +141,50 @@ class MeshContacts final : public UnionContacts {
   }
 
  private:
+  SolverCore::Outcome ask(const UnionQuestion& question, const TriangleInResult& triangle, const btTransform& pose_a,
+                          SolverCore& core, ThreadBuffers& buffers, PairAnswer& answer) const;
+  void add_fronts(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+
   std::vector<MetTriangle> triangles_;
+  OneSided one_sided_;
 };
+
+/// From which the corners of a triangle without area zero run counter-clockwise.
+Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
+  const Vec3 across = (to_pd(triangle.corners[1]) - to_pd(triangle.corners[0]))
+                          .cross(to_pd(triangle.corners[2]) - to_pd(triangle.corners[0]));
+  return (to_pd(pose).rotation() * across).normalized();
+}
+
+SolverCore::Outcome MeshContacts::ask(const UnionQuestion& question, const TriangleInResult& triangle,
+                                      const btTransform& pose_a, SolverCore& core, ThreadBuffers& buffers,
+                                      PairAnswer& answer) const {
+  const auto& body = static_cast<const btConvexShape&>(*question.a.getCollisionShape());
+  return core.answer(body, pose_a, triangle.shape(), question.b.getWorldTransform(), {true, is_part(question.a), false},
+                     question.stamp, buffers.recent, nullptr, buffers, answer);
+}
+
+/// The contacts along the fronts of triangles that the body stands through, where none of the others leads off them.
+void MeshContacts::add_fronts(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
+                              Patches& patches) {
+  const btTransform& pose = question.a.getWorldTransform();
+  for (const OneSided::Behind& behind : one_sided_.behind()) {
+    const MetTriangle& met = triangles_[static_cast<std::size_t>(behind.triangle)];
+    const TriangleInResult triangle(question.result, question.b, met, question.b.getCollisionShape()->getMargin());
+    PairAnswer answer;
+    bool left = false;
+    for (const Vec3& way : one_sided_.ways_out()) {
+      // A little farther than touching, which rounding would decide.
+      const btTransform moved(pose.getBasis(), pose.getOrigin() + to_bullet(Vec3(kClear * way)));
+      if (ask(question, triangle, moved, core, buffers, answer) != SolverCore::Outcome::answered) continue;
+      left = left || answer.depth.contact != ContactClass::overlapping;
+    }
+    if (left || ask(question, triangle, pose, core, buffers, answer) != SolverCore::Outcome::answered) continue;
+    const ContactManifold points =
+        along_front(triangle.wrapper(), answer, behind.front, static_cast<double>(question.threshold), buffers);
+    patches.add(points, behind.triangle, met.part, met.index);
+  }
+}
 
 bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory&, Patches& patches) {
   const btCollisionObjectWrapper& convex = question.a;
@@ -147,7 +193,9 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   const auto& concave = static_cast<const btConcaveShape&>(*mesh.getCollisionShape());
   const btTransform& pose = mesh.getWorldTransform();
   const auto threshold = static_cast<double>(question.threshold);
+  const bool one_sided = core.settings.one_sided_meshes;
   triangles_.clear();
+  one_sided_.clear();
   if (!is_finite(convex.getWorldTransform()) || !is_finite(pose)) return true;
   btVector3 lower;
   btVector3 upper;
@@ -159,17 +207,18 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const TriangleInResult triangle(question.result, mesh, triangles_[i], concave.getMargin());
     PairAnswer answer;
-    const auto outcome =
-        core.answer(body, convex.getWorldTransform(), triangle.shape(), pose, {true, is_part(convex), false},
-                    question.stamp, buffers->recent, nullptr, *buffers, answer);
+    const auto outcome = ask(question, triangle, convex.getWorldTransform(), core, *buffers, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;
+    const Vec3 front = one_sided ? front_of(triangles_[i], pose) : Vec3(Vec3::Zero());
+    if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
     ContactManifold points =
         contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers->manifold, DeepestPoint::as_lifted);
-    keep_uncovered(convex, triangle.wrapper(), answer, threshold, question.seconds, question.stamp, core, *buffers,
-                   points);
+    keep_uncovered(convex, triangle.wrapper(), answer, front, threshold, question.seconds, question.stamp, core,
+                   *buffers, points);
     patches.add(points, static_cast<int>(i), triangles_[i].part, triangles_[i].index);
   }
+  if (one_sided) add_fronts(question, core, *buffers, patches);
   return true;
 }
 

@@ -63,19 +63,47 @@ void Patches::choose(int most, double breaking_threshold) {
   for (std::size_t i = 0; i < patches_.size(); ++i) choose_in(static_cast<int>(i), breaking_threshold);
 }
 
+void Patches::keep_one_of_each(int patch, double merge) {
+  // No edge of a mesh is likely to run across this, so that few points lie level along it.
+  const Vec3 way(0.36, 0.48, 0.8);
+  places_.clear();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (points_[i].patch == patch) places_.push_back({points_[i].contact.position_b.dot(way), i, false});
+  }
+  std::sort(places_.begin(), places_.end(), [](const Place& x, const Place& y) {
+    return x.along < y.along || (x.along == y.along && x.point < y.point);
+  });
+  ranks_.resize(points_.size());
+  for (std::size_t r = 0; r < places_.size(); ++r) ranks_[places_[r].point] = r;
+  const double level = 1.01 * merge;
+  left_.clear();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& point = points_[i];
+    if (point.patch != patch) continue;
+    const std::size_t rank = ranks_[i];
+    Place& here = places_[rank];
+    const auto repeats = [&](const Place& other) {
+      const Point& kept = points_[other.point];
+      return other.kept && (kept.contact.position_b - point.contact.position_b).squaredNorm() < merge * merge &&
+             kept.normal.dot(point.normal) > kOnePatch;
+    };
+    bool repeated = false;
+    for (std::size_t k = rank; !repeated && k-- > 0 && here.along - places_[k].along < level;) {
+      repeated = repeats(places_[k]);
+    }
+    for (std::size_t k = rank + 1; !repeated && k < places_.size() && places_[k].along - here.along < level; ++k) {
+      repeated = repeats(places_[k]);
+    }
+    if (repeated) continue;
+    here.kept = true;
+    left_.push_back(&point);
+  }
+}
+
 void Patches::choose_in(int index, double breaking_threshold) {
   Patch& patch = patches_[static_cast<std::size_t>(index)];
   const Vec3& n = patch.normal;
-  left_.clear();
-  const double merge = kMerge * breaking_threshold;
-  for (const Point& point : points_) {
-    if (point.patch != index) continue;
-    const bool repeated = std::any_of(left_.begin(), left_.end(), [&](const Point* other) {
-      return (other->contact.position_b - point.contact.position_b).squaredNorm() < merge * merge &&
-             other->normal.dot(point.normal) > kOnePatch;
-    });
-    if (!repeated) left_.push_back(&point);
-  }
+  keep_one_of_each(index, kMerge * breaking_threshold);
   const auto take = [&](const Point* point) {
     const auto k = static_cast<std::size_t>(patch.fresh.count++);
     patch.fresh.points[k] = fresh_point(point->normal, point->contact);

@@ -32,7 +32,7 @@ class Patches {
   /// last ones take what fits nowhere), drops those that coincide, and keeps four of each patch: the deepest, the
   /// farthest from it, and those that span the largest triangles with these two, one to each side. Of points that are
   /// as deep up to the noise of a resting contact (a thousandth of the breaking threshold) the first is the farthest
-  /// out in a fixed direction, so that the choice is the same from step to step. O(p log p + p q), p points, q patches.
+  /// out in a fixed direction, so that the choice is the same from step to step. O(p (q + log p)), p points, q patches.
   void choose(int most, double breaking_threshold);
 
   [[nodiscard]] const Patch& operator[](int i) const { return patches_[static_cast<std::size_t>(i)]; }
@@ -48,11 +48,21 @@ class Patches {
     int piece;
     int patch;
   };
+  /// A point by how far it lies in some direction.
+  struct Place {
+    double along;
+    std::size_t point;
+    bool kept;
+  };
   void choose_in(int patch, double breaking_threshold);
+  /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
+  void keep_one_of_each(int patch, double merge);
 
   std::vector<Point> points_;
   std::vector<Patch> patches_;
   std::vector<const Point*> left_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> ranks_;
 };
 
 }  // namespace pd::detail

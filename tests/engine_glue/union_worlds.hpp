@@ -17,7 +17,7 @@ namespace pd::test {
 /// A world under pdepth's contacts by default, with the meshes and heights that its shapes point to.
 class UnionWorld {
  public:
-  explicit UnionWorld(bool ours = true) {
+  explicit UnionWorld(bool ours = true, const BulletSolverSettings& settings = {}) : solver(settings) {
     if (ours) install(bullet.world(), solver);
   }
 

@@ -46,6 +46,11 @@ struct BulletSolverSettings {
   /// Whether the contact algorithm takes the triangles of a mesh or heightfield and the children of a compound as one
   /// body: contacts with edges and faces inside of it are dropped (install.hpp). false: each piece is alone.
   bool unions_as_one = true;
+  /// With unions_as_one: a mesh or heightfield is the surface of a solid, and not a sheet. A triangle's front is where
+  /// its corners run counter-clockwise (of a heightfield, up). A body in front, or across an edge, meets it as ever;
+  /// one that stands through it, however far, leaves by the front; one that is behind it without touching it meets
+  /// nothing.
+  bool one_sided_meshes = false;
   /// Entries of the shape cache.
   std::size_t cache_capacity = 4096;
 
