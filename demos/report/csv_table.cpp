@@ -50,6 +50,8 @@ std::optional<double> number_of(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (*end != '\0' || !std::isfinite(value)) return std::nullopt;
+  // Digits that no double holds are a name, such as a hash.
+  if (std::abs(value) >= 0x1p53 && text.find_first_not_of("0123456789") == std::string::npos) return std::nullopt;
   return value;
 }
 

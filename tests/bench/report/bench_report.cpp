@@ -72,7 +72,7 @@ std::string solver_bars(const std::vector<std::string>& solvers, std::map<std::s
                                                    : report::quantity(1e-9 * time, "s");
     times.bars.push_back({name, time, shown, is_ours(name)});
     const double share = total.asked > 0 ? total.wrong / total.asked : 0;
-    wrong.bars.push_back({name, share, fmt::format("{:.0f} ({:.2g} %)", total.wrong, 100 * share), is_ours(name)});
+    wrong.bars.push_back({name, share, fmt::format("{:.0f} ({:.3g} %)", total.wrong, 100 * share), is_ours(name)});
   }
   return report::bar_chart(times) + report::bar_chart(wrong);
 }

@@ -28,6 +28,11 @@ TEST(CsvTable, QuotesAndUnits) {
   EXPECT_NE(section.find("href=\"t.csv\""), std::string::npos);
 }
 
+TEST(CsvTable, AHashIsAName) {
+  const std::string section = report::csv_section({"t", "T", "", "kind,hash\na,6022140760000000000\nb,12\n"});
+  EXPECT_NE(section.find(">6022140760000000000</td>"), std::string::npos) << section;
+}
+
 TEST(CsvTable, ChosenColumns) {
   const std::string section = report::csv_section({"t", "T", "", "a,b,c\n1,2,3\n", {"c", "a", "none"}});
   EXPECT_LT(section.find("<th>c</th>"), section.find("<th>a</th>"));
