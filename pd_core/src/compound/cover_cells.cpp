@@ -9,12 +9,36 @@ namespace pd::detail {
 
 namespace {
 
+constexpr int kDualSteps = 4;
+
 bool later(const CoverCell& x, const CoverCell& y) { return x.key != y.key ? x.key > y.key : x.order > y.order; }
 
 /// Of the cube's points the distance of the nearest to the origin.
 double distance(const CoverCell& cell) { return (cell.centre.cwiseAbs().array() - cell.half).max(0.0).matrix().norm(); }
 
 }  // namespace
+
+/// |x|^2 is least over {x in cube : <n, x> = d} where its Lagrange dual, the least of |x|^2 + 2 l (d - <n, x>) over the
+/// cube, is greatest. The dual bounds it from below for every l, so that no iteration has to converge.
+double distance_within(const RoughPlane& plane, const CoverCell& cell, double extent) {
+  const double slack = plane.slack + 0x1p-48 * extent;
+  const double plain = std::max(std::abs(plane.offset) - slack, cell.key);
+  const Eigen::Array3d low = cell.centre.array() - cell.half, high = cell.centre.array() + cell.half;
+  const Eigen::Array3d normal = plane.normal.array();
+  double multiplier = plane.offset, best = 0;
+  for (int step = 0; step < kDualSteps; ++step) {
+    const Eigen::Array3d x = (multiplier * normal).max(low).min(high);
+    const double missing = plane.offset - (normal * x).sum();
+    const double dual = (x * x).sum() + 2 * multiplier * missing - 2 * std::abs(multiplier) * slack -
+                        0x1p-46 * (extent + std::abs(multiplier)) * (extent + std::abs(multiplier));
+    best = std::max(best, dual);
+    // Newton's step: <n, x> grows with l along the coordinates that no side of the cube holds.
+    const double slope = ((x > low && x < high).select(normal * normal, 0.0)).sum();
+    if (!(slope > 0)) break;
+    multiplier += missing / slope;
+  }
+  return std::max(plain, std::sqrt(best) * (1 - 0x1p-50));
+}
 
 CoverCells::CoverCells(PartDifferences& differences, double reach, double known_lower)
     : differences_(differences), known_lower_(known_lower) {

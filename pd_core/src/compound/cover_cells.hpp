@@ -27,6 +27,10 @@ struct CoverCell {
   std::shared_ptr<const std::vector<std::int32_t>> pieces;
 };
 
+/// At most the distance from the origin to what lies of a facet's plane in a cube, rounding included.
+/// @param extent  of the differences.
+[[nodiscard]] double distance_within(const RoughPlane& plane, const CoverCell& cell, double extent);
+
 class CoverCells {
  public:
   /// Refers to the differences, and makes those it needs. The first cube holds the ball of radius `reach` about the

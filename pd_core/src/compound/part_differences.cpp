@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -36,46 +35,52 @@ RoughPlane rough_plane(const MinkowskiDifference& difference, const MinkowskiDif
   return plane;
 }
 
-/// The facets of one P_ij exactly, from the built convex difference.
-std::vector<DifferenceFacet> facets_of(const PosedShape& a, const PosedShape& b, const MinkowskiDifference& difference,
-                                       PlaneSet& planes) {
-  const PosedPair pair(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose);
-  std::vector<DifferenceFacet> facets;
-  // Edge from corner to corner -> the facet to its left.
-  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> left_of;
-  std::vector<Side> sides;
+/// The facets of one P_ij and how they hang together, from the built convex difference.
+std::vector<DifferenceFacet> facets_of(const MinkowskiDifference& difference) {
+  // Every edge, from corner to corner, and the facet to its left.
+  struct Edge {
+    std::int32_t from, to, left;
+    bool operator<(const Edge& other) const { return from != other.from ? from < other.from : to < other.to; }
+  };
+  std::vector<Edge> edges;
   for (std::size_t f = 0; f < difference.facets.size(); ++f) {
     const MinkowskiDifference::Facet& facet = difference.facets[f];
-    const auto corner = [&](std::int32_t k) {
-      return difference.corners[static_cast<std::size_t>(facet.first + k % facet.count)];
-    };
-    const auto vertex = [&](std::int32_t k) { return difference.vertices[static_cast<std::size_t>(corner(k))]; };
-    const auto v0 = vertex(0), v1 = vertex(facet.count / 3), v2 = vertex(2 * facet.count / 3);
-    const Dyadic3 normal = cross(pair.exact(PairVector::difference(v0.a, v0.b, v1.a, v1.b)),
-                                 pair.exact(PairVector::difference(v0.a, v0.b, v2.a, v2.b)));
-    const Dyadic offset = dot(pair.exact(PairVector::point(v0.a, v0.b)), normal);
-    sides.push_back(planes.add(normal * pair.homogeneous_factor(), offset));
-    for (std::int32_t k = 0; k < facet.count; ++k) left_of[{corner(k), corner(k + 1)}] = f;
-    DifferenceFacet entry;
-    entry.on_a = facet.on_a;
-    entry.on_b = facet.on_b;
-    entry.polygon.plane = sides.back();
-    facets.push_back(std::move(entry));
-  }
-  for (std::size_t f = 0; f < difference.facets.size(); ++f) {
-    const MinkowskiDifference::Facet& facet = difference.facets[f];
-    DifferenceFacet& entry = facets[f];
-    // Corner k lies between edge k and edge k + 1.
     for (std::int32_t k = 0; k < facet.count; ++k) {
-      const auto from = difference.corners[static_cast<std::size_t>(facet.first + k)];
-      const auto to = difference.corners[static_cast<std::size_t>(facet.first + (k + 1) % facet.count)];
-      entry.polygon.sides.push_back(sides[left_of.at({to, from})]);
-      const MinkowskiDifference::Vertex& v = difference.vertices[static_cast<std::size_t>(to)];
-      entry.corners.push_back({v.a, v.b});
+      edges.push_back({difference.corners[static_cast<std::size_t>(facet.first + k)],
+                       difference.corners[static_cast<std::size_t>(facet.first + (k + 1) % facet.count)],
+                       static_cast<std::int32_t>(f)});
     }
-    entry.polygon.update(planes);
+  }
+  // In the order of facets, and sorted.
+  std::vector<Edge> sorted = edges;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<DifferenceFacet> facets(difference.facets.size());
+  for (const Edge& edge : edges) {
+    DifferenceFacet& entry = facets[static_cast<std::size_t>(edge.left)];
+    entry.beyond.push_back(std::lower_bound(sorted.begin(), sorted.end(), Edge{edge.to, edge.from, 0})->left);
+    // Corner k lies between edge k and edge k + 1.
+    const MinkowskiDifference::Vertex& v = difference.vertices[static_cast<std::size_t>(edge.to)];
+    entry.corners.push_back({v.a, v.b});
+  }
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    facets[f].on_a = difference.facets[f].on_a;
+    facets[f].on_b = difference.facets[f].on_b;
   }
   return facets;
+}
+
+/// The plane of one of them.
+Side exact_plane(const PosedPair& pair, const MinkowskiDifference& difference, const MinkowskiDifference::Facet& facet,
+                 PlaneSet& planes) {
+  const auto vertex = [&](std::int32_t k) {
+    const std::int32_t corner = difference.corners[static_cast<std::size_t>(facet.first + k % facet.count)];
+    return difference.vertices[static_cast<std::size_t>(corner)];
+  };
+  const auto v0 = vertex(0), v1 = vertex(facet.count / 3), v2 = vertex(2 * facet.count / 3);
+  const Dyadic3 normal = cross(pair.exact(PairVector::difference(v0.a, v0.b, v1.a, v1.b)),
+                               pair.exact(PairVector::difference(v0.a, v0.b, v2.a, v2.b)));
+  const Dyadic offset = dot(pair.exact(PairVector::point(v0.a, v0.b)), normal);
+  return planes.add(normal * pair.homogeneous_factor(), offset);
 }
 
 }  // namespace
@@ -129,10 +134,30 @@ const PartDifference& PartDifferences::exactly(std::size_t k) {
   if (piece.made == PartDifference::Made::exactly) return piece;
   piece.made = PartDifference::Made::exactly;
   if (piece.flat) return piece;
-  piece.facets = facets_of(a_[static_cast<std::size_t>(piece.part_a)], b_[static_cast<std::size_t>(piece.part_b)],
-                           *piece.built, planes_);
-  piece.built.reset();
+  piece.facets = facets_of(*piece.built);
+  const PosedShape &a = a_[static_cast<std::size_t>(piece.part_a)], &b = b_[static_cast<std::size_t>(piece.part_b)];
+  piece.pair = std::make_shared<const PosedPair>(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose);
   return piece;
+}
+
+Side PartDifferences::side(std::size_t k, std::size_t f) {
+  exactly(k);
+  PartDifference& piece = pieces_[k];
+  DifferenceFacet& facet = piece.facets[f];
+  if (!facet.plane_known) {
+    facet.polygon.plane = exact_plane(*piece.pair, *piece.built, piece.built->facets[f], planes_);
+    facet.plane_known = true;
+  }
+  return facet.polygon.plane;
+}
+
+const PlanePolygon& PartDifferences::polygon(std::size_t k, std::size_t f) {
+  side(k, f);
+  DifferenceFacet& facet = pieces_[k].facets[f];
+  if (!facet.polygon.corners.empty()) return facet.polygon;
+  for (const std::int32_t g : facet.beyond) facet.polygon.sides.push_back(side(k, static_cast<std::size_t>(g)));
+  facet.polygon.update(planes_);
+  return facet.polygon;
 }
 
 Side PartDifferences::across_axis(int axis, int orientation, double at) {
@@ -146,7 +171,7 @@ Expected<PartDifferences> PartDifferences::build(PosedParts a, std::span<const B
                                                  std::int64_t max_facets) {
   PartDifferences result = find(a, boxes_a, b, boxes_b, scale_exponent, reach, max_facets);
   for (std::size_t k = 0; k < result.pieces_.size(); ++k) {
-    result.exactly(k);
+    for (std::size_t f = 0; f < result.exactly(k).facets.size(); ++f) result.polygon(k, f);
     if (result.limit_exceeded_) return Error{ErrorCode::limit_exceeded, "more facets than max_facets", "max_facets"};
   }
   std::erase_if(result.pieces_, [](const PartDifference& piece) { return piece.flat; });

@@ -19,11 +19,16 @@
 
 namespace pd::detail {
 
+class PosedPair;
+
+/// Its plane, and its polygon, are made when they are asked for: an exact plane costs a thousand times a rough one.
 struct DifferenceFacet {
   PlanePolygon polygon;
+  bool plane_known = false;
   Feature on_a;
   Feature on_b;
-  std::vector<VertexPair> corners;  ///< of the loop, as the polygon's
+  std::vector<VertexPair> corners;   ///< of the loop, as the polygon's
+  std::vector<std::int32_t> beyond;  ///< the facet on the other side of each edge
 };
 
 /// A facet's plane in doubles (inside lengths). Beyond the plane of the facet where <normal, x> > offset + slack,
@@ -43,7 +48,8 @@ struct PartDifference {
   bool flat = false;                                 ///< it has no interior; known once it is made
   std::vector<RoughPlane> planes;                    ///< one a facet
   std::vector<DifferenceFacet> facets;               ///< exact
-  std::shared_ptr<const MinkowskiDifference> built;  ///< between the two
+  std::shared_ptr<const MinkowskiDifference> built;  ///< once it is made
+  std::shared_ptr<const PosedPair> pair;             ///< once facets are
   Vec3 low = Vec3::Zero();                           ///< a box that holds it, rounded outwards
   Vec3 high = Vec3::Zero();
 };
@@ -73,6 +79,9 @@ class PartDifferences {
   /// stays empty and `limit_exceeded` holds from then on.
   const PartDifference& roughly(std::size_t k);
   const PartDifference& exactly(std::size_t k);
+  /// The plane of facet f of P_k, exactly; and its polygon, with corners in doubles.
+  Side side(std::size_t k, std::size_t f);
+  const PlanePolygon& polygon(std::size_t k, std::size_t f);
   [[nodiscard]] bool limit_exceeded() const { return limit_exceeded_; }
   /// Facets made so far, in doubles or exactly.
   [[nodiscard]] std::int64_t num_facets() const { return num_facets_; }

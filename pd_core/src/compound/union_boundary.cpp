@@ -20,17 +20,28 @@ UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
 }
 
 bool UnionBoundary::subtract(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once) {
-  const PartDifference& piece = differences_.pieces()[k];
+  const std::vector<RoughPlane>& rough = differences_.exactly(k).planes;
+  const double rounding = 2 * polygon.error + 0x1p-48 * differences_.extent();
   rest_.clear();
-  for (const DifferenceFacet& f : piece.facets) {
-    const Side side = f.polygon.plane;
-    // A P_k on the same side of the plane covers nothing.
-    if (side == polygon.plane && !(once && k < own)) return false;
-  }
   PlanePolygon left = polygon;
-  for (const DifferenceFacet& f : piece.facets) {
+  for (std::size_t f = 0; f < rough.size(); ++f) {
+    // Doubles tell of most planes on which side of them the polygon lies.
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Vec3& x : left.corners) {
+      const double height = rough[f].normal.dot(x) - rough[f].offset;
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    const double slack = rough[f].slack + std::max(rounding, 2 * left.error);
+    if (high < -slack) continue;
+    Cut result = Cut::outside;
     PlanePolygon inner, outer;
-    switch (cut(planes_, left, f.polygon.plane, inner, &outer)) {
+    if (!(low > slack)) {
+      const Side side = differences_.side(k, f);
+      // A P_k on the same side of the plane covers nothing.
+      if (!(side == polygon.plane && !(once && k < own))) result = cut(planes_, left, side, inner, &outer);
+    }
+    switch (result) {
       case Cut::outside:
         rest_.clear();
         return false;
@@ -47,8 +58,8 @@ bool UnionBoundary::subtract(const PlanePolygon& polygon, std::size_t own, std::
 }
 
 std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped, double tolerance,
-                                       std::span<const std::int32_t> among) const {
-  const std::vector<PartDifference>& pieces = differences_.pieces();
+                                       std::span<const std::int32_t> among) {
+  const double rounding = 0x1p-48 * differences_.extent();
   std::ptrdiff_t best = -1;
   double least = HUGE_VAL;
   for (const std::int32_t which : among) {
@@ -59,14 +70,18 @@ std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped,
         x.y() - box.high.y() > tolerance || box.low.z() - x.z() > tolerance || x.z() - box.high.z() > tolerance) {
       continue;
     }
-    const PartDifference& piece = pieces[k];
+    const PartDifference& piece = differences_.roughly(k);
+    if (piece.flat) continue;
     double highest = -HUGE_VAL;
-    const double limit = std::min(tolerance, least);
-    for (const DifferenceFacet& f : piece.facets) {
-      highest = std::max(highest, planes_.height(f.polygon.plane, x));
-      if (highest > limit) break;
+    for (const RoughPlane& plane : piece.planes) {
+      const double height = plane.normal.dot(x) - plane.offset;
+      highest = std::max(highest, height);
+      if (highest > least || height - plane.slack - rounding > tolerance) {
+        highest = HUGE_VAL;
+        break;
+      }
     }
-    if (highest <= tolerance && highest < least) {
+    if (highest < least) {
       least = highest;
       best = static_cast<std::ptrdiff_t>(k);
     }
@@ -77,14 +92,11 @@ std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped,
 bool UnionBoundary::contained_in_recent(const PlanePolygon& polygon) {
   const double slack = 2 * polygon.error + 0x1p-44 * differences_.extent();
   for (std::size_t i = 0; i < recent_.size(); ++i) {
-    const std::size_t k = recent_[i];
-    const auto& facets = differences_.pieces()[k].facets;
-    const bool inside = std::all_of(facets.begin(), facets.end(), [&](const DifferenceFacet& f) {
-      const Side s = f.polygon.plane;
-      const Vec3 normal = planes_.normal(s) * planes_.inverse_length(s);
-      const double limit = planes_.offset(s) * planes_.inverse_length(s) - slack;
+    const auto& planes = differences_.pieces()[recent_[i]].planes;
+    const bool inside = std::all_of(planes.begin(), planes.end(), [&](const RoughPlane& plane) {
+      const double limit = plane.offset - plane.slack - slack;
       return std::all_of(polygon.corners.begin(), polygon.corners.end(),
-                         [&](const Vec3& x) { return normal.dot(x) < limit; });
+                         [&](const Vec3& x) { return plane.normal.dot(x) < limit; });
     });
     if (inside) {
       std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
@@ -232,12 +244,13 @@ bool UnionBoundary::outside_all(const Vec3& x) const {
                     [&](const RoughPlane& p) { return p.normal.dot(x) - p.offset > p.slack + rounding; })) {
       continue;
     }
-    const PartDifference& piece = differences_.exactly(k);
-    if (piece.flat) continue;
-    if (std::all_of(piece.facets.begin(), piece.facets.end(),
-                    [&](const DifferenceFacet& f) { return planes_.sign_at_point(f.polygon.plane, x) <= 0; })) {
-      return false;
+    if (differences_.exactly(k).flat) continue;
+    bool outside = false;
+    for (std::size_t f = 0; f < planes.size() && !outside; ++f) {
+      if (planes[f].normal.dot(x) - planes[f].offset < -planes[f].slack - rounding) continue;
+      outside = planes_.sign_at_point(differences_.side(k, f), x) > 0;
     }
+    if (!outside) return false;
   }
   return true;
 }

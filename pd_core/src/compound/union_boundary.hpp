@@ -96,7 +96,7 @@ class UnionBoundary {
   bool subtract(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once);
   /// The deepest P_k of `among`, not subtracted yet, that holds x within the tolerance; -1: none.
   [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const ClippedSet& clipped, double tolerance,
-                                        std::span<const std::int32_t> among) const;
+                                        std::span<const std::int32_t> among);
 
   /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
   bool split_one(Cell& cell, std::vector<Cell>& open);

@@ -81,7 +81,7 @@ class UnionBoundary::NearestSearch {
       if (piece.flat) continue;
       among_.push_back(which);
       for (std::size_t f = 0; f < piece.planes.size(); ++f) {
-        if (crosses(piece.planes[f], cell)) crossing.emplace_back(k, f);
+        if (crosses(piece.planes[f], cell) && !farther(piece.planes[f], cell)) crossing.emplace_back(k, f);
       }
     }
     if (crossing.empty()) return;
@@ -90,9 +90,8 @@ class UnionBoundary::NearestSearch {
       walls.push_back(differences.across_axis(axis, 1, cell.centre[axis] + cell.half));
       walls.push_back(differences.across_axis(axis, -1, cell.centre[axis] - cell.half));
     }
-    for (const std::int32_t k : among_) differences.exactly(static_cast<std::size_t>(k));
     for (const auto& [k, f] : crossing) {
-      if (auto part = part_inside(differences.pieces()[k].facets[f].polygon, walls)) {
+      if (auto part = part_inside(differences.polygon(k, f), walls)) {
         add({{k, f, *std::move(part), Vec3::Zero()}, boundary_.own(k)});
       }
     }
@@ -101,6 +100,12 @@ class UnionBoundary::NearestSearch {
   [[nodiscard]] bool crosses(const RoughPlane& plane, const CoverCell& cell) const {
     const double height = plane.normal.dot(cell.centre) - plane.offset;
     return !(std::abs(height) > cell.half * plane.normal.lpNorm<1>() + plane.slack + 0x1p-48 * scale_);
+  }
+
+  /// Whether what the cube holds of a facet's plane is no nearer than the best point so far, for certain: of most
+  /// facets that cross the cubes near the answer, which need not be made exactly then.
+  [[nodiscard]] bool farther(const RoughPlane& plane, const CoverCell& cell) const {
+    return best_key_ < HUGE_VAL && distance_within(plane, cell, scale_) >= best_key_;
   }
 
   [[nodiscard]] std::optional<PlanePolygon> part_inside(PlanePolygon polygon, const std::vector<Side>& walls) const {
