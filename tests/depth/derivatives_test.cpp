@@ -150,6 +150,24 @@ TEST(Derivatives, DifferencesAcrossARunnerUpAreNoDerivative) {
   EXPECT_GT(g.gradient_error, 1e-2);
 }
 
+/// A lean of 1e-5 from a normal that all but crosses a disc, or that meets a flat ellipsoid, covers an arc longer than
+/// a flat must be; it bends all the same.
+TEST(Derivatives, ArcsNextToTheNormalAreNoFlats) {
+  Scratch scratch;
+  // A cone's rim, 1.4 degrees off its disc, over the side of another cone.
+  const oracle::PosedPairCase rim = oracle::derivative_case(DerivativeFamily::curved, 2306, 2323);
+  const ConvexShape lens = *ConvexShape::ellipsoid({.7, .9, .02}), ball = *ConvexShape::ellipsoid({.5, .8, .6});
+  const ConvexShape hat = *ConvexShape::cone(.8, .005, 2), egg = *ConvexShape::ellipsoid({.5, .4, .6});
+  const Pose tilted = *Pose::from_matrix(Eigen::AngleAxisd(.4, Vec3(.6, .8, 0)).toRotationMatrix(), {.3, .1, 1.2});
+  for (const auto& pair : {rim, oracle::PosedPairCase{"lens", lens, ball, {}, tilted},
+                           oracle::PosedPairCase{"hat", hat, egg, {}, tilted}}) {
+    const oracle::GradientJudgement g = judge_gradient(pair, 1e-5, scratch);
+    EXPECT_TRUE(g.one_feature_slope) << pair.kind;
+    EXPECT_TRUE(g.derivatives.stable_features) << pair.kind;
+    EXPECT_LT(g.feature_error, 5e-3) << pair.kind;
+  }
+}
+
 TEST(Derivatives, FlagTiesAsTheyWereBuilt) {
   Scratch scratch;
   for (std::uint64_t i = 0; i < 12 * oracle::kTieKinds; ++i) {

@@ -220,12 +220,29 @@ class FirstOrder {
   Eigen::FullPivLU<System> solver_;
 };
 
-void differentiate_features(const Meeting& m, double margin_a, double margin_b, DepthDerivatives& out) {
-  const Side& a = m.sides[0];
-  const Side& b = m.sides[1];
-  const double reach = m.tolerance.reach_of_points * m.size;
-  if (!out.unique_witness || a.flats + b.flats > 2) return;
-  if ((a.flats > 0 && a.inside <= reach) || (b.flats > 0 && b.inside <= reach)) return;
+/// Within `kCurvedLean` of the normal a curved body shows arcs, too: a rim next to its disc, a flat ellipsoid. They
+/// bend, and are no flats.
+/// @return whether the curvature is the same, to a hundredth, within that lean.
+bool tell_arcs_from_flats(Side& side) {
+  if (!side.core.curved()) return true;
+  side.flats = std::min(side.flats, side.core.straight_dimensions(side.outward, kCurvedLean));
+  if (side.flats == 2) return true;
+  const Mat3 here = side.core.curvature(side.outward, side.witness);
+  const Vec3 u = side.outward.unitOrthogonal(), v = side.outward.cross(u);
+  for (const Vec3& aside : {u, v, Vec3(-u), Vec3(-v)}) {
+    const Mat3 there = side.core.curvature(side.outward + kCurvedLean * aside, side.witness);
+    if (!((there - here).norm() <= .01 * here.norm())) return false;
+  }
+  return true;
+}
+
+void differentiate_features(Meeting& m, double margin_a, double margin_b, DepthDerivatives& out) {
+  if (!out.unique_witness) return;
+  for (Side& side : m.sides) {
+    if (!tell_arcs_from_flats(side)) return;
+    if (side.flats > 0 && side.inside <= m.tolerance.reach_of_points * m.size) return;
+  }
+  if (m.sides[0].flats + m.sides[1].flats > 2) return;
   FirstOrder conditions(m);
   if (!conditions.determined()) return;
   out.stable_features = true;

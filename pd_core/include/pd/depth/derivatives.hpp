@@ -54,8 +54,9 @@ struct DepthDerivatives {
   /// L from the witnesses, faces each other within tie * L (sideways, too).
   bool unique_witness = false;
   /// `unique_witness`, each witness is farther than reach_of_points * L from the rim of its body's face across the
-  /// normal, and the conditions determine the derivatives of normal and witnesses (not the normal of a ball in a
-  /// concentric one).
+  /// normal, the curvature of curved bodies is the same to a hundredth within 1e-5 radians of it (not next to a disc,
+  /// where a rim bends ever faster), and the conditions determine the derivatives of normal and witnesses (not the
+  /// normal of a ball in a concentric one).
   bool stable_features = false;
 
   PoseGradient by_a;  ///< of signed_depth: translation where unique_direction, rotation where unique_witness
@@ -88,7 +89,7 @@ inline constexpr TieTolerance kCurvedTie{1e-11, 1e-4, 1e-4};
 /// about 1e-5 for curved bodies (their normal is known to sqrt(2e-12) radians); `derivative_pairs` measures both. The
 /// derivatives of normal and witnesses of curved bodies come from the curvature at a normal known to that only, and are
 /// measured (its columns "feat."), not bounded: differences over steps of 1e-3 agree to 9e-3 for 99 % of the pairs,
-/// which is the noise of these differences, and to .29 at worst. Time: the query, and some hundred supports of P for
+/// which is the noise of these differences, and to 5e-2 at worst. Time: the query, and some hundred supports of P for
 /// the flags where the cores overlap; more for near ties.
 [[nodiscard]] DepthDerivatives depth_derivatives(const PosedShape& a, const PosedShape& b, Scratch& scratch);
 

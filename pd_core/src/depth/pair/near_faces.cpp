@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "depth/difference/smooth_difference.hpp"
+#include "numeric/length.hpp"
 #include "shape/support/polytope_support.hpp"
 
 namespace pd::detail {
@@ -98,6 +99,29 @@ struct LocalCurvature {
   }
 };
 
+struct StraightDimensions {
+  Vec3 outward;
+  double lean;
+
+  int operator()(const Ellipsoid&) const { return 0; }
+  int operator()(const Cylinder& c) const {
+    if (radial(c.axis) <= lean) return 2;
+    return std::abs(outward[c.axis]) <= lean ? 1 : 0;
+  }
+  int operator()(const Cone& c) const {
+    if (radial(c.axis) <= lean) return outward[c.axis] < 0 ? 2 : 0;
+    const double along = c.radius * radial(c.axis) - 2 * c.half_height * outward[c.axis];
+    return std::abs(along) <= lean * length(c.radius, 2 * c.half_height) ? 1 : 0;
+  }
+  int operator()(const ConvexPolytope&) const { return 2; }
+
+  [[nodiscard]] double radial(int axis) const {
+    Vec3 flat = outward;
+    flat[axis] = 0;
+    return flat.norm();
+  }
+};
+
 }  // namespace
 
 PosedCore::PosedCore(const PosedShape& body, const Vec3& origin)
@@ -145,6 +169,10 @@ void PosedCore::near_face(const Vec3& outward, double height, double lean, std::
 Mat3 PosedCore::curvature(const Vec3& outward, const Vec3& point) const {
   const LocalCurvature local{rotation_.transpose() * outward, rotation_.transpose() * (point - offset_)};
   return rotation_ * std::visit(local, *core_) * rotation_.transpose();
+}
+
+int PosedCore::straight_dimensions(const Vec3& outward, double lean) const {
+  return std::visit(StraightDimensions{rotation_.transpose() * outward, lean}, *core_);
 }
 
 PlaneFace::PlaneFace(const std::vector<Vec3>& points, const Vec3& centre, const std::array<Vec3, 2>& across) {

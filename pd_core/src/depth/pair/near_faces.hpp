@@ -22,6 +22,9 @@ class PosedCore {
   /// The second derivative of a curved core's support function at `outward`, across the flat directions that the core
   /// has at its point `point` there; 0 for polytopes. Requires that the face there is no disc.
   [[nodiscard]] Mat3 curvature(const Vec3& outward, const Vec3& point) const;
+  /// Of a curved core's face across a direction within `lean` of `outward`: 2 a disc, 1 a line from rim to rim or apex,
+  /// 0 a point.
+  [[nodiscard]] int straight_dimensions(const Vec3& outward, double lean) const;
   [[nodiscard]] bool curved() const { return polytope_ == nullptr; }
 
  private:
