@@ -1,5 +1,10 @@
 #include "record_shapes.hpp"
 
+#include <BulletCollision/CollisionShapes/btBox2dShape.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btConvex2dShape.h>
+#include <BulletCollision/CollisionShapes/btUniformScalingShape.h>
+
 #include <bit>
 #include <vector>
 
@@ -56,6 +61,26 @@ struct WriteCore {
   }
 };
 
+/// Of a box to its corners; none of other shapes.
+std::optional<Vec3> half_extents(const btConvexShape& shape) {
+  switch (shape.getShapeType()) {
+    case BOX_SHAPE_PROXYTYPE:
+      return to_pd(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
+    case BOX_2D_SHAPE_PROXYTYPE:
+      return to_pd(static_cast<const btBox2dShape&>(shape).getHalfExtentsWithMargin());
+    case CONVEX_2D_SHAPE_PROXYTYPE:
+      return half_extents(*static_cast<const btConvex2dShape&>(shape).getChildShape());
+    case UNIFORM_SCALING_SHAPE_PROXYTYPE: {
+      const auto& scaled = static_cast<const btUniformScalingShape&>(shape);
+      auto half = half_extents(*scaled.getChildShape());
+      if (half) *half *= static_cast<double>(scaled.getUniformScalingFactor());
+      return half;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
 void write(pd_record& record, const std::string& id, const ConvexShape& shape) {
   std::visit(WriteCore{record, id.c_str(), shape.margin()}, shape.core());
 }
@@ -78,11 +103,20 @@ std::optional<std::string> RecordShapes::convex(pd_record& record, const btConve
   return known(number, [&](const std::string& id) { write(record, id, *body); });
 }
 
-std::optional<std::string> RecordShapes::sharp_box(pd_record& record, const btBoxShape& shape) {
-  const Vec3 half = to_pd(shape.getHalfExtentsWithMargin());
-  if (!(half.minCoeff() > 0)) return std::nullopt;
-  return known(Number(0xB0C5).add(half).value(),
-               [&](const std::string& id) { pd_record_box(&record, id.c_str(), half.data(), 0); });
+std::optional<std::string> RecordShapes::sharp(pd_record& record, const btConvexShape& shape) {
+  const auto half = half_extents(shape);
+  if (!half) return convex(record, shape);
+  Number number(0xB0C5);
+  if (half->minCoeff() > 0) {
+    return known(number.add(*half).value(),
+                 [&](const std::string& id) { pd_record_box(&record, id.c_str(), half->data(), 0); });
+  }
+  std::vector<double> corners;  // a rectangle
+  for (int i = 0; i < 8; ++i) {
+    for (int axis = 0; axis < 3; ++axis) corners.push_back(((i >> axis) & 1) != 0 ? (*half)[axis] : -(*half)[axis]);
+  }
+  return known(number.add(*half).value(),
+               [&](const std::string& id) { pd_record_convex(&record, id.c_str(), corners.data(), 8, 0); });
 }
 
 std::string RecordShapes::plane(pd_record& record, const btStaticPlaneShape& shape) {

@@ -2,7 +2,6 @@
 /// The shapes of a contact record: each written once, before the first contact that names it.
 #pragma once
 
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
@@ -20,7 +19,8 @@ class RecordShapes {
  public:
   /// Ids of shapes, which are written when they are new. Empty where a shape has no exact form.
   std::optional<std::string> convex(pd_record& record, const btConvexShape& shape);
-  std::optional<std::string> sharp_box(pd_record& record, const btBoxShape& shape);
+  /// Boxes, those of the plane, and what scales them, without the round corners of a margin; other shapes as `convex`.
+  std::optional<std::string> sharp(pd_record& record, const btConvexShape& shape);
   std::string plane(pd_record& record, const btStaticPlaneShape& shape);
   /// A triangle, as the caller converted it.
   std::string triangle(pd_record& record, const ConvexShape& triangle);

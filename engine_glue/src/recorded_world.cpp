@@ -1,7 +1,9 @@
 #include "recorded_world.hpp"
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btBox2dBox2dCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btConvex2dConvex2dAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btSphereTriangleCollisionAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
@@ -83,6 +85,12 @@ bool algorithm_is(btCollisionDispatcher& dispatcher, const btCollisionObject& a,
   return found;
 }
 
+/// Bullet's algorithms for shapes of the plane, if a host registers them: what they answer is no depth in space.
+bool answers_in_the_plane(const btCollisionAlgorithm& algorithm) {
+  return dynamic_cast<const btBox2dBox2dCollisionAlgorithm*>(&algorithm) != nullptr ||
+         dynamic_cast<const btConvex2dConvex2dAlgorithm*>(&algorithm) != nullptr;
+}
+
 bool is_box(const btCollisionShape& shape) { return shape.getShapeType() == BOX_SHAPE_PROXYTYPE; }
 
 /// A ball meets triangles without their margin where Bullet's own algorithm for these answers.
@@ -100,8 +108,8 @@ bool meets_bare_triangles(btCollisionDispatcher& dispatcher, const btCollisionOb
   });
 }
 
-/// Which boxes are taken without their margin: against planes, by Bullet's and our algorithm for two boxes, and as
-/// children of compounds by ours.
+/// Which boxes are taken without their margin: against planes (where Bullet asks a shape for its own support), by
+/// Bullet's and our algorithm for two boxes, and as children of compounds by ours.
 struct SharpBoxes {
   bool a = false;
   bool b = false;
@@ -109,8 +117,8 @@ struct SharpBoxes {
 SharpBoxes sharp_boxes(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& leaf_a,
                        const btCollisionObject& b, const btCollisionShape& leaf_b) {
   const auto is_plane = [](const btCollisionShape& shape) { return shape.getShapeType() == STATIC_PLANE_PROXYTYPE; };
-  if (!is_box(leaf_a) && !is_box(leaf_b)) return {};
   if (is_plane(leaf_a) || is_plane(leaf_b)) return {true, true};
+  if (!is_box(leaf_a) && !is_box(leaf_b)) return {};
   if (is_box(leaf_a) && is_box(leaf_b)) {
     const bool rounded = algorithm_is(dispatcher, a, leaf_a, b, leaf_b, [](const btCollisionAlgorithm& algorithm) {
       return dynamic_cast<const btConvexConvexAlgorithm*>(&algorithm) != nullptr;
@@ -125,7 +133,8 @@ SharpBoxes sharp_boxes(btCollisionDispatcher& dispatcher, const btCollisionObjec
     const auto* own = dynamic_cast<const ContactAlgorithm*>(&algorithm);
     return own != nullptr && own->sharp_parts();
   });
-  return {parts && a.getCollisionShape()->isCompound(), parts && b.getCollisionShape()->isCompound()};
+  return {parts && is_box(leaf_a) && a.getCollisionShape()->isCompound(),
+          parts && is_box(leaf_b) && b.getCollisionShape()->isCompound()};
 }
 
 }  // namespace
@@ -237,7 +246,7 @@ void RecordedWorld::write_pair(btBroadphasePair& pair) {
     const int type = object.getCollisionShape()->getShapeType();
     return type == GIMPACT_SHAPE_PROXYTYPE || btBroadphaseProxy::isSoftBody(type);
   };
-  if (unknown(*a) || unknown(*b)) {
+  if (unknown(*a) || unknown(*b) || answers_in_the_plane(*pair.m_algorithm)) {
     ++unsupported_;
     return;
   }
@@ -278,10 +287,8 @@ RecordedPart RecordedWorld::part_of(const btCollisionObject& object, int part, i
   if (leaf == nullptr || !leaf->isConvex()) return {std::nullopt, pose};
   const btTransform stands =
       shape.isCompound() ? pose * static_cast<const btCompoundShape&>(shape).getChildTransform(index) : pose;
-  if (sharp && leaf->getShapeType() == BOX_SHAPE_PROXYTYPE) {
-    return {shapes_.sharp_box(record_, static_cast<const btBoxShape&>(*leaf)), stands};
-  }
-  return {shapes_.convex(record_, static_cast<const btConvexShape&>(*leaf)), stands};
+  const auto& convex = static_cast<const btConvexShape&>(*leaf);
+  return {sharp ? shapes_.sharp(record_, convex) : shapes_.convex(record_, convex), stands};
 }
 
 void RecordedWorld::write_group(const btCollisionObject& a, const btCollisionObject& b, const Group& group) {

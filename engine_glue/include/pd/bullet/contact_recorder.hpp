@@ -36,13 +36,15 @@ struct ContactRecorderSettings {
 /// A is the manifold's first body.
 ///
 /// Shapes are what Bullet's narrow phase means by them (`shape_conversion.hpp`); boxes are sharp where Bullet takes
-/// them so: against planes, against boxes under Bullet's own box/box algorithm or ours, and as children of compounds
-/// under ours (`BulletSolverSettings::unions_as_one`). A child or triangle is judged as if it were alone, although our
-/// contacts are those of the whole. A sphere meets a triangle under Bullet's own algorithm for these without the mesh's
-/// margin. The trial steps of a `RollbackStepper` are steps, too, and are recorded.
+/// them so: against planes (boxes of the plane and scaled ones, too), against boxes under Bullet's own box/box
+/// algorithm or ours, and as children of compounds under ours (`BulletSolverSettings::unions_as_one`). A child or
+/// triangle is judged as if it were alone, although our contacts are those of the whole. A sphere meets a triangle
+/// under Bullet's own algorithm for these without the mesh's margin. The trial steps of a `RollbackStepper` are steps,
+/// too, and are recorded.
 ///
 /// Not written, but counted as `unsupported`: shapes without exact form, compounds in compounds, meshes in compounds,
-/// soft bodies, GImpact meshes. Dispatchers of several threads are served, one at a time.
+/// soft bodies, GImpact meshes, pairs that Bullet's algorithms for the plane answer where a host registers them.
+/// Dispatchers of several threads are served, one at a time.
 class ContactRecorder {
  public:
   /// Creates the file. @param world  must outlive the recorder; so must its dispatcher, a btCollisionDispatcher with no
