@@ -302,6 +302,9 @@ CLI::App* add_dobkin(CLI::App& app, DobkinSettings& o) {
       app.add_subcommand("dobkin", "the bounds of Dobkin, Hershberger, Kirkpatrick and Suri 1993, claim by claim");
   command->add_option("--seed", o.seed, "seed of bodies and directions")->capture_default_str();
   command->add_option("--chapters", o.chapters, dobkin_chapters())->delimiter(',');
+  command->add_option("--families", o.families, "of the chapter hierarchy")
+      ->delimiter(',')
+      ->check(CLI::IsMember(hierarchy_families()));
   command->add_option("--out", o.out, "folder for the table (CSV, Markdown) and the points");
   command->add_flag("--full", o.full, "up to 2^20 vertices; otherwise under a minute");
   add_report(*command, o.report.folder);

@@ -61,7 +61,9 @@ void BoundaryQuery::add_ray_items() {
       const Point2 middle = {x.x.value / x.w.value, x.y.value / x.w.value};
       const double error = std::max((x.x.error + std::abs(middle[0]) * x.w.error) / w + 0x1p-52 * std::abs(middle[0]),
                                     (x.y.error + std::abs(middle[1]) * x.w.error) / w + 0x1p-52 * std::abs(middle[1]));
-      if (w > 0 && error <= 0x1p-40 * ends.size) {
+      // Crossings at small angles err by more than others; the size says by how much, so that they are good all the
+      // same.
+      if (w > 0 && error <= 0x1p-24 * ends.size) {
         *rounded = middle;
         ends.size = std::max(ends.size, 0x1p52 * error);
       } else {

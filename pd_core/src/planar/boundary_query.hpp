@@ -37,9 +37,9 @@ class BoundaryQuery {
   /// `touched`: where it lies on the boundary. Found by the first crossing of a ray; where that is in doubt, by the
   /// convex sums themselves.
   [[nodiscard]] PlanarContact contact(const Point2& y, std::optional<BoundaryPoint>* touched = nullptr) const;
-  /// Class and first point of the boundary on the ray from y along d, in one search.
+  /// Class and first point of the boundary on the ray from y along d, in one search. `boxes` counts those looked into.
   [[nodiscard]] PlanarContact contact_and_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& touched,
-                                              std::optional<BoundaryPoint>& hit) const;
+                                              std::optional<BoundaryPoint>& hit, std::int64_t* boxes = nullptr) const;
   /// The nearest point of the boundary (of loop 0 alone); among equals the one that is least by its coordinates.
   [[nodiscard]] std::optional<BoundaryPoint> nearest(const Point2& y, bool outer_only) const;
   /// The first point of the boundary (of loop 0 alone) on the ray from y.
@@ -70,7 +70,8 @@ class BoundaryQuery {
   /// The class of y by the first stretch that the ray along d crosses: R lies on the left of it. Nothing where the ray
   /// begins on the boundary, or its first meeting with it is no crossing inside one edge.
   [[nodiscard]] std::optional<PlanarContact> contact_by_ray(const Point2& y, const Point2& d,
-                                                            std::optional<BoundaryPoint>& hit) const;
+                                                            std::optional<BoundaryPoint>& hit,
+                                                            std::int64_t* boxes = nullptr) const;
   void add_ray_items();
   void search_ray(RaySearch& search, const Point2& d, bool outer_only) const;
   [[nodiscard]] PlanarContact contact_by_sums(const Point2& y, std::optional<BoundaryPoint>* touched) const;

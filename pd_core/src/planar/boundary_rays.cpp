@@ -35,7 +35,7 @@ bool beside_line(const RoundedRay& ray, const Span& e) {
 /// 4.5 are the boxes of arcs, shot through by halving).
 void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_only) const {
   const RoundedRay ray(search.ray().s.p, d);
-  ray_tree_.visit(ray, search.limit(), [&](std::int32_t i) {
+  search.boxes += ray_tree_.visit(ray, search.limit(), [&](std::int32_t i) {
     const Stretch& s = boundary_.stretches()[at(i)];
     if (outer_only && s.loop != 0) return;
     const EdgeEnds& ends = ends_[at(i)];
@@ -68,9 +68,11 @@ std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const 
 }
 
 std::optional<PlanarContact> BoundaryQuery::contact_by_ray(const Point2& y, const Point2& d,
-                                                           std::optional<BoundaryPoint>& hit) const {
+                                                           std::optional<BoundaryPoint>& hit,
+                                                           std::int64_t* boxes) const {
   RaySearch search(y, d);
   search_ray(search, d, false);
+  if (boxes != nullptr) *boxes += search.boxes;
   if (!search.best()) return PlanarContact::separated;  // the ray goes to infinity, and y is not on the boundary
   const RayHit& best = *search.best();
   hit = best.point;
@@ -83,8 +85,8 @@ std::optional<PlanarContact> BoundaryQuery::contact_by_ray(const Point2& y, cons
 }
 
 PlanarContact BoundaryQuery::contact_and_hit(const Point2& y, const Point2& d, std::optional<BoundaryPoint>& touched,
-                                             std::optional<BoundaryPoint>& hit) const {
-  if (const auto found = contact_by_ray(y, d, hit)) return *found;
+                                             std::optional<BoundaryPoint>& hit, std::int64_t* boxes) const {
+  if (const auto found = contact_by_ray(y, d, hit, boxes)) return *found;
   return contact_by_sums(y, &touched);
 }
 

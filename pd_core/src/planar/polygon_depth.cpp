@@ -93,12 +93,13 @@ PolygonDepth PolygonDifference::straight_escape_depth(const Point2& placement) c
   return answer;
 }
 
-PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point2& direction, Leave leave) const {
+PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point2& direction, Leave leave,
+                                            std::int64_t* boxes) const {
   const State& s = *state_;
   const Point2 y = s.turned(placement), d = s.turned(direction);
   PolygonDepth answer;
   std::optional<BoundaryPoint> touched, first;
-  answer.contact = s.query.contact_and_hit(y, d, touched, first);
+  answer.contact = s.query.contact_and_hit(y, d, touched, first, boxes);
   const detail::Span ray{detail::BoundaryQuery::point(y), {{0, 0}, d}, {}};
   if (leave == Leave::straight) {
     if (const auto out = s.query.last_exit(y, d)) {

@@ -42,6 +42,8 @@ class RaySearch {
   [[nodiscard]] const double& limit() const { return limit_; }
   /// The best one's parameter is met by no other stretch.
   [[nodiscard]] bool unique() const { return unique_; }
+  /// Boxes of the tree that were looked into.
+  std::int64_t boxes = 0;
   [[nodiscard]] int sign(const RayHit& hit) const {
     if (hit.low > 0) return 1;
     if (hit.high < 0) return -1;

@@ -48,16 +48,27 @@ class TurnedBoxes {
   explicit TurnedBoxes(const std::vector<Item>& items);
 
   /// Calls item(i) for what the ray may meet at parameters in [0, limit], nearest boxes first; `limit` may fall.
+  /// @return boxes looked into.
   template <class Visit>
-  void visit(const RoundedRay& ray, const double& limit, const Visit& item) const {
-    if (node_.empty()) return;
+  std::int64_t visit(const RoundedRay& ray, const double& limit, const Visit& item) const {
+    if (node_.empty()) return 0;
+    std::int64_t boxes = 1;
     struct Waiting {
       std::int32_t node;
       double entry;
     };
-    std::array<Waiting, 64> stack;  // the tree halves: its depth is below 32
+    // Nearest last. Boxes overlap, and to go down into one before a nearer one that waits cost rays that leave at once
+    // hundreds of boxes. When many wait, the tree's own order is kept, which needs one place a level: below 32.
+    constexpr std::size_t kSorted = 64;
+    std::array<Waiting, kSorted + 32> stack;
     std::size_t top = 0;
-    stack[top++] = {0, entry(node_[0], ray, limit)};
+    const auto push = [&](const Waiting& w) {
+      if (!(w.entry < kNever)) return;
+      std::size_t at = top++;
+      for (; at > 0 && at < kSorted && stack[at - 1].entry < w.entry; --at) stack[at] = stack[at - 1];
+      stack[at] = w;
+    };
+    push({0, entry(node_[0], ray, limit)});
     while (top > 0) {
       const Waiting w = stack[--top];
       if (!(w.entry <= limit)) continue;
@@ -66,12 +77,11 @@ class TurnedBoxes {
         for (std::int32_t i = node.begin; i < node.end; ++i) item(item_[static_cast<std::size_t>(i)]);
         continue;
       }
-      Waiting near{w.node + 1, entry(node_[static_cast<std::size_t>(w.node) + 1], ray, limit)};
-      Waiting far{node.right, entry(node_[static_cast<std::size_t>(node.right)], ray, limit)};
-      if (far.entry < near.entry) std::swap(near, far);
-      if (far.entry < kNever) stack[top++] = far;
-      if (near.entry < kNever) stack[top++] = near;
+      push({node.right, entry(node_[static_cast<std::size_t>(node.right)], ray, limit)});
+      push({w.node + 1, entry(node_[static_cast<std::size_t>(w.node) + 1], ray, limit)});
+      boxes += 2;
     }
+    return boxes;
   }
   [[nodiscard]] std::size_t memory_bytes() const {
     return node_.capacity() * sizeof(Node) + item_.capacity() * sizeof(std::int32_t);

@@ -18,6 +18,7 @@ struct DobkinSettings {
   std::uint64_t seed = 1;
   std::string out;                    ///< folder for dobkin.csv, dobkin_points.csv and dobkin.md; or empty
   std::vector<std::string> chapters;  ///< names of chapters; empty = all
+  std::vector<std::string> families;  ///< of the hierarchy chapter: names of its bodies; empty = all
   ReportTarget report = {};
 };
 
@@ -41,5 +42,7 @@ void measure_polygon_rays(const DobkinSettings& settings, ClaimTable& table);
 /// @return the exit code, as `run_agarwal`.
 int run_dobkin(const DobkinSettings& settings);
 [[nodiscard]] std::string dobkin_chapters();
+/// Names of the hierarchy chapter's bodies.
+[[nodiscard]] const std::vector<std::string>& hierarchy_families();
 
 }  // namespace pd::bench

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,6 @@ const Claim kLines{"Lemma 5.2", "a line against any inner level by that level's 
 const Claim kMemory{"Fact 5.1", "hierarchies have O(n) size and O(log n) levels"};
 
 enum class Family { ball, needle, prism, roof };
-constexpr std::array<std::string_view, 4> kNames{"balls", "needles", "prisms", "roofs"};
 
 ConvexPolytope body(Family family, int n, scenes::Random& random) {
   const auto points = [&] {
@@ -167,12 +167,15 @@ void measure_twins(const std::string& name, const std::vector<Prepared>& all, in
   Growth steps{name, "steps of a line / log2 n, level 0", "n"}, any{name, "steps of a line / log2 n, any level", "n"};
   Growth outer_levels{name, "steps of a line / outer levels, level 0", "n"};
   Growth check{name, "facets looked at in a line's final check", "n"};
+  Growth build{name, "processor time to build the twin hierarchies, ns", "n"};
   int wrong = 0;
   std::int64_t repairs = 0, lines = 0;
   for (const Prepared& p : all) {
     const int n = p.body.num_vertices();
     if (n < 64 || n > most) continue;
+    const std::clock_t begin = std::clock();
     const TwinHierarchy twin = TwinHierarchy::build(p.body).value();
+    build.add(n, 1e9 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     double count = 0, worst_level = 0, worst_finest = 0, worst_check = 0;
     for (int i = 0; i < twin.num_levels(); ++i) {
       for (const auto& level : twin.outer(i).levels()) count += level.vertices + level.facets;
@@ -209,6 +212,7 @@ void measure_twins(const std::string& name, const std::vector<Prepared>& all, in
   }
   table.add_growth(kMemory, std::move(memory), 1.02);
   table.add_growth(kMemory, std::move(elements), 1.02);
+  table.add_growth(kMemory, std::move(build), 1.2);
   table.add_growth(kLines, std::move(steps), 0.1);
   table.add_growth(kLines, std::move(any), 0.1);
   table.add_growth(kLines, std::move(outer_levels), 0.1);
@@ -220,10 +224,17 @@ void measure_twins(const std::string& name, const std::vector<Prepared>& all, in
 
 }  // namespace
 
+const std::vector<std::string>& hierarchy_families() {
+  static const std::vector<std::string> names{"balls", "needles", "prisms", "roofs"};
+  return names;
+}
+
 void measure_hierarchy(const DobkinSettings& settings, ClaimTable& table) {
   const std::vector<int> sizes = sizes_up_to(settings.full ? 1 << 20 : 1 << 12);
   for (const Family family : {Family::roof, Family::prism, Family::ball, Family::needle}) {
-    const std::string name(kNames[static_cast<std::size_t>(family)]);
+    const std::string& name = hierarchy_families()[static_cast<std::size_t>(family)];
+    const auto& asked = settings.families;
+    if (!asked.empty() && std::find(asked.begin(), asked.end(), name) == asked.end()) continue;
     scenes::Random random(settings.seed);
     const std::vector<Prepared> all = prepare(family, sizes, random);
     measure_descents(name, all, sizes, random, table);

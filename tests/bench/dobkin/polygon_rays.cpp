@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "bench/agarwal/agarwal.hpp"
 #include "bench/dobkin/dobkin.hpp"
+#include "bench/dobkin/edge_caster.hpp"
 #include "bench/measure/stopwatch.hpp"
 #include "pd/planar/direction_set.hpp"
 #include "pd/planar/polygon_depth.hpp"
-#include "planar/box_tree.hpp"
 #include "scenes/polygon_families.hpp"
 
 namespace pd::bench {
@@ -22,64 +22,6 @@ namespace {
 const Claim kRays{"Theorem 4.5", "directional depth of a placement in sublinear time after preprocessing"};
 const Claim kSet{"Section 6, directions", "directional depth in O(log n) for a fixed set of directions"};
 const Claim kStraight{"Section 6, straight", "the least way straight out, over all directions"};
-
-/// First hit of a ray with P's edges down a tree of boxes, all in doubles: what a robot planner has at hand.
-class EdgeCaster {
- public:
-  explicit EdgeCaster(const Polygon& p) : p_(p) {
-    std::vector<detail::Box2> boxes;
-    for (int v = 0; v < p.num_vertices(); ++v) {
-      detail::Box2 box;
-      box.add(p.point(v));
-      box.add(p.point(p.next(v)));
-      boxes.push_back(box);
-    }
-    tree_ = detail::BoxTree(std::move(boxes));
-  }
-  [[nodiscard]] double cast(const Point2& y, const Point2& d) const {
-    double best = std::numeric_limits<double>::infinity();
-    const auto entry = [&](const detail::Box2& box) {
-      double low = 0, high = best;
-      for (std::size_t k = 0; k < 2; ++k) {
-        const double a = (box.low[k] - y[k]) / d[k], b = (box.high[k] - y[k]) / d[k];
-        low = std::max(low, std::min(a, b));
-        high = std::min(high, std::max(a, b));
-      }
-      return low <= high ? low : std::numeric_limits<double>::infinity();
-    };
-    tree_.visit([&](const detail::Box2& box) { return std::isfinite(entry(box)); }, entry,
-                [&](std::int32_t v) {
-                  const Point2 &a = p_.point(v), &b = p_.point(p_.next(v));
-                  const double ex = b[0] - a[0], ey = b[1] - a[1], ax = a[0] - y[0], ay = a[1] - y[1];
-                  const double w = d[0] * ey - d[1] * ex;
-                  const double t = (ax * ey - ay * ex) / w, s = (ax * d[1] - ay * d[0]) / w;
-                  if (t >= 0 && s >= 0 && s <= 1) best = std::min(best, t);
-                });
-    return best;
-  }
-
- private:
-  const Polygon& p_;
-  detail::BoxTree tree_;
-};
-
-struct Ray {
-  Point2 from, direction;
-};
-
-/// Rays from inside P.
-std::vector<Ray> rays_in(const Polygon& p, const PolygonDifference& r, int count, scenes::Random& random) {
-  detail::Box2 box;
-  for (const Point2& x : p.points()) box.add(x);
-  std::vector<Ray> rays;
-  for (int tries = 0; static_cast<int>(rays.size()) < count && tries < 100 * count; ++tries) {
-    const Point2 y = {random.uniform(box.low[0], box.high[0]), random.uniform(box.low[1], box.high[1])};
-    if (r.contact(y) != PlanarContact::overlapping) continue;
-    const scenes::Turn t = scenes::turn(random.uniform());
-    rays.push_back({y, {t.cosine, t.sine}});
-  }
-  return rays;
-}
 
 /// The trapezoids of one direction: signs and time of a query, bytes; and the least way straight out.
 void measure_directions(const DobkinSettings& settings, ClaimTable& table) {
@@ -120,6 +62,7 @@ template <class Make>
 void measure_rays(const std::string& family, const Make& make, double q_radius, double most_ratio, double most_exponent,
                   const DobkinSettings& settings, ClaimTable& table) {
   Growth time{family, "time of a directional query, ns", "n"};
+  Growth boxes{family, "boxes looked into, mean", "n"}, worst{family, "boxes, mean of the worst tenth", "n"};
   double ours = 0, cast = 0;
   int last = 0;
   scenes::Random random(settings.seed + 5);
@@ -129,6 +72,16 @@ void measure_rays(const std::string& family, const Make& make, double q_radius, 
     const PolygonDifference r = PolygonDifference::of(p, q, PolygonMethod::implicit).value();
     const EdgeCaster caster(p);
     const std::vector<Ray> rays = rays_in(p, r, 400, random);
+    std::vector<double> looked;
+    for (const Ray& ray : rays) {
+      std::int64_t count = 0;
+      (void)r.depth_along(ray.from, ray.direction, Leave::first_exit, &count);
+      looked.push_back(static_cast<double>(count));
+    }
+    std::sort(looked.begin(), looked.end());
+    const auto tenth = static_cast<std::ptrdiff_t>(looked.size() / 10);
+    boxes.add(p.num_vertices(), std::reduce(looked.begin(), looked.end()) / static_cast<double>(looked.size()));
+    worst.add(p.num_vertices(), std::reduce(looked.end() - tenth, looked.end()) / static_cast<double>(tenth));
     double sum = 0;
     ours = least_mean_ns(rays, 5, [&](const Ray& ray) { sum += r.depth_along(ray.from, ray.direction).depth; });
     cast = least_mean_ns(rays, 5, [&](const Ray& ray) { sum += caster.cast(ray.from, ray.direction); });
@@ -136,6 +89,8 @@ void measure_rays(const std::string& family, const Make& make, double q_radius, 
     time.add(p.num_vertices(), ours);
     last = p.num_vertices();
   }
+  table.add_growth(kRays, std::move(boxes), most_exponent);
+  table.add_growth(kRays, std::move(worst));
   table.add_growth(kRays, std::move(time), most_exponent);
   table.add_value(kRays, family, "time / that of a ray cast on P's edges", "n = " + std::to_string(last), ours / cast,
                   most_ratio);

@@ -62,9 +62,10 @@ class PolygonDifference {
   [[nodiscard]] PlanarContact contact(const Point2& placement) const;
   /// sigma. Requires a finite placement.
   [[nodiscard]] PolygonDepth depth(const Point2& placement) const;
-  /// sigma_d, or how far to leave for good. Requires finite numbers and a direction that is not 0.
+  /// sigma_d, or how far to leave for good. Requires finite numbers and a direction that is not 0. `boxes` counts the
+  /// boxes that the ray from the placement looks into.
   [[nodiscard]] PolygonDepth depth_along(const Point2& placement, const Point2& direction,
-                                         Leave leave = Leave::first_exit) const;
+                                         Leave leave = Leave::first_exit, std::int64_t* boxes = nullptr) const;
   /// The least translation in any direction that brings Q into the unbounded face.
   [[nodiscard]] PolygonDepth escape_depth(const Point2& placement) const;
 

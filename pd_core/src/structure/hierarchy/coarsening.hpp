@@ -25,20 +25,31 @@ class Coarsening {
     std::int32_t max_degree = 0;
   };
 
-  explicit Coarsening(const Space& space) : space_(space), rings_(static_cast<std::size_t>(space.size())) {
+  explicit Coarsening(const Space& space)
+      : space_(space),
+        first_(static_cast<std::size_t>(space.size()), -1),
+        degree_(static_cast<std::size_t>(space.size()), 0) {
     faces_ = space.triangles();
     creators_.assign(faces_.size(), -1);
     set_rings();
-    alive_.assign(rings_.size(), 1);
-    blocked_.assign(rings_.size(), 0);
+    alive_.assign(first_.size(), 1);
+    blocked_.assign(first_.size(), 0);
     for (int v = 0; v < space.size(); ++v) present_.push_back(v);
     count_ = space.size();
   }
 
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] bool alive(int v) const { return alive_[index(v)] != 0; }
-  /// Neighbours of v, counter-clockwise, each with the triangle between it and the next.
-  [[nodiscard]] const std::vector<Star>& ring(int v) const { return rings_[index(v)]; }
+  /// Neighbours of v, counter-clockwise, each with the triangle between it and the next; until the next call.
+  [[nodiscard]] const std::vector<Star>& ring(int v) const {
+    ring_.clear();
+    ring_nodes_.clear();
+    for (std::int32_t n = first_[index(v)]; static_cast<int>(ring_.size()) < degree_[index(v)]; n = node(n).next) {
+      ring_.push_back(node(n).star);
+      ring_nodes_.push_back(n);
+    }
+    return ring_;
+  }
   /// Every triangle that was ever there, and the vertex whose removal created it (-1: none).
   [[nodiscard]] std::vector<Triangle>& faces() { return faces_; }
   [[nodiscard]] std::vector<std::int32_t>& creators() { return creators_; }
@@ -67,10 +78,10 @@ class Coarsening {
     for (const std::int32_t v : present_) blocked_[index(v)] = 0;
     for (int degree = 3; degree <= PolyhedralHierarchy::kMaxDegree; ++degree) {
       for (const std::int32_t v : present_) {
-        if (!alive(v) || blocked_[index(v)] != 0 || static_cast<int>(ring(v).size()) != degree) continue;
+        if (!alive(v) || blocked_[index(v)] != 0 || degree_[index(v)] != degree) continue;
         if (count_ <= 4 || !fill_hole(v)) continue;
-        visit(v, ring(v));
-        for (const Star& s : ring(v)) blocked_[index(s.neighbour)] = 1;
+        visit(v, ring_);
+        for (const Star& s : ring_) blocked_[index(s.neighbour)] = 1;
         remove(v);
         ++step.removed;
         step.max_degree = std::max(step.max_degree, degree);
@@ -83,28 +94,50 @@ class Coarsening {
  private:
   static std::size_t index(int v) { return static_cast<std::size_t>(v); }
 
+  /// A neighbour in a ring. Rings are linked, so that one of very many neighbours (a prism's floor) loses one in O(1).
+  struct Node {
+    Star star;
+    std::int32_t next, previous;
+    std::int32_t twin;  ///< the vertex in its neighbour's ring
+  };
+
+  [[nodiscard]] const Node& node(std::int32_t n) const { return nodes_[index(n)]; }
+  [[nodiscard]] Node& node(std::int32_t n) { return nodes_[index(n)]; }
+
   void set_rings() {
     struct Link {
-      std::int32_t from, to, face;
+      std::int32_t from, to, face, node;
     };
     // Of each vertex the sides of its triangles that face it, linked to a cycle.
-    std::vector<std::vector<Link>> links(rings_.size());
+    std::vector<std::vector<Link>> links(first_.size());
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const Triangle& t = faces_[f];
       for (std::size_t i = 0; i < 3; ++i) {
-        links[index(t[i])].push_back({t[(i + 1) % 3], t[(i + 2) % 3], static_cast<std::int32_t>(f)});
+        links[index(t[i])].push_back({t[(i + 1) % 3], t[(i + 2) % 3], static_cast<std::int32_t>(f), -1});
       }
     }
+    nodes_.reserve(3 * faces_.size());
     const auto before = [](const Link& x, const Link& y) { return x.from < y.from; };
-    for (std::size_t v = 0; v < rings_.size(); ++v) {
+    const auto find = [&](std::size_t v, std::int32_t neighbour) -> Link& {
+      return *std::lower_bound(links[v].begin(), links[v].end(), Link{neighbour, 0, 0, 0}, before);
+    };
+    for (std::size_t v = 0; v < first_.size(); ++v) {
       auto& link = links[v];
       std::sort(link.begin(), link.end(), before);
       std::int32_t at = link.front().from;
+      first_[v] = static_cast<std::int32_t>(nodes_.size());
       do {
-        const Link& l = *std::lower_bound(link.begin(), link.end(), Link{at, 0, 0}, before);
-        rings_[v].push_back({at, l.face});
+        Link& l = find(v, at);
+        l.node = static_cast<std::int32_t>(nodes_.size());
+        nodes_.push_back({{at, l.face}, l.node + 1, l.node - 1, -1});
+        ++degree_[v];
         at = l.to;
       } while (at != link.front().from);
+      nodes_.back().next = first_[v];
+      node(first_[v]).previous = static_cast<std::int32_t>(nodes_.size()) - 1;
+    }
+    for (std::size_t v = 0; v < first_.size(); ++v) {
+      for (const Link& l : links[v]) node(l.node).twin = find(index(l.from), static_cast<std::int32_t>(v)).node;
     }
   }
 
@@ -148,13 +181,15 @@ class Coarsening {
            static_cast<std::int32_t>(found - filling_.begin());
   }
 
+  /// Takes v out, whose ring was asked for last. O(1) for its bounded degree, whatever those of its neighbours are.
   void remove(int v) {
-    const std::vector<Star>& r = ring(v);
+    const std::vector<Star>& r = ring_;
     const int d = static_cast<int>(r.size());
     for (const auto& [i, apex, j] : filling_) {
       faces_.push_back({r[index(i)].neighbour, r[index(apex)].neighbour, r[index(j)].neighbour});
       creators_.push_back(v);
     }
+    for (auto& row : diagonals_) row.fill(-1);
     for (int i = 0; i < d; ++i) {
       // In the ring of r[i] stand r[i + 1], v, r[i - 1]: v gives way to the diagonals from r[i], in the order of r.
       fan_.assign(1, i + 1);
@@ -168,36 +203,65 @@ class Coarsening {
       fan_.push_back(i + d - 1);
       std::sort(fan_.begin(), fan_.end());
       fan_.erase(std::unique(fan_.begin(), fan_.end()), fan_.end());
-      replace(rings_[index(r[index(i)].neighbour)], v, i, d, r);
+      replace(node(ring_nodes_[index(i)]).twin, i);
     }
+    free_.insert(free_.end(), ring_nodes_.begin(), ring_nodes_.end());
     alive_[index(v)] = 0;
     --count_;
   }
 
-  /// In `target`, the ring of r[i], the fan takes the place of v.
-  void replace(std::vector<Star>& target, int v, int i, int d, const std::vector<Star>& r) {
-    const auto is_v = [&](const Star& s) { return s.neighbour == v; };
-    const auto place = std::find_if(target.begin(), target.end(), is_v);
-    const std::size_t at = static_cast<std::size_t>(place - target.begin());
-    const std::size_t previous = (at + target.size() - 1) % target.size();
+  /// In the ring of r[i], for r the ring asked for last, the fan takes the place of `gone`.
+  void replace(std::int32_t gone, int i) {
+    const int d = static_cast<int>(ring_.size());
     const auto face = [&](std::size_t k) { return filling_face(i, fan_[k] % d, fan_[k + 1] % d); };
-    target[previous].face = face(0);
-    inserted_.clear();
-    for (std::size_t k = 1; k + 1 < fan_.size(); ++k) inserted_.push_back({r[index(fan_[k] % d)].neighbour, face(k)});
-    target.erase(target.begin() + static_cast<std::ptrdiff_t>(at));
-    target.insert(target.begin() + static_cast<std::ptrdiff_t>(at), inserted_.begin(), inserted_.end());
+    const std::int32_t after = node(gone).next;
+    std::int32_t last = node(gone).previous, first = after;
+    node(last).star.face = face(0);
+    for (std::size_t k = 1; k + 1 < fan_.size(); ++k) {
+      const int other = fan_[k] % d;
+      const std::int32_t added = new_node();
+      const std::int32_t twin = diagonals_[index(other)][index(i)];
+      node(added) = {{ring_[index(other)].neighbour, face(k)}, after, last, twin};
+      diagonals_[index(i)][index(other)] = added;
+      if (twin >= 0) node(twin).twin = added;
+      node(last).next = added;
+      if (k == 1) first = added;
+      last = added;
+    }
+    node(last).next = after;
+    node(after).previous = last;
+    const std::size_t vertex = index(ring_[index(i)].neighbour);
+    if (first_[vertex] == gone) first_[vertex] = first;
+    degree_[vertex] += static_cast<int>(fan_.size()) - 3;
+    free_.push_back(gone);
+  }
+
+  std::int32_t new_node() {
+    if (free_.empty()) {
+      nodes_.emplace_back();
+      return static_cast<std::int32_t>(nodes_.size()) - 1;
+    }
+    const std::int32_t n = free_.back();
+    free_.pop_back();
+    return n;
   }
 
   const Space& space_;
-  std::vector<std::vector<Star>> rings_;
+  std::vector<std::int32_t> first_;  ///< by vertex: a node of its ring
+  std::vector<int> degree_;
+  std::vector<Node> nodes_;
+  std::vector<std::int32_t> free_;  ///< nodes to use again
   std::vector<Triangle> faces_;
   std::vector<std::int32_t> creators_;
   std::vector<char> alive_;
   std::vector<char> blocked_;
   std::vector<std::int32_t> present_;  ///< alive at the beginning of a step, ascending
   std::vector<std::array<int, 3>> filling_;
-  std::vector<int> fan_;        ///< buffer of `remove`
-  std::vector<Star> inserted_;  ///< the same
+  std::vector<int> fan_;                          ///< buffer of `remove`
+  mutable std::vector<Star> ring_;                ///< the ring asked for last
+  mutable std::vector<std::int32_t> ring_nodes_;  ///< and its nodes
+  /// By two corners of the ring: the first one's node of the diagonal between them.
+  std::array<std::array<std::int32_t, PolyhedralHierarchy::kMaxDegree>, PolyhedralHierarchy::kMaxDegree> diagonals_{};
   int count_ = 0;
 };
 

@@ -3,6 +3,7 @@
 /// are its facets.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -65,10 +66,11 @@ class FacetSpace {
   [[nodiscard]] int size() const { return polytope_.num_facets(); }
 
   [[nodiscard]] int side(int i, int j, int k, int l) const {
-    const Row a = rounded(i), b = rounded(j), c = rounded(k), d = rounded(l);
-    const double value = minors(a, b, c, d);
-    // Entries are at most 8 and err by less than 2^-47: 24 products of four.
-    if (std::abs(value) > kFilter) return value < 0 ? 1 : -1;
+    const std::array<Row, 4> rows{rounded(i), rounded(j), rounded(k), rounded(l)};
+    for (std::size_t base = 4; base-- > 0;) {
+      const int sign = certain_sign(rows, base);
+      if (sign != 0) return -sign;
+    }
     const ExactRow p = exact(i), q = exact(j), r = exact(k), s = exact(l);
     return -minors(p, q, r, s).sign();
   }
@@ -76,6 +78,12 @@ class FacetSpace {
   /// Whether the polar facet through three of its vertices has the centre strictly behind it: only then do the planes
   /// bound the body there.
   [[nodiscard]] bool faces_centre(int i, int j, int k) const {
+    const Vec3 &a = polytope_.facet_normal(i), &b = polytope_.facet_normal(j), &c = polytope_.facet_normal(k);
+    const Vec3 ac = a - c, bc = b - c;
+    const double value = ac.dot(bc.cross(c));
+    // 6 products of two differences, which err by 2^-45, and a number of at most 1.
+    const double air = 0x1p-41 * (ac.lpNorm<Eigen::Infinity>() + bc.lpNorm<Eigen::Infinity>() + 0x1p-44);
+    if (std::abs(value) > air) return value > 0;
     return determinant(exact(i).normal, exact(j).normal, exact(k).normal).sign() > 0;
   }
 
@@ -99,7 +107,26 @@ class FacetSpace {
     Dyadic3 normal;
     Dyadic offset;
   };
-  static constexpr double kFilter = 1e-8;
+
+  /// The sign of the determinant of four rounded rows, 0 where it is not certain.
+  ///
+  /// Neighbouring facets of a large body have nearly equal rows, and their determinant is as small as a product of
+  /// three differences: these are taken first, from row `base`, so that the bound of the error is as small as two of
+  /// them. Entries are at most 8 and err by less than 2^-47, differences by less than 2^-45; each of 24 products of
+  /// three differences and an entry errs by at most 2.5 * 2^-42 times the two largest differences' product.
+  static int certain_sign(const std::array<Row, 4>& rows, std::size_t base) {
+    std::array<Row, 4> from_base = rows;
+    std::array<double, 3> size{};
+    for (std::size_t i = 0, next = 0; i < 4; ++i) {
+      if (i == base) continue;
+      Row& row = from_base[i];
+      row = {row.normal - rows[base].normal, row.offset - rows[base].offset};
+      size[next++] = std::max(row.normal.lpNorm<Eigen::Infinity>(), std::abs(row.offset)) + 0x1p-45;
+    }
+    const double value = minors(from_base[0], from_base[1], from_base[2], from_base[3]);
+    const double air = 0x1p-36 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+    return value > air ? 1 : (value < -air ? -1 : 0);
+  }
 
   [[nodiscard]] Row rounded(int f) const {
     const Vec3& n = polytope_.facet_normal(f);
