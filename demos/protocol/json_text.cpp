@@ -9,6 +9,7 @@
 #include "protocol/bounded_line.hpp"
 #include "protocol/json_writer.hpp"
 #include "protocol/limits.hpp"
+#include "protocol/quick_json.hpp"
 
 namespace pd::query {
 
@@ -236,7 +237,6 @@ ParsedLine parse_line(std::string_view line) { return parse_line_within(line, Li
 
 ParsedLine parse_line_within(std::string_view line, std::int64_t max_points) {
   ParsedLine parsed;
-  StrictBuilder builder(max_points);
   // The parser would take a zero byte for the end of the text and a byte order mark for nothing.
   if (line.find('\0') != std::string_view::npos) {
     parsed.refusal = Refusal{"bad_json", "a zero byte is no JSON", ""};
@@ -246,7 +246,12 @@ ParsedLine parse_line_within(std::string_view line, std::int64_t max_points) {
     parsed.refusal = Refusal{"bad_json", "the line begins with a byte order mark; JSON text has none", ""};
     return parsed;
   }
-  Json::sax_parse(line.begin(), line.end(), &builder);
+  std::optional<StrictBuilder> read(std::in_place, max_points);
+  if (read_json_quickly(line, *read) == QuickJson::declined) {
+    read.emplace(max_points);
+    Json::sax_parse(line.begin(), line.end(), &*read);
+  }
+  StrictBuilder& builder = *read;
   parsed.id_text = builder.id_text();
   if (builder.refusal) {
     parsed.refusal = std::move(builder.refusal);
