@@ -3,6 +3,7 @@ import ast
 import inspect
 import pathlib
 import pydoc
+import re
 
 import pdepth
 
@@ -40,6 +41,13 @@ def test_classes_have_the_members_of_their_stubs():
 def test_everything_public_says_what_it_is():
     for name in public_names() - {"ERRORS", "CONTACTS", "FEATURES"}:
         assert inspect.getdoc(getattr(pdepth, name)), name
+
+
+def test_help_of_the_package_shows_all_of_it():
+    assert set(pdepth.__all__) == public_names()
+    told = pydoc.render_doc(pdepth, renderer=pydoc.plaintext)
+    for name in public_names():
+        assert re.search(rf"^ +(class )?{name}\b", told, re.MULTILINE), name
 
 
 def test_help_shows_the_packages_own_arguments():

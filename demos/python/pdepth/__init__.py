@@ -20,3 +20,12 @@ from ._shapes import Box, Capsule, Compound, Cone, ConvexPolytope, Cylinder, Ell
 from ._sweep import Sweep, sweep
 
 __version__ = "0.1.0"
+
+# Named, so that help(pdepth) shows them all.
+__all__ = [
+    "Answer", "Batch", "Box", "CONTACTS", "Capsule", "Compound", "Cone", "ConvexPolytope", "Cylinder", "Depth", "Derivatives",
+    "DirectionalDepth", "ERRORS", "Ellipsoid", "FEATURES", "Manifold", "Pose", "Refused", "RowBatch", "Shape", "Sphere",
+    "StarBody", "Sweep", "Warm", "audit", "contact_manifold", "cores", "depth", "derivatives", "directional_depth",
+    "distance", "hull", "intersects", "minkowski_difference", "picture", "polygon_depth", "query", "query_many",
+    "save_picture", "sweep", "time_of_impact", "width",
+]
