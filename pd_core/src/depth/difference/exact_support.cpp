@@ -9,14 +9,20 @@ namespace pd::detail {
 
 namespace {
 
-/// The three values brought to one power of two, as doubles in [-1, 1] (each within 2u of the exact ratio).
-Vec3 leading(const Dyadic3& v) {
+/// The three values brought to one power of two, up to 2, each within 2^-102 of the exact ratio; its upper half within
+/// 2u.
+Vec3DD leading_digits(const Dyadic3& v) {
   const auto top = [](const Dyadic& d) {
     return d.sign() == 0 ? std::numeric_limits<int>::min()
                          : d.exponent() + static_cast<int>(msb(boost::multiprecision::abs(d.mantissa())));
   };
   const int largest = std::max({top(v.x), top(v.y), top(v.z)});
-  return {v.x.scaled(-largest).to_double(), v.y.scaled(-largest).to_double(), v.z.scaled(-largest).to_double()};
+  const auto digits = [largest](const Dyadic& d) -> DoubleDouble {
+    const Dyadic scaled = d.scaled(-largest);
+    const double high = scaled.to_double();
+    return {high, (scaled - Dyadic(high)).to_double()};
+  };
+  return {digits(v.x), digits(v.y), digits(v.z)};
 }
 
 /// Above this a face is walked to along edges; below, a scan of all vertices is faster.
@@ -31,17 +37,31 @@ SupportFace face_climbed_to(const ConvexPolytope& body, const Vec3& local, Sign&
   return face;
 }
 
-/// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the exact rotated difference.
+/// Sign of <direction, edge>, exact: double-double first, since bodies that are turned against each other by noise have
+/// ties that doubles leave open by the hundred.
+int sign_along(const PosedPair& pair, const ExactDirection& direction, const PairVector& edge) {
+  const Vec3DD e = pair.approximate_dd(edge);
+  const auto norm1 = [](const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); };
+  const double a = norm1(direction.leading) + 0x1p-100;
+  const double b = norm1(e) + 3 * pair.vector_error_dd();
+  const double value = dot(direction.leading, e).hi;
+  // Products and sums, the direction's own error, and the edge's.
+  const double bound = 16 * 0x1p-104 * a * b + 0x1p-102 * b + pair.vector_error_dd() * a;
+  if (std::abs(value) > bound * (1 + 16 * kUnitRoundoff) + 0x1p-900) return value > 0 ? 1 : -1;
+  return dot(direction.exact, pair.exact(edge)).sign();
+}
+
+/// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the rotated difference.
 template <class Edge>
-SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const ExactDirection& direction, double sign,
-                     Edge&& edge) {
+SupportFace extremal(const PosedPair& pair, const ConvexPolytope& body, const Mat3& rotation,
+                     const ExactDirection& direction, double sign, Edge&& edge) {
   const Vec3 local = sign * (rotation.transpose() * direction.unit);
   // The local direction errs by 12u per coordinate (unit 4u, rotation 4u, product 3u), the dot product by 3u |v|: twice
   // 32u covers both values that are compared. Products of subnormal coordinates lose half of the least double each.
   const double slack = 64 * kUnitRoundoff * body.radius() + 0x1p-1070;
   const int n = body.num_vertices();
   const auto exactly = [&](int from, int to) {
-    return dot(direction.exact, edge(from, to)).sign() * (sign > 0 ? 1 : -1);
+    return sign_along(pair, direction, edge(from, to)) * (sign > 0 ? 1 : -1);
   };
   if (n > kScannedVertices && body.affine_dimension() == 3) {
     return face_climbed_to(body, local, [&](int from, int to) {
@@ -67,16 +87,17 @@ SupportFace extremal(const ConvexPolytope& body, const Mat3& rotation, const Exa
 
 }  // namespace
 
-ExactDirection::ExactDirection(Dyadic3 direction) : exact(std::move(direction)), unit(leading(exact).normalized()) {}
+ExactDirection::ExactDirection(Dyadic3 direction)
+    : exact(std::move(direction)), unit(Vec3::Zero()), leading(leading_digits(exact)) {
+  unit = Vec3(leading.x.hi, leading.y.hi, leading.z.hi).normalized();
+}
 
 SupportFace support_face_b(const PosedPair& pair, const ExactDirection& direction) {
-  return extremal(pair.b(), pair.pose_b().rotation(), direction, 1.0,
-                  [&](int from, int to) { return pair.exact(PairVector::edge_b(from, to)); });
+  return extremal(pair, pair.b(), pair.pose_b().rotation(), direction, 1.0, PairVector::edge_b);
 }
 
 SupportFace support_face_a(const PosedPair& pair, const ExactDirection& direction) {
-  return extremal(pair.a(), pair.pose_a().rotation(), direction, -1.0,
-                  [&](int from, int to) { return pair.exact(PairVector::edge_a(from, to)); });
+  return extremal(pair, pair.a(), pair.pose_a().rotation(), direction, -1.0, PairVector::edge_a);
 }
 
 int common_facet(const ConvexPolytope& body, const SupportFace& vertices) {

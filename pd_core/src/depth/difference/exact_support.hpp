@@ -20,6 +20,7 @@ struct ExactDirection {
   explicit ExactDirection(Dyadic3 direction);
   Dyadic3 exact;
   Vec3 unit;
+  Vec3DD leading;  ///< `exact` times a power of two: coordinates up to 2, each within 2^-102
 };
 
 /// Every vertex of one body that lies exactly on its supporting plane, ascending.

@@ -1,0 +1,281 @@
+/// @file
+/// `slowest_pairs`: searches, for each query and size, the pair that takes longest, by climbing from the slowest of all
+/// families. A step changes a few things of the pair that a generator would not: a vertex, by a share of the body or
+/// by an ulp, onto another's plane or place; a pose, a little or by a symmetry; a size. It stays where that made the
+/// query dearer.
+///
+/// Cost is the least processor time of several runs, warm caches, on a thread of its own: shared cores disturb it
+/// upwards only. What is found is written as lines of the protocol (`pdepth query` answers them), for callgrind to
+/// count.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pd/contact/manifold.hpp"
+#include "pd/depth/directional_depth.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "scenes/shape_families.hpp"
+
+namespace {
+
+using pd::Vec3;
+using pd::scenes::PointPair;
+using pd::scenes::Random;
+
+/// What a query is asked with.
+struct Workplace {
+  pd::Scratch scratch;
+  pd::ManifoldScratch manifold;
+};
+struct Query {
+  const char* name;
+  std::string fields;  ///< of its line
+  std::function<void(const pd::PosedShape&, const pd::PosedShape&, Workplace&)> ask;
+};
+
+std::vector<Query> queries() {
+  const auto depth = [](pd::DepthSettings settings) {
+    return [settings](const pd::PosedShape& a, const pd::PosedShape& b, Workplace& place) {
+      (void)pd::penetration_depth(a, b, place.scratch, settings);
+    };
+  };
+  return {{"certified", R"("query":"depth")", depth({.bracket = pd::Bracket::certified})},
+          {"tightest", R"("query":"depth")", depth({.bracket = pd::Bracket::tightest})},
+          {"contact", R"("query":"depth")", depth({.bracket = pd::Bracket::contact})},
+          {"overlay", R"("query":"depth","method":"overlay")", depth({.method = pd::Method::overlay})},
+          {"directional", R"("query":"directional_depth","direction":[1,2,3])",
+           [](const pd::PosedShape& a, const pd::PosedShape& b, Workplace& place) {
+             (void)pd::directional_depth(a, b, {1, 2, 3}, place.scratch);
+           }},
+          {"manifold", R"("query":"contact_manifold")",
+           [](const pd::PosedShape& a, const pd::PosedShape& b, Workplace& place) {
+             const pd::PenetrationDepth answer = pd::penetration_depth(a, b, place.scratch);
+             (void)pd::contact_manifold(a, b, answer, 0.02, place.manifold);
+           }}};
+}
+
+double now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Seconds of the query about the pair, least of `runs`; none where a body is refused.
+std::optional<double> cost(const Query& query, const PointPair& pair, Workplace& place, int runs) {
+  const auto a = pd::ConvexPolytope::from_points(pair.a);
+  const auto b = pd::ConvexPolytope::from_points(pair.b);
+  if (!a || !b) return std::nullopt;
+  const pd::ConvexShape shape_a(*a);
+  const pd::ConvexShape shape_b(*b);
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < runs; ++run) {
+    const double start = now();
+    query.ask({&shape_a, pair.pose_a}, {&shape_b, pair.pose_b}, place);
+    least = std::min(least, now() - start);
+  }
+  return least;
+}
+
+std::size_t any_of(const pd::scenes::Points& points, Random& random) {
+  return static_cast<std::size_t>(random.integer(0, static_cast<int>(points.size()) - 1));
+}
+
+/// 1, .1, ... 1e-15
+double small(Random& random) { return std::pow(10.0, -random.integer(0, 15)); }
+
+void change_points(pd::scenes::Points& points, Random& random) {
+  const std::size_t i = any_of(points, random);
+  const std::size_t j = any_of(points, random);
+  const std::size_t k = any_of(points, random);
+  switch (random.integer(0, 5)) {
+    case 0:
+      points[i] += points[j].norm() * small(random) * random.direction();
+      break;
+    case 1:
+      points[i] = points[j] + small(random) * (points[k] - points[j]);
+      break;
+    case 2:
+      points[i][random.integer(0, 2)] = points[j][random.integer(0, 2)];
+      break;
+    case 3:
+      points[i] = points[j] + points[k] - points[i];
+      break;
+    case 4:
+      points[i] *= 1 + small(random) * random.uniform(-1, 1);
+      break;
+    default:
+      for (Vec3& p : points) p += p.norm() * small(random) * 0.1 * random.direction();
+  }
+}
+
+pd::Pose changed(const pd::Pose& pose, double size, Random& random) {
+  switch (random.integer(0, 3)) {
+    case 0:
+      return pd::Pose::from_trusted_matrix(pose.rotation(),
+                                           pose.translation() + size * small(random) * random.direction());
+    case 1: {
+      const Vec3 axis = random.direction();
+      const double turn = small(random);
+      const double w = std::sqrt(std::max(0.0, 1 - turn * turn));
+      const auto by = pd::Pose::from_quaternion({w, turn * axis.x(), turn * axis.y(), turn * axis.z()}, Vec3::Zero());
+      if (!by) return pose;
+      return pd::Pose::from_trusted_matrix(by->rotation() * pose.rotation(), pose.translation());
+    }
+    case 2:
+      return pd::Pose::from_trusted_matrix(pd::Mat3::Identity(), pose.translation());
+    default: {
+      const auto turned = pd::Pose::from_quaternion(random.quaternion(), pose.translation());
+      return turned ? *turned : pose;
+    }
+  }
+}
+
+PointPair changed(PointPair pair, Random& random) {
+  const int steps = random.integer(1, 3);
+  for (int s = 0; s < steps; ++s) {
+    switch (random.integer(0, 7)) {
+      case 0:
+        pair.b = pair.a;
+        break;
+      case 1:
+      case 2:
+      case 3:
+        pair.pose_b = changed(pair.pose_b, pair.a[0].norm(), random);
+        break;
+      default:
+        change_points(random.integer(0, 1) == 0 ? pair.a : pair.b, random);
+    }
+  }
+  return pair;
+}
+
+std::string points_text(const pd::scenes::Points& points) {
+  std::string text = "[";
+  std::array<char, 90> buffer{};
+  for (const Vec3& p : points) {
+    std::snprintf(buffer.data(), buffer.size(), "%s[%.17g,%.17g,%.17g]", text.size() > 1 ? "," : "", p.x(), p.y(),
+                  p.z());
+    text += buffer.data();
+  }
+  return text + "]";
+}
+std::string pose_text(const pd::Pose& pose) {
+  std::string text = R"({"rotation_row_major":[)";
+  std::array<char, 40> buffer{};
+  for (int i = 0; i < 9; ++i) {
+    std::snprintf(buffer.data(), buffer.size(), "%s%.17g", i > 0 ? "," : "", pose.rotation()(i / 3, i % 3));
+    text += buffer.data();
+  }
+  const Vec3& t = pose.translation();
+  std::array<char, 110> place{};
+  std::snprintf(place.data(), place.size(), R"(],"translation":[%.17g,%.17g,%.17g]})", t.x(), t.y(), t.z());
+  return text + place.data();
+}
+std::string line_of(const Query& query, const PointPair& pair) {
+  return "{" + query.fields + R"(,"a":{"type":"convex","vertices":)" + points_text(pair.a) + R"(},"pose_a":)" +
+         pose_text(pair.pose_a) + R"(,"b":{"type":"convex","vertices":)" + points_text(pair.b) + R"(},"pose_b":)" +
+         pose_text(pair.pose_b) + "}";
+}
+
+struct Found {
+  PointPair pair;
+  double seconds = 0;
+  std::string from;
+};
+
+struct Settings {
+  std::vector<int> sizes = {4, 8, 16, 32, 64};
+  std::vector<std::string> queries;
+  int draws = 3;
+  int climbers = 8;
+  double seconds = 10;
+  std::uint64_t seed = 1;
+  std::string lines;
+};
+
+/// One query at one size: the median of what the families draw, then the climb.
+void search(const Query& query, int size, const Settings& settings, std::ofstream& lines) {
+  Workplace place;
+  std::vector<Found> starts;
+  for (int f = 0; f < pd::scenes::kPairFamilies; ++f) {
+    for (int depth = 0; depth < pd::scenes::kDepthClasses; ++depth) {
+      for (int draw = 0; draw < settings.draws; ++draw) {
+        const auto family = static_cast<pd::scenes::PairFamily>(f);
+        PointPair pair = pd::scenes::make_pair(family, size, static_cast<pd::scenes::DepthClass>(depth),
+                                               settings.seed * 1000003 + static_cast<std::uint64_t>(draw));
+        if (const auto seconds = cost(query, pair, place, 3)) {
+          starts.push_back({std::move(pair), *seconds, std::string(pd::scenes::to_string(family))});
+        }
+      }
+    }
+  }
+  std::sort(starts.begin(), starts.end(), [](const Found& x, const Found& y) { return x.seconds > y.seconds; });
+  const double median = starts[starts.size() / 2].seconds;
+  const double slowest = starts.front().seconds;
+  starts.resize(std::min(starts.size(), static_cast<std::size_t>(settings.climbers)));
+  Random random(settings.seed + 77 * static_cast<std::uint64_t>(size));
+  const double start = now();
+  int tried = 0;
+  for (std::size_t turn = 0; now() - start < settings.seconds; turn = (turn + 1) % starts.size()) {
+    Found& climber = starts[turn];
+    PointPair next = changed(climber.pair, random);
+    ++tried;
+    const auto first = cost(query, next, place, 2);
+    if (!first || *first < climber.seconds) continue;
+    const double again = *cost(query, next, place, 5);
+    if (again >= climber.seconds) {
+      climber.pair = std::move(next);
+      climber.seconds = again;
+    }
+  }
+  Found& worst = *std::max_element(starts.begin(), starts.end(),
+                                   [](const Found& x, const Found& y) { return x.seconds < y.seconds; });
+  worst.seconds = *cost(query, worst.pair, place, 9);
+  std::printf("%-12s %5d %9.2f %9.2f %9.2f %8.1f  %-20s %d\n", query.name, size, 1e6 * median, 1e6 * slowest,
+              1e6 * worst.seconds, worst.seconds / median, worst.from.c_str(), tried);
+  std::fflush(stdout);
+  if (lines.is_open()) lines << line_of(query, worst.pair) << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app{"Climbs to the slowest pair of each query and size."};
+  app.add_option("--sizes", settings.sizes, "vertices of a body")->delimiter(',')->capture_default_str();
+  app.add_option("--queries", settings.queries, "certified, tightest, contact, overlay, directional, manifold")
+      ->delimiter(',');
+  app.add_option("--draws", settings.draws, "pairs of each family and depth")->capture_default_str();
+  app.add_option("--climbers", settings.climbers, "of the slowest, each climbs on its own")->capture_default_str();
+  app.add_option("--seconds", settings.seconds, "of climbing, a query and size")->capture_default_str();
+  app.add_option("--seed", settings.seed)->capture_default_str();
+  app.add_option("--lines", settings.lines, "file that takes the finds as lines of the protocol");
+  CLI11_PARSE(app, argc, argv);
+  std::ofstream lines;
+  if (!settings.lines.empty()) {
+    lines.open(settings.lines);
+    if (!lines) {
+      std::fprintf(stderr, "%s cannot be written\n", settings.lines.c_str());
+      return 2;
+    }
+  }
+  std::printf("seed %llu; microseconds\n%-12s %5s %9s %9s %9s %8s  %-20s %s\n",
+              static_cast<unsigned long long>(settings.seed), "query", "size", "median", "families", "climbed",
+              "/ median", "climbed from", "tried");
+  for (const Query& query : queries()) {
+    const auto named = [&](const std::string& name) { return name == query.name; };
+    if (!settings.queries.empty() && std::none_of(settings.queries.begin(), settings.queries.end(), named)) continue;
+    for (const int size : settings.sizes) search(query, size, settings, lines);
+  }
+  return 0;
+}
