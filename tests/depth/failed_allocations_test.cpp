@@ -11,6 +11,7 @@
 #include "depth/allocator.hpp"
 #include "oracle/judged_pair.hpp"
 #include "pd/compound/compound_depth.hpp"
+#include "pd/compound/warm_union.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/directional_depth.hpp"
@@ -33,6 +34,7 @@ struct Workplace {
   Scratch scratch;
   ManifoldScratch manifold;
   WarmCertificate warm;
+  WarmUnion warm_union;
 };
 using Numbers = std::vector<double>;
 using Ask = std::function<Numbers(Workplace&)>;
@@ -195,6 +197,23 @@ TEST(FailedAllocations, Unions) {
               }),
               20);
   }
+}
+
+TEST(FailedAllocations, WarmUnions) {
+  const ConvexShape box = *ConvexPolytope::box({1, 0.2, 0.2});
+  const Compound cross =
+      *Compound::from_parts({{box, Pose()}, {box, *Pose::from_quaternion({M_SQRT1_2, 0, 0, M_SQRT1_2}, Vec3::Zero())}});
+  EXPECT_GT(harm([&](Workplace& place) -> Numbers {
+              Numbers numbers;
+              for (int frame = 0; frame < 3; ++frame) {
+                const Pose pose = *Pose::from_quaternion({0.7, 0.5, 0.1, 0.5}, {0.1 + 0.001 * frame, 0.2, 0});
+                const auto d = penetration_depth(PosedCompound{&cross, Pose()}, PosedCompound{&cross, pose},
+                                                 place.scratch, {}, &place.warm_union);
+                numbers.push_back(d->lower);
+              }
+              return numbers;
+            }),
+            20);
 }
 
 TEST(FailedAllocations, Polygons) {

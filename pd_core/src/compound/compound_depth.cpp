@@ -6,9 +6,11 @@
 #include "compound/facets_answer.hpp"
 #include "compound/octree_depth.hpp"
 #include "compound/part_pairs.hpp"
+#include "compound/union_memory.hpp"
 #include "depth/pair/canonical_order.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "pd/compound/warm_union.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace pd {
@@ -17,6 +19,7 @@ namespace {
 
 using detail::FacetsAnswer;
 using detail::PairsResult;
+using detail::UnionMemory;
 using detail::UnionPair;
 
 /// The pairs' answer, for unions whose interiors are disjoint.
@@ -26,14 +29,18 @@ void set_from_pair(const PairsResult& pairs, UnionDepth& out) {
   out.part_b = pairs.part_b;
 }
 
-Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
+Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings,
+                                     UnionMemory* memory) {
   UnionDepth out;
   out.exact = true;
-  const PairsResult pairs = classify_pairs(pair, scratch, settings.delta, out.work);
+  const PairsResult pairs = classify_pairs(pair, scratch, settings.delta, memory, out.work);
   set_from_pair(pairs, out);
-  if (pairs.contact == ContactClass::separated) return out;
   const bool convex = pair.a.size() == 1 && pair.b.size() == 1;
-  if (convex && settings.method == UnionMethod::automatic) return out;
+  if (pairs.contact == ContactClass::separated || (convex && settings.method == UnionMethod::automatic)) {
+    if (memory != nullptr) memory->keep(pairs.part_a, pairs.part_b, Vec3::Zero());
+    out.warm = pairs.remembered;
+    return out;
+  }
   FacetsAnswer answer(pair, settings, out.work);
   double known_lower = pairs.nearest.lower;
   if (pairs.contact == ContactClass::touching) {
@@ -55,8 +62,15 @@ Expected<UnionDepth> solve_by_facets(const UnionPair& pair, Scratch& scratch, co
     }
     known_lower = 0;
   }
-  if (auto refused = answer.solve_overlapping(known_lower, out)) return *std::move(refused);
+  const double reach = memory != nullptr ? free_reach(pair, *memory, scratch) : pair.box_exit();
+  if (auto refused = answer.solve_overlapping(known_lower, reach, memory, out)) return *std::move(refused);
+  // What lies beyond the reach was not looked at.
+  if (memory != nullptr && out.upper > reach) {
+    if (auto refused = answer.solve_overlapping(known_lower, pair.box_exit(), memory, out)) return *std::move(refused);
+  }
   out.statistics.exact_signs += answer.exact_signs();
+  if (memory != nullptr) memory->keep(pairs.part_a, pairs.part_b, out.translation);
+  out.warm = pairs.remembered;
   return out;
 }
 
@@ -91,7 +105,7 @@ Expected<UnionDepth> solve_scaled(const UnionPair& pair, const Vec3& centre, Scr
 }  // namespace
 
 Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompound& b, Scratch& scratch,
-                                       const UnionSettings& settings) {
+                                       const UnionSettings& settings, WarmUnion* warm) {
   const detail::FloatingPointGuard guard;
   if (auto refused = detail::refuse_settings(settings)) return *std::move(refused);
   Expected<UnionPair> posed = UnionPair::pose(a, b);
@@ -108,7 +122,9 @@ Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompou
   const bool exchanged = pair.exchange_to_canonical_order();
   const bool facets =
       settings.method == UnionMethod::facets || (settings.method == UnionMethod::automatic && pair.polytopes);
-  Expected<UnionDepth> solved = facets ? solve_by_facets(pair, scratch, settings)
+  std::optional<detail::UnionMemory> memory;
+  if (warm != nullptr && facets) memory.emplace(warm->state(), pair, exchanged);
+  Expected<UnionDepth> solved = facets ? solve_by_facets(pair, scratch, settings, memory ? &*memory : nullptr)
                                        : Expected<UnionDepth>(detail::solve_by_octree(pair, scratch, settings));
   if (!solved) return solved.error();
   UnionDepth out = std::move(solved).value();

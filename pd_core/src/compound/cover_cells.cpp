@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "compound/union_memory.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -17,6 +19,11 @@ bool later(const CoverCell& x, const CoverCell& y) { return x.key != y.key ? x.k
 double distance(const CoverCell& cell) { return (cell.centre.cwiseAbs().array() - cell.half).max(0.0).matrix().norm(); }
 
 }  // namespace
+
+double rounded_up(double length) {
+  const int exponent = std::ilogb(length) - 7;
+  return std::ldexp(std::ceil(std::ldexp(length, -exponent)), exponent);
+}
 
 /// |x|^2 is least over {x in cube : <n, x> = d} where its Lagrange dual, the least of |x|^2 + 2 l (d - <n, x>) over the
 /// cube, is greatest. The dual bounds it from below for every l, so that no iteration has to converge.
@@ -40,14 +47,38 @@ double distance_within(const RoughPlane& plane, const CoverCell& cell, double ex
   return std::max(plain, std::sqrt(best) * (1 - 0x1p-50));
 }
 
-CoverCells::CoverCells(PartDifferences& differences, double reach, double known_lower)
-    : differences_(differences), known_lower_(known_lower) {
+/// The greatest <g, x> over {x in cube : <n, x> = d} is the least over m of the greatest <g - m n, x> + m d over the
+/// cube, and that least is where a coordinate of g - m n vanishes. Every m bounds it from above.
+bool covers_within(const PartDifference& piece, const RoughPlane& plane, const CoverCell& cell, double extent) {
+  const double rounding = 0x1p-47 * extent;
+  return std::all_of(piece.planes.begin(), piece.planes.end(), [&](const RoughPlane& side) {
+    const double limit = side.offset - side.slack;
+    const auto below = [&](double m) {
+      const Vec3 rest = side.normal - m * plane.normal;
+      return rest.dot(cell.centre) + cell.half * rest.lpNorm<1>() + m * plane.offset +
+                 std::abs(m) * (plane.slack + rounding) + rounding <
+             limit;
+    };
+    if (below(0)) return true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double m = side.normal[axis] / plane.normal[axis];
+      if (std::abs(m) < 1e3 && below(m)) return true;
+    }
+    return false;
+  });
+}
+
+CoverCells::CoverCells(PartDifferences& differences, double reach, double known_lower, UnionMemory* memory)
+    : differences_(differences), known_lower_(known_lower), memory_(memory) {
   std::vector<std::int32_t> all(differences.pieces().size());
   std::iota(all.begin(), all.end(), 0);
   CoverCell whole;
-  // Few digits, so that corners of cubes are exact and neighbours share their faces.
-  const int exponent = std::ilogb(reach) - 7;
-  whole.half = std::ldexp(std::ceil(std::ldexp(reach, -exponent)), exponent);
+  if (memory_ != nullptr) {
+    whole.half = memory_->begin(differences, reach);
+    whole.known = memory_->first();
+  } else {
+    whole.half = rounded_up(reach);
+  }
   whole.pieces = std::make_shared<const std::vector<std::int32_t>>(std::move(all));
   add(std::move(whole));
 }
@@ -87,11 +118,21 @@ CoverCells::Place CoverCells::place(const CoverCell& cell, std::size_t k) {
 }
 
 bool CoverCells::covered(const CoverCell& cell) {
+  const std::int32_t last = memory_ != nullptr ? memory_->holder(cell.known) : -1;
+  if (last >= 0 && place(cell, static_cast<std::size_t>(last)) == Place::holds) {
+    memory_->held(cell.record, differences_.pieces()[static_cast<std::size_t>(last)]);
+    return true;
+  }
+  const auto holds = [&](std::int32_t k) {
+    if (memory_ != nullptr) memory_->held(cell.record, differences_.pieces()[static_cast<std::size_t>(k)]);
+    return true;
+  };
   for (std::size_t i = 0; i < recent_.size(); ++i) {
-    if (place(cell, static_cast<std::size_t>(recent_[i])) != Place::holds) continue;
+    const std::int32_t k = recent_[i];
+    if (place(cell, static_cast<std::size_t>(k)) != Place::holds) continue;
     std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
                 recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-    return true;
+    return holds(k);
   }
   meeting_.clear();
   for (const std::int32_t k : *cell.pieces) {
@@ -100,9 +141,36 @@ bool CoverCells::covered(const CoverCell& cell) {
     if (where != Place::holds) continue;
     if (recent_.size() == kRecent) recent_.pop_back();
     recent_.insert(recent_.begin(), k);
-    return true;
+    return holds(k);
   }
   return false;
+}
+
+void CoverCells::find_meeting(const CoverCell& cell) {
+  const double rounding = 0x1p-48 * differences_.extent();
+  const Eigen::Array3d low = cell.centre.array() - cell.half, high = cell.centre.array() + cell.half;
+  meeting_.clear();
+  for (const std::int32_t k : *cell.pieces) {
+    const PartDifference& piece = differences_.pieces()[static_cast<std::size_t>(k)];
+    if ((piece.low.array() - high).maxCoeff() <= rounding && (low - piece.high.array()).maxCoeff() <= rounding) {
+      meeting_.push_back(k);
+    }
+  }
+}
+
+void CoverCells::halve(const CoverCell& cell) {
+  const std::int32_t first = memory_ != nullptr ? memory_->halve(cell.record) : 0;
+  for (int child = 0; child < 8; ++child) {
+    CoverCell part = cell;
+    part.half = cell.half / 2;
+    ++part.depth;
+    if (memory_ != nullptr) {
+      part.known = memory_->child(cell.known, child);
+      part.record = first + child;
+    }
+    for (int axis = 0; axis < 3; ++axis) part.centre[axis] += (child >> axis & 1) != 0 ? part.half : -part.half;
+    add(std::move(part));
+  }
 }
 
 std::optional<CoverCell> CoverCells::next(double upper) {
@@ -112,23 +180,23 @@ std::optional<CoverCell> CoverCells::next(double upper) {
     CoverCell cell = std::move(queue_.back());
     queue_.pop_back();
     ++num_cells_;
-    if (covered(cell)) continue;
+    const bool halved_last = memory_ != nullptr && memory_->halved(cell.known);
+    if (halved_last) {
+      find_meeting(cell);
+    } else if (covered(cell)) {
+      continue;
+    }
     if (meeting_.empty()) {
       // Free as a whole, its nearest point too.
       upper_ = std::min(upper_, distance(cell) * (1 + 0x1p-48));
       continue;
     }
     // Halving has stopped to tell P_k apart: walls on which they abut run through the cube, at any size.
-    const bool stuck = cell.depth > 0 && meeting_.size() == cell.pieces->size() && meeting_.size() <= kMany;
+    const bool stuck =
+        !halved_last && cell.depth > 0 && meeting_.size() == cell.pieces->size() && meeting_.size() <= kMany;
     cell.pieces = std::make_shared<const std::vector<std::int32_t>>(meeting_);
     if (meeting_.size() <= kFew || stuck || cell.depth == kMaxDepth || num_cells_ > kMaxCells) return cell;
-    for (int child = 0; child < 8; ++child) {
-      CoverCell part = cell;
-      part.half = cell.half / 2;
-      ++part.depth;
-      for (int axis = 0; axis < 3; ++axis) part.centre[axis] += (child >> axis & 1) != 0 ? part.half : -part.half;
-      add(std::move(part));
-    }
+    halve(cell);
   }
   return std::nullopt;
 }

@@ -17,26 +17,39 @@
 
 namespace pd::detail {
 
+class UnionMemory;
+
 /// A cube of translations (inside lengths), and the P_k that may meet it.
 struct CoverCell {
   double key = 0;  ///< no point of the cube is nearer to the origin
   std::int64_t order = 0;
   int depth = 0;
+  std::int32_t known = -1;  ///< the same cube of the last frame's search; -1: there was none
+  std::int32_t record = 0;  ///< it in this one's
   Vec3 centre = Vec3::Zero();
   double half = 0;
   std::shared_ptr<const std::vector<std::int32_t>> pieces;
 };
 
+/// Half the side of a first cube: few digits, so that corners of cubes are exact and neighbours share their faces.
+[[nodiscard]] double rounded_up(double length);
+
 /// At most the distance from the origin to what lies of a facet's plane in a cube, rounding included.
 /// @param extent  of the differences.
 [[nodiscard]] double distance_within(const RoughPlane& plane, const CoverCell& cell, double extent);
+
+/// Whether what lies of a facet's plane in a cube lies in the interior of P_k, for certain.
+[[nodiscard]] bool covers_within(const PartDifference& piece, const RoughPlane& plane, const CoverCell& cell,
+                                 double extent);
 
 class CoverCells {
  public:
   /// Refers to the differences, and makes those it needs. The first cube holds the ball of radius `reach` about the
   /// origin.
   /// @param known_lower  no boundary point is nearer.
-  CoverCells(PartDifferences& differences, double reach, double known_lower);
+  /// @param memory       nullptr, or what the last frame's search left: cubes that it halved are halved at once, and of
+  ///                     those that one P_k held, that one is asked first.
+  CoverCells(PartDifferences& differences, double reach, double known_lower, UnionMemory* memory);
 
   /// The nearest cube left that may hold a boundary point no farther than `upper`, down to cubes of few P_k, cubes
   /// that halving does not help, or 2^-kMaxDepth of the first; nothing when there is none. Every boundary point that is
@@ -57,12 +70,16 @@ class CoverCells {
 
   /// Whether a P_k holds the cube; else the P_k that may meet it are left in `meeting_`.
   bool covered(const CoverCell& cell);
+  /// The same for a cube that the last search halved, by boxes alone: it was not held.
+  void find_meeting(const CoverCell& cell);
+  void halve(const CoverCell& cell);
   enum class Place : std::uint8_t { holds, meets, apart };
   Place place(const CoverCell& cell, std::size_t k);
   void add(CoverCell cell);
 
   PartDifferences& differences_;
   double known_lower_;
+  UnionMemory* memory_;
   double upper_ = HUGE_VAL;       ///< a placement at this distance is free
   std::vector<CoverCell> queue_;  ///< a heap
   std::vector<std::int32_t> recent_;

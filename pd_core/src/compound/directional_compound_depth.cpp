@@ -34,7 +34,7 @@ Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const 
     return Error{ErrorCode::unsupported, "directional depth is for polytopes without a margin", ""};
   }
   UnionDirectionalDepth out;
-  const PairsResult pairs = classify_pairs(*pair, scratch, settings.delta, out.work);
+  const PairsResult pairs = classify_pairs(*pair, scratch, settings.delta, nullptr, out.work);
   out.contact = pairs.contact;
   FacetsAnswer answer(*pair, settings, out.work);
   if (out.contact == ContactClass::touching) {

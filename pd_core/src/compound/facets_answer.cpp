@@ -76,13 +76,13 @@ Error FacetsAnswer::too_many_facets() const {
           "max_facets"};
 }
 
-std::optional<Error> FacetsAnswer::solve_overlapping(double known_lower, UnionDepth& out) {
+std::optional<Error> FacetsAnswer::solve_overlapping(double known_lower, double reach, UnionMemory* memory,
+                                                     UnionDepth& out) {
   const int exponent = pair_.scale_exponent();
-  const double reach = pair_.box_exit();
   differences_.emplace(PartDifferences::find(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
                                              std::ldexp(reach, -exponent), settings_.max_facets));
   boundary_.emplace(*differences_);
-  const auto nearest = boundary_->nearest(std::ldexp(known_lower, -exponent), std::ldexp(reach, -exponent));
+  const auto nearest = boundary_->nearest(std::ldexp(known_lower, -exponent), std::ldexp(reach, -exponent), memory);
   if (!nearest) return too_many_facets();
   set_overlapping(*nearest, out);
   if (differences_->limit_exceeded()) return too_many_facets();

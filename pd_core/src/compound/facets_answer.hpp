@@ -17,6 +17,8 @@ namespace pd::detail {
 /// v * 2^exponent.
 [[nodiscard]] Vec3 scaled(const Vec3& v, int exponent);
 
+class UnionMemory;
+
 class FacetsAnswer {
  public:
   using Where = UnionBoundary::BoundaryPoint;
@@ -47,7 +49,9 @@ class FacetsAnswer {
   [[nodiscard]] std::int64_t exact_signs() const { return exact_signs_; }
 
   /// The depth of unions whose interiors meet, from the boundary point nearest to the origin. @return limit_exceeded.
-  [[nodiscard]] std::optional<Error> solve_overlapping(double known_lower, UnionDepth& out);
+  /// @param reach  a placement at this distance is free.
+  [[nodiscard]] std::optional<Error> solve_overlapping(double known_lower, double reach, UnionMemory* memory,
+                                                       UnionDepth& out);
 
   /// The features of the facet at a point of it, as the protocol names them: a vertex stands for a larger face that is
   /// parallel to the other body's facet.

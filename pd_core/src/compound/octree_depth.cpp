@@ -283,7 +283,7 @@ class Octree {
 
 UnionDepth solve_by_octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
   UnionDepth out;
-  const PairsResult pairs = classify_pairs(pair, scratch, std::min(settings.delta, 1e-6), out.work);
+  const PairsResult pairs = classify_pairs(pair, scratch, std::min(settings.delta, 1e-6), nullptr, out.work);
   static_cast<PenetrationDepth&>(out) = pairs.nearest;
   out.part_a = pairs.part_a;
   out.part_b = pairs.part_b;

@@ -5,6 +5,7 @@
 /// what doubles do, and most P_ij of a deep overlap only cover others, which doubles tell.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -92,6 +93,8 @@ class PartDifferences {
   [[nodiscard]] const std::vector<PartDifference>& pieces() const { return pieces_; }
   /// At least |coordinate| of every point of theirs.
   [[nodiscard]] double extent() const { return extent_; }
+  /// Inside lengths = lengths outside * scale.
+  [[nodiscard]] double scale() const { return std::ldexp(1.0, -scale_exponent_); }
 
  private:
   PartDifferences(PosedParts a, PosedParts b, int scale_exponent, std::int64_t max_facets)

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "compound/union_memory.hpp"
 #include "depth/pair/canonical_order.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shape/core_radius.hpp"
@@ -110,12 +111,17 @@ int UnionPair::scale_exponent() const {
   return size > 0x1p100 || size < 0x1p-100 ? std::ilogb(std::max(size, std::numeric_limits<double>::min())) : 0;
 }
 
-PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work) {
-  struct Candidate {
-    double gap;
-    std::int32_t a, b;
-  };
+namespace {
+
+struct Candidate {
+  double gap;
+  std::int32_t a, b;
+};
+
+/// All pairs of parts: those whose boxes meet in their own order, the others by their gap.
+std::vector<Candidate> pairs_by_gap(const UnionPair& pair) {
   std::vector<Candidate> candidates;
+  candidates.reserve(pair.a.size() * pair.b.size());
   for (std::size_t i = 0; i < pair.a.size(); ++i) {
     for (std::size_t j = 0; j < pair.b.size(); ++j) {
       candidates.push_back(
@@ -123,47 +129,124 @@ PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta
     }
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
-    // Pairs whose boxes meet are all asked, in their own order; the others by their gap.
     const double gx = std::max(x.gap, 0.0), gy = std::max(y.gap, 0.0);
     return gx != gy ? gx < gy : (x.a != y.a ? x.a < y.a : x.b < y.b);
   });
-  PairsResult result;
-  Statistics statistics;
-  bool first = true;
-  for (const Candidate& candidate : candidates) {
-    if (!first && (result.contact != ContactClass::separated ? candidate.gap > 0
-                                                             : candidate.gap > result.nearest.distance_upper)) {
-      break;
-    }
-    ++work.pairs;
-    DepthSettings settings;  // the class is exact in any case
-    const PosedShape &a = pair.a[static_cast<std::size_t>(candidate.a)],
-                     &b = pair.b[static_cast<std::size_t>(candidate.b)];
-    if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
-    const PenetrationDepth answer = penetration_depth(a, b, scratch, settings);
-    statistics.support_calls += answer.statistics.support_calls;
-    statistics.facets_visited += answer.statistics.facets_visited;
-    statistics.exact_signs += answer.statistics.exact_signs;
-    const bool better = first || answer.contact > result.contact ||
-                        (answer.contact == result.contact &&
-                         (answer.contact == ContactClass::overlapping ? answer.lower > result.nearest.lower
-                                                                      : answer.distance < result.nearest.distance));
-    if (better) {
-      result.contact = answer.contact;
-      result.nearest = answer;
-      result.part_a = candidate.a;
-      result.part_b = candidate.b;
-    }
-    first = false;
+  return candidates;
+}
+
+/// Asks pairs one by one and keeps the one that tells most.
+class PairsSearch {
+ public:
+  PairsSearch(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work)
+      : pair_(pair), scratch_(scratch), delta_(delta), work_(work) {}
+
+  [[nodiscard]] const PairsResult& result() const { return result_; }
+
+  /// Whether a pair whose boxes are so far apart cannot say more.
+  [[nodiscard]] bool settled(double gap) const {
+    return asked_ && (result_.contact != ContactClass::separated ? gap > 0 : gap > result_.nearest.distance_upper);
   }
-  const PosedShape &a = pair.a[static_cast<std::size_t>(result.part_a)],
-                   &b = pair.b[static_cast<std::size_t>(result.part_b)];
+
+  void ask(std::int32_t i, std::int32_t j) {
+    ++work_.pairs;
+    DepthSettings settings = settings_of(i, j);  // the class is exact in any case
+    if (asked_ && result_.contact == ContactClass::separated) settings.beyond = result_.nearest.distance_upper;
+    const PenetrationDepth answer = depth_of(i, j, settings);
+    statistics_.support_calls += answer.statistics.support_calls;
+    statistics_.facets_visited += answer.statistics.facets_visited;
+    statistics_.exact_signs += answer.statistics.exact_signs;
+    const bool better = !asked_ || answer.contact > result_.contact ||
+                        (answer.contact == result_.contact &&
+                         (answer.contact == ContactClass::overlapping ? answer.lower > result_.nearest.lower
+                                                                      : answer.distance < result_.nearest.distance));
+    asked_ = true;
+    if (!better) return;
+    result_.contact = answer.contact;
+    result_.nearest = answer;
+    result_.part_a = i;
+    result_.part_b = j;
+  }
+
+  PairsResult finish() {
+    DepthSettings settings = settings_of(result_.part_a, result_.part_b);
+    settings.bracket = Bracket::tightest;
+    result_.nearest = depth_of(result_.part_a, result_.part_b, settings);
+    result_.nearest.statistics = statistics_;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] DepthSettings settings_of(std::int32_t i, std::int32_t j) const {
+    DepthSettings settings;
+    const bool polytopes = pair_.a[static_cast<std::size_t>(i)].shape->polytope() != nullptr &&
+                           pair_.b[static_cast<std::size_t>(j)].shape->polytope() != nullptr;
+    if (!polytopes) settings.delta = delta_;
+    return settings;
+  }
+  [[nodiscard]] PenetrationDepth depth_of(std::int32_t i, std::int32_t j, const DepthSettings& settings) {
+    return penetration_depth(pair_.a[static_cast<std::size_t>(i)], pair_.b[static_cast<std::size_t>(j)], scratch_,
+                             settings);
+  }
+
+  const UnionPair& pair_;
+  Scratch& scratch_;
+  double delta_;
+  UnionStatistics& work_;
+  PairsResult result_;
+  Statistics statistics_;
+  bool asked_ = false;
+};
+
+/// Whether A moved by `way` is free of B, by a gap that no rounding closes.
+bool frees(const UnionPair& pair, const Vec3& way, Scratch& scratch) {
   DepthSettings settings;
-  settings.bracket = Bracket::tightest;
-  if (!a.shape->polytope() || !b.shape->polytope()) settings.delta = delta;
-  result.nearest = penetration_depth(a, b, scratch, settings);
-  result.nearest.statistics = statistics;
+  settings.bracket = Bracket::certified;
+  settings.beyond = 0x1p-44 * (pair.size + way.norm());
+  for (std::size_t i = 0; i < pair.a.size(); ++i) {
+    const Box moved{pair.boxes_a[i].low + way, pair.boxes_a[i].high + way};
+    const PosedShape a{pair.a[i].shape,
+                       Pose::from_trusted_matrix(pair.a[i].pose.rotation(), pair.a[i].pose.translation() + way)};
+    for (std::size_t j = 0; j < pair.b.size(); ++j) {
+      if (box_gap(moved, pair.boxes_b[j]) > settings.beyond) continue;
+      if (!(penetration_depth(a, pair.b[j], scratch, settings).distance_lower > settings.beyond)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta, const UnionMemory* memory,
+                           UnionStatistics& work) {
+  PairsSearch search(pair, scratch, delta, work);
+  const auto told = memory != nullptr ? memory->telling_pair() : std::nullopt;
+  const auto told_a = told ? static_cast<std::int32_t>(told->a) : -1;
+  const auto told_b = told ? static_cast<std::int32_t>(told->b) : -1;
+  if (told) search.ask(told_a, told_b);
+  if (!(told && search.result().contact == ContactClass::overlapping && pair.polytopes)) {
+    for (const Candidate& candidate : pairs_by_gap(pair)) {
+      if (search.settled(candidate.gap)) break;
+      if (candidate.a != told_a || candidate.b != told_b) search.ask(candidate.a, candidate.b);
+    }
+  }
+  PairsResult result = search.finish();
+  result.remembered = told && result.part_a == told_a && result.part_b == told_b;
   return result;
+}
+
+double free_reach(const UnionPair& pair, const UnionMemory& memory, Scratch& scratch) {
+  const double box_exit = pair.box_exit();
+  const std::optional<Vec3> last = memory.way();
+  if (!last) return box_exit;
+  // The bodies have moved a little since: a little farther may be free.
+  for (const double longer : {0x1p-6, 0x1p-3}) {
+    const Vec3 way = *last * (1 + longer);
+    const double length = way.norm() * (1 + 0x1p-40);
+    if (!(length < box_exit)) break;
+    if (frees(pair, way, scratch)) return length;
+  }
+  return box_exit;
 }
 
 }  // namespace pd::detail

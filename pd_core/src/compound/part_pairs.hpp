@@ -39,14 +39,24 @@ struct UnionPair {
   [[nodiscard]] int scale_exponent() const;
 };
 
+class UnionMemory;
+
 struct PairsResult {
   ContactClass contact = ContactClass::separated;  ///< of the pair that is deepest in contact
   PenetrationDepth nearest;  ///< the answer of the deepest, or the first touching, or the nearest pair
   std::int32_t part_a = 0;
   std::int32_t part_b = 0;
+  bool remembered = false;  ///< the pair that told the class last did so again
 };
 
 /// Asks every pair of parts whose boxes allow a say. Ties go to the first pair.
-[[nodiscard]] PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta, UnionStatistics& work);
+/// @param memory  nullptr, or the last frame's: the pair that told the class then is asked first. Of polytopes that one
+///                overlapping pair is enough for the class, and `nearest` need not be the deepest.
+[[nodiscard]] PairsResult classify_pairs(const UnionPair& pair, Scratch& scratch, double delta,
+                                         const UnionMemory* memory, UnionStatistics& work);
+
+/// A length within which a placement is free: that of the last frame's way out or a little more, where it is free now,
+/// else `box_exit`.
+[[nodiscard]] double free_reach(const UnionPair& pair, const UnionMemory& memory, Scratch& scratch);
 
 }  // namespace pd::detail

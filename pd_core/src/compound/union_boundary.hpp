@@ -22,6 +22,8 @@
 
 namespace pd::detail {
 
+class UnionMemory;
+
 class UnionBoundary {
  public:
   /// Refers to the differences. `nearest`, `outside_all` and `free_placement` make those that they need; the other
@@ -46,7 +48,8 @@ class UnionBoundary {
     double lower = 0;         ///< the distance itself, rounded down
     bool projection = false;  ///< that point is the projection of the origin on the facet's plane, exactly
   };
-  [[nodiscard]] std::optional<Nearest> nearest(double known_lower, double reach);
+  /// @param memory       nullptr, or the last frame's.
+  [[nodiscard]] std::optional<Nearest> nearest(double known_lower, double reach, UnionMemory* memory);
 
   /// Whether a point (inside lengths, as stored) lies on the boundary, exactly. `held` tells whether a closed P_k holds
   /// it: held and not on the boundary is inside.

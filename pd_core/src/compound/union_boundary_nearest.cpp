@@ -31,13 +31,19 @@ class UnionBoundary::NearestSearch {
       : boundary_(boundary), known_lower_(known_lower), scale_(boundary.differences_.extent()) {}
 
   /// Each subtraction takes one P_k off a polygon's list for good, so that this ends.
-  std::optional<Nearest> run(double reach) {
-    CoverCells cells(boundary_.differences_, reach, known_lower_);
+  std::optional<Nearest> run(double reach, UnionMemory* memory) {
+    // A boundary point lies within `reach`: nothing farther is looked at.
+    best_key_ = reach * (1 + 0x1p-40);
+    CoverCells cells(boundary_.differences_, reach, known_lower_, memory);
     while (const auto cell = cells.next(best_key_)) {
       enter(*cell);
       while (!queue_.empty()) {
         Waiting top = pop();
-        if (best_ && top.key >= best_key_) break;
+        if (top.key >= best_key_) break;
+        if (top.cell.where.polygon.corners.empty()) {
+          make(std::move(top.cell), *cell);
+          continue;
+        }
         ++boundary_.counts_.polygons;
         if (!boundary_.contained_in_recent(top.cell.where.polygon)) visit(std::move(top));
       }
@@ -67,34 +73,59 @@ class UnionBoundary::NearestSearch {
     return top;
   }
 
-  /// Lets the facets' parts in the closed cube wait. A boundary point of the union lies in the part of a facet of one
-  /// of the cubes that hold it, and any P_k that covers it meets that cube.
+  /// Lets the facets' parts in the closed cube wait, unmade. A boundary point of the union lies in the part of a facet
+  /// of one of the cubes that hold it, and any P_k that covers it meets that cube.
   void enter(const CoverCell& cell) {
     queue_.clear();
+    walls_.clear();
     among_.clear();
-    PartDifferences& differences = boundary_.differences_;
-    // Most P_k of a cube end elsewhere: their facets' planes, in doubles, do not cross it.
-    std::vector<std::pair<std::size_t, std::size_t>> crossing;
-    for (const std::int32_t which : *cell.pieces) {
+    for (const std::int32_t k : *cell.pieces) {
+      if (!boundary_.differences_.roughly(static_cast<std::size_t>(k)).flat) among_.push_back(k);
+    }
+    const std::vector<std::int32_t> owners = among_;
+    for (const std::int32_t which : owners) {
       const auto k = static_cast<std::size_t>(which);
-      const PartDifference& piece = differences.roughly(k);
-      if (piece.flat) continue;
-      among_.push_back(which);
+      const PartDifference& piece = boundary_.differences_.pieces()[k];
       for (std::size_t f = 0; f < piece.planes.size(); ++f) {
-        if (crosses(piece.planes[f], cell) && !farther(piece.planes[f], cell)) crossing.emplace_back(k, f);
+        // Most P_k of a cube end elsewhere: their facets, in doubles, do not cross it.
+        if (!crosses(piece.planes[f], cell) || !near(*piece.built, f, cell)) continue;
+        // Of most that do, near the answer, nothing there is nearer than the best point so far.
+        const double key = distance_within(piece.planes[f], cell, scale_);
+        if (key >= best_key_ || covered_within(k, f, cell)) continue;
+        push({std::max(known_lower_, key), order_++, {{k, f, {}, Vec3::Zero()}, {}}});
       }
     }
-    if (crossing.empty()) return;
-    std::vector<Side> walls;
-    for (int axis = 0; axis < 3; ++axis) {
-      walls.push_back(differences.across_axis(axis, 1, cell.centre[axis] + cell.half));
-      walls.push_back(differences.across_axis(axis, -1, cell.centre[axis] - cell.half));
-    }
-    for (const auto& [k, f] : crossing) {
-      if (auto part = part_inside(differences.polygon(k, f), walls)) {
-        add({{k, f, *std::move(part), Vec3::Zero()}, boundary_.own(k)});
+  }
+
+  /// Makes the part of a facet that lies in the cube, exactly.
+  void make(Cell cell, const CoverCell& cube) {
+    PartDifferences& differences = boundary_.differences_;
+    if (walls_.empty()) {
+      for (int axis = 0; axis < 3; ++axis) {
+        walls_.push_back(differences.across_axis(axis, 1, cube.centre[axis] + cube.half));
+        walls_.push_back(differences.across_axis(axis, -1, cube.centre[axis] - cube.half));
       }
     }
+    auto part = part_inside(differences.polygon(cell.where.piece, cell.where.facet), walls_);
+    if (!part) return;
+    cell.where.polygon = *std::move(part);
+    cell.clipped = boundary_.own(cell.where.piece);
+    add(std::move(cell));
+  }
+
+  /// Whether the box of a facet meets the cube; false is certain.
+  [[nodiscard]] bool near(const MinkowskiDifference& built, std::size_t f, const CoverCell& cell) const {
+    const MinkowskiDifference::Facet& facet = built.facets[f];
+    const double scale = boundary_.differences_.scale();
+    Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+    for (std::int32_t i = facet.first; i < facet.first + facet.count; ++i) {
+      const std::int32_t corner = built.corners[static_cast<std::size_t>(i)];
+      const Vec3 x = built.vertices[static_cast<std::size_t>(corner)].position * scale;
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const double reach = cell.half + 0x1p-46 * scale_;
+    return (low - cell.centre).maxCoeff() <= reach && (cell.centre - high).maxCoeff() <= reach;
   }
 
   [[nodiscard]] bool crosses(const RoughPlane& plane, const CoverCell& cell) const {
@@ -102,10 +133,19 @@ class UnionBoundary::NearestSearch {
     return !(std::abs(height) > cell.half * plane.normal.lpNorm<1>() + plane.slack + 0x1p-48 * scale_);
   }
 
-  /// Whether what the cube holds of a facet's plane is no nearer than the best point so far, for certain: of most
-  /// facets that cross the cubes near the answer, which need not be made exactly then.
-  [[nodiscard]] bool farther(const RoughPlane& plane, const CoverCell& cell) const {
-    return best_key_ < HUGE_VAL && distance_within(plane, cell, scale_) >= best_key_;
+  /// Whether another P_k holds in its interior what the cube holds of a facet, for certain.
+  bool covered_within(std::size_t own, std::size_t f, const CoverCell& cell) {
+    PartDifferences& differences = boundary_.differences_;
+    const RoughPlane plane = differences.pieces()[own].planes[f];
+    const auto covers = [&](std::int32_t k) {
+      return static_cast<std::size_t>(k) != own &&
+             covers_within(differences.pieces()[static_cast<std::size_t>(k)], plane, cell, scale_);
+    };
+    const auto found = std::find_if(among_.begin(), among_.end(), covers);
+    if (found == among_.end()) return false;
+    // What covers one facet covers its neighbours.
+    std::rotate(among_.begin(), found, found + 1);
+    return true;
   }
 
   [[nodiscard]] std::optional<PlanePolygon> part_inside(PlanePolygon polygon, const std::vector<Side>& walls) const {
@@ -195,14 +235,15 @@ class UnionBoundary::NearestSearch {
   const double scale_;
   std::vector<Waiting> queue_;       ///< a heap
   std::vector<std::int32_t> among_;  ///< the P_k that meet the cube
+  std::vector<Side> walls_;          ///< of the cube, once a facet is cut
   std::int64_t order_ = 0;
   std::optional<Nearest> best_;
   SquaredRatio best_squared_;
   double best_key_ = HUGE_VAL;  ///< distance of the best point, at most this
 };
 
-std::optional<UnionBoundary::Nearest> UnionBoundary::nearest(double known_lower, double reach) {
-  return NearestSearch(*this, known_lower).run(reach);
+std::optional<UnionBoundary::Nearest> UnionBoundary::nearest(double known_lower, double reach, UnionMemory* memory) {
+  return NearestSearch(*this, known_lower).run(reach, memory);
 }
 
 }  // namespace pd::detail

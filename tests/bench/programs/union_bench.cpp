@@ -1,7 +1,7 @@
 /// @file
 /// Measures the depth of non-convex bodies: the boundary of P of two star-shaped bodies against m n (the paper gives
-/// O(m^2 n^2 alpha(mn)) for the envelope of m n triangles), the lazy exact search beside it, and the octree's cost
-/// against 1 / delta.
+/// O(m^2 n^2 alpha(mn)) for the envelope of m n triangles), the lazy exact search beside it, the octree's cost
+/// against 1 / delta, and frames that hang together with and without the memory of the pair.
 ///
 /// Processor time, one run: the work is deterministic and long.
 #include <CLI/CLI.hpp>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pd/compound/compound_difference.hpp"
+#include "pd/compound/warm_union.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/star_body.hpp"
 #include "scenes/non_convex.hpp"
@@ -143,6 +144,63 @@ void measure_bracket(std::uint64_t seed) {
   }
 }
 
+/// Frames in which A turns and moves a little: every one asked cold and from the memory of the pair, side by side.
+void measure_coherent(int frames, std::uint64_t seed) {
+  scenes::Random random(seed);
+  const auto ball = [&](int levels) { return compound_of(scenes::rough_ball(levels, 0.3, random)); };
+  struct Row {
+    const char* name;
+    Compound a, b;
+    Vec3 offset;
+  };
+  const Row rows[] = {
+      {"letters", compound_of(scenes::letter_l()), compound_of(scenes::letter_l()), {1.9, 0.9, 0.3}},
+      {"stack, letter", compound_of(scenes::stack(6, 0.3)), compound_of(scenes::letter_l()), {0.2, 0.1, 0.15}},
+      {"rubble",
+       compound_of(scenes::rubble(8, 12, random)),
+       compound_of(scenes::rubble(8, 12, random)),
+       {0.6, 0.1, 0.2}},
+      {"20-part balls", ball(0), ball(0), {0.3, 0.1, 0.2}},
+      {"touching", ball(0), ball(0), {1.3, 0.1, 0.2}},
+      {"80-part balls", ball(1), ball(1), {0.3, 0.1, 0.2}},
+      {"touching", ball(1), ball(1), {1.5, 0.1, 0.2}},
+      {"apart", ball(1), ball(1), {2.2, 0.1, 0.2}}};
+  std::printf("coherent frames: turned by .004 rad, moved by .0011 a frame\n%14s %9s %12s %12s %10s %10s %10s %8s\n",
+              "bodies", "depth", "cold facets", "warm facets", "cold ms", "warm ms", "warm/cold", "bytes");
+  for (const Row& row : rows) {
+    const Pose start = *Pose::from_quaternion(random.quaternion(), row.offset);
+    pd::Scratch scratch;
+    pd::WarmUnion memory;
+    double cold_ms = 0, warm_ms = 0, cold_facets = 0, warm_facets = 0, depth = 0;
+    for (int frame = 0; frame <= frames; ++frame) {
+      auto q = start.quaternion_wxyz();
+      q[1] += 0.002 * frame;
+      const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+      for (double& x : q) x /= length;
+      const Pose pose = *Pose::from_quaternion(q, row.offset + 0.001 * frame * Vec3(1, 0.5, 0));
+      const pd::PosedCompound a{&row.a, pose}, b{&row.b, Pose()};
+      const double begin = processor_time();
+      const auto cold = pd::penetration_depth(a, b, scratch);
+      const double between = processor_time();
+      const auto warm = pd::penetration_depth(a, b, scratch, {}, &memory);
+      const double end = processor_time();
+      if (!cold || !warm || cold->contact != warm->contact || cold->lower != warm->lower) {
+        std::printf("%s: frame %d differs\n", row.name, frame);
+        return;
+      }
+      if (frame == 0) continue;
+      depth = cold->signed_distance();
+      cold_ms += (between - begin) / frames;
+      warm_ms += (end - between) / frames;
+      cold_facets += static_cast<double>(cold->work.facets) / frames;
+      warm_facets += static_cast<double>(warm->work.facets) / frames;
+    }
+    std::printf("%14s %9.5f %12.0f %12.0f %10.2f %10.2f %10.2f %8zu\n", row.name, depth, cold_facets, warm_facets,
+                cold_ms, warm_ms, warm_ms / cold_ms, memory.memory_bytes());
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -154,7 +212,10 @@ int main(int argc, char** argv) {
   app.add_option("--levels", levels, "Rough balls of 20, 80, 320 ... parts up to this many subdivisions; -1: none")
       ->check(CLI::Range(-1, 3));
   app.add_option("--seed", seed, "Seed of the random bodies");
+  int frames = 10;
+  app.add_option("--frames", frames, "Frames of each coherent sequence; 0: none")->check(CLI::Range(0, 10000));
   CLI11_PARSE(app, argc, argv);
+  if (frames > 0) measure_coherent(frames, seed);
   measure_balls(levels, seed);
   measure_stars(largest, seed);
   measure_bracket(seed);
