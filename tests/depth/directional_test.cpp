@@ -5,11 +5,11 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 #include <vector>
 
 #include "oracle/depth_oracle.hpp"
+#include "oracle/wanted_cases.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/scratch.hpp"
@@ -19,10 +19,7 @@ namespace pd {
 namespace {
 
 /// How many random cases a test takes: PD_DIRECTIONAL_CASES asks for more.
-int cases(int usual) {
-  const char* wanted = std::getenv("PD_DIRECTIONAL_CASES");
-  return wanted == nullptr ? usual : std::atoi(wanted);
-}
+int cases(int usual) { return test::wanted_cases("PD_DIRECTIONAL_CASES", usual); }
 
 struct Bodies {
   std::vector<Vec3> points_a, points_b;
@@ -111,7 +108,7 @@ void check(const Bodies& bodies, const Vec3& direction, Scratch& scratch, int& o
 }
 
 TEST(DirectionalDepth, RandomSolids) {
-  std::mt19937_64 random(21);
+  std::mt19937_64 random(test::wanted_seed(21));
   std::normal_distribution<double> normal;
   Scratch scratch;
   int overlapping = 0;
@@ -127,7 +124,7 @@ TEST(DirectionalDepth, RandomSolids) {
 
 TEST(DirectionalDepth, WarmAnswersAreTheColdOnes) {
   // Directions that move a little or a lot, poses too; certificates of other bodies and of nothing at all.
-  std::mt19937_64 random(27);
+  std::mt19937_64 random(test::wanted_seed(27));
   std::normal_distribution<double> normal;
   Scratch scratch;
   const int rounds = cases(300);
@@ -167,7 +164,7 @@ TEST(DirectionalDepth, WarmAnswersAreTheColdOnes) {
 
 TEST(DirectionalDepth, GridBodiesAlongGridDirections) {
   // Rays through vertices and along edges and facets of P, and vertices of P at or in line with the origin.
-  std::mt19937_64 random(22);
+  std::mt19937_64 random(test::wanted_seed(22));
   std::uniform_int_distribution<int> coordinate(-2, 2);
   Scratch scratch;
   int overlapping = 0;

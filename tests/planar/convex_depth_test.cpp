@@ -139,7 +139,7 @@ TEST(ConvexPolygon, ExtremeVertices) {
 }
 
 TEST(ConvexDepth, AgainstAllPairsOfVertices) {
-  scenes::Random random(62);
+  scenes::Random random(test::wanted_seed(62));
   int counts[3] = {0, 0, 0};
   for (int round = 0; round < planar_cases(3000) && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
@@ -219,7 +219,7 @@ ConvexPolygon many_edges(int vectors, std::int64_t stretch, scenes::Random& rand
 }
 
 TEST(ConvexDepth, PolygonsOfManyVerticesBySlopeOrder) {
-  scenes::Random random(66);
+  scenes::Random random(test::wanted_seed(66));
   int met = 0, deep = 0;
   for (int round = 0; round < 60; ++round) {
     const int sizes[] = {3, 40, 90, 300, 700};

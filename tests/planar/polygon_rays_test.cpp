@@ -39,7 +39,7 @@ std::vector<Point2> oval(int n, Random& random) {
 
 // The search in object space shares no code with the boundary, and rounds by big numbers alone.
 TEST(PolygonRays, ConvexPairsGiveTheBitsOfTheSearchInObjectSpace) {
-  Random random(91);
+  Random random(pd::test::wanted_seed(91));
   int overlapping = 0;
   for (int i = 0; i < pd::test::planar_cases(400); ++i) {
     const std::vector<Point2> a = oval(3 + i % 9, random), b = oval(3 + i % 7, random);
@@ -64,7 +64,7 @@ TEST(PolygonRays, ConvexPairsGiveTheBitsOfTheSearchInObjectSpace) {
 }
 
 TEST(PolygonRays, StarsGiveTheBitsOfExplicitSums) {
-  Random random(17);
+  Random random(pd::test::wanted_seed(17));
   for (int i = 0; i < pd::test::planar_cases(400) / 20; ++i) {
     const Polygon p = pd::scenes::star_polygon(40, random), q = pd::scenes::round_polygon(5, i % 2 == 0 ? 0.004 : 0.1);
     const auto a = PolygonDifference::of(p, q, PolygonMethod::implicit).value();

@@ -2,21 +2,18 @@
 /// Random polygons with small whole coordinates: collinear, parallel and touching pieces come up all the time.
 #pragma once
 
-#include <cstdlib>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "oracle/wanted_cases.hpp"
 #include "pd/planar/polygon.hpp"
 #include "planar/polygon_oracle.hpp"
 
 namespace pd::test {
 
 /// How many cases a test takes: PD_PLANAR_CASES asks for more (the million-case runs).
-inline int planar_cases(int usual) {
-  const char* wanted = std::getenv("PD_PLANAR_CASES");
-  return wanted == nullptr ? usual : std::atoi(wanted);
-}
+inline int planar_cases(int usual) { return wanted_cases("PD_PLANAR_CASES", usual); }
 
 inline Polygon made(const oracle::Rings& rings) {
   return Polygon::from_rings(rings[0], std::vector<std::vector<Point2>>(rings.begin() + 1, rings.end())).value();
@@ -34,7 +31,7 @@ inline std::string text(const oracle::Rings& rings) {
 
 class SmallPolygons {
  public:
-  explicit SmallPolygons(unsigned seed) : bits_(seed) {}
+  explicit SmallPolygons(unsigned seed) : bits_(static_cast<unsigned>(wanted_seed(seed))) {}
   int whole(int low, int high) { return low + static_cast<int>(bits_() % static_cast<unsigned>(high - low + 1)); }
   double eighths(int low, int high) { return whole(8 * low, 8 * high) / 8.0; }
 

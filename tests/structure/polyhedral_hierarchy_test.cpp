@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "oracle/wanted_cases.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd {
@@ -126,7 +127,8 @@ TEST(PolyhedralHierarchy, StarsAndPointersRebuildEveryLevel) {
 }
 
 TEST(PolyhedralHierarchy, SupportsOfEveryLevelWhateverTheDegrees) {
-  scenes::Random random(20);
+  const int supports = test::wanted_cases("PD_LEVEL_LINES", 20);
+  scenes::Random random(test::wanted_seed(20));
   // The apex of the pyramid has every other vertex for a neighbour.
   scenes::Points pyramid{{0, 0, 1}};
   for (int i = 0; i < 2000; ++i) {
@@ -137,7 +139,7 @@ TEST(PolyhedralHierarchy, SupportsOfEveryLevelWhateverTheDegrees) {
     const ConvexPolytope body = hull(points);
     const PolyhedralHierarchy h = *PolyhedralHierarchy::build(body, HierarchyKind::inner);
     for (int level = 0; level < static_cast<int>(h.levels().size()); ++level) {
-      for (int i = 0; i < 20; ++i) {
+      for (int i = 0; i < supports; ++i) {
         const Vec3 d = random.direction();
         double most = -HUGE_VAL;
         for (int v = 0; v < body.num_vertices(); ++v) {

@@ -11,11 +11,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "oracle/wanted_cases.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd {
@@ -151,10 +151,8 @@ scenes::Points whole_shell(int n, int range, scenes::Random& random) {
 }
 
 TEST(LevelQueries, PointsSegmentsAndSmallBodiesAtEveryLevelAgainstWholeNumbers) {
-  const char* asked = std::getenv("PD_LEVEL_LINES");
-  const int moves = asked != nullptr ? std::atoi(asked) : 12;
-  const char* seed = std::getenv("PD_LEVEL_SEED");
-  scenes::Random random(seed != nullptr ? static_cast<std::uint64_t>(std::atoll(seed)) : 73);
+  const int moves = test::wanted_cases("PD_LEVEL_LINES", 12);
+  scenes::Random random(test::wanted_seed(73));
   int met = 0, missed = 0, grazed = 0, coarse = 0, segments = 0;
   for (const int range : {3, 20, 300}) {
     for (const int n : {8, 16, 32}) {

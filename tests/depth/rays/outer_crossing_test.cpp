@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <tuple>
 
 #include "numeric/dyadic.hpp"
+#include "oracle/wanted_cases.hpp"
 #include "pd/depth/level_queries.hpp"
 #include "scenes/shape_families.hpp"
 
@@ -96,9 +96,8 @@ std::vector<ConvexPolytope> bodies(int n, scenes::Random& random) {
 }
 
 TEST(OuterCrossing, LinesThroughEveryLevelAgainstAScan) {
-  const char* asked = std::getenv("PD_LEVEL_LINES");
-  const int lines = asked != nullptr ? std::atoi(asked) : 30;
-  scenes::Random random(71);
+  const int lines = test::wanted_cases("PD_LEVEL_LINES", 30);
+  scenes::Random random(test::wanted_seed(71));
   Tally tally;
   for (const int n : {6, 40, 250}) {
     for (const ConvexPolytope& body : bodies(n, random)) {
