@@ -12,19 +12,42 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// On which side of the ray's line a point lies for certain: 1 left, -1 right, 0 open. It is within 2^-51 `size`; four
-/// times the rounding of the differences and products is left as air. What overflows is not certain.
-int certain_side(const RoundedRay& ray, const Point2& x, double size) {
-  const double value = ray.d[0] * (x[1] - ray.y[1]) - ray.d[1] * (x[0] - ray.y[0]);
-  const double air = 0x1p-49 * ray.speed * (size + ray.reach) + 0x1p-1060;
-  return value > air ? 1 : (value < -air ? -1 : 0);
+/// d x (point - y), and what it errs by: the point is within 2^-51 `size`; four times the rounding of the differences
+/// and products is left as air. What overflows is not certain.
+struct Side {
+  double value, air;
+  Side(const RoundedRay& ray, const Point2& x, double size)
+      : value(ray.d[0] * (x[1] - ray.y[1]) - ray.d[1] * (x[0] - ray.y[0])),
+        air(0x1p-49 * ray.speed * (size + ray.reach) + 0x1p-1060) {}
+  /// 1 left of the ray's line for certain, -1 right, 0 open.
+  [[nodiscard]] int sign() const { return value > air ? 1 : (value < -air ? -1 : 0); }
+};
+
+/// Bounds of the parameter at which the ray crosses the edge from a to b, which lie on different sides for certain.
+///
+/// The crossing parts the edge as |value of a| : |value of b|, and the parameter as well. The values err by `air`, so
+/// does d . (point - y), so that the share errs by 2 air / sum at most and the parameter times d . d by less than what
+/// is taken here. Left open where the sum is not much more than air.
+void bound_crossing(const RoundedRay& ray, const Point2& a, const Point2& b, const Side& at_a, const Side& at_b,
+                    RayHit& hit) {
+  const double sum = std::abs(at_a.value) + std::abs(at_b.value);
+  if (!(sum >= 4 * at_a.air)) return;
+  const double from = ray.d[0] * (a[0] - ray.y[0]) + ray.d[1] * (a[1] - ray.y[1]);
+  const double to = ray.d[0] * (b[0] - ray.y[0]) + ray.d[1] * (b[1] - ray.y[1]);
+  const double along = from + std::abs(at_a.value) / sum * (to - from);
+  const double error = at_a.air * (4 + 3 * std::abs(to - from) / sum);
+  const double low = (along - error) * ray.per_square, high = (along + error) * ray.per_square;
+  const double rounding = 0x1p-49 * (std::abs(low) + std::abs(high)) + 0x1p-1060;
+  if (!std::isfinite(low - rounding) || !std::isfinite(high + rounding)) return;
+  hit.low = low - rounding;
+  hit.high = high + rounding;
 }
 
 /// Do both ends of a span lie on one side of the ray's line for certain?
 bool beside_line(const RoundedRay& ray, const Span& e) {
   const auto side = [&](const SumPoint& x) {
     const double size = std::max(std::abs(x.p[0]) + std::abs(x.q[0]), std::abs(x.p[1]) + std::abs(x.q[1]));
-    return certain_side(ray, {x.p[0] - x.q[0], x.p[1] - x.q[1]}, size);
+    return Side(ray, {x.p[0] - x.q[0], x.p[1] - x.q[1]}, size).sign();
   };
   return side(e.s) * side(e.z) > 0;
 }
@@ -36,10 +59,14 @@ bool beside_line(const RoundedRay& ray, const Span& e) {
 void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_only) const {
   const RoundedRay ray(search.ray().s.p, d);
   search.boxes += ray_tree_.visit(ray, search.limit(), [&](std::int32_t i) {
+    const EdgeEnds& ends = ends_[at(i)];
+    const bool arc = ends.kind == EdgeEnds::Kind::arc;
+    const Side at_a(ray, ends.a, ends.size), at_b(ray, ends.b, ends.size);
+    const int a = at_a.sign(), b = at_b.sign();
+    if (!arc && a * b > 0) return;
     const Stretch& s = boundary_.stretches()[at(i)];
     if (outer_only && s.loop != 0) return;
-    const EdgeEnds& ends = ends_[at(i)];
-    if (ends.kind == EdgeEnds::Kind::arc) {
+    if (arc) {
       const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, ray.y, ray.d, search.limit())); };
       visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
                   [&](int e) {
@@ -48,12 +75,12 @@ void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_on
                   });
       return;
     }
-    const int a = certain_side(ray, ends.a, ends.size), b = certain_side(ray, ends.b, ends.size);
-    if (a * b > 0) return;
     const int e = SumBoundary::first_edge(s);
     if (a * b < 0 && ends.kind == EdgeEnds::Kind::exact) {
       const Place crossing{Place::Kind::line, search.ray().s, search.ray().d};
-      search.offer({{i, e, crossing}, boundary_.edge(boundary_.candidate(s), e), true, true, b > 0});
+      RayHit hit{{i, e, crossing}, true, true, b > 0};
+      bound_crossing(ray, ends.a, ends.b, at_a, at_b, hit);
+      search.offer(hit);
     } else {
       search.meet(i, e, boundary_.part(s, e));
     }
@@ -61,7 +88,7 @@ void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_on
 }
 
 std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const Point2& d, bool outer_only) const {
-  RaySearch search(y, d);
+  RaySearch search(boundary_, y, d);
   search_ray(search, d, outer_only);
   if (!search.best()) return std::nullopt;
   return search.best()->point;
@@ -70,7 +97,7 @@ std::optional<BoundaryPoint> BoundaryQuery::first_on_ray(const Point2& y, const 
 std::optional<PlanarContact> BoundaryQuery::contact_by_ray(const Point2& y, const Point2& d,
                                                            std::optional<BoundaryPoint>& hit,
                                                            std::int64_t* boxes) const {
-  RaySearch search(y, d);
+  RaySearch search(boundary_, y, d);
   search_ray(search, d, false);
   if (boxes != nullptr) *boxes += search.boxes;
   if (!search.best()) return PlanarContact::separated;  // the ray goes to infinity, and y is not on the boundary
@@ -102,7 +129,7 @@ bool BoundaryQuery::in_unbounded_face(const Point2& y) const {
   constexpr std::array<int, 12> kSlopes = {1, 7, -3, 11, -5, 2, 13, -17, 23, -29, 31, -37};
   for (const int slope : kSlopes) {
     const Point2 d = {64.0, static_cast<double>(slope)};
-    RaySearch search(y, d);
+    RaySearch search(boundary_, y, d);
     search_ray(search, d, false);
     if (!search.best()) return true;
     if (search.unique()) return boundary_.stretches()[at(search.best()->point.stretch)].loop == 0;

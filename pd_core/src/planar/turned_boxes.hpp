@@ -22,6 +22,7 @@ struct RoundedRay {
   double reach;         ///< |y|_1
   double speed;         ///< |d|_1
   double slow;          ///< 2^-12 of that
+  double per_square;    ///< 1 / (d . d) but for rounding; not a number where that might be lost below or above doubles
   double air;           ///< more than the roundings of y and of differences with it
   Point2 above, below;  ///< y moved by it up and down
   RoundedRay(const Point2& from, const Point2& along)
@@ -31,6 +32,8 @@ struct RoundedRay {
         reach(std::abs(y[0]) + std::abs(y[1])),
         speed(std::abs(d[0]) + std::abs(d[1])),
         slow(0x1p-12 * speed),
+        per_square(speed > 0x1p-400 && speed < 0x1p400 ? 1 / (d[0] * d[0] + d[1] * d[1])
+                                                       : std::numeric_limits<double>::quiet_NaN()),
         air(0x1p-48 * reach),
         above{y[0] + air, y[1] + air},
         below{y[0] - air, y[1] - air} {}
@@ -88,7 +91,7 @@ class TurnedBoxes {
   }
 
  private:
-  static constexpr int kLeafSize = 2;
+  static constexpr int kLeafSize = 4;
   struct Node {
     Point2 axis;       ///< of length 1 within 2^-50; {1, 0}: upright
     Point2 low, high;  ///< along the axis, and along its left normal
@@ -112,13 +115,15 @@ class TurnedBoxes {
       }
     } else {
       const Point2 &u = node.axis, &y = ray.y, &d = ray.d;
-      const Point2 from = {u[0] * y[0] + u[1] * y[1], u[0] * y[1] - u[1] * y[0]};
-      const Point2 speed = {u[0] * d[0] + u[1] * d[1], u[0] * d[1] - u[1] * d[0]};
-      for (std::size_t k = 0; k < 2; ++k) {
+      // Across the axis first: boxes are thin there, and most that are missed are missed so.
+      for (const std::size_t k : {std::size_t{1}, std::size_t{0}}) {
+        const double from = k == 0 ? u[0] * y[0] + u[1] * y[1] : u[0] * y[1] - u[1] * y[0];
+        const double speed = k == 0 ? u[0] * d[0] + u[1] * d[1] : u[0] * d[1] - u[1] * d[0];
         // The speed is within 2^-50 of |d|: below 2^-12 of it nothing is concluded.
-        if (std::abs(speed[k]) <= ray.slow) continue;
-        const double inverse = 1 / speed[k];
-        clip((node.low[k] - from[k] - ray.air) * inverse, (node.high[k] - from[k] + ray.air) * inverse, low, high);
+        if (std::abs(speed) <= ray.slow) continue;
+        const double inverse = 1 / speed;
+        clip((node.low[k] - from - ray.air) * inverse, (node.high[k] - from + ray.air) * inverse, low, high);
+        if (low > high * (1 + 0x1p-35)) return kNever;
       }
     }
     // Parameters are within 2^-37 of themselves. A `high` below 0 stays there, and the box lies behind.
