@@ -10,11 +10,8 @@
 #include <string>
 #include <vector>
 
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
-
 #include "bench/dobkin/dobkin.hpp"
+#include "bench/dobkin/sum_hulls.hpp"
 #include "bench/measure/stopwatch.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/scratch.hpp"
@@ -195,25 +192,13 @@ void measure_large(const DobkinSettings& settings, ClaimTable& table) {
   if (sum < 0) std::abort();
 }
 
-/// The hull of all b - a by Qhull, without what is asked of it.
-double seconds_of_hull(const ConvexPolytope& p, const ConvexPolytope& q) {
-  std::vector<double> points;
+/// All b - a.
+std::vector<Vec3> differences(const ConvexPolytope& p, const ConvexPolytope& q) {
+  std::vector<Vec3> points;
   for (int i = 0; i < p.num_vertices(); ++i) {
-    for (int k = 0; k < q.num_vertices(); ++k) {
-      const Vec3 x = q.vertex(k) - p.vertex(i);
-      points.insert(points.end(), {x.x(), x.y(), x.z()});
-    }
+    for (int k = 0; k < q.num_vertices(); ++k) points.push_back(q.vertex(k) - p.vertex(i));
   }
-  const auto begin = Clock::now();
-  qhT context;
-  qh_zero(&context, stderr);
-  std::string options = "qhull Qt";
-  qh_new_qhull(&context, 3, static_cast<int>(points.size() / 3), points.data(), False, options.data(), nullptr, stderr);
-  const double seconds = elapsed_ns(begin, Clock::now()) * 1e-9;
-  qh_freeqhull(&context, qh_ALL);
-  int current = 0, total = 0;
-  qh_memfreeshort(&context, &current, &total);
-  return seconds;
+  return points;
 }
 
 void measure_small(const DobkinSettings& settings, ClaimTable& table) {
@@ -229,8 +214,16 @@ void measure_small(const DobkinSettings& settings, ClaimTable& table) {
     sum += directional_depth(posed_a, posed_b, d, scratch).value().depth;
   });
   if (sum < 0) std::abort();
-  table.add_value(kDepth, "balls", "time / Qhull's hull of pairwise sums", fmt::format("n = m = {}", n),
-                  ours * 1e-9 / seconds_of_hull(p, q), 0.01);
+  const std::string range = fmt::format("n = m = {}", n);
+  const std::vector<Vec3> points = differences(p, q);
+  const TimedHull by_qhull = qhull_hull(points);
+  table.add_value(kDepth, "balls", "portal, ns", range, ours);
+  table.add_value(kDepth, "balls", "time / Qhull's hull of pairwise sums", range, ours * 1e-9 / by_qhull.seconds, 0.01);
+#ifdef PD_BENCH_WITH_CGAL
+  const TimedHull by_cgal = cgal_hull(points);
+  table.add_value(kDepth, "balls", "time / CGAL's hull of pairwise sums", range, ours * 1e-9 / by_cgal.seconds, 0.01);
+  table.add_value(kDepth, "balls", "vertices of CGAL's hull less Qhull's", range, by_cgal.vertices - by_qhull.vertices);
+#endif
 }
 
 }  // namespace
