@@ -13,6 +13,7 @@
 #include "bench/measure/compare.hpp"
 #include "bench/pairs/apart.hpp"
 #include "bench/pairs/coherent.hpp"
+#include "bench/pairs/curved.hpp"
 #include "bench/pairs/meshes.hpp"
 #include "bench/pairs/pairs.hpp"
 #include "bench/report/bench_report.hpp"
@@ -184,6 +185,18 @@ int apart_command(const Options& o) {
   return finish(run_apart({*cells, pairs, o.seed}, solvers), "Bodies apart (ratios to Bullet's pair detector)", o);
 }
 
+int curved_command(const Options& o) {
+  const auto cells = choose_curved(o.families);
+  if (!cells) return refuse(cells.error());
+  Solvers solvers;
+  add_ours_curved(solvers);
+  add_peers_curved(solvers);
+  if (!select(solvers, o.solvers)) return 2;
+  print_preamble(o);
+  const int pairs = o.pairs > 0 ? o.pairs : o.quick ? 8 : 40;
+  return finish(run_curved({*cells, pairs, o.seed}, solvers), "Curved bodies in each other", o);
+}
+
 int hash_command(const Options& o) {
   HashOutcome outcome;
   const int code = run_hash(o.hash, &outcome);
@@ -241,6 +254,14 @@ CLI::App* add_apart(CLI::App& app, Options& o) {
   add_common(*command, o);
   add_family_options(*command, o);
   command->add_option("--pairs", o.pairs, "pairs in each cell, of three frames (default: 24, quick 4)");
+  return command;
+}
+
+CLI::App* add_curved(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("curved", "curved bodies in each other, cold and with the memory of the pair");
+  add_common(*command, o);
+  command->add_option("--families", o.families, "names of families (default: all)")->delimiter(',');
+  command->add_option("--pairs", o.pairs, "pairs in each cell, of three frames (default: 40, quick 8)");
   return command;
 }
 
@@ -331,6 +352,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_pairs(app, options);
   CLI::App* apart = add_apart(app, options);
+  CLI::App* curved = add_curved(app, options);
   CLI::App* coherent = add_coherent(app, options);
   CLI::App* meshes = add_meshes(app, options);
   CLI::App* compare = add_compare(app, options);
@@ -375,6 +397,7 @@ int main(int argc, char** argv) {
   if (app.get_subcommands().front()->count("--seed") == 0) options.seed = std::random_device{}();
   options.report = told(options.report.folder, std::to_string(options.seed));
   if (*apart) return apart_command(options);
+  if (*curved) return curved_command(options);
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);
   if (*compare) return compare_command(options);

@@ -37,14 +37,14 @@ void set_ratios(std::vector<Row>& cell, std::string_view baseline) {
 }
 
 void print_header() {
-  fmt::print("{:<7} {:>8} {:<8} {:<20} {:>5} {:>10} {:>10} {:>10} {:>9} {:>6} {:>9} {:>9} {:>7}\n", "family",
+  fmt::print("{:<19} {:>8} {:<8} {:<20} {:>5} {:>10} {:>10} {:>10} {:>9} {:>6} {:>9} {:>9} {:>7}\n", "family",
              "vertices", "depth", "solver", "pairs", "p50", "p99", "max", "x bullet", "wrong", "error/L", "supports",
              "allocs");
 }
 
 void print_rows(const std::vector<Row>& cell) {
   for (const Row& r : cell) {
-    fmt::print("{:<7} {:>8} {:<8} {:<20} {:>5} {:>10} {:>10} {:>10} {:>9} {:>6} {:>9.1e} {:>9} {:>7}{}\n", r.family,
+    fmt::print("{:<19} {:>8} {:<8} {:<20} {:>5} {:>10} {:>10} {:>10} {:>9} {:>6} {:>9.1e} {:>9} {:>7}{}\n", r.family,
                r.vertices, r.depth, r.solver, r.pairs, time_text(r.p50_ns), time_text(r.p99_ns), time_text(r.max_ns),
                number_text(r.ratio_to_bullet, 3), r.wrong, r.worst_error, number_text(r.supports, 1),
                number_text(r.allocations, 1), r.wrong > 0 ? "  WRONG" : "");

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/measure/allocation_counter.hpp"
-#include "bench/measure/stopwatch.hpp"
 #include "bench/pairs/judge.hpp"
 #include "bench/pairs/pairs.hpp"
 #include "pd/depth/penetration_depth.hpp"
@@ -66,46 +64,6 @@ double distance_of(const Bodies& bodies, const Standing& at, Precision precision
   const oracle::Verdict verdict = oracle::judge(pair);
   if (verdict.contact != ContactClass::separated) return 0;
   return verdict.distance_known ? verdict.distance.approximate() : kUnknown;
-}
-
-struct Lane {
-  std::vector<std::unique_ptr<Attempt>> attempts;
-  std::vector<double> least_ns = std::vector<double>(kFrames, std::numeric_limits<double>::infinity());
-  std::int64_t allocations = 0;
-};
-
-/// Frame 0 grows buffers and makes the memories; the others are timed, every pass from fresh memories.
-void measure(const Bodies& bodies, const std::vector<Standing>& frames, Solvers& solvers, std::vector<Tally>& tallies) {
-  constexpr int kPasses = 5;
-  constexpr int kSideBySide = 8;
-  const ApartJudge judge(bodies);
-  std::vector<Lane> lanes(solvers.size());
-  for (int pass = 0; pass < kPasses; ++pass) {
-    for (std::size_t s = 0; s < solvers.size(); ++s) {
-      lanes[s].attempts.clear();
-      for (int k = 0; k < kSideBySide; ++k) lanes[s].attempts.push_back(solvers[s]->prepare(bodies));
-    }
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      const double limit = frames[i].gap / 2;
-      for (std::size_t s = 0; s < solvers.size(); ++s) {
-        Lane& lane = lanes[s];
-        for (auto& attempt : lane.attempts) {
-          attempt->stand(frames[i].a, frames[i].b);
-          attempt->limit(limit);
-        }
-        const std::int64_t before = allocations();
-        const auto t0 = Clock::now();
-        for (auto& attempt : lane.attempts) attempt->run();
-        lane.least_ns[i] = std::min(lane.least_ns[i], elapsed_ns(t0, Clock::now()) / kSideBySide);
-        lane.allocations = allocations() - before;
-        if (i == 0 || pass + 1 < kPasses) continue;
-        const Attempt& last = *lane.attempts.front();
-        const double error = judge.error(last.answer(), frames[i], limit, solvers[s]->precision());
-        tallies[s].add(lane.least_ns[i], static_cast<double>(lane.allocations) / kSideBySide, last.supports(),
-                       !(error <= kTolerance), error);
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -208,20 +166,17 @@ std::vector<Row> run_apart(const ApartSettings& settings, Solvers& solvers) {
         continue;
       }
       scenes::Random random(settings.seed * 0x9E3779B97F4A7C15ULL + number);
-      measure(d->bodies, frames_apart(d->bodies, cell.gap_share, kFrames, random), solvers, tallies);
+      const ApartJudge judge(d->bodies);
+      measure_frames(
+          d->bodies, frames_apart(d->bodies, cell.gap_share, kFrames, random), solvers,
+          [&](const Answer& answer, const Standing& at, Precision precision) {
+            return judge.error(answer, at, at.limit(), precision);
+          },
+          tallies);
       ++done;
     }
-    std::vector<Row> block;
-    for (std::size_t s = 0; s < solvers.size(); ++s) {
-      if (tallies[s].count() == 0) continue;
-      Row row = tallies[s].row();
-      row.family = scenes::to_string(cell.family);
-      row.vertices = cell.vertices;
-      row.depth = fmt::format("gap {:.0f}%", 100 * cell.gap_share);
-      row.solver = solvers[s]->name();
-      block.push_back(std::move(row));
-    }
-    set_ratios(block, kBulletGjk);
+    const std::vector<Row> block = rows_of_standing(solvers, tallies, scenes::to_string(cell.family), cell.vertices,
+                                                    fmt::format("gap {:.0f}%", 100 * cell.gap_share), kBulletGjk);
     print_rows(block);
     rows.insert(rows.end(), block.begin(), block.end());
   }

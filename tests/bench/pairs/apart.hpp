@@ -7,7 +7,7 @@
 #pragma once
 
 #include "bench/measure/table.hpp"
-#include "bench/pairs/pair_source.hpp"
+#include "bench/pairs/standing.hpp"
 
 namespace pd::bench {
 
@@ -20,12 +20,6 @@ struct ApartCell {
 /// The cells of `families` and `vertices` (both empty = all); `quick`: up to 128 vertices.
 [[nodiscard]] Expected<std::vector<ApartCell>> choose_apart(const std::vector<std::string>& families,
                                                             const std::vector<int>& vertices, bool quick);
-
-struct Standing {
-  Pose a;
-  Pose b;
-  double gap = 0;  ///< that was wanted
-};
 
 /// Frames of one pair. Requires solids.
 [[nodiscard]] std::vector<Standing> frames_apart(const Bodies& bodies, double gap_share, int count,

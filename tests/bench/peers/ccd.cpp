@@ -1,14 +1,18 @@
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
 
+#include <cmath>
+
 #include "bench/peers/solver.hpp"
 
 namespace pd::bench {
 
 namespace {
 
-/// A hull for libccd: a scan over all vertices, as its own examples and FCL's default do it.
-struct CcdHull {
+/// A body for libccd: a scan over all vertices, as its own examples and FCL's default do it, or the formula of a curved
+/// core, and the margin.
+struct CcdBody {
+  const ConvexShape* shape;
   std::vector<double> x;
   std::vector<double> y;
   std::vector<double> z;
@@ -17,8 +21,10 @@ struct CcdHull {
   Vec3 translation;
   mutable std::int64_t supports = 0;
 
-  explicit CcdHull(const ConvexShape& shape) : centre(shape.polytope()->centre()) {
-    for (const Vec3& p : vertices_of(shape)) {
+  explicit CcdBody(const ConvexShape& body)
+      : shape(&body), centre(body.polytope() ? body.polytope()->centre() : Vec3(Vec3::Zero())) {
+    if (body.polytope() == nullptr) return;
+    for (const Vec3& p : vertices_of(body)) {
       x.push_back(p.x());
       y.push_back(p.y());
       z.push_back(p.z());
@@ -28,10 +34,7 @@ struct CcdHull {
 
 void store(const Vec3& v, ccd_vec3_t* out) { ccdVec3Set(out, v.x(), v.y(), v.z()); }
 
-void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-  const auto& hull = *static_cast<const CcdHull*>(object);
-  ++hull.supports;
-  const Vec3 d = hull.rotation.transpose() * Vec3(direction->v[0], direction->v[1], direction->v[2]);
+Vec3 farthest_vertex(const CcdBody& hull, const Vec3& d) {
   std::size_t best = 0;
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.x.size(); ++i) {
@@ -41,11 +44,38 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
       best = i;
     }
   }
-  store(hull.rotation * Vec3(hull.x[best], hull.y[best], hull.z[best]) + hull.translation, out);
+  return {hull.x[best], hull.y[best], hull.z[best]};
+}
+
+/// Axes run along z.
+Vec3 farthest_point(const CcdBody& body, const Vec3& d) {
+  const ConvexShape::Core& core = body.shape->core();
+  if (std::holds_alternative<ConvexPolytope>(core)) return farthest_vertex(body, d);
+  if (const auto* e = std::get_if<Ellipsoid>(&core)) {
+    const Vec3 scaled = e->radii.cwiseProduct(d);
+    return e->radii.cwiseProduct(scaled) / scaled.norm();
+  }
+  const double across = std::sqrt(d.x() * d.x() + d.y() * d.y());
+  const auto rim = [&](double radius, double z) {
+    return across > 0 ? Vec3(d.x() * radius / across, d.y() * radius / across, z) : Vec3(0, 0, z);
+  };
+  if (const auto* c = std::get_if<Cylinder>(&core)) return rim(c->radius, std::copysign(c->half_height, d.z()));
+  const auto& cone = std::get<Cone>(core);
+  const bool apex = 2 * cone.half_height * d.z() > cone.radius * across;
+  return apex ? Vec3(0, 0, cone.half_height) : rim(cone.radius, -cone.half_height);
+}
+
+void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
+  const auto& hull = *static_cast<const CcdBody*>(object);
+  ++hull.supports;
+  const Vec3 world(direction->v[0], direction->v[1], direction->v[2]);
+  Vec3 point = hull.rotation * farthest_point(hull, hull.rotation.transpose() * world) + hull.translation;
+  if (hull.shape->margin() > 0) point += hull.shape->margin() * world.normalized();
+  store(point, out);
 }
 
 void centre(const void* object, ccd_vec3_t* out) {
-  const auto& hull = *static_cast<const CcdHull*>(object);
+  const auto& hull = *static_cast<const CcdBody*>(object);
   store(hull.rotation * hull.centre + hull.translation, out);
 }
 
@@ -87,8 +117,8 @@ class CcdAttempt final : public Attempt {
 
  private:
   CcdMethod method_;
-  CcdHull a_;
-  CcdHull b_;
+  CcdBody a_;
+  CcdBody b_;
   ccd_t ccd_;
   int status_ = -1;
   double depth_ = 0;

@@ -1,5 +1,10 @@
 #include <fcl/config.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
@@ -9,7 +14,7 @@ namespace pd::bench {
 
 namespace {
 
-std::shared_ptr<fcl::Convexd> to_fcl(const ConvexShape& shape) {
+std::shared_ptr<fcl::CollisionGeometryd> hull_of(const ConvexShape& shape) {
   const ConvexPolytope& polytope = *shape.polytope();
   auto points = std::make_shared<std::vector<fcl::Vector3d>>();
   for (const Vec3& p : vertices_of(shape)) points->push_back(p);
@@ -20,6 +25,20 @@ std::shared_ptr<fcl::Convexd> to_fcl(const ConvexShape& shape) {
     faces->insert(faces->end(), corners.begin(), corners.end());
   }
   return std::make_shared<fcl::Convexd>(points, polytope.num_facets(), faces);
+}
+
+/// Axes run along z.
+std::shared_ptr<fcl::CollisionGeometryd> to_fcl(const ConvexShape& shape) {
+  if (const auto* e = std::get_if<Ellipsoid>(&shape.core())) return std::make_shared<fcl::Ellipsoidd>(e->radii);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.core())) {
+    return std::make_shared<fcl::Cylinderd>(cylinder->radius, 2 * cylinder->half_height);
+  }
+  if (const auto* cone = std::get_if<Cone>(&shape.core())) {
+    return std::make_shared<fcl::Coned>(cone->radius, 2 * cone->half_height);
+  }
+  if (shape.polytope()->num_vertices() == 1) return std::make_shared<fcl::Sphered>(shape.margin());
+  if (shape.polytope()->num_vertices() == 2) return std::make_shared<fcl::Capsuled>(shape.margin(), length_of(shape));
+  return hull_of(shape);
 }
 
 fcl::Transform3d to_fcl(const Pose& pose) {
@@ -102,7 +121,7 @@ class FclSolver final : public Solver {
 }  // namespace
 
 void add_fcl(Solvers& solvers) {
-  solvers.push_back(std::make_unique<FclSolver>("fcl-distance", FclQuery::signed_distance));
+  solvers.push_back(std::make_unique<FclSolver>(kFclDistance, FclQuery::signed_distance));
   solvers.push_back(std::make_unique<FclSolver>("fcl-contact", FclQuery::contact));
 }
 

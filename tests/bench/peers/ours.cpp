@@ -80,6 +80,12 @@ void add_ours(Solvers& solvers, bool every_engine, bool remembering) {
   add("pdepth-decomposition", certified(Method::decomposition), false);
 }
 
+void add_ours_curved(Solvers& solvers) {
+  const DepthSettings settings{.bracket = Bracket::certified, .delta = 1e-6};
+  solvers.push_back(std::make_unique<OurSolver>(std::string(kOurs), settings, false));
+  solvers.push_back(std::make_unique<OurSolver>("pdepth-warm", settings, true));
+}
+
 void add_ours_apart(Solvers& solvers) {
   for (const bool remembering : {false, true}) {
     const std::string warm = remembering ? "-warm" : "";

@@ -9,6 +9,20 @@ scenes::Points vertices_of(const ConvexShape& shape) {
   return points;
 }
 
+std::optional<Vec3> half_extents_of(const ConvexShape& shape) {
+  const scenes::Points corners = vertices_of(shape);
+  if (corners.size() != 8) return std::nullopt;
+  const Vec3 half = corners[0].cwiseAbs();
+  for (const Vec3& corner : corners) {
+    if (corner.cwiseAbs() != half) return std::nullopt;
+  }
+  return half;
+}
+
+double length_of(const ConvexShape& shape) {
+  return (shape.polytope()->vertex(1) - shape.polytope()->vertex(0)).norm();
+}
+
 void add_peers([[maybe_unused]] Solvers& solvers) {
 #ifdef PD_BENCH_WITH_BULLET
   add_bullet(solvers);
@@ -30,6 +44,19 @@ void add_peers_apart([[maybe_unused]] Solvers& solvers) {
 #endif
 #ifdef PD_BENCH_WITH_FCL
   add_fcl_apart(solvers);
+#endif
+}
+
+void add_peers_curved([[maybe_unused]] Solvers& solvers) {
+#ifdef PD_BENCH_WITH_BULLET
+  add_bullet_curved(solvers);
+#endif
+  // These take curved shapes as they take hulls.
+#ifdef PD_BENCH_WITH_CCD
+  add_ccd(solvers);
+#endif
+#ifdef PD_BENCH_WITH_FCL
+  add_fcl(solvers);
 #endif
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,10 +62,15 @@ using Solvers = std::vector<std::unique_ptr<Solver>>;
 inline constexpr std::string_view kOurs = "pdepth-auto";
 inline constexpr std::string_view kBulletEpa = "bullet-epa";
 inline constexpr std::string_view kBulletGjk = "bullet-gjk";
+inline constexpr std::string_view kFclDistance = "fcl-distance";
 inline constexpr std::string_view kOde = "ode";
 
 /// Vertices of the hull in its canonical order.
 [[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);
+/// Of a box round the origin of its frame, along its axes; nothing where the shape is no such box.
+[[nodiscard]] std::optional<Vec3> half_extents_of(const ConvexShape& shape);
+/// Between the two ends of a capsule's core.
+[[nodiscard]] double length_of(const ConvexShape& shape);
 
 /// pdepth-auto (the automatic method with Bracket::certified, as a physics engine uses it), and with `every_engine`
 /// pdepth-tightest (Bracket::tightest), pdepth-expansion, pdepth-overlay,
@@ -82,6 +88,13 @@ void add_ours_apart(Solvers& solvers);
 /// Bullet's pair detector, FCL's distance by both of its solvers, and libccd's GJK, which says only whether they meet.
 void add_peers_apart(Solvers& solvers);
 
+/// Curved bodies that overlap: pdepth-auto (Bracket::certified, delta 1e-6), and pdepth-warm with the memory of the
+/// pair.
+void add_ours_curved(Solvers& solvers);
+/// Bullet's EPA, its pair detector with that EPA, FCL's signed distance and contact query, and libccd's EPA and MPR,
+/// each on its own primitive shapes.
+void add_peers_curved(Solvers& solvers);
+
 /// One line for each package: its version, or that it is missing.
 [[nodiscard]] std::vector<std::string> peer_notes();
 
@@ -91,6 +104,7 @@ void add_ccd(Solvers& solvers);
 void add_bullet_apart(Solvers& solvers);
 void add_ccd_apart(Solvers& solvers);
 void add_fcl_apart(Solvers& solvers);
+void add_bullet_curved(Solvers& solvers);
 void add_fcl(Solvers& solvers);
 /// Bodies must be solids round the origin of their frames.
 void add_ode(Solvers& solvers);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "depth/pair/point_in_ellipsoid.hpp"
+#include "depth/pair/point_in_revolution.hpp"
 
 namespace pd::detail {
 
@@ -92,10 +93,23 @@ namespace {
 /// Farther from a ball, the search that the ball would spare is short.
 constexpr double kMaxBallRatio = 1 + 1e-4;
 
+/// The ball around a point of a core that lies in it, in the core's frame; nothing where the point is not inside.
+struct BallInCore {
+  Vec3 point;
+
+  std::optional<PointInCore> operator()(const ConvexPolytope& /*polytope*/) const { return std::nullopt; }
+  std::optional<PointInCore> operator()(const Ellipsoid& e) const {
+    if (!(point.cwiseQuotient(e.radii).squaredNorm() < 1)) return std::nullopt;
+    const PointInEllipsoid found = point_in_ellipsoid(e.radii, point);
+    return PointInCore{found.lower, found.outward, support_point(e, found.outward)};
+  }
+  std::optional<PointInCore> operator()(const Cylinder& c) const { return point_in_cylinder(c, point); }
+  std::optional<PointInCore> operator()(const Cone& c) const { return point_in_cone(c, point); }
+};
+
 std::optional<InscribedBallsDepth> ball_of_one_in_other(const PosedShape& inner, const PosedShape& outer,
                                                         bool outer_is_a, const SmoothDifference& difference) {
-  const auto* ellipsoid = std::get_if<Ellipsoid>(&outer.shape->core());
-  if (ellipsoid == nullptr) return std::nullopt;
+  if (outer.shape->polytope() != nullptr) return std::nullopt;
   const auto* round = std::get_if<Ellipsoid>(&inner.shape->core());
   if (round != nullptr && round->radii.maxCoeff() > kMaxBallRatio * round->radii.minCoeff()) return std::nullopt;
   if (round == nullptr && (inner.shape->polytope() == nullptr || inner.shape->polytope()->num_vertices() > 1)) {
@@ -106,19 +120,19 @@ std::optional<InscribedBallsDepth> ball_of_one_in_other(const PosedShape& inner,
   const Mat3 turn_outer = outer.pose.nearest_rotation();
   const Vec3 offset = inner.pose.translation() - outer.pose.translation();
   const Vec3 local = turn_outer.transpose() * (turn_inner * ball.centre + offset);
-  if (!(local.cwiseQuotient(ellipsoid->radii).squaredNorm() < 1)) return std::nullopt;
-  const PointInEllipsoid found = point_in_ellipsoid(ellipsoid->radii, local);
-  const Vec3 outward = turn_outer * found.outward;
+  const std::optional<PointInCore> found = std::visit(BallInCore{local}, outer.shape->core());
+  if (!found) return std::nullopt;
+  const Vec3 outward = turn_outer * found->outward;
   const double length = outward.norm();
-  if (!(found.lower > 0) || !(length > 0)) return std::nullopt;
+  if (!(found->lower > 0) || !(length > 0)) return std::nullopt;
   InscribedBallsDepth out;
   out.normal = outward / (outer_is_a ? -length : length);
   // The centre errs as points do.
-  out.lower = ball.radius + found.lower - difference.point_error() - difference.taken_out(0) - difference.taken_out(1);
+  out.lower = ball.radius + found->lower - difference.point_error() - difference.taken_out(0) - difference.taken_out(1);
   out.upper = difference.support(out.normal, nullptr).x.dot(out.normal) + support_plane_error(difference);
   out.lower = std::min(out.lower, out.upper);
   const Vec3 centre = turn_inner * ball.centre;
-  const Vec3 surface = turn_outer * support_point(*ellipsoid, found.outward);
+  const Vec3 surface = turn_outer * found->surface;
   const Vec3 between = outer_is_a ? offset : Vec3(-offset);  // t_B - t_A
   out.on_a = outer_is_a ? surface : Vec3(centre - ball.radius * out.normal);
   out.on_b = between + (outer_is_a ? Vec3(centre + ball.radius * out.normal) : surface);
@@ -127,9 +141,8 @@ std::optional<InscribedBallsDepth> ball_of_one_in_other(const PosedShape& inner,
 
 }  // namespace
 
-std::optional<InscribedBallsDepth> ball_in_ellipsoid_depth(const PosedShape& a, const PosedShape& b,
-                                                           const SmoothDifference& difference,
-                                                           std::int64_t& support_calls) {
+std::optional<InscribedBallsDepth> ball_in_core_depth(const PosedShape& a, const PosedShape& b,
+                                                      const SmoothDifference& difference, std::int64_t& support_calls) {
   std::optional<InscribedBallsDepth> in_a = ball_of_one_in_other(b, a, true, difference);
   std::optional<InscribedBallsDepth> in_b = ball_of_one_in_other(a, b, false, difference);
   support_calls += (in_a ? 1 : 0) + (in_b ? 1 : 0);

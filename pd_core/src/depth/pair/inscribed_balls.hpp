@@ -27,11 +27,11 @@ struct InscribedBallsDepth {
                                                                        const SmoothDifference& difference,
                                                                        std::int64_t& support_calls);
 
-/// Of an ellipsoid and the ball in a point, or in an ellipsoid that is nearly one: the ball's radius and the depth of
-/// its centre in the ellipsoid (point_in_ellipsoid.hpp). Exact but for rounding where the ball is all of its core.
-/// Nothing for other cores, or where the centre lies outside.
-[[nodiscard]] std::optional<InscribedBallsDepth> ball_in_ellipsoid_depth(const PosedShape& a, const PosedShape& b,
-                                                                         const SmoothDifference& difference,
-                                                                         std::int64_t& support_calls);
+/// Of an ellipsoid, cylinder or cone and the ball in a point, or in an ellipsoid that is nearly one: the ball's radius
+/// and the depth of its centre in the other core (point_in_ellipsoid.hpp, point_in_revolution.hpp). Exact but for
+/// rounding where the ball is all of its core. Nothing for other cores, or where the centre lies outside.
+[[nodiscard]] std::optional<InscribedBallsDepth> ball_in_core_depth(const PosedShape& a, const PosedShape& b,
+                                                                    const SmoothDifference& difference,
+                                                                    std::int64_t& support_calls);
 
 }  // namespace pd::detail

@@ -109,7 +109,8 @@ class SlenderOnBox {
 
 }  // namespace
 
-bool answer_slender_on_box(const PolytopePair& pair, const DepthSettings& settings, PenetrationDepth& out) {
+bool answer_slender_on_box(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
+                           PenetrationDepth& out) {
   const int of = pair.a->num_vertices() <= 2 ? 1 : 0;
   const ConvexPolytope& body = of == 1 ? *pair.a : *pair.b;
   const ConvexPolytope& owner = of == 1 ? *pair.b : *pair.a;
@@ -120,8 +121,12 @@ bool answer_slender_on_box(const PolytopePair& pair, const DepthSettings& settin
   FacetContact contact;
   EndOverFace over;
   if (!SlenderOnBox(body, pose_body, *box, of == 1 ? *pair.pose_b : *pair.pose_a).contact(contact, over)) return false;
-  const BracketWidth width{kCertifiedWidth, settings.contact_tolerance};
+  const bool for_contact = bracket == Bracket::contact;
+  const BracketWidth width{kCertifiedWidth, for_contact ? settings.contact_tolerance : 0};
   if (contact.upper - contact.lower > width.limit(contact.largest)) return false;
+  const double margin = pair.margins.both();
+  const double round = 4 * kUnitRoundoff * (contact.upper + margin);
+  if (!for_contact && contact.lower - margin <= round && contact.upper - margin >= -round) return false;
   set_contact_on_facet(contact, of == 0, pair.margins, pose_body.translation(), out);
   const Feature facet{Feature::Kind::facet, facet_of_box(owner, over.axis, over.side > 0), -1};
   const Feature vertex{Feature::Kind::vertex, contact.body.id, -1};

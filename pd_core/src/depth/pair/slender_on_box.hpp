@@ -13,7 +13,9 @@
 
 namespace pd::detail {
 
-/// Bracket::contact. Passes on where the body meets an edge or a corner, cuts the box, or is none of these.
-bool answer_slender_on_box(const PolytopePair& pair, const DepthSettings& settings, PenetrationDepth& out);
+/// Bracket::certified and contact. Passes on where the body meets an edge or a corner, cuts the box, or is none of
+/// these.
+bool answer_slender_on_box(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
+                           PenetrationDepth& out);
 
 }  // namespace pd::detail

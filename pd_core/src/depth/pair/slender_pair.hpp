@@ -6,6 +6,7 @@
 /// it from below. Both are as near to each other as rounding leaves them wherever the points are found well.
 #pragma once
 
+#include "depth/pair/nearest_of_segments.hpp"
 #include "depth/pair/polytope_depth.hpp"
 #include "pd/depth/depth_answer.hpp"
 
@@ -14,5 +15,9 @@ namespace pd::detail {
 /// Bracket::certified and contact. Passes on where the cores meet, or nearly, and where bracket or class stay in doubt.
 bool answer_slender_pair(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
                          PenetrationDepth& out);
+
+/// The same by nearest points that are known, of A and B or, `mirrored`, of B and A.
+bool answer_cores_apart(const PolytopePair& pair, NearestOfSegments& cores, bool mirrored,
+                        const DepthSettings& settings, Bracket bracket, PenetrationDepth& out);
 
 }  // namespace pd::detail

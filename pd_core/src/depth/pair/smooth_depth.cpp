@@ -124,7 +124,7 @@ class SmoothQuery {
     const auto is_narrow = [&](const std::optional<InscribedBallsDepth>& balls) {
       return balls && balls->upper - balls->lower <= kShareOfDelta * delta_ * (balls->lower + taken_out_);
     };
-    auto balls = ball_in_ellipsoid_depth(a_, b_, difference_, calls);
+    auto balls = ball_in_core_depth(a_, b_, difference_, calls);
     if (!is_narrow(balls)) balls = inscribed_balls_depth(a_, b_, difference_, calls);
     if (!is_narrow(balls)) return false;
     out_.contact = ContactClass::overlapping;
