@@ -235,8 +235,10 @@ void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answe
     line.at("backend").refuse("unsupported", "a kernel is what the backend \"kernel\" builds");
   }
   if (is_composed(a)) {
-    a.refuse("unsupported",
-             "a kernel is some of the points given, and a composed body has none; \"approximate\" answers");
+    a.refuse(
+        "unsupported",
+        "a kernel is some of the points given, and a composed body has none; \"approximate\" with \"side\":\"inner\" "
+        "answers points of it with every width at least 1 - epsilon times its own");
   }
   for_dimension(read_dimension(a, session.limits), [&]<int D>() {
     const Stopwatch watch;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <random>
 
 #include "bench/agarwal/agarwal.hpp"
@@ -312,6 +313,11 @@ CLI::App* add_arya(CLI::App& app, AryaSettings& o) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--chapters", o.chapters, arya_chapters())->delimiter(',');
+  using pd::dimension::Backend;
+  const std::map<std::string, Backend> backends = {
+      {"exact", Backend::exact}, {"kernel", Backend::kernel}, {"macbeath", Backend::macbeath}};
+  command->add_option("--backend", o.backend, "of the promises: exact (d <= 3), kernel or macbeath")
+      ->transform(CLI::CheckedTransformer(backends));
   command->add_option("--out", o.out, "folder for the table (CSV, Markdown), the points and the plots");
   command->add_flag("--full", o.full, "up to 1e7 points; otherwise under a minute");
   add_report(*command, o.report.folder);

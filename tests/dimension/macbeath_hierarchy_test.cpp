@@ -67,5 +67,11 @@ TEST(MacbeathHierarchy, NodesAndVisitsGrowAsPromised) {
   EXPECT_LE(fine.size.max_out_degree, 40);
 }
 
+TEST(MacbeathHierarchy, LeavesAreAsLargeAsWhatTheirPointsAnswer) {
+  // Macbeath regions of the polar body, as deep as the bound for the worst body allows, are 659 and 1270.
+  EXPECT_LE(check<4>(Family::sphere, 300, 0.3, 500).size.nodes, 300);
+  EXPECT_LE(check<5>(Family::sphere, 200, 0.5, 500).size.nodes, 200);
+}
+
 }  // namespace
 }  // namespace pd::dimension::test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "dimension/joggle.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
@@ -58,31 +59,57 @@ void KernelBuilder<D>::add(std::span<const Vector<D>> chunk, std::int64_t index)
 /// Bounds that spare points their search, where the block or the searches so far are worth their price.
 template <int D>
 void KernelBuilder<D>::prepare_block(std::size_t size) {
-  const bool worth = located_ > kSearchesACell * cells_.size();
+  const bool worth = located_ > patience_ * kSearchesACell * cells_.size();
   if (worth || hull_.facets().size() < size) {
     // The gauge is at most |p| over the nearest plane's distance.
     const double near = limit_ * hull_.inner_radius() * (1 - 1e-9);
     near_squared_ = near * near;
   }
   if (!worth) return;
-  if constexpr (kSurveys<D>) reach_.survey(hull_, limit_, hints_, cones_visited_);
-  located_ = 0;
+  if constexpr (kSurveys<D>) {
+    // Where every cell has a facet that a few points more would split, as on spheres, bounds spare next to none.
+    patience_ = spared_ < located_ ? 4 * patience_ : 1;
+    reach_.survey(hull_, limit_, hints_, cones_visited_);
+  }
+  located_ = spared_ = 0;
+}
+
+/// Cell by cell, so that neighbours walk over the same facets while the nearest cache holds them.
+template <int D>
+void KernelBuilder<D>::sort_candidates() {
+  cell_begin_.assign(static_cast<std::size_t>(cells_.size()) + 1, 0);
+  for (const Candidate& c : candidates_) ++cell_begin_[static_cast<std::size_t>(c.cell) + 1];
+  std::partial_sum(cell_begin_.begin(), cell_begin_.end(), cell_begin_.begin());
+  order_.resize(candidates_.size());
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    order_[static_cast<std::size_t>(cell_begin_[static_cast<std::size_t>(candidates_[k].cell)]++)] =
+        static_cast<std::int32_t>(k);
+  }
 }
 
 template <int D>
 void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t index) {
   prepare_block(block.size());
   lists_.resize(hull_.facets().size());
+  candidates_.clear();
   for (std::size_t i = 0; i < block.size(); ++i) {
     const Vector<D> unit = to_unit_.linear * (block[i] - centre_);
     if (unit.squaredNorm() <= near_squared_) continue;
     const typename DirectionCells<D>::Place place = cells_.place(unit);
-    if (reach_.holds(place, unit)) continue;
-    ++located_;
-    std::int32_t& hint = hints_[static_cast<std::size_t>(place.cell)];
-    hint = hull_.locate(unit, hint, cones_visited_);
-    if (hull_.gauge(hint, unit) <= limit_) continue;
-    waiting_.push_back({block[i], unit, index + static_cast<std::int64_t>(i)});
+    if (reach_.holds(place, unit)) {
+      ++spared_;
+      continue;
+    }
+    candidates_.push_back({unit, place.cell, static_cast<std::int32_t>(i)});
+  }
+  sort_candidates();
+  located_ += static_cast<std::int64_t>(candidates_.size());
+  for (const std::int32_t k : order_) {
+    const Candidate& c = candidates_[static_cast<std::size_t>(k)];
+    std::int32_t& hint = hints_[static_cast<std::size_t>(c.cell)];
+    hint = hull_.locate(c.unit, hint, cones_visited_);
+    if (hull_.gauge(hint, c.unit) <= limit_) continue;
+    waiting_.push_back({block[static_cast<std::size_t>(c.place)], c.unit, index + c.place});
     next_.push_back(-1);
     assign(static_cast<std::int32_t>(waiting_.size()) - 1, hint);
   }

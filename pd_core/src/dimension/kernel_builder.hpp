@@ -56,6 +56,7 @@ class KernelBuilder {
     }
   };
   void add_block(std::span<const Vector<D>> block, std::int64_t index);
+  void sort_candidates();
   void prepare_block(std::size_t size);
   void assign(std::int32_t i, std::int32_t start);
   void drain();
@@ -70,11 +71,21 @@ class KernelBuilder {
   CellReach<D> reach_;
   double near_squared_ = 0;   ///< points this near to the origin are inside whatever their direction
   std::int64_t located_ = 0;  ///< points whose cone was searched since the last survey of `reach_`
+  std::int64_t spared_ = 0;   ///< and those whose search it spared
+  std::int64_t patience_ = 1;
   std::vector<Point> kernel_;
   std::vector<std::int32_t> vertex_owner_;
   std::vector<std::int32_t> unplaced_;
   std::int64_t cones_visited_ = 0;
   std::size_t next_block_;
+  // Points of the block whose cone is to be searched, and their order by cells of directions:
+  struct Candidate {
+    Vector<D> unit;
+    std::int64_t cell;
+    std::int32_t place;  ///< in the block
+  };
+  std::vector<Candidate> candidates_;
+  std::vector<std::int32_t> order_, cell_begin_;
   // Points of the block beyond the limit, in a list per facet:
   struct List {
     std::int32_t head = -1;

@@ -13,6 +13,9 @@ namespace pd::dimension::detail {
 /// A cell about a core direction shrinks into the cover shadow, so subdivision ends.
 inline constexpr double kCoreScale = 0.45;
 inline constexpr double kCoverScale = 0.9;
+/// The same of a leaf's region, which has its size already.
+inline constexpr double kLeafCoreScale = 0.5;
+inline constexpr double kLeafCoverScale = 1;
 
 /// A box on a face of the cube [-1, 1]^D: v[axis] = sign, the other coordinates in low .. low + side.
 template <int D>

@@ -99,9 +99,11 @@ class HierarchyBuilder {
   HierarchyBuilder(PolarBody<D> polar, MacbeathHierarchy<D>& hierarchy)
       : polar_(std::move(polar)), hierarchy_(hierarchy) {}
 
+  /// @param delta  depth of the regions; of leaves, what their points may fall short by
   /// @return false where the nodes exceed their limit.
-  bool add_layer(double delta) {
+  bool add_layer(double delta, bool leaves) {
     delta_ = delta;
+    leaves_ = leaves;
     first_ = static_cast<std::int32_t>(hierarchy_.nodes.size());
     cores_.clear();
     next_neighbours_.clear();
@@ -175,11 +177,14 @@ class HierarchyBuilder {
     const auto id = static_cast<std::int32_t>(hierarchy_.nodes.size());
     if (id >= kMaxMacbeathNodes) return -1;
     const std::vector<std::int32_t>& candidates = parent_list(v);
-    const MacbeathRegion<D> region = polar_.region(v, delta_, candidates);
-    hierarchy_.nodes.push_back({region.shadow(kCoverScale), region.point, 0, 0});
-    cores_.push_back(region.shadow(kCoreScale));
+    // Leaves are flat: their depth hardly matters (from .2 to .5 of epsilon the numbers of nodes differ by a tenth).
+    constexpr double kDepth = 0.5;
+    const MacbeathRegion<D> region = leaves_ ? polar_.answering_region(v, kDepth * delta_, delta_, candidates)
+                                             : polar_.region(v, delta_, candidates);
+    hierarchy_.nodes.push_back({region.shadow(leaves_ ? kLeafCoverScale : kCoverScale), region.point, 0, 0});
+    cores_.push_back(region.shadow(leaves_ ? kLeafCoreScale : kCoreScale));
     sections_.emplace_back(hierarchy_.nodes.back().shadow, face_);
-    next_neighbours_.push_back(polar_.neighbours(region, candidates));
+    if (!leaves_) next_neighbours_.push_back(polar_.neighbours(region, candidates));
     return id;
   }
 
@@ -243,6 +248,7 @@ class HierarchyBuilder {
   PolarBody<D> polar_;
   MacbeathHierarchy<D>& hierarchy_;
   double delta_ = 0;
+  bool leaves_ = false;
   std::int32_t first_ = 0;
   std::int32_t previous_first_ = 0;
   std::vector<ShadowCone<D>> cores_;        ///< of the layer's nodes
@@ -264,18 +270,16 @@ Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(const std:
   std::vector<Vector<D>> fat;
   for (const SupportPoint<D>& p : points) fat.push_back(frame.apply(p.point));
   HierarchyBuilder<D> builder(PolarBody<D>(std::move(fat)), *hierarchy);
-  // Leaves lose (1 + cover scale) delta of h (macbeath_region.hpp).
   constexpr double kFirst = 0.5;
-  const double last = std::min(kFirst, epsilon / (1 + kCoverScale));
   // Doubled from the leaves' upwards: a last layer that hardly differs from the one above would cost as much as it. The
   // first one is left out where the second is near it.
   constexpr double kNear = 0.7;
   int doublings = 0;
-  while (std::ldexp(last, doublings + 1) <= kFirst) ++doublings;
-  const bool first = std::ldexp(last, doublings) < kNear * kFirst;
+  while (std::ldexp(epsilon, doublings + 1) <= kFirst) ++doublings;
+  const bool first = std::ldexp(epsilon, doublings) < kNear * kFirst;
   for (int i = first ? doublings + 1 : doublings; i >= 0; --i) {
-    const double delta = std::min(kFirst, std::ldexp(last, i));
-    if (!builder.add_layer(delta)) {
+    const double delta = i == 0 ? epsilon : std::min(kFirst, std::ldexp(epsilon, i));
+    if (!builder.add_layer(delta, i == 0)) {
       return Error{ErrorCode::limit_exceeded,
                    "the hierarchy of Macbeath regions takes more than 4000000 nodes at this epsilon; take a larger one",
                    "epsilon"};

@@ -3,11 +3,12 @@
 /// construction and related problems", 2017): approximate directional widths by a descent through O(log(1 / epsilon))
 /// layers.
 ///
-/// Layer i holds regions centred on the boundary of (1 - delta_i) K*, delta_i falling geometrically to the leaves'. A
-/// region enters when its direction lies in the core shadow of none before it (so that regions shrunk further are
-/// disjoint: [M]'s packing); the layer ends when the cells of an adaptive grid of directions each lie in one cover
-/// shadow: every direction is covered, for certain. A parent links to the children whose cells meet its shadow. A query
-/// goes from region to child, each of them shadowing the direction, and returns the leaf's point.
+/// Layer i holds regions centred on the boundary of (1 - delta_i) K*, delta_i falling geometrically to epsilon; those
+/// of the leaves are as large as what their points answer (`PolarBody::answering_region`). A region enters when its
+/// direction lies in the core shadow of none before it (so that regions shrunk further are disjoint: [M]'s packing);
+/// the layer ends when the cells of an adaptive grid of directions each lie in one cover shadow: every direction is
+/// covered, for certain. A parent links to the children whose cells meet its shadow. A query goes from region to child,
+/// each of them shadowing the direction, and returns the leaf's point.
 ///
 /// Departures from [M]: built on a kernel by scans of it, once, instead of bootstrapping, so the time to build is no
 /// 1 / epsilon^((d-1)/2 + alpha); numbers of nodes, degrees and visits are measured (`pdepth-bench arya`).

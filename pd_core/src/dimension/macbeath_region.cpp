@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pd/dimension/matrix_inverse.hpp"
 
@@ -44,16 +45,11 @@ std::int32_t PolarBody<D>::extreme(const Vector<D>& v) const {
   return best;
 }
 
+/// The largest ellipsoid in slabs is polar to the smallest one about the points a = slab(p) and -a: its weights by
+/// Khachiyan's ascent (see enclosing_ellipsoid.hpp).
 template <int D>
-MacbeathRegion<D> PolarBody<D>::region(const Vector<D>& v, double delta,
-                                       std::span<const std::int32_t> candidates) const {
-  MacbeathRegion<D> r;
-  r.point = extreme(v);
-  r.center = v * ((1 - delta) / v.dot(points_[r.point]));
-  const Vector<D>& x = r.center;
-  // The largest ellipsoid in the slabs |<a, z>| <= 1 is polar to the smallest one about the points a = p / (1 - <p, x>)
-  // and -a: its weights by Khachiyan's ascent (see enclosing_ellipsoid.hpp), on the candidates.
-  const auto slab = [&](std::int32_t p) -> Vector<D> { return points_[p] / (1 - points_[p].dot(x)); };
+template <class Slab>
+Matrix<D> PolarBody<D>::ellipsoid_in(const Slab& slab, std::span<const std::int32_t> candidates) const {
   // The start: D points, each the farthest in a direction orthogonal to those before (Kumar and Yildirim).
   Matrix<D> moment = Matrix<D>::Zero();
   Matrix<D> basis = Matrix<D>::Zero();
@@ -101,7 +97,44 @@ MacbeathRegion<D> PolarBody<D>::region(const Vector<D>& v, double delta,
     const Vector<D> a = slab(static_cast<std::int32_t>(p));
     most = std::max(most, square<D>(inverse, a));
   }
-  r.ellipsoid = moment * most;
+  return moment * most;
+}
+
+template <int D>
+MacbeathRegion<D> PolarBody<D>::region(const Vector<D>& v, double delta,
+                                       std::span<const std::int32_t> candidates) const {
+  MacbeathRegion<D> r;
+  r.point = extreme(v);
+  r.center = v * ((1 - delta) / v.dot(points_[r.point]));
+  const auto slab = [&](std::int32_t p) -> Vector<D> { return points_[p] / (1 - points_[p].dot(r.center)); };
+  r.ellipsoid = ellipsoid_in(slab, candidates);
+  return r;
+}
+
+template <int D>
+MacbeathRegion<D> PolarBody<D>::answering_region(const Vector<D>& v, double depth, double epsilon,
+                                                 std::span<const std::int32_t> candidates) const {
+  MacbeathRegion<D> r;
+  r.point = extreme(v);
+  const Vector<D>& q = points_[r.point];
+  r.center = v * ((1 - depth) / v.dot(q));
+  const auto lead = [&](const Vector<D>& p) -> Vector<D> { return q - (1 - epsilon) * p; };
+  const auto slab = [&](std::int32_t p) -> Vector<D> {
+    if (p == r.point) return q / depth;
+    const Vector<D> w = lead(points_[p]);
+    return w / w.dot(r.center);
+  };
+  r.ellipsoid = ellipsoid_in(slab, candidates);
+  // Over x + {z : z' A z <= c^2}, and so over its shadow, <w, y> >= 0 where <w, x>^2 >= c^2 w' A^-1 w.
+  const Matrix<D> inverse = inverse_of<D>(r.ellipsoid);
+  double scale_squared = std::numeric_limits<double>::infinity();
+  for (const Vector<D>& p : points_) {
+    const Vector<D> w = lead(p);
+    const double height = w.dot(r.center);
+    scale_squared = std::min(scale_squared, height * height / square<D>(inverse, w));
+  }
+  constexpr double kRoom = 1e-9;
+  r.ellipsoid /= scale_squared * (1 - kRoom);
   return r;
 }
 

@@ -6,6 +6,10 @@
 /// about x inside it, scaled by c, keeps every y in it at <q, y> >= 1 - (1 + c)(1 - <q, x>) for each q, and inside
 /// K*. So if q is the point whose facet the ray through x hits, x = (1 - delta) times the hit, every v through the
 /// ellipsoid has <q, v> >= (1 - (1 + c) delta) h_K(v).
+///
+/// That bound is for the worst body. What q answers is the pyramid {y : <q, y> <= 1, <q, y> >= (1 - epsilon) <p, y> for
+/// all p of K}, which holds such an ellipsoid's shadow; the Macbeath region of x in the pyramid casts a larger one, by
+/// up to the slack of the bound, and its ellipsoid grows until a p stops it.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +39,7 @@ struct MacbeathRegion {
   Vector<D> center;     ///< x
   Matrix<D> ellipsoid;  ///< {x + z : z' ellipsoid z <= 1} lies in M(x), certified against every point
 
-  /// Of the region's ellipsoid scaled by c < 1.
+  /// Of the region's ellipsoid scaled by c, which must leave O outside.
   [[nodiscard]] ShadowCone<D> shadow(double c) const;
 };
 
@@ -50,12 +54,21 @@ class PolarBody {
   /// @param candidates  points that may bound it: a start; every point is checked before the end
   [[nodiscard]] MacbeathRegion<D> region(const Vector<D>& v, double delta,
                                          std::span<const std::int32_t> candidates) const;
+  /// The region of the end of v's ray, drawn in by `depth`, in the pyramid of what the point there answers, grown as
+  /// far as its shadow stays in that: <q, y> >= (1 - epsilon) h_K(y) for every y of the shadow of scale 1.
+  [[nodiscard]] MacbeathRegion<D> answering_region(const Vector<D>& v, double depth, double epsilon,
+                                                   std::span<const std::int32_t> candidates) const;
   /// The points that can bound the regions between this one and the boundary, in its shadow.
   [[nodiscard]] std::vector<std::int32_t> neighbours(const MacbeathRegion<D>& region,
                                                      std::span<const std::int32_t> candidates) const;
   [[nodiscard]] const std::vector<Vector<D>>& points() const { return points_; }
 
  private:
+  /// The largest ellipsoid about O, nearly, in the slabs |<slab(p), z>| <= 1: of the candidates in shape, of all in
+  /// size.
+  template <class Slab>
+  [[nodiscard]] Matrix<D> ellipsoid_in(const Slab& slab, std::span<const std::int32_t> candidates) const;
+
   std::vector<Vector<D>> points_;
 };
 

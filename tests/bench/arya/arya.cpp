@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ctime>
@@ -32,12 +33,15 @@ constexpr Chapter kChapters[] = {
 bool write_files(const AryaSettings& settings, const ClaimTable& table) {
   const std::filesystem::path folder(settings.out);
   const std::string preamble = fmt::format(
-      "# The bounds of [M], measured\n\nWritten by `pdepth-bench arya{}{} --seed {} --out ...` on {:%F}. Exponents are "
+      "# The bounds of [M], measured\n\nWritten by `pdepth-bench arya{}{}{}{} --seed {} --out ...` on {:%F}. Exponents "
+      "are "
       "least-squares "
       "slopes in log-log with their 95 % intervals; times are processor times of the fastest of several runs, in turns "
       "with the peer's. A bound that does not hold says FAILS.\n",
       settings.full ? " --full" : "", settings.pairs > 0 ? fmt::format(" --pairs {}", settings.pairs) : "",
-      settings.seed, fmt::gmtime(std::time(nullptr)));
+      settings.backend ? fmt::format(" --backend {}", to_string(*settings.backend)) : "",
+      settings.chapters.empty() ? "" : fmt::format(" --chapters {}", fmt::join(settings.chapters, ",")), settings.seed,
+      fmt::gmtime(std::time(nullptr)));
   const std::vector<Finding> findings = table.by_claim();
   bool written = write_text(folder / "arya.csv", to_csv(findings));
   written = write_text(folder / "arya_points.csv", points_csv(findings)) && written;

@@ -6,22 +6,32 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/measure/claims.hpp"
 #include "bench/report/report_target.hpp"
+#include "pd/dimension/directional_width.hpp"
 
 namespace pd::bench {
 
 struct AryaSettings {
   bool full = false;  ///< the sizes of the paper's table; otherwise under a minute
   std::uint64_t seed = 1;
-  int pairs = 0;    ///< bodies or pairs a promise is tried on for d <= 3; 0 = 1e5 when full, else some hundreds
-  std::string out;  ///< folder for arya.csv, arya_points.csv, arya.md and the plots; or empty
+  int pairs = 0;  ///< bodies or pairs a promise is tried on for d <= 3; 0 = 1e5 when full, else some hundreds
+  /// Behind what the promises ask; by default the kernel, and in `intersection` each in turn.
+  std::optional<dimension::Backend> backend = {};
+  std::string out;                    ///< folder for arya.csv, arya_points.csv, arya.md and the plots; or empty
   std::vector<std::string> chapters;  ///< names of chapters; empty = all
   ReportTarget report = {};
 };
+
+[[nodiscard]] constexpr std::string_view to_string(dimension::Backend backend) {
+  constexpr std::string_view kNames[] = {"exact", "kernel", "macbeath"};
+  return kNames[static_cast<int>(backend)];
+}
 
 /// Sizes of kernels and of their structures against (1/epsilon)^((d-1)/2); work of queries.
 void measure_arya_sizes(const AryaSettings& settings, ClaimTable& table);

@@ -68,8 +68,8 @@ Vector<D> farthest(std::span<const Vector<D>> points, const AffineMap<D>& map, c
 /// B is laid so that the truth needs no solver: with a common point just inside both tips, or beyond a slab that is
 /// 1e-4 wider than what growing fills.
 template <int D>
-void promises(const AryaSettings& settings, ClaimTable& table, Backend backend, std::string_view backend_name,
-              double epsilon, int bodies, int cases) {
+void promises(const AryaSettings& settings, ClaimTable& table, Backend backend, double epsilon, int bodies, int cases) {
+  if (settings.backend.value_or(backend) != backend) return;
   std::mt19937_64 random(settings.seed + D);
   struct Prepared {
     Body<D> body;
@@ -112,8 +112,8 @@ void promises(const AryaSettings& settings, ClaimTable& table, Backend backend, 
     wrong += answer->intersect != meets;
     most = std::max(most, answer->support_calls);
   }
-  const std::string name = fmt::format("{}, d = {}, epsilon = {:g}", backend_name, D, epsilon);
-  const std::string range = fmt::format("{} pairs", cases);
+  const std::string name = fmt::format("{}, d = {}, epsilon = {:g}", to_string(backend), D, epsilon);
+  const std::string range = fmt::format("{} pairs of {} bodies", cases, pool.size());
   table.add_value(kPromise, name, std::string(kWrongAnswers), range, static_cast<double>(wrong), 0);
   table.add_value(kPromise, name, "refused", range, static_cast<double>(refused), 0);
   table.add_value(kPromise, name, "most support calls", range, static_cast<double>(most));
@@ -320,18 +320,21 @@ void sums(const AryaSettings& settings, ClaimTable& table, std::size_t n, std::i
 }  // namespace
 
 void measure_arya_intersection(const AryaSettings& settings, ClaimTable& table) {
-  const int scale = settings.full ? 100 : 1;
-  const int pairs = settings.pairs > 0 ? settings.pairs : 1000 * scale;
+  const int pairs = settings.pairs > 0 ? settings.pairs : settings.full ? 100'000 : 1000;
+  const int many = settings.full ? 100 : 2, few = settings.full ? 43 : 1;  // of each family: 301 bodies in all
   for (const double epsilon : {0.1, 1e-3}) {
-    promises<2>(settings, table, Backend::kernel, "kernel", epsilon, 4, pairs);
-    promises<3>(settings, table, Backend::kernel, "kernel", epsilon, 2, pairs);
-    promises<2>(settings, table, Backend::exact, "exact", epsilon, 4, pairs);
-    promises<3>(settings, table, Backend::exact, "exact", epsilon, 2, pairs);
+    for (const Backend backend : {Backend::kernel, Backend::exact}) {
+      promises<2>(settings, table, backend, epsilon, many, pairs);
+      promises<3>(settings, table, backend, epsilon, many, pairs);
+    }
   }
-  promises<4>(settings, table, Backend::kernel, "kernel", 0.1, 1, settings.full ? 3000 : 300);
-  promises<5>(settings, table, Backend::kernel, "kernel", 0.3, 1, settings.full ? 3000 : 300);
-  promises<2>(settings, table, Backend::macbeath, "macbeath", 0.05, 1, 300 * scale);
-  promises<3>(settings, table, Backend::macbeath, "macbeath", 0.5, 1, 300 * scale);
+  promises<4>(settings, table, Backend::kernel, 0.1, few, settings.full ? 3000 : 300);
+  promises<5>(settings, table, Backend::kernel, 0.3, few, settings.full ? 3000 : 300);
+  promises<2>(settings, table, Backend::macbeath, 0.05, many, pairs);
+  promises<3>(settings, table, Backend::macbeath, 0.5, many, pairs);
+  promises<4>(settings, table, Backend::macbeath, 0.8, few, settings.full ? 3000 : 300);
+  if (settings.full) promises<5>(settings, table, Backend::macbeath, 0.95, few, 3000);
+  if (settings.backend) return;
   calls<2>(settings, table, 400);
   calls<3>(settings, table, 400);
   calls<4>(settings, table, 400);
