@@ -1,5 +1,6 @@
 #include "depth/pair/smooth_face.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "depth/expansion/cached_surface.hpp"
@@ -10,11 +11,18 @@ namespace pd::detail {
 
 namespace {
 
-/// Bracket::contact: searches in doubles before an exact hull is made.
+/// Searches in doubles before an exact hull is made, which takes ten times as long.
 constexpr int kMostSearches = 4;
 
 bool is_close(const ExpansionResult& found) {
   return found.face >= 0 && found.lower > 0 && found.upper - found.lower <= kContactClose * found.upper;
+}
+
+/// As narrow as asked, where a search ended for another reason.
+bool is_reached(const ExpansionGoal& goal, ExpansionResult& found) {
+  if (!(found.face >= 0 && found.lower > 0 && found.upper <= (1 + goal.relative) * found.lower)) return false;
+  found.status = ExpansionStatus::certified;
+  return true;
 }
 
 class SmoothFaceSearch {
@@ -41,7 +49,9 @@ class SmoothFaceSearch {
     ExpansionResult& best = nearest.found;
     best = expansion_.run(Vec3::Zero(), goal);
     if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
-    if (for_contact_ && best.status == ExpansionStatus::undecided) search_again(goal, best);
+    // What is flat has no surface to go on from.
+    const bool started = best.face >= 0 && std::isfinite(best.lower);
+    if (best.status == ExpansionStatus::undecided && (for_contact_ || started)) search_again(goal, best);
     statistics.support_calls += expansion_.support_calls();
     statistics.facets_visited += expansion_.facets_visited();
     if (best.face >= 0) {
@@ -67,10 +77,11 @@ class SmoothFaceSearch {
   /// does for nine of ten, or anew from the nearest way out so far. All searches share one budget.
   void search_again(ExpansionGoal goal, ExpansionResult& best) {
     const double max_loss = goal.max_loss;
+    const int most_steps = for_contact_ ? ContactBudget::kCurvedSteps : kMaxSmoothSteps;
     for (int search = 1; search < kMostSearches; ++search) {
       tighten_upper(best);
-      if (is_close(best)) return;
-      const int left = ContactBudget::kCurvedSteps - static_cast<int>(expansion_.support_calls());
+      if (for_contact_ ? is_close(best) : is_reached(goal, best)) return;
+      const int left = most_steps - static_cast<int>(expansion_.support_calls());
       if (left <= 0) return;
       const Vec3 normal = best.normal;
       goal.max_steps = left;
