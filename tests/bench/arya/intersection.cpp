@@ -346,12 +346,12 @@ void measure_arya_macbeath(const AryaSettings& settings, ClaimTable& table) {
   if (settings.full) {
     hierarchy<2>(settings, table, 200'000, {1e-1, 1e-2, 1e-3, 1e-4});
     hierarchy<3>(settings, table, 100'000, {1e-1, 3e-2, 1e-2, 3e-3});
-    hierarchy<4>(settings, table, 50'000, {0.4, 0.2, 0.1});
-    hierarchy<5>(settings, table, 20'000, {0.9, 0.7, 0.5});
+    hierarchy<4>(settings, table, 50'000, {0.2, 0.1, 0.05});
+    hierarchy<5>(settings, table, 20'000, {0.4, 0.3, 0.2});
   } else {
     hierarchy<2>(settings, table, 50'000, {1e-1, 1e-2, 1e-3});
     hierarchy<3>(settings, table, 20'000, {2e-1, 1e-1, 5e-2});
-    hierarchy<4>(settings, table, 5'000, {0.4, 0.2, 0.1});
+    hierarchy<4>(settings, table, 5'000, {0.2, 0.1, 0.05});
   }
 }
 
