@@ -17,10 +17,8 @@ namespace {
 
 void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, detail::ScratchBuffers& buffers,
            WarmCertificate* warm, PenetrationDepth& out) {
-  if (settings.beyond < std::numeric_limits<double>::infinity() &&
-      detail::answer_beyond(a, b, settings, buffers, warm, out)) {
-    return;
-  }
+  const bool asks_beyond = settings.beyond < std::numeric_limits<double>::infinity();
+  if (asks_beyond && detail::answer_beyond(a, b, settings, buffers, warm, out)) return;
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};
@@ -38,6 +36,7 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
   } else {
     detail::smooth_depth(a, b, settings, buffers, out, warm);
   }
+  if (asks_beyond && warm != nullptr) detail::remember_plane(out, *warm);
 }
 
 }  // namespace

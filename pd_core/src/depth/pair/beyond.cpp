@@ -16,6 +16,8 @@ namespace {
 
 /// More are the business of the full query, which ends with the closest points.
 constexpr int kMostSupports = 12;
+/// From the plane of the last frame: what it does not part, the full query's own memory answers sooner.
+constexpr int kMostWarmSupports = 1;
 
 struct SeparatingPlane {
   Vec3 normal;         ///< unit
@@ -26,7 +28,7 @@ struct SeparatingPlane {
 
 /// @param least  of the cores' distance.
 template <class Difference>
-std::optional<SeparatingPlane> find_plane(const Difference& difference, const Vec3& start, double least,
+std::optional<SeparatingPlane> find_plane(const Difference& difference, const Vec3& start, double least, int most,
                                           std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   const double error = support_plane_error(difference);
   const double length_of_start = start.norm();
@@ -35,7 +37,7 @@ std::optional<SeparatingPlane> find_plane(const Difference& difference, const Ve
   DifferenceVertex simplex[4];
   double weights[4];
   int count = 0;
-  for (int step = 0; step < kMostSupports; ++step) {
+  for (int step = 0; step < most; ++step) {
     DifferenceVertex s = difference.support_in_bodies(unit);
     ++support_calls;
     if (-s.x.dot(unit) - error > least) {
@@ -81,8 +83,9 @@ class BeyondQuery {
     const double margin = a_.shape->margin() + b_.shape->margin();
     // Three sums round, each by u of what it sums.
     const double round = 8 * kUnitRoundoff * (beyond_ + margin + difference.reach());
-    const auto plane = find_plane(difference, warm ? remembered : Vec3(-difference.centre()), beyond_ + margin + round,
-                                  buffers_.stack, out_.statistics.support_calls);
+    const auto plane =
+        find_plane(difference, warm ? remembered : Vec3(-difference.centre()), beyond_ + margin + round,
+                   warm ? kMostWarmSupports : kMostSupports, buffers_.stack, out_.statistics.support_calls);
     if (!plane) return false;
     out_.contact = ContactClass::separated;
     out_.method = Method::expansion;
@@ -127,6 +130,10 @@ bool answer_beyond(const PosedShape& a, const PosedShape& b, const DepthSettings
   const PolytopeDifference difference(*polytope_a, a.pose, *polytope_b, b.pose);
   // Squares of lengths are ordinary numbers.
   return difference.reach() > 0x1p-100 && difference.reach() < 0x1p100 && query.answer(difference);
+}
+
+void remember_plane(const PenetrationDepth& out, WarmCertificate& warm) {
+  warm.state().direction = out.contact == ContactClass::separated ? out.normal : Vec3(Vec3::Zero());
 }
 
 }  // namespace pd::detail

@@ -21,4 +21,7 @@ namespace pd::detail {
 [[nodiscard]] bool answer_beyond(const PosedShape& a, const PosedShape& b, const DepthSettings& settings,
                                  ScratchBuffers& buffers, WarmCertificate* warm, PenetrationDepth& out);
 
+/// The plane of an answer that the full query gave, for the next frame.
+void remember_plane(const PenetrationDepth& out, WarmCertificate& warm);
+
 }  // namespace pd::detail
