@@ -74,10 +74,10 @@ struct UnionDepth : PenetrationDepth {
 /// Deterministic. @return ErrorCode::out_of_range for poses that compose past the range; limit_exceeded beyond
 /// `max_facets`; bad_value ("delta", "resolution"); unsupported when `facets` is asked for other than polytopes.
 /// Time: one convex query for each pair whose boxes meet, then as said above; measured in tests/bench.
-/// @param warm  the memory of this pair, or nullptr. Class, depth, lower and upper (distance and its bracket) are as
-///              without it; where several exits or pairs of parts are equally near, translation, normal, witnesses,
-///              parts and features may be those of another, and the last bits of upper with them. `work` and
-///              `statistics` count what was done. Answers by the octree do not use it.
+/// @param warm  the memory of this pair, or nullptr. Class and lower (distance and its bracket) are as without it, bit
+///              for bit; upper and depth up to their last bits (1e-15 of them); where several exits or pairs of parts
+///              are equally near, translation, normal, witnesses, parts and features may be those of another. `work`
+///              and `statistics` count what was done. Answers by the octree do not use it.
 [[nodiscard]] Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompound& b, Scratch& scratch,
                                                      const UnionSettings& settings = {}, WarmUnion* warm = nullptr);
 

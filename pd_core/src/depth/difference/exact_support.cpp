@@ -12,15 +12,16 @@ namespace {
 /// The three values brought to one power of two, up to 2, each within 2^-102 of the exact ratio; its upper half within
 /// 2u.
 Vec3DD leading_digits(const Dyadic3& v) {
-  const auto top = [](const Dyadic& d) {
-    return d.sign() == 0 ? std::numeric_limits<int>::min()
-                         : d.exponent() + static_cast<int>(msb(boost::multiprecision::abs(d.mantissa())));
+  const auto bits = [](const Dyadic& d) { return static_cast<int>(msb(boost::multiprecision::abs(d.mantissa()))); };
+  const auto top = [&](const Dyadic& d) {
+    return d.sign() == 0 ? std::numeric_limits<int>::min() : d.exponent() + bits(d);
   };
   const int largest = std::max({top(v.x), top(v.y), top(v.z)});
-  const auto digits = [largest](const Dyadic& d) -> DoubleDouble {
+  const auto digits = [&](const Dyadic& d) -> DoubleDouble {
+    if (d.sign() == 0) return {};
     const Dyadic scaled = d.scaled(-largest);
     const double high = scaled.to_double();
-    return {high, (scaled - Dyadic(high)).to_double()};
+    return {high, bits(d) < 53 ? 0 : (scaled - Dyadic(high)).to_double()};
   };
   return {digits(v.x), digits(v.y), digits(v.z)};
 }
@@ -37,9 +38,8 @@ SupportFace face_climbed_to(const ConvexPolytope& body, const Vec3& local, Sign&
   return face;
 }
 
-/// Sign of <direction, edge>, exact: double-double first, since bodies that are turned against each other by noise have
-/// ties that doubles leave open by the hundred.
-int sign_along(const PosedPair& pair, const ExactDirection& direction, const PairVector& edge) {
+/// Sign of <direction, edge> by double-double; 0 where they do not tell.
+int sign_by_double_double(const PosedPair& pair, const ExactDirection& direction, const PairVector& edge) {
   const Vec3DD e = pair.approximate_dd(edge);
   const auto norm1 = [](const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); };
   const double a = norm1(direction.leading) + 0x1p-100;
@@ -47,7 +47,16 @@ int sign_along(const PosedPair& pair, const ExactDirection& direction, const Pai
   const double value = dot(direction.leading, e).hi;
   // Products and sums, the direction's own error, and the edge's.
   const double bound = 16 * 0x1p-104 * a * b + 0x1p-102 * b + pair.vector_error_dd() * a;
-  if (std::abs(value) > bound * (1 + 16 * kUnitRoundoff) + 0x1p-900) return value > 0 ? 1 : -1;
+  if (!(std::abs(value) > bound * (1 + 16 * kUnitRoundoff) + 0x1p-900)) return 0;
+  return value > 0 ? 1 : -1;
+}
+
+/// Sign of <direction, edge>, exact. Bodies that are turned against each other by noise have ties by the hundred that
+/// doubles leave open and double-double tells; where all of the pair's vectors were doubles so far, ties are exact.
+int sign_along(const PosedPair& pair, const ExactDirection& direction, const PairVector& edge) {
+  if (pair.exact_work() > 0) {
+    if (const int sign = sign_by_double_double(pair, direction, edge)) return sign;
+  }
   return dot(direction.exact, pair.exact(edge)).sign();
 }
 
