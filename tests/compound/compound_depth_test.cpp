@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "compound/scene_compounds.hpp"
 #include "oracle/depth_oracle.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/scratch.hpp"
@@ -19,12 +20,6 @@ namespace pd {
 namespace {
 
 Pose at(const Vec3& translation) { return *Pose::from_matrix(Mat3::Identity(), translation); }
-
-Compound compound_of(const scenes::PartList& parts) {
-  std::vector<Compound::Part> list;
-  for (const scenes::PointPart& part : parts) list.push_back({*ConvexPolytope::from_points(part.points), part.pose});
-  return *Compound::from_parts(std::move(list));
-}
 
 /// A box [low, high] with integer corners.
 struct Cells {
@@ -45,7 +40,7 @@ std::vector<Cells> random_boxes(int count, int range, scenes::Random& random) {
   return boxes;
 }
 
-Compound compound_of(const std::vector<Cells>& boxes) {
+Compound compound_of_cells(const std::vector<Cells>& boxes) {
   std::vector<Compound::Part> parts;
   for (const Cells& box : boxes) {
     scenes::Points corners;
@@ -186,7 +181,7 @@ TEST(UnionOfParts, IntegerBoxesAreCountedExactly) {
   for (int k = 0; k < 300; ++k) {
     const auto boxes_a = random_boxes(random.integer(1, 4), random.integer(1, 3), random);
     const auto boxes_b = random_boxes(random.integer(1, 4), random.integer(1, 3), random);
-    const Compound a = compound_of(boxes_a), b = compound_of(boxes_b);
+    const Compound a = compound_of_cells(boxes_a), b = compound_of_cells(boxes_b);
     const CellOracle oracle(boxes_a, boxes_b);
     const PosedCompound posed_a{&a, Pose()}, posed_b{&b, Pose()};
     const UnionDepth answer = *penetration_depth(posed_a, posed_b, scratch);
@@ -222,7 +217,7 @@ TEST(UnionOfParts, OctreeAgreesWithCountedCells) {
   Scratch scratch;
   for (int k = 0; k < 25; ++k) {
     const auto boxes_a = random_boxes(2, 2, random), boxes_b = random_boxes(2, 2, random);
-    const Compound a = compound_of(boxes_a), b = compound_of(boxes_b);
+    const Compound a = compound_of_cells(boxes_a), b = compound_of_cells(boxes_b);
     const PosedCompound posed_a{&a, Pose()}, posed_b{&b, Pose()};
     UnionSettings settings;
     settings.method = UnionMethod::octree;
@@ -371,7 +366,7 @@ TEST(UnionDepth, OrderOfPartsChangesNoBit) {
   for (int round = 0; round < 60 && !testing::Test::HasFailure(); ++round) {
     SCOPED_TRACE(round);
     // Boxes of the integer grid tie often; a few curved parts take the other way.
-    const Compound a = compound_of(random_boxes(3, 3, random)), b = compound_of(random_boxes(3, 3, random));
+    const Compound a = compound_of_cells(random_boxes(3, 3, random)), b = compound_of_cells(random_boxes(3, 3, random));
     std::vector<Compound::Part> parts(a.parts().begin(), a.parts().end());
     if (round % 6 == 0) parts[1].shape = *ConvexShape::ellipsoid(Vec3(1, 2, 1.5));
     const Compound given = *Compound::from_parts(parts);

@@ -9,22 +9,13 @@
 #include <array>
 #include <cmath>
 
+#include "compound/scene_compounds.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/star_body.hpp"
 #include "scenes/non_convex.hpp"
 
 namespace pd {
 namespace {
-
-Compound compound_of(const scenes::PartList& parts) {
-  std::vector<Compound::Part> list;
-  for (const scenes::PointPart& part : parts) list.push_back({*ConvexPolytope::from_points(part.points), part.pose});
-  return *Compound::from_parts(std::move(list));
-}
-
-Compound compound_of(const scenes::Surface& surface) {
-  return StarBody::from_faces(surface.vertices, surface.faces, surface.centre)->tetrahedra();
-}
 
 Vec3 corner(const UnionDifference& p, const UnionDifference::Facet& facet, int k) {
   const auto at = static_cast<std::size_t>(facet.first + k % facet.count);

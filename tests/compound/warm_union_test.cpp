@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "compound/scene_compounds.hpp"
 #include "pd/compound/compound_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/star_body.hpp"
@@ -14,16 +15,6 @@
 
 namespace pd {
 namespace {
-
-Compound compound_of(const scenes::PartList& parts) {
-  std::vector<Compound::Part> list;
-  for (const scenes::PointPart& part : parts) list.push_back({*ConvexPolytope::from_points(part.points), part.pose});
-  return *Compound::from_parts(std::move(list));
-}
-
-Compound compound_of(const scenes::Surface& surface) {
-  return StarBody::from_faces(surface.vertices, surface.faces, surface.centre)->tetrahedra();
-}
 
 /// Bodies of every kind, and how far they stand apart at first.
 struct Case {
