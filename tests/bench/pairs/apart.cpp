@@ -175,8 +175,8 @@ std::vector<Row> run_apart(const ApartSettings& settings, Solvers& solvers) {
           tallies);
       ++done;
     }
-    const std::vector<Row> block = rows_of_standing(solvers, tallies, scenes::to_string(cell.family), cell.vertices,
-                                                    fmt::format("gap {:.0f}%", 100 * cell.gap_share), kBulletGjk);
+    const std::vector<Row> block = rows_of(solvers, tallies, scenes::to_string(cell.family), cell.vertices,
+                                           fmt::format("gap {:.0f}%", 100 * cell.gap_share), kBulletGjk);
     print_rows(block);
     rows.insert(rows.end(), block.begin(), block.end());
   }

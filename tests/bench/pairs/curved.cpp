@@ -115,7 +115,7 @@ PenetrationDepth depth_of(const Bodies& bodies, const Pose& a, const Pose& b, Sc
   return penetration_depth({&bodies.a, a}, {&bodies.b, b}, scratch, {.bracket = Bracket::certified});
 }
 
-/// FCL's signed distance of a ball in a ball takes minutes for one call in forty.
+/// FCL's signed distance of a ball in a ball may take minutes for one call.
 std::vector<char> without_end(const Solvers& solvers, const CurvedCell& cell) {
   std::vector<char> sits_out;
   for (const auto& solver : solvers) sits_out.push_back(cell.depth == 0 && solver->name() == kFclDistance ? 1 : 0);
@@ -256,8 +256,8 @@ std::vector<Row> run_curved(const CurvedSettings& settings, Solvers& solvers) {
       ++done;
     }
     const std::vector<Row> block =
-        rows_of_standing(solvers, tallies, to_string(cell.pair), cell.pair == CurvedPair::cone_hull ? kHull : 0,
-                         cell.depth > 0 ? fmt::format("{}", cell.depth) : "inside", kBulletEpa);
+        rows_of(solvers, tallies, to_string(cell.pair), cell.pair == CurvedPair::cone_hull ? kHull : 0,
+                cell.depth > 0 ? fmt::format("{}", cell.depth) : "inside", kBulletEpa);
     print_rows(block);
     rows.insert(rows.end(), block.begin(), block.end());
   }

@@ -75,7 +75,8 @@ std::vector<Row> run_meshes(const std::vector<NamedShape>& meshes, int pairs, st
         const Draw d = placed({mesh.shape, meshes[partner].shape}, 1, depth, random);
         ++(measure_draw(d, solvers, kSlowNs, sits_out, tallies) ? done : refused);
       }
-      const std::vector<Row> block = rows_of(solvers, tallies, mesh.name, mesh.shape.polytope()->num_vertices(), depth);
+      const std::vector<Row> block = rows_of(solvers, tallies, mesh.name, mesh.shape.polytope()->num_vertices(),
+                                             scenes::to_string(depth), kBulletEpa);
       print_rows(block);
       rows.insert(rows.end(), block.begin(), block.end());
     }

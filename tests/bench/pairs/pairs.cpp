@@ -93,18 +93,18 @@ bool measure_draw(const Draw& draw, Solvers& solvers, double slow_ns, std::vecto
 }
 
 std::vector<Row> rows_of(const Solvers& solvers, const std::vector<Tally>& tallies, std::string_view family,
-                         int vertices, scenes::DepthClass depth) {
+                         int vertices, std::string_view depth, std::string_view baseline) {
   std::vector<Row> block;
   for (std::size_t s = 0; s < solvers.size(); ++s) {
     if (tallies[s].count() == 0) continue;
     Row row = tallies[s].row();
     row.family = family;
     row.vertices = vertices;
-    row.depth = scenes::to_string(depth);
+    row.depth = depth;
     row.solver = solvers[s]->name();
     block.push_back(std::move(row));
   }
-  set_ratios(block, kBulletEpa);
+  set_ratios(block, baseline);
   return block;
 }
 
@@ -123,7 +123,8 @@ std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers) {
       const bool measured = d && measure_draw(*d, solvers, kSlowNs, sits_out, tallies);
       ++(measured ? done : refused);
     }
-    const std::vector<Row> block = rows_of(solvers, tallies, scenes::to_string(cell.family), cell.vertices, cell.depth);
+    const std::vector<Row> block = rows_of(solvers, tallies, scenes::to_string(cell.family), cell.vertices,
+                                           scenes::to_string(cell.depth), kBulletEpa);
     print_rows(block);
     rows.insert(rows.end(), block.begin(), block.end());
   }

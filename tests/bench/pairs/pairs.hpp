@@ -40,9 +40,10 @@ class Tally {
 bool measure_draw(const Draw& draw, Solvers& solvers, double slow_ns, std::vector<char>& sits_out,
                   std::vector<Tally>& tallies);
 
-/// The rows of one cell: solvers that ran at least once.
+/// The rows of one cell, with their ratios to `baseline`: solvers that ran at least once.
 [[nodiscard]] std::vector<Row> rows_of(const Solvers& solvers, const std::vector<Tally>& tallies,
-                                       std::string_view family, int vertices, scenes::DepthClass depth);
+                                       std::string_view family, int vertices, std::string_view depth,
+                                       std::string_view baseline);
 
 /// All cells, printed as they come. @return the rows.
 [[nodiscard]] std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers);

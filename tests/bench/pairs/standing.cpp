@@ -62,20 +62,4 @@ void measure_frames(const Bodies& bodies, const std::vector<Standing>& frames, S
   }
 }
 
-std::vector<Row> rows_of_standing(const Solvers& solvers, const std::vector<Tally>& tallies, std::string_view family,
-                                  int vertices, const std::string& depth, std::string_view baseline) {
-  std::vector<Row> block;
-  for (std::size_t s = 0; s < solvers.size(); ++s) {
-    if (tallies[s].count() == 0) continue;
-    Row row = tallies[s].row();
-    row.family = family;
-    row.vertices = vertices;
-    row.depth = depth;
-    row.solver = solvers[s]->name();
-    block.push_back(std::move(row));
-  }
-  set_ratios(block, baseline);
-  return block;
-}
-
 }  // namespace pd::bench

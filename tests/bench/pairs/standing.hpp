@@ -28,9 +28,4 @@ using FrameJudge = std::function<double(const Answer&, const Standing&, Precisio
 void measure_frames(const Bodies& bodies, const std::vector<Standing>& frames, Solvers& solvers,
                     const FrameJudge& error, std::vector<Tally>& tallies, const std::vector<char>& sits_out = {});
 
-/// The rows of one cell, with their ratios to `baseline`.
-[[nodiscard]] std::vector<Row> rows_of_standing(const Solvers& solvers, const std::vector<Tally>& tallies,
-                                                std::string_view family, int vertices, const std::string& depth,
-                                                std::string_view baseline);
-
 }  // namespace pd::bench

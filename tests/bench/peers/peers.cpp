@@ -23,16 +23,25 @@ double length_of(const ConvexShape& shape) {
   return (shape.polytope()->vertex(1) - shape.polytope()->vertex(0)).norm();
 }
 
-void add_peers([[maybe_unused]] Solvers& solvers) {
-#ifdef PD_BENCH_WITH_BULLET
-  add_bullet(solvers);
-#endif
+namespace {
+
+/// Those that take curved shapes as they take hulls.
+void add_ccd_and_fcl([[maybe_unused]] Solvers& solvers) {
 #ifdef PD_BENCH_WITH_CCD
   add_ccd(solvers);
 #endif
 #ifdef PD_BENCH_WITH_FCL
   add_fcl(solvers);
 #endif
+}
+
+}  // namespace
+
+void add_peers(Solvers& solvers) {
+#ifdef PD_BENCH_WITH_BULLET
+  add_bullet(solvers);
+#endif
+  add_ccd_and_fcl(solvers);
 }
 
 void add_peers_apart([[maybe_unused]] Solvers& solvers) {
@@ -47,17 +56,11 @@ void add_peers_apart([[maybe_unused]] Solvers& solvers) {
 #endif
 }
 
-void add_peers_curved([[maybe_unused]] Solvers& solvers) {
+void add_peers_curved(Solvers& solvers) {
 #ifdef PD_BENCH_WITH_BULLET
   add_bullet_curved(solvers);
 #endif
-  // These take curved shapes as they take hulls.
-#ifdef PD_BENCH_WITH_CCD
-  add_ccd(solvers);
-#endif
-#ifdef PD_BENCH_WITH_FCL
-  add_fcl(solvers);
-#endif
+  add_ccd_and_fcl(solvers);
 }
 
 std::vector<std::string> peer_notes() {
