@@ -149,7 +149,7 @@ class MeshContacts final : public UnionContacts {
   OneSided one_sided_;
 };
 
-/// From which the corners of a triangle without area zero run counter-clockwise.
+/// The side from which the corners run counter-clockwise (unit, in the world). Requires an area.
 Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
   const Vec3 across = (to_pd(triangle.corners[1]) - to_pd(triangle.corners[0]))
                           .cross(to_pd(triangle.corners[2]) - to_pd(triangle.corners[0]));
@@ -172,13 +172,13 @@ void MeshContacts::add_fronts(const UnionQuestion& question, SolverCore& core, T
     const MetTriangle& met = triangles_[static_cast<std::size_t>(behind.triangle)];
     const TriangleInResult triangle(question.result, question.b, met, question.b.getCollisionShape()->getMargin());
     PairAnswer answer;
-    bool left = false;
-    for (const Vec3& way : one_sided_.ways_out()) {
+    const std::vector<Vec3>& ways = one_sided_.ways_out();
+    const bool left = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
       // A little farther than touching, which rounding would decide.
       const btTransform moved(pose.getBasis(), pose.getOrigin() + to_bullet(Vec3(kClear * way)));
-      if (ask(question, triangle, moved, core, buffers, answer) != SolverCore::Outcome::answered) continue;
-      left = left || answer.depth.contact != ContactClass::overlapping;
-    }
+      return ask(question, triangle, moved, core, buffers, answer) == SolverCore::Outcome::answered &&
+             answer.depth.contact != ContactClass::overlapping;
+    });
     if (left || ask(question, triangle, pose, core, buffers, answer) != SolverCore::Outcome::answered) continue;
     const ContactManifold points =
         along_front(triangle.wrapper(), answer, behind.front, static_cast<double>(question.threshold), buffers);

@@ -26,10 +26,10 @@ class OneSided {
     int triangle;
     Vec3 front;
   };
-  /// The triangles that bodies stand behind or through, farther behind than before.
+  /// The triangles that the body stands through and would leave by the back.
   [[nodiscard]] const std::vector<Behind>& behind() const { return behind_; }
 
-  /// Ways of A that contacts of fronts lead, deepest first, at most four.
+  /// Translations of A by which the contacts that count end, longest first, at most four.
   [[nodiscard]] const std::vector<Vec3>& ways_out();
 
  private:

@@ -49,7 +49,7 @@ struct BulletSolverSettings {
   /// With unions_as_one: a mesh or heightfield is the surface of a solid, and not a sheet. A triangle's front is where
   /// its corners run counter-clockwise (of a heightfield, up). A body in front, or across an edge, meets it as ever;
   /// one that stands through it, however far, leaves by the front; one that is behind it without touching it meets
-  /// nothing.
+  /// nothing. Contact tests, sweeps and the search of a RollbackStepper take meshes as sheets all the same.
   bool one_sided_meshes = false;
   /// Entries of the shape cache.
   std::size_t cache_capacity = 4096;
