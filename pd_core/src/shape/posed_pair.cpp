@@ -89,6 +89,11 @@ Vec3DD rotate(const ConvexPolytope& p, const DoubleDouble (&r)[9], double scale,
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
+Vec3DD rotate_back(const DoubleDouble (&r)[9], const Vec3DD& x) {
+  return {r[0] * x.x + r[3] * x.y + r[6] * x.z, r[1] * x.x + r[4] * x.y + r[7] * x.z,
+          r[2] * x.x + r[5] * x.y + r[8] * x.z};
+}
+
 /// Whether R is `rotation`, hi parts alone, exactly: a matrix, or a quaternion of one component, whose rotation is a
 /// turn by 0 or a half about an axis.
 bool stored_in_doubles(const Pose& pose, const DoubleDouble (&rotation)[9]) {
@@ -182,6 +187,9 @@ Vec3DD PosedPair::approximate_dd(const PairVector& v) const {
   if (v.translated) r = r + offset_dd_;
   return r;
 }
+
+Vec3DD PosedPair::in_frame_of_a(const Vec3DD& x) const { return rotate_back(body_a_.rotation_dd, x); }
+Vec3DD PosedPair::in_frame_of_b(const Vec3DD& x) const { return rotate_back(body_b_.rotation_dd, x); }
 
 void PosedPair::prepare_exact() const {
   if (body_a_.exact_ready) return;
@@ -278,6 +286,12 @@ int sign(double x) { return (x > 0) - (x < 0); }
 }  // namespace
 
 int PosedPair::sign_determinant(const PairVector& u, const PairVector& v, const PairVector& w) const {
+  const std::optional<int> rounded = sign_determinant_rounded(u, v, w);
+  return rounded ? *rounded : determinant(exact(u), exact(v), exact(w)).sign();
+}
+
+std::optional<int> PosedPair::sign_determinant_rounded(const PairVector& u, const PairVector& v,
+                                                       const PairVector& w) const {
   {
     const Vec3 x = approximate(u), y = approximate(v), z = approximate(w);
     const double value = x.dot(y.cross(z));
@@ -301,7 +315,7 @@ int PosedPair::sign_determinant(const PairVector& u, const PairVector& v, const 
     }
   }
   ++stages_.exact;
-  return determinant(exact(u), exact(v), exact(w)).sign();
+  return std::nullopt;
 }
 
 int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {

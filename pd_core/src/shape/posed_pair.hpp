@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "numeric/double_double.hpp"
 #include "numeric/dyadic.hpp"
@@ -62,6 +63,10 @@ class PosedPair {
   /// In double-double (scaled). |error| per coordinate <= vector_error_dd().
   [[nodiscard]] Vec3DD approximate_dd(const PairVector& v) const;
   [[nodiscard]] double vector_error_dd() const { return vector_error_dd_; }
+  /// R_A^T x in double-double, each coordinate within 2^-100 of the sum of |x|.
+  [[nodiscard]] Vec3DD in_frame_of_a(const Vec3DD& x) const;
+  /// R_B^T x likewise.
+  [[nodiscard]] Vec3DD in_frame_of_b(const Vec3DD& x) const;
 
   /// The exact vector times homogeneous_factor() > 0, unscaled.
   [[nodiscard]] Dyadic3 exact(const PairVector& v) const;
@@ -70,6 +75,9 @@ class PosedPair {
 
   /// Sign of det(u, v, w) = <u, v x w>, exact.
   [[nodiscard]] int sign_determinant(const PairVector& u, const PairVector& v, const PairVector& w) const;
+  /// The same where stages 1 and 2 tell it; none: stage 3 must, for callers that have exact vectors at hand.
+  [[nodiscard]] std::optional<int> sign_determinant_rounded(const PairVector& u, const PairVector& v,
+                                                            const PairVector& w) const;
   /// Sign of <u, v>, exact.
   [[nodiscard]] int sign_dot(const PairVector& u, const PairVector& v) const;
   /// True when u x v = 0 exactly.

@@ -52,6 +52,7 @@ constexpr FixedTightest kTightest[] = {
     {"tightest_cubes_deep", PairFamily::cubes, 8, DepthClass::deep, 1},    // facets tied exactly
     {"tightest_grid_128", PairFamily::grid, 128, DepthClass::mid, 1},      // edges in the facet's plane
     {"tightest_no_translation", PairFamily::box, 8, DepthClass::mid, 33},  // none as short as the depth rounded up
+    {"tightest_near_ties_64", PairFamily::near_equal_bodies, 64, DepthClass::mid, 7},  // ties but for noise
 };
 
 /// Bodies at rest, warm, for contacts.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "numeric/unit_roundoff.hpp"
 
@@ -38,39 +39,44 @@ SupportFace face_climbed_to(const ConvexPolytope& body, const Vec3& local, Sign&
   return face;
 }
 
-/// Sign of <direction, edge> by double-double; 0 where they do not tell.
-int sign_by_double_double(const PosedPair& pair, const ExactDirection& direction, const PairVector& edge) {
-  const Vec3DD e = pair.approximate_dd(edge);
-  const auto norm1 = [](const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); };
-  const double a = norm1(direction.leading) + 0x1p-100;
-  const double b = norm1(e) + 3 * pair.vector_error_dd();
-  const double value = dot(direction.leading, e).hi;
-  // Products and sums, the direction's own error, and the edge's.
-  const double bound = 16 * 0x1p-104 * a * b + 0x1p-102 * b + pair.vector_error_dd() * a;
-  if (!(std::abs(value) > bound * (1 + 16 * kUnitRoundoff) + 0x1p-900)) return 0;
+double norm1(const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); }
+
+/// Sign of <direction, to - from> in the body's frame by double-double; 0 where it does not tell.
+/// @param local  R^T of the direction's leading digits.
+/// @param size   the sum of those digits, absolute.
+int sign_by_double_double(const ConvexPolytope& body, const Vec3DD& local, double size, double scale, int from,
+                          int to) {
+  const auto difference = [&](const double* x) { return two_sum(x[to] * scale, -(x[from] * scale)); };
+  const Vec3DD edge{difference(body.x()), difference(body.y()), difference(body.z())};
+  const double value = dot(local, edge).hi;
+  // Of a product of one: the leading digits 3 * 2^-102, their turn 2^-100, products and sums 2^-101. Twice that.
+  if (!(std::abs(value) > 0x1p-98 * size * norm1(edge) + 0x1p-900)) return 0;
   return value > 0 ? 1 : -1;
 }
 
-/// Sign of <direction, edge>, exact. Bodies that are turned against each other by noise have ties by the hundred that
-/// doubles leave open and double-double tells; where all of the pair's vectors were doubles so far, ties are exact.
-int sign_along(const PosedPair& pair, const ExactDirection& direction, const PairVector& edge) {
-  if (pair.exact_work() > 0) {
-    if (const int sign = sign_by_double_double(pair, direction, edge)) return sign;
-  }
-  return dot(direction.exact, pair.exact(edge)).sign();
-}
-
 /// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the rotated difference.
+/// @param turned_back  R^T x in double-double.
 template <class Edge>
 SupportFace extremal(const PosedPair& pair, const ConvexPolytope& body, const Mat3& rotation,
-                     const ExactDirection& direction, double sign, Edge&& edge) {
+                     const ExactDirection& direction, Vec3DD (PosedPair::*turned_back)(const Vec3DD&) const,
+                     double sign, Edge&& edge) {
   const Vec3 local = sign * (rotation.transpose() * direction.unit);
   // The local direction errs by 12u per coordinate (unit 4u, rotation 4u, product 3u), the dot product by 3u |v|: twice
   // 32u covers both values that are compared. Products of subnormal coordinates lose half of the least double each.
   const double slack = 64 * kUnitRoundoff * body.radius() + 0x1p-1070;
   const int n = body.num_vertices();
+  const double scale = std::ldexp(1.0, -pair.scale_exponent());
+  const double size = norm1(direction.leading);
+  const int turned = sign > 0 ? 1 : -1;
+  std::optional<Vec3DD> local_dd;
   const auto exactly = [&](int from, int to) {
-    return sign_along(pair, direction, edge(from, to)) * (sign > 0 ? 1 : -1);
+    // Bodies that are turned against each other by noise have ties by the hundred that doubles leave open and
+    // double-double tells; where all of the pair's vectors were doubles so far, ties are exact.
+    if (pair.exact_work() > 0) {
+      if (!local_dd) local_dd = (pair.*turned_back)(direction.leading);
+      if (const int told = sign_by_double_double(body, *local_dd, size, scale, from, to)) return told * turned;
+    }
+    return dot(direction.exact, pair.exact(edge(from, to))).sign() * turned;
   };
   if (n > kScannedVertices && body.affine_dimension() == 3) {
     return face_climbed_to(body, local, [&](int from, int to) {
@@ -102,11 +108,13 @@ ExactDirection::ExactDirection(Dyadic3 direction)
 }
 
 SupportFace support_face_b(const PosedPair& pair, const ExactDirection& direction) {
-  return extremal(pair, pair.b(), pair.pose_b().rotation(), direction, 1.0, PairVector::edge_b);
+  return extremal(pair, pair.b(), pair.pose_b().rotation(), direction, &PosedPair::in_frame_of_b, 1.0,
+                  PairVector::edge_b);
 }
 
 SupportFace support_face_a(const PosedPair& pair, const ExactDirection& direction) {
-  return extremal(pair, pair.a(), pair.pose_a().rotation(), direction, -1.0, PairVector::edge_a);
+  return extremal(pair, pair.a(), pair.pose_a().rotation(), direction, &PosedPair::in_frame_of_a, -1.0,
+                  PairVector::edge_a);
 }
 
 int common_facet(const ConvexPolytope& body, const SupportFace& vertices) {

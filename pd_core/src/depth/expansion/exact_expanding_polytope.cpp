@@ -19,11 +19,17 @@ struct Face {
   bool facet;  ///< known to support P
 };
 
+/// A vertex of P and, once it was asked for, its exact place.
+struct Vertex : VertexPair {
+  explicit Vertex(const VertexPair& id) : VertexPair(id) {}
+  std::optional<Dyadic3> exact;
+};
+
 class Hull {
  public:
   explicit Hull(const PosedPair& pair) : pair_(pair) {}
 
-  std::vector<VertexPair> vertices;
+  std::vector<Vertex> vertices;
   std::vector<Face> faces;
 
   [[nodiscard]] PairVector edge(int from, int to) const {
@@ -31,12 +37,27 @@ class Hull {
   }
   [[nodiscard]] PairVector point(int v) const { return PairVector::point(vertices[v].a, vertices[v].b); }
 
-  /// Side of vertex v against the plane of f: +1 outside.
-  [[nodiscard]] int side(const Face& f, int v) const {
-    return pair_.sign_determinant(edge(f.v[0], v), edge(f.v[0], f.v[1]), edge(f.v[0], f.v[2]));
+  /// Times the pair's homogeneous factor.
+  [[nodiscard]] const Dyadic3& exact_point(int v) {
+    std::optional<Dyadic3>& exact = vertices[v].exact;
+    if (!exact) exact = pair_.exact(point(v));
+    return *exact;
   }
-  [[nodiscard]] Dyadic3 exact_normal(const Face& f) const {
-    return cross(pair_.exact(edge(f.v[0], f.v[1])), pair_.exact(edge(f.v[0], f.v[2])));
+  [[nodiscard]] Dyadic3 exact_edge(int from, int to) { return exact_point(to) - exact_point(from); }
+
+  /// Side of vertex v against the plane of face f: +1 outside.
+  [[nodiscard]] int side(int f, int v) {
+    const Face& face = faces[f];
+    const std::optional<int> rounded =
+        pair_.sign_determinant_rounded(edge(face.v[0], v), edge(face.v[0], face.v[1]), edge(face.v[0], face.v[2]));
+    return rounded ? *rounded : dot(exact_normal(f), exact_edge(face.v[0], v)).sign();
+  }
+  /// Of a face that is alive; outward.
+  [[nodiscard]] const Dyadic3& exact_normal(int f) {
+    normals_.resize(faces.size());
+    std::optional<Dyadic3>& normal = normals_[f];
+    if (!normal) normal = cross(exact_edge(faces[f].v[0], faces[f].v[1]), exact_edge(faces[f].v[0], faces[f].v[2]));
+    return *normal;
   }
 
   int add_face(int a, int b, int c) {
@@ -46,6 +67,7 @@ class Hull {
       const int slot = free_.back();
       free_.pop_back();
       faces[slot] = f;
+      if (slot < static_cast<int>(normals_.size())) normals_[slot].reset();
       return slot;
     }
     faces.push_back(f);
@@ -88,7 +110,7 @@ class Hull {
       if (!faces[g].alive) continue;
       int entered = 0;
       while (faces[g].adj[entered] != f || faces[g].v[(entered + 1) % 3] != faces[f].v[e]) ++entered;
-      if (side(faces[g], v) > 0) {
+      if (side(g, v) > 0) {
         faces[g].alive = false;
         removed.push_back(g);
         visits.push_back({g, (entered + 1) % 3, 2});
@@ -140,6 +162,7 @@ class Hull {
 
   const PosedPair& pair_;
   std::vector<int> free_;
+  std::vector<std::optional<Dyadic3>> normals_;  ///< of faces, once they were asked for
 };
 
 VertexPair support(const PosedPair& pair, const ExactDirection& direction) {
@@ -169,7 +192,7 @@ void report(const SearchWatch& watch, const PosedPair& pair, const Hull& hull, i
 bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_calls,
                       std::optional<ExactDirection>& flat) {
   const auto independent = [&](const VertexPair& id) {
-    const std::vector<VertexPair>& v = hull.vertices;
+    const std::vector<Vertex>& v = hull.vertices;
     const auto difference = [&](const VertexPair& to) { return PairVector::difference(v[0].a, v[0].b, to.a, to.b); };
     if (v.empty()) return true;
     const PairVector d = difference(id);
@@ -180,13 +203,13 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
     if (v.size() == 2) return !pair.parallel(d, difference(v[1]));
     return pair.sign_determinant(d, difference(v[1]), difference(v[2])) != 0;
   };
-  std::vector<VertexPair> given;
+  std::vector<Vertex> given;
   given.swap(hull.vertices);
-  for (const VertexPair& id : given) {
+  for (const Vertex& id : given) {
     if (hull.vertices.size() < 4 && independent(id)) hull.vertices.push_back(id);
   }
   while (hull.vertices.size() < 4) {
-    const std::vector<VertexPair>& v = hull.vertices;
+    const std::vector<Vertex>& v = hull.vertices;
     // Directions normal to what is spanned, enough to find anything outside it.
     std::vector<Dyadic3> directions;
     const Dyadic one(1.0), zero(0.0);
@@ -207,7 +230,7 @@ bool full_dimensional(const PosedPair& pair, Hull& hull, std::int64_t& support_c
         ++support_calls;
         const VertexPair s = support(pair, direction);
         if (independent(s)) {
-          hull.vertices.push_back(s);
+          hull.vertices.emplace_back(s);
           found = true;
           break;
         }
@@ -234,9 +257,9 @@ int nearest_candidate(const Hull& hull) {
 
 /// Takes a facet of P into account. True where its plane passes through the origin: touching (the origin is known to
 /// lie in P, so never beyond it).
-bool rank_facet(const PosedPair& pair, const Hull& hull, const Face& facet, const Dyadic3& normal,
-                const ExactDirection& direction, ExactDepth& result) {
-  const Dyadic height = dot(normal, pair.exact(hull.point(facet.v[0])));
+bool rank_facet(const PosedPair& pair, Hull& hull, int facet, const ExactDirection& direction, ExactDepth& result) {
+  const Dyadic3& normal = hull.exact_normal(facet);
+  const Dyadic height = dot(normal, hull.exact_point(hull.faces[facet].v[0]));
   if (height.sign() <= 0) {
     result.contact = ContactClass::touching;
     result.normal = direction;
@@ -269,7 +292,7 @@ ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* sim
   ExactDepth result;
   Hull hull(pair);
   // 1. and 2.
-  hull.vertices.assign(simplex, simplex + count);
+  for (int i = 0; i < count; ++i) hull.vertices.emplace_back(simplex[i]);
   if (!full_dimensional(pair, hull, result.support_calls, result.normal)) return result;  // flat: at most touching
   result.normal.reset();
   hull.start();
@@ -285,25 +308,24 @@ ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* sim
     if (nearest < 0 || hull.faces[nearest].lower > best_upper) break;
     ++result.facets_visited;
     Face& face = hull.faces[nearest];
-    const Dyadic3 normal = hull.exact_normal(face);
-    const ExactDirection direction(normal);
+    const ExactDirection direction(hull.exact_normal(nearest));
     result.complete = result.support_calls < budget;
     if (!result.complete) break;
     // 5.
     ++result.support_calls;
     const VertexPair s = support(pair, direction);
     if (watch) report(watch, pair, hull, step, nearest, direction, best_upper, s, scale);
-    hull.vertices.push_back(s);
+    hull.vertices.emplace_back(s);
     const int v = static_cast<int>(hull.vertices.size()) - 1;
     // 9.
-    if (hull.side(face, v) > 0) {
+    if (hull.side(nearest, v) > 0) {
       hull.insert(nearest, v);
       continue;
     }
     // 7.
     hull.vertices.pop_back();
     face.facet = true;
-    touching = rank_facet(pair, hull, face, normal, direction, result);
+    touching = rank_facet(pair, hull, nearest, direction, result);
     if (touching) break;
     if (face.upper < best_upper) {
       best_lower = face.lower;
