@@ -44,6 +44,11 @@ struct PairMemory {
   int num_points = 0;
   btScalar seconds = 0;                   ///< of the step that the points' impulses belong to
   std::vector<ChildPairMemory> children;  ///< sorted by number
+
+  /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
+  [[nodiscard]] bool is_blank() const {
+    return patch < 0 && num_points == 0 && children.empty() && warm.memory_bytes() == sizeof(warm);
+  }
 };
 
 /// Memories by manifold. Algorithms come and go on the dispatcher's threads.
@@ -59,12 +64,22 @@ class PairRegistry {
   }
   [[nodiscard]] PairMemory* find(const btPersistentManifold* manifold) {
     const std::lock_guard lock(mutex_);
-    const auto found = memories_.find(manifold);
-    return found == memories_.end() ? nullptr : found->second;
+    return found(manifold);
+  }
+  /// Calls `visit(i, memory)` for each of `count` manifolds, nullptr where it has none; all under one lock.
+  template <class Visit>
+  void visit_all(const btPersistentManifold* const* manifolds, int count, Visit&& visit) const {
+    const std::lock_guard lock(mutex_);
+    for (int i = 0; i < count; ++i) visit(i, found(manifolds[i]));
   }
 
  private:
-  std::mutex mutex_;
+  [[nodiscard]] PairMemory* found(const btPersistentManifold* manifold) const {
+    const auto at = memories_.find(manifold);
+    return at == memories_.end() ? nullptr : at->second;
+  }
+
+  mutable std::mutex mutex_;
   std::unordered_map<const btPersistentManifold*, PairMemory*> memories_;  // looked up only, never iterated
 };
 

@@ -45,6 +45,10 @@ struct ManifoldState {
   std::size_t first;  ///< of its points
   int count;
   std::optional<detail::PairMemory> memory;
+
+  /// In the memory at hand.
+  void save(const btPersistentManifold& manifold, const detail::PairMemory* remembered,
+            std::vector<btManifoldPoint>& points);
 };
 
 struct JointState {
@@ -52,6 +56,22 @@ struct JointState {
   btScalar applied_impulse;
   bool enabled;
 };
+
+void ManifoldState::save(const btPersistentManifold& manifold, const detail::PairMemory* remembered,
+                         std::vector<btManifoldPoint>& points) {
+  body0 = manifold.getBody0();
+  body1 = manifold.getBody1();
+  first = points.size();
+  count = manifold.getNumContacts();
+  for (int k = 0; k < count; ++k) points.push_back(manifold.getContactPoint(k));
+  if (remembered == nullptr || remembered->is_blank()) {
+    memory.reset();
+  } else if (memory) {
+    *memory = *remembered;
+  } else {
+    memory = *remembered;
+  }
+}
 
 BodyState save_body(btCollisionObject* object) {
   BodyState state{};
@@ -197,7 +217,6 @@ void BulletSnapshot::State::save() {
   broadphase.save(world);
   multibodies.save(world);
   bodies.clear();
-  manifolds.clear();
   points.clear();
   joints.clear();
   const auto& objects = world.getCollisionObjectArray();
@@ -205,16 +224,16 @@ void BulletSnapshot::State::save() {
     bodies.push_back(save_body(objects[i]));
   }
   btCollisionDispatcher& dispatcher = dispatcher_of(world);
-  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-    const btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
-    ManifoldState saved{manifold->getBody0(), manifold->getBody1(), points.size(), manifold->getNumContacts(), {}};
-    for (int k = 0; k < manifold->getNumContacts(); ++k) {
-      points.push_back(manifold->getContactPoint(k));
-    }
-    if (const detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
-      saved.memory = *memory;
-    }
-    manifolds.push_back(std::move(saved));
+  const int count = dispatcher.getNumManifolds();
+  btPersistentManifold** const present = dispatcher.getInternalManifoldPointer();
+  manifolds.resize(static_cast<std::size_t>(count));
+  const auto save_manifold = [&](int i, const detail::PairMemory* memory) {
+    manifolds[static_cast<std::size_t>(i)].save(*present[i], memory, points);
+  };
+  if (solver != nullptr) {
+    solver->pairs().visit_all(present, count, save_manifold);
+  } else {
+    for (int i = 0; i < count; ++i) save_manifold(i, nullptr);
   }
   for (int i = 0; i < world.getNumConstraints(); ++i) {
     btTypedConstraint* joint = world.getConstraint(i);

@@ -12,7 +12,11 @@ WarmCertificate& WarmCertificate::operator=(WarmCertificate&&) noexcept = defaul
 WarmCertificate::WarmCertificate(const WarmCertificate& other)
     : state_(other.state_ ? std::make_unique<detail::WarmState>(*other.state_) : nullptr) {}
 WarmCertificate& WarmCertificate::operator=(const WarmCertificate& other) {
-  if (this != &other) *this = WarmCertificate(other);
+  if (state_ && other.state_) {
+    *state_ = *other.state_;  // in the memory at hand
+  } else if (this != &other) {
+    *this = WarmCertificate(other);
+  }
   return *this;
 }
 
