@@ -77,6 +77,25 @@ void ImpactSearch::mark_start() {
   for (Body& body : bodies_) body.start = body.object->getWorldTransform();
 }
 
+double ImpactSearch::farthest_way() const {
+  double farthest = 0, second = 0;
+  for (const Body& body : bodies_) {
+    const btTransform& end = body.object->getWorldTransform();
+    double turned = 0;
+    for (int i = 0; i < 3; ++i) {
+      turned += static_cast<double>((end.getBasis()[i] - body.start.getBasis()[i]).length2());
+    }
+    // A turn by the angle t moves a point at r by the chord 2 r sin(t / 2), and the matrix by sqrt(8) sin(t / 2). Up to
+    // t = 1 the arc is less than 1.05 of the chord.
+    const double chord = turned > 0 ? std::sqrt(0.5 * turned) * body.radius : 0;
+    if (turned > 0.4) return std::numeric_limits<double>::infinity();
+    const double way = to_pd(end.getOrigin() - body.start.getOrigin()).norm() + 1.05 * chord;
+    second = std::max(second, std::min(way, farthest));
+    farthest = std::max(farthest, way);
+  }
+  return farthest + second;
+}
+
 void ImpactSearch::sweep(Body& body, double duration) {
   const btTransform& end = body.object->getWorldTransform();
   body.motion = motion_between(body.start, end, duration);
@@ -114,6 +133,8 @@ bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpa
   duration_ = duration;
   found = FoundImpact();
   found.time = HUGE_VAL;
+  // What moves by less than the slop can neither pass through nor sink deeper than that.
+  if (farthest_way() <= settings.slop) return false;
   const auto widen = static_cast<btScalar>(settings.gap);
   for (Body& body : bodies_) {
     sweep(body, duration);
@@ -139,7 +160,7 @@ bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpa
 }
 
 void ImpactSearch::search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found) {
-  // What moves by less than the slop can neither pass through nor sink deeper than that.
+  // As for the world: pairs that move together.
   const double apart = (a.motion.linear_velocity - b.motion.linear_velocity).norm() * duration_;
   const auto turning = [&](const Body& body) {
     const double turn = body.motion.angular_velocity.norm() * duration_;

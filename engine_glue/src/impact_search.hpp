@@ -71,6 +71,8 @@ class ImpactSearch {
   };
 
   void add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local);
+  /// No points of two bodies have moved farther against each other since `mark_start`. Rough, and quicker than motions.
+  [[nodiscard]] double farthest_way() const;
   void sweep(Body& body, double duration);
   [[nodiscard]] bool may_meet(const Body& a, const Body& b) const;
   void search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found);
