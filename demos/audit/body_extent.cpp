@@ -24,6 +24,7 @@ struct SupportOfCore {
     const double along = cone.half_height * direction[cone.axis];
     return std::max(along, cone.radius * across(cone.axis) - along);
   }
+  double operator()(const SphereHull& hull) const { return hull.support(direction).dot(direction); }
 
  private:
   [[nodiscard]] double across(int axis) const {

@@ -113,6 +113,23 @@ NamedShape read_halfspaces(const Node& node, const Limits& limits) {
   return {value_or_refuse(polytope_of_halfspaces(planes), node), {}};
 }
 
+/// A row [x,y,z,radius] a sphere.
+NamedShape read_sphere_hull(const Node& node, const Limits& limits) {
+  allow_only(node, {"type", "margin", "spheres"});
+  const Node rows = node.at("spheres");
+  require_array(rows, "an array of spheres [x,y,z,radius]");
+  if (rows.size() > static_cast<std::size_t>(limits.max_vertices)) {
+    rows.refuse("limit_exceeded", std::to_string(rows.size()) + " spheres; the limit is " +
+                                      std::to_string(limits.max_vertices) + " (--max-vertices)");
+  }
+  std::vector<Sphere> spheres;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<double> s = read_numbers(rows.element(i), 4);
+    spheres.push_back({{s[0], s[1], s[2]}, s[3]});
+  }
+  return {value_or_refuse(ConvexShape::hull_of_spheres(spheres), node), {}};
+}
+
 NamedShape read_mesh(const Node& node, const Limits& limits) {
   allow_only(node, {"type", "margin", "path"});
   const Node path = node.at("path");
@@ -146,6 +163,7 @@ NamedShape read_core(const Node& node, const Limits& limits) {
   if (type == "cone") return {read_about_axis(node, &ConvexShape::cone), {}};
   if (type == "mesh") return read_mesh(node, limits);
   if (type == "halfspaces") return read_halfspaces(node, limits);
+  if (type == "sphere_hull") return read_sphere_hull(node, limits);
   if (type == "compound" || type == "star") {
     type_node.refuse("unsupported",
                      "this query is for convex shapes; for compounds and star-shaped bodies there are "
@@ -154,7 +172,7 @@ NamedShape read_core(const Node& node, const Limits& limits) {
   }
   type_node.refuse("bad_value",
                    "unknown shape; known: convex, box, sphere, ellipsoid, capsule, cylinder, cone, halfspaces, mesh, "
-                   "compound, star");
+                   "sphere_hull, compound, star");
 }
 
 }  // namespace

@@ -121,6 +121,17 @@ const std::map<std::string, Make>& makers() {
          const Array r = read_array(n[0], "radii", {3});
          return make(value_of(ConvexShape::ellipsoid({r.at(0), r.at(1), r.at(2)}), "radii"));
        }},
+      {"sphere_hull",
+       [](const py::tuple& n) {
+         const Array rows = read_array(n[0], "spheres", {-1, 4});
+         std::vector<Sphere> spheres;
+         for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+           spheres.push_back({{rows.at(i, 0), rows.at(i, 1), rows.at(i, 2)}, rows.at(i, 3)});
+         }
+         auto hull = ConvexShape::hull_of_spheres(spheres);
+         if (!hull) refuse(to_string(hull.error().code), hull.error().message, hull.error().where);
+         return make(*hull);
+       }},
       {"capsule", [](const py::tuple& n) { return make_curved(n, ConvexShape::capsule); }},
       {"cylinder", [](const py::tuple& n) { return make_curved(n, ConvexShape::cylinder); }},
       {"cone", [](const py::tuple& n) { return make_curved(n, ConvexShape::cone); }},

@@ -70,6 +70,7 @@ struct SupportPoint {
     apex[cone.axis] = cone.half_height;
     return apex.dot(direction) > base.dot(direction) ? apex : base;
   }
+  Vec3 operator()(const SphereHull& hull) const { return hull.support(direction); }
 
  private:
   [[nodiscard]] Vec3 rim(int axis, double radius) const {

@@ -77,6 +77,8 @@ Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
     local[cone->axis] = -cone->half_height;
     const Vec3 apex = cone->half_height * Vec3::Unit(cone->axis);
     if (apex.dot(way) > local.dot(way)) local = apex;
+  } else if (const auto* spheres = std::get_if<SphereHull>(&shape.shape->core())) {
+    local = spheres->support(way);
   } else {
     const Vec3& radii = std::get<Ellipsoid>(shape.shape->core()).radii;
     local = radii.cwiseProduct(radii.cwiseProduct(way)) / radii.cwiseProduct(way).norm();

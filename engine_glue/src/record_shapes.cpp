@@ -59,6 +59,13 @@ struct WriteCore {
   void operator()(const Cone& cone) const {
     pd_record_round(&record, id, "cone", cone.radius, cone.half_height, kAxes[cone.axis], margin);
   }
+  void operator()(const SphereHull& hull) const {
+    std::vector<double> spheres;
+    for (const Sphere& s : hull.spheres()) {
+      spheres.insert(spheres.end(), {s.centre.x(), s.centre.y(), s.centre.z(), s.radius});
+    }
+    pd_record_spheres(&record, id, spheres.data(), hull.spheres().size(), margin);
+  }
 };
 
 /// Of a box to its corners; none of other shapes.

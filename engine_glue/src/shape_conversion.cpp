@@ -157,19 +157,16 @@ Expected<ConvexShape> from_multisphere(const btMultiSphereShape& shape) {
   if (scaling.x() != scaling.y() || scaling.x() != scaling.z()) {
     return unsupported(shape, "a multisphere scaled differently along its axes has no exact form: scale it uniformly");
   }
-  std::vector<Vec3> centres;
+  std::vector<Sphere> spheres;
   for (int i = 0; i < shape.getSphereCount(); ++i) {
-    if (shape.getSphereRadius(i) != shape.getSphereRadius(0)) {
-      return unsupported(
-          shape,
-          "a multisphere whose radii differ is no polytope swept by one ball: use equal radii or parts of a compound");
-    }
-    centres.push_back(to_pd(shape.getSpherePosition(i) * scaling));
+    spheres.push_back(
+        {to_pd(shape.getSpherePosition(i) * scaling), static_cast<double>(shape.getSphereRadius(i) * scaling.x())});
   }
-  if (centres.empty()) {
-    return Error{ErrorCode::too_few_points, "a multisphere needs at least one sphere", shape.getName()};
+  auto hull = ConvexShape::hull_of_spheres(spheres);
+  if (!hull) {
+    return Error{hull.error().code, hull.error().message, std::string(shape.getName()) + "." + hull.error().where};
   }
-  return swept_hull(shape, centres, static_cast<double>(shape.getSphereRadius(0) * scaling.x()));
+  return hull;
 }
 
 Expected<ConvexShape> from_uniform_scaling(const btUniformScalingShape& shape) {
@@ -191,6 +188,11 @@ Expected<ConvexShape> from_uniform_scaling(const btUniformScalingShape& shape) {
     }
     if (const auto* cone = std::get_if<Cone>(&child->core())) {
       return ConvexShape::cone(factor * cone->radius, factor * cone->half_height, cone->axis);
+    }
+    if (const auto* hull = std::get_if<SphereHull>(&child->core())) {
+      std::vector<Sphere> spheres;
+      for (const Sphere& s : hull->spheres()) spheres.push_back({factor * s.centre, factor * s.radius});
+      return ConvexShape::hull_of_spheres(spheres);
     }
     return unsupported(shape, "a uniform scaling shape of this child has no exact form");
   }();

@@ -138,6 +138,11 @@ const std::vector<btCollisionShape* (*)(BulletWorld&)>& rarer_shapes() {
       [](BulletWorld& w) -> btCollisionShape* {
         return w.shape<btUniformScalingShape>(w.shape<btBoxShape>(btVector3(1, 1, 1)), btScalar(1.3));
       },
+      [](BulletWorld& w) -> btCollisionShape* {
+        const btVector3 centres[3] = {btVector3(-1, 0, 0), btVector3(1, 0, 0), btVector3(0, btScalar(0.5), 1)};
+        const btScalar radii[3] = {1, btScalar(0.5), btScalar(0.3)};
+        return w.shape<btMultiSphereShape>(centres, radii, 3);
+      },
       [](BulletWorld& w) -> btCollisionShape* { return w.shape<btConvex2dShape>(wedge(w)); },
       [](BulletWorld& w) -> btCollisionShape* { return w.shape<btBox2dShape>(btVector3(1, 2, 0)); },
       [](BulletWorld& w) -> btCollisionShape* { return w.shape<btBox2dShape>(btVector3(1, 2, btScalar(0.04))); },
@@ -248,7 +253,9 @@ TEST(ContactRecorder, CountsWhatItCannotWrite) {
   BulletWorld world;
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
   const btScalar radii[2] = {1, btScalar(0.5)};
-  world.body(world.shape<btMultiSphereShape>(centres, radii, 2), 1, btVector3(0, 1, 0));
+  auto* stretched = world.shape<btMultiSphereShape>(centres, radii, 2);
+  stretched->setLocalScaling(btVector3(1, 1, btScalar(1.5)));
+  world.body(stretched, 1, btVector3(0, 1, 0));
   world.body(world.shape<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0, btVector3(0, 0, 0));
   std::int64_t unsupported = 0;
   EXPECT_EQ(record_and_audit(world, 2, &unsupported).total().contacts, 0);

@@ -23,6 +23,8 @@ constexpr std::array kKinds = {
     Kind{"ellipsoid", R"({"type":"ellipsoid","radii":[1,0.8,0.6]})", false},
     Kind{"cylinder", R"({"type":"cylinder","radius":0.6,"half_height":0.8,"axis":"z"})", false},
     Kind{"cone", R"({"type":"cone","radius":0.8,"half_height":0.9,"axis":"z"})", false},
+    Kind{"sphere hull", R"({"type":"sphere_hull","spheres":[[0,0,-0.4,0.7],[0.5,0,0.5,0.3],[-0.3,0.4,0.6,0.1]]})",
+         false},
 };
 struct MethodOfTable {
   const char* name;

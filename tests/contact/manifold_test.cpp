@@ -162,6 +162,29 @@ TEST(Manifold, CylindersAndConesStandOnTheirDiscs) {
   EXPECT_EQ(touch(cone, pose(Vec3(0, 1.49, 0), Vec3::UnitZ(), M_PI), floor, Pose()).manifold.count, 1);
 }
 
+TEST(Manifold, HullsOfSpheresStandOnTheirPolygonsAndLines) {
+  const ConvexShape floor = box(5, 1, 5);
+  // A table: a plane at y = -1 touches all four feet, whatever their radii; a fifth sphere between them does not show.
+  const std::vector<pd::Sphere> table{{{1, -0.5, 1}, 0.5},    {{-1, -0.75, 1}, 0.25},   {{-1, -0.875, -1}, 0.125},
+                                      {{1, -0.75, -1}, 0.25}, {{0.1, -0.5, 0.1}, 0.25}, {{0, 0.5, 0}, 0.25}};
+  const ConvexShape chair = pd::ConvexShape::hull_of_spheres(table).value();
+  for (const double turn : {0.0, 0.3, 1.0, 2.5}) {
+    const Contact standing = touch(chair, pose(Vec3(0, 1.99, 0), Vec3::UnitY(), turn), floor, Pose());
+    ASSERT_EQ(standing.manifold.count, 4);
+    EXPECT_NEAR(area(standing.manifold), 4, 1e-9);
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(standing.manifold.points[i].depth, 0.01, 1e-9);
+  }
+  // On the head alone.
+  EXPECT_EQ(touch(chair, pose(Vec3(0, 1.74, 0), Vec3::UnitZ(), M_PI), floor, Pose()).manifold.count, 1);
+  // A club lies on both its ends.
+  const std::vector<pd::Sphere> ends{{{-1, 0, 0}, 0.5}, {{1, 0, 0}, 0.25}};
+  const ConvexShape club = pd::ConvexShape::hull_of_spheres(ends).value();
+  const Contact lying = touch(club, pose(Vec3(0, 1.36, 0), Vec3::UnitZ(), -std::asin(0.125)), floor, Pose());
+  ASSERT_EQ(lying.manifold.count, 2);
+  EXPECT_NEAR((lying.manifold.points[0].position_b - lying.manifold.points[1].position_b).norm(),
+              2 * std::sqrt(1 - 0.125 * 0.125), 1e-9);
+}
+
 TEST(Manifold, TiltedFaceKeepsOnlyWhatIsNear) {
   const ConvexShape cube = box(0.5, 0.5, 0.5);
   const ConvexShape floor = box(5, 1, 5);

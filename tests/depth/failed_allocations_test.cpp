@@ -111,8 +111,10 @@ TEST(FailedAllocations, WarmMemories) {
 
 TEST(FailedAllocations, RoundedAndCurvedBodies) {
   const ConvexShape box = *ConvexPolytope::box({1, 0.5, 0.3});
-  const ConvexShape shapes[] = {*box.with_margin(0.1), *ConvexShape::cylinder(0.5, 1, 2),
-                                *ConvexShape::ellipsoid({1, 0.7, 0.4}), *ConvexShape::cone(0.6, 0.8, 1)};
+  const ConvexShape shapes[] = {
+      *box.with_margin(0.1), *ConvexShape::cylinder(0.5, 1, 2), *ConvexShape::ellipsoid({1, 0.7, 0.4}),
+      *ConvexShape::cone(0.6, 0.8, 1),
+      *ConvexShape::hull_of_spheres(std::vector<Sphere>{{{0, 0, 0}, 0.6}, {{0.5, 0, 0.3}, 0.2}})};
   const Pose pose = *Pose::from_quaternion({0.7, 0.1, 0.5, -0.5}, {0.4, 0.3, 0.2});
   for (const ConvexShape& a : shapes) {
     for (const ConvexShape& b : shapes) {

@@ -94,6 +94,11 @@ TEST(Width, KnownBodies) {
   EXPECT_EQ(of(*ConvexShape::cylinder(3, 1, 2)).width, 2);
   EXPECT_EQ(of(*ConvexShape::cone(3, 1, 2)).width, 2);
   EXPECT_DOUBLE_EQ(of(*ConvexShape::cone(1, 2, 0)).width, 8 / std::sqrt(17.0));
+  // It holds the unit ball, and is as wide across its axis.
+  const Width tapered = of(*ConvexShape::hull_of_spheres(std::vector<Sphere>{{{0, 0, 0}, 1}, {{3, 0, 0}, 0.5}}));
+  EXPECT_LE(tapered.lower, 2);
+  EXPECT_GE(tapered.upper, 2);
+  EXPECT_LE(tapered.upper, 2 * (1 + 1e-6));
 
   const std::vector<Vec3> square{{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   const Width flat = of(*ConvexPolytope::from_points(square));

@@ -225,7 +225,8 @@ class CountedEpa : public btGjkEpaPenetrationDepthSolver {
 TEST(Fallback, IsBulletsOwnUnlessAnotherIsGiven) {
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
   const btScalar radii[2] = {1, btScalar(0.5)};
-  const btMultiSphereShape unequal(centres, radii, 2);
+  btMultiSphereShape unequal(centres, radii, 2);
+  unequal.setLocalScaling(btVector3(1, 1, btScalar(1.5)));
   const btSphereShape sphere(1);
   CountedEpa epa;
   for (CountedEpa* given : {static_cast<CountedEpa*>(nullptr), &epa}) {

@@ -291,6 +291,7 @@ TEST(DropIn, ShapesWithoutExactFormGoToBulletWithOneWarning) {
   const btScalar radii[2] = {1, btScalar(0.5)};
   scene.body(scene.shape<btBoxShape>(btVector3(10, 1, 10)), 0, at(0, -1, 0));
   auto* spheres = scene.shape<btMultiSphereShape>(centres, radii, 2);
+  spheres->setLocalScaling(btVector3(1, 1, btScalar(1.5)));
   btRigidBody* body = scene.body(spheres, 1, at(0, 1.1, 0));
   for (int i = 0; i < 240; ++i) {
     scene.world().stepSimulation(kStep, 0);

@@ -258,7 +258,7 @@ TEST(OneShot, ContactCallbacksSeeOneBeginningAndOneEnd) {
   gContactEndedCallback = nullptr;
 }
 
-TEST(OneShot, UnequalMultispheresGoTheNamedWay) {
+TEST(OneShot, StretchedMultispheresGoTheNamedWay) {
   btGjkEpaPenetrationDepthSolver epa;
   BulletSolverSettings settings;
   settings.fallback = &epa;
@@ -267,7 +267,9 @@ TEST(OneShot, UnequalMultispheresGoTheNamedWay) {
   install(scene.world(), solver);
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
   const btScalar radii[2] = {1, btScalar(0.5)};
-  scene.body(scene.shape<btMultiSphereShape>(centres, radii, 2), 0, btVector3(0, 0, 0));
+  auto* spheres = scene.shape<btMultiSphereShape>(centres, radii, 2);
+  spheres->setLocalScaling(btVector3(1, 1, btScalar(1.5)));
+  scene.body(spheres, 0, btVector3(0, 0, 0));
   scene.body(scene.shape<btSphereShape>(btScalar(1)), 1, btVector3(0, btScalar(1.8), 0));
   scene.world().performDiscreteCollisionDetection();
   EXPECT_GT(solver.statistics().unsupported, 0);

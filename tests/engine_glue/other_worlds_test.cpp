@@ -1,6 +1,6 @@
 /// @file
 /// Worlds beside plain rigid bodies, the same program against Bullet's algorithms and ours: GImpact meshes, cloth in a
-/// soft/rigid world, Featherstone arms against each other and against rigid bodies, multispheres.
+/// soft/rigid world, Featherstone arms against each other and against rigid bodies.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -277,34 +277,6 @@ TEST(OtherWorlds, FeatherstoneArmsAgainstEachOtherAndBricks) {
   EXPECT_LE(ours.deepest, std::max(bullet.deepest, 0.005));
   EXPECT_LE(ours.speed, std::max(bullet.speed, 0.01));
   EXPECT_GT(ours.calls, 240);
-}
-
-// Multispheres.
-
-/// The heights at which a multisphere comes to rest on a box, and a box on it.
-double multisphere_height(bool ours, bool equal_radii, std::int64_t* unsupported) {
-  BulletPenetrationDepthSolver solver;
-  BulletWorld scene;
-  if (ours) install(scene.world(), solver);
-  const btVector3 centres[3] = {vector(-0.5, 0, 0), vector(0.5, 0, 0), vector(0, 0, 0.5)};
-  const btScalar small = equal_radii ? btScalar(0.5) : btScalar(0.3);
-  const btScalar radii[3] = {btScalar(0.5), btScalar(0.5), small};
-  scene.body(scene.shape<btBoxShape>(vector(10, 1, 10)), 0, at(0, -1, 0));
-  btRigidBody* body = scene.body(scene.shape<btMultiSphereShape>(centres, radii, 3), 1, at(0, 0.6, 0));
-  for (int i = 0; i < 240; ++i) scene.world().stepSimulation(kStep, 0);
-  if (unsupported != nullptr) *unsupported = solver.statistics().unsupported;
-  return height_of(*body);
-}
-
-TEST(OtherWorlds, MultispheresOfEqualRadiiAreExactAndOthersAreBullets) {
-  std::int64_t unsupported = -1;
-  EXPECT_NEAR(multisphere_height(true, true, &unsupported), 0.5, 0.005);
-  EXPECT_EQ(unsupported, 0);
-  const double bullet = multisphere_height(false, false, nullptr);
-  const double ours = multisphere_height(true, false, &unsupported);
-  EXPECT_GT(unsupported, 0);
-  EXPECT_NEAR(ours, bullet, 0.02);
-  std::printf("unequal radii: Bullet %.4f, ours by Bullet's solver %.4f\n", bullet, ours);
 }
 
 }  // namespace

@@ -117,6 +117,7 @@ TEST(SweepTest, OverlapAtTheStartAndWhatHasNoBody) {
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
   const btScalar radii[2] = {btScalar(0.5), btScalar(0.25)};
   auto* uneven = scene.shape<btMultiSphereShape>(centres, radii, 2);
+  uneven->setLocalScaling(btVector3(1, 1, btScalar(1.5)));
   scene.body(uneven, 0, btVector3(5, 0, 0));
   scene.world().updateAabbs();
   const btSphereShape ball(btScalar(0.5));

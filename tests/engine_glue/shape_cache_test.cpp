@@ -87,7 +87,8 @@ TEST(ShapeCache, ShapesWithoutExactFormAreRememberedToo) {
   pd::BulletShapeCache cache;
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
   const btScalar radii[2] = {1, 2};
-  const btMultiSphereShape unequal(centres, radii, 2);
+  btMultiSphereShape unequal(centres, radii, 2);
+  unequal.setLocalScaling(btVector3(1, 1, btScalar(1.5)));
   EXPECT_EQ(cache.find_or_convert(unequal), nullptr);
   EXPECT_EQ(cache.find_or_convert(unequal), nullptr);
   EXPECT_EQ(cache.conversions(), 1);

@@ -27,6 +27,9 @@ double support_value(const pd::ConvexShape& shape, const pd::Vec3& d) {
     pd::Vec3 radial = d;
     radial[cylinder->axis] = 0;
     core = cylinder->radius * radial.norm() + cylinder->half_height * std::abs(d[cylinder->axis]);
+  } else if (const auto* spheres = std::get_if<pd::SphereHull>(&shape.core())) {
+    core = -HUGE_VAL;
+    for (const pd::Sphere& s : spheres->spheres()) core = std::max(core, s.centre.dot(d) + s.radius * d.norm());
   } else {
     const auto& cone = std::get<pd::Cone>(shape.core());
     pd::Vec3 radial = d;
@@ -159,6 +162,21 @@ TEST(ShapeConversion, SphereCapsuleMultisphere) {
   expect_same_support(spheres);
 }
 
+TEST(ShapeConversion, MultispheresOfUnequalRadii) {
+  const std::vector<btVector3> centres = some_points();
+  std::vector<btScalar> radii;
+  for (std::size_t i = 0; i < centres.size(); ++i) radii.push_back(btScalar(0.1) + btScalar(0.07) * btScalar(i % 5));
+  btMultiSphereShape spheres(centres.data(), radii.data(), static_cast<int>(centres.size()));
+  expect_same_support(spheres);
+  EXPECT_EQ(pd::to_convex_shape(spheres)->polytope(), nullptr);
+  const btUniformScalingShape scaled(&spheres, btScalar(2.5));
+  expect_same_support(scaled);
+  spheres.setLocalScaling(btVector3(2, 2, 2));
+  expect_same_support(spheres);
+  spheres.setLocalScaling(btVector3(2, 2, 1));
+  EXPECT_EQ(pd::to_convex_shape(spheres).error().code, pd::ErrorCode::unsupported);
+}
+
 TEST(ShapeConversion, WrappersFollowTheirChild) {
   btConvexHullShape hull = some_hull();
   btCylinderShape cylinder(btVector3(1, 2, 1));
@@ -189,12 +207,8 @@ TEST(ShapeConversion, WrappersFollowTheirChild) {
 
 TEST(ShapeConversion, RefusesWhatHasNoExactForm) {
   const btVector3 centres[2] = {btVector3(0, 0, 0), btVector3(1, 0, 0)};
-  const btScalar radii[2] = {1, 2};
-  btMultiSphereShape unequal(centres, radii, 2);
-  EXPECT_EQ(pd::to_convex_shape(unequal).error().code, pd::ErrorCode::unsupported);
-
-  const btScalar equal[2] = {1, 1};
-  btMultiSphereShape stretched(centres, equal, 2);
+  const btScalar radii[2] = {1, 1};
+  btMultiSphereShape stretched(centres, radii, 2);
   stretched.setLocalScaling(kScaling);
   EXPECT_EQ(pd::to_convex_shape(stretched).error().code, pd::ErrorCode::unsupported);
 

@@ -56,6 +56,15 @@ class Support {
       const long double z = n[2] * static_cast<long double>(e->radii.z());
       return std::sqrt(x * x + y * y + z * z);
     }
+    if (const auto* hull = std::get_if<SphereHull>(&shape_.core())) {
+      long double best = -INFINITY;
+      for (const Sphere& s : hull->spheres()) {
+        long double reach = static_cast<long double>(s.radius) * std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int i = 0; i < 3; ++i) reach += static_cast<long double>(s.centre[i]) * n[i];
+        best = std::max(best, reach);
+      }
+      return best;
+    }
     const auto* cylinder = std::get_if<Cylinder>(&shape_.core());
     const auto* cone = std::get_if<Cone>(&shape_.core());
     const int axis = cylinder != nullptr ? cylinder->axis : cone->axis;

@@ -57,7 +57,12 @@ ConvexShape round_body(Random& random) {
 ConvexShape curved(Random& random) {
   const int axis = static_cast<int>(random() % 3);
   const double r = uniform(random, .3, .9), h = uniform(random, .3, .9);
-  switch (random() % 3) {
+  switch (random() % 4) {
+    case 3: {
+      std::vector<Sphere> spheres;
+      for (int i = 0; i < 3 + axis; ++i) spheres.push_back({.7 * direction(random), uniform(random, 0, .6)});
+      return *ConvexShape::hull_of_spheres(spheres);
+    }
     case 0:
       return *ConvexShape::ellipsoid({uniform(random, .4, 1), uniform(random, .4, 1), uniform(random, .4, 1)});
     case 1:

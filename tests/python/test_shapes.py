@@ -15,7 +15,8 @@ SHAPES = [
     pdepth.Compound([(pdepth.Cone(1, 2, margin=0.1), pdepth.Pose(wxyz=[0.5, 0.5, 0.5, 0.5], translation=[0.1, 0, 0])),
                      (pdepth.Ellipsoid([0.1, 0.2, 0.3]), (np.eye(3)[[1, 2, 0]], [1 / 3, 0, 0]))], margin=0.2),
     pdepth.ConvexPolytope.from_halfspaces([[s * (k == 0), s * (k == 1), s * (k == 2), 1 / 3] for k in range(3) for s in (-1, 1)]),
-    pdepth.Sphere(np.float32(0.1)), pdepth.Box(np.array([1, 2, 3], dtype=np.int16)),
+    pdepth.SphereHull([[0, 0, 0, 0.5], [1, 0, 0.25, 0.1], [0, 1, 0, 0.2]], margin=0.1),
+    pdepth.SphereHull(np.array([[0, 0, 1, 0.5], [1, 1, 0, 0.5]])), pdepth.Sphere(np.float32(0.1)), pdepth.Box(np.array([1, 2, 3], dtype=np.int16)),
     pdepth.StarBody([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], [0, 0, 0]),
 ]
 
@@ -57,6 +58,7 @@ def test_polytopes_from_faces_halfspaces_and_meshes(tmp_path):
 
 
 BAD = [
+    (lambda: pdepth.SphereHull([[0, 0, 0, 1], [1, 0, 0, -1]]), "spheres[1]", "bad_value", "-1"),
     (lambda: pdepth.ConvexPolytope(CUBE.T), "points", "bad_value", "transposed"),
     (lambda: pdepth.ConvexPolytope(np.zeros((0, 3))), "points", "too_few_points", ""),
     (lambda: pdepth.ConvexPolytope(np.vstack([CUBE, [[0, np.nan, 0]]])), "points[8]", "non_finite", ""),

@@ -39,6 +39,13 @@ TEST(Mesh, EveryShapeOfTheLibraryHasASurface) {
   EXPECT_NEAR(enclosed_volume(*shape_mesh(*ConvexShape::sphere(1))), 4 / 3.0 * kPi, 0.05);
   EXPECT_NEAR(enclosed_volume(*shape_mesh(*ConvexShape::capsule(1, 2, 1))), kPi * 4 + 4 / 3.0 * kPi, 0.2);
   EXPECT_NEAR(enclosed_volume(*shape_mesh(*ConvexShape::cone(1, 2, 0))), kPi * 4 / 3, 0.02);
+  // A ball of radius 1 at the origin and the tangent cone from it to a ball of radius 1/2, 2 away: a cap each, and the
+  // frustum between the circles where they touch it.
+  const auto club = ConvexShape::hull_of_spheres(std::vector<Sphere>{{{0, 0, 0}, 1}, {{2, 0, 0}, 0.5}});
+  const double sine = 0.25, cosine = std::sqrt(1 - sine * sine);
+  const auto cap = [&](double radius, double height) { return kPi * height * height * (3 * radius - height) / 3; };
+  const double frustum = kPi * cosine * cosine * (2 - 0.5 * sine) * (1 + 0.5 + 0.25) / 3;
+  EXPECT_NEAR(enclosed_volume(*shape_mesh(*club)), cap(1, 1 + sine) + frustum + cap(0.5, 0.5 * (1 - sine)), 0.05);
   // Steiner's formula for the unit cube swept by a ball: V + S r + 3 pi r^2 + 4/3 pi r^3.
   const double r = 0.25;
   const auto box = ConvexPolytope::box({0.5, 0.5, 0.5});

@@ -72,6 +72,9 @@ class Sphere(Shape):
 class Ellipsoid(Shape):
     def __init__(self, radii: npt.ArrayLike, *, margin: float = ...) -> None: ...
 
+class SphereHull(Shape):
+    def __init__(self, spheres: npt.ArrayLike, *, margin: float = ...) -> None: ...
+
 class Capsule(Shape):
     def __init__(self, radius: float, half_height: float, axis: Axis = ..., *, margin: float = ...) -> None: ...
 

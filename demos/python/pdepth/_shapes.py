@@ -218,6 +218,19 @@ class Ellipsoid(Shape):
         super().__init__("ellipsoid", (radii,), margin, {"radii": radii})
 
 
+class SphereHull(Shape):
+    """The convex hull of spheres: [n, 4] rows of x, y, z, radius, n >= 1, radii >= 0. Certified to (1 + delta).
+
+    Equal radii are exact: a hull of points with a margin. Raises Refused: 'too_few_points' at spheres, 'bad_value' or
+    'non_finite' at spheres[i].
+    """
+
+    _type = "sphere_hull"
+
+    def __init__(self, spheres, *, margin=0.0):
+        super().__init__("sphere_hull", (spheres,), margin, {"spheres": spheres})
+
+
 class _Round(Shape):
     def __init__(self, radius, half_height, axis="z", *, margin=0.0):
         fields = {"radius": radius, "half_height": half_height, "axis": axis}

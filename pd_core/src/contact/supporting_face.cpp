@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "contact/sphere_hull_face.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -186,6 +188,10 @@ void supporting_face(const PosedShape& shape, const Vec3& direction, const Featu
     cylinder_face(*cylinder, shape.pose, local, rotation, face);
   } else if (const auto* cone = std::get_if<Cone>(&shape.shape->core())) {
     cone_face(*cone, shape.pose, local, rotation, face);
+  } else if (const auto* spheres = std::get_if<SphereHull>(&shape.shape->core())) {
+    sphere_hull_face(*spheres, local, kEdgeSine, kFaceCosine, face);
+    for (FaceVertex& vertex : face.vertices) vertex.point = rotation * vertex.point + shape.pose.translation();
+    face.plane_normal = rotation * face.plane_normal;
   } else {
     const auto& radii = std::get<Ellipsoid>(shape.shape->core()).radii;
     const Vec3 scaled = radii.cwiseProduct(local);

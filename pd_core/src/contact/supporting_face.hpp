@@ -11,7 +11,7 @@ namespace pd::detail {
 
 struct FaceVertex {
   Vec3 point;       ///< common frame
-  std::int32_t id;  ///< vertex of the polytope, or the number of the rim point
+  std::int32_t id;  ///< vertex of the polytope, or the number of the rim point or sphere
 };
 
 /// One vertex, two, or a convex loop of three and more in one plane.

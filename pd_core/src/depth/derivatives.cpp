@@ -149,7 +149,7 @@ class FirstOrder {
   explicit FirstOrder(const Meeting& m) : m_(m) {
     for (int i = 0; i < 2; ++i) {
       const Side& side = m.sides[i];
-      curvature_[i] = side.flats < 2 ? side.core.curvature(side.outward, side.witness) : Mat3::Zero();
+      curvature_[i] = side.flats < 2 ? side.core.curvature(side.outward, side.witness, side.flats) : Mat3::Zero();
     }
     for (const Side& side : m.sides) {
       for (int k = 0; k < side.flats; ++k) flats_.push_back({&side, side.flat[k]});
@@ -227,10 +227,10 @@ bool tell_arcs_from_flats(Side& side) {
   if (!side.core.curved()) return true;
   side.flats = std::min(side.flats, side.core.straight_dimensions(side.outward, kCurvedLean));
   if (side.flats == 2) return true;
-  const Mat3 here = side.core.curvature(side.outward, side.witness);
+  const Mat3 here = side.core.curvature(side.outward, side.witness, side.flats);
   const Vec3 u = side.outward.unitOrthogonal(), v = side.outward.cross(u);
   for (const Vec3& aside : {u, v, Vec3(-u), Vec3(-v)}) {
-    const Mat3 there = side.core.curvature(side.outward + kCurvedLean * aside, side.witness);
+    const Mat3 there = side.core.curvature(side.outward + kCurvedLean * aside, side.witness, side.flats);
     if (!((there - here).norm() <= .01 * here.norm())) return false;
   }
   return true;

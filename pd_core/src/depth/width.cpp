@@ -122,6 +122,18 @@ void smooth_width(const Cone& c, const Dyadic& margins, Width& out) {
   }
 }
 
+/// [A] Proposition 2.1.
+Width width_by_depth(const PosedShape& body, Scratch& scratch, double delta) {
+  const PenetrationDepth self = penetration_depth(body, body, scratch, {.delta = delta});
+  Width out;
+  out.width = self.depth;
+  out.lower = self.lower;
+  out.upper = self.upper;
+  out.normal = self.normal;
+  out.statistics = self.statistics;
+  return out;
+}
+
 }  // namespace
 
 Width width(const PosedShape& body, Scratch& scratch, Method method, double delta) {
@@ -135,6 +147,7 @@ Width width(const PosedShape& body, Scratch& scratch, Method method, double delt
   if (const auto* ellipsoid = std::get_if<Ellipsoid>(&body.shape->core())) smooth_width(*ellipsoid, margins, out);
   if (const auto* cylinder = std::get_if<Cylinder>(&body.shape->core())) smooth_width(*cylinder, margins, out);
   if (const auto* cone = std::get_if<Cone>(&body.shape->core())) smooth_width(*cone, margins, out);
+  if (std::get_if<SphereHull>(&body.shape->core()) != nullptr) return width_by_depth(body, scratch, delta);
   out.normal = (body.pose.nearest_rotation() * out.normal).normalized();
   return out;
 }

@@ -1,10 +1,12 @@
 #include "pd/shape/convex_shape.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 
 #include "numeric/number_text.hpp"
+#include "shape/outer_spheres.hpp"
 
 namespace pd {
 namespace {
@@ -81,6 +83,41 @@ Expected<ConvexShape> ConvexShape::cone(double radius, double half_height, int a
   if (auto refused = refuse_curved_size(half_height, "half_height")) return *std::move(refused);
   if (auto refused = refuse_axial(radius, half_height, axis, false)) return *std::move(refused);
   return ConvexShape(Core(Cone{radius, half_height, axis}), 0);
+}
+
+Expected<ConvexShape> ConvexShape::hull_of_spheres(std::span<const Sphere> spheres) {
+  if (spheres.empty()) return Error{ErrorCode::too_few_points, "a hull of spheres needs one sphere or more", "spheres"};
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const std::string where = detail::indexed("spheres", static_cast<long long>(i));
+    if (auto refused = refuse_size(spheres[i].radius, where, true)) return *std::move(refused);
+    if (!spheres[i].centre.allFinite()) return Error{ErrorCode::non_finite, "a centre must be finite", where};
+  }
+  const auto thinner = [](const Sphere& x, const Sphere& y) { return x.radius < y.radius; };
+  std::vector<Sphere> outer(spheres.begin(), spheres.end());
+  const auto equal = [&] {
+    const auto [least, most] = std::minmax_element(outer.begin(), outer.end(), thinner);
+    return least->radius == most->radius;
+  };
+  if (!equal()) {
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const double size = std::max(spheres[i].centre.cwiseAbs().maxCoeff(), spheres[i].radius);
+      if (size == 0) continue;
+      if (auto refused = refuse_curved_size(size, detail::indexed("spheres", static_cast<long long>(i)))) {
+        return *std::move(refused);
+      }
+    }
+    detail::keep_outer_spheres(outer);
+  }
+  const double margin = std::min_element(outer.begin(), outer.end(), thinner)->radius;
+  if (!equal()) {
+    for (Sphere& sphere : outer) sphere.radius -= margin;
+    return ConvexShape(Core(SphereHull(std::move(outer))), margin);
+  }
+  std::vector<Vec3> centres;
+  for (const Sphere& sphere : outer) centres.push_back(sphere.centre);
+  auto polytope = ConvexPolytope::from_points(centres);
+  if (!polytope) return polytope.error();
+  return ConvexShape(Core(*std::move(polytope)), margin);
 }
 
 Expected<ConvexShape> ConvexShape::with_margin(double margin) const {

@@ -1,5 +1,7 @@
 #include "shape/core_radius.hpp"
 
+#include <algorithm>
+
 #include "numeric/length.hpp"
 
 namespace pd::detail {
@@ -11,6 +13,13 @@ struct CoreRadius {
   double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
   double operator()(const Cylinder& c) const { return length(c.radius, c.half_height); }
   double operator()(const Cone& c) const { return length(c.radius, c.half_height); }
+  double operator()(const SphereHull& hull) const {
+    double farthest = 0;
+    for (const Sphere& s : hull.spheres()) {
+      farthest = std::max(farthest, length(length(s.centre.x(), s.centre.y()), s.centre.z()) + s.radius);
+    }
+    return farthest;
+  }
 };
 
 }  // namespace

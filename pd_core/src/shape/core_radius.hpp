@@ -7,7 +7,7 @@
 namespace pd::detail {
 
 /// Largest distance of a point of the core from the origin of its frame, of a polytope rounded up; elsewhere within
-/// 2^-51 of itself.
+/// 2^-50 of itself.
 [[nodiscard]] double core_radius(const ConvexShape::Core& core);
 
 }  // namespace pd::detail

@@ -1,5 +1,6 @@
 /// @file
-/// Curved bodies for the eye: a profile turned about an axis, 56 steps round, 26 over a sphere's meridian.
+/// Curved bodies for the eye: a profile turned about an axis, 56 steps round, 26 over a sphere's meridian; hulls of
+/// spheres by their supports in the directions of a sphere.
 #include <cmath>
 #include <numbers>
 
@@ -104,6 +105,20 @@ MeshRef ellipsoid_mesh(const Vec3& radii) {
       // The gradient of sum (x_i / r_i)^2, scaled so that no component overflows.
       const Vec3 gradient = (radii.minCoeff() * unit).cwiseQuotient(radii);
       builder.add_vertex(unit.cwiseProduct(radii), gradient.normalized());
+    }
+  }
+  add_strips(builder, 0, kMeridian + 1, true, true);
+  return builder.finish();
+}
+
+MeshRef sphere_hull_mesh(const SphereHull& hull) {
+  detail::MeshBuilder builder;
+  for (int row = 0; row <= kMeridian; ++row) {
+    const double angle = std::numbers::pi * (static_cast<double>(row) / kMeridian - 0.5);
+    const double c = row == 0 || row == kMeridian ? 0 : std::cos(angle);
+    for (int step = 0; step <= kAround; ++step) {
+      const Vec3 unit(c * std::cos(turn(step)), c * std::sin(turn(step)), std::sin(angle));
+      builder.add_vertex(hull.support(unit), unit);
     }
   }
   add_strips(builder, 0, kMeridian + 1, true, true);

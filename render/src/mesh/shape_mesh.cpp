@@ -14,6 +14,7 @@ MeshRef core_mesh(const ConvexShape& shape) {
     MeshRef operator()(const Ellipsoid& body) const { return ellipsoid_mesh(body.radii); }
     MeshRef operator()(const Cylinder& body) const { return cylinder_mesh(body.radius, body.half_height, body.axis); }
     MeshRef operator()(const Cone& body) const { return cone_mesh(body.radius, body.half_height, body.axis); }
+    MeshRef operator()(const SphereHull& body) const { return sphere_hull_mesh(body); }
   };
   return std::visit(Maker{}, shape.core());
 }

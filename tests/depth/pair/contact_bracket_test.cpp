@@ -266,6 +266,9 @@ TEST(ContactBracket, FlatBodiesThroughEachOther) {
 
 /// Curved bodies: against the interval of a much narrower search.
 TEST(ContactBracket, CurvedBodiesOnFloors) {
+  // Three feet of their own radii, all half a unit below the origin, and a head.
+  const std::vector<Sphere> kFeet{
+      {{0.4, -0.2, 0}, 0.3}, {{-0.4, -0.4, 0.3}, 0.1}, {{-0.4, -0.3, -0.3}, 0.2}, {{0, 0.3, 0}, 0.2}};
   Scratch scratch;
   scenes::Random random(5);
   int touching = 0;
@@ -275,7 +278,8 @@ TEST(ContactBracket, CurvedBodiesOnFloors) {
     for (const double margin : {0.0, 0.04}) {
       const ConvexShape bodies[] = {*ConvexShape::cylinder(0.4, 0.5, 1)->with_margin(margin),
                                     *ConvexShape::cone(0.4, 0.5, 1)->with_margin(margin),
-                                    *ConvexShape::ellipsoid({0.3, 0.5, 0.4})->with_margin(margin)};
+                                    *ConvexShape::ellipsoid({0.3, 0.5, 0.4})->with_margin(margin),
+                                    *ConvexShape::hull_of_spheres(kFeet)->with_margin(margin)};
       for (const ConvexShape& body : bodies) {
         WarmCertificate memory;
         for (const double gap : {1e-5, -1e-5, 1e-8, -1e-8, 0.0, 0.1, -0.1}) {
@@ -308,12 +312,14 @@ TEST(ContactBracket, CurvedBodiesDeepInEachOther) {
   Scratch scratch;
   scenes::Random random(1);
   const ConvexShape shapes[] = {*ConvexShape::cylinder(0.4, 0.5, 1), *ConvexShape::cone(0.4, 0.5, 1),
-                                *ConvexShape::ellipsoid({0.3, 0.5, 0.4}), hull({{-0.4, 0, 0}, {0.4, 0, 0}}, 0.2)};
+                                *ConvexShape::ellipsoid({0.3, 0.5, 0.4}), hull({{-0.4, 0, 0}, {0.4, 0, 0}}, 0.2),
+                                *ConvexShape::hull_of_spheres(std::vector<Sphere>{
+                                    {{-0.4, 0, 0}, 0.3}, {{0.4, 0.1, 0}, 0.1}, {{0, 0.4, 0.2}, 0.2}})};
   int overlapping = 0;
   int missed = 0;
   for (int i = 0; i < 300; ++i) {
-    const ConvexShape& a = shapes[i % 4];
-    const ConvexShape& b = shapes[(i / 4) % 4];
+    const ConvexShape& a = shapes[i % 5];
+    const ConvexShape& b = shapes[(i / 5) % 5];
     if (a.polytope() && b.polytope()) continue;
     const Pose pose_a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
     const Pose pose_b = *Pose::from_quaternion(

@@ -58,14 +58,16 @@ TEST(Grid, SmoothAndSweptBodies) {
   scenes::Random random(5);
   Scratch scratch;
   const ConvexPolytope rock = *ConvexPolytope::from_points(scenes::sphere_hull(20, random));
-  const ConvexShape shapes[] = {*ConvexShape::ellipsoid(Vec3(1, 0.5, 2)),
-                                *ConvexShape::cylinder(0.7, 1.2, 1),
-                                *ConvexShape::cone(1, 0.6, 0),
-                                *ConvexShape::sphere(0.8),
-                                *ConvexShape::capsule(0.4, 0.9, 2),
-                                *ConvexShape(rock).with_margin(0.1),
-                                *ConvexShape::cylinder(1, 0.1, 2)->with_margin(0.3),
-                                ConvexShape(rock)};
+  const ConvexShape shapes[] = {
+      *ConvexShape::ellipsoid(Vec3(1, 0.5, 2)),
+      *ConvexShape::cylinder(0.7, 1.2, 1),
+      *ConvexShape::cone(1, 0.6, 0),
+      *ConvexShape::hull_of_spheres(std::vector<Sphere>{{{0, 0, 0}, 0.8}, {{1, 0.2, 0}, 0.4}, {{0, 1, 0.5}, 0.1}}),
+      *ConvexShape::sphere(0.8),
+      *ConvexShape::capsule(0.4, 0.9, 2),
+      *ConvexShape(rock).with_margin(0.1),
+      *ConvexShape::cylinder(1, 0.1, 2)->with_margin(0.3),
+      ConvexShape(rock)};
   int overlapping = 0;
   for (const ConvexShape& a : shapes) {
     for (const ConvexShape& b : shapes) {

@@ -27,17 +27,25 @@ ConvexShape random_shape(int kind, scenes::Random& random) {
       return *ConvexShape::sphere(size());
     case 5:
       return *ConvexShape::cylinder(size(), size(), 2)->with_margin(0.1);
+    case 6: {
+      std::vector<Sphere> spheres(static_cast<std::size_t>(random.integer(2, 6)));
+      for (Sphere& s : spheres) s = {size() * random.direction(), random.uniform(0, 0.8)};
+      return *ConvexShape::hull_of_spheres(spheres);
+    }
     default:
       return ConvexShape(*ConvexPolytope::box(Vec3(size(), size(), size())));
   }
 }
+
+/// Kinds that are searched for whatever the other body is.
+constexpr int kSearched[] = {0, 1, 2, 6};
 
 TEST(Smooth, BracketsAgreeWithTheSweep) {
   Scratch scratch;
   scenes::Random random(23);
   int overlapping = 0;
   int separated = 0;
-  for (int kind_a = 0; kind_a < 7; ++kind_a) {
+  for (int kind_a = 0; kind_a < 8; ++kind_a) {
     for (int kind_b = 0; kind_b <= kind_a; ++kind_b) {
       for (int k = 0; k < 4; ++k) {
         const ConvexShape a = random_shape(kind_a, random);
@@ -103,7 +111,7 @@ TEST(Smooth, WitnessesLieOnTheirBodies) {
   int judged = 0;
   double worst = 0;
   for (int i = 0; i < 1500; ++i) {
-    const ConvexShape a = random_shape(i % 3, random), b = random_shape(random.integer(0, 6), random);
+    const ConvexShape a = random_shape(kSearched[i % 4], random), b = random_shape(random.integer(0, 7), random);
     const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
     const PosedShape posed_b{
         &b, *Pose::from_quaternion(random.quaternion(), random.uniform(0.1, 1.2) * random.direction())};
@@ -124,7 +132,7 @@ TEST(Smooth, ContactBracketsHoldTheDepth) {
   scenes::Random random(77);
   int judged = 0;
   for (int i = 0; i < 6000; ++i) {
-    const ConvexShape a = random_shape(i % 3, random), b = random_shape(random.integer(0, 6), random);
+    const ConvexShape a = random_shape(kSearched[i % 4], random), b = random_shape(random.integer(0, 7), random);
     const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
     const PosedShape posed_b{
         &b, *Pose::from_quaternion(random.quaternion(), random.uniform(0.1, 1.2) * random.direction())};
@@ -146,7 +154,7 @@ TEST(Smooth, NearContactIsAnsweredInBoundedWork) {
   Scratch scratch;
   int asked = 0;
   std::int64_t most = 0;
-  for (int kind_a = 0; kind_a < 7; ++kind_a) {
+  for (int kind_a = 0; kind_a < 8; ++kind_a) {
     for (int kind_b = 0; kind_b <= kind_a; ++kind_b) {
       for (int k = 0; k < 15; ++k) {
         const std::uint64_t seed = 1000 * kind_a + 100 * kind_b + k + 7;

@@ -31,7 +31,7 @@ enum class BulletContacts {
 /// | two btBoxShapes | sharp, full half extents, as Bullet's own box/box | rounded: the margin lies inside |
 /// | btBoxShape and anything else; cylinders | rounded by the margin, which lies inside | the same |
 /// | hulls, point clouds, triangles, cones | rounded by the margin, which lies outside | the same |
-/// | spheres, capsules | exact; the margin is the radius | the same |
+/// | spheres, capsules, multispheres | exact; the margin is the (least) radius | the same |
 ///
 /// Meshes, heightfields and compounds are one body each (one_shot; `BulletSolverSettings::unions_as_one`): a contact
 /// with an edge or face that other triangles or children cover, as far as the bodies move in a step, is dropped, or

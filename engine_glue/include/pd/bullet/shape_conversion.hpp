@@ -14,12 +14,12 @@
 /// | cylinder | cylinder of the half extents less the margin | inside |
 /// | cone | cone | outside |
 /// | sphere, capsule | point, segment | the radius |
-/// | multisphere, all radii equal, uniform scaling | hull of the centres | the scaled radius |
+/// | multisphere, scaled uniformly | hull of the spheres, each thinner by the least radius | the least scaled radius |
 /// | uniform scaling, 2D convex | the child's, scaled | the child's, scaled |
 /// | Minkowski sum (Bullet's is A - B) of polyhedral cores | hull of all vertex differences | sum of both |
 ///
-/// Refused as `ErrorCode::unsupported`, with the reason in the message: a multisphere of unequal radii or non-uniform
-/// scaling, a Minkowski sum with a smooth core or more than 65,536 vertex pairs, a cylinder whose margin eats its whole
+/// Refused as `ErrorCode::unsupported`, with the reason in the message: a multisphere of non-uniform scaling, a
+/// Minkowski sum with a smooth core or more than 65,536 vertex pairs, a cylinder whose margin eats its whole
 /// half height, and convex types of the host's own that are not polyhedral.
 #pragma once
 

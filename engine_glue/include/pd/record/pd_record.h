@@ -181,6 +181,16 @@ static inline void pd_record_convex(pd_record* r, const char* id, const double* 
   pd_record_text(r, "]");
   pd_record_shape_end(r, margin);
 }
+/* The convex hull of spheres, 4 numbers each: centre and radius >= 0. */
+static inline void pd_record_spheres(pd_record* r, const char* id, const double* spheres, size_t num_spheres,
+                                     double margin) {
+  size_t i;
+  pd_record_shape_begin(r, id, "sphere_hull");
+  pd_record_text(r, ",\"spheres\":[");
+  for (i = 0; i < num_spheres; ++i) pd_record_numbers(r, i == 0 ? "" : ",", spheres + 4 * i, 4);
+  pd_record_text(r, "]");
+  pd_record_shape_end(r, margin);
+}
 /* The half-space of the points x with normal.x <= offset. */
 static inline void pd_record_plane(pd_record* r, const char* id, const double normal[3], double offset) {
   pd_record_shape_begin(r, id, "plane");

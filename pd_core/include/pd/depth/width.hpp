@@ -16,7 +16,8 @@ class Scratch;
 
 struct Width {
   double width = 0;
-  double lower = 0;  ///< lower <= exact width <= upper; neighbouring doubles (or equal) but for Method::grid
+  double lower =
+      0;  ///< lower <= exact width <= upper; neighbouring doubles (or equal) but for Method::grid and hulls of spheres
   double upper = 0;
   Vec3 normal = Vec3::UnitX();  ///< unit normal of the two planes, in the common frame
   Statistics statistics;
@@ -26,7 +27,8 @@ struct Width {
 ///
 /// Polytopes, swept or not: exact on the stored numbers and pose. Ellipsoid, cylinder and cone: from their formula,
 /// posed by the nearest rotation; for a cone of height H and base radius r, the lesser of H and 2 r H / sqrt(H^2 +
-/// r^2).
+/// r^2). A hull of spheres of unequal radii has no formula: upper <= (1 + delta) lower by `penetration_depth` (delta 0:
+/// 1e-6).
 ///
 /// @param method  automatic or overlay (every facet of P + (-P): O(m + K)), expansion, or grid: upper <= (1 + delta)
 /// lower for polytopes by rays along directions that cover half the sphere, P + (-P) being symmetric ([A]

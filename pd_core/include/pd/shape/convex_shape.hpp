@@ -7,6 +7,7 @@
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <variant>
 
@@ -14,11 +15,12 @@
 #include "pd/numeric/vector.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
+#include "pd/shape/sphere_hull.hpp"
 
 namespace pd {
 
-/// Radii and half heights of ellipsoids, cylinders and cones lie between these: queries about them bring a pair to size
-/// 1 by a power of two, and give the same bits times that power anywhere in between.
+/// Sizes of ellipsoids, cylinders, cones and hulls of spheres lie between these: queries about them bring a pair to
+/// size 1 by a power of two, and give the same bits times that power anywhere in between.
 inline constexpr double kMinCurvedSize = 0x1p-900;
 inline constexpr double kMaxCurvedSize = 0x1p900;
 
@@ -45,7 +47,7 @@ struct Cone {
 /// type, cheap to copy.
 class ConvexShape {
  public:
-  using Core = std::variant<ConvexPolytope, Ellipsoid, Cylinder, Cone>;
+  using Core = std::variant<ConvexPolytope, Ellipsoid, Cylinder, Cone, SphereHull>;
 
   ConvexShape(ConvexPolytope polytope)  // NOLINT(google-explicit-constructor): a polytope is a shape
       : core_(std::move(polytope)) {}
@@ -58,6 +60,14 @@ class ConvexShape {
   static Expected<ConvexShape> capsule(double radius, double half_height, int axis);
   static Expected<ConvexShape> cylinder(double radius, double half_height, int axis);
   static Expected<ConvexShape> cone(double radius, double half_height, int axis);
+
+  /// The convex hull of spheres, in any order. Repeated ones, and what lies inside the hull of the others, change
+  /// nothing. The least radius becomes the margin, exactly; the rest of each radius is rounded to a double. Equal radii
+  /// give the polytope of the centres with that margin.
+  ///
+  /// Refused as above, a radius below 0 as `bad_value`, no spheres as `too_few_points`; `where` is "spheres[i]".
+  /// Time: seldom more than O(k) a sphere, at most O(k + 2^18).
+  static Expected<ConvexShape> hull_of_spheres(std::span<const Sphere> spheres);
 
   /// The same core with `margin` added to the present one; margin >= 0 ("margin").
   [[nodiscard]] Expected<ConvexShape> with_margin(double margin) const;

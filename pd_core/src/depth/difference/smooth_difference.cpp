@@ -1,5 +1,6 @@
 #include "depth/difference/smooth_difference.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shape/core_radius.hpp"
@@ -32,6 +33,7 @@ struct SupportOf {
     apex[c.axis] = c.half_height;
     return base.dot(direction) > apex.dot(direction) ? base : apex;
   }
+  Vec3 operator()(const SphereHull& hull) const { return hull.support(direction); }
 
  private:
   /// The point of the circle about the axis that reaches farthest; the axis itself where the direction runs along it.
@@ -43,7 +45,22 @@ struct SupportOf {
   }
 };
 
+/// A point inside the core.
+struct CentreOf {
+  Vec3 operator()(const ConvexPolytope& p) const { return p.centre(); }
+  Vec3 operator()(const SphereHull& hull) const { return largest_sphere(hull).centre; }
+  template <class Round>
+  Vec3 operator()(const Round& /*about its origin*/) const {
+    return Vec3::Zero();
+  }
+};
+
 }  // namespace
+
+const Sphere& largest_sphere(const SphereHull& hull) {
+  const auto thinner = [](const Sphere& x, const Sphere& y) { return x.radius < y.radius; };
+  return *std::max_element(hull.spheres().begin(), hull.spheres().end(), thinner);
+}
 
 Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction) {
   return std::visit(SupportOf{direction}, core);
@@ -59,9 +76,8 @@ double rolling_radius(const ConvexShape::Core& core) {
 SmoothDifference::Body SmoothDifference::body(const PosedShape& posed, Rolling rolling) {
   const ConvexShape::Core& core = posed.shape->core();
   const ConvexPolytope* polytope = posed.shape->polytope();
-  return {&core, polytope ? posed.pose.rotation() : posed.pose.nearest_rotation(),
-          polytope ? polytope->centre() : Vec3(Vec3::Zero()), core_radius(core),
-          rolling == Rolling::taken_out ? rolling_radius(core) : 0.0};
+  return {&core, polytope ? posed.pose.rotation() : posed.pose.nearest_rotation(), std::visit(CentreOf{}, core),
+          core_radius(core), rolling == Rolling::taken_out ? rolling_radius(core) : 0.0};
 }
 
 SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points,

@@ -21,6 +21,9 @@ struct PointPair {
 /// point).
 [[nodiscard]] Vec3 support_point(const ConvexShape::Core& core, const Vec3& direction);
 
+/// The first of those with the largest radius.
+[[nodiscard]] const Sphere& largest_sphere(const SphereHull& hull);
+
 /// A radius of a ball that rolls freely inside a core, rounded down: r_min^2 / r_max of an ellipsoid, its least radius
 /// of curvature; 0 of every other core. By Blaschke's rolling theorem h(n) less that radius is the support function of
 /// a convex body for unit n: the core is that body swept by the ball (W. Blaschke, Kreis und Kugel, 1916, section 24).

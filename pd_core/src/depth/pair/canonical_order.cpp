@@ -30,6 +30,15 @@ int compare(const ConvexPolytope& x, const ConvexPolytope& y) {
   return 0;
 }
 int compare(const Ellipsoid& x, const Ellipsoid& y) { return compare(x.radii, y.radii); }
+int compare(const SphereHull& x, const SphereHull& y) {
+  const auto p = x.spheres(), q = y.spheres();
+  if (p.size() != q.size()) return p.size() < q.size() ? -1 : 1;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (const int c = compare(p[i].centre, q[i].centre)) return c;
+    if (const int c = compare(p[i].radius, q[i].radius)) return c;
+  }
+  return 0;
+}
 template <class Round>
 int compare(const Round& x, const Round& y) {
   if (x.axis != y.axis) return x.axis < y.axis ? -1 : 1;

@@ -29,6 +29,11 @@ struct InscribedBall {
     ball.centre[c.axis] = ball.radius - c.half_height;
     return ball;
   }
+  /// The largest of the spheres, which need not be the largest ball.
+  Ball operator()(const SphereHull& hull) const {
+    const Sphere& sphere = largest_sphere(hull);
+    return {sphere.centre, sphere.radius};
+  }
 };
 
 int axis_of_revolution(const ConvexShape::Core& core) {
@@ -98,6 +103,7 @@ struct BallInCore {
   Vec3 point;
 
   std::optional<PointInCore> operator()(const ConvexPolytope& /*polytope*/) const { return std::nullopt; }
+  std::optional<PointInCore> operator()(const SphereHull& /*no closed form*/) const { return std::nullopt; }
   std::optional<PointInCore> operator()(const Ellipsoid& e) const {
     if (!(point.cwiseQuotient(e.radii).squaredNorm() < 1)) return std::nullopt;
     const PointInEllipsoid found = point_in_ellipsoid(e.radii, point);

@@ -74,10 +74,24 @@ double extent_along(const std::vector<PlanePoint>& hull, const PlanePoint& direc
   return most;
 }
 
+const Sphere& farthest_sphere(const SphereHull& hull, const Vec3& unit) {
+  const auto height = [&](const Sphere& s) { return s.centre.dot(unit) + s.radius; };
+  return *std::max_element(hull.spheres().begin(), hull.spheres().end(),
+                           [&](const Sphere& x, const Sphere& y) { return height(x) < height(y); });
+}
+
+/// The angle by which a unit vector must turn for `other` to reach as far as `first`, for small ones.
+double fall_off(const Sphere& first, const Sphere& other, const Vec3& unit) {
+  const Vec3 apart = first.centre - other.centre;
+  const double along = apart.dot(unit);
+  return (along + first.radius - other.radius) / (apart - along * unit).norm();
+}
+
 /// What a curved core shows of its curvature in its own frame.
 struct LocalCurvature {
   Vec3 outward;
   Vec3 point;
+  int flats;
 
   Mat3 operator()(const Ellipsoid& e) const {
     const Vec3 squares = e.radii.cwiseProduct(e.radii);
@@ -88,6 +102,23 @@ struct LocalCurvature {
   Mat3 operator()(const Cylinder& c) const { return round(c.axis); }
   Mat3 operator()(const Cone& c) const { return round(c.axis); }
   Mat3 operator()(const ConvexPolytope&) const { return Mat3::Zero(); }
+  /// On a line between two spheres the ball that touches there has a radius between theirs.
+  Mat3 operator()(const SphereHull& hull) const {
+    const Vec3 unit = outward.normalized();
+    const Sphere& first = farthest_sphere(hull, unit);
+    if (flats == 0) return first.radius * (Mat3::Identity() - unit * unit.transpose());
+    const Sphere* second = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Sphere& s : hull.spheres()) {
+      if (&s == &first || !(fall_off(first, s, unit) < least)) continue;
+      least = fall_off(first, s, unit);
+      second = &s;
+    }
+    const Vec3 line = second->centre + second->radius * unit - first.centre - first.radius * unit;
+    const double share = (point - first.centre - first.radius * unit).dot(line) / line.squaredNorm();
+    const Vec3 tangent = unit.cross(line).normalized();
+    return (first.radius + share * (second->radius - first.radius)) * tangent * tangent.transpose();
+  }
 
   /// A circle of the point's own distance from the axis, seen in the outward direction.
   [[nodiscard]] Mat3 round(int axis) const {
@@ -114,6 +145,19 @@ struct StraightDimensions {
     return std::abs(along) <= lean * length(c.radius, 2 * c.half_height) ? 1 : 0;
   }
   int operator()(const ConvexPolytope&) const { return 2; }
+  int operator()(const SphereHull& hull) const {
+    const Sphere& first = farthest_sphere(hull, outward);
+    int lines = 0;
+    Vec3 line = Vec3::Zero();
+    for (const Sphere& s : hull.spheres()) {
+      if (&s == &first || !(fall_off(first, s, outward) <= lean)) continue;
+      const Vec3 other = s.centre + s.radius * outward - first.centre - first.radius * outward;
+      const bool same_line = lines > 0 && other.cross(line).norm() <= lean * other.norm() * line.norm();
+      if (!same_line) ++lines;
+      line = other;
+    }
+    return std::min(lines, 2);
+  }
 
   [[nodiscard]] double radial(int axis) const {
     Vec3 flat = outward;
@@ -166,8 +210,8 @@ void PosedCore::near_face(const Vec3& outward, double height, double lean, std::
   }
 }
 
-Mat3 PosedCore::curvature(const Vec3& outward, const Vec3& point) const {
-  const LocalCurvature local{rotation_.transpose() * outward, rotation_.transpose() * (point - offset_)};
+Mat3 PosedCore::curvature(const Vec3& outward, const Vec3& point, int flats) const {
+  const LocalCurvature local{rotation_.transpose() * outward, rotation_.transpose() * (point - offset_), flats};
   return rotation_ * std::visit(local, *core_) * rotation_.transpose();
 }
 

@@ -20,10 +20,11 @@ class PosedCore {
   /// a polytope's vertices there; of a curved core the supports in 32 directions that lean from `outward` by `lean`.
   void near_face(const Vec3& outward, double height, double lean, std::vector<Vec3>& points) const;
   /// The second derivative of a curved core's support function at `outward`, across the flat directions that the core
-  /// has at its point `point` there; 0 for polytopes. Requires that the face there is no disc.
-  [[nodiscard]] Mat3 curvature(const Vec3& outward, const Vec3& point) const;
-  /// Of a curved core's face across a direction within `lean` of `outward`: 2 a disc, 1 a line from rim to rim or apex,
-  /// 0 a point.
+  /// has at its point `point` there; 0 for polytopes. Requires that the face there is no disc or polygon of a curved
+  /// core. @param flats  how many of those directions there are
+  [[nodiscard]] Mat3 curvature(const Vec3& outward, const Vec3& point, int flats) const;
+  /// Of a curved core's face across a direction within `lean` of `outward`: 2 a disc or polygon, 1 a line from rim to
+  /// rim or apex or between two spheres, 0 a point.
   [[nodiscard]] int straight_dimensions(const Vec3& outward, double lean) const;
   [[nodiscard]] bool curved() const { return polytope_ == nullptr; }
 

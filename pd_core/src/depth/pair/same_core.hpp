@@ -11,6 +11,7 @@ namespace pd::detail {
   if (x.core().index() != y.core().index()) return false;
   if (x.polytope()) return x.polytope()->same_storage(*y.polytope());
   if (const auto* e = std::get_if<Ellipsoid>(&x.core())) return e->radii == std::get<Ellipsoid>(y.core()).radii;
+  if (const auto* spheres = std::get_if<SphereHull>(&x.core())) return *spheres == std::get<SphereHull>(y.core());
   const auto same = [](const auto& p, const auto& q) {
     return p.radius == q.radius && p.half_height == q.half_height && p.axis == q.axis;
   };

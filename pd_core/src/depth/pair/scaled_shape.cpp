@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "shape/core_radius.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -16,6 +18,7 @@ struct Size {
   double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
   double operator()(const Cylinder& c) const { return std::max(c.radius, c.half_height); }
   double operator()(const Cone& c) const { return std::max(c.radius, c.half_height); }
+  double operator()(const SphereHull& hull) const { return core_radius(hull); }
 };
 
 double curved(double size, int exponent) { return std::max(std::ldexp(size, exponent), kMinCurvedSize); }
@@ -40,6 +43,15 @@ struct Scaled {
   }
   ConvexShape operator()(const Cone& c) const {
     return *ConvexShape::cone(curved(c.radius, exponent), curved(c.half_height, exponent), c.axis);
+  }
+  ConvexShape operator()(const SphereHull& hull) const {
+    std::vector<Sphere> spheres;
+    const auto raised = [&](double x) { return std::abs(x) < kMinCurvedSize ? 0.0 : x; };
+    for (const Sphere& s : hull.spheres()) {
+      const Vec3 centre = times_power(s.centre, exponent);
+      spheres.push_back({centre.unaryExpr(raised), raised(std::ldexp(s.radius, exponent))});
+    }
+    return *ConvexShape::hull_of_spheres(spheres);
   }
 };
 

@@ -75,6 +75,7 @@ using MeshRef = std::shared_ptr<const Mesh>;
 [[nodiscard]] MeshRef cylinder_mesh(double radius, double half_height, int axis);
 /// Base at -half_height, apex at +half_height.
 [[nodiscard]] MeshRef cone_mesh(double radius, double half_height, int axis);
+[[nodiscard]] MeshRef sphere_hull_mesh(const SphereHull& hull);
 
 /// Any body of the library: its core, swept by its margin.
 [[nodiscard]] MeshRef shape_mesh(const ConvexShape& shape);
