@@ -78,7 +78,7 @@ TEST(Refusals, Shapes) {
       {with_a(R"({"type":"sphere_hull","spheres":[]})"), "too_few_points", "a.spheres"},
       {with_a(R"({"type":"sphere_hull","spheres":[[0,0,0,1],[1,0,0,-1]]})"), "bad_value", "a.spheres[1]"},
       {with_a(R"({"type":"sphere_hull","spheres":[[0,0,0]]})"), "bad_value", "a.spheres[0]"},
-      {with_a(R"({"type":"sphere_hull","spheres":[[0,0,"inf",1],[1,0,0,2]]})"), "non_finite", "a.spheres[0]"},
+      {with_a(R"({"type":"sphere_hull","spheres":[[0,0,"inf",1],[1,0,0,2]]})"), "non_finite", "a.spheres[0][2]"},
       {with_a(R"({"type":"box","half_extents":[1,1,1],"margin":-1})"), "bad_value", "a.margin"},
       {with_a(R"({"type":"box","half_extents":[1,1,1],"margin":"inf"})"), "non_finite", "a.margin"},
       {with_a(R"({"type":"convex","vertices":[]})"), "too_few_points", "a.vertices"},

@@ -38,6 +38,11 @@ double size_of(const ConvexShape& shape) {
     double operator()(const Ellipsoid& e) const { return e.radii.maxCoeff(); }
     double operator()(const Cylinder& c) const { return std::max(c.radius, c.half_height); }
     double operator()(const Cone& c) const { return std::max(c.radius, c.half_height); }
+    double operator()(const SphereHull& hull) const {
+      double most = 0;
+      for (const Sphere& s : hull.spheres()) most = std::max(most, s.centre.cwiseAbs().maxCoeff() + s.radius);
+      return most;
+    }
   } core;
   return std::max(std::visit(core, shape.core()), shape.margin());
 }

@@ -145,6 +145,9 @@ TEST(HullOfSpheres, RefusalsNameTheSphere) {
   EXPECT_EQ(refusal({{0, kNaN, 0}, 1}).code, ErrorCode::non_finite);
   EXPECT_EQ(refusal({{0, 0, 0}, HUGE_VAL}).code, ErrorCode::non_finite);
   EXPECT_EQ(refusal({{0, 1e290, 0}, 1}).code, ErrorCode::out_of_range);
+  const std::vector<Sphere> far{{{0, 0, 0}, 1}, {{1e301, 0, 0}, 1}};  // of equal radii, too
+  EXPECT_EQ(ConvexShape::hull_of_spheres(far).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(ConvexShape::hull_of_spheres(far).error().where, "spheres[1]");
 }
 
 TEST(ErrorCodes, AreTheProtocolsWords) {

@@ -90,7 +90,9 @@ Expected<ConvexShape> ConvexShape::hull_of_spheres(std::span<const Sphere> spher
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const std::string where = detail::indexed("spheres", static_cast<long long>(i));
     if (auto refused = refuse_size(spheres[i].radius, where, true)) return *std::move(refused);
+    const double farthest = spheres[i].centre.cwiseAbs().maxCoeff();
     if (!spheres[i].centre.allFinite()) return Error{ErrorCode::non_finite, "a centre must be finite", where};
+    if (auto refused = refuse_size(farthest, where, true)) return *std::move(refused);
   }
   const auto thinner = [](const Sphere& x, const Sphere& y) { return x.radius < y.radius; };
   std::vector<Sphere> outer(spheres.begin(), spheres.end());
