@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dimension/body_families.hpp"
+#include "dimension/macbeath_cover.hpp"
 
 namespace pd::dimension::test {
 namespace {
@@ -65,6 +66,50 @@ TEST(MacbeathHierarchy, NodesAndVisitsGrowAsPromised) {
   const double layers = double(fine.size.depth) / double(coarse.size.depth);
   EXPECT_LE(double(fine.counters.nodes), 1.1 * layers * layers * double(coarse.counters.nodes));
   EXPECT_LE(fine.size.max_out_degree, 40);
+}
+
+TEST(MacbeathHierarchy, OutDegreesKeepToAPacking) {
+  // Of these 467 and 1042 were linked when boxes met shadows by bounds alone, and they grew with 1 / epsilon.
+  const Measured coarse = check<4>(Family::sphere, 3000, 0.2, 1000);
+  const Measured fine = check<4>(Family::sphere, 3000, 0.05, 1000);
+  EXPECT_LE(coarse.size.max_out_degree, 70);
+  EXPECT_LE(fine.size.max_out_degree, 70);
+  EXPECT_LE(check<5>(Family::sphere, 2000, 0.3, 500).size.max_out_degree, 180);
+  // Without a scan: ten times the nodes, not four times the visits.
+  EXPECT_GE(fine.size.nodes, 8 * coarse.size.nodes);
+  EXPECT_LE(fine.counters.nodes, 4 * coarse.counters.nodes);
+}
+
+/// Random ellipsoids and boxes on the faces of the cube: which of them meet, a grid over the box says.
+TEST(MacbeathCover, BoxesMeetShadowsWhereAGridSaysSo) {
+  BodySource<3> source(4);
+  int met = 0, missed_by_grid = 0;
+  constexpr int kCases = 4000, kGrid = 60;
+  for (int k = 0; k < kCases; ++k) {
+    const Matrix<3> turn = source.rotation();
+    Vector<3> axes;
+    for (int i = 0; i < 3; ++i) axes[i] = std::pow(10.0, source.uniform(-1, 1.5));
+    const Matrix<3> ellipsoid = turn * axes.cwiseProduct(axes).asDiagonal() * turn.transpose();
+    const auto cone = detail::MacbeathRegion<3>{0, source.direction(), ellipsoid}.shadow(0.9);
+    const detail::DirectionBox<3> face = detail::cube_face<3>(k % 6);
+    detail::DirectionBox<3> box = face;
+    for (int depth = k % 5; depth > 0; --depth) box = box.child(static_cast<int>(source.uniform(0, 4)));
+    bool seen = false;
+    for (int i = 0; i <= kGrid && !seen; ++i) {
+      for (int j = 0; j <= kGrid && !seen; ++j) {
+        Vector<3> v = box.low;
+        v[(box.axis + 1) % 3] += box.side * i / kGrid;
+        v[(box.axis + 2) % 3] += box.side * j / kGrid;
+        seen = cone.contains(v);
+      }
+    }
+    const bool said = detail::ShadowSection<3>(cone, face).meets(box);
+    EXPECT_TRUE(said || !seen) << k;
+    met += seen ? 1 : 0;
+    missed_by_grid += said && !seen ? 1 : 0;
+  }
+  EXPECT_GE(met, kCases / 10);
+  EXPECT_LE(missed_by_grid, kCases / 100);
 }
 
 TEST(MacbeathHierarchy, LeavesAreAsLargeAsWhatTheirPointsAnswer) {

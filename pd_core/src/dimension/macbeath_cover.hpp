@@ -10,11 +10,12 @@
 namespace pd::dimension::detail {
 
 /// Scales of a region's ellipsoid: a new region enters outside all core shadows; cover shadows hold cells and queries.
-/// A cell about a core direction shrinks into the cover shadow, so subdivision ends.
-inline constexpr double kCoreScale = 0.45;
+/// A cell about a core direction shrinks into the cover shadow, so subdivision ends. The nearer the two, the more cells
+/// and the fewer nodes: cores of half the cover's scale make 2.2 times as many in R^4, 2.6 times in R^5.
+inline constexpr double kCoreScale = 0.8;
 inline constexpr double kCoverScale = 0.9;
 /// The same of a leaf's region, which has its size already.
-inline constexpr double kLeafCoreScale = 0.5;
+inline constexpr double kLeafCoreScale = 0.9;
 inline constexpr double kLeafCoverScale = 1;
 
 /// A box on a face of the cube [-1, 1]^D: v[axis] = sign, the other coordinates in low .. low + side.
@@ -61,6 +62,43 @@ template <int D>
 bool covers(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
   for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
     if (!cone.contains(box.corner(k))) return false;  // the cone is convex: corners decide
+  }
+  return true;
+}
+
+/// Whether a direction of the box lies in the cone, which is not everything; beyond rounding, false only where none
+/// does. The cone is {v : g(v) <= 0}, g(v) = sqrt(v' square v) - <axis, v>, and g convex: it is descended coordinate by
+/// coordinate from the box's middle until it is negative, or until its tangent plane is positive all over the box.
+template <int D>
+bool meets(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
+  const Matrix<D> square = cone.axis * cone.axis.transpose() - cone.form;
+  Vector<D> v = box.middle();
+  Vector<D> image = square * v;
+  constexpr int kSweeps = 8;
+  for (int sweep = 0; sweep <= kSweeps; ++sweep) {
+    const double root = std::sqrt(std::max(v.dot(image), 0.0));
+    double tangent = root - cone.axis.dot(v);
+    if (!(tangent > 0)) return true;
+    for (int i = 0; i < D; ++i) {
+      if (i == box.axis) continue;
+      const double slope = image[i] / root - cone.axis[i];
+      tangent += slope * ((slope > 0 ? box.low[i] : box.low[i] + box.side) - v[i]);
+    }
+    constexpr double kRoom = 1e-9;
+    if (tangent > kRoom * root) return false;
+    for (int i = 0; i < D; ++i) {
+      if (i == box.axis) continue;
+      // Along the coordinate g is sqrt(a u^2 + rest) - l u and a constant, u measured from the root's least place.
+      const double a = square(i, i), l = cone.axis[i];
+      const double rest = std::max(v.dot(image) - image[i] * image[i] / a, 0.0);
+      double to = l > 0 ? box.low[i] + box.side : box.low[i];
+      if (a > l * l) {
+        to = std::clamp(v[i] - image[i] / a + l * std::sqrt(rest / (a * (a - l * l))), box.low[i],
+                        box.low[i] + box.side);
+      }
+      image += square.col(i) * (to - v[i]);
+      v[i] = to;
+    }
   }
   return true;
 }
@@ -123,10 +161,16 @@ class ShadowSection {
     }
   }
 
-  /// False only where no direction of the box, on this face, is in the cone.
+  /// Whether a direction of the box, on this face, is in the cone; beyond rounding, false only where none is. Bounds
+  /// come first: alone they let 10 times more children through in R^4 than meet a parent, the more the finer the layer.
+  [[nodiscard]] bool meets(const DirectionBox<D>& box) const {
+    return cone_.everything || (may_meet(box) && detail::meets(cone_, box));
+  }
+
+ private:
   [[nodiscard]] bool may_meet(const DirectionBox<D>& box) const {
     if (kind_ == Kind::empty) return false;
-    if (kind_ == Kind::unbounded) return cone_.everything || in_ball(box);
+    if (kind_ == Kind::unbounded) return in_ball(box);
     const double half = 0.5 * box.side;
     Vector<D - 1> away;
     for (int i = 0, row = 0; i < D; ++i) {
@@ -138,7 +182,6 @@ class ShadowSection {
     return std::sqrt(away.dot(form_ * away)) <= 1 + half * width_;
   }
 
- private:
   /// Bounds over the ball about the box's middle: (m + r)' form (m + r) <= m' form m + 2 |r| |form m| + |r|^2 |axis|^2.
   [[nodiscard]] bool in_ball(const DirectionBox<D>& box) const {
     const Vector<D> middle = box.middle();

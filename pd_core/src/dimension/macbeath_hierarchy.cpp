@@ -144,7 +144,7 @@ class HierarchyBuilder {
     }
     std::vector<std::int32_t> near;
     const auto consider = [&](std::int32_t id) {
-      if (sections_[static_cast<std::size_t>(id - first_)].may_meet(box)) near.push_back(id);
+      if (sections_[static_cast<std::size_t>(id - first_)].meets(box)) near.push_back(id);
     };
     for (const std::int32_t id : outer) consider(id);
     for (std::size_t k = seen; k < cores_.size(); ++k) consider(first_ + static_cast<std::int32_t>(k));
@@ -223,7 +223,7 @@ class HierarchyBuilder {
   /// @param inside  the box lies in the parent's shadow, and so do its parts: nothing is left to ask
   void collect(std::size_t cell, const DirectionBox<D>& box, const ShadowSection<D>& shadow, std::int32_t parent,
                bool inside, std::vector<std::int32_t>& mark) {
-    if (!inside && !shadow.may_meet(box)) return;
+    if (!inside && !shadow.meets(box)) return;
     const std::int64_t content = cells_[cell];
     if (content < 0) {
       const auto id = static_cast<std::int32_t>(-1 - content);

@@ -50,6 +50,9 @@ std::int32_t PolarBody<D>::extreme(const Vector<D>& v) const {
 template <int D>
 template <class Slab>
 Matrix<D> PolarBody<D>::ellipsoid_in(const Slab& slab, std::span<const std::int32_t> candidates) const {
+  std::vector<Vector<D>> slabs;
+  slabs.reserve(candidates.size());
+  for (const std::int32_t p : candidates) slabs.push_back(slab(p));
   // The start: D points, each the farthest in a direction orthogonal to those before (Kumar and Yildirim).
   Matrix<D> moment = Matrix<D>::Zero();
   Matrix<D> basis = Matrix<D>::Zero();
@@ -61,8 +64,7 @@ Matrix<D> PolarBody<D>::ellipsoid_in(const Slab& slab, std::span<const std::int3
     }
     Vector<D> far = Vector<D>::Zero();
     double most = -1;
-    for (const std::int32_t p : candidates) {
-      const Vector<D> a = slab(p);
+    for (const Vector<D>& a : slabs) {
       const double at = std::abs(a.dot(direction));
       if (at > most) {
         most = at;
@@ -76,21 +78,29 @@ Matrix<D> PolarBody<D>::ellipsoid_in(const Slab& slab, std::span<const std::int3
   }
   Matrix<D> inverse = inverse_of<D>(moment);
   constexpr int kSteps = 60;
+  std::vector<double> values(slabs.size());
   for (int step = 0; step < kSteps; ++step) {
     double most = 0;
-    Vector<D> far = Vector<D>::Zero();
-    for (const std::int32_t p : candidates) {
-      const Vector<D> a = slab(p);
-      const double at = square<D>(inverse, a);
-      if (at > most) {
-        most = at;
-        far = a;
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+      values[i] = square<D>(inverse, slabs[i]);
+      if (values[i] > most) {
+        most = values[i];
+        far = i;
       }
     }
     if (most <= kRoundness * D) break;
     const double share = (most / D - 1) / (most - 1);
-    moment = (1 - share) * moment + share * far * far.transpose();
+    moment = (1 - share) * moment + share * slabs[far] * slabs[far].transpose();
     inverse = inverse_of<D>(moment);
+    // What carries no weight at the optimum is left out (Harman and Pronzato 2007).
+    const double gap = most / D - 1;
+    const double least = D * (1 + 0.5 * (gap - std::sqrt(gap * (4 + gap - 4.0 / D))));
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+      if (values[i] >= least) slabs[kept++] = slabs[i];
+    }
+    slabs.resize(kept);
   }
   double most = 0;  // whatever the weights: E = {z : z' moment z <= 1 / most} lies in every slab
   for (std::size_t p = 0; p < points_.size(); ++p) {
