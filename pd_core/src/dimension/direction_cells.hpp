@@ -34,17 +34,19 @@ class DirectionCells {
   [[nodiscard]] std::int64_t cell(const Vector<D>& direction) const { return place(direction).cell; }
 
   [[nodiscard]] Place place(const Vector<D>& direction) const {
+    // Without branches on the axis, which cannot be foretold.
     int axis = 0;
+    double longest = std::abs(direction[0]);
     for (int k = 1; k < D; ++k) {
-      if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
+      axis += (k - axis) & -static_cast<int>(std::abs(direction[k]) > longest);
+      longest = std::max(longest, std::abs(direction[k]));
     }
     const double half = 0.5 * static_cast<double>(along_);
-    const double scale = half / std::abs(direction[axis]);
+    const double scale = half / longest;
     std::int64_t cell = 2 * axis + (direction[axis] > 0 ? 1 : 0);
-    for (int k = 0; k < D; ++k) {
-      if (k == axis) continue;
+    for (int k = 0; k + 1 < D; ++k) {
       // A direction that is zero or not a number has no place; any will do.
-      const double at = direction[k] * scale + half;
+      const double at = direction[k + static_cast<int>(k >= axis)] * scale + half;
       const std::int64_t i = at >= 0 ? std::min(static_cast<std::int64_t>(at), along_ - 1) : 0;
       cell = cell * along_ + i;
     }

@@ -86,10 +86,15 @@ std::int32_t RadialHull<D>::locate(const Vector<D>& p, std::int32_t start, std::
   for (std::int64_t steps = 0; steps < 200 + alive_; ++steps) {
     ++visited;
     const Vector<D> lambda = facets_[f].inverse * p;
-    Eigen::Index k;
-    const double least = lambda.minCoeff(&k);
+    // The place of the least, by conditional moves: which it is cannot be foretold.
+    double least = lambda[0];
+    std::size_t k = 0;
+    for (std::size_t j = 1; j < D; ++j) {
+      k += (j - k) & (std::size_t{0} - static_cast<std::size_t>(lambda[j] < least));
+      least = std::min(lambda[j], least);
+    }
     if (least >= kInside) return f;
-    const std::int32_t next = facets_[f].neighbour[static_cast<std::size_t>(k)];
+    const std::int32_t next = facets_[f].neighbour[k];
     // On a ridge within rounding, each side sends the point to the other.
     if (next == previous && steps > 0) return least > previous_least ? f : previous;
     previous = f;
