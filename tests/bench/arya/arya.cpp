@@ -24,10 +24,9 @@ struct Chapter {
   void (*measure)(const AryaSettings&, ClaimTable&);
 };
 constexpr Chapter kChapters[] = {
-    {"sizes", measure_arya_sizes},       {"promises", measure_arya_promises},
-    {"theorems", measure_arya_theorems}, {"kernels", measure_arya_kernels},
-    {"width", measure_arya_width},       {"intersection", measure_arya_intersection},
-    {"macbeath", measure_arya_macbeath}, {"sums", measure_arya_sums},
+    {"sizes", measure_arya_sizes},     {"promises", measure_arya_promises}, {"theorems", measure_arya_theorems},
+    {"kernels", measure_arya_kernels}, {"width", measure_arya_width},       {"intersection", measure_arya_intersection},
+    {"queries", measure_arya_queries}, {"macbeath", measure_arya_macbeath}, {"sums", measure_arya_sums},
 };
 
 bool write_files(const AryaSettings& settings, const ClaimTable& table) {

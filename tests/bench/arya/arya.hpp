@@ -44,8 +44,10 @@ void measure_arya_kernels(const AryaSettings& settings, ClaimTable& table);
 /// Width against Qhull's hull of the same points.
 void measure_arya_width(const AryaSettings& settings, ClaimTable& table);
 
-/// Intersection queries: promise, calls, time against GJK over hulls.
+/// Intersection queries: their promise.
 void measure_arya_intersection(const AryaSettings& settings, ClaimTable& table);
+/// Their calls, and their time against GJK over hulls.
+void measure_arya_queries(const AryaSettings& settings, ClaimTable& table);
 /// The hierarchy of Macbeath regions: nodes, degrees, visits.
 void measure_arya_macbeath(const AryaSettings& settings, ClaimTable& table);
 /// Sizes of approximate Minkowski sums.

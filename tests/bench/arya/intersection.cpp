@@ -281,6 +281,7 @@ void hierarchy(const AryaSettings& settings, ClaimTable& table, std::size_t n, s
   Growth nodes{name, "nodes", "1 / epsilon"};
   Growth caps{name, "nodes", "1 / tan^2 of a cap's angle"};
   Growth visits{name, "nodes visited a query", "log2 1 / epsilon"};
+  std::vector<std::pair<std::string, double>> shares;
   for (const double epsilon : epsilons) {
     const auto structure = DirectionalWidth<D>::build(body, epsilon, Backend::macbeath);
     if (!structure) continue;
@@ -294,10 +295,13 @@ void hierarchy(const AryaSettings& settings, ClaimTable& table, std::size_t n, s
     const std::string range = fmt::format("epsilon = {:g}", epsilon);
     table.add_value(kNodes, name, "largest out-degree", range, static_cast<double>(structure->size().max_out_degree));
     table.add_value(kNodes, name, "layers", range, static_cast<double>(structure->size().depth));
+    shares.emplace_back(range,
+                        static_cast<double>(counters.nodes) / kQueries / static_cast<double>(structure->size().nodes));
   }
   table.add_order(kNodes, std::move(nodes), 0.5 * (D - 1), 0.15);
   table.add_order(kCaps, std::move(caps), 0.5 * (D - 1), 0.15);
   table.add_growth(kVisits, std::move(visits), 2);
+  for (const auto& [range, share] : shares) table.add_value(kVisits, name, "share of the nodes visited", range, share);
 }
 
 template <int D>
@@ -334,7 +338,9 @@ void measure_arya_intersection(const AryaSettings& settings, ClaimTable& table) 
   promises<3>(settings, table, Backend::macbeath, 0.5, many, pairs);
   promises<4>(settings, table, Backend::macbeath, 0.8, few, settings.full ? 3000 : 300);
   if (settings.full) promises<5>(settings, table, Backend::macbeath, 0.95, few, 3000);
-  if (settings.backend) return;
+}
+
+void measure_arya_queries(const AryaSettings& settings, ClaimTable& table) {
   calls<2>(settings, table, 400);
   calls<3>(settings, table, 400);
   calls<4>(settings, table, 400);
@@ -346,8 +352,8 @@ void measure_arya_macbeath(const AryaSettings& settings, ClaimTable& table) {
   if (settings.full) {
     hierarchy<2>(settings, table, 200'000, {1e-1, 1e-2, 1e-3, 1e-4});
     hierarchy<3>(settings, table, 100'000, {1e-1, 3e-2, 1e-2, 3e-3});
-    hierarchy<4>(settings, table, 50'000, {0.2, 0.1, 0.05});
-    hierarchy<5>(settings, table, 20'000, {0.4, 0.3, 0.2});
+    hierarchy<4>(settings, table, 300'000, {0.1, 0.07, 0.05, 0.03, 0.02});
+    hierarchy<5>(settings, table, 200'000, {0.3, 0.2, 0.15, 0.1, 0.07});
   } else {
     hierarchy<2>(settings, table, 50'000, {1e-1, 1e-2, 1e-3});
     hierarchy<3>(settings, table, 20'000, {2e-1, 1e-1, 5e-2});
