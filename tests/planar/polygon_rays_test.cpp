@@ -95,7 +95,8 @@ TEST(PolygonRays, TurnedBoxesPassNothingOver) {
     const pd::detail::TurnedBoxes boxes(items);
     for (int k = 0; k < 50; ++k) {
       const Point2 y = {random.uniform(-1, 1), random.uniform(-1, 1)};
-      const Point2 d = k % 5 == 0 ? Point2{0, 1} : direction(random);
+      constexpr std::array<Point2, 4> kUpright = {{{0, 1}, {-0.0, -1}, {1, -0.0}, {-1, 0}}};
+      const Point2 d = k % 5 == 0 ? kUpright[static_cast<std::size_t>(k / 5 % 4)] : direction(random);
       const double limit = k % 2 == 0 ? 0.3 : std::numeric_limits<double>::infinity();
       std::vector<bool> visited(items.size(), false);
       boxes.visit(pd::detail::RoundedRay(y, d), limit,

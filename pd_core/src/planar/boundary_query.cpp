@@ -32,19 +32,21 @@ Box2 sum_box(const ConvexSum& sum) {
 void BoundaryQuery::add_ray_items() {
   std::vector<TurnedBoxes::Item> items;
   items.reserve(boundary_.stretches().size());
-  ends_.reserve(boundary_.stretches().size());
+  std::vector<EdgeEnds> all;
+  all.reserve(boundary_.stretches().size());
   for (const Stretch& s : boundary_.stretches()) {
+    const auto index = static_cast<std::int32_t>(all.size());
     const int first = SumBoundary::first_edge(s);
     if (first != SumBoundary::last_edge(s)) {
       const Box2 box = boundary_.box(s);
       const double size =
           std::max({std::abs(box.low[0]), std::abs(box.low[1]), std::abs(box.high[0]), std::abs(box.high[1])});
       items.push_back({{box.low, Point2{box.low[0], box.high[1]}, Point2{box.high[0], box.low[1]}, box.high}, size});
-      ends_.push_back({{}, {}, 0, EdgeEnds::Kind::arc});
+      all.push_back({{}, {}, 0, index, EdgeEnds::kArc});
       continue;
     }
     const Span e = boundary_.edge(boundary_.candidate(s), first);
-    EdgeEnds ends{{}, {}, 0, EdgeEnds::Kind::exact};
+    EdgeEnds ends{{}, {}, 0, index, first};
     const auto whole_edge = [&](const SumPoint& x, Point2& rounded) {
       for (std::size_t k = 0; k < 2; ++k) {
         rounded[k] = x.p[k] - x.q[k];
@@ -67,13 +69,15 @@ void BoundaryQuery::add_ray_items() {
         *rounded = middle;
         ends.size = std::max(ends.size, 0x1p52 * error);
       } else {
-        ends.kind = EdgeEnds::Kind::open;
+        ends.edge = EdgeEnds::kOpen;
       }
     }
     items.push_back({{ends.a, ends.a, ends.b, ends.b}, ends.size});
-    ends_.push_back(ends);
+    all.push_back(ends);
   }
   ray_tree_ = TurnedBoxes(items);
+  ends_.reserve(all.size());
+  for (const std::int32_t i : ray_tree_.order()) ends_.push_back(all[at(i)]);
 }
 
 BoundaryQuery::BoundaryQuery(const SumBoundary& boundary)

@@ -59,12 +59,14 @@ class BoundaryQuery {
 
  private:
   struct NearestSearch;
-  /// A stretch of one edge by its ends, within 2^-51 `size`. Open: at least one end is the edge's, beyond the
-  /// stretch's.
+  /// A stretch of one edge by its ends, within 2^-51 `size`.
   struct EdgeEnds {
     Point2 a, b;
     double size;
-    enum class Kind : std::uint8_t { exact, open, arc } kind;
+    std::int32_t stretch;
+    std::int32_t edge;                         ///< or one of these:
+    static constexpr std::int32_t kOpen = -1;  ///< at least one end is the edge's, beyond the stretch's
+    static constexpr std::int32_t kArc = -2;   ///< more than one edge; no ends
   };
 
   /// The class of y by the first stretch that the ray along d crosses: R lies on the left of it. Nothing where the ray
@@ -79,7 +81,7 @@ class BoundaryQuery {
 
   const SumBoundary& boundary_;
   BoxTree stretch_tree_, sum_tree_, slot_tree_;
-  std::vector<EdgeEnds> ends_;  ///< of every stretch
+  std::vector<EdgeEnds> ends_;  ///< of every stretch, in the order of the tree of rays
   TurnedBoxes ray_tree_;
 };
 

@@ -1,6 +1,7 @@
 // Rays over the boundary of R: its first point ahead, and the class of a placement by the side from which it is met.
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "planar/boundary_query.hpp"
 #include "planar/edge_ranges.hpp"
@@ -23,24 +24,27 @@ struct Side {
   [[nodiscard]] int sign() const { return value > air ? 1 : (value < -air ? -1 : 0); }
 };
 
-/// Bounds of the parameter at which the ray crosses the edge from a to b, which lie on different sides for certain.
+/// Bounds of a parameter along the ray; open without them.
+struct Bounds {
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+};
+
+/// Of the parameter at which the ray crosses the edge from a to b, which lie on different sides for certain.
 ///
 /// The crossing parts the edge as |value of a| : |value of b|, and the parameter as well. The values err by `air`, so
 /// does d . (point - y), so that the share errs by 2 air / sum at most and the parameter times d . d by less than what
 /// is taken here. Left open where the sum is not much more than air.
-void bound_crossing(const RoundedRay& ray, const Point2& a, const Point2& b, const Side& at_a, const Side& at_b,
-                    RayHit& hit) {
+Bounds bound_crossing(const RoundedRay& ray, const Point2& a, const Point2& b, const Side& at_a, const Side& at_b) {
   const double sum = std::abs(at_a.value) + std::abs(at_b.value);
-  if (!(sum >= 4 * at_a.air)) return;
+  if (!(sum >= 4 * at_a.air)) return {};
   const double from = ray.d[0] * (a[0] - ray.y[0]) + ray.d[1] * (a[1] - ray.y[1]);
   const double to = ray.d[0] * (b[0] - ray.y[0]) + ray.d[1] * (b[1] - ray.y[1]);
   const double along = from + std::abs(at_a.value) / sum * (to - from);
   const double error = at_a.air * (4 + 3 * std::abs(to - from) / sum);
   const double low = (along - error) * ray.per_square, high = (along + error) * ray.per_square;
   const double rounding = 0x1p-49 * (std::abs(low) + std::abs(high)) + 0x1p-1060;
-  if (!std::isfinite(low - rounding) || !std::isfinite(high + rounding)) return;
-  hit.low = low - rounding;
-  hit.high = high + rounding;
+  if (!std::isfinite(low - rounding) || !std::isfinite(high + rounding)) return {};
+  return {low - rounding, high + rounding};
 }
 
 /// Do both ends of a span lie on one side of the ray's line for certain?
@@ -58,15 +62,12 @@ bool beside_line(const RoundedRay& ray, const Span& e) {
 /// 4.5 are the boxes of arcs, shot through by halving).
 void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_only) const {
   const RoundedRay ray(search.ray().s.p, d);
-  search.boxes += ray_tree_.visit(ray, search.limit(), [&](std::int32_t i) {
-    const EdgeEnds& ends = ends_[at(i)];
-    const bool arc = ends.kind == EdgeEnds::Kind::arc;
-    const Side at_a(ray, ends.a, ends.size), at_b(ray, ends.b, ends.size);
-    const int a = at_a.sign(), b = at_b.sign();
-    if (!arc && a * b > 0) return;
-    const Stretch& s = boundary_.stretches()[at(i)];
-    if (outer_only && s.loop != 0) return;
-    if (arc) {
+  search.boxes += ray_tree_.visit_places(ray, search.limit(), [&](std::size_t place) {
+    const EdgeEnds& ends = ends_[place];
+    const std::int32_t i = ends.stretch;
+    if (outer_only && boundary_.stretches()[at(i)].loop != 0) return;
+    if (ends.edge == EdgeEnds::kArc) {
+      const Stretch& s = boundary_.stretches()[at(i)];
       const auto enter = [&](const Box2& box) { return std::isfinite(enter_ray(box, ray.y, ray.d, search.limit())); };
       visit_edges(boundary_, boundary_.candidate(s), SumBoundary::first_edge(s), SumBoundary::last_edge(s) + 1, enter,
                   [&](int e) {
@@ -75,15 +76,18 @@ void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_on
                   });
       return;
     }
-    const int e = SumBoundary::first_edge(s);
-    if (a * b < 0 && ends.kind == EdgeEnds::Kind::exact) {
-      const Place crossing{Place::Kind::line, search.ray().s, search.ray().d};
-      RayHit hit{{i, e, crossing}, true, true, b > 0};
-      bound_crossing(ray, ends.a, ends.b, at_a, at_b, hit);
-      search.offer(hit);
-    } else {
-      search.meet(i, e, boundary_.part(s, e));
+    const Side at_a(ray, ends.a, ends.size), at_b(ray, ends.b, ends.size);
+    const int a = at_a.sign(), b = at_b.sign();
+    if (a * b > 0) return;
+    if (a * b == 0 || ends.edge == EdgeEnds::kOpen) {
+      const Stretch& s = boundary_.stretches()[at(i)];
+      const int e = SumBoundary::first_edge(s);
+      return search.meet(i, e, boundary_.part(s, e));
     }
+    const Bounds bounds = bound_crossing(ray, ends.a, ends.b, at_a, at_b);
+    if (bounds.high < 0 || bounds.low > search.limit()) return;
+    const Place crossing{Place::Kind::line, search.ray().s, search.ray().d};
+    search.offer({{i, ends.edge, crossing}, true, true, b > 0, bounds.low, bounds.high});
   });
 }
 

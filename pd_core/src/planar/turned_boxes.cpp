@@ -20,16 +20,18 @@ Point2 middle_of(const TurnedBoxes::Item& item) {
 
 }  // namespace
 
-TurnedBoxes::TurnedBoxes(const std::vector<Item>& items) : item_(items.size()) {
-  std::iota(item_.begin(), item_.end(), 0);
-  if (!items.empty()) build(items, 0, static_cast<int>(items.size()));
+TurnedBoxes::TurnedBoxes(const std::vector<Item>& items) : order_(items.size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  if (items.empty()) return;
+  node_.emplace_back();
+  build(items, 0, static_cast<int>(items.size()), 0);
 }
 
 TurnedBoxes::Node TurnedBoxes::box_along(const std::vector<Item>& items, int begin, int end, const Point2& axis) const {
   Box2 box;
   double size = 0;
   for (int i = begin; i < end; ++i) {
-    const Item& item = items[at(item_[at(i)])];
+    const Item& item = items[at(order_[at(i)])];
     size = std::max(size, item.size);
     for (const Point2& x : item.corner) {
       box.add(Point2{axis[0] * x[0] + axis[1] * x[1], axis[0] * x[1] - axis[1] * x[0]});
@@ -41,7 +43,7 @@ TurnedBoxes::Node TurnedBoxes::box_along(const std::vector<Item>& items, int beg
     box.low[k] -= air;
     box.high[k] += air;
   }
-  return {axis, box.low, box.high, begin, end, -1};
+  return {axis, {box.low, box.high}, begin, end, -1};
 }
 
 /// The smaller of the upright box and the one along the longest item.
@@ -50,7 +52,7 @@ TurnedBoxes::Node TurnedBoxes::smaller_box(const std::vector<Item>& items, int b
   Point2 longest = {0, 0};
   double length = 0;
   for (int i = begin; i < end; ++i) {
-    const Item& item = items[at(item_[at(i)])];
+    const Item& item = items[at(order_[at(i)])];
     const Point2 along = {item.corner[3][0] - item.corner[0][0], item.corner[3][1] - item.corner[0][1]};
     const double l = pd::detail::length(along[0], along[1]);
     if (l > length) {
@@ -71,7 +73,7 @@ double TurnedBoxes::halve(const std::vector<Item>& items, int begin, int end, co
     const Point2 m = middle_of(items[at(i)]);
     return direction[0] * m[0] + direction[1] * m[1];
   };
-  std::nth_element(item_.begin() + begin, item_.begin() + half, item_.begin() + end,
+  std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
                    [&](std::int32_t a, std::int32_t b) {
                      const double pa = place(a), pb = place(b);
                      return pa != pb ? pa < pb : a < b;
@@ -81,20 +83,20 @@ double TurnedBoxes::halve(const std::vector<Item>& items, int begin, int end, co
 
 /// Halved along the box or across it, as the halves are smaller: beams side by side are parted from each other however
 /// much their lengths differ.
-std::int32_t TurnedBoxes::build(const std::vector<Item>& items, int begin, int end) {
-  const auto index = static_cast<std::int32_t>(node_.size());
+void TurnedBoxes::build(const std::vector<Item>& items, int begin, int end, std::size_t index) {
   const Node node = smaller_box(items, begin, end);
-  node_.push_back(node);
-  if (end - begin <= kLeafSize) return index;
+  node_[index] = node;
+  if (end - begin <= kLeafSize) return;
   const Point2 across = {-node.axis[1], node.axis[0]};
   const double along_area = halve(items, begin, end, node.axis), across_area = halve(items, begin, end, across);
-  const bool wide = node.high[0] - node.low[0] >= node.high[1] - node.low[1];
+  const bool wide = width(node, 0) >= width(node, 1);
   if (along_area < across_area || (along_area == across_area && wide)) halve(items, begin, end, node.axis);
   const int half = begin + (end - begin) / 2;
-  build(items, begin, half);
-  const std::int32_t right = build(items, half, end);
-  node_[at(index)].right = right;
-  return index;
+  const std::size_t child = node_.size();
+  node_[index].child = static_cast<std::int32_t>(child);
+  node_.resize(child + 2);
+  build(items, begin, half, child);
+  build(items, half, end, child + 1);
 }
 
 }  // namespace pd::detail

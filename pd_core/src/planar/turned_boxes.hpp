@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "planar/box_tree.hpp"
@@ -18,25 +19,27 @@ namespace pd::detail {
 /// A ray from y along d with what bounds its roundings. d != 0.
 struct RoundedRay {
   Point2 y, d;
-  Point2 inverse;       ///< 1 / d
-  double reach;         ///< |y|_1
-  double speed;         ///< |d|_1
-  double slow;          ///< 2^-12 of that
-  double per_square;    ///< 1 / (d . d) but for rounding; not a number where that might be lost below or above doubles
-  double air;           ///< more than the roundings of y and of differences with it
-  Point2 above, below;  ///< y moved by it up and down
+  Point2 inverse;                   ///< 1 / d, infinity for 0
+  std::array<std::size_t, 2> near;  ///< the side of upright boxes that the ray meets first: 0 the low one, 1 the high
+  double reach;                     ///< |y|_1
+  double speed;                     ///< |d|_1
+  double slow;                      ///< 2^-12 of that
+  double per_square;  ///< 1 / (d . d) but for rounding; not a number where that might be lost below or above doubles
+  double air;         ///< more than the roundings of y and of differences with it
+  Point2 to_near, to_far;  ///< y moved by it so that near sides come nearer, far ones farther
   RoundedRay(const Point2& from, const Point2& along)
       : y(from),
         d(along),
-        inverse{1 / d[0], 1 / d[1]},
+        inverse{1 / (d[0] + 0.0), 1 / (d[1] + 0.0)},
+        near{d[0] < 0 ? std::size_t{1} : 0, d[1] < 0 ? std::size_t{1} : 0},
         reach(std::abs(y[0]) + std::abs(y[1])),
         speed(std::abs(d[0]) + std::abs(d[1])),
         slow(0x1p-12 * speed),
         per_square(speed > 0x1p-400 && speed < 0x1p400 ? 1 / (d[0] * d[0] + d[1] * d[1])
                                                        : std::numeric_limits<double>::quiet_NaN()),
         air(0x1p-48 * reach),
-        above{y[0] + air, y[1] + air},
-        below{y[0] - air, y[1] - air} {}
+        to_near{y[0] + std::copysign(air, d[0] + 0.0), y[1] + std::copysign(air, d[1] + 0.0)},
+        to_far{y[0] - std::copysign(air, d[0] + 0.0), y[1] - std::copysign(air, d[1] + 0.0)} {}
 };
 
 class TurnedBoxes {
@@ -54,6 +57,11 @@ class TurnedBoxes {
   /// @return boxes looked into.
   template <class Visit>
   std::int64_t visit(const RoundedRay& ray, const double& limit, const Visit& item) const {
+    return visit_places(ray, limit, [&](std::size_t place) { item(order_[place]); });
+  }
+  /// The same by places in order(): items of one box stand side by side there.
+  template <class Visit>
+  std::int64_t visit_places(const RoundedRay& ray, const double& limit, const Visit& visit_place) const {
     if (node_.empty()) return 0;
     std::int64_t boxes = 1;
     struct Waiting {
@@ -66,37 +74,51 @@ class TurnedBoxes {
     std::array<Waiting, kSorted + 32> stack;
     std::size_t top = 0;
     const auto push = [&](const Waiting& w) {
-      if (!(w.entry < kNever)) return;
       std::size_t at = top++;
       for (; at > 0 && at < kSorted && stack[at - 1].entry < w.entry; --at) stack[at] = stack[at - 1];
       stack[at] = w;
     };
-    push({0, entry(node_[0], ray, limit)});
+    if (const Waiting root{0, entry(node_[0], ray, limit)}; root.entry < kNever) push(root);
     while (top > 0) {
-      const Waiting w = stack[--top];
+      Waiting w = stack[--top];
       if (!(w.entry <= limit)) continue;
-      const Node& node = node_[static_cast<std::size_t>(w.node)];
-      if (node.right < 0) {
-        for (std::int32_t i = node.begin; i < node.end; ++i) item(item_[static_cast<std::size_t>(i)]);
-        continue;
+      // Down into the nearer one of two boxes, as long as none that waits is nearer.
+      while (true) {
+        const Node& node = node_[static_cast<std::size_t>(w.node)];
+        if (node.child < 0) {
+          for (std::int32_t i = node.begin; i < node.end; ++i) visit_place(static_cast<std::size_t>(i));
+          break;
+        }
+        const auto child = static_cast<std::size_t>(node.child);
+        Waiting near{node.child, entry(node_[child], ray, limit)};
+        Waiting far{node.child + 1, entry(node_[child + 1], ray, limit)};
+        boxes += 2;
+        if (far.entry < near.entry) std::swap(near, far);
+        if (far.entry < kNever) push(far);
+        if (!(near.entry < kNever)) break;
+        if (top > 0 && stack[top - 1].entry < near.entry) {
+          push(near);
+          break;
+        }
+        w = near;
       }
-      push({node.right, entry(node_[static_cast<std::size_t>(node.right)], ray, limit)});
-      push({w.node + 1, entry(node_[static_cast<std::size_t>(w.node) + 1], ray, limit)});
-      boxes += 2;
     }
     return boxes;
   }
+  /// The items as they lie in the tree.
+  [[nodiscard]] const std::vector<std::int32_t>& order() const { return order_; }
   [[nodiscard]] std::size_t memory_bytes() const {
-    return node_.capacity() * sizeof(Node) + item_.capacity() * sizeof(std::int32_t);
+    return node_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::int32_t);
   }
 
  private:
   static constexpr int kLeafSize = 4;
-  struct Node {
-    Point2 axis;       ///< of length 1 within 2^-50; {1, 0}: upright
-    Point2 low, high;  ///< along the axis, and along its left normal
-    std::int32_t begin, end;
-    std::int32_t right;  ///< second child; the first one is the next node; -1: a leaf
+  /// One cache line; both boxes of a parent stand side by side.
+  struct alignas(64) Node {
+    Point2 axis;                 ///< of length 1 within 2^-50; {1, 0}: upright
+    std::array<Point2, 2> side;  ///< low and high, along the axis and along its left normal
+    std::int32_t begin, end;     ///< of its items
+    std::int32_t child;          ///< first of two; -1: a leaf
   };
 
   static constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -105,13 +127,12 @@ class TurnedBoxes {
   [[nodiscard]] static double entry(const Node& node, const RoundedRay& ray, double limit) {
     double low = 0, high = limit;
     if (node.axis[0] == 1) {
+      // Along a coordinate that stands still the quotients are infinite, or not numbers and without effect.
       for (std::size_t k = 0; k < 2; ++k) {
-        const double before = node.low[k] - ray.above[k], behind = node.high[k] - ray.below[k];
-        if (ray.d[k] != 0) {
-          clip(before * ray.inverse[k], behind * ray.inverse[k], low, high);
-        } else if (before > 0 || behind < 0) {
-          return kNever;
-        }
+        const double enter = (node.side[ray.near[k]][k] - ray.to_near[k]) * ray.inverse[k];
+        const double leave = (node.side[1 - ray.near[k]][k] - ray.to_far[k]) * ray.inverse[k];
+        low = enter > low ? enter : low;
+        high = leave < high ? leave : high;
       }
     } else {
       const Point2 &u = node.axis, &y = ray.y, &d = ray.d;
@@ -122,7 +143,7 @@ class TurnedBoxes {
         // The speed is within 2^-50 of |d|: below 2^-12 of it nothing is concluded.
         if (std::abs(speed) <= ray.slow) continue;
         const double inverse = 1 / speed;
-        clip((node.low[k] - from - ray.air) * inverse, (node.high[k] - from + ray.air) * inverse, low, high);
+        clip((node.side[0][k] - from - ray.air) * inverse, (node.side[1][k] - from + ray.air) * inverse, low, high);
         if (low > high * (1 + 0x1p-35)) return kNever;
       }
     }
@@ -136,14 +157,15 @@ class TurnedBoxes {
     high = std::min(high, std::max(a, b));
   }
 
-  [[nodiscard]] static double area(const Node& n) { return (n.high[0] - n.low[0]) * (n.high[1] - n.low[1]); }
+  [[nodiscard]] static double width(const Node& n, std::size_t k) { return n.side[1][k] - n.side[0][k]; }
+  [[nodiscard]] static double area(const Node& n) { return width(n, 0) * width(n, 1); }
   [[nodiscard]] Node smaller_box(const std::vector<Item>& items, int begin, int end) const;
   double halve(const std::vector<Item>& items, int begin, int end, const Point2& direction);
-  std::int32_t build(const std::vector<Item>& items, int begin, int end);
+  void build(const std::vector<Item>& items, int begin, int end, std::size_t index);
   [[nodiscard]] Node box_along(const std::vector<Item>& items, int begin, int end, const Point2& axis) const;
 
   std::vector<Node> node_;
-  std::vector<std::int32_t> item_;
+  std::vector<std::int32_t> order_;
 };
 
 }  // namespace pd::detail
