@@ -52,7 +52,7 @@ Rounded time_of(const ConvexPolygon& p, const ConvexPolygon& q, const ExitEdge& 
 class Line {
  public:
   Line(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& y, const Point2& d)
-      : p_(p), q_(q), y_(y), d_(d), sides_(p, q, d, probes_), ahead_(find_exit(p, q, y, d, sides_, probes_)) {
+      : p_(p), q_(q), y_(y), d_(d), ahead_(exit_along(d, false)) {
     if (ahead_) side_ahead_ = side(*ahead_);
   }
   [[nodiscard]] const std::optional<ExitEdge>& ahead() const { return ahead_; }
@@ -60,7 +60,7 @@ class Line {
   /// Requires an exit ahead: then there is one behind.
   [[nodiscard]] const ExitEdge& behind() {
     if (!behind_) {
-      behind_ = find_exit(p_, q_, y_, {-d_[0], -d_[1]}, sides_.turned(), probes_);
+      behind_ = exit_along({-d_[0], -d_[1]}, true);
       side_behind_ = side(*behind_);
     }
     return *behind_;
@@ -73,7 +73,7 @@ class Line {
 
   [[nodiscard]] PlanarContact contact() {
     if (!ahead_ || side_ahead_ < 0) return PlanarContact::separated;
-    if (!ahead_->grazes && ahead_of_chord()) {
+    if (!ahead_->grazes && ahead_of_chords()) {
       return side_ahead_ == 0 ? PlanarContact::touching : PlanarContact::overlapping;
     }
     if (side_behind() < 0) return PlanarContact::separated;
@@ -86,22 +86,35 @@ class Line {
     ++probes_;
     return detail::side_of_edge(e.edge, p_.vertex(e.parts.vertex_p), q_.vertex(e.parts.vertex_q), y_);
   }
-  /// Does y lie beyond the chord of R between its vertices farthest to the right and to the left? The line crosses the
-  /// chord, and R lies between there and the exit.
-  bool ahead_of_chord() {
+  std::optional<ExitEdge> exit_along(const Point2& d, bool turned) {
+    if (auto exit = detail::find_exit_by_tables(p_, q_, y_, d, probes_)) return exit;
+    if (!sides_) sides_.emplace(p_, q_, d_, probes_);
+    return find_exit(p_, q_, y_, d, turned ? sides_->turned() : *sides_, probes_);
+  }
+  [[nodiscard]] detail::SumPoint point(const detail::VertexOfDifference& v) const {
+    return {p_.vertex(v.p), q_.vertex(v.q)};
+  }
+  /// Does y lie beyond a chord of R that the line crosses? R lies between there and the exit.
+  bool ahead_of_chords() {
+    const auto ahead_of = [&](const detail::VertexOfDifference& right, const detail::VertexOfDifference& left) {
+      ++probes_;
+      return detail::exact_sign([&]<class N>() {
+               const detail::SumPoint r = point(right);
+               return cross(detail::from_to<N>(r, point(left)), detail::from_to<N>(r, {y_, {0, 0}}));
+             }) < 0;
+    };
+    const ExitEdge& e = *ahead_;
+    if (ahead_of(e.right, e.left)) return true;
     ++probes_;
-    const detail::SumPoint right{p_.vertex(sides_.p_right), q_.vertex(sides_.q_left)};
-    const detail::SumPoint left{p_.vertex(sides_.p_left), q_.vertex(sides_.q_right)};
-    return detail::exact_sign([&]<class N>() {
-             return cross(detail::from_to<N>(right, left), detail::from_to<N>(right, {y_, {0, 0}}));
-           }) < 0;
+    const int side = detail::offset_along(p_.vertex(e.back.p), q_.vertex(e.back.q), y_, {-d_[1], d_[0]}).sign;
+    return side != 0 && (side > 0 ? ahead_of(e.right, e.back) : ahead_of(e.back, e.left));
   }
 
   const ConvexPolygon& p_;
   const ConvexPolygon& q_;
   const Point2 &y_, &d_;
   std::int64_t probes_ = 0;
-  detail::SideVertices sides_;
+  std::optional<detail::SideVertices> sides_;
   std::optional<ExitEdge> ahead_, behind_;
   int side_ahead_ = 0, side_behind_ = 0;
 };

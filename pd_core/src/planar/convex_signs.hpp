@@ -61,18 +61,22 @@ template <class N>
 std::array<N, 2> offset_of(const Point2& p, const Point2& q, const Point2& y) {
   return {N(p[0]) - N(q[0]) - N(y[0]), N(p[1]) - N(q[1]) - N(y[1])};
 }
-/// Sign of <p - q - y, d>.
-inline int offset_along(const Point2& p, const Point2& q, const Point2& y, const Point2& d) {
+/// <p - q - y, d>, rounded, and its exact sign.
+struct SignedOffset {
+  double value;
+  int sign;
+};
+inline SignedOffset offset_along(const Point2& p, const Point2& q, const Point2& y, const Point2& d) {
   double value = 0, size = 0;
   for (std::size_t k = 0; k < 2; ++k) {
     value += (p[k] - q[k] - y[k]) * d[k];
     size += (std::abs(p[k]) + std::abs(q[k]) + std::abs(y[k])) * std::abs(d[k]);
   }
-  if (const int sign = settled_sign(value, size); sign != 0) return sign;
-  return exact_sign([&]<class N>() {
-    const auto x = offset_of<N>(p, q, y);
-    return x[0] * N(d[0]) + x[1] * N(d[1]);
-  });
+  if (const int sign = settled_sign(value, size); sign != 0) return {value, sign};
+  return {value, exact_sign([&]<class N>() {
+            const auto x = offset_of<N>(p, q, y);
+            return x[0] * N(d[0]) + x[1] * N(d[1]);
+          })};
 }
 /// Side of the line along an edge through p - q on which y lies: 1 left, that is inside.
 inline int side_of_edge(const PolygonEdge& e, const Point2& p, const Point2& q, const Point2& y) {
