@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <random>
 #include <vector>
 
@@ -292,6 +293,35 @@ TEST(DirectionalDepth, SupportsGrowSlowly) {
   }
 }
 
+// Large bodies: vertices that are only nearly extreme push the portal outwards as long as they can, and the answers are
+// those of the hierarchies bit by bit.
+TEST(DirectionalDepth, LargeBodiesAreClimbedOnlyNearTheBoundary) {
+  scenes::Random random(77);
+  const ConvexPolytope large = ConvexPolytope::from_points(scenes::sphere_hull(40'000, random)).value();
+  const ConvexPolytope drum = ConvexPolytope::from_points(scenes::prism(1000)).value();
+  const PolyhedralHierarchy levels_a = PolyhedralHierarchy::build(large, HierarchyKind::inner).value();
+  Scratch scratch;
+  for (const ConvexPolytope* q : {&large, &drum}) {
+    const PolyhedralHierarchy levels_b = PolyhedralHierarchy::build(*q, HierarchyKind::inner).value();
+    const DirectionalHierarchies both{&levels_a, &levels_b};
+    const ConvexShape a(large), b(*q);
+    const Pose moved = Pose::from_quaternion(random.quaternion(), Vec3(0.2, -0.1, 0.3)).value();
+    std::int64_t supports = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 d = i % 2 == 0 ? random.direction() : Vec3(i % 3 - 1, i % 5 - 2, 1);
+      const auto found = directional_depth({&a, moved}, {&b, Pose()}, d, scratch).value();
+      const auto expected =
+          directional_depth({&a, moved}, {&b, Pose()}, d, scratch, DirectionalMethod::hierarchy, &both).value();
+      ASSERT_EQ(found.contact, ContactClass::overlapping);
+      ASSERT_EQ(found.lower, expected.lower);
+      ASSERT_EQ(found.upper, expected.upper);
+      ASSERT_EQ(found.normal, expected.normal);
+      supports += found.statistics.support_calls;
+    }
+    EXPECT_LE(supports, 200 * 3);  // 23 each where every one is climbed to
+  }
+}
+
 TEST(DifferenceQueries, SupportsAreExactAndLowest) {
   std::mt19937_64 random(24);
   std::uniform_int_distribution<int> coordinate(-3, 3);
@@ -405,6 +435,24 @@ TEST(DirectionalDepth, FacesOfThousandsOfCorners) {
   EXPECT_LE(found->upper - found->lower, 0x1p-51);
   EXPECT_EQ(found->feature_b.kind, Feature::Kind::facet);
   EXPECT_EQ(found->normal, Vec3::UnitZ());
+  // In linear time: eight times the corners took sixty times as long where each was looked for among all found.
+  const auto seconds = [&](int n, DirectionalMethod method) {
+    const ConvexShape body(*ConvexPolytope::from_points(scenes::prism(n)));
+    const PolyhedralHierarchy levels = PolyhedralHierarchy::build(*body.polytope(), HierarchyKind::inner).value();
+    const DirectionalHierarchies both{&levels, &levels};
+    double least = HUGE_VAL;
+    for (int i = 0; i < 5; ++i) {
+      const std::clock_t begin = std::clock();
+      const auto again = directional_depth({&body, Pose()}, {&body, above}, Vec3::UnitZ(), scratch, method, &both);
+      least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+      EXPECT_EQ(again->lower, found->lower);
+      EXPECT_EQ(again->feature_b.kind, Feature::Kind::facet);
+    }
+    return least;
+  };
+  for (const auto method : {DirectionalMethod::portal, DirectionalMethod::hierarchy}) {
+    EXPECT_LE(seconds(40'000, method), 30 * seconds(5'000, method) + 0.002);
+  }
 }
 
 TEST(DirectionalDepth, BracketsOfCurvedBodiesAreNarrowAlongPlanesOfSymmetryToo) {

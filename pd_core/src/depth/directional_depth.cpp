@@ -121,60 +121,12 @@ void fill(const PosedPair& pair, const Dyadic3& direction, const Crossing& c, Di
   out.feature_b = facet.on_b;
 }
 
-/// Every vertex of a body that is level with v: along edges, from v on. Time of the order of the face and its degrees.
-template <class Level>
-detail::SupportFace face_at(const ConvexPolytope& body, int v, Level&& level) {
-  detail::SupportFace face{v};
-  for (std::size_t i = 0; i < face.size(); ++i) {
-    for (const std::int32_t w : body.neighbours(face[i])) {
-      if (std::find(face.begin(), face.end(), w) == face.end() && level(face[i], w)) face.push_back(w);
-    }
-  }
-  std::sort(face.begin(), face.end());
-  return face;
-}
-
 using Corners = std::array<detail::VertexPair, 3>;
 
 Crossing crossing_of(const PosedPair& pair, const Dyadic3& direction, const Corners& corners) {
   const detail::VertexPair& p = corners[0];
   const auto to = [&](const detail::VertexPair& q) { return PairVector::difference(p.a, p.b, q.a, q.b); };
   return crossing_of(pair, direction, PairVector::point(p.a, p.b), to(corners[1]), to(corners[2]));
-}
-
-/// [D] Compute-Depth-3D. False where the origin is not inside P: then only the counts are filled.
-bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHierarchies& hierarchies,
-             DirectionalDepth& out) {
-  std::array<Crossing, 2> crossings;
-  std::array<Corners, 2> corners{};
-  for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
-    const detail::DirectionSigns ray(pair, way == 0 ? direction : Vec3(-direction));
-    const detail::HierarchyDescentResult result = descend_hierarchies(ray, {hierarchies.a}, {hierarchies.b});
-    out.descent.steps += result.steps;
-    out.descent.certificate += result.certificate;
-    out.descent.caps += result.caps;
-    out.descent.repairs += result.repairs;
-    if (!result.crosses) return false;
-    corners[way] = *result.corners;
-    crossings[way] = crossing_of(pair, ray.exact(), corners[way]);
-    if (crossings[way].offset.sign() <= 0) return false;
-  }
-  out.contact = ContactClass::overlapping;
-  fill_depth(pair, detail::to_dyadic(direction), crossings[0], out);
-  const ExactDirection normal(crossings[0].normal);
-  out.normal = rounded_unit(crossings[0].normal);
-  const auto level = [&](const PairVector& edge) {
-    const Vec3 e = pair.approximate(edge);
-    if (std::abs(e.dot(normal.unit)) > 16 * (pair.vector_error() + 0x1p-50 * e.cwiseAbs().sum())) return false;
-    return dot(pair.exact(edge), normal.exact).sign() == 0;
-  };
-  const detail::SupportFaces faces{
-      face_at(pair.a(), corners[0][0].a, [&](int v, int w) { return level(PairVector::edge_a(v, w)); }),
-      face_at(pair.b(), corners[0][0].b, [&](int v, int w) { return level(PairVector::edge_b(v, w)); })};
-  const detail::FacetFeatures features = features_of(pair, faces, normal.unit);
-  out.feature_a = features.on_a;
-  out.feature_b = features.on_b;
-  return true;
 }
 
 /// Swept and smooth bodies: a portal search in doubles.
@@ -196,18 +148,6 @@ void swept_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction
   out.depth = shot.upper;
   out.normal = shot.normal;
   out.statistics.support_calls += shooter.support_calls();
-}
-
-/// Compute-Depth-3D, in hierarchies made for this query where the caller has none. False where the descent ends without
-/// an answer.
-Expected<bool> by_hierarchies(const PosedPair& pair, const ConvexPolytope& a, const ConvexPolytope& b,
-                              const Vec3& direction, const DirectionalHierarchies* hierarchies, DirectionalDepth& out) {
-  if (hierarchies != nullptr) return descend(pair, direction, *hierarchies, out);
-  Expected<PolyhedralHierarchy> built_a = PolyhedralHierarchy::build(a, HierarchyKind::inner);
-  if (!built_a) return built_a.error();
-  Expected<PolyhedralHierarchy> built_b = PolyhedralHierarchy::build(b, HierarchyKind::inner);
-  if (!built_b) return built_b.error();
-  return descend(pair, direction, DirectionalHierarchies{&*built_a, &*built_b}, out);
 }
 
 /// Where the ray leaves P, by the pieces of the overlay.
@@ -259,6 +199,38 @@ void fill(const detail::DirectionSigns& ray, const Corners& corners, Directional
   const detail::FacetFeatures features = features_of(pair, faces, out.normal);
   out.feature_a = features.on_a;
   out.feature_b = features.on_b;
+}
+
+/// [D] Compute-Depth-3D. False where the origin is not inside P: then only the counts are filled.
+bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHierarchies& hierarchies,
+             DirectionalDepth& out) {
+  std::array<Corners, 2> corners{};
+  for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
+    const detail::DirectionSigns ray(pair, way == 0 ? direction : Vec3(-direction));
+    const detail::HierarchyDescentResult result = descend_hierarchies(ray, {hierarchies.a}, {hierarchies.b});
+    out.descent.steps += result.steps;
+    out.descent.certificate += result.certificate;
+    out.descent.caps += result.caps;
+    out.descent.repairs += result.repairs;
+    if (!result.crosses) return false;
+    corners[way] = *result.corners;
+    if (crossing_of(pair, ray.exact(), corners[way]).offset.sign() <= 0) return false;
+  }
+  out.contact = ContactClass::overlapping;
+  fill(detail::DirectionSigns(pair, direction), corners[0], out);
+  return true;
+}
+
+/// Compute-Depth-3D, in hierarchies made for this query where the caller has none. False where the descent ends without
+/// an answer.
+Expected<bool> by_hierarchies(const PosedPair& pair, const ConvexPolytope& a, const ConvexPolytope& b,
+                              const Vec3& direction, const DirectionalHierarchies* hierarchies, DirectionalDepth& out) {
+  if (hierarchies != nullptr) return descend(pair, direction, *hierarchies, out);
+  Expected<PolyhedralHierarchy> built_a = PolyhedralHierarchy::build(a, HierarchyKind::inner);
+  if (!built_a) return built_a.error();
+  Expected<PolyhedralHierarchy> built_b = PolyhedralHierarchy::build(b, HierarchyKind::inner);
+  if (!built_b) return built_b.error();
+  return descend(pair, direction, DirectionalHierarchies{&*built_a, &*built_b}, out);
 }
 
 /// The ends of a portal as the caller keeps them; not known where a vertex is none of these bodies'.

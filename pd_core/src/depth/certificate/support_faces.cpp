@@ -56,7 +56,17 @@ class AlongNormal {
 /// own outward direction.
 template <class Rises>
 bool complete(const ConvexPolytope& body, Rises&& rises, SupportFace& face) {
+  constexpr std::size_t kFew = 16;
   for (std::size_t i = 0; i < face.size(); ++i) {
+    // No edge of the first rises: it is farthest, and what is level with it is a face. A large one is not walked round,
+    // looking for every corner among all that were found, but read from the facet's loop.
+    if (i > 0 && face.size() > kFew) {
+      if (const int facet = facet_holding(body, face[0], face[1], face[2]); facet >= 0) {
+        const auto loop = body.facet_vertices(facet);
+        face.assign(loop.begin(), loop.end());
+        break;
+      }
+    }
     const std::int32_t from = face[i];
     for (const std::int32_t to : body.neighbours(from)) {
       if (std::find(face.begin(), face.end(), to) != face.end()) continue;

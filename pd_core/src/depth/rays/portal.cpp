@@ -1,5 +1,6 @@
 #include "depth/rays/portal.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "depth/difference/exact_support.hpp"
@@ -27,7 +28,10 @@ bool same_point(const VertexPair& x, const VertexPair& y) { return x.a == y.a &&
 class PortalSearch {
  public:
   PortalSearch(const DirectionSigns& ray, const PortalHierarchies& hierarchies)
-      : ray_(ray), pair_(ray.pair()), hierarchies_(hierarchies) {}
+      : ray_(ray),
+        pair_(ray.pair()),
+        hierarchies_(hierarchies),
+        coarse_(hierarchies.a == nullptr && std::max(pair_.a().num_vertices(), pair_.b().num_vertices()) > kLarge) {}
 
   /// Nothing where the line does not meet the interior of P.
   std::optional<Portal> run() {
@@ -71,6 +75,7 @@ class PortalSearch {
   bool start_at(PortalEnds& ends, PortalCorners& v) {
     if (!ends.known) ends.count = 0;
     while (ends.count > 0) {
+      coarse_ = false;  // what is left to do is fine
       v = ends.portals[static_cast<std::size_t>(--ends.count)];
       if (crosses(v)) return true;
     }
@@ -100,13 +105,29 @@ class PortalSearch {
             hierarchies_.b->support(pair_.pose_b().rotation().transpose() * direction)};
   }
 
-  /// In the direction d x w, or against it: <edge, d x w> = det(w, edge, d).
-  VertexPair support_across(const PairVector& w, int sign) {
+  /// A vertex of P that serves(), or the extreme one. Of large bodies one that a look into their tables finds is tried
+  /// first: far from the boundary it serves as well, and no climb through memory is made.
+  template <class Sign, class Serves>
+  VertexPair support(const RoundedDirection& direction, const VertexPair& near, bool coarse, Sign&& sign,
+                     Serves&& serves) {
+    const Vec3& n = direction.vector;
+    if (coarse) {
+      const VertexPair s{coarse_support_vertex(pair_.a(), -(pair_.pose_a().rotation().transpose() * n)),
+                         coarse_support_vertex(pair_.b(), pair_.pose_b().rotation().transpose() * n)};
+      if (s.a >= 0 && s.b >= 0 && serves(s)) return s;
+    }
     ++support_calls_;
+    return support_exactly(pair_, direction, start(n, near), sign);
+  }
+
+  /// In the direction d x w, or against it: <edge, d x w> = det(w, edge, d). One with that sign serves where the
+  /// search is coarse.
+  VertexPair support_across(const PairVector& w, int sign, bool coarse) {
     const RoundedDirection direction =
         rounded_cross(sign * ray_.scaled(), 0, pair_.approximate(w), pair_.vector_error());
-    return support_exactly(pair_, direction, start(direction.vector, {-1, -1}),
-                           [&](const PairVector& edge) { return sign * ray_.turn(w, edge); });
+    return support(
+        direction, {-1, -1}, coarse, [&](const PairVector& edge) { return sign * ray_.turn(w, edge); },
+        [&](const VertexPair& s) { return sign * ray_.turn(w, point(s)) > 0; });
   }
 
   /// A triangle of vertices of P that the line crosses. In the projection along d this is the planar portal search from
@@ -116,24 +137,24 @@ class PortalSearch {
     int least = 0;
     ray_.scaled().cwiseAbs().minCoeff(&least);
     const DirectionSigns sideways(pair_, ray_.scaled().cross(Vec3::Unit(least)));  // two coordinates of d, exactly
-    v[0] = support_exactly(pair_, {sideways.scaled(), 0}, start(sideways.scaled(), {-1, -1}),
-                           [&](const PairVector& edge) { return sideways.along(edge); });
-    ++support_calls_;
+    v[0] = support(
+        {sideways.scaled(), 0}, {-1, -1}, coarse_, [&](const PairVector& edge) { return sideways.along(edge); },
+        [&](const VertexPair& s) { return sideways.along(point(s)) > 0; });
     const PairVector first = PairVector::point(v[0].a, v[0].b);
     if (sideways.along(first) <= 0) return false;
-    v[1] = support_across(first, 1);
-    v[2] = support_across(first, -1);
+    v[1] = support_across(first, 1, coarse_);
+    v[2] = support_across(first, -1, coarse_);
     if (ray_.turn(first, point(v[1])) <= 0 || ray_.turn(first, point(v[2])) >= 0) return false;
     while (ray_.side(v[1], v[2]) < 0) {
       const PairVector across = step(v[1], v[2]);
-      const VertexPair s = support_across(across, -1);
+      const VertexPair s = support_across(across, -1, coarse_);
       if (ray_.turn(across, point(s)) >= 0) return false;
       (ray_.side(v[0], s) > 0 ? v[1] : v[2]) = s;
     }
     // On the side itself the moved line passes inside, the line perhaps along the boundary.
     if (ray_.turn(point(v[1]), point(v[2])) == 0) {
       const PairVector across = step(v[1], v[2]);
-      if (ray_.turn(across, point(support_across(across, -1))) >= 0) return false;
+      if (ray_.turn(across, point(support_across(across, -1, false))) >= 0) return false;
     }
     return true;
   }
@@ -143,19 +164,25 @@ class PortalSearch {
   /// `enough` may end it earlier.
   template <class Enough>
   void push_outwards(PortalCorners& v, Enough&& enough) {
+    bool coarse = coarse_;
     while (!enough()) {
       const PairVector u = step(v[0], v[1]), w = step(v[0], v[2]);
-      ++support_calls_;
       const double error = pair_.vector_error();
       const RoundedDirection normal = rounded_cross(pair_.approximate(u), error, pair_.approximate(w), error);
       // The triangle's own sides lie in its plane: no arithmetic is spent on those zeros.
       const PairVector third = step(v[1], v[2]);
-      const VertexPair s = support_exactly(pair_, normal, start(normal.vector, v[2]), [&](const PairVector& edge) {
-        if (is_edge(u, edge) || is_edge(w, edge) || is_edge(third, edge)) return 0;
-        return pair_.sign_determinant(edge, u, w);
-      });
-      if (same_point(s, v[0]) || same_point(s, v[1]) || same_point(s, v[2])) return;
-      if (pair_.sign_determinant(step(v[0], s), u, w) <= 0) return;
+      const auto beyond = [&](const VertexPair& s) {
+        if (same_point(s, v[0]) || same_point(s, v[1]) || same_point(s, v[2])) return false;
+        return pair_.sign_determinant(step(v[0], s), u, w) > 0;
+      };
+      const VertexPair s = support(
+          normal, v[2], coarse,
+          [&](const PairVector& edge) {
+            if (is_edge(u, edge) || is_edge(w, edge) || is_edge(third, edge)) return 0;
+            return pair_.sign_determinant(edge, u, w);
+          },
+          [&](const VertexPair& tabled) { return coarse = beyond(tabled); });
+      if (!coarse && !beyond(s)) return;
       const std::array<int, 3> side{ray_.side(v[0], s), ray_.side(v[1], s), ray_.side(v[2], s)};
       for (std::size_t i = 0; i < 3; ++i) {
         if (side[i] < 0 && side[(i + 1) % 3] > 0) {
@@ -170,9 +197,13 @@ class PortalSearch {
     push_outwards(v, [] { return false; });
   }
 
+  /// Above this many vertices a climb costs several times a look into the table.
+  static constexpr int kLarge = 1 << 15;
+
   const DirectionSigns& ray_;
   const PosedPair& pair_;
   const PortalHierarchies& hierarchies_;
+  bool coarse_;  ///< vertices that are only nearly extreme are tried first
   std::int64_t support_calls_ = 0;
 };
 

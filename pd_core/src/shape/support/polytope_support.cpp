@@ -49,6 +49,12 @@ int support_vertex(const ConvexPolytope& p, const Vec3& direction, int near) {
   return climb(p, direction, better(p, direction, first, near));
 }
 
+int coarse_support_vertex(const ConvexPolytope& p, const Vec3& direction) {
+  if (p.num_vertices() <= kScanLimit) return scan(p, direction);
+  Vec3 scaled;
+  return scale_for_search(direction, scaled) ? farthest_in_table(p.storage(), scaled) : -1;
+}
+
 int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int v, std::vector<std::int32_t>& stack) {
   if (p.num_vertices() <= kScanLimit) return v;  // a scan has seen them all
   const double size = direction.cwiseAbs().sum();

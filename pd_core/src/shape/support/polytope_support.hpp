@@ -20,6 +20,10 @@ inline constexpr int kScanLimit = 48;
 /// directions offers. The climb ends because the value strictly grows: a step or none on round bodies, O(n) at worst.
 int support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int near);
 
+/// A vertex that is nearly as far as the farthest, or -1: of a large body the best of a few that one look into the
+/// table of directions finds, whatever the size.
+int coarse_support_vertex(const ConvexPolytope& polytope, const Vec3& direction);
+
 /// As `support_vertex`, started at a vertex where climbing stopped, but the value is within rounding of the maximum for
 /// certain: |<v, direction> - max| <= 6u |v| |direction|. `stack` is a buffer.
 int certified_support_vertex(const ConvexPolytope& polytope, const Vec3& direction, int v,
