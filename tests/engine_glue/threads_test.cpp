@@ -3,7 +3,7 @@
 // Debian's Bullet is built without BT_THREADSAFE: its btParallelFor runs its loop on the calling thread, its spin
 // mutexes do nothing and every thread has index 0, so that one world cannot be dispatched by several threads there.
 // What can be shown is that `install` takes a btCollisionDispatcherMt and that its points are those of the plain
-// dispatcher.
+// dispatcher; the rest stands in one_world_threads_test.cpp.
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
 #include <gtest/gtest.h>
 
