@@ -16,8 +16,8 @@ class Scratch;
 
 struct Width {
   double width = 0;
-  double lower =
-      0;  ///< lower <= exact width <= upper; neighbouring doubles (or equal) but for Method::grid and hulls of spheres
+  /// lower <= exact width <= upper; neighbouring doubles (or equal) but for Method::grid and hulls of spheres.
+  double lower = 0;
   double upper = 0;
   Vec3 normal = Vec3::UnitX();  ///< unit normal of the two planes, in the common frame
   Statistics statistics;

@@ -11,9 +11,8 @@ namespace pd::detail {
 /// The exponent of the pair's size where doubles lack room for products of lengths, else 0: nothing need be scaled.
 [[nodiscard]] int extreme_exponent(const PosedShape& a, const PosedShape& b);
 
-/// Times 2^exponent. Sizes that fall below 2^-900 are raised to it, of spheres
-/// lowered to 0: next to a pair of size 1 that is nothing. Builds
-/// a polytope's hull anew.
+/// Times 2^exponent. Sizes that fall below 2^-900 are raised to it, of spheres lowered to 0: next to a pair of size 1
+/// that is nothing. Builds a polytope's hull anew.
 [[nodiscard]] ConvexShape scaled(const ConvexShape& shape, int exponent);
 
 /// Two bodies times 2^-exponent about A's translation, which comes to lie at the origin: what is far away may be small.
