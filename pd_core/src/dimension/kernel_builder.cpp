@@ -104,15 +104,22 @@ void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t 
   }
   sort_candidates();
   located_ += static_cast<std::int64_t>(candidates_.size());
+  // The order jumps about in the block: what comes is fetched while what is there is searched.
   constexpr std::size_t kAhead = 8;
-  for (std::size_t n = 0; n < order_.size(); ++n) {
-    // The order jumps about in the block: what comes is fetched while what is there is searched.
-    if (n + kAhead < order_.size()) {
-      const Candidate* soon = &candidates_[static_cast<std::size_t>(order_[n + kAhead])];
-      __builtin_prefetch(soon);
-      __builtin_prefetch(reinterpret_cast<const char*>(soon + 1) - 1);
+  const auto fetch = [](const auto& object) {
+    for (std::size_t byte = 0; byte < sizeof object; byte += 64) {
+      __builtin_prefetch(reinterpret_cast<const char*>(&object) + byte);
     }
-    const Candidate& c = candidates_[static_cast<std::size_t>(order_[n])];
+  };
+  const auto candidate = [&](std::size_t n) -> const Candidate& {
+    return candidates_[static_cast<std::size_t>(order_[n])];
+  };
+  for (std::size_t n = 0; n < order_.size(); ++n) {
+    if (n + kAhead < order_.size()) {
+      fetch(candidate(n + kAhead));
+      fetch(hull_.facets()[hints_[static_cast<std::size_t>(candidate(n + kAhead / 2).cell)]]);
+    }
+    const Candidate& c = candidate(n);
     std::int32_t& hint = hints_[static_cast<std::size_t>(c.cell)];
     hint = hull_.locate(c.unit, hint, cones_visited_);
     if (hull_.gauge(hint, c.unit) <= limit_) continue;
