@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "pd/planar/direction_set.hpp"
 #include "planar/polygon_oracle.hpp"
 #include "planar/small_polygons.hpp"
 
@@ -187,8 +189,40 @@ TEST(PolygonDepth, ScalesByPowersOfTwoKeepEveryBit) {
       ASSERT_EQ(a.contact, b.contact);
       ASSERT_EQ(a.lower * scale, b.lower);
       ASSERT_EQ(a.upper * scale, b.upper);
+      for (const Leave leave : {Leave::first_exit, Leave::straight, Leave::escape}) {
+        const PolygonDepth c = before.depth_along(y, {3, 1}, leave);
+        const PolygonDepth d = after.depth_along({y[0] * scale, y[1] * scale}, {3, 1}, leave);
+        ASSERT_EQ(c.contact, d.contact);
+        ASSERT_EQ(c.lower * scale, d.lower);
+        ASSERT_EQ(c.upper * scale, d.upper);
+      }
     }
   }
+}
+
+TEST(PolygonDepth, DirectionsOfAnyLengthGiveTheSameBits) {
+  SmallPolygons next(6);
+  int overlapping = 0;
+  for (const double length : {0x1p-1072, 0x1p-1030, 0x1p-500, 0x1p-30, 0x1p990}) {
+    for (int i = 0; i < 30; ++i) {
+      const auto r = *PolygonDifference::of(pd::test::made(next.simple(8, 9, true)), pd::test::made(next.convex(5, 4)));
+      const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)};
+      const Point2 d = {double(next.whole(-3, 3)), double(next.whole(1, 3))};
+      const Point2 scaled = {d[0] * length, d[1] * length};
+      for (const Leave leave : {Leave::first_exit, Leave::straight, Leave::escape}) {
+        const PolygonDepth a = r.depth_along(y, d, leave), b = r.depth_along(y, scaled, leave);
+        overlapping += a.contact == PlanarContact::overlapping ? 1 : 0;
+        ASSERT_EQ(a.contact, b.contact) << length;
+        ASSERT_EQ(a.lower, b.lower) << length;
+        ASSERT_EQ(a.upper, b.upper) << length;
+        ASSERT_EQ(a.translation, b.translation) << length;
+      }
+      const pd::DirectionSet both = *pd::DirectionSet::of(r, std::array{d, scaled});
+      ASSERT_EQ(both.depth(y, 0).contact, both.depth(y, 1).contact) << length;
+      ASSERT_EQ(both.depth(y, 0).lower, both.depth(y, 1).lower) << length;
+    }
+  }
+  EXPECT_GT(overlapping, 40);
 }
 
 TEST(PolygonDepth, NeitherConvexIsRefusedByTheImplicitMethod) {
