@@ -66,8 +66,6 @@ void ManifoldState::save(const btPersistentManifold& manifold, const detail::Pai
   for (int k = 0; k < count; ++k) points.push_back(manifold.getContactPoint(k));
   if (remembered == nullptr || remembered->is_blank()) {
     memory.reset();
-  } else if (memory) {
-    *memory = *remembered;
   } else {
     memory = *remembered;
   }

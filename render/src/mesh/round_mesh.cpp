@@ -91,38 +91,37 @@ void add_arc(std::vector<ProfilePoint>& profile, double radius, double centre_he
   }
 }
 
-}  // namespace
-
-MeshRef sphere_mesh(double radius) { return ellipsoid_mesh(Vec3::Constant(radius)); }
-
-MeshRef ellipsoid_mesh(const Vec3& radii) {
+/// A mesh over the directions of a sphere.
+/// @param vertex  adds the vertex of a unit vector.
+template <class Vertex>
+MeshRef over_sphere(Vertex&& vertex) {
   detail::MeshBuilder builder;
   for (int row = 0; row <= kMeridian; ++row) {
     const double angle = std::numbers::pi * (static_cast<double>(row) / kMeridian - 0.5);
     const double c = row == 0 || row == kMeridian ? 0 : std::cos(angle);
     for (int step = 0; step <= kAround; ++step) {
-      const Vec3 unit(c * std::cos(turn(step)), c * std::sin(turn(step)), std::sin(angle));
-      // The gradient of sum (x_i / r_i)^2, scaled so that no component overflows.
-      const Vec3 gradient = (radii.minCoeff() * unit).cwiseQuotient(radii);
-      builder.add_vertex(unit.cwiseProduct(radii), gradient.normalized());
+      vertex(builder, Vec3(c * std::cos(turn(step)), c * std::sin(turn(step)), std::sin(angle)));
     }
   }
   add_strips(builder, 0, kMeridian + 1, true, true);
   return builder.finish();
 }
 
+}  // namespace
+
+MeshRef sphere_mesh(double radius) { return ellipsoid_mesh(Vec3::Constant(radius)); }
+
+MeshRef ellipsoid_mesh(const Vec3& radii) {
+  return over_sphere([&](detail::MeshBuilder& builder, const Vec3& unit) {
+    // The gradient of sum (x_i / r_i)^2, scaled so that no component overflows.
+    const Vec3 gradient = (radii.minCoeff() * unit).cwiseQuotient(radii);
+    builder.add_vertex(unit.cwiseProduct(radii), gradient.normalized());
+  });
+}
+
 MeshRef sphere_hull_mesh(const SphereHull& hull) {
-  detail::MeshBuilder builder;
-  for (int row = 0; row <= kMeridian; ++row) {
-    const double angle = std::numbers::pi * (static_cast<double>(row) / kMeridian - 0.5);
-    const double c = row == 0 || row == kMeridian ? 0 : std::cos(angle);
-    for (int step = 0; step <= kAround; ++step) {
-      const Vec3 unit(c * std::cos(turn(step)), c * std::sin(turn(step)), std::sin(angle));
-      builder.add_vertex(hull.support(unit), unit);
-    }
-  }
-  add_strips(builder, 0, kMeridian + 1, true, true);
-  return builder.finish();
+  return over_sphere(
+      [&](detail::MeshBuilder& builder, const Vec3& unit) { builder.add_vertex(hull.support(unit), unit); });
 }
 
 MeshRef capsule_mesh(double radius, double half_height, int axis) {
