@@ -85,6 +85,18 @@ struct FixedGap {
 constexpr FixedGap kGaps[] = {
     {"beyond_8", 8, false}, {"beyond_8_warm", 8, true}, {"beyond_128", 128, false}, {"beyond_128_warm", 128, true}};
 
+/// Apart by a share of the first body's radius: how far, cold.
+struct FixedDistance {
+  const char* name;
+  PairFamily family;
+  int vertices;
+  double gap;
+};
+constexpr FixedDistance kDistances[] = {{"distance_8_near", PairFamily::sphere, 8, 0.01},
+                                        {"distance_8_far", PairFamily::sphere, 8, 1},
+                                        {"distance_128_near", PairFamily::sphere, 128, 0.01},
+                                        {"distance_needle_8", PairFamily::needle, 8, 0.1}};
+
 /// Two bricks flush on each other, cold, for contacts.
 struct FixedFlush {
   const char* name;
@@ -184,6 +196,23 @@ int main(int argc, char** argv) {
                 static_cast<long long>(answer.statistics.support_calls));
     return 0;
   }
+  for (const FixedDistance& c : kDistances) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::scenes::PointPair pair = pd::scenes::make_pair(c.family, c.vertices, DepthClass::mid, 1);
+    const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
+    const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
+    pd::Scratch scratch;
+    const pd::PenetrationDepth in = pd::penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch, kHotPath);
+    const pd::Vec3 out = (in.depth + c.gap * a.polytope()->radius()) * in.normal;
+    const pd::PosedShape posed_a{
+        &a, pd::Pose::from_trusted_matrix(pair.pose_a.rotation(), pair.pose_a.translation() + out)};
+    const pd::PosedShape posed_b{&b, pair.pose_b};
+    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &kHotPath);
+    std::printf("%s: distance in [%.17g, %.17g], %lld supports\n", c.name, answer.distance_lower, answer.distance_upper,
+                static_cast<long long>(answer.statistics.support_calls));
+    return 0;
+  }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     const pd::bench::FlushBricks bricks(c.gap);
@@ -200,6 +229,7 @@ int main(int argc, char** argv) {
   for (const FixedTightest& c : kTightest) std::fprintf(stderr, " %s", c.name);
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
   for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
+  for (const FixedDistance& c : kDistances) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;

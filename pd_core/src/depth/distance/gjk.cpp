@@ -3,59 +3,86 @@
 #include <algorithm>
 #include <limits>
 
+#include "numeric/instruction_sets.hpp"
 #include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-struct Candidate {
-  double squared = std::numeric_limits<double>::infinity();
-  Vec3 point = Vec3::Zero();
-  int members[4] = {0, 0, 0, 0};
-  double weights[4] = {0, 0, 0, 0};
-  int count = 0;
+/// The faces of a simplex that were looked at, and the nearest point among them.
+class NearestOfFaces {
+ public:
+  explicit NearestOfFaces(const DifferenceVertex* simplex) : s_(simplex) {}
+
+  PD_INLINE void vertex(int i) { take<1>({i}, {1.0}); }
+
+  PD_INLINE void edge(int i, int j) {
+    const Vec3 e = s_[j].x - s_[i].x;
+    const double squared = e.squaredNorm();
+    if (!(squared > 0)) return;
+    // Each weight from its own end keeps both accurate.
+    take<2>({i, j}, {s_[j].x.dot(e) / squared, -s_[i].x.dot(e) / squared});
+  }
+
+  /// False where the origin's projection lies outside.
+  PD_INLINE bool triangle(int i, int j, int k) {
+    const Vec3 n = (s_[j].x - s_[i].x).cross(s_[k].x - s_[i].x);
+    const double squared = n.squaredNorm();
+    if (!(squared > 0)) return false;
+    const double wi = n.dot(s_[j].x.cross(s_[k].x));
+    const double wj = n.dot(s_[k].x.cross(s_[i].x));
+    const double wk = n.dot(s_[i].x.cross(s_[j].x));
+    if (!(wi > 0 && wj > 0 && wk > 0)) return false;
+    return take<3>({i, j, k}, {wi / squared, wj / squared, wk / squared});
+  }
+
+  /// Keeps the face of the nearest point in the simplex, which it was made from; returns the point.
+  Vec3 keep(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]) const {
+    for (int i = 0; i < count_; ++i) {
+      simplex[i] = simplex[members_[i]];  // members ascend, so nothing is overwritten before it is read
+      weights[i] = weights_[i];
+    }
+    count = count_;
+    return point_;
+  }
+
+ private:
+  /// False where a weight is not positive.
+  template <int Count>
+  PD_INLINE bool take(const int (&members)[Count], const double (&weights)[Count]) {
+    double total = 0;
+    for (int i = 0; i < Count; ++i) {
+      if (!(weights[i] > 0)) return false;
+      total += weights[i];
+    }
+    // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination: it lies in
+    // P.
+    double shares[Count];
+    Vec3 point = Vec3::Zero();
+    for (int i = 0; i < Count; ++i) {
+      shares[i] = weights[i] / total;
+      point += shares[i] * s_[members[i]].x;
+    }
+    const double squared = point.squaredNorm();
+    if (!(squared < squared_)) return true;
+    squared_ = squared;
+    point_ = point;
+    count_ = Count;
+    for (int i = 0; i < Count; ++i) {
+      members_[i] = members[i];
+      weights_[i] = shares[i];
+    }
+    return true;
+  }
+
+  const DifferenceVertex* s_;
+  double squared_ = std::numeric_limits<double>::infinity();
+  Vec3 point_ = Vec3::Zero();
+  int count_ = 0;
+  int members_[3];
+  double weights_[3];
 };
-
-void consider(Candidate& best, const DifferenceVertex* simplex, std::initializer_list<int> members,
-              std::initializer_list<double> weights) {
-  Candidate c;
-  for (const int m : members) c.members[c.count++] = m;
-  int k = 0;
-  double total = 0;
-  for (const double w : weights) {
-    if (!(w > 0)) return;
-    c.weights[k++] = w;
-    total += w;
-  }
-  // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination: it lies in P.
-  for (int i = 0; i < c.count; ++i) {
-    c.weights[i] /= total;
-    c.point += c.weights[i] * simplex[c.members[i]].x;
-  }
-  c.squared = c.point.squaredNorm();
-  if (c.squared < best.squared) best = c;
-}
-
-void consider_edge(Candidate& best, const DifferenceVertex* s, int i, int j) {
-  const Vec3 e = s[j].x - s[i].x;
-  const double squared = e.squaredNorm();
-  if (!(squared > 0)) return;
-  // Each weight from its own end keeps both accurate.
-  consider(best, s, {i, j}, {s[j].x.dot(e) / squared, -s[i].x.dot(e) / squared});
-}
-
-/// False where the origin's projection lies outside.
-bool consider_triangle(Candidate& best, const DifferenceVertex* s, int i, int j, int k) {
-  const Vec3 n = (s[j].x - s[i].x).cross(s[k].x - s[i].x);
-  const double squared = n.squaredNorm();
-  if (!(squared > 0)) return false;
-  const double wi = n.dot(s[j].x.cross(s[k].x)) / squared;
-  const double wj = n.dot(s[k].x.cross(s[i].x)) / squared;
-  const double wk = n.dot(s[i].x.cross(s[j].x)) / squared;
-  consider(best, s, {i, j, k}, {wi, wj, wk});
-  return wi > 0 && wj > 0 && wk > 0;
-}
 
 /// No angle at the first corner below 2^-10.
 bool is_well_shaped(const DifferenceVertex* s) {
@@ -82,23 +109,34 @@ Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double
     weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
     return Vec3::Zero();
   }
-  Candidate best;
+  NearestOfFaces nearest(simplex);
   // A triangle that holds the projection holds the nearest point: bodies at rest end here. In a slender one
   // rounding may say so, too.
-  const bool inside = count == 3 && is_well_shaped(simplex) && consider_triangle(best, simplex, 0, 1, 2);
+  const bool inside = count == 3 && is_well_shaped(simplex) && nearest.triangle(0, 1, 2);
   for (int i = 0; i < count && !inside; ++i) {
-    consider(best, simplex, {i}, {1.0});
+    nearest.vertex(i);
     for (int j = i + 1; j < count; ++j) {
-      consider_edge(best, simplex, i, j);
-      for (int k = j + 1; k < count; ++k) consider_triangle(best, simplex, i, j, k);
+      nearest.edge(i, j);
+      for (int k = j + 1; k < count; ++k) nearest.triangle(i, j, k);
     }
   }
-  for (int i = 0; i < best.count; ++i) {
-    simplex[i] = simplex[best.members[i]];  // members ascend, so nothing is overwritten before it is read
-    weights[i] = best.weights[i];
+  return nearest.keep(simplex, count, weights);
+}
+
+Vec3 closest_point_with_newest(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]) {
+  if (count == 4 && inside_tetrahedron(simplex)) {
+    weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
+    return Vec3::Zero();
   }
-  count = best.count;
-  return best.point;
+  NearestOfFaces nearest(simplex);
+  const int newest = count - 1;
+  const bool inside = count == 3 && is_well_shaped(simplex) && nearest.triangle(0, 1, 2);
+  for (int i = 0; i < newest && !inside; ++i) {
+    for (int j = i + 1; j < newest; ++j) nearest.triangle(i, j, newest);
+    nearest.edge(i, newest);
+  }
+  if (!inside) nearest.vertex(newest);
+  return nearest.keep(simplex, count, weights);
 }
 
 }  // namespace pd::detail

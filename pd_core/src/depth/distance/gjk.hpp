@@ -30,6 +30,9 @@ struct ClosestPoint {
 /// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
 Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
 
+/// The same where the last of two to four points is new and the others are such a face: of the faces that hold it.
+Vec3 closest_point_with_newest(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]);
+
 /// The direction to look for a support in: the opposite of the nearest point of the simplex, or of a triangle's plane.
 ///
 /// The point errs by u times the reach, so that its direction errs by u reach / distance and the support there by
@@ -47,7 +50,7 @@ inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, co
   return (unit - toward).norm() <= std::min(0x1p-20, noise / length) ? unit : toward;
 }
 
-/// @param start     one to three vertices of P to begin with, affinely independent.
+/// @param start     one to four vertices of P to begin with.
 /// @param relative  stop when upper <= (1 + relative) lower, both less `width.margin` ...
 /// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 template <class Difference>
@@ -59,12 +62,11 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
   const double rounding = 8 * kUnitRoundoff * difference.reach();
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;
-  double best = r.point.norm();
+  double length = r.point.norm();
   double largest = 0;
   for (const DifferenceVertex& v : start) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
   bool seen_far_side = false;
   for (;;) {
-    const double length = r.point.norm();
     r.upper = length + upper_error;
     if (!(length > 4 * lower_error)) return r;
     const Vec3 toward = search_direction(r.simplex, r.count, r.point, length, 6 * upper_error);
@@ -72,21 +74,21 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
     ++support_calls;
     largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
     double height = -s.x.dot(toward);
-    const auto narrow = [&] {
+    const auto narrow_for = [&](double size) {
       r.lower = height - lower_error;
-      return r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || width.is_within(relative, r.lower, r.upper));
+      return r.lower > 0 && (r.upper - r.lower <= width.limit(size) || width.is_within(relative, r.lower, r.upper));
     };
-    if (!narrow() && !seen_far_side) {
+    if (!seen_far_side && !narrow_for(largest) && narrow_for(difference.reach())) {
       // What is near the origin says little about L: look at P's far side once.
       const DifferenceVertex far = difference.support(difference.centre(), nullptr);
       ++support_calls;
       largest = std::max(largest, far.x.cwiseAbs().maxCoeff());
       seen_far_side = true;
     }
-    if (narrow()) {
+    if (narrow_for(largest)) {
       s = difference.certified_support(toward, s, stack);
       height = -s.x.dot(toward);
-      if (narrow()) {
+      if (narrow_for(largest)) {
         r.certified = true;
         r.normal = toward;
         return r;
@@ -95,12 +97,20 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
     for (int i = 0; i < r.count; ++i) {
       if (r.simplex[i].a == s.a && r.simplex[i].b == s.b) return r;  // nothing new: rounding has the last word
     }
-    const ClosestPoint last = r;
-    r.simplex[r.count++] = s;
-    r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
-    if (r.count == 4) return r;
-    if (!(r.point.norm() < best)) return last;  // nearly equal supports: rounding has lost the closest point
-    best = r.point.norm();
+    DifferenceVertex simplex[4] = {r.simplex[0], r.simplex[1], r.simplex[2], r.simplex[3]};
+    double weights[4];
+    int count = r.count;
+    simplex[count++] = s;
+    const Vec3 point = closest_point_with_newest(simplex, count, weights);
+    const double next_length = point.norm();
+    // Nearly equal supports: rounding has lost the closest point.
+    if (count < 4 && !(next_length < length)) return r;
+    std::copy_n(simplex, count, r.simplex);
+    std::copy_n(weights, count, r.weights);
+    r.count = count;
+    r.point = point;
+    length = next_length;
+    if (count == 4) return r;
   }
 }
 

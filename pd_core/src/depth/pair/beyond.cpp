@@ -49,7 +49,7 @@ std::optional<SeparatingPlane> find_plane(const Difference& difference, const Ve
       if (simplex[i].a == s.a && simplex[i].b == s.b) return std::nullopt;
     }
     simplex[count++] = s;
-    const Vec3 point = closest_point_on_simplex(simplex, count, weights);
+    const Vec3 point = count == 1 ? simplex[0].x : closest_point_with_newest(simplex, count, weights);
     const double length = point.norm();
     // A point of P so close to the origin: no plane lies farther from it.
     if (count == 4 || !(length > least)) return std::nullopt;
