@@ -19,22 +19,15 @@ class NearestOfFaces {
 
   PD_INLINE void edge(int i, int j) {
     const Vec3 e = s_[j].x - s_[i].x;
-    const double squared = e.squaredNorm();
-    if (!(squared > 0)) return;
     // Each weight from its own end keeps both accurate.
-    take<2>({i, j}, {s_[j].x.dot(e) / squared, -s_[i].x.dot(e) / squared});
+    take<2>({i, j}, {s_[j].x.dot(e), -s_[i].x.dot(e)});
   }
 
   /// False where the origin's projection lies outside.
   PD_INLINE bool triangle(int i, int j, int k) {
     const Vec3 n = (s_[j].x - s_[i].x).cross(s_[k].x - s_[i].x);
-    const double squared = n.squaredNorm();
-    if (!(squared > 0)) return false;
-    const double wi = n.dot(s_[j].x.cross(s_[k].x));
-    const double wj = n.dot(s_[k].x.cross(s_[i].x));
-    const double wk = n.dot(s_[i].x.cross(s_[j].x));
-    if (!(wi > 0 && wj > 0 && wk > 0)) return false;
-    return take<3>({i, j, k}, {wi / squared, wj / squared, wk / squared});
+    return take<3>({i, j, k},
+                   {n.dot(s_[j].x.cross(s_[k].x)), n.dot(s_[k].x.cross(s_[i].x)), n.dot(s_[i].x.cross(s_[j].x))});
   }
 
   /// Keeps the face of the nearest point in the simplex, which it was made from; returns the point.
@@ -48,7 +41,7 @@ class NearestOfFaces {
   }
 
  private:
-  /// False where a weight is not positive.
+  /// Weights up to a factor. False where one is not positive.
   template <int Count>
   PD_INLINE bool take(const int (&members)[Count], const double (&weights)[Count]) {
     double total = 0;
@@ -58,10 +51,11 @@ class NearestOfFaces {
     }
     // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination: it lies in
     // P.
+    const double share = 1 / total;
     double shares[Count];
     Vec3 point = Vec3::Zero();
     for (int i = 0; i < Count; ++i) {
-      shares[i] = weights[i] / total;
+      shares[i] = weights[i] * share;
       point += shares[i] * s_[members[i]].x;
     }
     const double squared = point.squaredNorm();

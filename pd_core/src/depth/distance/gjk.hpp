@@ -50,7 +50,7 @@ inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, co
   return (unit - toward).norm() <= std::min(0x1p-20, noise / length) ? unit : toward;
 }
 
-/// @param start     one to four vertices of P to begin with.
+/// @param start     one to three vertices of P to begin with, or a triangle and a vertex next to its plane's far side.
 /// @param relative  stop when upper <= (1 + relative) lower, both less `width.margin` ...
 /// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 template <class Difference>
@@ -58,7 +58,8 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
                            const BracketWidth& width, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   ClosestPoint r;
   for (const DifferenceVertex& v : start) r.simplex[r.count++] = v;
-  r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
+  r.point = r.count < 4 ? closest_point_on_simplex(r.simplex, r.count, r.weights)
+                        : closest_point_with_newest(r.simplex, r.count, r.weights);
   const double rounding = 8 * kUnitRoundoff * difference.reach();
   const double upper_error = difference.point_error() + rounding;
   const double lower_error = difference.point_error() + difference.support_error() + rounding;

@@ -101,7 +101,10 @@ class ExpandingPolytope {
       DifferenceVertex supports[4];
       polytope.difference_.search_supports(units, supports);
       for (int k = 0; k < 4; ++k) {
-        if (!polytope.add_if_not_beyond(units[k], supports[k], result)) return false;
+        if (!polytope.add_if_not_beyond(units[k], supports[k], result)) {
+          for (int j = k + 1; j < 4; ++j) polytope.surface_.vertices.push_back(supports[j]);
+          return false;
+        }
       }
       return true;
     }
@@ -118,6 +121,7 @@ class ExpandingPolytope {
         result.status = ExpansionStatus::separated;
         result.upper = height + bound_error();
         result.normal = unit;
+        result.separating = s;
         return false;
       }
     }
@@ -207,6 +211,7 @@ class ExpandingPolytope {
       result.status = ExpansionStatus::separated;
       result.upper = height + bound_error();
       result.normal = unit;
+      result.separating = s;
       return true;
     }
     if (height + bound_error() < result.upper) {

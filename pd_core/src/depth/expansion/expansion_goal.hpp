@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "depth/difference/polytope_difference.hpp"
 #include "pd/numeric/vector.hpp"
 
 namespace pd::detail {
@@ -23,8 +24,9 @@ struct ExpansionResult {
   ExpansionStatus status = ExpansionStatus::undecided;
   double lower = 0;  ///< -infinity when nothing is known
   double upper = std::numeric_limits<double>::infinity();
-  Vec3 normal = Vec3::UnitX();  ///< unit, of `upper` (or of the separating plane)
-  int face = -1;                ///< nearest face of the polytope, -1 when separated
+  Vec3 normal = Vec3::UnitX();                        ///< unit, of `upper` (or of the separating plane)
+  int face = -1;                                      ///< nearest face of the polytope, if there was one
+  DifferenceVertex separating{Vec3::Zero(), -1, -1};  ///< the vertex of P next to the separating plane, if there is one
 };
 
 /// `ExpansionGoal::close` of Bracket::contact: a thousandth of the depth.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
@@ -31,6 +32,27 @@ VertexPair any_vertex(PolytopeQuery& query, const ExpansionResult& surface) {
   if (!query.within_range()) return {0, 0};
   const DifferenceVertex s = query.with_supports().support(surface.normal, nullptr);
   return {s.a, s.b};
+}
+
+/// Vertices of P to look for the closest point from: those next to the plane that the expansion ended with.
+std::span<const DifferenceVertex> first_simplex(PolytopeQuery& query, const ExpansionResult& ended,
+                                                std::array<DifferenceVertex, 4>& vertices) {
+  if (ended.status != ExpansionStatus::separated) {
+    vertices[0] = query.with_supports().support(ended.normal, nullptr);
+    return std::span(vertices).first(1);
+  }
+  const InnerSurface& surface = query.buffers.surface;
+  std::size_t count = 3;
+  if (ended.face >= 0) {
+    DifferenceVertex corners[3];
+    face_corners(surface, ended.face, corners);
+    std::copy_n(corners, count, vertices.begin());
+  } else {
+    count = std::min(count, surface.vertices.size());
+    std::copy_n(surface.vertices.begin(), count, vertices.begin());
+  }
+  vertices[count++] = ended.separating;
+  return std::span(vertices).first(count);
 }
 
 /// The nearest facet proved among `near`; every other piece of the surface is `beyond` or farther (in the caller's
@@ -158,17 +180,20 @@ bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surf
 }
 
 bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  std::array<DifferenceVertex, 4> vertices;
   std::array<VertexPair, 4> start;
   std::size_t count = 0;
   // Also where a slender body's first simplex is flat to doubles: the bodies may be far apart.
   const bool in_doubles = surface.status == ExpansionStatus::separated || (surface.face < 0 && query.within_range());
   if (in_doubles) {
-    const DifferenceVertex first = query.with_supports().support(surface.normal, nullptr);
-    const ClosestPoint nearest = closest_point(query, {&first, 1}, out.statistics);
+    const ClosestPoint nearest = closest_point(query, first_simplex(query, surface, vertices), out.statistics);
     if (answer_apart(query, nearest, out) && query.bracket == Bracket::certified) return true;
     for (; count < static_cast<std::size_t>(nearest.count); ++count) {
       start[count] = {nearest.simplex[count].a, nearest.simplex[count].b};
     }
+    // The bits of what follows are those of the simplex, however the search came to it.
+    std::sort(start.begin(), start.begin() + count,
+              [](const VertexPair& p, const VertexPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
   } else {
     start[count++] = any_vertex(query, surface);
   }
