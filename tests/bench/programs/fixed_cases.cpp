@@ -85,17 +85,20 @@ struct FixedGap {
 constexpr FixedGap kGaps[] = {
     {"beyond_8", 8, false}, {"beyond_8_warm", 8, true}, {"beyond_128", 128, false}, {"beyond_128_warm", 128, true}};
 
-/// Apart by a share of the first body's radius: how far, cold.
+/// Apart by a share of the first body's radius: how far.
 struct FixedDistance {
   const char* name;
   PairFamily family;
   int vertices;
   double gap;
+  bool warm;  ///< with the memory of three frames, each .01 rad from the next
 };
-constexpr FixedDistance kDistances[] = {{"distance_8_near", PairFamily::sphere, 8, 0.01},
-                                        {"distance_8_far", PairFamily::sphere, 8, 1},
-                                        {"distance_128_near", PairFamily::sphere, 128, 0.01},
-                                        {"distance_needle_8", PairFamily::needle, 8, 0.1}};
+constexpr FixedDistance kDistances[] = {{"distance_8_near", PairFamily::sphere, 8, 0.01, false},
+                                        {"distance_8_far", PairFamily::sphere, 8, 1, false},
+                                        {"distance_128_near", PairFamily::sphere, 128, 0.01, false},
+                                        {"distance_needle_8", PairFamily::needle, 8, 0.1, false},
+                                        {"distance_8_far_warm", PairFamily::sphere, 8, 1, true},
+                                        {"distance_128_near_warm", PairFamily::sphere, 128, 0.01, true}};
 
 /// Two bricks flush on each other, cold, for contacts.
 struct FixedFlush {
@@ -116,6 +119,23 @@ __attribute__((noinline)) void pdepth_counted_call(const pd::PosedShape* a, cons
 }
 }
 
+namespace {
+
+/// Three frames, each of B so far turned from the next; the last one from its pose.
+void remember_frames(const pd::PosedShape& a, const pd::PosedShape& b, double radians, pd::Scratch& scratch,
+                     pd::WarmCertificate& certificate) {
+  for (int frames = 3; frames > 0; --frames) {
+    const double half_angle = frames * radians / 2;
+    const pd::Mat3 turn{{1 - 2 * half_angle * half_angle, -2 * half_angle, 0},
+                        {2 * half_angle, 1 - 2 * half_angle * half_angle, 0},
+                        {0, 0, 1}};
+    const pd::PosedShape before{b.shape, pd::Pose::from_trusted_matrix(turn * b.pose.rotation(), b.pose.translation())};
+    (void)pd::penetration_depth(a, before, scratch, kHotPath, &certificate);
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   for (const FixedCase& c : kCases) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
@@ -128,15 +148,7 @@ int main(int argc, char** argv) {
     pd::WarmCertificate certificate;
     pd::PenetrationDepth answer;
     if (c.warm_radians > 0) {
-      for (int frames = 3; frames > 0; --frames) {
-        const double half_angle = frames * c.warm_radians / 2;
-        const pd::Mat3 turn{{1 - 2 * half_angle * half_angle, -2 * half_angle, 0},
-                            {2 * half_angle, 1 - 2 * half_angle * half_angle, 0},
-                            {0, 0, 1}};
-        const pd::PosedShape before{
-            &b, pd::Pose::from_trusted_matrix(turn * pair.pose_b.rotation(), pair.pose_b.translation())};
-        answer = pd::penetration_depth(posed_a, before, scratch, kHotPath, &certificate);
-      }
+      remember_frames(posed_a, posed_b, c.warm_radians, scratch, certificate);
     } else {
       answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
     }
@@ -207,8 +219,10 @@ int main(int argc, char** argv) {
     const pd::PosedShape posed_a{
         &a, pd::Pose::from_trusted_matrix(pair.pose_a.rotation(), pair.pose_a.translation() + out)};
     const pd::PosedShape posed_b{&b, pair.pose_b};
+    pd::WarmCertificate certificate;
     pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
-    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &kHotPath);
+    if (c.warm) remember_frames(posed_a, posed_b, 0.01, scratch, certificate);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, c.warm ? &certificate : nullptr, &answer, &kHotPath);
     std::printf("%s: distance in [%.17g, %.17g], %lld supports\n", c.name, answer.distance_lower, answer.distance_upper,
                 static_cast<long long>(answer.statistics.support_calls));
     return 0;

@@ -149,6 +149,8 @@ class PolytopeDifference {
     return vertex(certified_support_vertex(a_, on_a, s.a, stack), certified_support_vertex(b_, on_b, s.b, stack));
   }
 
+  /// Whether a body has too many vertices to look at them all.
+  [[nodiscard]] bool climbs() const { return climbs_; }
   [[nodiscard]] const ConvexPolytope& a() const { return a_; }
   [[nodiscard]] const ConvexPolytope& b() const { return b_; }
   [[nodiscard]] const Mat3& rotation_a() const { return rotation_a_; }

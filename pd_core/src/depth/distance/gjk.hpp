@@ -50,6 +50,18 @@ inline Vec3 search_direction(const DifferenceVertex (&simplex)[4], int count, co
   return (unit - toward).norm() <= std::min(0x1p-20, noise / length) ? unit : toward;
 }
 
+/// What rounding may make of a bracket's ends.
+struct DistanceErrors {
+  double upper;  ///< of the length of a point of P
+  double lower;  ///< of the height of a certified support
+};
+template <class Difference>
+DistanceErrors distance_errors(const Difference& difference) {
+  const double rounding = 8 * kUnitRoundoff * difference.reach();
+  const double upper = difference.point_error() + rounding;
+  return {upper, upper + difference.support_error()};
+}
+
 /// @param start     one to three vertices of P to begin with, or a triangle and a vertex next to its plane's far side.
 /// @param relative  stop when upper <= (1 + relative) lower, both less `width.margin` ...
 /// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
@@ -60,31 +72,33 @@ ClosestPoint closest_point(const Difference& difference, std::span<const Differe
   for (const DifferenceVertex& v : start) r.simplex[r.count++] = v;
   r.point = r.count < 4 ? closest_point_on_simplex(r.simplex, r.count, r.weights)
                         : closest_point_with_newest(r.simplex, r.count, r.weights);
-  const double rounding = 8 * kUnitRoundoff * difference.reach();
-  const double upper_error = difference.point_error() + rounding;
-  const double lower_error = difference.point_error() + difference.support_error() + rounding;
+  const DistanceErrors error = distance_errors(difference);
   double length = r.point.norm();
   double largest = 0;
   for (const DifferenceVertex& v : start) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+  // What is near the origin says little about L; P's centre says more, and P's far side, which takes a support, all.
   bool seen_far_side = false;
   for (;;) {
-    r.upper = length + upper_error;
-    if (!(length > 4 * lower_error)) return r;
-    const Vec3 toward = search_direction(r.simplex, r.count, r.point, length, 6 * upper_error);
+    r.upper = length + error.upper;
+    if (!(length > 4 * error.lower)) return r;
+    const Vec3 toward = search_direction(r.simplex, r.count, r.point, length, 6 * error.upper);
     DifferenceVertex s = difference.support(toward, &r.simplex[r.count - 1]);
     ++support_calls;
     largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
     double height = -s.x.dot(toward);
     const auto narrow_for = [&](double size) {
-      r.lower = height - lower_error;
+      r.lower = height - error.lower;
       return r.lower > 0 && (r.upper - r.lower <= width.limit(size) || width.is_within(relative, r.lower, r.upper));
     };
     if (!seen_far_side && !narrow_for(largest) && narrow_for(difference.reach())) {
-      // What is near the origin says little about L: look at P's far side once.
-      const DifferenceVertex far = difference.support(difference.centre(), nullptr);
-      ++support_calls;
-      largest = std::max(largest, far.x.cwiseAbs().maxCoeff());
-      seen_far_side = true;
+      const Vec3 centre = difference.centre();
+      largest = std::max(largest, centre.cwiseAbs().maxCoeff());
+      if (!narrow_for(largest)) {
+        const DifferenceVertex far = difference.support(centre, nullptr);
+        ++support_calls;
+        largest = std::max(largest, far.x.cwiseAbs().maxCoeff());
+        seen_far_side = true;
+      }
     }
     if (narrow_for(largest)) {
       s = difference.certified_support(toward, s, stack);

@@ -213,10 +213,12 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
   return true;
 }
 
+double relative_of_distance(const PolytopeQuery& query) {
+  return query.pair.margins.both() > 0 ? 0.0 : query.settings.delta;
+}
+
 ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
-  // What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
-  const double relative = query.pair.margins.both() > 0 ? 0.0 : query.settings.delta;
-  return closest_point(query.with_supports(), start, relative, query.width(), query.buffers.stack,
+  return closest_point(query.with_supports(), start, relative_of_distance(query), query.width(), query.buffers.stack,
                        statistics.support_calls);
 }
 

@@ -37,6 +37,9 @@ void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& neares
 /// tightest bracket it is proved.
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
+/// What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
+[[nodiscard]] double relative_of_distance(const PolytopeQuery& query);
+
 /// The point of P closest to the origin, from vertices of P that may be near it.
 [[nodiscard]] ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start,
                                          Statistics& statistics);

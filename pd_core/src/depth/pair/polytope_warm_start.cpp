@@ -50,6 +50,35 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   return true;
 }
 
+/// The closest point on these vertices of P, certified where P reaches no farther: for one support the bodies need not
+/// be turned, and of many vertices those next to the contact tell.
+ClosestPoint confirmed_closest_point(const PolytopeQuery& query, std::span<const DifferenceVertex> vertices) {
+  const PolytopeDifference& difference = query.difference;
+  ClosestPoint r;
+  double largest = difference.centre().cwiseAbs().maxCoeff();
+  for (const DifferenceVertex& v : vertices) {
+    r.simplex[r.count++] = v;
+    largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+  }
+  r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
+  const DistanceErrors error = distance_errors(difference);
+  const double length = r.point.norm();
+  if (!(length > 4 * error.lower)) return r;
+  r.normal = search_direction(r.simplex, r.count, r.point, length, 6 * error.upper);
+  DifferenceVertex s;
+  if (difference.climbs()) {
+    const DifferenceVertex corners[3] = {r.simplex[0], r.simplex[std::min(1, r.count - 1)], r.simplex[r.count - 1]};
+    if (!difference.confirm_support(r.normal, s, corners)) return r;
+  } else {
+    s = difference.support_in_bodies(r.normal);
+  }
+  r.upper = length + error.upper;
+  r.lower = -s.x.dot(r.normal) - error.lower;
+  r.certified = r.lower > 0 && (r.upper - r.lower <= query.width().limit(largest) ||
+                                query.width().is_within(relative_of_distance(query), r.lower, r.upper));
+  return r;
+}
+
 }  // namespace
 
 bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
@@ -82,10 +111,12 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   if (state.apart_count == 0 || !query.within_range()) return false;
   const int count = std::exchange(state.apart_count, 0);
   if (!is_of_pair(state, query.pair)) return false;
-  DifferenceVertex start[3];
-  query.difference.posed_vertices(state.apart, count, start);
-  const ClosestPoint nearest =
-      closest_point(query, std::span(start).first(static_cast<std::size_t>(count)), out.statistics);
+  DifferenceVertex vertices[3];
+  query.difference.posed_vertices(state.apart, count, vertices);
+  const auto start = std::span(vertices).first(static_cast<std::size_t>(count));
+  ClosestPoint nearest = confirmed_closest_point(query, start);
+  out.statistics.support_calls += 1;
+  if (!nearest.certified) nearest = closest_point(query, start, out.statistics);
   if (!answer_apart(query, nearest, out)) return false;
   out.method = Method::expansion;
   out.warm = true;
