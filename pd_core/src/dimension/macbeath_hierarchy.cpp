@@ -207,43 +207,97 @@ class HierarchyBuilder {
       std::iota(hierarchy_.root_ids.begin(), hierarchy_.root_ids.end(), 0);
       return;
     }
-    std::vector<std::int32_t> mark(hierarchy_.nodes.size() - static_cast<std::size_t>(first_), -1);
+    mark_.assign(hierarchy_.nodes.size() - static_cast<std::size_t>(first_), -1);
+    list_nodes();
+    mark_.assign(mark_.size(), -1);
     for (std::int32_t parent = previous_first_; parent < first_; ++parent) {
       HierarchyNode<D>& node = hierarchy_.nodes[static_cast<std::size_t>(parent)];
       node.first_child = static_cast<std::int32_t>(hierarchy_.links.size());
       for (int face = 0; face < 2 * D; ++face) {
         const DirectionBox<D> box = cube_face<D>(face);
-        collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, false, mark);
+        collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, false);
       }
       node.children = static_cast<std::int32_t>(hierarchy_.links.size()) - node.first_child;
       hierarchy_.max_out_degree = std::max<std::int64_t>(hierarchy_.max_out_degree, node.children);
     }
   }
 
+  /// The nodes below every split cell that has few, in the order in which a walk through its parts meets them.
+  void list_nodes() {
+    listed_.clear();
+    lists_.assign((cells_.size() - 2 * D) / DirectionBox<D>::kCorners, {});
+    // Parts are younger than what they are parts of.
+    for (std::size_t cell = cells_.size(); cell-- > 0;) {
+      if (cells_[cell] < 0) continue;
+      const auto parts = static_cast<std::size_t>(cells_[cell]);
+      NodeList& list = list_of(parts);
+      list.first = listed_.size();
+      const auto stamp = static_cast<std::int64_t>(cell);
+      const auto take = [&](std::int32_t id) {
+        std::int64_t& seen = mark_[static_cast<std::size_t>(id - first_)];
+        if (seen == stamp) return;
+        seen = stamp;
+        listed_.push_back(id);
+      };
+      list.known = true;
+      for (std::size_t k = 0; k < DirectionBox<D>::kCorners && list.known; ++k) {
+        const std::int64_t content = cells_[parts + k];
+        if (content < 0) {
+          take(static_cast<std::int32_t>(-1 - content));
+          continue;
+        }
+        const NodeList& part = list_of(static_cast<std::size_t>(content));
+        list.known = part.known;
+        for (std::size_t i = 0; i < part.count; ++i) take(listed_[part.first + i]);
+      }
+      list.known = list.known && listed_.size() - list.first <= kMostListed;
+      if (!list.known) listed_.resize(list.first);
+      list.count = listed_.size() - list.first;
+    }
+  }
+
   /// @param inside  the box lies in the parent's shadow, and so do its parts: nothing is left to ask
   void collect(std::size_t cell, const DirectionBox<D>& box, const ShadowSection<D>& shadow, std::int32_t parent,
-               bool inside, std::vector<std::int32_t>& mark) {
-    if (!inside && !shadow.meets(box)) return;
+               bool inside) {
     const std::int64_t content = cells_[cell];
+    const auto seen = [&](std::int32_t id) { return mark_[static_cast<std::size_t>(id - first_)] == parent; };
+    const auto link = [&](std::int32_t id) {
+      if (seen(id)) return;
+      mark_[static_cast<std::size_t>(id - first_)] = parent;
+      hierarchy_.links.push_back(id);
+    };
     if (content < 0) {
       const auto id = static_cast<std::int32_t>(-1 - content);
-      std::int32_t& seen = mark[static_cast<std::size_t>(id - first_)];
-      if (seen == parent) return;
-      seen = parent;
-      hierarchy_.links.push_back(id);
+      if (!seen(id) && (inside || shadow.meets(box))) link(id);
       return;
     }
+    const NodeList& list = list_of(static_cast<std::size_t>(content));
+    const auto first = listed_.begin() + static_cast<std::ptrdiff_t>(list.first);
+    const auto last = first + static_cast<std::ptrdiff_t>(list.count);
+    if (list.known && std::all_of(first, last, seen)) return;
     if (!inside) {
+      if (!shadow.meets(box)) return;
       const ShadowCone<D>& cone = hierarchy_.nodes[static_cast<std::size_t>(parent)].shadow;
       inside = cone.contains(box.middle()) && covers(cone, box);
     }
+    if (inside && list.known) {
+      std::for_each(first, last, link);
+      return;
+    }
     for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
-      collect(static_cast<std::size_t>(content) + static_cast<std::size_t>(k), box.child(k), shadow, parent, inside,
-              mark);
+      collect(static_cast<std::size_t>(content) + static_cast<std::size_t>(k), box.child(k), shadow, parent, inside);
     }
   }
 
   static constexpr std::size_t kMaxCells = 200'000'000;
+  /// What a walk saves where all nodes below a cell are linked already, longer lists hardly save more often.
+  static constexpr std::size_t kMostListed = 64;
+
+  struct NodeList {
+    std::size_t first, count;  ///< in `listed_`
+    bool known;                ///< not longer than `kMostListed`
+  };
+  NodeList& list_of(std::size_t parts) { return lists_[(parts - 2 * D) / DirectionBox<D>::kCorners]; }
 
   PolarBody<D> polar_;
   MacbeathHierarchy<D>& hierarchy_;
@@ -255,6 +309,9 @@ class HierarchyBuilder {
   DirectionBox<D> face_{};                  ///< that is being covered
   std::vector<ShadowSection<D>> sections_;  ///< of the layer's cover shadows with it
   std::vector<std::int64_t> cells_;         ///< the first of its 2^(D-1) parts, or -1 - node
+  std::vector<NodeList> lists_;             ///< per split cell
+  std::vector<std::int32_t> listed_;
+  std::vector<std::int64_t> mark_;  ///< per node of the layer: the last cell, or parent, that took it
   std::vector<std::vector<std::int32_t>> neighbours_, next_neighbours_;  ///< per node of the layers above and now
   std::vector<std::int32_t> all_;
 };

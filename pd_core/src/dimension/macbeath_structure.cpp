@@ -9,6 +9,25 @@
 
 namespace pd::dimension::detail {
 
+namespace {
+
+template <int D>
+std::vector<SupportPoint<D>> kernel_points(const Body<D>& body, double epsilon) {
+  std::vector<SupportPoint<D>> points;
+  if (body.representation() == Representation::points) {
+    // Without the graph of its hull, which in R^5 takes as much memory as the hull.
+    KernelBuilder<D> builder(body.sandwich().fattening(), epsilon);
+    builder.add(body.points(), 0);
+    for (const auto& p : builder.chosen()) points.push_back({p.point, 0, p.index});
+    return points;
+  }
+  const auto kernel = KernelStructure<D>::build(body, epsilon);
+  for (const auto& node : kernel->nodes()) points.push_back({node.point, 0, node.index});
+  return points;
+}
+
+}  // namespace
+
 template <int D>
 Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body, double epsilon) {
   // The kernel falls short of h by its share of epsilon, about the sandwich's centre; the hierarchy by the rest of the
@@ -18,12 +37,8 @@ Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body
     return Error{ErrorCode::bad_value,
                  std::string("the macbeath backend needs epsilon >= ") + (D < 4 ? "2e-7" : "8e-7"), "epsilon"};
   }
-  const auto kernel = KernelStructure<D>::build(body, kKernelShare * epsilon);
-  std::vector<SupportPoint<D>> points;
-  for (const auto* list : {&kernel->nodes(), &kernel->loose()}) {
-    for (const auto& node : *list) points.push_back({node.point, 0, node.index});
-  }
-  auto hierarchy = build_macbeath_hierarchy<D>(points, body.sandwich().fattening(), (1 - kKernelShare) * epsilon);
+  auto hierarchy = build_macbeath_hierarchy<D>(kernel_points(body, kKernelShare * epsilon), body.sandwich().fattening(),
+                                               (1 - kKernelShare) * epsilon);
   if (!hierarchy) return hierarchy.error();
   return std::shared_ptr<const WidthStructure<D>>(std::move(hierarchy).value());
 }
