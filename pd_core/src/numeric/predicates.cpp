@@ -6,7 +6,7 @@
 
 #include "numeric/dyadic.hpp"
 #include "numeric/expansion.hpp"
-#include "numeric/unit_roundoff.hpp"
+#include "numeric/orientation_filter.hpp"
 
 namespace pd {
 namespace {
@@ -16,21 +16,6 @@ using detail::Dyadic;
 using detail::Expansion;
 using detail::product;
 using detail::sum;
-
-// Filter bounds: (3 + 16u)u and (7 + 56u)u times the permanent ([S] section 4.2 and 4.3, u = 2^-53), rounded up to
-// cover the roundings of bound and permanent themselves. kUnderflow covers what underflows while every difference is at
-// most kLargestFiltered: at most 2^-1074 for a product, times a third factor, and a few of them.
-constexpr double kBound2d = 4 * detail::kUnitRoundoff;
-constexpr double kBound3d = 8 * detail::kUnitRoundoff;
-constexpr double kUnderflow = 0x1p-700;
-// Differences are exact in double-double. Two levels of products (5u^2 each) and three of sums (3u^2 each) on
-// magnitudes that the permanent bounds give 19u^2(1 + O(u)) of it; the bound leaves room for the permanent's own
-// rounding.
-constexpr double kBoundDoubleDouble = 32 * 0x1p-106;
-// Expanded numbers are at least 2^-300 or 0, and their differences at least 2^-352: what underflows is below 2^-1074
-// times differences below 2^322, a few times.
-constexpr double kTinyDoubleDouble = 0x1p-740;
-constexpr double kLargestFiltered = 0x1p330;
 
 // Within these magnitudes (or zero) every bit of every product of three differences lies in 2^-1056 .. 2^1000, and
 // Veltkamp's split does not overflow.
@@ -67,20 +52,11 @@ int orient2d_unfiltered(const std::array<double, 2>& a, const std::array<double,
   return ((Dyadic(b[0]) - ax) * (Dyadic(c[1]) - ay) - (Dyadic(b[1]) - ay) * (Dyadic(c[0]) - ax)).sign();
 }
 
-/// The determinant of orient3d, its differences exact and its products and sums in double-double.
-double determinant_in_double_double(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const auto from_a = [&](const Vec3& p) {
-    return detail::Vec3DD{detail::two_sum(p.x(), -a.x()), detail::two_sum(p.y(), -a.y()),
-                          detail::two_sum(p.z(), -a.z())};
-  };
-  return dot(from_a(d), cross(from_a(b), from_a(c))).hi;  // the sum is normalised: hi has its sign
-}
-
-int orient3d_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double permanent,
+int orient3d_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double double_double_error,
                         PredicateStages* stages) {
   if (expandable({a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), c.x(), c.y(), c.z(), d.x(), d.y(), d.z()})) {
-    const double determinant = determinant_in_double_double(a, b, c, d);
-    if (std::abs(determinant) > kBoundDoubleDouble * permanent + kTinyDoubleDouble) {
+    const double determinant = detail::double_double_orient3d(a, b, c, d).hi;
+    if (std::abs(determinant) > double_double_error) {
       count(&PredicateStages::double_double, stages);
       return sign_of(determinant);
     }
@@ -107,47 +83,22 @@ int orient3d_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 
 int orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c,
              PredicateStages* stages) {
-  const double bx = b[0] - a[0];
-  const double by = b[1] - a[1];
-  const double cx = c[0] - a[0];
-  const double cy = c[1] - a[1];
-  const double left = bx * cy;
-  const double right = by * cx;
-  const double determinant = left - right;
-  const double bound = kBound2d * (std::abs(left) + std::abs(right)) + kUnderflow;
-  if (std::abs(determinant) > bound) {  // false for NaN, and where a product overflows the bound does too
+  const detail::RoundedOrient2d rounded = detail::rounded_orient2d(a, b, c);
+  // False for NaN, and where a product overflows the bound does too.
+  if (std::abs(rounded.determinant) > rounded.error) {
     count(&PredicateStages::filtered, stages);
-    return sign_of(determinant);
+    return sign_of(rounded.determinant);
   }
   return orient2d_unfiltered(a, b, c, stages);
 }
 
 int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, PredicateStages* stages) {
-  const double bx = b.x() - a.x();
-  const double by = b.y() - a.y();
-  const double bz = b.z() - a.z();
-  const double cx = c.x() - a.x();
-  const double cy = c.y() - a.y();
-  const double cz = c.z() - a.z();
-  const double dx = d.x() - a.x();
-  const double dy = d.y() - a.y();
-  const double dz = d.z() - a.z();
-  const double by_cz = by * cz;
-  const double bz_cy = bz * cy;
-  const double bz_cx = bz * cx;
-  const double bx_cz = bx * cz;
-  const double bx_cy = bx * cy;
-  const double by_cx = by * cx;
-  const double determinant = dx * (by_cz - bz_cy) + dy * (bz_cx - bx_cz) + dz * (bx_cy - by_cx);
-  const double permanent = std::abs(dx) * (std::abs(by_cz) + std::abs(bz_cy)) +
-                           std::abs(dy) * (std::abs(bz_cx) + std::abs(bx_cz)) +
-                           std::abs(dz) * (std::abs(bx_cy) + std::abs(by_cx));
-  const double largest = std::max(std::abs(dx), std::max(std::abs(dy), std::abs(dz)));
-  if (std::abs(determinant) > kBound3d * permanent + kUnderflow && largest <= kLargestFiltered) {
+  const detail::RoundedOrient3d rounded = detail::rounded_orient3d(a, b, c, d);
+  if (std::abs(rounded.determinant) > rounded.error() && rounded.in_range()) {
     count(&PredicateStages::filtered, stages);
-    return sign_of(determinant);
+    return sign_of(rounded.determinant);
   }
-  return orient3d_unfiltered(a, b, c, d, permanent, stages);
+  return orient3d_unfiltered(a, b, c, d, rounded.double_double_error(), stages);
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c, PredicateStages* stages) {

@@ -168,7 +168,7 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
-  // 5u^2).
+  // 5u^2). Largest error / bound that `bound_ratios` found: 0.237 in doubles, 0.006 in double-double.
   const double size = 2 * reach(a, body_a_.rotation_dd, scale) + 2 * reach(b, body_b_.rotation_dd, scale) + offset_size;
   vector_error_ = 8 * kUnitRoundoff * size + kUnderflow;
   vector_error_dd_ = 32 * 0x1p-103 * size + kUnderflow;
