@@ -4,19 +4,25 @@
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "pd/numeric/expected.hpp"
 #include "pd/shape/convex_shape.hpp"
 
 namespace pd::detail {
 
+/// A triangle by content: its corners and its margin.
+using TriangleKey = std::array<btScalar, 10>;
+
 struct CachedShape {
   const btCollisionShape* source = nullptr;  ///< compared, never read
   std::uint64_t fingerprint = 0;
   std::uint64_t signature = 0;
+  std::optional<TriangleKey> triangle;       ///< of a btTriangleShape, which has no address that lasts
   std::shared_ptr<const ConvexShape> body;   ///< null: the shape has none
   std::shared_ptr<const ConvexShape> sharp;  ///< of a btBoxShape: as a partner of another one
   Error refusal{ErrorCode::unsupported, {}, {}};

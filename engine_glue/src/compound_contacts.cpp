@@ -11,6 +11,7 @@
 #include "covered_contact.hpp"
 #include "deep_union.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "piece_memories.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -114,37 +115,22 @@ class CompoundContacts final : public UnionContacts {
 
  private:
   /// One pair's points. @return false where a child has no exact form
-  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, ChildPairMemory& memory,
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, PieceMemory& memory,
            ThreadBuffers& buffers, Patches& patches);
   /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
   void leave_as_one(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
-  /// What the pair remembers of two children: taken from last step's memory, or new.
-  ChildPairMemory& remember(std::vector<ChildPairMemory>& old, std::uint64_t number);
 
   std::vector<Child> children_a_;
   std::vector<Child> children_b_;
   std::vector<ChildPair> pairs_;
-  std::vector<ChildPairMemory> fresh_memory_;
+  PieceMemories memories_;
   DeepUnion deep_;
 };
-
-ChildPairMemory& CompoundContacts::remember(std::vector<ChildPairMemory>& old, std::uint64_t number) {
-  const auto found = std::lower_bound(old.begin(), old.end(), number,
-                                      [](const ChildPairMemory& x, std::uint64_t n) { return x.children < n; });
-  if (found != old.end() && found->children == number) {
-    fresh_memory_.push_back(std::move(*found));
-    found->children = number;  // still found in its place by the search for the next
-  } else {
-    fresh_memory_.emplace_back();
-    fresh_memory_.back().children = number;
-  }
-  return fresh_memory_.back();
-}
 
 bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
   const auto& [a, b, seconds, threshold, stamp, result] = question;
   pairs_.clear();
-  fresh_memory_.clear();
+  memories_.begin();
   deep_.clear();
   const btTransform& pose_a = a.getWorldTransform();
   const btTransform& pose_b = b.getWorldTransform();
@@ -169,10 +155,10 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
                                    static_cast<std::uint32_t>(child_b.index + 1);
       pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, question, core, remember(memory.children, number), *buffers, patches)) return false;
+      if (!ask(pair, question, core, memories_.take(memory.pieces, number), *buffers, patches)) return false;
     }
   }
-  memory.children.swap(fresh_memory_);
+  memories_.end(memory.pieces);
   if (deep_.needed()) leave_as_one(question, core, *buffers, patches);
   return true;
 }
@@ -200,16 +186,17 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
 }
 
 bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core,
-                           ChildPairMemory& memory, ThreadBuffers& buffers, Patches& patches) {
+                           PieceMemory& memory, ThreadBuffers& buffers, Patches& patches) {
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
+  const auto threshold = static_cast<double>(question.threshold);
   const auto outcome = core.answer(shape_a, pair.a().getWorldTransform(), shape_b, pair.b().getWorldTransform(),
-                                   {true, is_part(pair.a()), is_part(pair.b())}, question.stamp, memory.shapes,
-                                   &memory.warm, buffers, answer);
+                                   {true, is_part(pair.a()), is_part(pair.b())}, memory.met ? kAnyDistance : threshold,
+                                   question.stamp, memory.shapes, &memory.warm, buffers, answer);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
-  const auto threshold = static_cast<double>(question.threshold);
+  memory.met = answer.depth.signed_distance() <= threshold;
   ContactManifold points =
       contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,

@@ -150,9 +150,9 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   const std::uint64_t stamp = first ? 0 : installation_.stamp();
   const bool as_one = core.settings.unions_as_one;
   const BoxCorners corners{true, as_one && is_part(*a), as_one && is_part(*b)};
-  const auto outcome =
-      core.answer(shape_a, pose_a, shape_b, pose_b, corners, stamp, memory_ ? memory_->shapes : buffers->recent,
-                  memory_ ? &memory_->warm : nullptr, *buffers, answer);
+  const auto outcome = core.answer(
+      shape_a, pose_a, shape_b, pose_b, corners, touched ? kAnyDistance : static_cast<double>(threshold), stamp,
+      memory_ ? memory_->shapes : buffers->recent, memory_ ? &memory_->warm : nullptr, *buffers, answer);
   if (outcome == SolverCore::Outcome::unsupported) {
     process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
     return;

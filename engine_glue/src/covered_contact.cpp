@@ -21,6 +21,8 @@ constexpr double kSameNormal = 1e-10;
 constexpr double kLevel = 1e-5;
 /// From here on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
 constexpr double kDecided = 0.02;
+/// More than this is not told apart.
+constexpr double kBeyondDoubt = 2 * kDecided;
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
 /// Facets tried in place of a covered one.
@@ -103,14 +105,14 @@ class Cover {
   }
 
   /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
-  /// the corners of its part within the window; -1 where a corner is free.
+  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where a corner is free.
   double covered(const Vec3& foot, const Vec3& n) {
     feature_at(foot, n);
     if (buffers_.feature.empty()) return -1;
-    double least = 1;
+    double least = kBeyondDoubt;
     for (const Vec3& corner : buffers_.feature) {
       double most = -1;
-      for (int i = 0; i < count_; ++i) {
+      for (int i = 0; i < count_ && most < least; ++i) {
         const UnionPiece& piece = buffers_.near[static_cast<std::size_t>(i)];
         // Surfaces lie flush, not cores, where margins differ.
         const Vec3 level = corner + (buffers_.own.margin - piece.margin) * n;
@@ -225,7 +227,8 @@ class SideRule {
     if (pushes_from_triangle(n)) return false;
     const double margin = side_.own.shape->margin();
     const Vec3 foot = witness - margin * n;
-    if (!cover_.look_round(foot, margin, n) && !is_flat(side_.own)) return false;
+    const bool flat = is_flat(side_.own);
+    if (!flat && !cover_.look_round(foot, margin, n)) return false;
     UnionPiece& own = buffers_.cover.own;
     set_piece(side_.own, own);
     if (own.planes.empty()) return false;
@@ -260,12 +263,14 @@ class SideRule {
     return false;
   }
 
-  /// A contact in the middle of a triangle that does not push along its normal is the triangle's own.
+  /// A contact in the middle of a triangle that does not push along its normal is the triangle's own: what lies round
+  /// it is not looked for.
   double covered_here(const Vec3& foot, const Vec3& n) {
     const UnionPiece& own = buffers_.cover.own;
     if (own.flat) {
       const double own_sine = covered_sine(own, foot, n, slack_, buffers_.cover.active);
       if (own_sine > kDecided) return own_sine;
+      cover_.look_round(foot, own.margin, n);
     }
     return cover_.covered(foot, n);
   }

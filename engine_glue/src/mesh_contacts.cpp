@@ -14,6 +14,7 @@
 #include "covered_contact.hpp"
 #include "one_sided.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "piece_memories.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -23,11 +24,19 @@ namespace {
 /// Of a way out of a triangle: so much farther, a body that follows it is off the triangle beyond rounding.
 constexpr double kClear = 1 + 0x1p-6;
 
+/// Triangles of one step that a pair remembers, some 2 KB each; those met after them begin anew each step.
+constexpr std::size_t kMostRemembered = 128;
+
 struct MetTriangle {
   btVector3 corners[3];
   int part;
   int index;
 };
+
+std::uint64_t number_of(const MetTriangle& triangle) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) |
+         static_cast<std::uint32_t>(triangle.index);
+}
 
 /// Collects the triangles that a box meets, but for those without area, which have no surface, and those whose corners
 /// are no numbers.
@@ -142,10 +151,11 @@ class MeshContacts final : public UnionContacts {
 
  private:
   SolverCore::Outcome ask(const UnionQuestion& question, const TriangleInResult& triangle, const btTransform& pose_a,
-                          SolverCore& core, ThreadBuffers& buffers, PairAnswer& answer) const;
+                          PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers, PairAnswer& answer) const;
   void add_fronts(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
 
   std::vector<MetTriangle> triangles_;
+  PieceMemories memories_;
   OneSided one_sided_;
 };
 
@@ -157,11 +167,14 @@ Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
 }
 
 SolverCore::Outcome MeshContacts::ask(const UnionQuestion& question, const TriangleInResult& triangle,
-                                      const btTransform& pose_a, SolverCore& core, ThreadBuffers& buffers,
-                                      PairAnswer& answer) const {
+                                      const btTransform& pose_a, PieceMemory* memory, SolverCore& core,
+                                      ThreadBuffers& buffers, PairAnswer& answer) const {
   const auto& body = static_cast<const btConvexShape&>(*question.a.getCollisionShape());
+  const bool met = memory != nullptr && memory->met;
   return core.answer(body, pose_a, triangle.shape(), question.b.getWorldTransform(), {true, is_part(question.a), false},
-                     question.stamp, buffers.recent, nullptr, buffers, answer);
+                     met ? kAnyDistance : static_cast<double>(question.threshold), question.stamp,
+                     memory != nullptr ? memory->shapes : buffers.recent, memory != nullptr ? &memory->warm : nullptr,
+                     buffers, answer);
 }
 
 /// The contacts along the fronts of triangles that the body stands through, where none of the others leads off them.
@@ -176,17 +189,18 @@ void MeshContacts::add_fronts(const UnionQuestion& question, SolverCore& core, T
     const bool left = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
       // A little farther than touching, which rounding would decide.
       const btTransform moved(pose.getBasis(), pose.getOrigin() + to_bullet(Vec3(kClear * way)));
-      return ask(question, triangle, moved, core, buffers, answer) == SolverCore::Outcome::answered &&
+      return ask(question, triangle, moved, nullptr, core, buffers, answer) == SolverCore::Outcome::answered &&
              answer.depth.contact != ContactClass::overlapping;
     });
-    if (left || ask(question, triangle, pose, core, buffers, answer) != SolverCore::Outcome::answered) continue;
+    if (left || ask(question, triangle, pose, nullptr, core, buffers, answer) != SolverCore::Outcome::answered)
+      continue;
     const ContactManifold points =
         along_front(triangle.wrapper(), answer, behind.front, static_cast<double>(question.threshold), buffers);
     patches.add(points, behind.triangle, met.part, met.index);
   }
 }
 
-bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory&, Patches& patches) {
+bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
   const btCollisionObjectWrapper& convex = question.a;
   const btCollisionObjectWrapper& mesh = question.b;
   const auto& body = static_cast<const btConvexShape&>(*convex.getCollisionShape());
@@ -196,6 +210,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   const bool one_sided = core.settings.one_sided_meshes;
   triangles_.clear();
   one_sided_.clear();
+  memories_.begin();
   if (!is_finite(convex.getWorldTransform()) || !is_finite(pose)) return true;
   btVector3 lower;
   btVector3 upper;
@@ -207,9 +222,12 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const TriangleInResult triangle(question.result, mesh, triangles_[i], concave.getMargin());
     PairAnswer answer;
-    const auto outcome = ask(question, triangle, convex.getWorldTransform(), core, *buffers, answer);
+    PieceMemory* const remembered =
+        i < kMostRemembered ? &memories_.take(memory.pieces, number_of(triangles_[i])) : nullptr;
+    const auto outcome = ask(question, triangle, convex.getWorldTransform(), remembered, core, *buffers, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;
+    if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
     const Vec3 front = one_sided ? front_of(triangles_[i], pose) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
     ContactManifold points =
@@ -218,6 +236,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
                    *buffers, points);
     patches.add(points, static_cast<int>(i), triangles_[i].part, triangles_[i].index);
   }
+  memories_.end(memory.pieces);
   if (one_sided) add_fronts(question, core, *buffers, patches);
   return true;
 }

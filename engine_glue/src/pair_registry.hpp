@@ -27,28 +27,40 @@ struct RememberedPoint {
   ImpulseTrend impulse;
 };
 
-/// Of two children in a pair with compounds.
-struct ChildPairMemory {
-  std::uint64_t children = 0;  ///< both numbers
+/// Of two pieces in a pair with a compound or mesh: two children, or a body and a triangle.
+struct PieceMemory {
+  std::uint64_t pieces = 0;  ///< both children's numbers, or the triangle's
+  bool met = false;          ///< the last step was within reach of contacts
   WarmCertificate warm;
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
 };
 
+class ManifoldOwner;
+
 struct PairMemory {
   int patch = -1;  ///< the manifold's number among those of a pair with a mesh or compound; -1: of a single pair
+  ManifoldOwner* owner = nullptr;  ///< of a manifold with a number
   WarmCertificate warm;
   /// Held so that the certificate's shapes stay where they are, and so that a pair looks nothing up that has not
   /// changed.
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
-  btScalar seconds = 0;                   ///< of the step that the points' impulses belong to
-  std::vector<ChildPairMemory> children;  ///< sorted by number
+  btScalar seconds = 0;             ///< of the step that the points' impulses belong to
+  std::vector<PieceMemory> pieces;  ///< sorted by number
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
-    return patch < 0 && num_points == 0 && children.empty() && warm.memory_bytes() == sizeof(warm);
+    return patch < 0 && num_points == 0 && pieces.empty() && warm.memory_bytes() == sizeof(warm);
   }
+};
+
+/// Whoever made manifolds beyond the first of a pair, and can do without them.
+class ManifoldOwner {
+ public:
+  virtual ~ManifoldOwner() = default;
+  /// Releases the pair's manifolds from this number (> 0) on.
+  virtual void release_from(int patch) = 0;
 };
 
 /// Memories by manifold. Algorithms come and go on the dispatcher's threads.

@@ -34,11 +34,20 @@ PatchManifolds::~PatchManifolds() {
   }
 }
 
+void PatchManifolds::release_from(int patch) {
+  while (static_cast<int>(manifolds_.size()) > patch) {
+    core_.pairs.remove(manifolds_.back()->manifold);
+    dispatcher_.releaseManifold(manifolds_.back()->manifold);
+    manifolds_.pop_back();
+  }
+}
+
 PatchManifolds::Kept& PatchManifolds::at(std::size_t i, const btCollisionObject& a, const btCollisionObject& b) {
   while (i >= manifolds_.size()) {
     manifolds_.push_back(std::make_unique<Kept>());
     manifolds_.back()->manifold = dispatcher_.getNewManifold(&a, &b);
     manifolds_.back()->memory.patch = static_cast<int>(manifolds_.size()) - 1;
+    manifolds_.back()->memory.owner = this;
     core_.pairs.add(manifolds_.back()->manifold, &manifolds_.back()->memory);
   }
   return *manifolds_[i];

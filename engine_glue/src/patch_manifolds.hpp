@@ -16,13 +16,13 @@ namespace pd::detail {
 
 class SolverCore;
 
-class PatchManifolds {
+class PatchManifolds final : public ManifoldOwner {
  public:
   /// Directions of contact that a pair of bodies may have, with four points each.
   static constexpr int kMost = 8;
 
   PatchManifolds(SolverCore& core, btDispatcher& dispatcher) : core_(core), dispatcher_(dispatcher) {}
-  ~PatchManifolds();
+  ~PatchManifolds() override;
   PatchManifolds(const PatchManifolds&) = delete;
   PatchManifolds& operator=(const PatchManifolds&) = delete;
 
@@ -37,6 +37,7 @@ class PatchManifolds {
   void replace(Patches& patches, btScalar seconds, btManifoldResult& result, PointSurroundings& surroundings);
 
   void clear();
+  void release_from(int patch) override;
   void append_to(btManifoldArray& manifolds) const;
 
  private:

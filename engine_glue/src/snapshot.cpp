@@ -193,6 +193,19 @@ struct BulletSnapshot::State {
     return saved;
   }
 
+  /// Patches that were found later are found again, in the order in which the solver met them then. Requires: those
+  /// of saved pairs stand in the saved order, the others behind them.
+  void release_later_patches(const std::vector<const ManifoldState*>& saved) const {
+    if (solver == nullptr) return;
+    btCollisionDispatcher& dispatcher = dispatcher_of(world);
+    for (int i = dispatcher.getNumManifolds() - 1; i >= 0; --i) {
+      // Releasing one takes those of higher numbers along, which are behind the saved ones as well.
+      if (i >= dispatcher.getNumManifolds() || saved[static_cast<std::size_t>(i)] != nullptr) continue;
+      const detail::PairMemory* memory = solver->pairs().find(dispatcher.getManifoldByIndexInternal(i));
+      if (memory != nullptr && memory->patch > 0) memory->owner->release_from(memory->patch);
+    }
+  }
+
   /// Hands the saved points to the manifolds; those without saved points are emptied.
   void fill_manifolds(const std::vector<const ManifoldState*>& saved) const {
     btCollisionDispatcher& dispatcher = dispatcher_of(world);
@@ -204,8 +217,10 @@ struct BulletSnapshot::State {
       }
       if (detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
         const int patch = memory->patch;
+        detail::ManifoldOwner* const owner = memory->owner;
         *memory = saved[i] != nullptr && saved[i]->memory ? *saved[i]->memory : detail::PairMemory();
         memory->patch = patch;
+        memory->owner = owner;
       }
     }
   }
@@ -264,10 +279,12 @@ void BulletSnapshot::restore() const {
   }
   state_->multibodies.restore();
   state_->broadphase.restore(world);
-  state_->fill_manifolds(state_->reorder());
-  for (const JointState& saved : state_->joints) {
-    saved.joint->internalSetAppliedImpulse(saved.applied_impulse);
-    saved.joint->setEnabled(saved.enabled);
+  const std::vector<const ManifoldState*> saved = state_->reorder();
+  state_->release_later_patches(saved);
+  state_->fill_manifolds(saved);
+  for (const JointState& joint : state_->joints) {
+    joint.joint->internalSetAppliedImpulse(joint.applied_impulse);
+    joint.joint->setEnabled(joint.enabled);
   }
   if (auto* seeded = seeded_solver(world)) {
     seeded->setRandSeed(state_->seed);

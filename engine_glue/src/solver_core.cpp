@@ -40,8 +40,8 @@ SolverCore::~SolverCore() = default;
 CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
                               ThreadBuffers& held) {
   if (shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
-    known = held.triangles.find(static_cast<const btTriangleShape&>(shape),
-                                [&](const btTriangleShape& triangle) { return cache.find(triangle, stamp); });
+    held.triangles.find(static_cast<const btTriangleShape&>(shape), known,
+                        [&](const btTriangleShape& triangle) { return cache.find(triangle, stamp); });
     return *known;
   }
   const bool current = stamp != 0 && known && known->source == &shape &&
@@ -54,9 +54,9 @@ CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, s
 }
 
 SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
-                                       const btTransform& pose_b, BoxCorners corners, std::uint64_t stamp,
-                                       std::array<std::shared_ptr<CachedShape>, 2>& shapes, WarmCertificate* warm,
-                                       ThreadBuffers& held, PairAnswer& out) {
+                                       const btTransform& pose_b, BoxCorners corners, double beyond,
+                                       std::uint64_t stamp, std::array<std::shared_ptr<CachedShape>, 2>& shapes,
+                                       WarmCertificate* warm, ThreadBuffers& held, PairAnswer& out) {
   SolverCounters& counters = held.counters;
   counters.calls.add();
   const bool sampled = held.queries++ % kClockSample == 0;
@@ -80,6 +80,7 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
   DepthSettings depth_settings;
   depth_settings.delta = settings.delta;
   depth_settings.bracket = Bracket::contact;
+  depth_settings.beyond = beyond;
   depth_settings.contact_tolerance = contact_tolerance(out.a, out.b);
   out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, warm);
   counters.support_calls.add(out.depth.statistics.support_calls);
@@ -130,7 +131,7 @@ bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& s
   auto held = buffers.lease();
   PairAnswer found;
   // Rounded corners: Bullet's detector takes its cores and adds the margins itself.
-  switch (answer(*a, pose_a, *b, pose_b, kRoundedBoxes, stamp, held->recent, nullptr, *held, found)) {
+  switch (answer(*a, pose_a, *b, pose_b, kRoundedBoxes, kAnyDistance, stamp, held->recent, nullptr, *held, found)) {
     case Outcome::answered:
       break;
     case Outcome::refused:

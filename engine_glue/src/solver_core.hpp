@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -39,6 +40,9 @@ struct BoxCorners {
 inline constexpr BoxCorners kRoundedBoxes{};
 inline constexpr BoxCorners kSharpBoxPair{true, false, false};
 
+/// Closest points however far apart the bodies are.
+inline constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
+
 class SolverCore {
  public:
   explicit SolverCore(const BulletSolverSettings& settings);
@@ -47,12 +51,14 @@ class SolverCore {
   /// What a query came to.
   enum class Outcome { answered, unsupported, refused };
 
+  /// @param beyond  that the bodies are farther apart than this is all there is to know then
   /// @param stamp   of this step of this world (`BulletShapeCache::find`), 0: unknown
   /// @param shapes  of this pair, as found earlier: the pair's memory, or the buffers' last ones
   /// @param warm    of this pair, or nullptr
   Outcome answer(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b, const btTransform& pose_b,
-                 BoxCorners corners, std::uint64_t stamp, std::array<std::shared_ptr<CachedShape>, 2>& shapes,
-                 WarmCertificate* warm, ThreadBuffers& buffers, PairAnswer& answer);
+                 BoxCorners corners, double beyond, std::uint64_t stamp,
+                 std::array<std::shared_ptr<CachedShape>, 2>& shapes, WarmCertificate* warm, ThreadBuffers& buffers,
+                 PairAnswer& answer);
 
   /// Bullet's call with a step's stamp.
   bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,

@@ -5,7 +5,6 @@
 
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -20,10 +19,10 @@ class TriangleCache {
  public:
   static constexpr std::size_t kSlots = 2048;
 
-  /// The triangle's body, made by `convert` where it is not here yet.
+  /// Puts the triangle's body into `known`, made by `convert` where neither that nor the table has it yet.
   template <class Convert>
-  const std::shared_ptr<CachedShape>& find(const btTriangleShape& triangle, Convert&& convert) {
-    Key key{};
+  void find(const btTriangleShape& triangle, std::shared_ptr<CachedShape>& known, Convert&& convert) {
+    TriangleKey key{};
     for (int i = 0; i < 3; ++i) {
       const btVector3& corner = triangle.getVertexPtr(i);
       key[3 * i] = corner.x();
@@ -31,29 +30,27 @@ class TriangleCache {
       key[3 * i + 2] = corner.z();
     }
     key[9] = triangle.getMargin();
+    if (holds(known, key)) return;
     if (slots_.empty()) {
       slots_.resize(kSlots);
     }
-    Slot& slot = slots_[hash(key) % kSlots];
-    // By bits: 0 and -0 are two triangles here, and a corner that is not a number equals itself.
-    if (!slot.shape || std::memcmp(slot.key.data(), key.data(), sizeof(Key)) != 0) {
-      slot.shape = convert(triangle);
-      slot.key = key;
+    std::shared_ptr<CachedShape>& slot = slots_[hash(key) % kSlots];
+    if (!holds(slot, key)) {
+      slot = convert(triangle);
+      slot->triangle = key;
       ++conversions_;
     }
-    return slot.shape;
+    known = slot;
   }
 
   [[nodiscard]] std::int64_t conversions() const { return conversions_; }
 
  private:
-  using Key = std::array<btScalar, 10>;
-  struct Slot {
-    Key key{};
-    std::shared_ptr<CachedShape> shape;
-  };
-
-  static std::uint64_t hash(const Key& key) {
+  /// By bits: 0 and -0 are two triangles here, and a corner that is not a number equals itself.
+  static bool holds(const std::shared_ptr<CachedShape>& shape, const TriangleKey& key) {
+    return shape && shape->triangle && std::memcmp(shape->triangle->data(), key.data(), sizeof(key)) == 0;
+  }
+  static std::uint64_t hash(const TriangleKey& key) {
     std::uint64_t result = 0xCBF29CE484222325ULL;
     for (const btScalar x : key) {
       std::uint64_t word = 0;
@@ -64,7 +61,7 @@ class TriangleCache {
     return result;
   }
 
-  std::vector<Slot> slots_;
+  std::vector<std::shared_ptr<CachedShape>> slots_;
   std::int64_t conversions_ = 0;
 };
 

@@ -63,20 +63,32 @@ TEST(Lookup, TrianglesAreConvertedOnceAndTheTableIsBounded) {
     return btTriangleShape(btVector3(btScalar(i), 0, 0), btVector3(btScalar(i + 1), 0, 0),
                            btVector3(btScalar(i), 1, 0));
   };
-  const auto first = triangles.find(triangle(0), convert);
-  EXPECT_EQ(triangles.find(triangle(0), convert), first);
+  const auto find = [&](const btTriangleShape& shape) {
+    std::shared_ptr<detail::CachedShape> known;
+    triangles.find(shape, known, convert);
+    return known;
+  };
+  const auto first = find(triangle(0));
+  EXPECT_EQ(find(triangle(0)), first);
   EXPECT_EQ(triangles.conversions(), 1);
   const int many = 4 * static_cast<int>(detail::TriangleCache::kSlots);
   for (int i = 0; i < many; ++i) {
-    const auto found = triangles.find(triangle(i), convert);
+    const auto found = find(triangle(i));
     ASSERT_DOUBLE_EQ(found->body->polytope()->max_abs_coordinate(), std::max(1, i + 1));
   }
   // A later one took most places: those come back when they are asked for again.
-  const auto again = triangles.find(triangle(0), convert);
+  const auto again = find(triangle(0));
+  EXPECT_NE(again, first);
   EXPECT_DOUBLE_EQ(again->body->polytope()->max_abs_coordinate(), 1);
+  // What a pair holds stays, whatever the table of the thread that asks has.
+  auto held = first;
+  triangles.find(triangle(0), held, convert);
+  EXPECT_EQ(held, first);
+  triangles.find(triangle(1), held, convert);
+  EXPECT_DOUBLE_EQ(held->body->polytope()->max_abs_coordinate(), 2);
   btTriangleShape wide = triangle(0);
   wide.setMargin(btScalar(0.2));
-  EXPECT_NEAR(triangles.find(wide, convert)->body->margin(), 0.2, 1e-6);
+  EXPECT_NEAR(find(wide)->body->margin(), 0.2, 1e-6);
 }
 
 TEST(Lookup, BuffersAreAsManyAsThreadsAtOnce) {

@@ -1,0 +1,113 @@
+/// @file
+/// `bodies_on_mesh`: 36 bodies of one kind that came to rest on a flat or wavy triangle mesh, a step under Bullet's
+/// algorithms and under ours in one run: milliseconds, queries, those that a memory answered, contact points, bodies
+/// that fell through. For instructions, one side alone under callgrind, less a run of no steps:
+///
+///     valgrind --tool=callgrind --toggle-collect='btDiscreteDynamicsWorld::stepSimulation*'
+///       bodies_on_mesh --kinds cylinder --grounds waves --runs pdepth --settle 0 --steps 20
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "engine_glue/union_worlds.hpp"
+
+namespace {
+
+constexpr double kExtent = 6;
+constexpr int kCells = 32;
+constexpr int kSide = 6;
+
+/// In [-1/2, 1/2), the same numbers on every platform.
+class Random {
+ public:
+  btScalar next() {
+    state_ = state_ * 1664525U + 1013904223U;
+    return static_cast<btScalar>(static_cast<double>(state_ >> 8U) / 16777216.0 - 0.5);
+  }
+
+ private:
+  std::uint32_t state_ = 12345;
+};
+
+btCollisionShape* shape_of(const std::string& kind, pd::test::BulletWorld& world) {
+  if (kind == "cylinder") return world.shape<btCylinderShape>(btVector3(.25F, .3F, .25F));
+  if (kind == "cone") return world.shape<btConeShape>(.25F, .5F);
+  if (kind == "capsule") return world.shape<btCapsuleShape>(.2F, .3F);
+  if (kind == "box") return world.shape<btBoxShape>(btVector3(.25F, .2F, .3F));
+  const btVector3 centres[] = {{-.2F, 0, 0}, {.2F, 0, .05F}, {0, .2F, 0}};
+  const btScalar radii[] = {.15F, .2F, .1F};
+  return world.shape<btMultiSphereShape>(centres, radii, 3);
+}
+
+void run(const std::string& kind, const std::string& ground, bool ours, int settle, int steps) {
+  pd::test::UnionWorld world(ours);
+  const auto corner = [&](int i, int k) {
+    const double x = kExtent * (2.0 * i / kCells - 1), z = kExtent * (2.0 * k / kCells - 1);
+    const double height = ground == "flat" ? 0 : 0.1 * (x * x + z * z) + 0.15 * std::sin(2 * x) * std::cos(2 * z);
+    return btVector3(static_cast<btScalar>(x), static_cast<btScalar>(height), static_cast<btScalar>(z));
+  };
+  std::vector<pd::test::UnionWorld::Triangle> triangles;
+  for (int i = 0; i < kCells; ++i) {
+    for (int k = 0; k < kCells; ++k) {
+      pd::test::add_rectangle(triangles, corner(i, k), corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k));
+    }
+  }
+  world.fixed(world.mesh(triangles, CONVEX_DISTANCE_MARGIN))->setFriction(.7F);
+  Random random;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto across = [&](int place) { return 1.2F * (static_cast<btScalar>(place) - 2.5F) + .1F * random.next(); };
+    const btVector3 at(across(i % kSide), 3 + .3F * random.next(), across(i / kSide));
+    btQuaternion turn(random.next(), random.next(), random.next(), random.next());
+    btRigidBody* body =
+        world.moving(shape_of(kind, world.bullet), btTransform(turn.normalized(), at), btVector3(0, 0, 0));
+    body->setFriction(.7F);
+    body->setRollingFriction(.02F);
+    body->setSpinningFriction(.02F);
+  }
+  world.step(settle);
+  world.solver.reset_statistics();
+  std::vector<double> ms;
+  for (int i = 0; i < steps; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    world.step();
+    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::sort(ms.begin(), ms.end());
+  const auto statistics = world.solver.statistics();
+  const auto calls = static_cast<double>(std::max<std::int64_t>(statistics.calls, 1));
+  const auto lost = std::count_if(world.bullet.bodies().begin(), world.bullet.bodies().end(),
+                                  [](const auto& body) { return body->getWorldTransform().getOrigin().y() < -1; });
+  std::printf("%-12s%-7s%-8s%10.4f%10.1f%8.2f%10.2f%10d%6d\n", kind.c_str(), ground.c_str(), ours ? "pdepth" : "bullet",
+              ms[ms.size() / 2], static_cast<double>(statistics.calls) / steps,
+              static_cast<double>(statistics.warm) / calls, static_cast<double>(statistics.support_calls) / calls,
+              world.bullet.num_contacts(), static_cast<int>(lost));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("A step of bodies that rest on a triangle mesh");
+  std::vector<std::string> kinds{"cylinder", "cone", "multisphere", "capsule", "box"};
+  std::vector<std::string> grounds{"flat", "waves"};
+  std::vector<std::string> runs{"bullet", "pdepth"};
+  int settle = 240;
+  int steps = 120;
+  app.add_option("--kinds", kinds)->delimiter(',')->check(CLI::IsMember(kinds));
+  app.add_option("--grounds", grounds)->delimiter(',')->check(CLI::IsMember(grounds));
+  app.add_option("--runs", runs)->delimiter(',')->check(CLI::IsMember(runs));
+  app.add_option("--settle", settle, "steps before those that are measured")->check(CLI::NonNegativeNumber);
+  app.add_option("--steps", steps)->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
+  std::printf("%-12s%-7s%-8s%10s%10s%8s%10s%10s%6s\n", "kind", "ground", "run", "p50 ms", "queries", "warm", "supports",
+              "contacts", "lost");
+  for (const std::string& kind : kinds) {
+    for (const std::string& ground : grounds) {
+      for (const std::string& name : runs) run(kind, ground, name == "pdepth", settle, steps);
+    }
+  }
+  return 0;
+}
