@@ -53,7 +53,8 @@ class Input {
 
 /// Some convex shape, or a refusal of the factory: that is an answer, too.
 inline Expected<ConvexShape> read_shape(Input& input) {
-  const int kind = input.choice(10);
+  const std::uint8_t drawn = input.byte();
+  const int kind = drawn < 250 ? drawn % 10 : 10;
   const int margin_kind = input.choice(4);
   Expected<ConvexShape> shape = [&]() -> Expected<ConvexShape> {
     switch (kind) {
@@ -75,6 +76,14 @@ inline Expected<ConvexShape> read_shape(Input& input) {
         auto box = ConvexPolytope::box({input.size(), input.size(), input.size()});
         if (!box) return box.error();
         return ConvexShape(*std::move(box));
+      }
+      case 10: {
+        std::vector<Sphere> spheres;
+        for (int i = 1 + input.choice(5); i > 0; --i) {
+          const Vec3 centre = input.vector();
+          spheres.push_back({centre, input.size()});
+        }
+        return ConvexShape::hull_of_spheres(spheres);
       }
       default: {
         std::vector<Vec3> points;

@@ -24,6 +24,8 @@ enum class CurvedPair : std::uint8_t {
   ball_cone,
   cylinder_sphere,  ///< a small sphere in a cylinder
   cone_sphere,
+  spheres_box,      ///< the hull of three spheres
+  spheres_spheres,  ///< of three and four
 };
 [[nodiscard]] std::string_view to_string(CurvedPair pair);
 

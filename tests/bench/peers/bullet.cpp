@@ -7,6 +7,7 @@
 #include "BulletCollision/CollisionShapes/btConeShape.h"
 #include "BulletCollision/CollisionShapes/btConvexHullShape.h"
 #include "BulletCollision/CollisionShapes/btCylinderShape.h"
+#include "BulletCollision/CollisionShapes/btMultiSphereShape.h"
 #include "BulletCollision/CollisionShapes/btSphereShape.h"
 #include "BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h"
 #include "BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h"
@@ -81,6 +82,14 @@ std::unique_ptr<btConvexShape> shape_of(const ConvexShape& shape) {
         std::make_unique<btCylinderShapeZ>(to_bullet(Vec3(cylinder->radius, cylinder->radius, cylinder->half_height)));
   } else if (const auto* cone = std::get_if<Cone>(&shape.core())) {
     made = std::make_unique<btConeShapeZ>(scalar(cone->radius), scalar(2 * cone->half_height));
+  } else if (const auto* hull = std::get_if<SphereHull>(&shape.core())) {
+    std::vector<btVector3> centres;
+    std::vector<btScalar> radii;
+    for (const Sphere& s : hull->spheres()) {
+      centres.push_back(to_bullet(s.centre));
+      radii.push_back(scalar(s.radius + shape.margin()));
+    }
+    made = std::make_unique<btMultiSphereShape>(centres.data(), radii.data(), static_cast<int>(radii.size()));
   } else if (shape.polytope()->num_vertices() == 1) {
     return std::make_unique<btSphereShape>(scalar(shape.margin()));
   } else if (shape.polytope()->num_vertices() == 2) {

@@ -55,6 +55,7 @@ Vec3 farthest_point(const CcdBody& body, const Vec3& d) {
     const Vec3 scaled = e->radii.cwiseProduct(d);
     return e->radii.cwiseProduct(scaled) / scaled.norm();
   }
+  if (const auto* spheres = std::get_if<SphereHull>(&core)) return spheres->support(d);
   const double across = std::sqrt(d.x() * d.x() + d.y() * d.y());
   const auto rim = [&](double radius, double z) {
     return across > 0 ? Vec3(d.x() * radius / across, d.y() * radius / across, z) : Vec3(0, 0, z);
