@@ -19,7 +19,8 @@ int compare(const Vec3& x, const Vec3& y) {
 int compare(const ConvexPolytope& x, const ConvexPolytope& y) {
   if (x.same_storage(y)) return 0;
   if (x.num_vertices() != y.num_vertices()) return x.num_vertices() < y.num_vertices() ? -1 : 1;
-  if (const int c = compare(x.vertex(0), y.vertex(0))) return c;
+  const int first = compare(x.vertex(0), y.vertex(0));
+  if (first != 0 || x.num_vertices() == 1) return first;
   // Two copies of one shape are common, and their bytes are compared faster than their numbers.
   const auto same_bytes = [bytes = sizeof(double) * static_cast<std::size_t>(x.num_vertices())](
                               const double* p, const double* q) { return std::memcmp(p, q, bytes) == 0; };

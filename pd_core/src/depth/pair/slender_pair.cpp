@@ -6,14 +6,51 @@
 
 namespace pd::detail {
 
+namespace {
+
+BracketWidth width_of(const DepthSettings& settings, bool for_contact) {
+  return {kCertifiedWidth, for_contact ? settings.contact_tolerance : 0};
+}
+
+/// Whether the cores' distance may be the margins' sum, as far as rounding tells.
+bool sign_is_unclear(double lower, double upper, double margin) {
+  const double round = 4 * kUnitRoundoff * (upper + margin);
+  return lower - margin <= round && upper - margin >= -round;
+}
+
+/// The cores of two spheres: as of segments without length, in a third of the instructions.
+bool answer_points(const PolytopePair& pair, const BracketWidth& width, bool for_contact, PenetrationDepth& out) {
+  const Vec3 on_a = pair.pose_a->rotation() * pair.a->vertex(0);
+  const Vec3 on_b = pair.pose_b->rotation() * pair.b->vertex(0);
+  const Vec3 offset = pair.pose_b->translation() - pair.pose_a->translation();
+  const double reach = pair.a->radius() + pair.b->radius() + offset.norm();
+  const Vec3 between = on_b - on_a + offset;
+  const double length = between.norm();
+  const double error = kPointError * reach;
+  if (!(reach > kLeastReach && reach < kLargestReach) || !(length > 4 * error)) return false;
+  const Vec3 unit = between / length;
+  const double lower = between.dot(unit) - error, upper = length + error;
+  if (!(lower > 0 && upper - lower <= width.limit(between.cwiseAbs().maxCoeff()))) return false;
+  const double margin = pair.margins.both();
+  if (margin > 0 && !for_contact && sign_is_unclear(lower, upper, margin)) return false;
+  out.method = Method::expansion;
+  ++out.statistics.support_calls;
+  out.normal = -unit;
+  out.witness_a = on_a + pair.pose_a->translation() - pair.margins.a * out.normal;
+  out.witness_b = on_b + pair.pose_b->translation() + pair.margins.b * out.normal;
+  out.feature_a = out.feature_b = {Feature::Kind::vertex, 0, -1};
+  set_signed_distance(margin, lower, upper, out);
+  return true;
+}
+
+}  // namespace
+
 bool answer_cores_apart(const PolytopePair& pair, NearestOfSegments& cores, bool mirrored,
                         const DepthSettings& settings, Bracket bracket, PenetrationDepth& out) {
   const bool for_contact = bracket == Bracket::contact;
-  if (!cores.bracket_distance({kCertifiedWidth, for_contact ? settings.contact_tolerance : 0})) return false;
+  if (!cores.bracket_distance(width_of(settings, for_contact))) return false;
   const double margin = pair.margins.both();
-  const double round = 4 * kUnitRoundoff * (cores.upper + margin);
-  const bool sign_unclear = cores.lower - margin <= round && cores.upper - margin >= -round;
-  if (margin > 0 && sign_unclear && !for_contact) return false;
+  if (margin > 0 && !for_contact && sign_is_unclear(cores.lower, cores.upper, margin)) return false;
   out.method = Method::expansion;
   ++out.statistics.support_calls;
   out.normal = mirrored ? Vec3(-cores.normal) : cores.normal;
@@ -30,6 +67,10 @@ bool answer_cores_apart(const PolytopePair& pair, NearestOfSegments& cores, bool
 bool answer_slender_pair(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
                          PenetrationDepth& out) {
   if (pair.a->num_vertices() > 2 || pair.b->num_vertices() > 2) return false;
+  if (pair.a->num_vertices() == 1 && pair.b->num_vertices() == 1) {
+    const bool for_contact = bracket == Bracket::contact;
+    return answer_points(pair, width_of(settings, for_contact), for_contact, out);
+  }
   const Vec3 offset = pair.pose_b->translation() - pair.pose_a->translation();
   NearestOfSegments cores({*pair.a, pair.pose_a->rotation()}, {*pair.b, pair.pose_b->rotation()}, offset,
                           pair.a->radius() + pair.b->radius() + offset.norm());
