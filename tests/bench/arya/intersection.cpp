@@ -407,7 +407,7 @@ void measure_arya_sums(const AryaSettings& settings, ClaimTable& table) {
   sums<2>(settings, table, 100'000, {1e-1, 1e-2, 1e-3, 1e-4});
   sums<3>(settings, table, settings.full ? 1'000'000 : 50'000, {1e-1, 3e-2, 1e-2});
   if (settings.full) sums<4>(settings, table, 200'000, {1e-1, 5e-2, 3e-2, 2e-2});
-  if (settings.full) sums<5>(settings, table, 200'000, {3e-1, 2e-1, 1.5e-1, 1e-1});
+  if (settings.full) sums<5>(settings, table, 200'000, {3e-1, 2e-1, 1.5e-1, 1e-1, 7e-2, 5e-2});
 }
 
 }  // namespace pd::bench
