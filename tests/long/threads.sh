@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One world on several threads: builds Bullet from Debian's source package with BT_THREADSAFE (Debian's own is built without),
-# the project's tests of worlds against it, both under the thread sanitizer, and runs the tests of threads.
+# the project and its tests of threads against it, all under the thread sanitizer, and runs them.
 #
 #   tests/long/threads.sh [SANITIZER]        thread; none: the release flags, to see the bits and the time
 #
@@ -45,10 +45,10 @@ cmake --build "${place}/bullet" --target install
 PKG_CONFIG_PATH=$(dirname "$(find "${place}/installed" -name bullet.pc)") \
   cmake -S . -B "${place}/project" -G Ninja --log-level=ERROR "${pd_launcher[@]}" "${build[@]}" \
   -DCMAKE_CXX_FLAGS="${flags}" -DPD_WITH_BENCH=OFF -DPD_WITH_PYTHON=OFF -DPD_WITH_RENDER=OFF
-cmake --build "${place}/project" --target test_engine_glue
+cmake --build "${place}/project" --target test_threads
 
 {
   printf 'date %s, commit %s, sanitizer %s\n' "$(date -u +%F)" "$(git rev-parse --short HEAD)" "${sanitizer}"
   TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/long/threads_bullet.txt" \
-    "${place}/project/test_engine_glue" --gtest_filter='OneWorldThreads.*:Threads.*'
+    "${place}/project/test_threads"
 } 2>&1 | tee tests/long/last_threads.txt

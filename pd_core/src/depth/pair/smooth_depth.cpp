@@ -33,6 +33,13 @@ constexpr double kAcross = 1e-9;
 /// Of L: how far below the supporting plane points of its face may be.
 constexpr double kAside = 0.05;
 
+/// Beside a margin that is 2^400 times as large, squares of the cores' distances underflow, and what was divided by
+/// their roots is no unit vector. What the plane's height misses by that is nothing beside the margin.
+Vec3 unit_of(const Vec3& normal) {
+  const double length = normal.norm();
+  return std::abs(length - 1) > 0x1p-40 ? Vec3(normal / length) : normal;
+}
+
 class SmoothQuery {
  public:
   SmoothQuery(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, ScratchBuffers& buffers,
@@ -149,7 +156,8 @@ class SmoothQuery {
     if (!nearest.certified) return false;
     const double unclear = 2 * kAbsolute * difference_.reach();
     if (!for_contact_ && nearest.lower - margin_ <= unclear && nearest.upper - margin_ >= -unclear) return false;
-    answer_apart(nearest, nearest.normal, {nearest.normal, -nearest.lower});
+    const Vec3 unit = unit_of(nearest.normal);
+    answer_apart(nearest, unit, {unit, -nearest.lower});
     out_.warm = true;
     return true;
   }
@@ -247,7 +255,7 @@ class SmoothQuery {
     }
     // The cores' signed distance is at most h(normal), certified by the expansion where they are not apart.
     const bool directed = nearest.lower > 0;
-    WayOut out{directed ? proven : core.normal, directed ? -nearest.lower : std::max(0.0, core.upper)};
+    WayOut out{unit_of(directed ? proven : core.normal), directed ? -nearest.lower : std::max(0.0, core.upper)};
     if (!directed && !for_contact_) {
       const WayOut thin = thinnest_axis(a_, b_, difference_);
       if (thin.upper < out.upper) out = thin;
