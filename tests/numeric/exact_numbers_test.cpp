@@ -168,4 +168,35 @@ TEST(RootSum, SurvivesScalesWhoseSquaresOverflow) {
   EXPECT_NEAR(small.round_down() / 1e-200, std::sqrt(2.0), 1e-15);
 }
 
+TEST(RootSum, RoundsDownToTheLargestDoubleWhatIsBeyondIt) {
+  const double largest = std::numeric_limits<double>::max();
+  const Dyadic whole(largest);
+  for (const double factor : {1.0, 2.0, 0x1p100}) {
+    const Dyadic root = whole * Dyadic(factor);
+    EXPECT_EQ(RootSum(Dyadic(0.0), 1, root * root, Dyadic(1.0)).round_down(), largest) << factor;
+    // Nothing of the sum is in range but one part.
+    EXPECT_EQ(RootSum(whole, 1, root * root, Dyadic(1.0)).round_down(), largest) << factor;
+  }
+  const double below = std::nextafter(largest, 0);
+  EXPECT_EQ(RootSum(Dyadic(0.0), 1, Dyadic(below) * Dyadic(below), Dyadic(1.0)).round_down(), below);
+}
+
+TEST(RootSum, RoundsDownWhereTheApproximationSaysNothing) {
+  // What is left of base and root is an ordinary number; they themselves have no double near them.
+  const Dyadic huge = Dyadic(1.0).scaled(1100);
+  for (const double left : {3.0, 3.1, 1e-300, 5e-324, 1e300}) {
+    const Dyadic above = huge + Dyadic(left), below = huge - Dyadic(left);
+    EXPECT_EQ(RootSum(-huge, 1, above * above, Dyadic(1.0)).round_down(), left);
+    EXPECT_EQ(RootSum(huge, -1, below * below, Dyadic(1.0)).round_down(), left);
+  }
+}
+
+TEST(RootSum, RoundsDownAmongSubnormalNumbers) {
+  for (const int k : {1, 2, 3, 5, 17, 1000, 123457}) {
+    const Dyadic x(k * 0x1p-1074);
+    const double down = RootSum(Dyadic(0.0), 1, x * x * Dyadic(2.0), Dyadic(1.0)).round_down();
+    EXPECT_EQ(down, std::floor(k * std::sqrt(2.0)) * 0x1p-1074) << k;
+  }
+}
+
 }  // namespace
