@@ -37,7 +37,7 @@ constexpr double kAside = 0.05;
 /// their roots is no unit vector. What the plane's height misses by that is nothing beside the margin.
 Vec3 unit_of(const Vec3& normal) {
   const double length = normal.norm();
-  return std::abs(length - 1) > 0x1p-40 ? Vec3(normal / length) : normal;
+  return std::abs(length - 1) > 0x1p-48 ? Vec3(normal / length) : normal;
 }
 
 class SmoothQuery {
