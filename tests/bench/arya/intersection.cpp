@@ -395,7 +395,7 @@ void measure_arya_macbeath(const AryaSettings& settings, ClaimTable& table) {
     hierarchy<2>(settings, table, 200'000, {1e-1, 1e-2, 1e-3, 1e-4});
     hierarchy<3>(settings, table, 100'000, {1e-1, 3e-2, 1e-2, 3e-3});
     hierarchy<4>(settings, table, 300'000, {0.1, 0.07, 0.05, 0.03, 0.02});
-    hierarchy<5>(settings, table, 200'000, {0.3, 0.2, 0.15, 0.1, 0.07});
+    hierarchy<5>(settings, table, 200'000, {0.3, 0.2, 0.15, 0.1, 0.07, 0.05});
   } else {
     hierarchy<2>(settings, table, 50'000, {1e-1, 1e-2, 1e-3});
     hierarchy<3>(settings, table, 20'000, {2e-1, 1e-1, 5e-2});
