@@ -34,6 +34,8 @@ using dimension::Vector;
 const Claim kTime{"Theorem 1, time", "intersection queries after preprocessing do not depend on n"};
 const Claim kFlat{"Theorem 1, flatness", "intersection queries cost the same whatever n, within a tenth"};
 const Claim kCalls{"Theorem 1, calls", "an intersection query takes O(polylog 1/epsilon) directional width queries"};
+const Claim kTernary{"Lemmas 14 and 15",
+                     "the nested ternary search takes O(log^(d-1) 1/epsilon) directional width queries"};
 const Claim kPromise{"Theorem 1, promise", "yes where the bodies meet, no where the grown bodies do not"};
 const Claim kNodes{"Lemma 5, nodes", "the hierarchy of Macbeath regions has O(1/epsilon^((d-1)/2)) nodes"};
 /// The claim in the measure that a sphere's own caps have: caps of depth t are tan^-2 = (1 - t)^2 / (t (2 - t)) to the
@@ -291,10 +293,14 @@ void times(const AryaSettings& settings, ClaimTable& table) {
   }
 }
 
+/// Support calls of queries at places about touching, in the mean, over exact structures.
 template <int D>
-void calls(const AryaSettings& settings, ClaimTable& table, int cases) {
-  Growth growth{fmt::format("balls' points, d = {}", D), "support calls a query, exact structures", "1 / epsilon"};
-  for (const double epsilon : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
+void calls(const AryaSettings& settings, ClaimTable& table, int cases, dimension::IntersectionSearch search,
+           double least_epsilon) {
+  const bool ternary = search == dimension::IntersectionSearch::nested_ternary;
+  Growth growth{fmt::format("balls' points, d = {}", D), "support calls a query, exact structures",
+                ternary ? "log2 1 / epsilon" : "1 / epsilon"};
+  for (double epsilon = 0.1; epsilon > 0.99 * least_epsilon; epsilon /= 10) {
     std::mt19937_64 random(settings.seed);
     const auto a =
         *DirectionalWidth<D>::build(*Body<D>::from_points(cloud<D>(Cloud::ball, 300, random)), 0.5, Backend::exact);
@@ -303,11 +309,11 @@ void calls(const AryaSettings& settings, ClaimTable& table, int cases) {
       AffineMap<D> map;
       map.translation = (1.6 + 0.4 * uniform(random)) * direction<D>(random);
       const std::array<ComposedBody<D>, 2> pair = {*ComposedBody<D>::of(a), *ComposedBody<D>::of(a, map)};
-      count += dimension::approximate_intersection<D>(pair, epsilon)->support_calls;
+      count += dimension::approximate_intersection<D>(pair, epsilon, search)->support_calls;
     }
-    growth.add(1 / epsilon, static_cast<double>(count) / cases);
+    growth.add(ternary ? std::log2(1 / epsilon) : 1 / epsilon, static_cast<double>(count) / cases);
   }
-  table.add_growth(kCalls, std::move(growth), 0.2);
+  table.add_growth(ternary ? kTernary : kCalls, std::move(growth), ternary ? D - 1 : 0.2);
 }
 
 template <int D>
@@ -383,10 +389,15 @@ void measure_arya_intersection(const AryaSettings& settings, ClaimTable& table) 
 }
 
 void measure_arya_queries(const AryaSettings& settings, ClaimTable& table) {
-  calls<2>(settings, table, 400);
-  calls<3>(settings, table, 400);
-  calls<4>(settings, table, 400);
-  calls<5>(settings, table, 400);
+  constexpr auto kCuts = dimension::IntersectionSearch::cutting_planes;
+  constexpr auto kThirds = dimension::IntersectionSearch::nested_ternary;
+  calls<2>(settings, table, 400, kCuts, 1e-5);
+  calls<3>(settings, table, 400, kCuts, 1e-5);
+  calls<4>(settings, table, 400, kCuts, 1e-5);
+  calls<5>(settings, table, 400, kCuts, 1e-5);
+  calls<2>(settings, table, 400, kThirds, 1e-5);
+  calls<3>(settings, table, 20, kThirds, 1e-4);
+  if (settings.full) calls<4>(settings, table, 4, kThirds, 1e-2);
   times(settings, table);
 }
 
