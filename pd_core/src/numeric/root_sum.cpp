@@ -17,6 +17,9 @@ int top_bit(const Dyadic& x) { return x.exponent() + static_cast<int>(msb(boost:
 
 constexpr double kLargest = std::numeric_limits<double>::max();
 
+/// Strides double up to here: twice as many are still a number of steps.
+constexpr std::int64_t kLongestStride = std::int64_t{1} << 61;
+
 /// How many doubles lie from x to y, 0 <= x <= y.
 std::int64_t steps_between(double x, double y) {
   return std::bit_cast<std::int64_t>(y) - std::bit_cast<std::int64_t>(x);
@@ -73,7 +76,7 @@ double RootSum::round_down() const {
     while (low > 0 && compare(Dyadic(low)) < 0) {
       high = low;
       low = step(low, -stride);
-      stride *= 2;
+      stride = 2 * std::min(stride, kLongestStride);
     }
     while (step(low, 1) < high) {
       const double middle = step(low, (std::bit_cast<std::int64_t>(high) - std::bit_cast<std::int64_t>(low)) / 2);
@@ -87,7 +90,7 @@ double RootSum::round_down() const {
     low = high;
     if (low == kLargest) return low;
     high = step(high, std::min(stride, steps_between(high, kLargest)));
-    stride *= 2;
+    stride = 2 * std::min(stride, kLongestStride);
   }
   while (step(low, 1) < high) {
     const double middle = step(low, (std::bit_cast<std::int64_t>(high) - std::bit_cast<std::int64_t>(low)) / 2);
