@@ -34,8 +34,6 @@ class KernelStructure : public WidthStructure<D> {
     std::int64_t index;
   };
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
-  /// Kernel points that rounding keeps out of the hull.
-  [[nodiscard]] const std::vector<Node>& loose() const { return loose_; }
   /// A node that no neighbour is beyond, for a direction of the frame.
   std::int32_t extreme_node(const Vector<D>& unit_direction, QueryCounters& counters) const {
     return climb(starts_[cells_.cell(unit_direction)], unit_direction, counters);

@@ -49,9 +49,10 @@ class NearestOfFaces {
       if (!(weights[i] > 0)) return false;
       total += weights[i];
     }
-    // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination: it lies in
-    // P.
     const double share = 1 / total;
+    // Weights are fourth powers of lengths, which leave the range of doubles before lengths do.
+    if (!(share > 0 && share < std::numeric_limits<double>::infinity())) return false;
+    // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination of P's.
     double shares[Count];
     Vec3 point = Vec3::Zero();
     for (int i = 0; i < Count; ++i) {
@@ -96,41 +97,38 @@ bool inside_tetrahedron(const DifferenceVertex* s) {
          inside(s[0].x.cross(s[1].x).dot(s[3].x)) && inside(-s[0].x.cross(s[1].x).dot(s[2].x));
 }
 
-}  // namespace
-
-Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
+/// @tparam kOfNewest  only faces with the last point.
+template <bool kOfNewest>
+Vec3 nearest_on(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
   if (count == 4 && !planar && inside_tetrahedron(simplex)) {
     weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
     return Vec3::Zero();
   }
   NearestOfFaces nearest(simplex);
+  const auto asked = [newest = count - 1](int last) { return !kOfNewest || last == newest; };
   // A triangle that holds the projection holds the nearest point: bodies at rest end here. In a slender one
   // rounding may say so, too.
   const bool inside = count == 3 && is_well_shaped(simplex) && nearest.triangle(0, 1, 2);
   for (int i = 0; i < count && !inside; ++i) {
-    nearest.vertex(i);
+    if (asked(i)) nearest.vertex(i);
     for (int j = i + 1; j < count; ++j) {
-      nearest.edge(i, j);
-      for (int k = j + 1; k < count; ++k) nearest.triangle(i, j, k);
+      if (asked(j)) nearest.edge(i, j);
+      for (int k = j + 1; k < count; ++k) {
+        if (asked(k)) nearest.triangle(i, j, k);
+      }
     }
   }
   return nearest.keep(simplex, count, weights);
 }
 
+}  // namespace
+
+Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
+  return nearest_on<false>(simplex, count, weights, planar);
+}
+
 Vec3 closest_point_with_newest(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]) {
-  if (count == 4 && inside_tetrahedron(simplex)) {
-    weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
-    return Vec3::Zero();
-  }
-  NearestOfFaces nearest(simplex);
-  const int newest = count - 1;
-  const bool inside = count == 3 && is_well_shaped(simplex) && nearest.triangle(0, 1, 2);
-  for (int i = 0; i < newest && !inside; ++i) {
-    for (int j = i + 1; j < newest; ++j) nearest.triangle(i, j, newest);
-    nearest.edge(i, newest);
-  }
-  if (!inside) nearest.vertex(newest);
-  return nearest.keep(simplex, count, weights);
+  return nearest_on<true>(simplex, count, weights, false);
 }
 
 }  // namespace pd::detail

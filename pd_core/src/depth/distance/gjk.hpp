@@ -30,7 +30,8 @@ struct ClosestPoint {
 /// `planar`: the four points lie in one plane, where a tetrahedron would be noise.
 Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar = false);
 
-/// The same where the last of two to four points is new and the others are such a face: of the faces that hold it.
+/// The same among the faces that hold the last of two to four points: all that can be nearer where the others are such
+/// a face, and a point to go on from in any case.
 Vec3 closest_point_with_newest(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]);
 
 /// The direction to look for a support in: the opposite of the nearest point of the simplex, or of a triangle's plane.
@@ -62,7 +63,7 @@ DistanceErrors distance_errors(const Difference& difference) {
   return {upper, upper + difference.support_error()};
 }
 
-/// @param start     one to three vertices of P to begin with, or a triangle and a vertex next to its plane's far side.
+/// @param start     one to four vertices of P to begin with; of four, the last is the nearest to a separating plane.
 /// @param relative  stop when upper <= (1 + relative) lower, both less `width.margin` ...
 /// @param width     ... or upper - lower is within it, by the largest |coordinate| seen.
 template <class Difference>

@@ -102,6 +102,7 @@ class ExpandingPolytope {
       polytope.difference_.search_supports(units, supports);
       for (int k = 0; k < 4; ++k) {
         if (!polytope.add_if_not_beyond(units[k], supports[k], result)) {
+          // Found already, and a search for the closest point may begin from them.
           for (int j = k + 1; j < 4; ++j) polytope.surface_.vertices.push_back(supports[j]);
           return false;
         }

@@ -18,7 +18,7 @@ bool sign_is_unclear(double lower, double upper, double margin) {
   return lower - margin <= round && upper - margin >= -round;
 }
 
-/// The cores of two spheres: as of segments without length, in a third of the instructions.
+/// The cores of two spheres: as of segments without length, in half of the instructions.
 bool answer_points(const PolytopePair& pair, const BracketWidth& width, bool for_contact, PenetrationDepth& out) {
   const Vec3 on_a = pair.pose_a->rotation() * pair.a->vertex(0);
   const Vec3 on_b = pair.pose_b->rotation() * pair.b->vertex(0);
