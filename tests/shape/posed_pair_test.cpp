@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace {
 
@@ -134,6 +135,58 @@ TEST(PosedPair, NumbersThatDoNotRoundGiveTheSameSigns) {
     }
   }
   EXPECT_GT(exact, 1000);
+}
+
+/// Corners of two lenses that stand across each other: long coordinates, whose edges are parallel all the same.
+TEST(PosedPair, TiesOfExchangedAxesTakeNoBigNumbers) {
+  const ConvexPolytope a = box(0.1, 0.7, 1.3);
+  std::vector<Vec3> points;
+  for (const double x : {-0.3, 0.9}) {
+    for (const double y : {-0.7, 0.1}) {
+      for (const double z : {0.2, 1.1}) points.emplace_back(x, y, z);
+    }
+  }
+  const ConvexPolytope b = *ConvexPolytope::from_points(points);
+  const Mat3 exchanged{{0, 1, 0}, {1, 0, 0}, {0, 0, -1}}, cycle{{0, 1, 0}, {0, 0, -1}, {-1, 0, 0}};
+  const Pose poses[] = {Pose(), Pose::from_trusted_matrix(exchanged, Vec3(0.1, 0.2, 0.3)),
+                        Pose::from_trusted_matrix(cycle, Vec3(0.7, 0, 0.1)), quaternion(0, 1, 0, 0, Vec3(0.1, 0, 0)),
+                        quaternion(1, 0.2, 0.3, 0.4, Vec3(0.1, 0.2, 0.3))};
+  for (const Pose& pose : poses) {
+    // One rotation for both, which need not be exact in doubles, or two that exchange axes.
+    const PosedPair pair(a, pose, b, pose.is_quaternion() && pose.quaternion_wxyz()[0] != 0 ? pose : poses[1]);
+    std::vector<PairVector> edges;
+    for (int k = 0; k < 3; ++k) {
+      edges.push_back(PairVector::edge_a(0, 4 >> k));
+      edges.push_back(PairVector::edge_b(7, 7 - (4 >> k)));
+    }
+    std::vector<int> found;
+    for (const PairVector& u : edges) {
+      for (const PairVector& v : edges) {
+        for (const PairVector& w : edges) found.push_back(pair.sign_determinant(u, v, w));
+      }
+    }
+    EXPECT_EQ(pair.exact_work(), 0);
+    EXPECT_GT(pair.stages().exact, 20);
+    auto sign = found.begin();
+    for (const PairVector& u : edges) {
+      for (const PairVector& v : edges) {
+        for (const PairVector& w : edges) {
+          EXPECT_EQ(*sign++, determinant(pair.exact(u), pair.exact(v), pair.exact(w)).sign());
+        }
+      }
+    }
+  }
+}
+
+/// A matrix is taken as it stands, one that mirrors, too: signs are those of the turned vectors.
+TEST(PosedPair, MirroredAxesKeepTheirSigns) {
+  const ConvexPolytope a = box(0.1, 0.7, 1.3), b = box(0.3, 0.2, 0.9);
+  const Mat3 mirror{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+  const Pose mirrored = Pose::from_trusted_matrix(mirror, Vec3(0.1, 0.2, 0.3));
+  expect_exact_signs(PosedPair(a, mirrored, b, mirrored), 200);
+  expect_exact_signs(PosedPair(a, mirrored, b, Pose()), 200);
+  const Mat3 flat{{1, 1, 0}, {0, 0, 0}, {0, 0, 1}};
+  expect_exact_signs(PosedPair(a, Pose::from_trusted_matrix(flat, Vec3::Zero()), b, Pose()), 200);
 }
 
 TEST(PosedPair, NoScaleOverflowsOrUnderflows) {

@@ -84,4 +84,29 @@ Expansion<4 * N> product(const Expansion<N>& e, const Expansion<2>& f) {
   return sum(low, f.size == 2 ? scaled(e, f.term[1]) : Expansion<2 * N>{});
 }
 
+/// a * d - b * c, exact.
+inline Expansion<16> determinant2(const Expansion<2>& a, const Expansion<2>& b, const Expansion<2>& c,
+                                  const Expansion<2>& d) {
+  return sum(product(a, d), product(b, c), -1);
+}
+
+/// Three coordinates, each a difference of two doubles.
+struct DifferenceVector {
+  Expansion<2> x, y, z;
+};
+/// Sign of <a, b x c>, exact.
+inline int sign_of_determinant(const DifferenceVector& a, const DifferenceVector& b, const DifferenceVector& c) {
+  const auto along_x = product(determinant2(b.y, b.z, c.y, c.z), a.x);
+  const auto along_y = product(determinant2(b.z, b.x, c.z, c.x), a.y);
+  const auto along_z = product(determinant2(b.x, b.y, c.x, c.y), a.z);
+  return sum(sum(along_x, along_y), along_z).sign();
+}
+
+/// Whether products of three differences of such coordinates are exact: every bit of theirs lies in 2^-1056 .. 2^1000,
+/// and Veltkamp's split does not overflow.
+inline bool fits_expansions(double coordinate) {
+  const double magnitude = std::abs(coordinate);
+  return coordinate == 0 || (magnitude >= 0x1p-300 && magnitude <= 0x1p320);
+}
+
 }  // namespace pd::detail

@@ -11,22 +11,12 @@
 namespace pd {
 namespace {
 
+using detail::determinant2;
 using detail::difference;
 using detail::Dyadic;
-using detail::Expansion;
-using detail::product;
-using detail::sum;
-
-// Within these magnitudes (or zero) every bit of every product of three differences lies in 2^-1056 .. 2^1000, and
-// Veltkamp's split does not overflow.
-constexpr double kSmallestExpanded = 0x1p-300;
-constexpr double kLargestExpanded = 0x1p320;
 
 bool expandable(std::initializer_list<double> values) {
-  return std::all_of(values.begin(), values.end(), [](double v) {
-    const double magnitude = std::abs(v);
-    return v == 0 || (magnitude >= kSmallestExpanded && magnitude <= kLargestExpanded);
-  });
+  return std::all_of(values.begin(), values.end(), detail::fits_expansions);
 }
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
@@ -35,16 +25,12 @@ void count(std::int64_t PredicateStages::*stage, PredicateStages* stages) {
   if (stages != nullptr) ++(stages->*stage);
 }
 
-/// a * d - b * c on expansions.
-Expansion<16> minor(const Expansion<2>& a, const Expansion<2>& b, const Expansion<2>& c, const Expansion<2>& d) {
-  return sum(product(a, d), product(b, c), -1);
-}
-
 int orient2d_unfiltered(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c,
                         PredicateStages* stages) {
   if (expandable({a[0], a[1], b[0], b[1], c[0], c[1]})) {
     count(&PredicateStages::expansion, stages);
-    return minor(difference(b[0], a[0]), difference(b[1], a[1]), difference(c[0], a[0]), difference(c[1], a[1])).sign();
+    return determinant2(difference(b[0], a[0]), difference(b[1], a[1]), difference(c[0], a[0]), difference(c[1], a[1]))
+        .sign();
   }
   count(&PredicateStages::dyadic, stages);
   const Dyadic ax(a[0]);
@@ -61,16 +47,10 @@ int orient3d_unfiltered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
       return sign_of(determinant);
     }
     count(&PredicateStages::expansion, stages);
-    const Expansion<2> bx = difference(b.x(), a.x());
-    const Expansion<2> by = difference(b.y(), a.y());
-    const Expansion<2> bz = difference(b.z(), a.z());
-    const Expansion<2> cx = difference(c.x(), a.x());
-    const Expansion<2> cy = difference(c.y(), a.y());
-    const Expansion<2> cz = difference(c.z(), a.z());
-    const auto along_x = product(minor(by, bz, cy, cz), difference(d.x(), a.x()));
-    const auto along_y = product(minor(bz, bx, cz, cx), difference(d.y(), a.y()));
-    const auto along_z = product(minor(bx, by, cx, cy), difference(d.z(), a.z()));
-    return sum(sum(along_x, along_y), along_z).sign();
+    const auto from_a = [&](const Vec3& p) {
+      return detail::DifferenceVector{difference(p.x(), a.x()), difference(p.y(), a.y()), difference(p.z(), a.z())};
+    };
+    return detail::sign_of_determinant(from_a(d), from_a(b), from_a(c));
   }
   count(&PredicateStages::dyadic, stages);
   const detail::Dyadic3 origin = detail::to_dyadic(a);

@@ -1,6 +1,6 @@
 /// @file
-/// A sum of products of doubles that knows whether it is exact: boxes, grids and integers need nothing more, and where
-/// a step rounds the caller goes on with longer numbers.
+/// Sums of doubles, and of their products, that know whether they are exact: boxes, grids and integers need nothing
+/// more, and where a step rounds the caller goes on with longer numbers.
 #pragma once
 
 #include <cmath>
@@ -36,5 +36,13 @@ class UnroundedSum {
   double value_ = 0;
   bool exact_ = true;
 };
+
+/// a += b where the sum has no more than two parts. @return whether that is so; a is rounded where it is not.
+inline bool add_exactly(DoubleDouble& a, double b) {
+  const DoubleDouble high = two_sum(a.hi, b);
+  const DoubleDouble low = two_sum(high.lo, a.lo);
+  a = two_sum(high.hi, low.hi);
+  return low.lo == 0;
+}
 
 }  // namespace pd::detail

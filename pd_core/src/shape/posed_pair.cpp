@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "numeric/expansion.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "numeric/unrounded.hpp"
 #include "pd/numeric/predicates.hpp"
@@ -15,43 +16,22 @@ namespace {
 /// Loss by underflow inside a scaled double or double-double evaluation; far below every rounding term that matters.
 constexpr double kUnderflow = 0x1p-900;
 
-DoubleDouble dd(double x) { return {x, 0}; }
-
-/// The nine numerators of R(q) |q|^2, in any number type.
-template <class Number>
-std::array<Number, 9> homogeneous_rotation(const std::array<double, 4>& q) {
-  const Number w(q[0]), x(q[1]), y(q[2]), z(q[3]), two(2.0);
-  const Number ww = w * w, xx = x * x, yy = y * y, zz = z * z;
-  const Number xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
+/// The nine numerators of R(q) |q|^2.
+std::array<Dyadic, 9> homogeneous_rotation(const std::array<double, 4>& q) {
+  const Dyadic w(q[0]), x(q[1]), y(q[2]), z(q[3]), two(2.0);
+  const Dyadic ww = w * w, xx = x * x, yy = y * y, zz = z * z;
+  const Dyadic xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
   return {ww + xx - yy - zz, two * (xy - wz), two * (xz + wy), two * (xy + wz),  ww - xx + yy - zz,
           two * (yz - wx),   two * (xz - wy), two * (yz + wx), ww - xx - yy + zz};
 }
 
-/// Double-double with the constructor that `homogeneous_rotation` expects.
-struct Number : DoubleDouble {
-  explicit Number(double x) : DoubleDouble{x, 0} {}
-  Number(const DoubleDouble& d) : DoubleDouble(d) {}  // NOLINT(google-explicit-constructor)
-};
-
-void rotation_in_double_double(const Pose& pose, DoubleDouble (&rotation)[9]) {
-  if (!pose.is_quaternion()) {
-    for (int i = 0; i < 9; ++i) rotation[i] = dd(pose.rotation()(i / 3, i % 3));
-    return;
-  }
-  const std::array<double, 4>& q = pose.quaternion_wxyz();
-  const std::array<Number, 9> numerators = homogeneous_rotation<Number>(q);
-  DoubleDouble norm{0, 0};
-  for (const double c : q) norm = norm + two_product(c, c);
-  for (int i = 0; i < 9; ++i) rotation[i] = numerators[static_cast<std::size_t>(i)] / norm;
-}
-
 /// Largest coordinate of |R| |v| over the vertices, bounded by the box of |v|.
-double reach(const ConvexPolytope& polytope, const DoubleDouble (&rotation)[9], double scale) {
+double reach(const ConvexPolytope& polytope, const ColumnsDD& columns, double scale) {
   const Vec3& box = polytope.max_abs_coordinates();
   double largest = 0;
   for (int i = 0; i < 3; ++i) {
     double sum = 0;
-    for (int j = 0; j < 3; ++j) sum += std::abs(rotation[3 * i + j].hi) * (box[j] * scale);
+    for (int j = 0; j < 3; ++j) sum += std::abs(columns[j].hi[i]) * (box[j] * scale);
     largest = std::max(largest, sum);
   }
   return largest;
@@ -76,31 +56,23 @@ Vec3 rotate(const ConvexPolytope& p, const double (&r)[9], double scale, int to,
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
-Vec3DD rotate(const ConvexPolytope& p, const DoubleDouble (&r)[9], double scale, int to, int from) {
-  if (to < 0 && from < 0) return {};
+/// to - from, with its axes as R exchanges and reverses them (or as they are: null). False where a coordinate is too
+/// large or small.
+bool difference_of(const ConvexPolytope& p, const ColumnsDD* turn, int to, int from, DifferenceVector& out) {
   const double* const coordinates[3] = {p.x(), p.y(), p.z()};
-  DoubleDouble v[3];
-  for (int i = 0; i < 3; ++i) {
-    const double t = to >= 0 ? coordinates[i][to] * scale : 0;
-    const double f = from >= 0 ? coordinates[i][from] * scale : 0;
-    v[i] = two_sum(t, -f);
+  Expansion<2>* const turned[3] = {&out.x, &out.y, &out.z};
+  for (int j = 0; j < 3; ++j) {
+    double t = to >= 0 ? coordinates[j][to] : 0, f = from >= 0 ? coordinates[j][from] : 0;
+    if (!fits_expansions(t) || !fits_expansions(f)) return false;
+    int i = j;
+    if (turn != nullptr) {
+      const FourDoubleDoubles& column = (*turn)[j];
+      i = column.hi[0] != 0 ? 0 : column.hi[1] != 0 ? 1 : 2;
+      if (column.hi[i] < 0) std::swap(t, f);
+    }
+    *turned[i] = difference(t, f);
   }
-  return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[3] * v[0] + r[4] * v[1] + r[5] * v[2],
-          r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
-}
-
-Vec3DD rotate_back(const DoubleDouble (&r)[9], const Vec3DD& x) {
-  return {r[0] * x.x + r[3] * x.y + r[6] * x.z, r[1] * x.x + r[4] * x.y + r[7] * x.z,
-          r[2] * x.x + r[5] * x.y + r[8] * x.z};
-}
-
-/// Whether R is `rotation`, hi parts alone, exactly: a matrix, or a quaternion of one component, whose rotation is a
-/// turn by 0 or a half about an axis.
-bool stored_in_doubles(const Pose& pose, const DoubleDouble (&rotation)[9]) {
-  if (!pose.is_quaternion()) return true;
-  const std::array<double, 4>& q = pose.quaternion_wxyz();
-  const auto entry = [](const DoubleDouble& r) { return r.lo == 0 && (r.hi == 0 || std::abs(r.hi) == 1); };
-  return std::count(q.begin(), q.end(), 0.0) == 3 && std::all_of(std::begin(rotation), std::end(rotation), entry);
+  return true;
 }
 
 bool equal_rotations(const Pose& a, const Pose& b) {
@@ -120,6 +92,27 @@ bool add_rotated(const ConvexPolytope& p, const double* r, double sign, int to, 
     } else {
       for (int i = 0; i < 3; ++i) sums[i].add_product(r[3 * i + j], sign * d.hi);
     }
+  }
+  return true;
+}
+
+/// Adds coordinate k of sign R (to - from), whose columns are doubles. False where the sum needs more than
+/// double-double.
+bool add_coordinate(const ConvexPolytope& p, const ColumnsDD& r, int k, double sign, int to, int from,
+                    DoubleDouble& sum) {
+  constexpr double kLeastProduct = 0x1p-900;  // below it the error of a product may be lost
+  const double* const coordinates[3] = {p.x(), p.y(), p.z()};
+  const auto add_product = [&](double entry, double x) {
+    if (std::abs(entry) == 1) return add_exactly(sum, entry * x);
+    const DoubleDouble product = two_product(entry, x);
+    return (x == 0 || std::abs(product.hi) > kLeastProduct) && add_exactly(sum, product.hi) &&
+           add_exactly(sum, product.lo);
+  };
+  for (int j = 0; j < 3; ++j) {
+    const double entry = sign * r[j].hi[k];
+    if (entry == 0) continue;
+    if (to >= 0 && !add_product(entry, coordinates[j][to])) return false;
+    if (from >= 0 && !add_product(-entry, coordinates[j][from])) return false;
   }
   return true;
 }
@@ -144,11 +137,11 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
   const double scale = scale_ = std::ldexp(1.0, -scale_exponent_);
 
-  rotation_in_double_double(pose_a, body_a_.rotation_dd);
-  rotation_in_double_double(pose_b, body_b_.rotation_dd);
+  rotation_in_double_double(pose_a, body_a_.columns);
+  rotation_in_double_double(pose_b, body_b_.columns);
   for (int i = 0; i < 9; ++i) {
-    body_a_.rotation[i] = to_double(body_a_.rotation_dd[i]);
-    body_b_.rotation[i] = to_double(body_b_.rotation_dd[i]);
+    body_a_.rotation[i] = to_double(body_a_.columns[i % 3][i / 3]);
+    body_b_.rotation[i] = to_double(body_b_.columns[i % 3][i / 3]);
   }
   double offset_size = 0;
   double offset_scaled[3];
@@ -156,20 +149,21 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   for (int i = 0; i < 3; ++i) {
     offset_exact[i] = two_sum(pose_b.translation()[i] * scale, -(pose_a.translation()[i] * scale));
     offset_size = std::max(offset_size, std::abs(offset_exact[i].hi) + std::abs(origin[i] * scale));
-    offset_exact[i] = offset_exact[i] - dd(origin[i] * scale);
+    offset_exact[i] = offset_exact[i] - DoubleDouble{origin[i] * scale, 0};
     offset_scaled[i] = offset_exact[i].hi;
+    offset_dd_.set(i, offset_exact[i]);
   }
+  offset_dd_.set(3, {});
   offset_ = Vec3(offset_scaled[0], offset_scaled[1], offset_scaled[2]);
-  offset_dd_ = {offset_exact[0], offset_exact[1], offset_exact[2]};
   same_rotation_ = equal_rotations(pose_a, pose_b);
-  doubles_rotate_ = scale_exponent_ == 0 && origin.isZero(0) && stored_in_doubles(pose_a, body_a_.rotation_dd) &&
-                    stored_in_doubles(pose_b, body_b_.rotation_dd) && offset_exact[0].lo == 0 &&
-                    offset_exact[1].lo == 0 && offset_exact[2].lo == 0;
+  doubles_rotate_ = scale_exponent_ == 0 && origin.isZero(0) && stored_in_doubles(pose_a, body_a_.columns) &&
+                    stored_in_doubles(pose_b, body_b_.columns) && offset_exact[0].lo == 0 && offset_exact[1].lo == 0 &&
+                    offset_exact[2].lo == 0;
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
   // 5u^2). Largest error / bound that `bound_ratios` found: 0.237 in doubles, 0.006 in double-double.
-  const double size = 2 * reach(a, body_a_.rotation_dd, scale) + 2 * reach(b, body_b_.rotation_dd, scale) + offset_size;
+  const double size = 2 * reach(a, body_a_.columns, scale) + 2 * reach(b, body_b_.columns, scale) + offset_size;
   vector_error_ = 8 * kUnitRoundoff * size + kUnderflow;
   vector_error_dd_ = 32 * 0x1p-103 * size + kUnderflow;
 }
@@ -181,22 +175,21 @@ Vec3 PosedPair::approximate(const PairVector& v) const {
   return r;
 }
 
-Vec3DD PosedPair::approximate_dd(const PairVector& v) const {
-  Vec3DD r = rotate(*b_, body_b_.rotation_dd, scale_, v.b_to, v.b_from) -
-             rotate(*a_, body_a_.rotation_dd, scale_, v.a_to, v.a_from);
-  if (v.translated) r = r + offset_dd_;
-  return r;
+void PosedPair::approximate_dd(const PairVector& v, FourDoubleDoubles& out) const {
+  const LocalVector of_b(*b_, body_b_.columns, scale_, v.b_to, v.b_from);
+  const LocalVector of_a(*a_, body_a_.columns, -scale_, v.a_to, v.a_from);
+  turned_sum(of_b, of_a, v.translated ? &offset_dd_ : nullptr, out);
 }
 
-Vec3DD PosedPair::in_frame_of_a(const Vec3DD& x) const { return rotate_back(body_a_.rotation_dd, x); }
-Vec3DD PosedPair::in_frame_of_b(const Vec3DD& x) const { return rotate_back(body_b_.rotation_dd, x); }
+Vec3DD PosedPair::in_frame_of_a(const Vec3DD& x) const { return turned_back(body_a_.columns, x); }
+Vec3DD PosedPair::in_frame_of_b(const Vec3DD& x) const { return turned_back(body_b_.columns, x); }
 
 void PosedPair::prepare_exact() const {
   if (body_a_.exact_ready) return;
   for (const auto& [body, pose] : {std::pair{&body_a_, pose_a_}, std::pair{&body_b_, pose_b_}}) {
     body->denominator = Dyadic(1.0);
     if (pose->is_quaternion()) {
-      const std::array<Dyadic, 9> numerators = homogeneous_rotation<Dyadic>(pose->quaternion_wxyz());
+      const std::array<Dyadic, 9> numerators = homogeneous_rotation(pose->quaternion_wxyz());
       std::copy(numerators.begin(), numerators.end(), body->rotation_exact);
       body->denominator = Dyadic(0.0);
       for (const double c : pose->quaternion_wxyz()) body->denominator = body->denominator + Dyadic(c) * Dyadic(c);
@@ -232,6 +225,12 @@ bool PosedPair::unrounded(const PairVector& v, bool rotated, Vec3& out) const {
     out[i] = sums[i].value();
   }
   return true;
+}
+
+bool PosedPair::exact_coordinate(const PairVector& v, int k, DoubleDouble& out) const {
+  out = {v.translated ? offset_[k] : 0, 0};
+  return doubles_rotate_ && add_coordinate(*b_, body_b_.columns, k, 1, v.b_to, v.b_from, out) &&
+         add_coordinate(*a_, body_a_.columns, k, -1, v.a_to, v.a_from, out);
 }
 
 template <int N>
@@ -315,7 +314,35 @@ std::optional<int> PosedPair::sign_determinant_rounded(const PairVector& u, cons
     }
   }
   ++stages_.exact;
-  return std::nullopt;
+  return sign_by_differences({&u, &v, &w});
+}
+
+std::optional<int> PosedPair::sign_by_differences(const PairVector* const (&vectors)[3]) const {
+  bool of_a = false, of_b = false;
+  for (const PairVector* const v : vectors) {
+    const bool has_a = v->a_to >= 0 || v->a_from >= 0, has_b = v->b_to >= 0 || v->b_from >= 0;
+    if (v->translated || has_a == has_b) return std::nullopt;
+    of_a = of_a || has_a;
+    of_b = of_b || has_b;
+  }
+  const bool one_frame = same_rotation_ || !of_a || !of_b;
+  if (!one_frame && !(exchanges_axes(*pose_a_, body_a_.columns) && exchanges_axes(*pose_b_, body_b_.columns))) {
+    return std::nullopt;
+  }
+  DifferenceVector differences[3];
+  for (int i = 0; i < 3; ++i) {
+    const PairVector& v = *vectors[i];
+    const bool is_b = v.b_to >= 0 || v.b_from >= 0;
+    const ColumnsDD* const turn = one_frame ? nullptr : is_b ? &body_b_.columns : &body_a_.columns;
+    if (!(is_b ? difference_of(*b_, turn, v.b_to, v.b_from, differences[i])
+               : difference_of(*a_, turn, v.a_from, v.a_to, differences[i]))) {
+      return std::nullopt;
+    }
+  }
+  const int sign = sign_of_determinant(differences[0], differences[1], differences[2]);
+  // A matrix that is taken as it stands may turn the order of three vectors.
+  if (one_frame && sign != 0) return std::nullopt;
+  return sign;
 }
 
 int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {

@@ -14,10 +14,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "numeric/double_double.hpp"
 #include "numeric/dyadic.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
+#include "shape/posed_rotation.hpp"
 
 namespace pd::detail {
 
@@ -61,12 +61,25 @@ class PosedPair {
   [[nodiscard]] double vector_error() const { return vector_error_; }
 
   /// In double-double (scaled). |error| per coordinate <= vector_error_dd().
-  [[nodiscard]] Vec3DD approximate_dd(const PairVector& v) const;
+  [[nodiscard]] Vec3DD approximate_dd(const PairVector& v) const {
+    FourDoubleDoubles out;
+    approximate_dd(v, out);
+    return vector_of(out);
+  }
+  /// The same as lanes, the last of them 0.
+  void approximate_dd(const PairVector& v, FourDoubleDoubles& out) const;
   [[nodiscard]] double vector_error_dd() const { return vector_error_dd_; }
   /// R_A^T x in double-double, each coordinate within 2^-100 of the sum of |x|.
   [[nodiscard]] Vec3DD in_frame_of_a(const Vec3DD& x) const;
   /// R_B^T x likewise.
   [[nodiscard]] Vec3DD in_frame_of_b(const Vec3DD& x) const;
+
+  /// Both rotations, and the offset, are stored as doubles: coordinates may be exact in double-double.
+  [[nodiscard]] bool doubles_rotate() const { return doubles_rotate_; }
+  /// A coordinate itself, where `doubles_rotate` and double-double holds it. @return whether that is so.
+  [[nodiscard]] bool exact_coordinate(const PairVector& v, int k, DoubleDouble& out) const;
+  /// Whether R_A = R_B, exactly.
+  [[nodiscard]] bool same_rotation() const { return same_rotation_; }
 
   /// The exact vector times homogeneous_factor() > 0, unscaled.
   [[nodiscard]] Dyadic3 exact(const PairVector& v) const;
@@ -96,8 +109,8 @@ class PosedPair {
 
  private:
   struct Body {
-    double rotation[9];  ///< R row by row, rounded from the exact rational when a quaternion
-    DoubleDouble rotation_dd[9];
+    double rotation[9];        ///< R row by row, rounded from the exact rational when a quaternion
+    ColumnsDD columns;         ///< of R, in double-double
     Dyadic rotation_exact[9];  ///< numerators over the common denominator of the pair
     Dyadic denominator;        ///< |q|^2 or 1
     bool exact_ready = false;
@@ -108,6 +121,9 @@ class PosedPair {
   template <int N>
   [[nodiscard]] bool unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N]) const;
   [[nodiscard]] bool unrounded(const PairVector& v, bool rotated, Vec3& out) const;
+  /// The sign of the determinant of three vectors of one body each, as differences of stored coordinates: in the frame
+  /// of a rotation that all share, or where both rotations do no more than exchange and reverse axes.
+  [[nodiscard]] std::optional<int> sign_by_differences(const PairVector* const (&vectors)[3]) const;
 
   const ConvexPolytope* a_;
   const ConvexPolytope* b_;
@@ -122,7 +138,7 @@ class PosedPair {
   mutable Body body_b_;
   Vec3 origin_;
   Vec3 offset_;  ///< (t_B - t_A - origin) scaled, rounded
-  Vec3DD offset_dd_;
+  FourDoubleDoubles offset_dd_;
   bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
   bool same_rotation_ = false;   ///< of A and B, exactly
   mutable Dyadic3 offset_exact_;

@@ -71,6 +71,10 @@ void finish(const PosedPair& pair, const NearestPlane& plane, const Margins& mar
 bool round_certainly(const DoubleDouble& value, double error, double& down, double& up) {
   // Normalised: value.hi is the nearest double, and lo tells on which side of it the value lies.
   const DoubleDouble v = quick_two_sum(value.hi, value.lo);
+  if (error == 0 && v.lo == 0) {
+    down = up = v.hi;
+    return v.hi > 0x1p-900;
+  }
   if (!(v.hi > 0x1p-900) || !(std::abs(v.lo) > error) || !(error < 0x1p-60 * v.hi)) return false;
   down = v.lo > 0 ? v.hi : std::nextafter(v.hi, 0.0);
   up = v.lo > 0 ? std::nextafter(v.hi, HUGE_VAL) : v.hi;

@@ -18,12 +18,15 @@ struct FacetPlane {
   double unit_error = 0;  ///< |error| of each coordinate of `unit`
   DoubleDouble distance;  ///< of the plane from the origin, positive inside
   double distance_error = std::numeric_limits<double>::infinity();
+  /// 0 to 2: `unit` is that coordinate axis, or its opposite, nothing of the above has an error, and lengths are not
+  /// scaled.
+  int axis = -1;
 
   /// False where the normal drowned in rounding: nothing above may be used.
   [[nodiscard]] bool known() const { return distance_error < std::numeric_limits<double>::infinity(); }
 };
 
-/// About 2500 instructions; no allocation.
+/// About 1100 instructions; no allocation.
 [[nodiscard]] FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet);
 
 /// The square of a plane's distance = numerator / denominator, in the homogeneous lengths of `PosedPair::exact`: fit to

@@ -9,6 +9,7 @@
 #include "numeric/instruction_sets.hpp"
 #include "numeric/root_sum.hpp"
 #include "numeric/unit_roundoff.hpp"
+#include "numeric/unrounded.hpp"
 #include "shape/support/polytope_support.hpp"
 
 namespace pd::detail {
@@ -88,6 +89,32 @@ PD_CLONES bool hopeful_candidates(const RowOfCandidates& row, std::int64_t (&hop
   return (any[0] | any[1] | any[2] | any[3]) != 0;
 }
 
+/// L and the margins together, which cost twelve supports and are seldom needed.
+class Extent {
+ public:
+  Extent(const PosedPair& pair, double margin) : pair_(pair), margin_(margin) {}
+
+  [[nodiscard]] double exact() {
+    if (!(exact_ >= 0)) exact_ = largest_coordinate(pair_) + margin_;
+    return exact_;
+  }
+  /// A bound from below, by one point of P.
+  [[nodiscard]] double least() {
+    if (!(least_ >= 0)) {
+      const double coordinate = pair_.approximate(PairVector::point(0, 0)).cwiseAbs().maxCoeff();
+      const double certain = (coordinate - 4 * pair_.vector_error()) * (1 - 0x1p-40);
+      least_ = std::max(0.0, std::ldexp(certain, pair_.scale_exponent())) + margin_ * (1 - 0x1p-40);
+    }
+    return least_;
+  }
+
+ private:
+  const PosedPair& pair_;
+  double margin_;
+  double exact_ = -1;
+  double least_ = -1;
+};
+
 /// The search for one `upper`. The cap between plane and sphere is less than an ulp high but about 1e8 ulps wide, so it
 /// holds many triples: two coordinates walk near the exact translation, the third (the one with the finest ulps) is
 /// solved for. Candidates are sifted in double-double before they are proved.
@@ -98,9 +125,11 @@ PD_CLONES bool hopeful_candidates(const RowOfCandidates& row, std::int64_t (&hop
 class TranslationSearch {
  public:
   /// Lengths are brought near 1 by a power of two.
-  TranslationSearch(Separation& separation, const DoubleDouble& depth, double upper)
-      : separation_(separation), true_upper_(upper), exponent_(std::ilogb(upper)) {
+  TranslationSearch(Separation& separation, Extent& extent, const DoubleDouble& depth, double upper)
+      : separation_(separation), extent_(extent), true_upper_(upper), exponent_(std::ilogb(upper)) {
+    scale_ = std::ldexp(1.0, exponent_);
     upper_ = std::ldexp(upper, -exponent_);
+    upper_squared_ = two_product(upper_, upper_);
     depth_ = {std::ldexp(depth.hi, -exponent_), std::ldexp(depth.lo, -exponent_)};
     const double room = to_double(DoubleDouble{upper_, 0} - depth_);
     const double slack = std::ldexp(separation.slack(depth), -exponent_);
@@ -116,12 +145,10 @@ class TranslationSearch {
 
   [[nodiscard]] const Vec3& translation() const { return translation_; }
 
-  bool at_base() { return accept(base_); }
+  bool at_base() { return accept(base_, excess_of_length(base_)); }
 
-  /// Within 4 ulp of `extent`, a coordinate, of the exact translation.
-  bool near_base(double true_extent) {
-    const double extent = std::ldexp(true_extent, -exponent_);
-    leeway_ = 4 * (std::nextafter(extent, HUGE_VAL) - extent);
+  /// Within 4 ulp of L, a coordinate, of the exact translation.
+  bool near_base() {
     int order[3] = {0, 1, 2};
     std::sort(order, order + 3, [&](int i, int j) { return std::abs(base_[i]) > std::abs(base_[j]); });
     const double scale = std::abs(base_[order[0]]);
@@ -130,11 +157,14 @@ class TranslationSearch {
     int live = 1;
     while (live < 3 && std::abs(base_[order[live]]) > 0x1p-20 * scale) ++live;
     solved_ = order[live - 1];
-    Vec3 bare = base_;
-    for (int i = live; i < 3; ++i) {
-      if (std::abs(bare[order[i]]) <= leeway_) bare[order[i]] = 0;
+    if (live < 3) {
+      Vec3 bare = base_;
+      for (int i = live; i < 3; ++i) {
+        if (bare[order[i]] != 0 && std::abs(bare[order[i]]) <= leeway()) bare[order[i]] = 0;
+      }
+      if (solve(bare)) return true;
     }
-    if (solve(bare) || solve(base_)) return true;
+    if (solve(base_)) return true;
     if (live == 1) return false;
     // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.
     if (!(height_ > 0)) return false;
@@ -151,7 +181,7 @@ class TranslationSearch {
     if (live == 3) prepare_rows(second, inner);
     // What the other coordinates can make up for once the first is chosen.
     double range = height_;
-    for (int i = 1; i < live; ++i) range += 1.01 * std::abs(components_[order[i]].hi) * (leeway_ + ulp(order[i]));
+    for (int i = 1; i < live; ++i) range += 1.01 * std::abs(components_[order[i]].hi) * (leeway() + ulp(order[i]));
     for (int i = -steps; i <= steps; ++i) {
       Vec3 t = base_;
       t[first] += i * ulp(first);
@@ -179,7 +209,7 @@ class TranslationSearch {
   void prepare_rows(int second, int inner) {
     const double size = std::abs(base_[solved_]);
     const double step = ulp(solved_);
-    const double margin = leeway_ + 4 * step;
+    const double margin = leeway() + 4 * step;
     const double binade = std::ldexp(1.0, std::ilogb(size));
     const bool alike = size - margin > binade && size + margin < 2 * binade;
     row_.rise = alike ? std::abs(components_[solved_].hi) * step : 0;
@@ -187,20 +217,45 @@ class TranslationSearch {
     row_.ulp = ulp(second);
     row_.component = components_[second].hi;
     row_.inner = inner;
-    row_.most_steps = leeway_ / step;
+    row_.most_steps = leeway() / step;
     row_.height = height_;
-    row_.doubt = (2 * slack_ + 0x1p-90) * (1 + base_.cwiseAbs().sum() + 3 * kMostSteps * leeway_);
+    row_.doubt = (2 * slack_ + 0x1p-90) * (1 + base_.cwiseAbs().sum() + 3 * kMostSteps * leeway());
   }
 
   [[nodiscard]] double ulp(int i) const { return std::nextafter(std::abs(base_[i]), HUGE_VAL) - std::abs(base_[i]); }
-  [[nodiscard]] int reach(int i) const { return std::clamp(static_cast<int>(leeway_ / ulp(i)), 4, kMostSteps); }
+  [[nodiscard]] int reach(int i) { return std::clamp(static_cast<int>(leeway() / ulp(i)), 4, kMostSteps); }
 
-  bool accept(const Vec3& candidate) {
-    const Vec3 t(std::ldexp(candidate.x(), exponent_), std::ldexp(candidate.y(), exponent_),
-                 std::ldexp(candidate.z(), exponent_));
-    if (!no_longer_than(t, true_upper_) || !separation_.reached(t)) return false;
+  static double ulps_of(double extent) { return 4 * (std::nextafter(extent, HUGE_VAL) - extent); }
+  double leeway() {
+    if (leeway_ == 0) leeway_ = ulps_of(std::ldexp(extent_.exact(), -exponent_));
+    return leeway_;
+  }
+  /// `distance > leeway()`, mostly without L itself.
+  [[nodiscard]] bool beyond_leeway(double distance) {
+    return distance > ulps_of(std::max(std::ldexp(extent_.least(), -exponent_), 0.5 * upper_)) && distance > leeway();
+  }
+
+  /// |t|^2 less the square of `upper`, off by less than kDoubt.
+  [[nodiscard]] double excess_of_length(const Vec3& t) const {
+    const DoubleDouble squared = two_product(t.x(), t.x()) + two_product(t.y(), t.y()) + two_product(t.z(), t.z());
+    return (squared - upper_squared_).hi;
+  }
+
+  /// @param excess  `excess_of_length(candidate)`.
+  bool accept(const Vec3& candidate, double excess) {
+    const Vec3 t = scale_ * candidate;
+    if (!no_longer(candidate, excess, t) || !separation_.reached(t)) return false;
     translation_ = t;
     return true;
+  }
+  /// |t| <= upper, exactly; t is the candidate at its size.
+  [[nodiscard]] bool no_longer(const Vec3& candidate, double excess, const Vec3& t) const {
+    // Below, what a coordinate loses as a subnormal number may be more than the doubt.
+    if (exponent_ > -900) {
+      if (std::abs(excess) > kDoubt) return excess < 0;
+      if ((candidate.array() != 0).count() == 1) return candidate.cwiseAbs().sum() <= upper_;
+    }
+    return no_longer_than(t, true_upper_);
   }
 
   /// Solves for one coordinate, given the other two.
@@ -211,7 +266,7 @@ class TranslationSearch {
       if (i != solved_) rest = rest - components_[i] * t[i];
     }
     t[solved_] = to_double(rest / component);
-    if (std::abs(t[solved_] - base_[solved_]) > leeway_) t[solved_] = base_[solved_];
+    if (beyond_leeway(std::abs(t[solved_] - base_[solved_]))) t[solved_] = base_[solved_];
     DoubleDouble excess = component * t[solved_] - rest;
     const double outward = component.hi > 0 ? HUGE_VAL : -HUGE_VAL;
     if (excess.hi < 0) {
@@ -219,25 +274,31 @@ class TranslationSearch {
       excess = component * t[solved_] - rest;
     }
     if (excess.hi > height_ * 1.0001) return false;
-    const DoubleDouble length = two_product(t.x(), t.x()) + two_product(t.y(), t.y()) + two_product(t.z(), t.z());
-    if ((length - two_product(upper_, upper_)).hi > 0x1p-90 * upper_ * upper_) return false;
-    if (accept(t)) return true;
+    const double longer = excess_of_length(t);
+    if (longer > kDoubt) return false;
+    if (accept(t, longer)) return true;
     // Below what double-double resolves (a body of size 1 and one of 1e-300), the plane may lie an ulp further out.
     if (excess.hi > 0x1p-95) return false;
     t[solved_] = std::nextafter(t[solved_], outward);
-    return accept(t);
+    return accept(t, excess_of_length(t));
   }
 
+  /// Of squares of lengths in [1, 2): double-double errs by 2^-100 of them.
+  static constexpr double kDoubt = 0x1p-90;
+
   Separation& separation_;
+  Extent& extent_;
   double true_upper_;
   int exponent_;
+  double scale_;  ///< 2^exponent_
   double upper_;
+  DoubleDouble upper_squared_;
   DoubleDouble depth_;
   DoubleDouble components_[3];
   Vec3 base_;
   double height_;
-  double slack_;  ///< of the plane (Separation::slack)
-  double leeway_ = 0;
+  double slack_;       ///< of the plane (Separation::slack)
+  double leeway_ = 0;  ///< 0: not asked for yet
   RowOfCandidates row_;
   std::int64_t hopeful_[kRowLanes];
   int solved_ = 0;
@@ -317,6 +378,14 @@ void Separation::measure(const PosedPair& pair, const FacetPlane& plane, double 
   margins_ = two_sum(margin_a, margin_b);
   unit_ = plane.unit;
   unit_error_ = plane.unit_error;
+  if (plane.axis >= 0) {  // lengths are not scaled there
+    depth_ = plane.distance;
+    if (add_exactly(depth_, margins_.hi) && add_exactly(depth_, margins_.lo)) {
+      axis_ = plane.axis;
+      depth_error_ = 0;
+      return;
+    }
+  }
   const double scale = std::ldexp(1.0, pair.scale_exponent());
   depth_ = scaled(plane.distance, scale) + margins_;
   // The sum's own error is relative to its greater part, which the other may cancel.
@@ -332,6 +401,10 @@ double Separation::slack(const DoubleDouble& depth) const {
 }
 
 bool Separation::reached(const Vec3& t) {
+  if (axis_ >= 0) {
+    const double along = t[axis_] * (axis_ == 0 ? unit_.x.hi : axis_ == 1 ? unit_.y.hi : unit_.z.hi);
+    return along == depth_.hi ? depth_.lo <= 0 : along > depth_.hi;
+  }
   if (depth_error_ < std::numeric_limits<double>::infinity()) {
     const DoubleDouble along = unit_.x * t.x() + unit_.y * t.y() + unit_.z * t.z();
     const double size = std::abs(t.x()) + std::abs(t.y()) + std::abs(t.z());
@@ -362,19 +435,15 @@ const NearestPlane& Separation::plane() {
 
 double shortest_translation(const PosedPair& pair, Separation& separation, const DoubleDouble& depth, double upper,
                             double margin, Vec3& translation) {
-  TranslationSearch nearest(separation, depth, upper);
-  if (nearest.at_base()) {
-    translation = nearest.translation();
-    return upper;
-  }
-  const double extent = largest_coordinate(pair) + margin;
-  if (nearest.near_base(extent)) {
+  Extent extent(pair, margin);
+  TranslationSearch nearest(separation, extent, depth, upper);
+  if (nearest.at_base() || nearest.near_base()) {
     translation = nearest.translation();
     return upper;
   }
   upper = std::nextafter(upper, HUGE_VAL);
-  TranslationSearch next(separation, depth, upper);
-  if (next.at_base() || next.near_base(extent)) {
+  TranslationSearch next(separation, extent, depth, upper);
+  if (next.at_base() || next.near_base()) {
     translation = next.translation();
     return upper;
   }

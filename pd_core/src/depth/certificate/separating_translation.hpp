@@ -65,6 +65,7 @@ class Separation {
   Dyadic radius_;
   Vec3DD unit_;
   double unit_error_ = 0;
+  int axis_ = -1;       ///< of the plane, where its depth has no error
   DoubleDouble depth_;  ///< of the second stage, in the input's lengths
   double depth_error_;
 };

@@ -25,7 +25,7 @@ class FacetSign final : public NormalSign {
 class AlongNormal {
  public:
   AlongNormal(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign)
-      : pair_(pair), sign_(sign), filtered_(plane.known()) {
+      : pair_(pair), sign_(sign), filtered_(plane.known()), axis_(plane.axis) {
     if (!filtered_) return;
     unit_ = {plane.unit.x.hi, plane.unit.y.hi, plane.unit.z.hi};
     // The unit normal's own error and its rounding, products and sums; then the edge's error against |unit|_1 <= 2.
@@ -34,6 +34,11 @@ class AlongNormal {
   }
 
   [[nodiscard]] int operator()(const PairVector& edge) const {
+    DoubleDouble exact;
+    if (axis_ >= 0 && pair_.exact_coordinate(edge, axis_, exact)) {
+      const double value = exact.hi * unit_[axis_];
+      return (value > 0) - (value < 0);
+    }
     if (filtered_) {
       const Vec3 e = pair_.approximate(edge);
       const double value = e.dot(unit_);
@@ -47,6 +52,7 @@ class AlongNormal {
   const PosedPair& pair_;
   const NormalSign& sign_;
   bool filtered_;
+  int axis_;  ///< of the plane
   Vec3 unit_ = Vec3::Zero();
   double relative_ = 0;
   double absolute_ = 0;

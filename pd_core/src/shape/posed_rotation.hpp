@@ -1,0 +1,49 @@
+/// @file
+/// The rotations of a posed pair in double-double, column by column, four lanes at a time.
+#pragma once
+
+#include <cstdint>
+
+#include "numeric/double_double_lanes.hpp"
+#include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/pose.hpp"
+
+namespace pd::detail {
+
+/// The columns of R; the last lanes are 0.
+using ColumnsDD = FourDoubleDoubles[3];
+
+/// R of a pose: a quaternion's from the exact rational, each entry within 2^-100; a matrix as it stands.
+void rotation_in_double_double(const Pose& pose, ColumnsDD& columns);
+
+/// Whether R is what its columns hold, hi parts alone, exactly: a matrix, or a quaternion of one component, whose
+/// rotation is a turn by 0 or a half about an axis.
+[[nodiscard]] bool stored_in_doubles(const Pose& pose, const ColumnsDD& columns);
+/// Whether R does no more than exchange and reverse axes, exactly.
+[[nodiscard]] bool exchanges_axes(const Pose& pose, const ColumnsDD& columns);
+
+/// factor * (to - from) in a body's frame, for R to turn; an absent index (-1) stands for the local origin.
+struct LocalVector {
+  const ColumnsDD* columns = nullptr;  ///< null: the vector is 0
+  DoubleDouble coordinates[3];
+
+  /// Requires that products with the factor are exact: it is a power of two, or its negative.
+  LocalVector(const ConvexPolytope& p, const ColumnsDD& r, double factor, int to, int from) {
+    if (to < 0 && from < 0) return;
+    columns = &r;
+    const double* const all[3] = {p.x(), p.y(), p.z()};
+    for (int i = 0; i < 3; ++i) {
+      const double t = to >= 0 ? all[i][to] * factor : 0;
+      const double f = from >= 0 ? all[i][from] * factor : 0;
+      coordinates[i] = two_sum(t, -f);
+    }
+  }
+};
+
+/// R_v v + R_w w + offset (or null). About 300 instructions.
+void turned_sum(const LocalVector& v, const LocalVector& w, const FourDoubleDoubles* offset, FourDoubleDoubles& out);
+
+/// R^T x.
+[[nodiscard]] Vec3DD turned_back(const ColumnsDD& r, const Vec3DD& x);
+
+}  // namespace pd::detail
