@@ -67,6 +67,23 @@ Vec3 point_of_b(const PosedPair& pair, const VertexPair* ids, const double* weig
   return world_point(pair, pair.pose_b().translation(), vertex_b(pair, ids[0].b), rest);
 }
 
+/// Where the edges of two faces of two vertices come nearest, A's moved by the translation: as a point of A's.
+Vec3 point_on_edge_of_a(const PosedPair& pair, const SupportFaces& faces, const Vec3& target) {
+  const VertexPair ids[2] = {{faces.on_a[0], faces.on_b[0]}, {faces.on_a[1], faces.on_b[1]}};
+  const Vec3 e = pair.approximate(PairVector::edge_a(ids[0].a, ids[1].a));
+  const Vec3 f = pair.approximate(PairVector::edge_b(ids[0].b, ids[1].b));
+  const Vec3DD first = pair.approximate_dd(PairVector::point(ids[0].a, ids[0].b));
+  const Vec3 gap = high(first - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
+  // |gap + t f - s e| is least: as the lines cross, and at an end where they cross beyond it.
+  const Vec3 n = e.cross(f);
+  const double squared = n.squaredNorm();
+  double s = squared > 0 ? std::clamp(gap.cross(f).dot(n) / squared, 0.0, 1.0) : 0.5;
+  const double t = (s * e - gap).dot(f) / f.squaredNorm();
+  if (t < 0 || t > 1) s = std::clamp((gap + (t > 1 ? f : Vec3(Vec3::Zero()))).dot(e) / e.squaredNorm(), 0.0, 1.0);
+  const double weights[2] = {1 - s, s};
+  return point_of_a(pair, ids, weights, 2, negated_vertex_a(pair, ids[0].a));
+}
+
 }  // namespace
 
 /// The faces on_a and on_b lie in one supporting plane of P, and so does the translation, up to rounding: it is the
@@ -78,6 +95,21 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
   const SupportFace& on_a = faces.on_a;
   const SupportFace& on_b = faces.on_b;
   const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
+  // A vertex is where it is, whatever it lies on.
+  const VertexPair first{on_a.front(), on_b.front()};
+  const double whole = 1;
+  if (on_a.size() == 1) {
+    const Vec3 a = point_of_a(pair, &first, &whole, 1, negated_vertex_a(pair, first.a));
+    return {a, a + translation};
+  }
+  if (on_b.size() == 1) {
+    const Vec3 b = point_of_b(pair, &first, &whole, 1);
+    return {b - translation, b};
+  }
+  if (on_a.size() == 2 && on_b.size() == 2) {
+    const Vec3 a = point_on_edge_of_a(pair, faces, target);
+    return {a, a + translation};
+  }
   RecentVertices negated_a(pair, negated_vertex_a), of_b(pair, vertex_b);
   const Vec3DD offset = pair.approximate_dd({-1, -1, -1, -1, true});
   const auto difference = [&](std::int32_t a, std::int32_t b) {
