@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "oracle/judged_pair.hpp"
 
 namespace pd {
@@ -26,6 +28,68 @@ TEST(Tightest, TakesNoExactSignInGeneralPosition) {
         EXPECT_LE(answer.statistics.exact_signs, 1) << pair.name();
       }
     }
+  }
+}
+
+/// Boxes are judged by their fifteen axes, without a search and without exact signs where they do not tie.
+TEST(Tightest, BoxesGoByTheirAxes) {
+  Scratch scratch;
+  for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const JudgedPair pair = JudgedPair::of_family(PairFamily::box, 8, depth, seed);
+      const PenetrationDepth answer = penetration_depth(pair.a(), pair.b(), scratch);
+      const std::string complaint = pair.complaint(answer, Bracket::tightest);
+      EXPECT_TRUE(complaint.empty()) << complaint;
+      EXPECT_EQ(answer.method, Method::overlay) << pair.name();
+      EXPECT_EQ(answer.statistics.support_calls, 0) << pair.name();
+      EXPECT_LE(answer.statistics.exact_signs, 1) << pair.name();
+    }
+  }
+}
+
+std::array<int, 3> numbers(const Feature& f) { return {static_cast<int>(f.kind), f.first, f.second}; }
+
+/// Every way to the nearest facet ends at the same one, also where several are exactly as near.
+TEST(Tightest, BoxesHaveTheAnswersOfTheExpansion) {
+  Scratch scratch;
+  int tied = 0;
+  for (const PairFamily family : {PairFamily::box, PairFamily::cubes, PairFamily::near_aligned_boxes}) {
+    for (const DepthClass depth : {DepthClass::gap, DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
+      for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const JudgedPair pair = JudgedPair::of_family(family, 8, depth, seed);
+        const PenetrationDepth by_axes = penetration_depth(pair.a(), pair.b(), scratch);
+        const PenetrationDepth searched = penetration_depth(pair.a(), pair.b(), scratch, {.method = Method::expansion});
+        EXPECT_EQ(by_axes.contact, searched.contact) << pair.name();
+        EXPECT_EQ(by_axes.lower, searched.lower) << pair.name();
+        EXPECT_EQ(by_axes.upper, searched.upper) << pair.name();
+        EXPECT_EQ(by_axes.normal, searched.normal) << pair.name();
+        EXPECT_EQ(numbers(by_axes.feature_a), numbers(searched.feature_a)) << pair.name();
+        EXPECT_EQ(numbers(by_axes.feature_b), numbers(searched.feature_b)) << pair.name();
+        tied += by_axes.contact == ContactClass::overlapping && by_axes.method == Method::expansion;
+      }
+    }
+  }
+  EXPECT_GT(tied, 30);
+}
+
+/// Planes across a coordinate axis are known without error where coordinates are short: depths that are doubles, and
+/// translations along the axis, need no big numbers.
+TEST(Tightest, AlignedBoxesAreExactInDoubles) {
+  Scratch scratch;
+  const ConvexShape a(*ConvexPolytope::box(Vec3(1, 0.75, 0.5))), b(*ConvexPolytope::box(Vec3(0.25, 2, 1)));
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 apart = Vec3::Zero();
+    apart[axis] = 0.875 * (a.polytope()->max_abs_coordinates() + b.polytope()->max_abs_coordinates())[axis];
+    const Pose pose_b = *Pose::from_quaternion({1, 0, 0, 0}, apart);
+    const PenetrationDepth answer = penetration_depth({&a, Pose()}, {&b, pose_b}, scratch);
+    ASSERT_EQ(answer.contact, ContactClass::overlapping);
+    EXPECT_EQ(answer.lower, answer.upper);
+    EXPECT_EQ(answer.depth, apart[axis] / 7);
+    Vec3 normal = Vec3::Zero();
+    normal[axis] = -1;
+    EXPECT_EQ(answer.normal, normal);
+    EXPECT_EQ(answer.translation, answer.depth * normal);
+    EXPECT_LE(answer.statistics.exact_signs, 1);
   }
 }
 

@@ -63,10 +63,19 @@ bool lies_in(const SurfaceCorners& t, const SupportFaces& faces) {
   });
 }
 
+/// Sign of x's distance less y's, both positive: in double-double, else as fractions.
+int compare_distances(const PosedPair& pair, const ProvenFacet& x, const ProvenFacet& y) {
+  const double gap = to_double(x.plane.distance - y.plane.distance);
+  const double error = (x.plane.distance_error + y.plane.distance_error) * (1 + 0x1p-40);
+  if (std::abs(gap) > error) return gap < 0 ? -1 : 1;
+  if (error == 0) return 0;
+  return compare(squared_distance(pair, x.facet), squared_distance(pair, y.facet));
+}
+
 }  // namespace
 
 std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<const SurfaceCorners> near,
-                                               double beyond, SupportFaces& faces) {
+                                               double beyond, bool first_of_equals, SupportFaces& faces) {
   if (near.empty()) return std::nullopt;
   ProvenFacet best = classify(pair, near.front());
   // Each round either ends or goes on with a plane that is certainly nearer.
@@ -77,10 +86,9 @@ std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<
       if (i == chosen || lies_in(near[i], faces)) continue;
       const ProvenFacet other = classify(pair, near[i]);
       if (!positive(other.plane)) return std::nullopt;
-      const double gap = to_double(other.plane.distance - best.plane.distance);
-      const double error = (other.plane.distance_error + best.plane.distance_error) * (1 + 0x1p-40);
-      if (std::abs(gap) <= error) return std::nullopt;
-      if (gap < 0) {
+      const int order = compare_distances(pair, other, best);
+      if (order == 0 && !(first_of_equals && chosen == 0)) return std::nullopt;
+      if (order < 0) {
         best = other;
         chosen = i;
         nearer = true;

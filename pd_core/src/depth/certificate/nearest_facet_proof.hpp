@@ -31,11 +31,13 @@ struct ProvenFacet {
 /// behind all of its triangles.
 /// @param near    triangles that may be nearest.
 /// @param beyond  every other triangle is at least so far from the origin (the pair's scaled lengths).
+/// @param first_of_equals  of facets exactly as near as the first triangle's, that one is wanted. Else ties are left
+/// open.
 /// @param faces   filled with the faces in the facet's plane.
-/// @return nothing where double-double cannot tell, or no triangle lies in a facet: exact arithmetic must.
+/// @return nothing where no triangle lies in a facet, or a tie is left open: an exact search must.
 [[nodiscard]] std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair,
                                                              std::span<const SurfaceCorners> near, double beyond,
-                                                             SupportFaces& faces);
+                                                             bool first_of_equals, SupportFaces& faces);
 
 /// Cores that are apart: the plane through P's point nearest to the origin, normal to it (distance negative), and that
 /// point as a combination of vertices of P.

@@ -65,6 +65,36 @@ class BoxPair {
     return out;
   }
 
+  BoxNearFacets near_facets() const {
+    BoxNearFacets out;
+    const double rounding = 20 * kUnitRoundoff * reach_;  // as in `solve`
+    const double c[3] = {centre_.x(), centre_.y(), centre_.z()};
+    BoxAxisKeys keys;
+    box_axis_keys({of_a_, of_a_}, {of_b_, of_b_}, c, {kTurn * reach_, kParallelSine}, keys);
+    int nearest = 0;
+    for (int axis = 0; axis < kBoxAxisSlots; ++axis) {
+      if (axis % 4 < 3 && keys.key[axis] < keys.key[nearest]) nearest = axis;
+    }
+    if (!(keys.key[nearest] > 0)) return out;
+    const double upper = std::sqrt(keys.key[nearest]) + rounding;
+    const double farther = (upper + rounding) * (1 + 0x1p-50);
+    out.beyond = std::numeric_limits<double>::infinity();
+    add_near(nearest, keys, upper, out);
+    for (int axis = 0; axis < kBoxAxisSlots; ++axis) {
+      if (axis % 4 == 3 || axis == nearest) continue;
+      const bool left_out = !(keys.lower_key[axis] < std::numeric_limits<double>::infinity());
+      if (left_out && axis >= 8) {
+        out.parallel |= 1U << (3 * (axis / 4 - 2) + axis % 4);
+      } else if (!left_out && keys.lower_key[axis] > farther * farther) {
+        out.beyond = std::min(out.beyond, upper);
+      } else if (left_out || !add_near(axis, keys, upper, out)) {
+        out.count = 0;
+        return out;
+      }
+    }
+    return out;
+  }
+
   BoxPairContact contact(const BracketWidth& width) {
     BoxPairContact out;
     BoxGenerators along_a = of_a_, along_b = of_b_;
@@ -201,6 +231,36 @@ class BoxPair {
       v = generator(b, lane);
     }
   }
+  /// Adds the two facets of an axis, but those certainly farther than `upper`. False where the origin may lie beyond
+  /// one of them, or where there is no room.
+  bool add_near(int axis, const BoxAxisKeys& keys, double upper, BoxNearFacets& out) const {
+    const double rounding = 20 * kUnitRoundoff * reach_;
+    const double lower = signed_root(keys.lower_key[axis]) - rounding;
+    if (!(lower > 0) || out.count == BoxNearFacets::kMost) return false;
+    Vec3 u, v;
+    spanning(of_a_, of_b_, axis, u, v);
+    const Vec3 n = outward(u.cross(v));
+    out.near[out.count++] = triangle(axis, n);
+    // The other side lies farther by twice the height of P's centre.
+    const double turned = std::sqrt(keys.key[axis]) + rounding - lower;
+    if (lower + 2 * (std::abs(n.dot(centre_)) - turned) > upper) {
+      out.beyond = std::min(out.beyond, upper);
+      return true;
+    }
+    if (out.count == BoxNearFacets::kMost) return false;
+    out.near[out.count++] = triangle(axis, -n);
+    return true;
+  }
+  /// Three corners of the facet of an axis with the outward normal n.
+  SurfaceCorners triangle(int axis, const Vec3& n) const {
+    const int block = axis / 4, lane = axis % 4;
+    const int va = farthest(of_a_, n, -1), vb = farthest(of_b_, n, 1);
+    if (block >= 2) return {{{va, vb}, {va ^ bit(block - 2), vb}, {va, vb ^ bit(lane)}}};
+    const int first = bit(lane), second = bit((lane + 1) % 3);
+    if (block == 0) return {{{va, vb}, {va ^ first, vb}, {va ^ second, vb}}};
+    return {{{va, vb}, {va, vb ^ first}, {va, vb ^ second}}};
+  }
+
   /// Of unit length, away from P's centre as the origin sees it.
   Vec3 outward(const Vec3& n) const { return n * ((n.dot(centre_) > 0 ? -1 : 1) / n.norm()); }
   static double signed_root(double key) { return std::copysign(std::sqrt(std::abs(key)), key); }
@@ -342,6 +402,11 @@ BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, co
                             const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
                             const BracketWidth& width) {
   return BoxPair(a, frame_a, pose_a, b, frame_b, pose_b).solve(width);
+}
+
+BoxNearFacets box_near_facets(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
+                              const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b) {
+  return BoxPair(a, frame_a, pose_a, b, frame_b, pose_b).near_facets();
 }
 
 BoxPairContact box_pair_contact(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,

@@ -10,14 +10,18 @@
 /// parallel), where the point below the origin is not inside the winner, and where the class is in doubt.
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/difference/bracket_width.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/feature.hpp"
 #include "pd/shape/pose.hpp"
 
 namespace pd::detail {
+
+inline constexpr int kBoxAxes = 15;
 
 /// A box whose edges run along the axes of its own frame.
 struct BoxFrame {
@@ -69,5 +73,21 @@ struct BoxPairContact {
 BoxPairContact box_pair_contact(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
                                 const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
                                 const BracketWidth& width);
+
+/// The facets of P that may be nearest to the origin, for a proof on the stored numbers: two to a pair of generators,
+/// one on either side.
+struct BoxNearFacets {
+  static constexpr int kMost = 16;
+  int count = 0;                           ///< 0: the class is in doubt, or there are more
+  std::array<SurfaceCorners, kMost> near;  ///< a triangle in each, the nearest first
+  double beyond = 0;                       ///< what no other facet is nearer than, for certain
+  /// Bit 3 i + j: edge i of A and edge j of B are parallel up to rounding. If they are not exactly, their facets are
+  /// not among the above.
+  unsigned parallel = 0;
+};
+
+/// Requires extents between 2^-100 and 2^100. Constant time, no allocation.
+BoxNearFacets box_near_facets(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
+                              const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b);
 
 }  // namespace pd::detail

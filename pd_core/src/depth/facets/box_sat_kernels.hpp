@@ -32,6 +32,15 @@ struct BoxEdges {
   const BoxGenerators& directions;
 };
 
+/// The same for every axis on its own, at 4 * block + lane (lane 3 is room); infinity for pairs left out.
+inline constexpr int kBoxAxisSlots = 20;
+struct BoxAxisKeys {
+  double key[kBoxAxisSlots];
+  double lower_key[kBoxAxisSlots];
+};
+void box_axis_keys(const BoxEdges& a, const BoxEdges& b, const double (&c)[3], const BoxAxesErrors& errors,
+                   BoxAxisKeys& out);
+
 /// Distances of the facets' planes from the origin, `c` the centre of P. A pair of parallel generators spans none.
 NearestBoxAxis nearest_box_axis(const BoxEdges& a, const BoxEdges& b, const double (&c)[3],
                                 const BoxAxesErrors& errors);

@@ -58,6 +58,7 @@ constexpr StageBeforeSearch kBeforeSearch[] = {
     answer_from_cached_faces,          // warm: a few planes of the last surface
     answer_apart_from_cached_simplex,  // warm: from the last closest point
     answer_boxes,                      // two boxes by their fifteen axes
+    prove_boxes,                       // the same on the stored numbers: the tightest bracket
 };
 
 // Then the expansion (EPA) grows a surface inside P, from the last one where that serves (`grow_surface`).

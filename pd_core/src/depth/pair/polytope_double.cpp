@@ -15,8 +15,6 @@ namespace pd::detail {
 
 namespace {
 
-constexpr int kBoxAxes = 15;
-
 /// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
 /// as far from it to within the bracket.
 bool bound_is_of_face(const InnerSurface& surface, const ExpansionResult& result) {

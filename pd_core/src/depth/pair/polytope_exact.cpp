@@ -8,6 +8,7 @@
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
+#include "depth/facets/box_sat.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
 
@@ -57,10 +58,13 @@ std::span<const DifferenceVertex> first_simplex(PolytopeQuery& query, const Expa
 
 /// The nearest facet proved among `near`; every other piece of the surface is `beyond` or farther (in the caller's
 /// lengths).
-bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond, PenetrationDepth& out) {
+/// @param first_of_equals  as in `prove_nearest_facet`.
+bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond, bool first_of_equals,
+                 PenetrationDepth& out) {
   const PosedPair& posed = query.exact();
   SupportFaces& faces = query.buffers.faces;
-  const auto proven = prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()), faces);
+  const auto proven =
+      prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()), first_of_equals, faces);
   if (!proven) return false;
   answer_overlapping(posed, proven->facet, proven->plane, faces, query.pair.margins, query.bracket, out);
   return true;
@@ -150,6 +154,28 @@ bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surfac
   return true;
 }
 
+bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out) {
+  if (query.bracket != Bracket::tightest || query.settings.method != Method::automatic) return false;
+  const PolytopePair& pair = query.pair;
+  const std::optional<BoxFrame> box_a = box_frame(*pair.a);
+  if (!box_a) return false;
+  const std::optional<BoxFrame> box_b = box_frame(*pair.b);
+  if (!box_b || !query.within_range()) return false;
+  const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b);
+  if (found.count == 0) return false;
+  const PosedPair& posed = query.exact();
+  for (int i = 0; i < 9; ++i) {
+    if ((found.parallel >> i & 1U) == 0 || (i % 4 == 0 && posed.same_rotation())) continue;
+    // Edge k of a box runs from vertex 0 to vertex 4 >> k.
+    if (!posed.parallel(PairVector::edge_a(0, 4 >> i / 3), PairVector::edge_b(0, 4 >> i % 3))) return false;
+  }
+  const auto near = std::span(found.near).first(static_cast<std::size_t>(found.count));
+  if (!prove_among(query, near, found.beyond, false, out)) return false;
+  out.method = Method::overlay;
+  out.statistics.facets_visited += kBoxAxes;
+  return true;
+}
+
 bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   if (!(surface.lower > 0) || surface.face < 0) return false;
   // Keys err by the error of a point and of the distance itself; what lies beyond is certainly farther.
@@ -164,13 +190,15 @@ bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, Penetra
     if (count == near.size()) return false;
     near[count++] = corners_of(faces, f);
   }
-  return prove_among(query, std::span(near).first(count), limit - 2 * error, out);
+  // An exact expansion from the nearest face would end at its facet, too, of several equally near.
+  const bool first_of_equals = surface.status == ExpansionStatus::certified;
+  return prove_among(query, std::span(near).first(count), limit - 2 * error, first_of_equals, out);
 }
 
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out) {
   const std::vector<SurfaceCorners>& near = query.buffers.near_facets.nearest;
   if (!(beyond > 0) || near.size() > kMaxNearFaces) return false;
-  return prove_among(query, near, beyond, out);
+  return prove_among(query, near, beyond, false, out);
 }
 
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {

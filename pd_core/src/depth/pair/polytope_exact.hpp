@@ -18,6 +18,9 @@ bool answer_by_overlay(PolytopeQuery& query, PenetrationDepth& out,
 /// [A] section 2, below the bound that the expansion leaves and with the vertices of P that it found. Always answers.
 bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
+/// Two boxes: of the facets that their fifteen axes leave, the nearest, proved in the same way.
+bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out);
+
 /// The surface's nearest face proved to lie in the nearest facet of P, mostly without big numbers.
 bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
