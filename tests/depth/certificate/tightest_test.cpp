@@ -89,7 +89,8 @@ TEST(Tightest, AlignedBoxesAreExactInDoubles) {
     normal[axis] = -1;
     EXPECT_EQ(answer.normal, normal);
     EXPECT_EQ(answer.translation, answer.depth * normal);
-    EXPECT_LE(answer.statistics.exact_signs, 1);
+    // The answer, and three pairs of parallel edges, whose poses are stored in different ways.
+    EXPECT_LE(answer.statistics.exact_signs, 4);
   }
 }
 
