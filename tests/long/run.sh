@@ -1,14 +1,19 @@
 #!/usr/bin/env bash
-# What takes too long for CI: blind mutations of the kept fuzz inputs, and random pairs against the exact oracle, on the release
-# build. Ends with the first law that breaks; the input that broke it stands in the folder of the findings.
+# What takes too long for CI: blind mutations of the kept fuzz inputs, and pairs against the exact oracles, random ones and ones
+# of small whole numbers, on the release build. Ends with the first law that breaks; the input that broke it stands in the folder
+# of the findings.
 #
-#   tests/long/run.sh [SECONDS_PER_TARGET [BUILD_FOLDER]]        600 build/release
+#   tests/long/run.sh [SECONDS_PER_TARGET [BUILD_FOLDER [ORACLE_PAIRS [GRID_PAIRS]]]]        600 build/release 180000 6000000
+#
+# Laws at volume, under three hours on two cores: tests/long/run.sh 1 build/release 10000000 100000000
 #
 # The last run stands beside this script in last_run.txt, once there was one.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-600}
 build=${2:-build/release}
+oracle_pairs=${3:-$((seconds * 300))}
+grid_pairs=${4:-$((seconds * 10000))}
 findings=$build/fuzz_findings
 mkdir -p "$findings"
 
@@ -21,6 +26,10 @@ mkdir -p "$findings"
   done
   if [[ -x $build/oracle_pairs ]]; then
     printf 'oracle_pairs: '
-    (cd "$findings" && "../oracle_pairs" --pairs $((seconds * 300)) --seed 2 | tail -1)
+    (cd "$findings" && "../oracle_pairs" --pairs "$oracle_pairs" --seed 2 --threads "$(nproc)" | tail -1)
+  fi
+  if [[ -x $build/grid_pairs ]]; then
+    printf 'grid_pairs: %s pairs\n' "$grid_pairs"
+    (cd "$findings" && "../grid_pairs" --pairs "$grid_pairs" --seed 2 --threads "$(nproc)" | tee grid_pairs.txt | tail -3)
   fi
 } | tee tests/long/last_run.txt
