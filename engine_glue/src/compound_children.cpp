@@ -27,13 +27,14 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
   const btCollisionShape& shape = *wrapper.getCollisionShape();
   const btTransform& pose = wrapper.getWorldTransform();
   if (!shape.isCompound()) {
-    children.push_back({&shape, pose, -1});
+    children.push_back({&shape, pose, -1, box_of(shape, pose)});
     return;
   }
   const auto& compound = static_cast<const btCompoundShape&>(shape);
   const auto visit = [&](int i) {
-    const Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i};
-    if (!apart(box_of(*child.shape, child.pose), world, reach)) children.push_back(child);
+    Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i, {}};
+    child.box = box_of(*child.shape, child.pose);
+    if (!apart(child.box, world, reach)) children.push_back(child);
   };
   if (const btDbvt* tree = compound.getDynamicAabbTree()) {
     const btVector3 extra(reach, reach, reach);

@@ -9,16 +9,17 @@
 
 namespace pd::detail {
 
+struct Box {
+  btVector3 lower;
+  btVector3 upper;
+};
+
 /// A child of a compound, or the convex body itself (index -1).
 struct Child {
   const btCollisionShape* shape;
   btTransform pose;
   int index;
-};
-
-struct Box {
-  btVector3 lower;
-  btVector3 upper;
+  Box box;  ///< in the world
 };
 
 /// Of a shape as it stands, with what Bullet adds.

@@ -67,6 +67,9 @@ class ChildrenInResult {
   std::optional<btCollisionObjectWrapper> wrapper_b_;
 };
 
+/// What was over the budget is asked again after 1, 3, 7, ... steps, 31 at the most: it costs the budget each time.
+constexpr int kMostRefusals = 5;
+
 using ChildPair = std::pair<int, int>;  ///< places in the lists of near children
 
 class ChildrenOfPoint : public PointSurroundings {
@@ -118,7 +121,8 @@ class CompoundContacts final : public UnionContacts {
   bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, PieceMemory& memory,
            ThreadBuffers& buffers, Patches& patches);
   /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
-  void leave_as_one(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+  void leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory, ThreadBuffers& buffers,
+                    Patches& patches);
 
   std::vector<Child> children_a_;
   std::vector<Child> children_b_;
@@ -141,12 +145,12 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b_);
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   auto buffers = core.buffers.lease();
+  buffers->cover.near.begin_pair();
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
-    const Box box_a = box_of(*child_a.shape, child_a.pose);
     for (std::size_t j = 0; j < children_b_.size(); ++j) {
       const Child& child_b = children_b_[j];
-      if (apart(box_a, box_of(*child_b.shape, child_b.pose), threshold)) continue;
+      if (apart(child_a.box, child_b.box, threshold)) continue;
       if (gCompoundChildShapePairCallback != nullptr &&
           !gCompoundChildShapePairCallback(child_a.shape, child_b.shape)) {
         continue;
@@ -159,23 +163,31 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
     }
   }
   memories_.end(memory.pieces);
-  if (deep_.needed()) leave_as_one(question, core, *buffers, patches);
+  if (deep_.needed()) {
+    leave_as_one(question, core, memory, *buffers, patches);
+  } else {
+    memory.union_pause = memory.union_refusals = 0;
+  }
   return true;
 }
 
-void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
-                                    Patches& patches) {
-  DeepUnion::Way way;
-  switch (deep_.find_way(question, core, buffers, way)) {
-    case DeepUnion::Outcome::found:
-      break;
-    case DeepUnion::Outcome::over_budget:
-      buffers.counters.deep_unions_left.add();
-      return;
-    case DeepUnion::Outcome::apart:
-    case DeepUnion::Outcome::unsupported:
-      return;
+void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory,
+                                    ThreadBuffers& buffers, Patches& patches) {
+  if (memory.union_pause > 0) {
+    --memory.union_pause;
+    buffers.counters.deep_unions_left.add();
+    return;
   }
+  DeepUnion::Way way;
+  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, way);
+  if (outcome == DeepUnion::Outcome::over_budget) {
+    memory.union_refusals = std::min(memory.union_refusals + 1, kMostRefusals);
+    memory.union_pause = (1 << memory.union_refusals) - 1;
+    buffers.counters.deep_unions_left.add();
+    return;
+  }
+  memory.union_refusals = 0;
+  if (outcome != DeepUnion::Outcome::found) return;
   buffers.counters.deep_unions.add();
   // The children that touch last need not touch yet.
   const ChildPair last(place_of(way.a, children_a_), place_of(way.b, children_b_));
@@ -201,8 +213,11 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
       contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
                  points);
-  deep_.add(answer, points);
-  patches.add(points, static_cast<int>(pairs_.size()) - 1, pair.a().m_index, pair.b().m_index);
+  const auto [i, j] = pairs_.back();
+  const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
+  const int piece_b = children_b_[static_cast<std::size_t>(j)].index;
+  deep_.add(answer, piece_a, piece_b, points);
+  patches.add(points, static_cast<int>(pairs_.size()) - 1, piece_a, piece_b);
   return true;
 }
 

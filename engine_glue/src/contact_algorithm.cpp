@@ -162,6 +162,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                                                       buffers->manifold, DeepestPoint::as_lifted)
                                    : ContactManifold();
   if (answered && as_one && (is_piece(*a) || is_piece(*b))) {
+    buffers->cover.near.begin_pair();
     keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold), static_cast<double>(info.m_timeStep),
                    stamp, core, *buffers, fresh);
   }

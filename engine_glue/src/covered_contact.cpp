@@ -100,7 +100,7 @@ class Cover {
     // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
     const double reach = 1.5 * window_ + slack_;
     const Beyond beyond{n, n.dot(foot) + margin + 2 * slack_};
-    count_ = pieces_near(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.near);
+    count_ = buffers_.near.find(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_);
     return count_ > 0;
   }
 
@@ -113,7 +113,7 @@ class Cover {
     for (const Vec3& corner : buffers_.feature) {
       double most = -1;
       for (int i = 0; i < count_ && most < least; ++i) {
-        const UnionPiece& piece = buffers_.near[static_cast<std::size_t>(i)];
+        const UnionPiece& piece = buffers_.near[i];
         // Surfaces lie flush, not cores, where margins differ.
         const Vec3 level = corner + (buffers_.own.margin - piece.margin) * n;
         most = std::max(most, covered_sine(piece, level, n, slack_, buffers_.active));
@@ -337,15 +337,6 @@ class SideRule {
   Cover cover_;
 };
 
-/// Seams agree to 1e-7 of the bodies, poses to half a unit in the last place.
-double slack_of(const PairAnswer& answer) {
-  const double farthest =
-      answer.a.pose.translation().cwiseAbs().cwiseMax(answer.b.pose.translation().cwiseAbs()).maxCoeff();
-  const double size = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
-  constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
-  return 0x1p-18 * size + kRounding * farthest;
-}
-
 Vec3 velocity(const btCollisionObjectWrapper& wrapper) {
   const btRigidBody* body = btRigidBody::upcast(wrapper.getCollisionObject());
   return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
@@ -357,7 +348,7 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
                     const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
                     ThreadBuffers& buffers, ContactManifold& points) {
   if (points.count == 0) return;
-  const double slack = slack_of(answer);
+  const double slack = seam_slack(answer.a, answer.b);
   double depth = -answer.depth.signed_distance();
   const double window = threshold + std::abs(depth) + seconds * (velocity(a) - velocity(b)).norm();
   Vec3 witness_b = answer.depth.witness_b;
@@ -386,8 +377,8 @@ ContactManifold along_front(const btCollisionObjectWrapper& triangle, const Pair
   const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];
   const Vec3 farthest = farthest_against(answer.a, side.normal);
   const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
-  return along_facet({triangle, answer.b, answer.a, true, front}, side, depth, farthest, threshold, slack_of(answer),
-                     own, buffers.manifold);
+  return along_facet({triangle, answer.b, answer.a, true, front}, side, depth, farthest, threshold,
+                     seam_slack(answer.a, answer.b), own, buffers.manifold);
 }
 
 }  // namespace pd::detail

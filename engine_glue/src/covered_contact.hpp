@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "near_pieces.hpp"
 #include "pd/contact/manifold.hpp"
 #include "union_piece.hpp"
 
@@ -30,7 +31,7 @@ struct ThreadBuffers;
 /// Memory of `keep_uncovered`, one a thread.
 struct CoverBuffers {
   UnionPiece own;
-  std::vector<UnionPiece> near;
+  NearPieces near;
   std::vector<const Plane*> active;
   std::vector<Vec3> feature;
   std::vector<Vec3> spare;

@@ -8,6 +8,7 @@
 #include "pd/contact/time_of_impact.hpp"
 #include "solver_core.hpp"
 #include "union_algorithm.hpp"
+#include "union_piece.hpp"
 
 namespace pd::detail {
 
@@ -19,7 +20,7 @@ constexpr double kDeep = 0.25;
 constexpr double kTogether = 0.7;
 /// What one answer may take.
 constexpr std::size_t kMostPairs = 1 << 10;
-constexpr std::int64_t kMostFacets = 1 << 12;
+constexpr std::int64_t kMostFacets = 1 << 14;
 
 /// Cores as one body in the world.
 std::optional<Compound> union_of_cores(const std::vector<PosedShape>& posed) {
@@ -30,16 +31,27 @@ std::optional<Compound> union_of_cores(const std::vector<PosedShape>& posed) {
   return std::move(compound).value();
 }
 
+/// The child of this number, which is there.
+const Child& child_of(const std::vector<Child>& children, int number) {
+  return *std::find_if(children.begin(), children.end(), [&](const Child& child) { return child.index == number; });
+}
+
 }  // namespace
 
 void DeepUnion::clear() {
   deepest_ = 0;
+  deepest_pair_.depth.depth = 0;
   normals_.clear();
   torn_ = false;
 }
 
-void DeepUnion::add(const PairAnswer& answer, const ContactManifold& left) {
+void DeepUnion::add(const PairAnswer& answer, int child_a, int child_b, const ContactManifold& left) {
   if (answer.depth.contact != ContactClass::overlapping) return;
+  if (answer.depth.depth > deepest_pair_.depth.depth) {
+    deepest_pair_ = answer;
+    child_a_ = child_a;
+    child_b_ = child_b;
+  }
   const double radius = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
   if (answer.depth.depth < kDeep * radius) return;
   deepest_ = std::max(deepest_, answer.depth.depth);
@@ -71,8 +83,42 @@ bool DeepUnion::collect(const btCollisionObjectWrapper& body, const btCollisionO
   return !side.posed.empty();
 }
 
+bool DeepUnion::deepest_pair_leads_out(ThreadBuffers& buffers) const {
+  const Vec3 way = deepest_pair_.depth.depth * deepest_pair_.depth.normal;
+  DepthSettings settings;
+  settings.bracket = Bracket::contact;
+  settings.beyond = 0;
+  for (std::size_t i = 0; i < a_.posed.size(); ++i) {
+    const PosedShape moved{a_.posed[i].shape, Pose::from_trusted_matrix(a_.posed[i].pose.rotation(),
+                                                                        a_.posed[i].pose.translation() + way)};
+    const Child& child_a = a_.children[i];
+    const Box box_a{child_a.box.lower + to_bullet(way), child_a.box.upper + to_bullet(way)};
+    for (std::size_t j = 0; j < b_.posed.size(); ++j) {
+      const Child& child_b = b_.children[j];
+      if (child_a.index == child_a_ && child_b.index == child_b_) continue;
+      if (apart(box_a, child_b.box, 0)) continue;
+      const double slack = seam_slack(moved, b_.posed[j]);
+      settings.contact_tolerance = slack;
+      const PenetrationDepth left = penetration_depth(moved, b_.posed[j], buffers.scratch, settings);
+      if (left.contact == ContactClass::overlapping && left.depth > slack) return false;
+    }
+  }
+  return true;
+}
+
 DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
                                        Way& way) {
+  if (!collect(question.a, question.b, deepest_pair_.depth.depth, question, core, a_) ||
+      !collect(question.b, question.a, deepest_pair_.depth.depth, question, core, b_)) {
+    return Outcome::unsupported;
+  }
+  if (deepest_pair_leads_out(buffers)) {
+    way.points = contact_manifold(deepest_pair_.a, deepest_pair_.b, deepest_pair_.depth,
+                                  static_cast<double>(question.threshold), buffers.manifold, DeepestPoint::as_lifted);
+    way.a = child_of(a_.children, child_a_);
+    way.b = child_of(b_.children, child_b_);
+    return Outcome::found;
+  }
   UnionSettings settings;
   settings.method = UnionMethod::facets;
   settings.max_facets = kMostFacets;

@@ -12,19 +12,19 @@
 #include "cached_shape.hpp"
 #include "compound_children.hpp"
 #include "pd/contact/manifold.hpp"
+#include "solver_core.hpp"
 
 namespace pd::detail {
 
-class SolverCore;
-struct PairAnswer;
 struct ThreadBuffers;
 struct UnionQuestion;
 
 class DeepUnion {
  public:
   void clear();
-  /// Takes note of what two children said about each other, and of what the rule of covered_contact.hpp left of it.
-  void add(const PairAnswer& answer, const ContactManifold& left);
+  /// Takes note of what two children, of these numbers, said about each other, and of what the rule of
+  /// covered_contact.hpp left of it. The answer's shapes are used until `clear`.
+  void add(const PairAnswer& answer, int child_a, int child_b, const ContactManifold& left);
   /// Whether children are in each other by a quarter of the smaller one's radius or more, and either nothing of what
   /// they say is left, or what is left leads more than 45 degrees apart or aside of what two of them said.
   [[nodiscard]] bool needed() const { return deepest_ > 0 && (normals_.empty() || torn_); }
@@ -54,7 +54,14 @@ class DeepUnion {
   static bool collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach,
                       const UnionQuestion& question, SolverCore& core, Side& side);
 
-  double deepest_ = 0;         ///< of the children that are deep
+  /// Whether A moved along the deepest pair's way out is free of B: then the unions' depth is that pair's, since the
+  /// union of the differences P_ij holds each of them. Requires: all children within that reach are collected.
+  [[nodiscard]] bool deepest_pair_leads_out(ThreadBuffers& buffers) const;
+
+  double deepest_ = 0;       ///< of the children that are deep
+  PairAnswer deepest_pair_;  ///< of all children
+  int child_a_ = -1;         ///< of that pair
+  int child_b_ = -1;
   std::vector<Vec3> normals_;  ///< of their contacts that are left
   bool torn_ = false;
   Side a_;

@@ -48,6 +48,8 @@ struct PairMemory {
   int num_points = 0;
   btScalar seconds = 0;             ///< of the step that the points' impulses belong to
   std::vector<PieceMemory> pieces;  ///< sorted by number
+  int union_pause = 0;              ///< steps for which the whole unions are not asked again (deep_union.hpp)
+  int union_refusals = 0;           ///< in a row
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {

@@ -1,16 +1,12 @@
 #include "union_piece.hpp"
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <BulletCollision/CollisionShapes/btConcaveShape.h>
-#include <BulletCollision/CollisionShapes/btConvexShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "solver_core.hpp"
+#include "pd/contact/time_of_impact.hpp"
 
 namespace pd::detail {
 
@@ -18,96 +14,6 @@ namespace {
 
 /// Of a direction in a cone of planes: rounding of a product of unit vectors, a few times over.
 constexpr double kFeasible = 1e-9;
-
-/// Counts what it takes out of a vector that never shrinks.
-struct PieceList {
-  std::vector<UnionPiece>& pieces;
-  int count = 0;
-  UnionPiece& next() {
-    if (count == static_cast<int>(pieces.size())) pieces.emplace_back();
-    return pieces[static_cast<std::size_t>(count)];
-  }
-  void keep() { count += pieces[static_cast<std::size_t>(count)].planes.empty() ? 0 : 1; }
-};
-
-class TrianglesOf : public btTriangleCallback {
- public:
-  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Beyond* beyond,
-              PieceList& list)
-      : pose_(pose), margin_(margin), except_(except), beyond_(beyond), list_(list) {}
-  void processTriangle(btVector3* corners, int part, int index) override {
-    if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
-    const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
-    if (beyond_ != nullptr) {
-      const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
-      if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
-    }
-    set_triangle(points, margin_, list_.next());
-    list_.keep();
-  }
-
- private:
-  const btTransform& pose_;
-  double margin_;
-  const btCollisionObjectWrapper* except_;
-  const Beyond* beyond_;
-  PieceList& list_;
-};
-
-/// What is collected, where.
-struct Search {
-  btVector3 centre;
-  btScalar reach;
-  const Beyond* beyond;
-  std::uint64_t stamp;
-  SolverCore& core;
-  PieceList list;
-};
-
-void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
-             Search& search);
-
-/// Children of a compound near the centre, but for number `except`.
-void collect_children(const btCompoundShape& compound, const btTransform& pose, int except, Search& search) {
-  const auto visit = [&](int child) {
-    if (child == except) return;
-    collect(*compound.getChildShape(child), pose * compound.getChildTransform(child), nullptr, search);
-  };
-  if (const btDbvt* tree = compound.getDynamicAabbTree()) {
-    for_each_leaf(*tree, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), visit);
-    return;
-  }
-  for (int i = 0; i < compound.getNumChildShapes(); ++i) visit(i);
-}
-
-void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
-             Search& search) {
-  if (shape.isCompound()) {
-    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, search);
-  } else if (shape.isConcave()) {
-    const auto& concave = static_cast<const btConcaveShape&>(shape);
-    const btVector3 local = pose.invXform(search.centre);
-    const btVector3 extent(search.reach, search.reach, search.reach);
-    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search.beyond, search.list);
-    concave.processAllTriangles(&triangles, local - extent, local + extent);
-  } else if (shape.isConvex()) {
-    btVector3 lower;
-    btVector3 upper;
-    shape.getAabb(pose, lower, upper);
-    for (int i = 0; i < 3; ++i) {
-      if (lower[i] > search.centre[i] + search.reach || upper[i] < search.centre[i] - search.reach) return;
-    }
-    if (search.beyond != nullptr) {
-      const Vec3& n = search.beyond->n;
-      const Vec3 far = n.cwiseProduct(to_pd(lower)).cwiseMax(n.cwiseProduct(to_pd(upper)));
-      if (far.sum() <= search.beyond->level) return;
-    }
-    const auto found = search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp);
-    if (!found->body) return;
-    set_solid(found->sharp ? *found->sharp : *found->body, to_pd(pose), search.list.next());
-    search.list.keep();
-  }
-}
 
 /// The largest <n, d> over unit d with <normal, d> <= 0 for all of `active`: the way of n's projection on the cone,
 /// which lies in its inside, on one of its sides or on the line of two.
@@ -134,6 +40,13 @@ double largest_along(const std::vector<const Plane*>& active, const Vec3& n) {
 }
 
 }  // namespace
+
+double seam_slack(const PosedShape& a, const PosedShape& b) {
+  const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
+  const double size = std::min(bounding_radius(*a.shape), bounding_radius(*b.shape));
+  constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
+  return 0x1p-18 * size + kRounding * farthest;
+}
 
 void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece& piece) {
   piece.planes.clear();
@@ -214,21 +127,6 @@ bool is_part(const btCollisionObjectWrapper& wrapper) {
 bool is_piece(const btCollisionObjectWrapper& wrapper) {
   const btCollisionObjectWrapper* parent = wrapper.m_parent;
   return parent != nullptr && (parent->getCollisionShape()->isConcave() || is_part(wrapper));
-}
-
-int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
-                std::uint64_t stamp, SolverCore& core, std::vector<UnionPiece>& pieces) {
-  Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, {pieces}};
-  for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
-    const btCollisionShape& shape = *child->m_parent->getCollisionShape();
-    if (shape.isConcave()) {
-      collect(shape, child->m_parent->getWorldTransform(), child, search);
-    } else if (shape.isCompound()) {
-      collect_children(static_cast<const btCompoundShape&>(shape), child->m_parent->getWorldTransform(), child->m_index,
-                       search);
-    }
-  }
-  return search.list.count;
 }
 
 }  // namespace pd::detail

@@ -19,8 +19,6 @@
 
 namespace pd::detail {
 
-class SolverCore;
-
 struct Plane {
   Vec3 normal;  ///< unit, outward
   double offset;
@@ -32,6 +30,10 @@ struct UnionPiece {
   double margin = 0;
   bool flat = false;  ///< a triangle: its first two planes are its two sides
 };
+
+/// How far the surfaces of pieces that are meant to meet may lie apart: seams agree to 1e-7 of the bodies, poses to
+/// half a unit in the last place.
+[[nodiscard]] double seam_slack(const PosedShape& a, const PosedShape& b);
 
 /// Sides first, then edges; no planes where the corners are no triangle.
 void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece& piece);
@@ -52,18 +54,5 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
 [[nodiscard]] bool is_piece(const btCollisionObjectWrapper& wrapper);
 /// Whether the shape behind the wrapper is a child of a compound.
 [[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
-
-/// The half-space of what covers against n: what does not reach into it has no way that leads on along n.
-struct Beyond {
-  Vec3 n;
-  double level;
-};
-
-/// The other pieces of the union that come within `reach` of a point, in world coordinates. Compounds in compounds and
-/// meshes in compounds included; curved parts are left out, since contacts inside of them do not arise from seams.
-/// `pieces` grows and is never shrunk, so that its planes keep their memory; the result counts.
-/// @param beyond  null, or: pieces whose surface does not come beyond it are left out
-int pieces_near(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
-                std::uint64_t stamp, SolverCore& core, std::vector<UnionPiece>& pieces);
 
 }  // namespace pd::detail

@@ -82,7 +82,7 @@ struct BulletSolverStatistics {
   std::int64_t skipped_triangles = 0;
   /// Pairs of bodies with compounds, deep in each other, that were answered by the exact depth of the whole unions.
   std::int64_t deep_unions = 0;
-  /// The same, left to their pieces since the whole would have taken more than its budget of pairs or facets.
+  /// The same, left to their pieces since the whole would take more than its budget of pairs or facets, or lately did.
   std::int64_t deep_unions_left = 0;
 };
 
