@@ -7,13 +7,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstdio>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "bench/programs/bracket_shares.hpp"
+#include "bench/programs/real.hpp"
 #include "depth/certificate/facet_plane.hpp"
 #include "numeric/dyadic.hpp"
 #include "numeric/estimate.hpp"
@@ -24,19 +25,16 @@
 namespace {
 
 using pd::Vec3;
+using pd::bench::Numbers;
+using pd::bench::Real;
+using pd::bench::real;
 using pd::detail::Dyadic;
 using pd::detail::Dyadic3;
 using pd::detail::Estimate;
 using pd::detail::FacetOfDifference;
 using pd::detail::PairVector;
 using pd::detail::PosedPair;
-using Numbers = std::vector<double>;
-/// 1,200 bits: products of a few doubles of like exponents are exact, the rest is off by nothing that counts.
-using Real =
-    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<1200, boost::multiprecision::digit_base_2>,
-                                  boost::multiprecision::et_off>;
 
-Real real(const Dyadic& x) { return ldexp(Real(x.mantissa().str()), x.exponent()); }
 double share(const Real& error, double bound) { return bound > 0 ? static_cast<double>(abs(error) / bound) : 0; }
 
 /// Of a determinant whose last rounding, of at most u |determinant|, leaves its sign alone: what came before, at least.
@@ -186,6 +184,11 @@ constexpr Bound kBounds[] = {
     {"points of P in double-double", "PosedPair::vector_error_dd", 20, vector_double_double_share, 100},
     {"distance of a facet's plane", "FacetPlane::distance_error", 20, plane_distance_share, 100},
     {"normal of a facet's plane", "FacetPlane::unit_error", 20, plane_unit_share, 100},
+    {"depth of two boxes", "box_sat: rounding", 20, pd::bench::box_depth_share, 50},
+    {"contact of two boxes", "box_sat: rounding", 20, pd::bench::box_contact_share, 50},
+    {"distance of two segments", "kPointError", 26, pd::bench::segments_share, 20},
+    {"a segment before a box's face", "slender_on_box: kHeightError", 23, pd::bench::slender_on_box_share, 20},
+    {"height over a hull's triangle", "quickhull: kHeightError", 15, pd::bench::hull_height_share, 4},
 };
 
 /// Climbs from random input, and anew where nothing near is higher.
