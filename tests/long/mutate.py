@@ -2,12 +2,12 @@
 """Would the tests notice? Changes decisions, arithmetic and error bounds of pd_core/src one at a time, and runs the tests.
 
     tests/long/mutate.py [--rooms depth=110,shape=40] [--seed 1] [--jobs 2] [--minutes 210] [--build build/mutants]
-                         [--share-of-files 0.35] [--sources 3] [--again]
+                         [--share-of-files 0.22] [--sources 3] [--again]
 
 The mutants are drawn by seed from the commit that is checked out and all compiled into one build, in a worktree of its own
 (BUILD/source): the environment variable PD_MUTANT names the one that is on. A place whose types have no other operator does
 not compile so and is dropped. To compile little, a room's mutants are drawn from few of its files, which are drawn first, and
-a header is mutated when at most --sources sources see it.
+a header is mutated when at most --sources sources of the core see it.
 
 First every judge (the programs of mutants/judges.py and the tests of the rooms) runs once without a mutant, and notes which
 mutants would have changed a value: in a run where none changed, up to its end everything is as it was. A mutant is then shown
@@ -145,15 +145,15 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--minutes", type=float, default=210, help="no mutant is begun after so long")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "mutants")
-    parser.add_argument("--share-of-files", type=float, default=0.35, help="files that a room's mutants are drawn from, by mutants")
-    parser.add_argument("--sources", type=int, default=3, help="headers that more sources see are left alone")
+    parser.add_argument("--share-of-files", type=float, default=0.22, help="files that a room's mutants are drawn from, by mutants")
+    parser.add_argument("--sources", type=int, default=3, help="headers that more sources of the core see are left alone")
     parser.add_argument("--again", action="store_true", help="judges survivors anew")
     options = parser.parse_args()
     build = options.build.resolve()
     (build / "programs").mkdir(parents=True, exist_ok=True)
     tree = Tree(ROOT, build / "source")
     counts = counts_of(options.rooms)
-    seen = sources_that_see({**tree.originals, **tree.tests})
+    seen = sources_that_see(tree.originals)
     texts = {path: text for path, text in tree.originals.items()
              if path.parts[2] in counts and (path.suffix == ".cpp" or seen.get(path, 0) <= options.sources)}
     drawn = draw(mutants_of(texts, values_of_constants(tree.originals)), counts, options.share_of_files, random.Random(options.seed))

@@ -5,7 +5,6 @@ import pathlib
 import re
 
 CORE = pathlib.Path("pd_core/src")
-TESTS = pathlib.Path("tests")
 INCLUDE = re.compile(r'#include "([\w/]+\.hpp)"')
 
 OPERATOR = re.compile(r"(?<=\S) (<=|>=|==|!=|<|>|\+|-|\*|/)(?= |$)")
@@ -113,7 +112,7 @@ def draw(found, counts, share_of_files, dice):
 
 
 def sources_that_see(texts):
-    """How many sources each file is compiled in, by the includes between the files of the core's src and the tests."""
+    """How many sources each file is compiled in, by the includes between the files of the core's src."""
     reached = {}
     for source in texts:
         if source.suffix == ".cpp":
@@ -123,8 +122,7 @@ def sources_that_see(texts):
                 if path in seen or path not in texts:
                     continue
                 seen.add(path)
-                for name in INCLUDE.findall(texts[path]):
-                    queue += [CORE / name, TESTS / name]
+                queue += [CORE / name for name in INCLUDE.findall(texts[path])]
             for path in seen:
                 reached[path] = reached.get(path, 0) + 1
     return reached

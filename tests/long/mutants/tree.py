@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import sys
 
-from .places import CORE, TESTS
+from .places import CORE
 
 # PD_MUTANT: the mutant that is on, 0 for none; -1 turns none on and notes those that would have changed a value, whose numbers
 # are added to the file PD_MUTANT_REACHED when the program ends.
@@ -109,7 +109,6 @@ class Tree:
             git(folder, "checkout", "--no-overlay", self.commit, "--", ".", f":!{CORE}")
         self.objects = folder / "build" / "release"
         self.originals = texts_of_commit(root, self.commit, CORE)
-        self.tests = texts_of_commit(root, self.commit, TESTS)
 
     def write(self, mutants, count):
         for path in (self.root / CORE).rglob("*.[ch]pp"):
