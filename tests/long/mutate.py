@@ -87,8 +87,15 @@ def compile_mutants(tree, drawn, options, build, rooms):
     return mutants
 
 
-def judge_all(build, judges, mutants, verdicts, options):
-    end = time.monotonic() + 60 * options.minutes
+def judge_room(build, room, mutants, verdicts, options, end):
+    left = [m for m in mutants if m.room() == room]
+    left = [m for m in left if not verdicts.of(m) or (options.again and not verdicts.of(m)["killed_by"])]
+    if not left or time.monotonic() > end:
+        return
+    judges = surveyed(build, room)
+    for program in dict.fromkeys(j.program for j in judges):
+        of = [j for j in judges if j.program == program]
+        print(f"{program}: {len(of)} judges, {sum(j.seconds for j in of):.0f} s", flush=True)
 
     def judge(mutant):
         if time.monotonic() > end:
@@ -98,11 +105,8 @@ def judge_all(build, judges, mutants, verdicts, options):
         verdicts.add(mutant, killer, asked, seconds)
         print(f"{mutant.id}  {mutant.place()}  {mutant.change()}: {killer or 'SURVIVES'}  ({asked} judges, {seconds:.0f} s)", flush=True)
 
-    left = [m for m in mutants if not verdicts.of(m) or (options.again and not verdicts.of(m)["killed_by"])]
-    print(f"{len(left)} to judge of {len(mutants)}", flush=True)
-    rooms = list(counts_of(options.rooms))
-    random.Random(options.seed).shuffle(left)
-    left.sort(key=lambda m: rooms.index(m.room()))
+    print(f"{room}: {len(left)} to judge", flush=True)
+    random.Random(options.seed).shuffle(left)  # what is judged when time runs out is a sample
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for _ in pool.map(judge, left):
             pass
@@ -162,12 +166,10 @@ def main():
     # Answers of the same programs without a mutant.
     subprocess.run([build / "programs" / "answer_hash", *PROGRAMS[0][1:3], "--out", build / "answers.txt"], check=True,
                    stdout=subprocess.DEVNULL)
-    judges = surveyed(build, list(counts))
-    for program in dict.fromkeys(j.program for j in judges):
-        of = [j for j in judges if j.program == program]
-        print(f"{program}: {len(of)} judges, {sum(j.seconds for j in of):.0f} s", flush=True)
     verdicts = Verdicts(build / "mutants.csv")
-    judge_all(build, judges, mutants, verdicts, options)
+    end = time.monotonic() + 60 * options.minutes
+    for room in counts:
+        judge_room(build, room, mutants, verdicts, options, end)
     write_summary(build, tree, options, mutants, drawn, verdicts)
     print((build / "mutants.md").read_text(encoding="utf-8"))
 

@@ -75,13 +75,12 @@ def tests_of(build, program):
     return names
 
 
-def surveyed(build, rooms):
-    """All judges of the rooms, each run once to see how long it takes and which mutants show in it; kept per program."""
+def surveyed(build, room):
+    """The judges of a room, each run once to see how long it takes and which mutants show in it; kept per program."""
     kept_at = build / "reached.json"
     kept = json.loads(kept_at.read_text(encoding="utf-8")) if kept_at.exists() else {}
     asked = [(arguments[0], arguments[1:], "") for arguments in PROGRAMS]
-    for room in rooms:
-        asked += [(f"test_{room}", [], test) for test in tests_of(build, f"test_{room}")]
+    asked += [(f"test_{room}", [], test) for test in tests_of(build, f"test_{room}")]
     hashes = {program: hashlib.sha256((build / "programs" / program).read_bytes()).hexdigest() for program, _, _ in asked}
     judges = []
     for program, arguments, test in asked:
