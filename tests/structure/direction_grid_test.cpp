@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scenes/shape_families.hpp"
 
@@ -39,6 +40,35 @@ TEST(DirectionGrid, CoversTheSphere) {
       }
     }
   }
+}
+
+/// The middle of the hole among the three directions that lie nearest to `x`: as far from all three, and its cosine.
+long double cosine_in_hole(const DirectionGrid& grid, const Vec3& x, Vec3& middle) {
+  std::vector<Vec3> near(3);
+  std::partial_sort_copy(grid.directions.begin(), grid.directions.end(), near.begin(), near.end(),
+                         [&](const Vec3& d, const Vec3& e) { return d.dot(x) > e.dot(x); });
+  using Exactly = Eigen::Matrix<long double, 3, 1>;
+  const Exactly p = near[0].cast<long double>(), q = near[1].cast<long double>(), r = near[2].cast<long double>();
+  const Exactly across = (q - p).cross(r - p).normalized();
+  middle = (across.dot(p) > 0 ? across : Exactly(-across)).cast<double>();
+  return std::abs(across.dot(p));
+}
+
+/// Holes of a geodesic grid are alike but for rounding: the stated cosine lies below the last bits of each.
+TEST(DirectionGrid, CosineHoldsInTheMiddleOfEveryHole) {
+  scenes::Random random(12);
+  int holes = 0;
+  for (const double delta : {1.0, 0.5, 0.3, 0.2, 0.15, 0.1, 0.07, 0.05, 0.04, 0.03}) {
+    const DirectionGrid grid = *direction_grid(GridKind::geodesic, delta);
+    for (int i = 0; i < 400; ++i) {
+      Vec3 middle;
+      const long double cosine = cosine_in_hole(grid, random.direction(), middle);
+      if (nearest_cosine(grid, middle, GridExtent::sphere) > static_cast<double>(cosine) + 1e-9) continue;
+      ++holes;
+      ASSERT_GE(cosine, static_cast<long double>(grid.cosine)) << delta;
+    }
+  }
+  EXPECT_GT(holes, 3000);
 }
 
 TEST(DirectionGrid, SizesAreProportionalToOneOverDelta) {
