@@ -2,7 +2,7 @@
 """Would the tests notice? Changes decisions, arithmetic and error bounds of pd_core/src one at a time, and runs the tests.
 
     tests/long/mutate.py [--rooms depth=110,shape=40] [--seed 1] [--jobs 2] [--minutes 210] [--build build/mutants]
-                         [--share-of-files 0.22] [--sources 3] [--again]
+                         [--share-of-files 0.22] [--sources 3] [--quick] [--again]
 
 The mutants are drawn by seed from the commit that is checked out and all compiled into one build, in a worktree of its own
 (BUILD/source): the environment variable PD_MUTANT names the one that is on. A place whose types have no other operator does
@@ -16,7 +16,8 @@ when one fails, crashes, takes more memory than it should or four times the proc
 somebody: it is harmless, and it is said why, or a test is missing.
 
 Each verdict is added to BUILD/mutants.csv at once; a later call goes on from there, and with --again judges the survivors anew:
-after tests were added (committed, as the worktree holds the commit). BUILD/mutants.md sums up.
+after tests were added (committed, as the worktree holds the commit). --quick builds and asks the programs alone; a later call
+without it asks the tests about what they left alive. BUILD/mutants.md sums up.
 """
 
 import argparse
@@ -37,7 +38,7 @@ from mutants.tree import Tree
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROOMS = "depth=110,shape=40,structure=25,contact=15,compound=15,planar=15"
 KEY = ["file", "line", "column", "was", "to"]
-COLUMNS = KEY + ["kind", "killed_by", "judges", "seconds", "text"]
+COLUMNS = KEY + ["kind", "killed_by", "asked", "judges", "seconds", "text"]
 
 
 class Verdicts:
@@ -51,8 +52,8 @@ class Verdicts:
             with open(path, encoding="utf-8", newline="") as table:
                 self.rows = {tuple(row[name] for name in KEY): row for row in csv.DictReader(table)}
 
-    def add(self, mutant, killer, judges, seconds):
-        row = dict(zip(COLUMNS, [*mutant.key(), mutant.kind, killer, str(judges), f"{seconds:.1f}", mutant.text]))
+    def add(self, mutant, killer, asked, judges, seconds):
+        row = dict(zip(COLUMNS, [*mutant.key(), mutant.kind, killer, asked, str(judges), f"{seconds:.1f}", mutant.text]))
         with self.lock:
             begun = self.path.exists()
             self.rows[mutant.key()] = row
@@ -70,8 +71,9 @@ def counts_of(text):
     return {room: int(count) for room, count in (entry.split("=") for entry in text.split(","))}
 
 
-def compile_mutants(tree, drawn, options, build, rooms):
+def compile_mutants(tree, drawn, options, build):
     """Builds and copies the judges' programs; returns the mutants that compile. What did not compile once is not tried again."""
+    rooms = [] if options.quick else list(counts_of(options.rooms))
     dropped_at = build / "dropped.csv"
     dropped = set()
     if dropped_at.exists():
@@ -87,12 +89,19 @@ def compile_mutants(tree, drawn, options, build, rooms):
     return mutants
 
 
+def is_open(mutant, verdicts, options):
+    """Whether anybody is left to ask."""
+    row = verdicts.of(mutant)
+    if row is None:
+        return True
+    return not row["killed_by"] and (options.again or (row["asked"] == "programs" and not options.quick))
+
+
 def judge_room(build, room, mutants, verdicts, options, end):
-    left = [m for m in mutants if m.room() == room]
-    left = [m for m in left if not verdicts.of(m) or (options.again and not verdicts.of(m)["killed_by"])]
+    left = [m for m in mutants if m.room() == room and is_open(m, verdicts, options)]
     if not left or time.monotonic() > end:
         return
-    judges = surveyed(build, room)
+    judges = surveyed(build, None if options.quick else room)
     for program in dict.fromkeys(j.program for j in judges):
         of = [j for j in judges if j.program == program]
         print(f"{program}: {len(of)} judges, {sum(j.seconds for j in of):.0f} s", flush=True)
@@ -100,10 +109,12 @@ def judge_room(build, room, mutants, verdicts, options, end):
     def judge(mutant):
         if time.monotonic() > end:
             return
-        killer, seconds = judge_mutant(build, judges, mutant)
-        asked = len(asked_for(judges, mutant))
-        verdicts.add(mutant, killer, asked, seconds)
-        print(f"{mutant.id}  {mutant.place()}  {mutant.change()}: {killer or 'SURVIVES'}  ({asked} judges, {seconds:.0f} s)", flush=True)
+        row = verdicts.of(mutant)
+        asked = asked_for(judges, mutant, row is not None and row["asked"] == "programs" and not options.again)
+        killer, seconds = judge_mutant(build, asked, mutant)
+        verdicts.add(mutant, killer, "programs" if options.quick else "all", len(asked), seconds)
+        print(f"{mutant.id}  {mutant.place()}  {mutant.change()}: {killer or 'SURVIVES'}  ({len(asked)} judges, {seconds:.0f} s)",
+              flush=True)
 
     print(f"{room}: {len(left)} to judge", flush=True)
     random.Random(options.seed).shuffle(left)  # what is judged when time runs out is a sample
@@ -151,6 +162,7 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "mutants")
     parser.add_argument("--share-of-files", type=float, default=0.22, help="files that a room's mutants are drawn from, by mutants")
     parser.add_argument("--sources", type=int, default=3, help="headers that more sources of the core see are left alone")
+    parser.add_argument("--quick", action="store_true", help="asks the programs alone")
     parser.add_argument("--again", action="store_true", help="judges survivors anew")
     options = parser.parse_args()
     build = options.build.resolve()
@@ -162,7 +174,7 @@ def main():
              if path.parts[2] in counts and (path.suffix == ".cpp" or seen.get(path, 0) <= options.sources)}
     drawn = draw(mutants_of(texts, values_of_constants(tree.originals)), counts, options.share_of_files, random.Random(options.seed))
     print(f"{len(drawn)} mutants in {len({m.path for m in drawn})} files", flush=True)
-    mutants = compile_mutants(tree, drawn, options, build, list(counts))
+    mutants = compile_mutants(tree, drawn, options, build)
     # Answers of the same programs without a mutant.
     subprocess.run([build / "programs" / "answer_hash", *PROGRAMS[0][1:3], "--out", build / "answers.txt"], check=True,
                    stdout=subprocess.DEVNULL)

@@ -76,11 +76,12 @@ def tests_of(build, program):
 
 
 def surveyed(build, room):
-    """The judges of a room, each run once to see how long it takes and which mutants show in it; kept per program."""
+    """The programs and the tests of a room, if one is named, each run once to see how long it takes and which mutants show in it; kept per program."""
     kept_at = build / "reached.json"
     kept = json.loads(kept_at.read_text(encoding="utf-8")) if kept_at.exists() else {}
     asked = [(arguments[0], arguments[1:], "") for arguments in PROGRAMS]
-    asked += [(f"test_{room}", [], test) for test in tests_of(build, f"test_{room}")]
+    if room:
+        asked += [(f"test_{room}", [], test) for test in tests_of(build, f"test_{room}")]
     hashes = {program: hashlib.sha256((build / "programs" / program).read_bytes()).hexdigest() for program, _, _ in asked}
     judges = []
     for program, arguments, test in asked:
@@ -106,9 +107,9 @@ def surveyed(build, room):
     return judges
 
 
-def asked_for(judges, mutant):
-    """The programs and the tests of the mutant's room in which it could show: the hash of answers first, then the quickest."""
-    of = [j for j in judges if mutant.id in j.reached and (not j.test or j.program == f"test_{mutant.room()}")]
+def asked_for(judges, mutant, tests_only):
+    """Judges in which the mutant could show: the hash of answers first, then the quickest."""
+    of = [j for j in judges if mutant.id in j.reached and (j.test or not tests_only)]
     return sorted(of, key=lambda j: (j.program != "answer_hash", j.seconds))
 
 
@@ -125,11 +126,11 @@ def batches(judges):
 
 
 def judge_mutant(build, judges, mutant):
-    """Returns who objects to the mutant, or nothing, and the seconds of processor time that it took."""
+    """Returns who of the judges, asked in order, objects to the mutant, or nothing, and the seconds of processor time taken."""
     folder = build / "work" / str(mutant.id)
     folder.mkdir(parents=True, exist_ok=True)
     killer, total = "", 0.0
-    for batch in batches(asked_for(judges, mutant)):
+    for batch in batches(judges):
         tests = ":".join(j.test for j in batch)
         arguments = [f"--gtest_filter={tests}", "--gtest_fail_fast", "--gtest_brief=1"] if tests else batch[0].arguments
         limit = int(4 * sum(j.seconds for j in batch)) + 5
