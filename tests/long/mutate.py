@@ -125,6 +125,7 @@ def judge_room(build, room, mutants, verdicts, options, end):
 
 def write_summary(build, tree, options, mutants, drawn, verdicts):
     judged = [(m, verdicts.of(m)) for m in mutants if verdicts.of(m)]
+    judged = [(m, row) for m, row in judged if row["killed_by"] or row["asked"] == "all"]
     killed = [(m, row) for m, row in judged if row["killed_by"]]
     rooms = list(counts_of(options.rooms))
     killers = {}
