@@ -30,10 +30,10 @@ inline double share_of_bracket(const Real& truth, double lower, double upper) {
   return static_cast<double>(abs(2 * truth - lower - upper) / (Real(upper) - lower));
 }
 
-/// A body's pose by seven numbers: a quaternion, any length, and a translation.
+/// A body's pose by seven numbers: a quaternion, whose length is brought to 1, and a translation.
 inline std::optional<Pose> pose_of(const Numbers& x, std::size_t first) {
-  const auto pose = Pose::from_quaternion({x[first], x[first + 1], x[first + 2], x[first + 3]},
-                                          {x[first + 4], x[first + 5], x[first + 6]});
+  const Eigen::Vector4d q = Eigen::Vector4d(x[first], x[first + 1], x[first + 2], x[first + 3]).normalized();
+  const auto pose = Pose::from_quaternion({q[0], q[1], q[2], q[3]}, {x[first + 4], x[first + 5], x[first + 6]});
   return pose ? std::optional<Pose>(*pose) : std::nullopt;
 }
 

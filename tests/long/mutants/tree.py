@@ -129,7 +129,9 @@ class Tree:
             lines[mutant.line] = before[:mutant.start] + rewritten(mutant) + before[mutant.start + len(mutant.was):]
         guard = "#pragma once\n" if "#pragma once" in lines else ""
         declarations = "".join(declaration(m) for m in mutants)
-        return f'{guard}#include "mutant.hpp"\n{declarations}#line 1\n' + "\n".join(lines) + "\n"
+        # `a == Site{} == b` is what the warning is about.
+        quiet = '#pragma GCC diagnostic ignored "-Wparentheses"\n'
+        return f'{guard}#include "mutant.hpp"\n{quiet}{declarations}#line 1\n' + "\n".join(lines) + "\n"
 
     def environment(self):
         """By these settings the compiler cache of another build folder serves what is not mutated (debian_packages.sh)."""
