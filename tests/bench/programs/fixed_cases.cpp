@@ -100,6 +100,16 @@ constexpr FixedDistance kDistances[] = {{"distance_8_near", PairFamily::sphere, 
                                         {"distance_8_far_warm", PairFamily::sphere, 8, 1, true},
                                         {"distance_128_near_warm", PairFamily::sphere, 128, 0.01, true}};
 
+/// A cylinder in a box, a cone in a hull of 32 vertices, cold.
+struct FixedCurved {
+  const char* name;
+  bool cone;
+  std::uint64_t seed;
+};
+constexpr FixedCurved kCurved[] = {{"cylinder_box_edge", false, 10},   // a rim on an edge
+                                   {"cylinder_box_facet", false, 14},  // a rim on a facet
+                                   {"cone_hull_32", true, 10}};
+
 /// Two bricks flush on each other, cold, for contacts.
 struct FixedFlush {
   const char* name;
@@ -132,6 +142,15 @@ void remember_frames(const pd::PosedShape& a, const pd::PosedShape& b, double ra
     const pd::PosedShape before{b.shape, pd::Pose::from_trusted_matrix(turn * b.pose.rotation(), b.pose.translation())};
     (void)pd::penetration_depth(a, before, scratch, kHotPath, &certificate);
   }
+}
+
+pd::ConvexShape curved_body(bool cone, pd::scenes::Random& random) {
+  const double radius = random.uniform(0.5, 1), half_height = random.uniform(0.5, 1);
+  return cone ? *pd::ConvexShape::cone(radius, half_height, 2) : *pd::ConvexShape::cylinder(radius, half_height, 2);
+}
+pd::ConvexShape ground_body(bool hull, pd::scenes::Random& random) {
+  if (hull) return *pd::ConvexPolytope::from_points(pd::scenes::sphere_hull(32, random));
+  return *pd::ConvexPolytope::box({random.uniform(0.5, 1), random.uniform(0.5, 1), random.uniform(0.5, 1)});
 }
 
 }  // namespace
@@ -227,6 +246,19 @@ int main(int argc, char** argv) {
                 static_cast<long long>(answer.statistics.support_calls));
     return 0;
   }
+  for (const FixedCurved& c : kCurved) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    pd::scenes::Random random(c.seed);
+    const pd::ConvexShape a = curved_body(c.cone, random), b = ground_body(c.cone, random);
+    const pd::PosedShape posed_a{&a, *pd::Pose::from_quaternion(random.quaternion(), pd::Vec3::Zero())};
+    const pd::PosedShape posed_b{&b, *pd::Pose::from_quaternion(random.quaternion(), 1.4 * random.direction())};
+    pd::Scratch scratch;
+    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &kHotPath);
+    std::printf("%s: depth in [%.17g, %.17g], %lld supports\n", c.name, answer.lower, answer.upper,
+                static_cast<long long>(answer.statistics.support_calls));
+    return 0;
+  }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     const pd::bench::FlushBricks bricks(c.gap);
@@ -244,6 +276,7 @@ int main(int argc, char** argv) {
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
   for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
   for (const FixedDistance& c : kDistances) std::fprintf(stderr, " %s", c.name);
+  for (const FixedCurved& c : kCurved) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;

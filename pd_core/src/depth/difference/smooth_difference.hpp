@@ -72,6 +72,8 @@ class SmoothDifference {
     const Body& body = of == 0 ? a_ : b_;
     return body.rotation * body.centre;
   }
+  [[nodiscard]] const ConvexShape::Core& core_of(int of) const { return *(of == 0 ? a_ : b_).core; }
+  [[nodiscard]] const Mat3& rotation_of(int of) const { return (of == 0 ? a_ : b_).rotation; }
   /// t_B - t_A.
   [[nodiscard]] const Vec3& offset() const { return offset_; }
   [[nodiscard]] double reach() const { return reach_; }

@@ -33,6 +33,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "depth/expansion/expansion_budget.hpp"
@@ -42,6 +43,10 @@
 #include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
+
+/// Whether every support is within its error of the maximum, so that its height bounds the depth as it is.
+template <class Difference>
+inline constexpr bool kSupportsCertify = std::is_same_v<Difference, SmoothDifference>;
 
 /// Over any difference that offers `search_support`, `search_support_along`, `search_supports`, `certified_support`,
 /// `centre`, `reach`, `point_error` and `support_error`, and for which there is an `initial_cone_sine`
@@ -84,6 +89,14 @@ class ExpandingPolytope {
     if (surface_.size() <= kMostFlipped) surface_.flip_reflex_edges();
     ExpansionResult result = grow(convex, ExpansionResult{});
     if (result.status == ExpansionStatus::undecided && surface_.rebuild(flat_volume())) result = grow(goal, result);
+    if (surface_.watch) report_end(surface_.watch, kDoubleArithmetic, result);
+    return result;
+  }
+
+  /// On from where a search stopped `over_budget`, with the bounds that it had; a tighter upper one that the caller has
+  /// found may have taken their place.
+  ExpansionResult go_on(const ExpansionGoal& goal, const ExpansionResult& from) {
+    const ExpansionResult result = grow(goal, from);
     if (surface_.watch) report_end(surface_.watch, kDoubleArithmetic, result);
     return result;
   }
@@ -152,6 +165,13 @@ class ExpandingPolytope {
       // 4.
       if (result.lower < highest - goal.max_loss && highest > goal.loss_from) return undecided(result);
       highest = std::max(highest, result.lower);
+      // An earlier upper bound may be the least, and no later support need tell.
+      if constexpr (kSupportsCertify<Difference>) {
+        if (reached(goal, result.lower, result.upper, largest)) {
+          result.status = ExpansionStatus::certified;
+          return result;
+        }
+      }
       // 5. The search needs no unit vector, which takes a root and a quotient; both run beside it.
       const Vec3 normal = surface_.normal(f);
       const double squared = normal.squaredNorm();
@@ -168,6 +188,13 @@ class ExpandingPolytope {
         report_step(surface_.watch, kDoubleArithmetic, step, surface_, result, unit, s.x);
       // 6. and 7.
       if (height + bound_error() < result.upper && decide(goal, largest, unit, s, height, result)) return result;
+      if constexpr (kSupportsCertify<Difference>) {
+        if (height + bound_error() < result.upper) {
+          result.upper = height + bound_error();
+          result.normal = unit;
+          if (result.upper < goal.upper_expected) break;
+        }
+      }
       // 8.
       if (height - distance <= 4 * error) {
         // On the face, and yet not narrow enough, unless the search saw too little.

@@ -43,6 +43,8 @@ struct ExpansionGoal {
   /// its bound.
   int close_after = std::numeric_limits<int>::max();
   double close = 0;
+  /// `over_budget` once the upper bound falls below it (curved bodies).
+  double upper_expected = -std::numeric_limits<double>::infinity();
   int vertices = 0;  ///< of both bodies, for ExpansionBudget; 0: given up after `max_steps` only
   /// `undecided` when a lower bound above `loss_from` falls by more than `max_loss`: the surface has lost its
   /// convexity.

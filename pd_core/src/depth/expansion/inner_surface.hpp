@@ -118,6 +118,8 @@ class InnerSurface {
   [[nodiscard]] double clearance(const Vec3& x, double slack) {
     return least_clearance(planes(), slots_, x.x(), x.y(), x.z(), slack);
   }
+  /// A face visible from x, -1 where there is none.
+  [[nodiscard]] int first_face_below(const Vec3& x);
   /// The face with the least key, the first of several.
   [[nodiscard]] int nearest() const { return nearest_; }
   /// Replaces the faces visible from vertex `v`, face `from` among them, by a cone over their border. The surface stays
@@ -150,7 +152,6 @@ class InnerSurface {
   void reserve(int count);
 
   void clear_faces();
-  [[nodiscard]] int first_face_below(const Vec3& x);
 
   // flip_reflex_edges, step by step
   static constexpr int kMostFlips = 4;  ///< a slot

@@ -48,7 +48,6 @@ bool InnerSurface::rebuild(double flat) {
   return true;
 }
 
-/// A face visible from x, -1 when there is none.
 int InnerSurface::first_face_below(const Vec3& x) {
   for (int from = 0; from < slots_; from += 64) {
     const PlaneArrays block{nx_.data() + from, ny_.data() + from, nz_.data() + from, levels_.data() + from,

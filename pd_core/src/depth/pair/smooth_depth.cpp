@@ -178,6 +178,11 @@ class SmoothQuery {
     const ExpansionResult& core = nearest.found;
     out_.contact = ContactClass::overlapping;
     set_depth(core.lower + margin_, core.upper + margin_, core.normal);
+    if (nearest.foot_known) {
+      set_witnesses(nearest.corners, nearest.weights, 3);
+      out_.witness_b = out_.witness_a + out_.translation;
+      return;
+    }
     double weights[3];
     project_origin(nearest.corners, core.normal, weights);
     const double near = kAcross * size();

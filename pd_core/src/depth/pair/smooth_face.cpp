@@ -1,10 +1,14 @@
 #include "depth/pair/smooth_face.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/expansion/expanding_hull.hpp"
+#include "depth/pair/local_minimum.hpp"
 #include "depth/pair/thinnest_axis.hpp"
 
 namespace pd::detail {
@@ -13,6 +17,16 @@ namespace {
 
 /// Searches in doubles before an exact hull is made, which takes ten times as long.
 constexpr int kMostSearches = 4;
+
+/// Steps before a local minimum is looked for near the nearest face, again and again, and steps around one.
+constexpr int kFirstSteps = 3;
+constexpr int kFurtherSteps = 3;
+constexpr int kMostMinima = 6;
+constexpr int kStepsAroundMinimum = 96;
+/// Times that another minimum may turn out to be less.
+constexpr int kMostOthers = 2;
+/// The apex of a cone stands for directions this much farther from its axis than the cone's own.
+constexpr double kApexInside = 1 + 0x1p-12;
 
 bool is_close(const ExpansionResult& found) {
   return found.face >= 0 && found.lower > 0 && found.upper - found.lower <= kContactClose * found.upper;
@@ -47,13 +61,15 @@ class SmoothFaceSearch {
     }
     goal.max_loss = 4 * difference_.point_error();
     ExpansionResult& best = nearest.found;
-    best = expansion_.run(Vec3::Zero(), goal);
+    best = for_contact_ ? expansion_.run(Vec3::Zero(), goal)
+                        : run_around_minimum(Vec3::Zero(), goal, kMostOthers, nearest);
     if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
     // What is flat has no surface to go on from.
     const bool started = best.face >= 0 && std::isfinite(best.lower);
     if (best.status == ExpansionStatus::undecided && (for_contact_ || started)) search_again(goal, best);
     statistics.support_calls += expansion_.support_calls();
     statistics.facets_visited += expansion_.facets_visited();
+    if (nearest.foot_known) return nearest;
     if (best.face >= 0) {
       const SurfaceTriangle& face = buffers_.surface.face(best.face);
       for (int i = 0; i < 3; ++i) nearest.corners[i] = buffers_.surface.vertices[face.v[i]];
@@ -73,6 +89,73 @@ class SmoothFaceSearch {
   }
 
  private:
+  /// Steps of the expansion until a minimum near the nearest face has a cone of its own; then the others around it.
+  ///
+  /// The cone is put into the surface as a point p beyond P, its apex at `lower` / cos of its half angle: <p, n>
+  /// reaches `lower` in the cone only. A surface that encloses the ball of radius r <= `lower` with it shows of every
+  /// direction that P's height is at least r: by one of P's points, or because it lies in the cone, where no height is
+  /// below `lower`.
+  ExpansionResult run_around_minimum(const Vec3& direction, const ExpansionGoal& goal, int others,
+                                     SmoothFace& nearest) {
+    ExpansionGoal some = goal;
+    some.max_steps = kFirstSteps;
+    ExpansionResult result = expansion_.run(direction, some);
+    for (int i = 0; i < kMostMinima && result.status == ExpansionStatus::over_budget; ++i) {
+      const std::optional<LocalMinimum> minimum = minimum_near_face(goal);
+      if (minimum && insert_apex(*minimum)) return expand_around(*minimum, goal, result, others, nearest);
+      some.max_steps = kFurtherSteps;
+      result = expansion_.go_on(some, result);
+    }
+    if (result.status != ExpansionStatus::over_budget) return result;
+    some.max_steps = goal.max_steps - static_cast<int>(expansion_.support_calls());
+    return expansion_.go_on(some, result);
+  }
+
+  [[nodiscard]] std::optional<LocalMinimum> minimum_near_face(const ExpansionGoal& goal) const {
+    const InnerSurface& surface = buffers_.surface;
+    const Vec3 unit = surface.normal(surface.nearest()).normalized();
+    if (!is_direction(unit)) return std::nullopt;
+    const SurfaceTriangle& face = surface.face(surface.nearest());
+    const DifferenceVertex corners[3] = {surface.vertices[face.v[0]], surface.vertices[face.v[1]],
+                                         surface.vertices[face.v[2]]};
+    return local_minimum(difference_, corners, unit, goal.relative);
+  }
+
+  bool insert_apex(const LocalMinimum& minimum) {
+    const double cosine = minimum.cosine * kApexInside;
+    if (!(cosine < 1)) return false;
+    const Vec3 apex = (minimum.lower / cosine) * minimum.normal;
+    InnerSurface& surface = buffers_.surface;
+    const int f = surface.first_face_below(apex);
+    if (f < 0) return false;
+    surface.vertices.push_back({apex, -1, -1});
+    return surface.insert(f, static_cast<int>(surface.vertices.size()) - 1);
+  }
+
+  /// Anew where another minimum is less, without cones where rounding spoils the surface.
+  ExpansionResult expand_around(const LocalMinimum& minimum, const ExpansionGoal& goal, const ExpansionResult& before,
+                                int others, SmoothFace& nearest) {
+    ExpansionGoal around = goal;
+    around.max_steps = kStepsAroundMinimum;
+    around.upper_expected = minimum.lower;
+    ExpansionResult start = before;
+    if (minimum.upper < start.upper) {
+      start.upper = minimum.upper;
+      start.normal = minimum.normal;
+    }
+    ExpansionResult result = expansion_.go_on(around, start);
+    const bool is_least = result.status == ExpansionStatus::certified && result.normal == minimum.normal;
+    if (!is_least || !(result.lower * kApexInside >= minimum.lower)) {
+      const bool other = others > 0 && result.upper < minimum.lower;
+      return other ? run_around_minimum(result.normal, goal, others - 1, nearest) : expansion_.run(result.normal, goal);
+    }
+    result.lower = std::min(result.lower, minimum.lower);
+    nearest.foot_known = true;
+    std::copy(std::begin(minimum.corners), std::end(minimum.corners), nearest.corners);
+    std::copy(std::begin(minimum.weights), std::end(minimum.weights), nearest.weights);
+    return result;
+  }
+
   /// Where rounding folded the surface (corners of discs, all in one plane): on from the hull of its points, which
   /// does for nine of ten, or anew from the nearest way out so far. All searches share one budget.
   void search_again(ExpansionGoal goal, ExpansionResult& best) {

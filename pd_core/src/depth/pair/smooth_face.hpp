@@ -17,7 +17,9 @@ inline constexpr int kMaxSmoothSteps = 16384;
 
 struct SmoothFace {
   ExpansionResult found;
-  DifferenceVertex corners[3];                              ///< of the face, if there is one
+  DifferenceVertex corners[3];  ///< of the face, if there is one
+  bool foot_known = false;      ///< `weights` are those of the origin's foot
+  double weights[3] = {};
   const std::vector<DifferenceVertex>* searched = nullptr;  ///< all points that its search met, in `buffers`
 };
 
