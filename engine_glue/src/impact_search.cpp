@@ -26,28 +26,35 @@ const ConvexShape& Piece::shape_beside(const Piece& other) const {
   return cached->sharp && other.cached && other.cached->sharp ? *cached->sharp : *cached->body;
 }
 
-Pose Piece::present() const { return to_pd(body->getWorldTransform() * local); }
+Pose Piece::with_body_at(const btTransform& pose) const { return to_pd(pose * local); }
 
-void ImpactSearch::collect() {
-  pieces_.clear();
+void ImpactSearch::begin_frame() {
   bodies_.clear();
+  collected_ = false;
   const auto& objects = world_.getCollisionObjectArray();
   for (int i = 0; i < objects.size(); ++i) {
-    btCollisionObject* object = objects[i];
-    if (!object->hasContactResponse()) continue;
-    const int first = static_cast<int>(pieces_.size());
-    add_pieces(object, object->getCollisionShape(), btTransform::getIdentity());
-    const int count = static_cast<int>(pieces_.size()) - first;
-    if (count == 0) continue;
-    double radius = 0;
-    for (int k = first; k < first + count; ++k) {
+    if (objects[i]->hasContactResponse()) bodies_.push_back({objects[i]});
+  }
+}
+
+void ImpactSearch::collect() {
+  if (collected_) return;
+  collected_ = true;
+  pieces_.clear();
+  for (Body& body : bodies_) {
+    body.first_piece = static_cast<int>(pieces_.size());
+    add_pieces(body.object, body.object->getCollisionShape(), btTransform::getIdentity());
+    body.num_pieces = static_cast<int>(pieces_.size()) - body.first_piece;
+    body.radius = 0;
+    for (int k = body.first_piece; k < body.first_piece + body.num_pieces; ++k) {
       const Piece& piece = pieces_[static_cast<std::size_t>(k)];
-      radius = std::max(radius, piece.concave != nullptr ? std::numeric_limits<double>::infinity()
+      body.radius =
+          std::max(body.radius, piece.concave != nullptr ? std::numeric_limits<double>::infinity()
                                                          : to_pd(piece.local.getOrigin()).norm() + piece.radius);
     }
-    Body body{object, first, count, radius};
-    bodies_.push_back(body);
   }
+  bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.num_pieces == 0; }),
+                bodies_.end());
 }
 
 void ImpactSearch::add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local) {
@@ -78,6 +85,14 @@ void ImpactSearch::mark_start() {
 }
 
 double ImpactSearch::farthest_way() const {
+  const auto reach = [](const Body& body) {
+    // Of the step that was made, which began at the marked pose.
+    const btBroadphaseProxy& box = *body.object->getBroadphaseHandle();
+    const btVector3 origin = body.start.getOrigin();
+    return to_pd(btVector3((box.m_aabbMin - origin).absolute()))
+        .cwiseMax(to_pd(btVector3((box.m_aabbMax - origin).absolute())))
+        .norm();
+  };
   double farthest = 0, second = 0;
   for (const Body& body : bodies_) {
     const btTransform& end = body.object->getWorldTransform();
@@ -87,7 +102,7 @@ double ImpactSearch::farthest_way() const {
     }
     // A turn by the angle t moves a point at r by the chord 2 r sin(t / 2), and the matrix by sqrt(8) sin(t / 2). Up to
     // t = 1 the arc is less than 1.05 of the chord.
-    const double chord = turned > 0 ? std::sqrt(0.5 * turned) * body.radius : 0;
+    const double chord = turned > 0 ? std::sqrt(0.5 * turned) * reach(body) : 0;
     if (turned > 0.4) return std::numeric_limits<double>::infinity();
     const double way = to_pd(end.getOrigin() - body.start.getOrigin()).norm() + 1.05 * chord;
     second = std::max(second, std::min(way, farthest));
@@ -135,6 +150,7 @@ bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpa
   found.time = HUGE_VAL;
   // What moves by less than the slop can neither pass through nor sink deeper than that.
   if (farthest_way() <= settings.slop) return false;
+  collect();
   const auto widen = static_cast<btScalar>(settings.gap);
   for (Body& body : bodies_) {
     sweep(body, duration);
@@ -201,7 +217,7 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
   impact.contact_at_end = false;
   impact.depth = kQuick;
   // From where it is, a pair in contact may sink by the slop; then the step is cut, and Bullet sees it there.
-  impact.allowed_depth = start <= 2 * settings.gap ? std::max(-start, 0.0) + settings.slop : 0;
+  impact.allowed_depth = start <= settings.in_contact ? std::max(-start, 0.0) + settings.slop : 0;
   const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
   if (hit.hit && hit.time < found.time) found = {pa, pb, hit.time, impact.allowed_depth};
 }
@@ -248,7 +264,7 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
   impact.depth = kQuick;
-  impact.allowed_depth = deepest >= -2 * settings.gap ? std::max(deepest, 0.0) + settings.slop : 0;
+  impact.allowed_depth = deepest >= -settings.in_contact ? std::max(deepest, 0.0) + settings.slop : 0;
   for (const BoxedTriangle& triangle : triangles) {
     const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
@@ -259,9 +275,18 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   }
 }
 
-PenetrationDepth ImpactSearch::measure(const FoundImpact& impact) {
-  return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.present()},
-                           {&impact.b.shape_beside(impact.a), impact.b.present()}, scratch_, kQuick);
+PenetrationDepth ImpactSearch::measure(const FoundImpact& impact, const btTransform& a, const btTransform& b) {
+  return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.with_body_at(a)},
+                           {&impact.b.shape_beside(impact.a), impact.b.with_body_at(b)}, scratch_, kQuick);
+}
+
+btTransform ImpactSearch::pose_on_the_way(const btCollisionObject& object, double time) const {
+  const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == &object; });
+  btTransform pose = object.getWorldTransform();
+  if (body == bodies_.end() || body->travel == 0) return pose;
+  btTransformUtil::integrateTransform(body->start, to_bullet(body->motion.linear_velocity),
+                                      to_bullet(body->motion.angular_velocity), static_cast<btScalar>(time), pose);
+  return pose;
 }
 
 }  // namespace pd::detail

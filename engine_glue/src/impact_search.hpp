@@ -27,7 +27,8 @@ struct Piece {
 
   /// As the contact algorithm takes it: two boxes are sharp.
   [[nodiscard]] const ConvexShape& shape_beside(const Piece& other) const;
-  [[nodiscard]] Pose present() const;
+  [[nodiscard]] Pose present() const { return with_body_at(body->getWorldTransform()); }
+  [[nodiscard]] Pose with_body_at(const btTransform& pose) const;
 };
 
 struct FoundImpact {
@@ -41,28 +42,35 @@ class ImpactSearch {
  public:
   ImpactSearch(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver) : world_(world), solver_(solver) {}
 
-  /// Reads the world's bodies and their pieces.
-  void collect();
+  /// Reads the world's bodies, and forgets their pieces: the host may have changed shapes since.
+  void begin_frame();
   /// The present poses are where the motion begins.
   void mark_start();
 
   struct Settings {
-    double gap = 0;   ///< pairs nearer than twice this are in contact already
-    double slop = 0;  ///< those may sink by this
+    double gap = 0;         ///< at which bodies meet
+    double in_contact = 0;  ///< pairs no farther apart than this are in contact already
+    double slop = 0;        ///< those may sink by this
   };
   /// The earliest first contact of the motion from the marked poses to the present ones, which takes `duration`.
   /// @return whether there is one.
   bool earliest(double duration, const Settings& settings, FoundImpact& found);
 
   /// The pair's answer at the present poses.
-  [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact);
+  [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact) {
+    return measure(impact, impact.a.body->getWorldTransform(), impact.b.body->getWorldTransform());
+  }
+  /// With its bodies elsewhere.
+  [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact, const btTransform& a, const btTransform& b);
+  /// Where the body of the world was after `time` of the motion that was searched last.
+  [[nodiscard]] btTransform pose_on_the_way(const btCollisionObject& object, double time) const;
 
  private:
   struct Body {
     btCollisionObject* object;
-    int first_piece;
-    int num_pieces;
-    double radius;  ///< of all pieces about the body's origin; infinite with a concave child
+    int first_piece = 0;
+    int num_pieces = 0;
+    double radius = 0;  ///< of all pieces about the body's origin; infinite with a concave child
     btTransform start = btTransform::getIdentity();
     RigidMotion motion = {};
     double travel = 0;  ///< no point of it moves farther
@@ -70,8 +78,11 @@ class ImpactSearch {
     btVector3 upper = btVector3(0, 0, 0);
   };
 
+  /// Reads the pieces of all bodies, once a frame; bodies without any are left out.
+  void collect();
   void add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local);
-  /// No points of two bodies have moved farther against each other since `mark_start`. Rough, and quicker than motions.
+  /// No points of two bodies have moved farther against each other since `mark_start`. Rough, quicker than motions, and
+  /// without pieces: how far a body reaches is taken from the broadphase.
   [[nodiscard]] double farthest_way() const;
   void sweep(Body& body, double duration);
   [[nodiscard]] bool may_meet(const Body& a, const Body& b) const;
@@ -87,6 +98,7 @@ class ImpactSearch {
   btDiscreteDynamicsWorld& world_;
   BulletPenetrationDepthSolver& solver_;
   double duration_ = 0;
+  bool collected_ = false;
   std::vector<Piece> pieces_;
   std::vector<Body> bodies_;
   std::vector<int> order_;

@@ -16,17 +16,36 @@ namespace pd {
 
 namespace {
 
-Vec3 velocity_at(const btCollisionObject& object, const Vec3& point) {
+/// Of a point of a body that moves as it does at present, at the pose given.
+Vec3 velocity_at(const btCollisionObject& object, const btTransform& pose, const Vec3& point) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr || body->isStaticObject()) {
     return Vec3::Zero();
   }
-  const Vec3 arm = point - to_pd(body->getWorldTransform().getOrigin());
+  const Vec3 arm = point - to_pd(pose.getOrigin());
   return to_pd(body->getLinearVelocity()) + to_pd(body->getAngularVelocity()).cross(arm);
+}
+
+/// Of the point of B nearest to A against that of A: along the contact's normal it is positive where they approach.
+Vec3 approach(const detail::FoundImpact& impact, const btTransform& a, const btTransform& b,
+              const PenetrationDepth& contact) {
+  return velocity_at(*impact.b.body, b, contact.witness_b) - velocity_at(*impact.a.body, a, contact.witness_a);
+}
+
+Vec3 approach(const detail::FoundImpact& impact, const PenetrationDepth& contact) {
+  return approach(impact, impact.a.body->getWorldTransform(), impact.b.body->getWorldTransform(), contact);
 }
 
 /// What is left of a step below this share of it is rounding, no part.
 constexpr double kNothingLeft = 1e-6;
+/// Steps of Newton's method before a trial; its speeds are those at the trial's end, so that it converges by a factor.
+constexpr int kMostForeseen = 8;
+/// A pair in contact that deepens ends a part when it has this share of the slop left, or less.
+constexpr double kDeepEnough = 0.2;
+/// Trials for one contact after which one that meets nothing is taken for a part of its own: what stands in their way
+/// (motions that jump between two lengths of a part, contacts that brake each other) looks different from nearer by.
+/// With 4 parts of the least length follow each other, and the cap on cuts is reached ten times as often.
+constexpr int kPatience = 10;
 
 }  // namespace
 
@@ -37,10 +56,11 @@ struct RollbackStepper::State {
   detail::ImpactSearch search;
   detail::SubStepper parts;
   std::unique_ptr<BulletSnapshot> start;
-  btScalar owed = 0;  ///< time of fixed steps that is not due yet
+  int unrecorded_trials = 0;  ///< of parts that ended before the contact that they were about
+  btScalar owed = 0;          ///< time of fixed steps that is not due yet
 
   State(btDiscreteDynamicsWorld& w, BulletPenetrationDepthSolver& s, const RollbackSettings& chosen)
-      : world(w), solver(s), settings(chosen), search(w, s), parts(w) {}
+      : world(w), solver(s), settings(chosen), search(w, s), parts(w, chosen.exact_flight) {}
 
   void save() {
     if (start) {
@@ -50,14 +70,19 @@ struct RollbackStepper::State {
     }
   }
 
+  [[nodiscard]] detail::ImpactSearch::Settings search_settings() const {
+    return {settings.gap, detail::kInContactGaps * settings.gap, settings.contact_slop};
+  }
+
   void try_part(double from, double length, RollbackReport& report) {
-    parts.move(from, length, settings.gap);
+    parts.move(from, length, settings.gap, settings.contact_slop);
     ++report.simulation_steps;
-    while (parts.lessen_restitution(length)) {
+    while (parts.must_repeat(length)) {
       start->restore();
-      parts.move(from, length, settings.gap);
+      parts.move(from, length, settings.gap, settings.contact_slop);
       ++report.simulation_steps;
     }
+    parts.finish_move(length);
   }
 
   void accept(double from, double length, RollbackReport& report) {
@@ -70,11 +95,17 @@ struct RollbackStepper::State {
   /// same: a gap left, and less than two gaps moved since.
   [[nodiscard]] bool is_just_before(const detail::FoundImpact& impact, double time, double clearance,
                                     const PenetrationDepth& contact) const;
-  /// Reports the contact that ended a part.
-  static void record(const detail::FoundImpact& impact, const PenetrationDepth& contact, FirstContact& result,
-                     RollbackReport& report);
-  /// Ends a part just before the impact. @return its length, `least` or more.
-  double advance_to(detail::FoundImpact impact, double from, double duration, double least, RollbackReport& report);
+  /// When a part is to end so that the impact's pair has about three quarters of the gap left: on the motion that a
+  /// shorter part would make, as far as it is known. Otherwise on the way of the last trial. @return less than `end`.
+  [[nodiscard]] double foresee(const detail::FoundImpact& impact, double end);
+  /// Whether a part of whose motion nothing met anything ended where the impact's pair meets.
+  [[nodiscard]] bool is_at(const detail::FoundImpact& impact, double clearance, int trials) const;
+  /// Reports the contact that ended a part, and expects its impact.
+  void record(const detail::FoundImpact& impact, const PenetrationDepth& contact, FirstContact& result,
+              RollbackReport& report);
+  /// Ends a part just before the impact, or, where trials do not come to it, at a time before that from which the next
+  /// part will. @return its length, `least` or more.
+  double advance_to(detail::FoundImpact& impact, double from, double duration, double least, RollbackReport& report);
   /// One frame, without what follows it (motion states, forces).
   void frame(btScalar step, double elapsed, RollbackReport& report);
 };
@@ -88,65 +119,95 @@ RollbackStepper::~RollbackStepper() { delete state_; }
 bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, double time, double clearance,
                                             const PenetrationDepth& contact) const {
   if (!(clearance > 0 && clearance <= settings.gap)) return false;
-  const Vec3 relative = velocity_at(*impact.b.body, contact.witness_b) - velocity_at(*impact.a.body, contact.witness_a);
-  return (time - impact.time) * relative.norm() <= 2 * settings.gap;
+  return (time - impact.time) * approach(impact, contact).norm() <= 2 * settings.gap;
 }
 
-double RollbackStepper::State::advance_to(detail::FoundImpact impact, double from, double duration, double least,
+bool RollbackStepper::State::is_at(const detail::FoundImpact& impact, double clearance, int trials) const {
+  // How deep a pair may go before the step is cut is no matter of digits. And a pair that Bullet brakes comes to the
+  // end of every part at the distance that counts as touching; the next part has it in contact.
+  return clearance <= settings.gap || (impact.allowed_depth > 0 && clearance <= kDeepEnough * settings.contact_slop) ||
+         (trials > 1 && clearance <= detail::kInContactGaps * settings.gap);
+}
+
+double RollbackStepper::State::foresee(const detail::FoundImpact& impact, double end) {
+  const auto pose_at = [&](const btCollisionObject& body, double time) {
+    btTransform pose;
+    return parts.predict(body, time, pose) ? pose : search.pose_on_the_way(body, time);
+  };
+  double time = impact.time;
+  for (int i = 0; i < kMostForeseen; ++i) {
+    const btTransform a = pose_at(*impact.a.body, time);
+    const btTransform b = pose_at(*impact.b.body, time);
+    const PenetrationDepth contact = search.measure(impact, a, b);
+    const double clearance = contact.signed_distance() + impact.allowed_depth;
+    if (clearance > 0.5 * settings.gap && clearance <= settings.gap) break;
+    const double closing = approach(impact, a, b, contact).dot(contact.normal);
+    const double next = time + (clearance - 0.75 * settings.gap) / closing;
+    if (!(closing > 0 && next > 0 && next < end)) break;
+    time = next;
+  }
+  return time;
+}
+
+double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double from, double duration, double least,
                                           RollbackReport& report) {
   FirstContact result;
   PenetrationDepth contact;
   result.undone_depth = std::max(0.0, -search.measure(impact).signed_distance());
-  // A shorter part moves a little differently (gravity acts for less time, Bullet clamps a fast turn less), so that
-  // each trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
+  // A shorter part moves a little differently (forces act for less time, Bullet clamps a fast turn less), so that each
+  // trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
   // motion does; between them Newton's method on the pair's gap.
   double low = 0;
   double high = duration;
-  double time = impact.time;
-  for (;;) {
+  double time = std::max(least, foresee(impact, duration));
+  bool at_contact = false;
+  const auto make = [&] {
     start->restore();
     try_part(from, time, report);
-    ++result.trials;
+    ++unrecorded_trials;
+  };
+  for (int trials = 1;; ++trials) {
+    make();
     detail::FoundImpact earlier;
-    const bool meets = search.earliest(time, {settings.gap, settings.contact_slop}, earlier);
+    const bool meets = search.earliest(time, search_settings(), earlier);
     if (meets) impact = earlier;
     contact = search.measure(impact);
-    result.gap = contact.signed_distance();
-    const double clearance = result.gap + impact.allowed_depth;
+    const double clearance = contact.signed_distance() + impact.allowed_depth;
+    at_contact = meets ? is_just_before(impact, time, clearance, contact) : is_at(impact, clearance, trials);
+    if (at_contact) break;
+    (meets ? high : low) = time;
+    const bool free_part = low >= least;
+    if (free_part && (trials >= kPatience || (meets && impact.time <= low))) {
+      time = low;
+      if (meets) make();
+      break;
+    }
     double next = HUGE_VAL;
     if (meets) {
-      if (is_just_before(impact, time, clearance, contact)) break;
-      high = time;
-      next = impact.time;
+      next = foresee(impact, time);
     } else {
-      if (clearance <= settings.gap) break;
-      low = time;
-      const double closing =
-          (velocity_at(*impact.b.body, contact.witness_b) - velocity_at(*impact.a.body, contact.witness_a))
-              .dot(contact.normal);
-      if (closing > 0) next = time + (clearance - 0.5 * settings.gap) / closing;
+      const double closing = approach(impact, contact).dot(contact.normal);
+      if (closing > 0) next = time + (clearance - 0.75 * settings.gap) / closing;
     }
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     // Where no trial was free yet, the least part says whether any is.
-    if (meets && low == 0 && result.trials == 4) next = std::min(next, least);
+    if (meets && low == 0 && trials == kPatience) next = std::min(next, least);
     const bool no_finer = static_cast<btScalar>(next) == static_cast<btScalar>(time);
-    if (next >= least && result.trials < settings.max_trials && !no_finer) {
+    if (next >= least && trials < settings.max_trials && !no_finer) {
       time = next;
       continue;
     }
     if (!meets) break;
-    // The trials ended inside: the latest part that meets nothing is kept, or the least one, which is counted.
-    time = low >= least ? low : least;
-    start->restore();
-    try_part(from, time, report);
+    // No trial was free.
+    time = least;
+    make();
     contact = search.measure(impact);
-    result.gap = contact.signed_distance();
-    if (low < least) {
-      ++report.least_parts;
-      report.deepest_run_in = std::max(report.deepest_run_in, -result.gap);
-    }
+    ++report.least_parts;
+    report.deepest_run_in = std::max(report.deepest_run_in, -contact.signed_distance());
+    at_contact = true;
     break;
   }
+  if (!at_contact) return time;
   result.time = from + time;
   record(impact, contact, result, report);
   return time;
@@ -154,6 +215,9 @@ double RollbackStepper::State::advance_to(detail::FoundImpact impact, double fro
 
 void RollbackStepper::State::record(const detail::FoundImpact& impact, const PenetrationDepth& contact,
                                     FirstContact& result, RollbackReport& report) {
+  parts.expect_impact(impact.a.body, impact.b.body);
+  result.gap = contact.signed_distance();
+  result.trials = std::exchange(unrecorded_trials, 0);
   result.body_a = impact.a.body;
   result.body_b = impact.b.body;
   result.normal = to_bullet(contact.normal);
@@ -170,8 +234,9 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
   const auto whole = static_cast<double>(step);
   const double least = settings.least_part * whole;
   const int known = report.contacts.size();
-  search.collect();
+  search.begin_frame();
   parts.begin_frame(step);
+  unrecorded_trials = 0;
   double done = 0;
   int cuts = 0;
   while (whole - done > kNothingLeft * whole) {
@@ -184,7 +249,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     const bool bounded = cuts >= settings.max_contacts_per_step;
     report.bounded = report.bounded || bounded;
     detail::FoundImpact impact;
-    if (bounded || remaining <= least || !search.earliest(remaining, {settings.gap, settings.contact_slop}, impact)) {
+    if (bounded || remaining <= least || !search.earliest(remaining, search_settings(), impact)) {
       accept(done, remaining, report);
       break;
     }
@@ -193,10 +258,11 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     if (impact.time < least) {
       start->restore();
       try_part(done, least, report);
+      parts.expect_impact(impact.a.body, impact.b.body);
       ++report.least_parts;
       report.deepest_run_in = std::max(report.deepest_run_in, -search.measure(impact).signed_distance());
     } else {
-      part = advance_to(std::move(impact), done, remaining, least, report);
+      part = advance_to(impact, done, remaining, least, report);
     }
     accept(done, part, report);
     done += part;

@@ -28,33 +28,46 @@ btScalar total_impulse(const btPersistentManifold& manifold) {
   return sum;
 }
 
+/// How fast the bodies of a contact approach each other at a point of it, before the step.
+btScalar approach(const btPersistentManifold& manifold, const btManifoldPoint& point) {
+  const auto velocity = [&](const btCollisionObject& object, const btVector3& at) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body != nullptr ? body->getVelocityInLocalPoint(at - body->getWorldTransform().getOrigin())
+                           : btVector3(0, 0, 0);
+  };
+  return point.m_normalWorldOnB.dot(velocity(*manifold.getBody1(), point.getPositionWorldOnB()) -
+                                    velocity(*manifold.getBody0(), point.getPositionWorldOnA()));
+}
+
 /// While it lives, the dispatcher's narrow phase drops contact points at a distance above `farthest` of pairs that
-/// bounce, and gives the others the restitution that their impact may have.
-class BouncingContacts {
+/// bounce, and of pairs that have no nearer point and approach faster than `slow`; and gives the others the restitution
+/// that their impact may have.
+class DistantContacts {
  public:
-  BouncingContacts(btDispatcher* dispatcher, btScalar farthest, ImpactEnergy& energy)
+  DistantContacts(btDispatcher* dispatcher, btScalar farthest, btScalar slow, ImpactEnergy& energy)
       : dispatcher_(dynamic_cast<btCollisionDispatcher*>(dispatcher)) {
     if (dispatcher_ == nullptr) return;
     host_ = dispatcher_->getNearCallback();
     {
       const std::unique_lock lock(mutex());
-      active()[dispatcher_] = {host_, farthest, &energy};
+      active()[dispatcher_] = {host_, farthest, slow, &energy};
     }
-    dispatcher_->setNearCallback(&BouncingContacts::near);
+    dispatcher_->setNearCallback(&DistantContacts::near);
   }
-  ~BouncingContacts() {
+  ~DistantContacts() {
     if (dispatcher_ == nullptr) return;
     dispatcher_->setNearCallback(host_);
     const std::unique_lock lock(mutex());
     active().erase(dispatcher_);
   }
-  BouncingContacts(const BouncingContacts&) = delete;
-  BouncingContacts& operator=(const BouncingContacts&) = delete;
+  DistantContacts(const DistantContacts&) = delete;
+  DistantContacts& operator=(const DistantContacts&) = delete;
 
  private:
   struct Rule {
     btNearCallback host;
     btScalar farthest;
+    btScalar slow;
     ImpactEnergy* energy;
   };
   /// Bullet's callback has no word of whom it works for but the dispatcher; worlds may step on several threads.
@@ -78,16 +91,35 @@ class BouncingContacts {
       rule = active().at(&dispatcher);
     }
     rule.host(pair, dispatcher, info);
-    if (pair.m_algorithm == nullptr || !bounces(pair.m_pProxy0) || !bounces(pair.m_pProxy1)) return;
+    if (pair.m_algorithm == nullptr) return;
+    const bool bouncing = bounces(pair.m_pProxy0) && bounces(pair.m_pProxy1);
+    if (!bouncing && rule.slow == BT_LARGE_FLOAT) return;
     thread_local btManifoldArray manifolds;  // asked for every pair of every step: its memory is kept
     manifolds.resize(0);
     pair.m_algorithm->getAllContactManifolds(manifolds);
     for (int i = 0; i < manifolds.size(); ++i) {
-      for (int k = manifolds[i]->getNumContacts() - 1; k >= 0; --k) {
-        const btManifoldPoint& point = manifolds[i]->getContactPoint(k);
-        if (point.m_combinedRestitution > 0 && point.getDistance() > rule.farthest) manifolds[i]->removeContactPoint(k);
+      if (bouncing) {
+        drop_of_bouncing(*manifolds[i], rule.farthest);
+        if (rule.energy->any()) rule.energy->apply(*manifolds[i]);
+      } else {
+        drop_of_fast(*manifolds[i], rule);
       }
-      if (rule.energy->any()) rule.energy->apply(*manifolds[i]);
+    }
+  }
+
+  static void drop_of_bouncing(btPersistentManifold& manifold, btScalar farthest) {
+    for (int k = manifold.getNumContacts() - 1; k >= 0; --k) {
+      const btManifoldPoint& point = manifold.getContactPoint(k);
+      if (point.m_combinedRestitution > 0 && point.getDistance() > farthest) manifold.removeContactPoint(k);
+    }
+  }
+
+  static void drop_of_fast(btPersistentManifold& manifold, const Rule& rule) {
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+      if (manifold.getContactPoint(k).getDistance() <= rule.farthest) return;
+    }
+    for (int k = manifold.getNumContacts() - 1; k >= 0; --k) {
+      if (approach(manifold, manifold.getContactPoint(k)) > rule.slow) manifold.removeContactPoint(k);
     }
   }
 
@@ -150,22 +182,45 @@ void SubStepper::place_kinematics(double time) {
   }
 }
 
-void SubStepper::begin_part() { energy_.begin_part(); }
+void SubStepper::begin_part() {
+  energy_.begin_part();
+  if (exact_flight_) flight_.begin_part();
+}
 
-void SubStepper::move(double from, double step, double gap) {
+void SubStepper::move(double from, double step, double gap, double slop) {
   energy_.note_start(world_);
-  move_bodies(from, step, gap);
+  if (exact_flight_) flight_.note_start();
+  move_bodies(from, step, gap, slop);
+  if (exact_flight_) flight_.give_back_flags();
   energy_.restore();
 }
 
-bool SubStepper::lessen_restitution(double step) { return energy_.lessen(world_, static_cast<btScalar>(step)); }
-
-void SubStepper::move_bodies(double from, double step, double gap) {
+bool SubStepper::must_repeat(double step) {
   const auto h = static_cast<btScalar>(step);
-  const BouncingContacts bouncing(world_.getDispatcher(), static_cast<btScalar>(2 * gap), energy_);
-  if (from == 0 && step >= frame_ && !driven_) {
+  return (exact_flight_ && flight_.misjudged(h)) || energy_.lessen(world_, h);
+}
+
+void SubStepper::finish_move(double step) {
+  if (exact_flight_) flight_.finish(static_cast<btScalar>(step));
+}
+
+/// Gravity and the step, with what bodies that are to bounce keep for their flight left out.
+void SubStepper::step_world(btScalar step) {
+  world_.applyGravity();
+  if (exact_flight_) flight_.take_forces();
+  const HostActions::Aside aside(world_, actions_);
+  WorldStep::move(world_, step);
+}
+
+void SubStepper::move_bodies(double from, double step, double gap, double slop) {
+  const auto h = static_cast<btScalar>(step);
+  const bool whole = from == 0 && step >= frame_ && !driven_;
+  const btScalar slow = whole ? BT_LARGE_FLOAT : static_cast<btScalar>(slop / step);
+  const DistantContacts distant(world_.getDispatcher(), static_cast<btScalar>(kInContactGaps * gap), slow, energy_);
+  if (whole) {
     if (last_cut_) scale_warm_starts(step);
-    WorldStep::move(world_, h);
+    WorldStep::save_kinematic_state(world_, h);
+    step_world(h);
     return;
   }
   scale_warm_starts(step);
@@ -177,10 +232,10 @@ void SubStepper::move_bodies(double from, double step, double gap) {
   info.m_frictionERP *= share;
   info.m_splitImpulse = true;
   info.m_splitImpulsePenetrationThreshold = 0;
-  info.m_linearSlop -= static_cast<btScalar>(2 * gap);
+  info.m_linearSlop -= static_cast<btScalar>(kTouchingGaps * gap);
   // Contacts are found where bodies are when a part begins, so there kinematic bodies stand, too.
   place_kinematics(from);
-  WorldStep::move_without_kinematics(world_, h);
+  step_world(h);
   place_kinematics(from + step);
   const btScalar changed_by_bullet = info.m_timeStep;
   info = saved;
@@ -194,6 +249,7 @@ void SubStepper::accept(double from, double step) {
   if (whole) note_pair_forces();
   world_.clearForces();
   for (const Forces& saved : forces_) set_forces(*saved.body, saved.force, saved.torque);
+  actions_.call(world_, static_cast<btScalar>(step));
 }
 
 void SubStepper::end_frame() { world_.clearForces(); }

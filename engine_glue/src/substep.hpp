@@ -9,34 +9,59 @@
 ///   - pairs nearer than twice the gap count as touching (`m_linearSlop`), so that an impact at a gap of 1e-5 keeps its
 ///     restitution whatever h is;
 ///   - pairs that bounce and are farther apart than that do not brake each other: Bullet would let them come as near as
-///     their gap in this part, and take the speed that is left over without giving it back;
+///     their gap in this part, and take the speed that is left over without giving it back. Neither do others that have
+///     no nearer point and approach by more than the slop in the part: they meet when the search says so, where braked
+///     ones would come to the end of every part as near as that, and no nearer;
 ///   - warm starts are scaled to h, and never above the force that the pair carried before the frame was cut: an
 ///     impact's impulse is no force to start the next part with;
-///   - impacts whose restitution would add energy have less of it (`impact_energy.hpp`).
+///   - impacts whose restitution would add energy have less of it (`impact_energy.hpp`);
+///   - bodies that nothing touches fly as such bodies do, after an impact, too (`free_flight.hpp`), in frames that are
+///   not
+///     cut as well.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <vector>
 
+#include "free_flight.hpp"
+#include "host_actions.hpp"
 #include "impact_energy.hpp"
 
 namespace pd::detail {
 
+/// Pairs nearer than so many gaps touch, for Bullet, and others that it brakes come as near as that.
+inline constexpr double kTouchingGaps = 2;
+/// Pairs nearer than so many gaps are in contact, for the search: braked ones, wherever rounding left them, among them.
+inline constexpr double kInContactGaps = 2.25;
+
 class SubStepper {
  public:
-  explicit SubStepper(btDiscreteDynamicsWorld& world) : world_(world) {}
+  /// @param exact_flight  as `RollbackSettings::exact_flight`
+  SubStepper(btDiscreteDynamicsWorld& world, bool exact_flight)
+      : world_(world), exact_flight_(exact_flight), flight_(world) {}
 
   /// Notes the forces that the host has applied and where kinematic bodies are and are to be.
   void begin_frame(btScalar frame);
-  /// Moves from `from` to `from + step` seconds of the frame: Bullet's own step where that is all of it, no kinematic
-  /// body moves and the last frame was not cut.
-  void move(double from, double step, double gap);
   /// A part begins, of which all moves are trials.
   void begin_part();
-  /// Whether impacts of the last move added energy by their restitution; they have less of it in the part's next moves.
-  bool lessen_restitution(double step);
-  /// The state that `move` left is kept: its impulses are of a step of that length, and forces begin anew.
+  /// Moves from `from` to `from + step` seconds of the frame: Bullet's own step where that is all of it, no kinematic
+  /// body moves and the last frame was not cut.
+  void move(double from, double step, double gap, double slop);
+  /// Whether the last move is to be made again from where it began, for what it showed of the part's impacts: they
+  /// added energy by their restitution, of which they have less from here on, or bodies did not bounce that were
+  /// expected to.
+  bool must_repeat(double step);
+  /// After a move that is not made again: bodies in flight go where their forces take them.
+  void finish_move(double step);
+  /// Where a body in flight would be after `time` of the last move. @return false for all others.
+  bool predict(const btCollisionObject& body, double time, btTransform& pose) const {
+    return exact_flight_ && flight_.predict(body, time, pose);
+  }
+  /// The part that was accepted last ended just before these met.
+  void expect_impact(const btCollisionObject* a, const btCollisionObject* b) { flight_.expect_impact(a, b); }
+  /// The state that the last move left is kept: its impulses are of a step of that length, forces begin anew, and the
+  /// host's actions are called.
   void accept(double from, double step);
   /// After the frame's last part.
   void end_frame();
@@ -60,13 +85,15 @@ class SubStepper {
     btScalar force;
   };
 
-  void move_bodies(double from, double step, double gap);
+  void move_bodies(double from, double step, double gap, double slop);
+  void step_world(btScalar step);
   void scale_warm_starts(double step);
   void note_pair_forces();
   [[nodiscard]] btScalar pair_force(const btPersistentManifold& manifold) const;
   void place_kinematics(double time);
 
   btDiscreteDynamicsWorld& world_;
+  bool exact_flight_;
   double frame_ = 0;
   double last_step_ = 0;   ///< that of the impulses that contact points carry; 0: none known
   bool cut_ = false;       ///< this frame has been accepted in parts
@@ -76,6 +103,8 @@ class SubStepper {
   std::vector<Kinematic> kinematics_;
   std::vector<PairForce> pair_forces_;  ///< of the last frame that was not cut, sorted
   ImpactEnergy energy_;
+  FreeFlight flight_;
+  HostActions actions_;
 };
 
 /// Bullet has no setter for the accumulated force, only additions that it multiplies by the body's factors.

@@ -28,14 +28,12 @@ class Silence {
 
 }  // namespace
 
-void WorldStep::move(btDiscreteDynamicsWorld& world, btScalar step) {
+void WorldStep::save_kinematic_state(btDiscreteDynamicsWorld& world, btScalar step) {
   (world.*(&WorldStep::saveKinematicState))(step);
-  move_without_kinematics(world, step);
 }
 
-void WorldStep::move_without_kinematics(btDiscreteDynamicsWorld& world, btScalar step) {
+void WorldStep::move(btDiscreteDynamicsWorld& world, btScalar step) {
   const Silence silence(world.*(&WorldStep::m_internalPreTickCallback), world.*(&WorldStep::m_internalTickCallback));
-  world.applyGravity();
   (world.*(&WorldStep::internalSingleStepSimulation))(step);
 }
 

@@ -13,10 +13,18 @@ class WorldStep : private btDiscreteDynamicsWorld {
  public:
   WorldStep() = delete;
 
-  /// Velocities of kinematic bodies, gravity, the motion itself, without tick callbacks. Forces stay.
+  /// Poses and velocities of kinematic bodies.
+  static void save_kinematic_state(btDiscreteDynamicsWorld& world, btScalar step);
+  /// The motion itself, and the world's actions, without tick callbacks. Forces, gravity among them, are the caller's,
+  /// and stay.
   static void move(btDiscreteDynamicsWorld& world, btScalar step);
-  /// The same, where the caller has placed the kinematic bodies and given them their velocities.
-  static void move_without_kinematics(btDiscreteDynamicsWorld& world, btScalar step);
+
+  static btAlignedObjectArray<btActionInterface*>& actions(btDiscreteDynamicsWorld& world) {
+    return world.*(&WorldStep::m_actions);
+  }
+  static void call_actions(btDiscreteDynamicsWorld& world, btScalar step) {
+    (world.*(&WorldStep::updateActions))(step);
+  }
 
   static void pre_tick(btDiscreteDynamicsWorld& world, btScalar step) {
     if (const btInternalTickCallback callback = world.*(&WorldStep::m_internalPreTickCallback)) callback(&world, step);

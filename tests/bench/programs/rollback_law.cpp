@@ -251,8 +251,70 @@ void report_cost(const char* name, void (CostWorld::*fill)(), int settle, int st
     parts += report.parts;
     simulation_steps += report.simulation_steps;
   });
-  std::printf("%-34s plain %.3f ms a step, rollback %.3f (%.2f times); %.2f parts, %.2f simulation steps\n", name, own,
-              ours, ours / own, static_cast<double>(parts) / steps, static_cast<double>(simulation_steps) / steps);
+  const double tried = static_cast<double>(simulation_steps) / steps;
+  std::printf(
+      "%-34s plain %.3f ms a step, rollback %.3f (%.2f times); %.2f parts, %.2f simulation steps, each %.2f plain "
+      "ones\n",
+      name, own, ours, ours / own, static_cast<double>(parts) / steps, tried, ours / own / tried);
+}
+
+/// A ball of restitution 1 that falls on a floor from a height of 1 m, for 10 s.
+struct DropWorld {
+  pd::BulletPenetrationDepthSolver solver;
+  pd::test::BulletWorld scene;
+  btRigidBody* ball = nullptr;
+
+  DropWorld() {
+    pd::install(scene.world(), solver);
+    auto* floor = scene.shape<btBoxShape>(btVector3(5, 1, 5));
+    floor->setMargin(0);
+    scene.body(floor, 0, btVector3(0, -1, 0))->setRestitution(1);
+    ball = scene.body(scene.shape<btSphereShape>(btScalar(0.1)), 1, btVector3(0, btScalar(1.1), 0));
+    ball->setRestitution(1);
+    ball->setFriction(0);
+  }
+  [[nodiscard]] double height() const { return static_cast<double>(ball->getWorldTransform().getOrigin().y()) - 0.1; }
+  [[nodiscard]] double energy() const {
+    return 0.5 * static_cast<double>(ball->getLinearVelocity().length2()) + kGravity * height();
+  }
+};
+
+/// Heights of bounces, and the energy, as shares of the first.
+template <class Step>
+void report_drop(const char* name, DropWorld& world, double rate, const Step& step) {
+  const double start = world.energy();
+  double apex = 0, last_apex = 0, least = HUGE_VAL, most = 0;
+  bool rising = false;
+  int bounces = 0;
+  for (int i = 0; i < static_cast<int>(10 * rate); ++i) {
+    step(static_cast<btScalar>(1 / rate));
+    const bool rises = world.ball->getLinearVelocity().y() > 0;
+    if (rises && !rising) {
+      ++bounces;
+      apex = 0;
+    }
+    rising = rises;
+    apex = std::max(apex, world.energy() / kGravity);
+    if (!rises && bounces > 0) last_apex = apex;
+    least = std::min(least, world.energy() / start);
+    most = std::max(most, world.energy() / start);
+  }
+  std::printf("%-22s %5.0f Hz: %2d bounces, last apex %.5f m; energy %.5f to %.5f of the first\n", name, rate, bounces,
+              last_apex, least, most);
+}
+
+void report_drops() {
+  for (const double rate : {30.0, 60.0, 240.0}) {
+    DropWorld plain;
+    report_drop("plain", plain, rate, [&](btScalar h) { plain.scene.world().stepSimulation(h, 0); });
+    for (const bool exact : {false, true}) {
+      DropWorld guarded;
+      pd::RollbackSettings settings;
+      settings.exact_flight = exact;
+      pd::RollbackStepper stepper(guarded.scene.world(), guarded.solver, settings);
+      report_drop(exact ? "exact flight" : "Bullet's flight", guarded, rate, [&](btScalar h) { stepper.step(h); });
+    }
+  }
 }
 
 /// What all scenes add up to.
@@ -269,6 +331,7 @@ struct Totals {
   double deepest_run_in = 0;
   double worst = -HUGE_VAL;
   double seconds = 0;
+  std::vector<int> with_trials = std::vector<int>(33);  ///< contacts that took so many
 };
 
 /// The most that Bullet's own plain steps of 1/1920 s gain over the same time.
@@ -291,12 +354,12 @@ struct Outcome {
 };
 
 /// One scene under the stepper.
-Outcome run_scene(std::uint64_t seed, int steps, Totals& totals) {
+Outcome run_scene(std::uint64_t seed, int steps, const pd::RollbackSettings& settings, Totals& totals) {
   RandomWorld guarded(seed);
   const double start = guarded.energy();
   const double reference = guarded.kinetic_energy() + guarded.potential_range();
   const double gain = plain_gain(seed, steps, start, totals);
-  pd::RollbackStepper stepper(guarded.world(), guarded.solver());
+  pd::RollbackStepper stepper(guarded.world(), guarded.solver(), settings);
   double excess = -HUGE_VAL;
   int last = 0;
   const auto clock = std::chrono::steady_clock::now();
@@ -305,7 +368,10 @@ Outcome run_scene(std::uint64_t seed, int steps, Totals& totals) {
     totals.parts += report.parts;
     totals.trials += report.simulation_steps;
     totals.contacts += report.contacts.size();
-    for (const pd::FirstContact& contact : report.contacts) totals.contact_trials += contact.trials;
+    for (const pd::FirstContact& contact : report.contacts) {
+      totals.contact_trials += contact.trials;
+      ++totals.with_trials[static_cast<std::size_t>(std::min(contact.trials, 32))];
+    }
     totals.bounded += report.bounded ? 1 : 0;
     totals.least_parts += report.least_parts;
     totals.deepest_run_in = std::max(totals.deepest_run_in, report.deepest_run_in);
@@ -332,7 +398,14 @@ void print(const Totals& totals, int scenes, int steps) {
       static_cast<double>(totals.parts) / frames, static_cast<double>(totals.trials) / frames,
       1e3 * totals.seconds / frames,
       totals.contacts > 0 ? static_cast<double>(totals.contact_trials) / static_cast<double>(totals.contacts) : 0.0);
-  std::printf("least parts %d, deepest run in %.2g m; bounded steps %d\n", totals.least_parts, totals.deepest_run_in,
+  std::printf("trials a contact, share of contacts (of trials):");
+  for (std::size_t k = 1; k < totals.with_trials.size(); ++k) {
+    if (totals.with_trials[k] == 0) continue;
+    const auto count = static_cast<double>(totals.with_trials[k]);
+    std::printf(" %zu: %.3f (%.3f)", k, count / static_cast<double>(totals.contacts),
+                static_cast<double>(k) * count / static_cast<double>(totals.contact_trials));
+  }
+  std::printf("\nleast parts %d, deepest run in %.2g m; bounded steps %d\n", totals.least_parts, totals.deepest_run_in,
               totals.bounded);
 }
 
@@ -351,15 +424,25 @@ int main(int argc, char** argv) {
   bool cost = false;
   app.add_flag("--cost", cost,
                "only measures processor time: a pile of 64 boxes at rest, 50 balls at 30 m/s in a room");
+  bool drop = false;
+  app.add_flag("--drop", drop, "only drops a ball of restitution 1 from 1 m, for 10 s");
+  bool bullets_flight = false;
+  app.add_flag("--bullets-flight", bullets_flight, "without RollbackSettings::exact_flight");
   CLI11_PARSE(app, argc, argv);
+  if (drop) {
+    report_drops();
+    return 0;
+  }
   if (cost) {
     report_cost("64 boxes at rest", &CostWorld::pile, 120, 300);
     report_cost("50 balls at 30 m/s in a room", &CostWorld::balls, 0, 60);
     return 0;
   }
+  pd::RollbackSettings settings;
+  settings.exact_flight = !bullets_flight;
   Totals totals;
   for (int i = first; i < first + scenes; ++i) {
-    const Outcome outcome = run_scene(seed * 1000003 + static_cast<std::uint64_t>(i), steps, totals);
+    const Outcome outcome = run_scene(seed * 1000003 + static_cast<std::uint64_t>(i), steps, settings, totals);
     if (outcome.excess <= 1e-3) continue;
     ++totals.broken;
     std::printf("BROKEN seed=%llu scene=%d, step %d%s: %.3g of E_ref above the law\n",

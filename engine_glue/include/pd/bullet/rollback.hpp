@@ -10,11 +10,11 @@
 /// kinematic bodies (moved by their share), links of multibodies. What is not: soft bodies, and shapes that
 /// `to_convex_shape` refuses.
 ///
-/// What others see: motion states and tick callbacks see accepted states only. The pre-tick callback is called once for
-/// each accepted part of a step, before it, with the time that is left; the tick callback after it, with its length.
-/// Trials are full steps of Bullet otherwise: actions (vehicles, character controllers) and contact callbacks run in
-/// them, and what they keep outside of the world's state is theirs to undo. Forces and torques applied before a step
-/// act through all its parts.
+/// What others see: motion states, tick callbacks and actions (vehicles, character controllers) see accepted states
+/// only. The pre-tick callback is called once for each accepted part of a step, before it, with the time that is left;
+/// actions, and then the tick callback, after it, with its length. What an action moves itself is not searched: the
+/// next part begins there. Trials are full steps of Bullet otherwise: contact callbacks run in them, and what they keep
+/// outside of the world's state is theirs to undo. Forces and torques applied before a step act through all its parts.
 #pragma once
 
 #include <LinearMath/btAlignedObjectArray.h>
@@ -39,6 +39,12 @@ struct RollbackSettings {
   /// The least part of a step, as a share of it: a contact nearer than that is run into, by at most the relative speed
   /// times that part.
   double least_part = 1.0 / 4096;
+  /// Bodies that no contact and no joint touches in a step, or part of one, move by the law of free flight: the
+  /// parabola of the forces on them, and the turning of a body without torque, of which Bullet's own steps are the
+  /// first order
+  /// (`src/free_flight.hpp`). A ball dropped from 1 m is where Galilei has it, g h^2 / 2 a step above Bullet's, and
+  /// comes back as high. False: Bullet's own motion throughout.
+  bool exact_flight = true;
 };
 
 /// One first contact.
@@ -81,7 +87,8 @@ class RollbackStepper {
   RollbackStepper& operator=(const RollbackStepper&) = delete;
 
   /// Advances the world by `step` > 0 seconds, stopping at first contacts on the way: in place of
-  /// `stepSimulation(step, 0)`, which it equals bit for bit where nothing meets.
+  /// `stepSimulation(step, 0)`, which it equals bit for bit where nothing meets and nothing is in flight, or
+  /// `exact_flight` is off.
   ///
   /// Pairs that are in contact (nearer than twice the gap) when a part of the step begins are Bullet's, up to
   /// `contact_slop`. Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken
