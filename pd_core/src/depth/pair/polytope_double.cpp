@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depth/difference/barycentric.hpp"
+#include "depth/difference/foot_weights.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/pair/double_answer.hpp"
@@ -171,6 +172,14 @@ void set_contact_of_face(const PolytopeQuery& query, int face, const Vec3& unit_
   DifferenceVertex corners[3];
   double weights[3];
   face_below_origin(query, face, unit_normal, corners, weights);
+  // Beside a long body a short one leaves slivers whose planes differ by more than rounding: the walk can end at one
+  // that does not hold the foot. Another triangle of vertices on the same plane does.
+  const double rounding = 64 * kUnitRoundoff * query.difference.reach();
+  if (miss_across(corners, unit_normal, weights) > rounding) {
+    double least_height = unit_normal.dot(corners[0].x);
+    for (const DifferenceVertex& corner : corners) least_height = std::min(least_height, unit_normal.dot(corner.x));
+    find_foot(query.buffers.surface.vertices, unit_normal, least_height - rounding, corners, weights);
+  }
   set_contact(query.pair, corners, weights, out);
 }
 
