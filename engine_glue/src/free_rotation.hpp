@@ -21,7 +21,7 @@ struct Rotation {
 };
 
 /// Where the body is after `duration` >= 0, and how it turns then. `inertia`: about the principal axes, all > 0. The
-/// kinetic energy stays to about 1e-7 of it (`free_rotation_test.cpp`). Time: one substep of nine turns for each .04
+/// kinetic energy stays to 5e-7 of it (`free_rotation_test.cpp`). Time: one substep of nine turns for each .04
 /// rad.
 [[nodiscard]] Rotation rotate_freely(const Rotation& start, const Vec3& inertia, double duration);
 

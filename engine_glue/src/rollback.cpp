@@ -42,9 +42,11 @@ constexpr double kNothingLeft = 1e-6;
 constexpr int kMostForeseen = 8;
 /// A pair in contact that deepens ends a part when it has this share of the slop left, or less.
 constexpr double kDeepEnough = 0.2;
+/// Trials for one contact after which, where none was free of contacts, one of the least length says whether any is.
+/// Later (10) the parts that follow are short, and the cap on cuts is reached in ten times as many steps.
+constexpr int kTrialsBeforeLeast = 4;
 /// Trials for one contact after which one that meets nothing is taken for a part of its own: what stands in their way
 /// (motions that jump between two lengths of a part, contacts that brake each other) looks different from nearer by.
-/// With 4 parts of the least length follow each other, and the cap on cuts is reached ten times as often.
 constexpr int kPatience = 10;
 
 }  // namespace
@@ -191,7 +193,7 @@ double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double fr
     }
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     // Where no trial was free yet, the least part says whether any is.
-    if (meets && low == 0 && trials == kPatience) next = std::min(next, least);
+    if (meets && low == 0 && trials == kTrialsBeforeLeast) next = std::min(next, least);
     const bool no_finer = static_cast<btScalar>(next) == static_cast<btScalar>(time);
     if (next >= least && trials < settings.max_trials && !no_finer) {
       time = next;

@@ -71,8 +71,8 @@ void ManifoldState::save(const btPersistentManifold& manifold, const detail::Pai
   }
 }
 
-BodyState save_body(btCollisionObject* object) {
-  BodyState state{};
+/// In the memory at hand.
+void save_body(btCollisionObject* object, BodyState& state) {
   state.object = object;
   state.world = object->getWorldTransform();
   state.interpolation = object->getInterpolationWorldTransform();
@@ -89,7 +89,6 @@ BodyState save_body(btCollisionObject* object) {
     state.force = body->getTotalForce();
     state.torque = body->getTotalTorque();
   }
-  return state;
 }
 
 void restore_body(const BodyState& state) {
@@ -229,13 +228,11 @@ struct BulletSnapshot::State {
 void BulletSnapshot::State::save() {
   broadphase.save(world);
   multibodies.save(world);
-  bodies.clear();
   points.clear();
   joints.clear();
   const auto& objects = world.getCollisionObjectArray();
-  for (int i = 0; i < objects.size(); ++i) {
-    bodies.push_back(save_body(objects[i]));
-  }
+  bodies.resize(static_cast<std::size_t>(objects.size()));
+  for (int i = 0; i < objects.size(); ++i) save_body(objects[i], bodies[static_cast<std::size_t>(i)]);
   btCollisionDispatcher& dispatcher = dispatcher_of(world);
   const int count = dispatcher.getNumManifolds();
   btPersistentManifold** const present = dispatcher.getInternalManifoldPointer();

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 
 #include "world_step.hpp"
@@ -183,12 +184,16 @@ void SubStepper::place_kinematics(double time) {
 }
 
 void SubStepper::begin_part() {
+  const auto& objects = world_.getCollisionObjectArray();
+  int bouncing = 0;
+  for (int i = 0; i < objects.size(); ++i) bouncing += objects[i]->getRestitution() > 0 ? 1 : 0;
+  may_bounce_ = bouncing > 1;
   energy_.begin_part();
   if (exact_flight_) flight_.begin_part();
 }
 
 void SubStepper::move(double from, double step, double gap, double slop) {
-  energy_.note_start(world_);
+  if (may_bounce_) energy_.note_start(world_);
   if (exact_flight_) flight_.note_start();
   move_bodies(from, step, gap, slop);
   if (exact_flight_) flight_.give_back_flags();
@@ -197,7 +202,7 @@ void SubStepper::move(double from, double step, double gap, double slop) {
 
 bool SubStepper::must_repeat(double step) {
   const auto h = static_cast<btScalar>(step);
-  return (exact_flight_ && flight_.misjudged(h)) || energy_.lessen(world_, h);
+  return (exact_flight_ && flight_.misjudged(h)) || (may_bounce_ && energy_.lessen(world_, h));
 }
 
 void SubStepper::finish_move(double step) {
@@ -216,7 +221,10 @@ void SubStepper::move_bodies(double from, double step, double gap, double slop) 
   const auto h = static_cast<btScalar>(step);
   const bool whole = from == 0 && step >= frame_ && !driven_;
   const btScalar slow = whole ? BT_LARGE_FLOAT : static_cast<btScalar>(slop / step);
-  const DistantContacts distant(world_.getDispatcher(), static_cast<btScalar>(kInContactGaps * gap), slow, energy_);
+  std::optional<DistantContacts> distant;
+  if (may_bounce_ || !whole) {
+    distant.emplace(world_.getDispatcher(), static_cast<btScalar>(kInContactGaps * gap), slow, energy_);
+  }
   if (whole) {
     if (last_cut_) scale_warm_starts(step);
     WorldStep::save_kinematic_state(world_, h);
@@ -256,6 +264,11 @@ void SubStepper::end_frame() { world_.clearForces(); }
 
 void SubStepper::scale_warm_starts(double step) {
   btDispatcher* dispatcher = world_.getDispatcher();
+  // Only here are they looked up, so that frames that are not cut are spared the sorting.
+  if (cut_ || last_cut_) {
+    std::sort(pair_forces_.begin(), pair_forces_.end(),
+              [](const PairForce& x, const PairForce& y) { return before(x.a, x.b, y.a, y.b); });
+  }
   const btScalar scale = last_step_ > 0 ? static_cast<btScalar>(step / last_step_) : btScalar(1);
   for (int i = 0; i < dispatcher->getNumManifolds(); ++i) {
     btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(i);
@@ -282,8 +295,6 @@ void SubStepper::note_pair_forces() {
       pair_forces_.push_back({manifold.getBody0(), manifold.getBody1(), sum / static_cast<btScalar>(frame_)});
     }
   }
-  std::sort(pair_forces_.begin(), pair_forces_.end(),
-            [](const PairForce& x, const PairForce& y) { return before(x.a, x.b, y.a, y.b); });
 }
 
 btScalar SubStepper::pair_force(const btPersistentManifold& manifold) const {

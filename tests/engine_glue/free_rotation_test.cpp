@@ -39,8 +39,9 @@ TEST(FreeRotation, KeepsEnergyAndMomentum) {
     const Vec3 whole = momentum(rotation, inertia);
     for (int k = 0; k < 60; ++k) {
       rotation = detail::rotate_freely(rotation, inertia, 1.0 / 60);
-      ASSERT_NEAR(energy(rotation, inertia), before, 2e-6 * before) << i;
-      ASSERT_LE((momentum(rotation, inertia) - whole).norm(), 1e-13 * whole.norm()) << i;
+      ASSERT_NEAR(energy(rotation, inertia), before, 5e-7 * before) << i;
+      ASSERT_LE((momentum(rotation, inertia) - whole).norm(), 1e-12 * whole.norm())
+          << i;  // some 50,000 turns, each rounded
     }
   }
 }
@@ -56,7 +57,7 @@ TEST(FreeRotation, ASymmetricTopPrecesses) {
   const double rate = spin.z() - whole.z() / inertia.x();
   const Mat3 known = Eigen::AngleAxisd(whole.norm() / inertia.x(), whole.normalized()).toRotationMatrix() *
                      Eigen::AngleAxisd(rate, Vec3::UnitZ()).toRotationMatrix();
-  EXPECT_LE((known - rotation.orientation).norm(), 1e-8);
+  EXPECT_LE((known - rotation.orientation).norm(), 2e-8);  // 1.0e-8; with one substep in place of two 1.7e-7
 }
 
 // Times back to back are one time, and a turn goes back the way that it came.
