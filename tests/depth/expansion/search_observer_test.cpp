@@ -116,14 +116,14 @@ TEST(SearchObserver, SeesTheExactHullWhereASmoothSearchLosesItsConvexity) {
   std::normal_distribution<double> normal;
   const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
   const ConvexShape box(ConvexPolytope::box({1, 0.7, 0.4}).value());
-  const ConvexShape cylinder = ConvexShape::cylinder(0.5, 1, 2).value();
+  const ConvexShape cone = ConvexShape::cone(0.5, 1, 2).value();
   int on_hull = 0;
   for (int trial = 0; trial < 240; ++trial) {
     // Ruled bodies a hair inside each other, from 1e-9 down to 1e-12.
     const double deep = std::pow(10.0, -9 - trial % 4);
     const Mat3 turned = Eigen::AngleAxisd(3 * normal(random), direction()).toRotationMatrix();
     const PosedShape a{&box, Pose()};
-    PosedShape b{&cylinder, Pose::from_trusted_matrix(turned, 4 * direction())};
+    PosedShape b{&cone, Pose::from_trusted_matrix(turned, 4 * direction())};
     Scratch scratch;
     const PenetrationDepth apart = penetration_depth(a, b, scratch);
     ASSERT_EQ(apart.contact, ContactClass::separated);
