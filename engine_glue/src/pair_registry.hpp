@@ -53,7 +53,7 @@ struct PairMemory {
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
-    return patch < 0 && num_points == 0 && pieces.empty() && warm.memory_bytes() == sizeof(warm);
+    return patch < 0 && num_points == 0 && pieces.empty() && union_refusals == 0 && warm.memory_bytes() == sizeof(warm);
   }
 };
 

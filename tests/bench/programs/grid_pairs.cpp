@@ -15,9 +15,9 @@
 #include <ctime>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "bench/programs/pair_progress.hpp"
 #include "oracle/grid_answer_check.hpp"
 #include "oracle/grid_pool.hpp"
 #include "pd/depth/penetration_depth.hpp"
@@ -100,7 +100,7 @@ class Run {
       if (from >= settings_.pairs) break;
       const std::int64_t to = std::min(from + kBatch, settings_.pairs);
       for (std::int64_t i = from; i < to; ++i) judge_one(settings_.first + i, scratch, judge, own);
-      report_progress(to - from);
+      progress_.add(to - from);
     }
     own.seconds = now() - start;
     const std::lock_guard lock(mutex_);
@@ -205,21 +205,12 @@ class Run {
     std::fflush(stdout);
   }
 
-  void report_progress(std::int64_t done) {
-    const std::int64_t total = done_.fetch_add(done) + done;
-    const std::int64_t step = std::max<std::int64_t>(settings_.pairs / 20, 1);
-    if (total / step != (total - done) / step) {
-      std::fprintf(stderr, "%lld of %lld pairs\n", static_cast<long long>(total),
-                   static_cast<long long>(settings_.pairs));
-    }
-  }
-
   const Settings& settings_;
   const std::vector<std::size_t> brackets_;
   const grid::Pool pool_;
   const Clock::time_point start_ = Clock::now();
   std::atomic<std::int64_t> next_ = 0;
-  std::atomic<std::int64_t> done_ = 0;
+  pd::bench::PairProgress progress_{settings_.pairs};
   std::mutex mutex_;
   Totals totals_;
   std::array<std::array<bool, grid::kPromises>, kBrackets.size()> shown_{};
@@ -255,9 +246,6 @@ int main(int argc, char** argv) {
               static_cast<long long>(settings.first), static_cast<long long>(settings.first + settings.pairs - 1),
               settings.pool);
   Run run(settings, std::move(brackets));
-  std::vector<std::thread> threads;
-  for (int t = 1; t < settings.threads; ++t) threads.emplace_back([&run] { run.work(); });
-  run.work();
-  for (std::thread& t : threads) t.join();
+  pd::bench::on_threads(settings.threads, [&run] { run.work(); });
   return run.print_table() == 0 ? 0 : 1;
 }

@@ -13,9 +13,9 @@
 #include <fstream>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "bench/programs/pair_progress.hpp"
 #include "oracle/answer_check.hpp"
 #include "oracle/corpus.hpp"
 #include "pd/depth/penetration_depth.hpp"
@@ -102,7 +102,7 @@ class Run {
         const Task task = make_task(i);
         judge_one(task, scratch, own[static_cast<std::size_t>(task.family)]);
       }
-      report_progress(last - first);
+      progress_.add(last - first);
     }
     const std::lock_guard lock(mutex_);
     for (std::size_t f = 0; f < own.size(); ++f) tallies_[f].add(own[f]);
@@ -226,20 +226,11 @@ class Run {
     pd::oracle::append_pair(settings_.dump, text, what);
   }
 
-  void report_progress(std::int64_t done) {
-    const std::int64_t total = done_.fetch_add(done) + done;
-    const std::int64_t step = std::max<std::int64_t>(settings_.pairs / 20, 1);
-    if (total / step != (total - done) / step) {
-      std::fprintf(stderr, "%lld of %lld pairs\n", static_cast<long long>(total),
-                   static_cast<long long>(settings_.pairs));
-    }
-  }
-
   const Settings& settings_;
   std::vector<PairFamily> families_;
   pd::DepthSettings depth_settings_;
   std::atomic<std::int64_t> next_ = 0;
-  std::atomic<std::int64_t> done_ = 0;
+  pd::bench::PairProgress progress_{settings_.pairs};
   std::mutex mutex_;
   std::array<Tally, pd::scenes::kPairFamilies> tallies_{};
   std::array<std::array<int, pd::oracle::kPromises>, pd::scenes::kPairFamilies> shown_{};
@@ -281,9 +272,6 @@ int main(int argc, char** argv) {
   std::printf("seed %llu, method %s, bracket %s\n", static_cast<unsigned long long>(settings.seed),
               settings.method.c_str(), settings.bracket.c_str());
   Run run(settings, families);
-  std::vector<std::thread> threads;
-  for (int t = 1; t < settings.threads; ++t) threads.emplace_back([&run] { run.work(); });
-  run.work();
-  for (std::thread& t : threads) t.join();
+  pd::bench::on_threads(settings.threads, [&run] { run.work(); });
   return run.print_table() == 0 ? 0 : 1;
 }
