@@ -10,10 +10,10 @@
 /// The cone. Let n be the unit direction found, y across it, x_i the points, p_i their parts across n. The support
 /// function of P is convex, and along n + y at least that of each pair of features,
 ///     h_i(n + y) >= <x_i, n> + <p_i, y> + (what its roundness adds).
-/// Balls of radius b add b (sqrt(1 + y^2) - 1), rims of radius R with unit tangent t at most c <t, y>^2, c = R / (2
-/// (|q|
-/// + Y)), for |y| <= Y, where q is the part of n in the rim's plane: |q + z| = <q^, q + z> + <t, y>^2 / (|q + z| + <q^,
-/// q + z>). The origin is a combination of the p_i, so that the greatest of the h_i grows with |y|, across the edge
+/// Balls of radius b add b (sqrt(1 + y^2) - 1), rims of radius R with unit tangent t at least c <t, y>^2 for |y| <= Y,
+/// with c = R / (2 (|q| + Y)), where q is the part of n in the rim's plane and q^ its unit vector:
+///     |q + z| = <q^, q + z> + <t, y>^2 / (|q + z| + <q^, q + z>).
+/// The origin is a combination of the p_i, so that the greatest of the h_i grows with |y|, across the edge
 /// of two points by roundness. Divided by |n + y| = sqrt(1 + y^2) <= 1 + y^2 / 2, it stays at or above <x_i, n> in a
 /// cone that follows from comparing coefficients.
 #pragma once
