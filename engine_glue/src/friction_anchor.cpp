@@ -1,5 +1,6 @@
 #include "friction_anchor.hpp"
 
+#include <array>
 #include <typeinfo>
 
 namespace pd::detail {
@@ -47,6 +48,36 @@ void hold(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPo
   point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
 }
 
+/// Hides a manifold's entries but one from Bullet's search for the entry that a new point replaces: it takes the
+/// nearest within the breaking threshold, so that of two new points nearer to each other than that the second would
+/// replace the first, however deep that one is.
+class OthersOutOfReach {
+ public:
+  OthersOutOfReach(btPersistentManifold& manifold, int entry)
+      : manifold_(manifold), entry_(entry), count_(manifold.getNumContacts()) {
+    for (int i = 0; i < count_; ++i) {
+      if (i == entry_) continue;
+      places_[i] = manifold_.getContactPoint(i).m_localPointA;
+      manifold_.getContactPoint(i).m_localPointA.setValue(kFar, kFar, kFar);
+    }
+  }
+  ~OthersOutOfReach() {
+    for (int i = 0; i < count_; ++i) {
+      if (i != entry_) manifold_.getContactPoint(i).m_localPointA = places_[i];
+    }
+  }
+  OthersOutOfReach(const OthersOutOfReach&) = delete;
+  OthersOutOfReach& operator=(const OthersOutOfReach&) = delete;
+
+ private:
+  static constexpr btScalar kFar = btScalar(1e18);  ///< its square is a number of single precision
+
+  btPersistentManifold& manifold_;
+  int entry_;
+  int count_;
+  std::array<btVector3, MANIFOLD_CACHE_SIZE> places_;
+};
+
 /// What the entry knew goes to the point that it holds now.
 void hand_on(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPoses& poses, btScalar threshold) {
   point.m_appliedImpulseLateral1 = anchor.lateral_impulse_1;
@@ -93,7 +124,10 @@ int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold,
     old.m_appliedImpulseLateral1 = 1;
   }
   const int before = manifold.getNumContacts();
-  result.addContactPoint(normal, point_on_b, distance);
+  {
+    const OthersOutOfReach hidden(manifold, entry);
+    result.addContactPoint(normal, point_on_b, distance);
+  }
   if (manifold.getNumContacts() > before) {
     return before;
   }

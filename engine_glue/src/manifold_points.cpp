@@ -198,10 +198,9 @@ void replace_points(btPersistentManifold& manifold, PairMemory& memory, const Fr
       replace_like(pattern, poses, threshold, local_a[k], point.point_on_b, point.distance, heritage.anchors[entry],
                    manifold.getContactPoint(entry));
     } else {
-      const int near = entry_near(manifold, local_a[k]);
       surroundings.enter(k);
-      entry = add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, near,
-                                 heritage.anchors[std::max(near, 0)]);
+      entry = add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, entry,
+                                 heritage.anchors[std::max(entry, 0)]);
       surroundings.leave();
       if (alike && entry >= 0 && point.distance <= threshold) {
         pattern = manifold.getContactPoint(entry);

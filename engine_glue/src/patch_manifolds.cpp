@@ -61,26 +61,52 @@ void PatchManifolds::append_to(btManifoldArray& manifolds) const {
   for (const auto& kept : manifolds_) manifolds.push_back(kept->manifold);
 }
 
+std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& of) {
+  std::size_t count = 0;
+  for (std::size_t m = 0; m < manifolds_.size(); ++m) {
+    const btPersistentManifold& manifold = *manifolds_[m]->manifold;
+    if (manifold.getNumContacts() == 0) continue;
+    LastPatch& last = last_[count];
+    last.normal.setZero();
+    last.count = manifold.getNumContacts();
+    const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
+    for (int k = 0; k < last.count; ++k) {
+      const btManifoldPoint& point = manifold.getContactPoint(k);
+      last.places[static_cast<std::size_t>(k)] = to_pd(pose_b(point.m_localPointB));
+      last.normal += to_pd(point.m_normalWorldOnB);
+    }
+    last.normal.normalize();
+    of[count++] = static_cast<int>(m);
+  }
+  return {last_.data(), count};
+}
+
 void PatchManifolds::replace(Patches& patches, btScalar seconds, btManifoldResult& result,
                              PointSurroundings& surroundings) {
   btPersistentManifold& first = *manifolds_[0]->manifold;
   const btCollisionObject& a = *first.getBody0();
   const btCollisionObject& b = *first.getBody1();
-  patches.choose(kMost, static_cast<double>(first.getContactBreakingThreshold()));
+  std::array<int, kMost> of{};
+  patches.choose(kMost, static_cast<double>(first.getContactBreakingThreshold()), last_patches(of));
   std::array<int, kMost> heirs{};
   heirs.fill(-1);
-  for (std::size_t m = 0; m < manifolds_.size(); ++m) {
-    const btPersistentManifold& manifold = *manifolds_[m]->manifold;
-    if (manifold.getNumContacts() > 0) heirs[m] = patches.claim(to_pd(manifold.getContactPoint(0).m_normalWorldOnB));
+  for (int i = 0; i < patches.size(); ++i) {
+    if (patches[i].last >= 0) heirs[static_cast<std::size_t>(of[static_cast<std::size_t>(patches[i].last)])] = i;
+  }
+  // New patches go where the first ones are free.
+  std::size_t free = 0;
+  for (int i = 0; i < patches.size(); ++i) {
+    if (patches[i].last >= 0) continue;
+    while (heirs[free] >= 0) ++free;
+    heirs[free] = i;
   }
   for (std::size_t m = 0; m < static_cast<std::size_t>(kMost); ++m) {
-    const int heir = heirs[m] >= 0 ? heirs[m] : patches.claim_any();
-    if (heir < 0) {
+    if (heirs[m] < 0) {
       if (m < manifolds_.size()) manifolds_[m]->manifold->clearManifold();
       continue;
     }
     Kept& kept = at(m, a, b);
-    const Patch& patch = patches[heir];
+    const Patch& patch = patches[heirs[m]];
     PieceOfPoint around(patch, surroundings);
     result.setPersistentManifold(kept.manifold);
     replace_points(*kept.manifold, kept.memory, patch.fresh, seconds, result, around);

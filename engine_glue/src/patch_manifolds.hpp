@@ -6,7 +6,9 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
+#include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pair_registry.hpp"
@@ -45,11 +47,14 @@ class PatchManifolds final : public ManifoldOwner {
     btPersistentManifold* manifold = nullptr;
     PairMemory memory;
   };
+  /// What the manifolds hold from the last step, where the bodies are now; `of` gets the manifolds' numbers.
+  std::span<const LastPatch> last_patches(std::array<int, kMost>& of);
   Kept& at(std::size_t i, const btCollisionObject& a, const btCollisionObject& b);
 
   SolverCore& core_;
   btDispatcher& dispatcher_;
   std::vector<std::unique_ptr<Kept>> manifolds_;
+  std::array<LastPatch, kMost> last_;
 };
 
 }  // namespace pd::detail

@@ -14,6 +14,8 @@ constexpr double kAlong = 0.5;
 constexpr double kNoise = 1e-3;
 /// Of the breaking threshold: points that near are one. (Bullet merges what lies within the whole of it.)
 constexpr double kMerge = 0.05;
+/// What the squared distances and areas of a point of the last step count.
+constexpr double kLasting = 1.2;
 
 /// The number of a piece's feature pair among those of all pieces.
 std::int64_t feature_of_piece(std::int64_t feature, int i, int j) {
@@ -32,7 +34,7 @@ void Patches::clear() {
 
 void Patches::add(const ContactManifold& manifold, int piece, int i, int j) {
   for (int k = 0; k < manifold.count; ++k) {
-    points_.push_back({manifold.normal, manifold.points[static_cast<std::size_t>(k)], piece, -1});
+    points_.push_back({manifold.normal, manifold.points[static_cast<std::size_t>(k)], piece, -1, false});
     std::int64_t& feature = points_.back().contact.feature_id;
     feature = feature_of_piece(feature, i, j);
   }
@@ -42,7 +44,19 @@ void Patches::keep_along(const Vec3& normal) {
   std::erase_if(points_, [&](const Point& point) { return point.normal.dot(normal) < kAlong; });
 }
 
-void Patches::choose(int most, double breaking_threshold) {
+void Patches::go_on(std::span<const LastPatch> last) {
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    const auto belongs = [&](const auto& of) { return last[i].normal.dot(of.normal) >= kOnePatch; };
+    if (std::none_of(points_.begin(), points_.end(), belongs)) continue;
+    if (std::any_of(patches_.begin(), patches_.end(), belongs)) continue;  // they have turned into one
+    patches_.emplace_back();
+    patches_.back().normal = last[i].normal;
+    patches_.back().last = static_cast<int>(i);
+  }
+}
+
+void Patches::choose(int most, double breaking_threshold, std::span<const LastPatch> last) {
+  go_on(last);
   std::stable_sort(points_.begin(), points_.end(),
                    [](const Point& x, const Point& y) { return x.contact.depth > y.contact.depth; });
   for (Point& point : points_) {
@@ -60,7 +74,7 @@ void Patches::choose(int most, double breaking_threshold) {
       patches_.back().normal = point.normal;
     }
   }
-  for (std::size_t i = 0; i < patches_.size(); ++i) choose_in(static_cast<int>(i), breaking_threshold);
+  for (std::size_t i = 0; i < patches_.size(); ++i) choose_in(static_cast<int>(i), breaking_threshold, last);
 }
 
 void Patches::keep_one_of_each(int patch, double merge) {
@@ -100,9 +114,18 @@ void Patches::keep_one_of_each(int patch, double merge) {
   }
 }
 
-void Patches::choose_in(int index, double breaking_threshold) {
+void Patches::choose_in(int index, double breaking_threshold, std::span<const LastPatch> last) {
   Patch& patch = patches_[static_cast<std::size_t>(index)];
   const Vec3& n = patch.normal;
+  if (patch.last >= 0) {
+    const LastPatch& before = last[static_cast<std::size_t>(patch.last)];
+    for (Point& point : points_) {
+      point.lasting = point.patch == index &&
+                      std::any_of(before.places.begin(), before.places.begin() + before.count, [&](const Vec3& x) {
+                        return (x - point.contact.position_b).squaredNorm() < breaking_threshold * breaking_threshold;
+                      });
+    }
+  }
   keep_one_of_each(index, kMerge * breaking_threshold);
   const auto take = [&](const Point* point) {
     const auto k = static_cast<std::size_t>(patch.fresh.count++);
@@ -115,6 +138,7 @@ void Patches::choose_in(int index, double breaking_threshold) {
                              [&](const Point* x, const Point* y) { return score(*x) < score(*y); });
   };
   const auto place = [](const Point& point) -> const Vec3& { return point.contact.position_b; };
+  const auto weight = [](const Point& point) { return point.lasting ? kLasting : 1.0; };
   if (left_.size() <= 4) {
     while (!left_.empty()) take(left_.front());
     return;
@@ -123,38 +147,18 @@ void Patches::choose_in(int index, double breaking_threshold) {
   const Vec3 u = n.unitOrthogonal();
   const Vec3 out = u + 0.3 * n.cross(u);
   const double deep = left_.front()->contact.depth - kNoise * breaking_threshold;
-  const Point* first = best([&](const Point& p) { return p.contact.depth >= deep ? place(p).dot(out) : -1e300; });
+  const bool goes_on =
+      std::any_of(left_.begin(), left_.end(), [&](const Point* p) { return p->lasting && p->contact.depth >= deep; });
+  const Point* first = best(
+      [&](const Point& p) { return p.contact.depth >= deep && p.lasting == goes_on ? place(p).dot(out) : -1e300; });
   take(first);
-  const Point* second = best([&](const Point& p) { return (place(p) - place(*first)).squaredNorm(); });
+  const Point* second = best([&](const Point& p) { return weight(p) * (place(p) - place(*first)).squaredNorm(); });
   take(second);
   const Vec3 across = n.cross(place(*second) - place(*first));
-  const Point* third = best([&](const Point& p) { return (place(p) - place(*first)).dot(across); });
-  const Point* fourth = best([&](const Point& p) { return -(place(p) - place(*first)).dot(across); });
+  const Point* third = best([&](const Point& p) { return weight(p) * (place(p) - place(*first)).dot(across); });
+  const Point* fourth = best([&](const Point& p) { return -weight(p) * (place(p) - place(*first)).dot(across); });
   take(third);
   if (fourth != third) take(fourth);
-}
-
-int Patches::claim(const Vec3& normal) {
-  int found = -1;
-  double nearest = kOnePatch;
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const double cosine = patches_[i].normal.dot(normal);
-    if (!patches_[i].claimed && cosine >= nearest) {
-      nearest = cosine;
-      found = static_cast<int>(i);
-    }
-  }
-  if (found >= 0) patches_[static_cast<std::size_t>(found)].claimed = true;
-  return found;
-}
-
-int Patches::claim_any() {
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    if (patches_[i].claimed) continue;
-    patches_[i].claimed = true;
-    return static_cast<int>(i);
-  }
-  return -1;
 }
 
 }  // namespace pd::detail

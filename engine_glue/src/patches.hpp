@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "manifold_points.hpp"
@@ -14,8 +15,15 @@ namespace pd::detail {
 struct Patch {
   FreshPoints fresh;
   std::array<int, 4> pieces{};
-  Vec3 normal = Vec3::UnitX();  ///< of its deepest point
-  bool claimed = false;
+  Vec3 normal = Vec3::UnitX();  ///< of its deepest point, or of the patch of the last step that goes on in it
+  int last = -1;                ///< number of that patch; -1: it is new
+};
+
+/// A patch of the last step where the bodies are now.
+struct LastPatch {
+  Vec3 normal = Vec3::UnitX();  ///< the mean of its points'
+  std::array<Vec3, 4> places;  ///< of its points, on B
+  int count = 0;
 };
 
 class Patches {
@@ -30,16 +38,18 @@ class Patches {
 
   /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees (the
   /// last ones take what fits nowhere), drops those that coincide, and keeps four of each patch: the deepest, the
-  /// farthest from it, and those that span the largest triangles with these two, one to each side. Of points that are
-  /// as deep up to the noise of a resting contact (a thousandth of the breaking threshold) the first is the farthest
-  /// out in a fixed direction, so that the choice is the same from step to step. O(p (q + log p)), p points, q patches.
-  void choose(int most, double breaking_threshold);
+  /// farthest from it, and those that span the largest triangles with these two, one to each side.
+  ///
+  /// The choice is the same from step to step as far as that goes, since a point that is new has no impulse yet:
+  /// patches of the last step go on where points are left for them, points of the last step count as a tenth farther
+  /// out, and of points that are as deep up to the noise of a resting contact (a thousandth of the breaking threshold)
+  /// the first is one of the last step, or else the farthest out in a fixed direction. O(p (q + log p)), p points, q
+  /// patches.
+  /// @param last  of the last step, at most `most`
+  void choose(int most, double breaking_threshold, std::span<const LastPatch> last);
 
+  [[nodiscard]] int size() const { return static_cast<int>(patches_.size()); }
   [[nodiscard]] const Patch& operator[](int i) const { return patches_[static_cast<std::size_t>(i)]; }
-  /// The unclaimed patch nearest to a normal, within 25 degrees; -1 where there is none. It counts as claimed then.
-  int claim(const Vec3& normal);
-  /// The first unclaimed patch.
-  int claim_any();
 
  private:
   struct Point {
@@ -47,6 +57,7 @@ class Patches {
     ContactPoint contact;
     int piece;
     int patch;
+    bool lasting;  ///< it stands where the patch had a point in the last step
   };
   /// A point by how far it lies in some direction.
   struct Place {
@@ -54,7 +65,9 @@ class Patches {
     std::size_t point;
     bool kept;
   };
-  void choose_in(int patch, double breaking_threshold);
+  /// The patches of the last step that some point belongs to.
+  void go_on(std::span<const LastPatch> last);
+  void choose_in(int patch, double breaking_threshold, std::span<const LastPatch> last);
   /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
   void keep_one_of_each(int patch, double merge);
 

@@ -1,0 +1,136 @@
+/// @file
+/// Which four points of many stand for a patch, and that it is the same four in the next step.
+
+#include "patches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace pd::test {
+namespace {
+
+using detail::LastPatch;
+using detail::Patches;
+
+constexpr double kThreshold = 0.02;
+
+/// Points round two rings of thirteen that face two ways, all places and depths a little off each time: of two points
+/// the farthest from a third is now this, now that one.
+class NoisyRings {
+ public:
+  void add_to(Patches& patches) {
+    std::uniform_real_distribution<double> noise(-1, 1);
+    for (int i = 0; i < 26; ++i) {
+      const double angle = 0.2416609733530613 * i;
+      ContactManifold manifold;
+      manifold.normal = i % 2 == 0 ? Vec3::UnitY() : Vec3(0.8, 0.6, 0);
+      const Vec3 across = manifold.normal.unitOrthogonal();
+      const Vec3 place = std::cos(angle) * across + std::sin(angle) * manifold.normal.cross(across);
+      const auto off = [&] { return 1e-3 * noise(random_); };
+      manifold.points[0] = {Vec3::Zero(), place + Vec3(off(), off(), off()), 0.01 + 1e-3 * off(), i};
+      manifold.count = 1;
+      patches.add(manifold, i, i, 0);
+    }
+  }
+
+ private:
+  std::mt19937 random_{7};
+};
+
+/// The pieces of a step's points, patch by patch.
+std::vector<std::vector<int>> pieces_of(const Patches& patches) {
+  std::vector<std::vector<int>> all;
+  for (int p = 0; p < patches.size(); ++p) {
+    std::vector<int> pieces(patches[p].pieces.begin(), patches[p].pieces.begin() + patches[p].fresh.count);
+    std::sort(pieces.begin(), pieces.end());
+    all.push_back(pieces);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<LastPatch> as_last(const Patches& patches) {
+  std::vector<LastPatch> last;
+  for (int p = 0; p < patches.size(); ++p) {
+    LastPatch& one = last.emplace_back();
+    one.normal = patches[p].normal;
+    one.count = patches[p].fresh.count;
+    for (int k = 0; k < one.count; ++k) {
+      const btVector3& x = patches[p].fresh.points[static_cast<std::size_t>(k)].point_on_b;
+      one.places[static_cast<std::size_t>(k)] = Vec3(x.x(), x.y(), x.z());
+    }
+  }
+  return last;
+}
+
+/// How often of a hundred steps the choice was another than that of the step before.
+int changes(bool remembers) {
+  NoisyRings rings;
+  Patches patches;
+  std::vector<LastPatch> last;
+  std::vector<std::vector<int>> before;
+  int count = 0;
+  for (int step = 0; step < 100; ++step) {
+    patches.clear();
+    rings.add_to(patches);
+    patches.choose(8, kThreshold, remembers ? last : std::vector<LastPatch>());
+    EXPECT_EQ(patches.size(), 2);
+    const auto now = pieces_of(patches);
+    count += step > 0 && now != before ? 1 : 0;
+    before = now;
+    last = as_last(patches);
+  }
+  return count;
+}
+
+TEST(Patches, TheChoiceLastsFromStepToStep) {
+  EXPECT_GT(changes(false), 30);
+  EXPECT_LE(changes(true), 1);
+}
+
+TEST(Patches, TheDeepestIsAlwaysThere) {
+  NoisyRings rings;
+  Patches patches;
+  std::vector<LastPatch> last;
+  for (int step = 0; step < 50; ++step) {
+    patches.clear();
+    rings.add_to(patches);
+    ContactManifold deeper;
+    deeper.normal = Vec3::UnitY();
+    deeper.points[0] = {Vec3::Zero(), Vec3(0.3 * step / 50, 0, 0.1), 0.012, 100};
+    deeper.count = 1;
+    patches.add(deeper, 100, 100, 0);
+    patches.choose(8, kThreshold, last);
+    const auto all = pieces_of(patches);
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const auto& pieces) { return pieces.back() == 100; }));
+    last = as_last(patches);
+  }
+}
+
+TEST(Patches, OnesOfTheLastStepGoOnAndEmptyOnesMakeRoom) {
+  Patches patches;
+  const auto add = [&](const Vec3& normal, int piece) {
+    ContactManifold manifold;
+    manifold.normal = normal;
+    manifold.points[0] = {Vec3::Zero(), normal, 0, piece};
+    manifold.count = 1;
+    patches.add(manifold, piece, piece, 0);
+  };
+  std::vector<LastPatch> last(2);
+  last[0].normal = Vec3::UnitX();
+  last[1].normal = Vec3::UnitY();
+  add(Vec3::UnitZ(), 0);
+  add(Vec3(0.1, 1, 0).normalized(), 1);
+  patches.choose(2, kThreshold, last);
+  ASSERT_EQ(patches.size(), 2);
+  EXPECT_EQ(patches[0].last, 1);
+  EXPECT_EQ(patches[0].pieces[0], 1);
+  EXPECT_EQ(patches[1].last, -1);
+  EXPECT_EQ(patches[1].pieces[0], 0);
+}
+
+}  // namespace
+}  // namespace pd::test
