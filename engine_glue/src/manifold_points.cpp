@@ -128,8 +128,12 @@ FreshPoints fresh_points(const ContactManifold& manifold) {
 void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result) {
   forget_parted(manifold);
   const ManifoldPoses poses = poses_of(manifold);
-  for (int k = 0; k < fresh.count; ++k) {
-    const FreshPoint& point = fresh.points[k];
+  // Points nearer to each other than the breaking threshold replace each other here: the deepest comes last.
+  std::array<int, 4> order{0, 1, 2, 3};
+  std::stable_sort(order.begin(), order.begin() + fresh.count,
+                   [&](int i, int k) { return fresh.points[i].distance > fresh.points[k].distance; });
+  for (int i = 0; i < fresh.count; ++i) {
+    const FreshPoint& point = fresh.points[order[i]];
     const int entry = entry_near(manifold, local_on_a(poses, point));
     const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
     add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, entry, anchor);
