@@ -36,10 +36,7 @@ enum class Method : std::uint8_t {
 /// How tight the bracket of an exact answer is made.
 enum class Bracket : std::uint8_t {
   certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
-  /// lower and upper are the exact depth rounded down and up. No translation is longer than upper: where none of
-  /// doubles that short separates the bodies (one in 25 overlapping pairs), upper is the double after it; of a depth
-  /// below 2^-960, where double-double has no digits left to search by, very rarely one of the six after that.
-  tightest,
+  tightest,   ///< lower and upper are the exact depth rounded down and up
   /// What a physics engine can use, at a bounded cost: no finer than the numbers of its poses deserve
   /// (`DepthSettings::contact_tolerance`), and never by numbers of unbounded length. Let s be the signed distance: the
   /// distance of A and B, or minus their depth. Doubles, where they cancel double-double, show s in an interval no
