@@ -7,6 +7,7 @@
 #include "depth/difference/foot_weights.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/near_facets.hpp"
+#include "depth/facets/small_sat.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
@@ -73,6 +74,16 @@ void set_contact_of_facet(const PolytopePair& pair, const NearFacets& found, Pen
   }
 }
 
+/// Class, bracket and contact of the certified piece.
+void set_answer(const PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
+  set_depth(query.pair, found.lower, found.upper, found.normal, out);
+  if (found.kind == NearFacetsBuffers::Kind::edges) {
+    set_contact_of_edges(query, found, out);
+  } else {
+    set_contact_of_facet(query.pair, found, out);
+  }
+}
+
 bool answer_boxes_for_contact(PolytopeQuery& query, const BoxFrame& box_a, const BoxFrame& box_b,
                               PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
@@ -133,6 +144,23 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   out.witness_b = out.witness_a + out.translation;
   out.feature_a = boxes.feature_a;
   out.feature_b = boxes.feature_b;
+  return true;
+}
+
+bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
+  if (query.bracket != Bracket::certified || query.settings.method != Method::automatic) return false;
+  if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
+  const SmallSatDepth found =
+      small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
+  out.method = Method::overlay;
+  out.statistics.facets_visited += found.pieces;
+  ++out.statistics.support_calls;
+  if (found.status == SmallSatStatus::separated) {
+    const DifferenceVertex first = query.difference.support(found.nearest.normal, nullptr);
+    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+  }
+  if (found.status == SmallSatStatus::undecided) return false;
+  set_answer(query, found.nearest, out);
   return true;
 }
 
@@ -211,12 +239,7 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
   out.method = Method::decomposition;
   if (query.bracket == Bracket::tightest) return prove_near_facets(query, found.beyond, out);
   if (!found.certified) return false;
-  set_depth(pair, found.lower, found.upper, found.normal, out);
-  if (found.kind == NearFacetsBuffers::Kind::edges) {
-    set_contact_of_edges(query, found, out);
-  } else {
-    set_contact_of_facet(pair, found, out);
-  }
+  set_answer(query, found, out);
   return true;
 }
 

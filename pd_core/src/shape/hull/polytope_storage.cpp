@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "shape/small_gauss_map.hpp"
 #include "shape/support/direction_table.hpp"
 #include "shape/support/polytope_support.hpp"
 
@@ -65,13 +66,14 @@ struct Counts {
   int half_edges;
   int facet_vertices;
   int facets;
+  bool has_gauss_map;
 };
 
 int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
 
 Arrays take_arrays(Block& block, const Counts& n) {
   Arrays a{};
-  a.storage = block.take<Storage>(1);
+  a.storage = n.has_gauss_map ? block.take<SmallBodyStorage>(1) : block.take<Storage>(1);
   a.x = block.take<double>(n.padded);
   a.y = block.take<double>(n.padded);
   a.z = block.take<double>(n.padded);
@@ -295,6 +297,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   n.facet_vertices = static_cast<int>(loops.vertices.size());
   n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
   n.facets = loops.size();
+  n.has_gauss_map = has_small_gauss_map(affine_dimension, n.vertices);
 
   Block measure(nullptr);
   take_arrays(measure, n);
@@ -306,6 +309,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   place_facets(loops, place_vertices(vertices, out, n), affine_dimension, out, n);
   publish(out, n, affine_dimension);
   out.storage->memory_bytes = block.used();
+  if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
   if (n.vertices > kScanLimit) add_table(*out.storage);
   return shared;
 }

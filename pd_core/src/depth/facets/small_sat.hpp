@@ -1,0 +1,33 @@
+/// @file
+/// Depth of two solids of at most eight vertices, in doubles with a certificate: all facets of P by their Gauss maps
+/// (small_sat_kernels.hpp), no search.
+///
+/// Why it proves anything: the boundary of P consists of facets with a facet of one body and of parallelograms of two
+/// edges whose arcs cross. A facet's plane supports P, and h_P changes by at most the turn of its normal times the
+/// reach. A parallelogram lies above its lowest corner along any unit vector. Signs decide which arcs cross; where one
+/// of them is less than its error, and so wherever an edge is parallel to another or to a facet, the answer is
+/// `undecided`, and the caller grows a surface.
+#pragma once
+
+#include "depth/difference/bracket_width.hpp"
+#include "depth/facets/near_facets.hpp"
+
+namespace pd::detail {
+
+enum class SmallSatStatus : std::uint8_t { certified, separated, undecided };
+
+struct SmallSatDepth {
+  SmallSatStatus status = SmallSatStatus::undecided;
+  NearFacets nearest;  ///< certified ones; of separated bodies the normal alone, the separating direction
+  int pieces = 0;      ///< measured
+};
+
+/// Whether both bodies are solids of so few vertices.
+[[nodiscard]] bool small_sat_applies(const ConvexPolytope& a, const ConvexPolytope& b);
+
+/// Requires `small_sat_applies`, and of the difference `prepare_supports` and a reach between 2^-100 and 2^100.
+/// Constant time, no allocation.
+[[nodiscard]] SmallSatDepth small_sat_depth(const Pose& pose_a, const Pose& pose_b,
+                                            const PolytopeDifference& difference, const BracketWidth& width);
+
+}  // namespace pd::detail

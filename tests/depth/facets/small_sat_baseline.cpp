@@ -1,0 +1,7 @@
+/// @file
+/// The kernel of small_sat_kernels.cpp once more, for the instruction set that every machine has.
+#ifndef PD_ISA_BASELINE
+#define PD_ISA_BASELINE
+#endif
+#define nearest_of_small nearest_of_small_baseline
+#include "depth/facets/small_sat_kernels.cpp"
