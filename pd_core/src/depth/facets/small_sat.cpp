@@ -42,8 +42,12 @@ class SmallPair {
     row_by_row(normals_a_, a.normals);
     row_by_row(normals_b_, b.normals);
     const Vec3& t = difference_.offset();
-    const SmallSatNearest found = nearest_of_small(a, b, {t.x(), t.y(), t.z()}, 0x1p-20 * difference_.reach());
+    const SmallSatErrors errors{0x1p-20 * difference_.reach(),
+                                static_cast<float>(kSideError * difference_.a().radius()),
+                                static_cast<float>(kSideError * difference_.b().radius())};
+    const SmallSatNearest found = nearest_of_small(a, b, {t.x(), t.y(), t.z()}, errors);
     out.pieces = map_a_.facets + map_b_.facets + found.crossings;
+    if (found.key >= 0 && !found.sides_known) return out;
     const double reach = difference_.reach();
     const Vec3 normal = normal_of(found);
     const double squared = normal.squaredNorm();
@@ -56,9 +60,6 @@ class SmallPair {
     nearest.upper = height + kUpperError * reach;
     if (nearest.upper < 0) out.status = SmallSatStatus::separated;
     if (!(found.key > 0)) return out;
-    const bool sides_known = found.least_side_a > kSideError * difference_.a().radius() &&
-                             found.least_side_b > kSideError * difference_.b().radius();
-    if (!sides_known) return out;
     nearest.lower = std::sqrt(found.key) - kLowerError * reach;
     if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
     if (!(found.edge_a >= 0 ? below_edges(found, height, nearest) : below_facet(found, s, height, nearest))) return out;

@@ -260,12 +260,14 @@ PD_INLINE void list_crossings(const std::uint32_t (&sides_a)[kFacets], const std
     const auto left_a = static_cast<std::uint32_t>(edges), right_a = static_cast<std::uint32_t>(edges >> 32);
     const std::uint32_t left_b = sides_a[map_b.left[j]], right_b = sides_a[map_b.right[j]];
     std::uint32_t crossing = (left_b ^ right_b) & (left_a ^ right_a) & (left_b ^ left_a);
-    for (; crossing != 0; crossing &= crossing - 1) {
-      const int i = std::countr_zero(crossing);
+    // One is written in any case, and counted where there is one: rows of two are rare.
+    do {
+      const int i = std::countr_zero(crossing | 1U << kEdges);
       out.pair[count] = static_cast<std::uint32_t>(Crossings::kStride * j + i);
       out.sign[count] = kSigns[left_b >> i & 1];
-      ++count;
-    }
+      count += static_cast<int>(crossing != 0);
+      crossing &= crossing - 1;
+    } while (crossing != 0);
   }
   out.count = count;
 }
@@ -356,20 +358,18 @@ PD_INLINE double largest_coordinate(const VertexArrays& a, const VertexArrays& b
   return greatest(least > most ? least : most);
 }
 
-/// Of equal keys the lowest id.
+/// Of equal keys the lowest id. Without branches: nothing here could be guessed.
 PD_INLINE int winner(const NearestLane& best, double& key) {
-  int lane = 0;
-  for (int i = 1; i < kLanes; ++i) {
-    if (best.key[i] < best.key[lane] || (best.key[i] == best.key[lane] && best.id[i] < best.id[lane])) lane = i;
-  }
-  key = best.key[lane];
-  return static_cast<int>(best.id[lane]);
+  const Lanes none = Lanes{} + std::numeric_limits<double>::infinity();
+  key = least(best.key);
+  const Lanes ids = best.key == Lanes{} + key ? best.id : none;
+  return static_cast<int>(least(ids));
 }
 
 }  // namespace
 
 PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
-                                           double slack) {
+                                           const SmallSatErrors& errors) {
   const Lanes none = Lanes{0, 0, 0, 0} + std::numeric_limits<double>::infinity();
   SmallSatNearest out;
   NearestLane facet{none, none}, crossing{none, none};
@@ -390,14 +390,15 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
     out.facet_b = nearest_facet - kFacets;
   }
   if (out.key < 0) return out;
-  out.largest = largest_coordinate(a.posed, b.posed, offset);
   const double radius = __builtin_sqrt(out.key);
   KeptEdges kept_a, kept_b;
-  keep_near_edges(a.map, planes_a, of_b, b.posed.count, radius, slack, kept_a);
-  keep_near_edges(b.map, planes_b, of_a, a.posed.count, radius, slack, kept_b);
+  keep_near_edges(a.map, planes_a, of_b, b.posed.count, radius, errors.height, kept_a);
+  keep_near_edges(b.map, planes_b, of_a, a.posed.count, radius, errors.height, kept_b);
   std::uint32_t sides_a[kFacets], facets_b[kEdges];
-  out.least_side_a = edges_by_facet(a.map, kept_a, of_a, sides_a);
-  out.least_side_b = facets_by_edge(b.map, kept_b, of_b, facets_b);
+  out.sides_known = edges_by_facet(a.map, kept_a, of_a, sides_a) > errors.side_a &&
+                    facets_by_edge(b.map, kept_b, of_b, facets_b) > errors.side_b;
+  if (!out.sides_known) return out;
+  out.largest = largest_coordinate(a.posed, b.posed, offset);
   Crossings pairs;
   list_crossings(sides_a, facets_b, a.map, b.map, kept_b, pairs);
   out.crossings = pairs.count;

@@ -30,16 +30,21 @@ struct SmallSatNearest {
   int facet_b = -1;
   int edge_a = -1;
   int edge_b = -1;
-  double sign = 1;     ///< of edge of B x edge of A, to point outwards
-  double largest = 0;  ///< |coordinate| of P
-  /// The least product, by its absolute value, of a facet's normal (about unit) and an edge of the other body: of all
-  /// edges of A, and of all edges of B.
-  float least_side_a = 0;
-  float least_side_b = 0;
+  double sign = 1;           ///< of edge of B x edge of A, to point outwards
+  double largest = 0;        ///< |coordinate| of P
+  bool sides_known = false;  ///< every sign of an edge that may be near is certain; else no pair of edges was tried
   int crossings = 0;
 };
 
-/// @param slack  of heights in single precision, 2^-20 of the reach.
-SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3], double slack);
+/// What single precision may add.
+struct SmallSatErrors {
+  double height;  ///< of a plane of P and a point of P, less the points' own
+  float side_a;   ///< of an edge of A along a facet of B
+  float side_b;
+};
+
+/// `key` is negative as soon as a facet has the origin beyond it; edges are tried otherwise.
+SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
+                                 const SmallSatErrors& errors);
 
 }  // namespace pd::detail

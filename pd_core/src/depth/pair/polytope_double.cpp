@@ -150,6 +150,8 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.bracket != Bracket::certified || query.settings.method != Method::automatic) return false;
   if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
+  // Bodies that are turned alike often have parallel edges, which would be left undecided.
+  if (query.difference.rotation_a() == query.difference.rotation_b()) return false;
   const SmallSatDepth found =
       small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
   out.method = Method::overlay;
