@@ -4,4 +4,5 @@
 #define PD_ISA_BASELINE
 #endif
 #define nearest_of_small nearest_of_small_baseline
+#define try_open_sides try_open_sides_baseline
 #include "depth/facets/small_sat_kernels.cpp"

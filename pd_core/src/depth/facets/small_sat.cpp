@@ -46,8 +46,7 @@ class SmallPair {
                                 static_cast<float>(kSideError * difference_.a().radius()),
                                 static_cast<float>(kSideError * difference_.b().radius())};
     const SmallSatNearest found = nearest_of_small(a, b, {t.x(), t.y(), t.z()}, errors);
-    out.pieces = map_a_.facets + map_b_.facets + found.crossings;
-    if (found.key >= 0 && !found.sides_known) return out;
+    out.pieces = map_a_.facets + map_b_.facets + found.crossings + found.possible;
     const double reach = difference_.reach();
     const Vec3 normal = normal_of(found);
     const double squared = normal.squaredNorm();
@@ -59,8 +58,8 @@ class SmallPair {
     nearest.normal = unit;
     nearest.upper = height + kUpperError * reach;
     if (nearest.upper < 0) out.status = SmallSatStatus::separated;
-    if (!(found.key > 0)) return out;
-    nearest.lower = std::sqrt(found.key) - kLowerError * reach;
+    if (!(found.key > 0 && found.possible_key > 0)) return out;
+    nearest.lower = std::sqrt(std::min(found.key, found.possible_key)) - kLowerError * reach;
     if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
     if (!(found.edge_a >= 0 ? below_edges(found, height, nearest) : below_facet(found, s, height, nearest))) return out;
     nearest.certified = true;

@@ -5,8 +5,9 @@
 /// Why it proves anything: the boundary of P consists of facets with a facet of one body and of parallelograms of two
 /// edges whose arcs cross. A facet's plane supports P, and h_P changes by at most the turn of its normal times the
 /// reach. A parallelogram lies above its lowest corner along any unit vector. Signs decide which arcs cross; where one
-/// of them is less than its error, and so wherever an edge is parallel to another or to a facet, the answer is
-/// `undecided`, and the caller grows a surface.
+/// of them is less than its error, as where edges or facets are parallel, a pair that may cross counts by its lowest
+/// corner alone. Where that leaves the bracket too wide, where the point below the origin is not inside the winner, and
+/// where the class is in doubt, the answer is `undecided`, and the caller grows a surface.
 #pragma once
 
 #include "depth/difference/bracket_width.hpp"

@@ -233,6 +233,35 @@ PD_INLINE float facets_by_edge(const SmallGaussMap& map, const KeptEdges& kept, 
   return least_size(least_low, least_high);
 }
 
+template <class Floating, class Flagged>
+PD_INLINE void put_if_small(Flagged& bits, const Floating& value, float error, int place) {
+  Flagged size, small;
+  __builtin_memcpy(&size, &value, sizeof(size));
+  size &= ~kSign;
+  Floating magnitude;
+  __builtin_memcpy(&magnitude, &size, sizeof(magnitude));
+  const auto within = magnitude <= Floating{} + error;
+  __builtin_memcpy(&small, &within, sizeof(small));
+  bits |= small >> 31 << place;
+}
+
+/// Bit i of open[f]: the rise of kept edge i along facet f is within its error.
+PD_INLINE void open_sides(const SmallGaussMap& map, const KeptEdges& kept, const HeightRows& heights, float error,
+                          std::uint32_t (&open)[kFacets]) {
+  Bits low = {};
+  HalfBits high = {};
+  for (int k = 0; k < kept.count; ++k) {
+    const int i = kept.edge[k];
+    Floats rise;
+    HalfFloats rise_high;
+    rise_between(rise, rise_high, heights.row[map.from[i]], heights.row[map.to[i]]);
+    put_if_small(low, rise, error, i);
+    put_if_small(high, rise_high, error, i);
+  }
+  __builtin_memcpy(open, &low, sizeof(low));
+  __builtin_memcpy(open + kFloats, &high, sizeof(high));
+}
+
 /// Pairs of edges whose arcs cross.
 struct Crossings {
   static constexpr int kRoom = kEdges * kEdges + kLanes;
@@ -270,6 +299,49 @@ PD_INLINE void list_crossings(const std::uint32_t (&sides_a)[kFacets], const std
     } while (crossing != 0);
   }
   out.count = count;
+}
+
+/// The edges of a body on whose left and right side the facets of a set lie.
+struct EdgeSet {
+  std::uint32_t left, right;
+};
+
+PD_INLINE void edges_around(EdgeSet& out, const SmallGaussMap& map, std::uint32_t facets) {
+  const std::uint64_t edges = map.edges_of_facets[0][facets & 15] | map.edges_of_facets[1][facets >> 4 & 15] |
+                              map.edges_of_facets[2][facets >> 8];
+  out = {static_cast<std::uint32_t>(edges), static_cast<std::uint32_t>(edges >> 32)};
+}
+
+/// Where some sides are open: the pairs that cross for certain, and those that may.
+PD_INLINE void list_with_open_sides(const std::uint32_t (&sides_a)[kFacets], const std::uint32_t (&facets_b)[kEdges],
+                                    const std::uint32_t (&open_a)[kFacets], const std::uint32_t (&open_b)[kFacets],
+                                    const SmallGaussMap& map_a, const SmallGaussMap& map_b, const KeptEdges& kept_a,
+                                    const KeptEdges& kept_b, Crossings& certain, Crossings& possible) {
+  std::uint32_t kept = 0;
+  for (int k = 0; k < kept_a.count; ++k) kept |= 1U << kept_a.edge[k];
+  certain.count = possible.count = 0;
+  for (int k = 0; k < kept_b.count; ++k) {
+    const int j = kept_b.edge[k];
+    std::uint32_t open_facets = 0;
+    for (int f = 0; f < kFacets; ++f) open_facets |= (open_b[f] >> j & 1) << f;
+    EdgeSet of_a, open;
+    edges_around(of_a, map_a, facets_b[k]);
+    edges_around(open, map_a, open_facets);
+    const std::uint32_t left_b = sides_a[map_b.left[j]], right_b = sides_a[map_b.right[j]];
+    const std::uint32_t open_left = open_a[map_b.left[j]], open_right = open_a[map_b.right[j]];
+    const std::uint32_t any_open = open_left | open_right | open.left | open.right;
+    // Of four signs two pairs differ and two agree.
+    const std::uint32_t may =
+        ((left_b ^ right_b) | open_left | open_right) & ((of_a.left ^ of_a.right) | open.left | open.right) &
+        ((left_b ^ of_a.left) | open_left | open.left) & ((right_b ^ of_a.right) | open_right | open.right) &
+        (~(left_b ^ of_a.right) | open_left | open.right) & (~(right_b ^ of_a.left) | open_right | open.left) & kept;
+    for (std::uint32_t bits = may; bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      Crossings& to = (any_open >> i & 1) != 0 ? possible : certain;
+      to.pair[to.count] = static_cast<std::uint32_t>(Crossings::kStride * j + i);
+      to.sign[to.count++] = (left_b >> i & 1) != 0 ? -1 : 1;
+    }
+  }
 }
 
 PD_INLINE void gather(LaneVectors& to, const VertexArrays& v, const int (&ids)[kLanes]) {
@@ -323,6 +395,61 @@ PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const 
   }
 }
 
+/// The least of the possible pieces' distances, as sign * square. Each lies above its lowest corner along any vector:
+/// the one along which that is highest counts, of the four normals between which its own would lie. Where an arc ends
+/// on the other, or lies along it, one of them is the piece's own normal.
+PD_INLINE double least_possible(const SmallSatBody& a, const SmallSatBody& b, const TurnedNormals& normals_a,
+                                const TurnedNormals& normals_b, Crossings& pairs, const double (&offset)[3]) {
+  const Lanes zero = {0, 0, 0, 0};
+  alignas(32) double n[2][3][kFacets];
+  for (int k = 0; k < kBlocks; ++k) {
+    store(n[0][0] + kLanes * k, normals_a.n[k].x);
+    store(n[0][1] + kLanes * k, normals_a.n[k].y);
+    store(n[0][2] + kLanes * k, normals_a.n[k].z);
+    store(n[1][0] + kLanes * k, normals_b.n[k].x);
+    store(n[1][1] + kLanes * k, normals_b.n[k].y);
+    store(n[1][2] + kLanes * k, normals_b.n[k].z);
+  }
+  for (int k = pairs.count; k % kLanes != 0; ++k) pairs.pair[k] = pairs.pair[0];
+  Lanes least_key = zero + std::numeric_limits<double>::infinity();
+  for (int k = 0; k < pairs.count; k += kLanes) {
+    int ends[4][kLanes], facets[4][kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      const int i = pairs.edge_a(k + l), j = pairs.edge_b(k + l);
+      ends[0][l] = a.map.from[i];
+      ends[1][l] = a.map.to[i];
+      ends[2][l] = b.map.from[j];
+      ends[3][l] = b.map.to[j];
+      facets[0][l] = a.map.left[i];
+      facets[1][l] = a.map.right[i];
+      facets[2][l] = b.map.left[j];
+      facets[3][l] = b.map.right[j];
+    }
+    LaneVectors p, e, q, f;
+    gather(p, a.posed, ends[0]);
+    gather(e, a.posed, ends[1]);
+    gather(q, b.posed, ends[2]);
+    gather(f, b.posed, ends[3]);
+    Lanes best = zero - std::numeric_limits<double>::max();
+    for (int side = 0; side < 4; ++side) {
+      const double(&from)[3][kFacets] = n[side / 2];
+      LaneVectors w;
+      gather(w, {from[0], from[1], from[2], kFacets}, facets[side]);
+      const Lanes start_a = w.x * p.x + w.y * p.y + w.z * p.z;
+      const Lanes end_a = w.x * e.x + w.y * e.y + w.z * e.z;
+      const Lanes start_b = w.x * q.x + w.y * q.y + w.z * q.z;
+      const Lanes end_b = w.x * f.x + w.y * f.y + w.z * f.z;
+      const Lanes lowest = (start_a < end_a ? start_a : end_a) + (start_b < end_b ? start_b : end_b) +
+                           (w.x * offset[0] + w.y * offset[1] + w.z * offset[2]);
+      Lanes key;
+      key_of(key, lowest, w.x * w.x + w.y * w.y + w.z * w.z);
+      best = key > best ? key : best;
+    }
+    least_key = best < least_key ? best : least_key;
+  }
+  return least(least_key);
+}
+
 /// Greatest and least coordinates of a body of at most eight vertices.
 struct Extent {
   Lanes most, least;  ///< x, y, z, x
@@ -366,12 +493,51 @@ PD_INLINE int winner(const NearestLane& best, double& key) {
   return static_cast<int>(least(ids));
 }
 
+/// What the kernel was asked.
+struct Question {
+  const SmallSatBody& a;
+  const SmallSatBody& b;
+  const double (&offset)[3];
+  const SmallSatErrors& errors;
+};
+
+/// What it knows by the time that it has told all sides.
+struct Sides {
+  const HeightRows& of_a;
+  const HeightRows& of_b;
+  const KeptEdges& kept_a;
+  const KeptEdges& kept_b;
+  const std::uint32_t (&sides_a)[kFacets];
+  const std::uint32_t (&facets_b)[kEdges];
+};
+
 }  // namespace
+
+/// Lists the pairs that cross for certain and measures those that may. Apart from the kernel, which most pairs of
+/// bodies run alone.
+PD_CLONES __attribute__((noinline)) void try_open_sides(const Question& question, const Sides& known,
+                                                        Crossings& certain, SmallSatNearest& out) {
+  const SmallSatBody& a = question.a;
+  const SmallSatBody& b = question.b;
+  std::uint32_t open_a[kFacets], open_b[kFacets];
+  open_sides(a.map, known.kept_a, known.of_a, question.errors.side_a, open_a);
+  open_sides(b.map, known.kept_b, known.of_b, question.errors.side_b, open_b);
+  Crossings possible;
+  list_with_open_sides(known.sides_a, known.facets_b, open_a, open_b, a.map, b.map, known.kept_a, known.kept_b, certain,
+                       possible);
+  out.possible = possible.count;
+  if (possible.count == 0) return;
+  TurnedNormals normals_a, normals_b;
+  turn_normals(normals_a, a);
+  turn_normals(normals_b, b);
+  out.possible_key = least_possible(a, b, normals_a, normals_b, possible, question.offset);
+}
 
 PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
                                            const SmallSatErrors& errors) {
   const Lanes none = Lanes{0, 0, 0, 0} + std::numeric_limits<double>::infinity();
   SmallSatNearest out;
+  out.possible_key = std::numeric_limits<double>::infinity();
   NearestLane facet{none, none}, crossing{none, none};
   TurnedNormals normals;
   FacetPlanes planes_a, planes_b;
@@ -395,12 +561,15 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
   keep_near_edges(a.map, planes_a, of_b, b.posed.count, radius, errors.height, kept_a);
   keep_near_edges(b.map, planes_b, of_a, a.posed.count, radius, errors.height, kept_b);
   std::uint32_t sides_a[kFacets], facets_b[kEdges];
-  out.sides_known = edges_by_facet(a.map, kept_a, of_a, sides_a) > errors.side_a &&
-                    facets_by_edge(b.map, kept_b, of_b, facets_b) > errors.side_b;
-  if (!out.sides_known) return out;
+  const float least_side_a = edges_by_facet(a.map, kept_a, of_a, sides_a);
+  const float least_side_b = facets_by_edge(b.map, kept_b, of_b, facets_b);
   out.largest = largest_coordinate(a.posed, b.posed, offset);
   Crossings pairs;
-  list_crossings(sides_a, facets_b, a.map, b.map, kept_b, pairs);
+  if (least_side_a > errors.side_a && least_side_b > errors.side_b) {
+    list_crossings(sides_a, facets_b, a.map, b.map, kept_b, pairs);
+  } else {
+    try_open_sides({a, b, offset, errors}, {of_a, of_b, kept_a, kept_b, sides_a, facets_b}, pairs, out);
+  }
   out.crossings = pairs.count;
   nearest_crossing(crossing, a, b, pairs, offset);
   double key = 0;

@@ -30,9 +30,10 @@ struct SmallSatNearest {
   int facet_b = -1;
   int edge_a = -1;
   int edge_b = -1;
-  double sign = 1;           ///< of edge of B x edge of A, to point outwards
-  double largest = 0;        ///< |coordinate| of P
-  bool sides_known = false;  ///< every sign of an edge that may be near is certain; else no pair of edges was tried
+  double sign = 1;          ///< of edge of B x edge of A, to point outwards
+  double largest = 0;       ///< |coordinate| of P
+  double possible_key = 0;  ///< no pair of edges whose sides are not all certain has a facet with a lesser key
+  int possible = 0;         ///< such pairs
   int crossings = 0;
 };
 

@@ -84,6 +84,16 @@ void set_answer(const PolytopeQuery& query, const NearFacets& found, Penetration
   }
 }
 
+/// Whether the axes of one body run along those of the other, about: what was built along its axes then meets facet on
+/// facet, which leaves solids of few vertices to the surface.
+bool along_same_axes(const Mat3& a, const Mat3& b) {
+  const auto along = [&](int i, int j) {
+    const double cosine = std::abs(a.col(i).dot(b.col(j)));
+    return std::min(cosine, std::abs(1 - cosine)) < 0x1p-20;
+  };
+  return along(0, 0) && along(1, 1) && along(0, 1) && along(1, 0);
+}
+
 bool answer_boxes_for_contact(PolytopeQuery& query, const BoxFrame& box_a, const BoxFrame& box_b,
                               PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
@@ -150,8 +160,7 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.bracket != Bracket::certified || query.settings.method != Method::automatic) return false;
   if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
-  // Bodies that are turned alike often have parallel edges, which would be left undecided.
-  if (query.difference.rotation_a() == query.difference.rotation_b()) return false;
+  if (along_same_axes(query.difference.rotation_a(), query.difference.rotation_b())) return false;
   const SmallSatDepth found =
       small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
   out.method = Method::overlay;
