@@ -6,3 +6,4 @@
 #define nearest_of_small nearest_of_small_baseline
 #define try_open_sides try_open_sides_baseline
 #include "depth/facets/small_sat_kernels.cpp"
+#include "depth/facets/small_sat_open_sides.cpp"

@@ -4,46 +4,12 @@
 #include <cstdint>
 #include <limits>
 
-#include "numeric/lanes.hpp"
+#include "depth/facets/small_sat_lanes.hpp"
 
 namespace pd::detail {
 
+namespace small_sat {
 namespace {
-
-typedef std::uint32_t Bits __attribute__((vector_size(32)));
-typedef std::uint32_t HalfBits __attribute__((vector_size(16)));
-
-constexpr int kFacets = SmallGaussMap::kMostFacets;
-constexpr int kBlocks = kFacets / kLanes;
-constexpr int kEdges = SmallGaussMap::kMostEdges;
-constexpr std::uint32_t kSign = 0x80000000;
-static_assert(kBlocks == 3 && kFacets == kFloats + kLanes);
-
-struct LaneVectors {
-  Lanes x, y, z;
-};
-
-struct TurnedNormals {
-  LaneVectors n[kBlocks];
-};
-
-PD_INLINE void turn_normals(TurnedNormals& out, const SmallSatBody& body) {
-  const double* const m = body.normals;
-  for (int k = 0; k < kBlocks; ++k) {
-    Lanes x, y, z;
-    load(x, body.map.nx + kLanes * k);
-    load(y, body.map.ny + kLanes * k);
-    load(z, body.map.nz + kLanes * k);
-    out.n[k].x = x * m[0] + y * m[1] + z * m[2];
-    out.n[k].y = x * m[3] + y * m[4] + z * m[5];
-    out.n[k].z = x * m[6] + y * m[7] + z * m[8];
-  }
-}
-
-/// Where the vertices of one body lie along the facets' normals of the other, in single precision.
-struct HeightRows {
-  alignas(32) float row[SmallGaussMap::kMostVertices][2 * kFloats];
-};
 
 PD_INLINE void tops_along(const TurnedNormals& normals, const VertexArrays& other, Lanes (&top)[kBlocks],
                           HeightRows& rows) {
@@ -66,13 +32,6 @@ struct NearestLane {
 PD_INLINE void take_nearest(NearestLane& best, const Lanes& key, const Lanes& id) {
   best.id = key < best.key ? id : best.id;
   best.key = key < best.key ? key : best.key;
-}
-
-/// sign * square of distance, where height = distance * length of the normal; the lowest where there is no normal.
-PD_INLINE void key_of(Lanes& key, const Lanes& height, const Lanes& squared) {
-  const Lanes zero = {0, 0, 0, 0};
-  const Lanes size = height < zero ? -height : height;
-  key = squared > zero ? height * size / squared : zero - std::numeric_limits<double>::max();
 }
 
 /// By facet of one body: where its plane lies but for the other body, and the square of its normal's length.
@@ -120,12 +79,6 @@ PD_INLINE void take_least_size(Floating& least, const Floating& value) {
   __builtin_memcpy(&size, &bits, sizeof(size));
   least = size < least ? size : least;
 }
-
-/// Edges of a body by their numbers.
-struct KeptEdges {
-  int count;
-  int edge[kEdges + 1];
-};
 
 /// Edges that may belong to a facet of P no farther than `radius`. A vertex of P, of facet f with vertex v of the other
 /// body, may show f too far; where one v does so for both facets of an edge, it does for all directions of its arc
@@ -177,18 +130,6 @@ PD_INLINE float least_size(const Floats& low, const HalfFloats& high) {
   return least;
 }
 
-/// By facet: how much higher one vertex lies than another.
-PD_INLINE void rise_between(Floats& low, HalfFloats& high, const float* above, const float* below) {
-  Floats a, b;
-  HalfFloats c, d;
-  load(a, above);
-  load(b, below);
-  __builtin_memcpy(&c, above + kFloats, sizeof(c));
-  __builtin_memcpy(&d, below + kFloats, sizeof(d));
-  low = a - b;
-  high = c - d;
-}
-
 /// Bit i of sides[f]: edge i of -A, turned around, descends along facet f of B. None of edges that are not kept, whose
 /// arcs so cross no plane.
 PD_INLINE float edges_by_facet(const SmallGaussMap& map, const KeptEdges& kept, const HeightRows& heights,
@@ -233,47 +174,6 @@ PD_INLINE float facets_by_edge(const SmallGaussMap& map, const KeptEdges& kept, 
   return least_size(least_low, least_high);
 }
 
-template <class Floating, class Flagged>
-PD_INLINE void put_if_small(Flagged& bits, const Floating& value, float error, int place) {
-  Flagged size, small;
-  __builtin_memcpy(&size, &value, sizeof(size));
-  size &= ~kSign;
-  Floating magnitude;
-  __builtin_memcpy(&magnitude, &size, sizeof(magnitude));
-  const auto within = magnitude <= Floating{} + error;
-  __builtin_memcpy(&small, &within, sizeof(small));
-  bits |= small >> 31 << place;
-}
-
-/// Bit i of open[f]: the rise of kept edge i along facet f is within its error.
-PD_INLINE void open_sides(const SmallGaussMap& map, const KeptEdges& kept, const HeightRows& heights, float error,
-                          std::uint32_t (&open)[kFacets]) {
-  Bits low = {};
-  HalfBits high = {};
-  for (int k = 0; k < kept.count; ++k) {
-    const int i = kept.edge[k];
-    Floats rise;
-    HalfFloats rise_high;
-    rise_between(rise, rise_high, heights.row[map.from[i]], heights.row[map.to[i]]);
-    put_if_small(low, rise, error, i);
-    put_if_small(high, rise_high, error, i);
-  }
-  __builtin_memcpy(open, &low, sizeof(low));
-  __builtin_memcpy(open + kFloats, &high, sizeof(high));
-}
-
-/// Pairs of edges whose arcs cross.
-struct Crossings {
-  static constexpr int kRoom = kEdges * kEdges + kLanes;
-  static constexpr int kStride = 32;
-  int count = 0;
-  std::uint32_t pair[kRoom];  ///< kStride * edge of B + edge of A
-  double sign[kRoom];         ///< of b x a, to point outwards
-
-  [[nodiscard]] int edge_a(int k) const { return static_cast<int>(pair[k] % kStride); }
-  [[nodiscard]] int edge_b(int k) const { return static_cast<int>(pair[k] / kStride); }
-};
-
 /// Arc j of B crosses the plane of arc i of -A where its two facets lie on different sides of it, and the other way
 /// round; of two arcs that do both, on the same half of the sphere where these sides are opposite.
 PD_INLINE void list_crossings(const std::uint32_t (&sides_a)[kFacets], const std::uint32_t (&facets_b)[kEdges],
@@ -283,12 +183,10 @@ PD_INLINE void list_crossings(const std::uint32_t (&sides_a)[kFacets], const std
   int count = 0;
   for (int k = 0; k < kept_b.count; ++k) {
     const int j = kept_b.edge[k];
-    const std::uint32_t set = facets_b[k];
-    const std::uint64_t edges = map_a.edges_of_facets[0][set & 15] | map_a.edges_of_facets[1][set >> 4 & 15] |
-                                map_a.edges_of_facets[2][set >> 8];
-    const auto left_a = static_cast<std::uint32_t>(edges), right_a = static_cast<std::uint32_t>(edges >> 32);
+    EdgeSet of_a;
+    edges_around(of_a, map_a, facets_b[k]);
     const std::uint32_t left_b = sides_a[map_b.left[j]], right_b = sides_a[map_b.right[j]];
-    std::uint32_t crossing = (left_b ^ right_b) & (left_a ^ right_a) & (left_b ^ left_a);
+    std::uint32_t crossing = (left_b ^ right_b) & (of_a.left ^ of_a.right) & (left_b ^ of_a.left);
     // One is written in any case, and counted where there is one: rows of two are rare.
     do {
       const int i = std::countr_zero(crossing | 1U << kEdges);
@@ -299,55 +197,6 @@ PD_INLINE void list_crossings(const std::uint32_t (&sides_a)[kFacets], const std
     } while (crossing != 0);
   }
   out.count = count;
-}
-
-/// The edges of a body on whose left and right side the facets of a set lie.
-struct EdgeSet {
-  std::uint32_t left, right;
-};
-
-PD_INLINE void edges_around(EdgeSet& out, const SmallGaussMap& map, std::uint32_t facets) {
-  const std::uint64_t edges = map.edges_of_facets[0][facets & 15] | map.edges_of_facets[1][facets >> 4 & 15] |
-                              map.edges_of_facets[2][facets >> 8];
-  out = {static_cast<std::uint32_t>(edges), static_cast<std::uint32_t>(edges >> 32)};
-}
-
-/// Where some sides are open: the pairs that cross for certain, and those that may.
-PD_INLINE void list_with_open_sides(const std::uint32_t (&sides_a)[kFacets], const std::uint32_t (&facets_b)[kEdges],
-                                    const std::uint32_t (&open_a)[kFacets], const std::uint32_t (&open_b)[kFacets],
-                                    const SmallGaussMap& map_a, const SmallGaussMap& map_b, const KeptEdges& kept_a,
-                                    const KeptEdges& kept_b, Crossings& certain, Crossings& possible) {
-  std::uint32_t kept = 0;
-  for (int k = 0; k < kept_a.count; ++k) kept |= 1U << kept_a.edge[k];
-  certain.count = possible.count = 0;
-  for (int k = 0; k < kept_b.count; ++k) {
-    const int j = kept_b.edge[k];
-    std::uint32_t open_facets = 0;
-    for (int f = 0; f < kFacets; ++f) open_facets |= (open_b[f] >> j & 1) << f;
-    EdgeSet of_a, open;
-    edges_around(of_a, map_a, facets_b[k]);
-    edges_around(open, map_a, open_facets);
-    const std::uint32_t left_b = sides_a[map_b.left[j]], right_b = sides_a[map_b.right[j]];
-    const std::uint32_t open_left = open_a[map_b.left[j]], open_right = open_a[map_b.right[j]];
-    const std::uint32_t any_open = open_left | open_right | open.left | open.right;
-    // Of four signs two pairs differ and two agree.
-    const std::uint32_t may =
-        ((left_b ^ right_b) | open_left | open_right) & ((of_a.left ^ of_a.right) | open.left | open.right) &
-        ((left_b ^ of_a.left) | open_left | open.left) & ((right_b ^ of_a.right) | open_right | open.right) &
-        (~(left_b ^ of_a.right) | open_left | open.right) & (~(right_b ^ of_a.left) | open_right | open.left) & kept;
-    for (std::uint32_t bits = may; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits);
-      Crossings& to = (any_open >> i & 1) != 0 ? possible : certain;
-      to.pair[to.count] = static_cast<std::uint32_t>(Crossings::kStride * j + i);
-      to.sign[to.count++] = (left_b >> i & 1) != 0 ? -1 : 1;
-    }
-  }
-}
-
-PD_INLINE void gather(LaneVectors& to, const VertexArrays& v, const int (&ids)[kLanes]) {
-  to.x = Lanes{v.x[ids[0]], v.x[ids[1]], v.x[ids[2]], v.x[ids[3]]};
-  to.y = Lanes{v.y[ids[0]], v.y[ids[1]], v.y[ids[2]], v.y[ids[3]]};
-  to.z = Lanes{v.z[ids[0]], v.z[ids[1]], v.z[ids[2]], v.z[ids[3]]};
 }
 
 PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const SmallSatBody& b, Crossings& pairs,
@@ -395,61 +244,6 @@ PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const 
   }
 }
 
-/// The least of the possible pieces' distances, as sign * square. Each lies above its lowest corner along any vector:
-/// the one along which that is highest counts, of the four normals between which its own would lie. Where an arc ends
-/// on the other, or lies along it, one of them is the piece's own normal.
-PD_INLINE double least_possible(const SmallSatBody& a, const SmallSatBody& b, const TurnedNormals& normals_a,
-                                const TurnedNormals& normals_b, Crossings& pairs, const double (&offset)[3]) {
-  const Lanes zero = {0, 0, 0, 0};
-  alignas(32) double n[2][3][kFacets];
-  for (int k = 0; k < kBlocks; ++k) {
-    store(n[0][0] + kLanes * k, normals_a.n[k].x);
-    store(n[0][1] + kLanes * k, normals_a.n[k].y);
-    store(n[0][2] + kLanes * k, normals_a.n[k].z);
-    store(n[1][0] + kLanes * k, normals_b.n[k].x);
-    store(n[1][1] + kLanes * k, normals_b.n[k].y);
-    store(n[1][2] + kLanes * k, normals_b.n[k].z);
-  }
-  for (int k = pairs.count; k % kLanes != 0; ++k) pairs.pair[k] = pairs.pair[0];
-  Lanes least_key = zero + std::numeric_limits<double>::infinity();
-  for (int k = 0; k < pairs.count; k += kLanes) {
-    int ends[4][kLanes], facets[4][kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      const int i = pairs.edge_a(k + l), j = pairs.edge_b(k + l);
-      ends[0][l] = a.map.from[i];
-      ends[1][l] = a.map.to[i];
-      ends[2][l] = b.map.from[j];
-      ends[3][l] = b.map.to[j];
-      facets[0][l] = a.map.left[i];
-      facets[1][l] = a.map.right[i];
-      facets[2][l] = b.map.left[j];
-      facets[3][l] = b.map.right[j];
-    }
-    LaneVectors p, e, q, f;
-    gather(p, a.posed, ends[0]);
-    gather(e, a.posed, ends[1]);
-    gather(q, b.posed, ends[2]);
-    gather(f, b.posed, ends[3]);
-    Lanes best = zero - std::numeric_limits<double>::max();
-    for (int side = 0; side < 4; ++side) {
-      const double(&from)[3][kFacets] = n[side / 2];
-      LaneVectors w;
-      gather(w, {from[0], from[1], from[2], kFacets}, facets[side]);
-      const Lanes start_a = w.x * p.x + w.y * p.y + w.z * p.z;
-      const Lanes end_a = w.x * e.x + w.y * e.y + w.z * e.z;
-      const Lanes start_b = w.x * q.x + w.y * q.y + w.z * q.z;
-      const Lanes end_b = w.x * f.x + w.y * f.y + w.z * f.z;
-      const Lanes lowest = (start_a < end_a ? start_a : end_a) + (start_b < end_b ? start_b : end_b) +
-                           (w.x * offset[0] + w.y * offset[1] + w.z * offset[2]);
-      Lanes key;
-      key_of(key, lowest, w.x * w.x + w.y * w.y + w.z * w.z);
-      best = key > best ? key : best;
-    }
-    least_key = best < least_key ? best : least_key;
-  }
-  return least(least_key);
-}
-
 /// Greatest and least coordinates of a body of at most eight vertices.
 struct Extent {
   Lanes most, least;  ///< x, y, z, x
@@ -493,48 +287,12 @@ PD_INLINE int winner(const NearestLane& best, double& key) {
   return static_cast<int>(least(ids));
 }
 
-/// What the kernel was asked.
-struct Question {
-  const SmallSatBody& a;
-  const SmallSatBody& b;
-  const double (&offset)[3];
-  const SmallSatErrors& errors;
-};
-
-/// What it knows by the time that it has told all sides.
-struct Sides {
-  const HeightRows& of_a;
-  const HeightRows& of_b;
-  const KeptEdges& kept_a;
-  const KeptEdges& kept_b;
-  const std::uint32_t (&sides_a)[kFacets];
-  const std::uint32_t (&facets_b)[kEdges];
-};
-
 }  // namespace
-
-/// Lists the pairs that cross for certain and measures those that may. Apart from the kernel, which most pairs of
-/// bodies run alone.
-PD_CLONES __attribute__((noinline)) void try_open_sides(const Question& question, const Sides& known,
-                                                        Crossings& certain, SmallSatNearest& out) {
-  const SmallSatBody& a = question.a;
-  const SmallSatBody& b = question.b;
-  std::uint32_t open_a[kFacets], open_b[kFacets];
-  open_sides(a.map, known.kept_a, known.of_a, question.errors.side_a, open_a);
-  open_sides(b.map, known.kept_b, known.of_b, question.errors.side_b, open_b);
-  Crossings possible;
-  list_with_open_sides(known.sides_a, known.facets_b, open_a, open_b, a.map, b.map, known.kept_a, known.kept_b, certain,
-                       possible);
-  out.possible = possible.count;
-  if (possible.count == 0) return;
-  TurnedNormals normals_a, normals_b;
-  turn_normals(normals_a, a);
-  turn_normals(normals_b, b);
-  out.possible_key = least_possible(a, b, normals_a, normals_b, possible, question.offset);
-}
+}  // namespace small_sat
 
 PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
                                            const SmallSatErrors& errors) {
+  using namespace small_sat;
   const Lanes none = Lanes{0, 0, 0, 0} + std::numeric_limits<double>::infinity();
   SmallSatNearest out;
   out.possible_key = std::numeric_limits<double>::infinity();
