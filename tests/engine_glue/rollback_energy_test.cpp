@@ -138,8 +138,9 @@ TEST_F(RollbackEnergy, ThrownCompoundsGainNone) {
     for (const FirstContact& contact : report.contacts) trials += contact.trials;
     ASSERT_LE(total_energy(scene, 9.81), start + 1e-3 * reference) << i;
   }
-  // 21 trials a contact, and 254 of 300 ended by the least part, where each trial before an impact met another one.
-  EXPECT_LE(trials, 2 * contacts);
+  // 21 trials a contact, and 254 of 300 ended by the least part, where each trial before an impact met another one. The
+  // mean over many scenes is 1.5 (`rollback_law`), that of this one between 1.3 and 2.3, as its course goes.
+  EXPECT_LE(trials, 4 * contacts);
   EXPECT_LE(least_parts, contacts / 10);
 }
 
