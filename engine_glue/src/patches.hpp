@@ -22,7 +22,7 @@ struct Patch {
 /// A patch of the last step where the bodies are now.
 struct LastPatch {
   Vec3 normal = Vec3::UnitX();  ///< the mean of its points'
-  std::array<Vec3, 4> places;  ///< of its points, on B
+  std::array<Vec3, 4> places;   ///< of its points, on B
   int count = 0;
 };
 
