@@ -161,6 +161,32 @@ TEST_P(SmallSolids, TheSameBitsOnEveryInstructionSet) {
   }
 }
 
+/// As if signs were less certain than they are: pairs that may cross then count, and what they are said to be farther
+/// than must hold for the depth.
+TEST_P(SmallSolids, PairsWithOpenSidesAreNoFartherThanTheDepth) {
+  int possible = 0;
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(i);
+    const Solids s = draw();
+    KernelInput in(s);
+    for (const float error : {1e-3F, 0.02F, 0.3F}) {
+      in.errors.side_a = in.errors.side_b = error;
+      const SmallSatNearest found = nearest_of_small(in.a, in.b, in.offset, in.errors);
+      const SmallSatNearest again = nearest_of_small_baseline(in.a, in.b, in.offset, in.errors);
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(found.key), std::bit_cast<std::uint64_t>(again.key));
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(found.possible_key), std::bit_cast<std::uint64_t>(again.possible_key));
+      EXPECT_EQ(found.possible, again.possible);
+      possible += found.possible;
+      const double expected = least_height(s, in.difference);
+      const double key = std::min(found.key, found.possible_key);
+      if (expected > 0 && key > 0) {
+        EXPECT_LE(std::sqrt(key), expected + 1e-13);
+      }
+    }
+  }
+  EXPECT_GT(possible, 300);
+}
+
 double outside(const Vec3& point, const Pose& pose, const ConvexPolytope& body) {
   const Vec3 local = pose.rotation().transpose() * (point - pose.translation());
   double most = -std::numeric_limits<double>::infinity();
