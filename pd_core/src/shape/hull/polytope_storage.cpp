@@ -20,9 +20,9 @@ using Storage = ConvexPolytope::Storage;
 constexpr std::size_t kAlignment = 64;
 
 /// Hands out consecutive aligned arrays; without memory it only measures.
-class Block {
+class MemoryBlock {
  public:
-  explicit Block(std::byte* memory) : memory_(memory) {}
+  explicit MemoryBlock(std::byte* memory) : memory_(memory) {}
 
   template <class T>
   T* take(int count) {
@@ -69,7 +69,7 @@ struct Counts {
 
 int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
 
-Arrays take_arrays(Block& block, const Counts& n) {
+Arrays take_arrays(MemoryBlock& block, const Counts& n) {
   Arrays a{};
   a.storage = block.take<Storage>(1);
   a.x = block.take<double>(n.padded);
@@ -296,10 +296,10 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
   n.facets = loops.size();
 
-  Block measure(nullptr);
+  MemoryBlock measure(nullptr);
   take_arrays(measure, n);
   auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
-  Block block(memory);
+  MemoryBlock block(memory);
   const Arrays out = take_arrays(block, n);
   std::shared_ptr<const Storage> shared(out.storage, release);
 
