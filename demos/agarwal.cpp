@@ -10,7 +10,7 @@ namespace pd::demo {
 
 namespace {
 
-constexpr std::array kPictures{
+constexpr std::array kAgarwalPictures{
     StillPicture{"normal_diagrams",
                  "The normal diagrams of -A and B on one sphere; their crossings are the edge-edge facets of P, "
                  "coloured by the families of the decomposition",
@@ -24,7 +24,7 @@ constexpr std::array kPictures{
 }  // namespace
 
 int run_agarwal(const DemoOptions& options) {
-  return draw_still_pictures(options, "agarwal", "The constructions of Agarwal et al.", kPictures);
+  return draw_still_pictures(options, "agarwal", "The constructions of Agarwal et al.", kAgarwalPictures);
 }
 
 }  // namespace pd::demo

@@ -10,7 +10,7 @@ namespace pd::demo {
 
 namespace {
 
-constexpr std::array kPictures{
+constexpr std::array kDobkinPictures{
     StillPicture{"hierarchies", "The hierarchies of two polytopes, level by level", hierarchy_picture},
     StillPicture{"descent", "One descent through them along a direction", descent_picture},
     StillPicture{"polygons", "A polygon with holes, a convex one stuck in it, and all places where they overlap",
@@ -20,7 +20,7 @@ constexpr std::array kPictures{
 }  // namespace
 
 int run_dobkin(const DemoOptions& options) {
-  return draw_still_pictures(options, "dobkin", "The constructions of Dobkin et al.", kPictures);
+  return draw_still_pictures(options, "dobkin", "The constructions of Dobkin et al.", kDobkinPictures);
 }
 
 }  // namespace pd::demo

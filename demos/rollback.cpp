@@ -37,9 +37,9 @@ namespace {
 constexpr int kFramesPerStep = 2;
 constexpr int kFramesPerImpact = 15;
 /// Depths below this are not worth an arrow.
-constexpr double kShownDepth = 2e-3;
+constexpr double kRollbackDepth = 2e-3;
 
-constexpr std::array<SceneChoice, 2> kScenes{
+constexpr std::array<SceneChoice, 2> kRollbackScenes{
     SceneChoice{"a crystal, a box and a stone meet a wall and each other", true, scenes::fast_throws},
     SceneChoice{"spinning rods meet a wall of one millimetre", false, scenes::rods_at_a_foil}};
 
@@ -304,8 +304,8 @@ void advance(DemoWorld& world, RollbackStepper& stepper, double step, Course& co
 /// One of the two worlds at the end of a step.
 Half half_of(DemoWorld& world, const Measurement& now, const std::vector<double>& depths, double full_scale,
              const std::string& heading, const std::string& status) {
-  Half half{world.picture(now, kShownDepth), now.deepest, {}, heading, status, {}};
-  if (now.deepest > kShownDepth) {
+  Half half{world.picture(now, kRollbackDepth), now.deepest, {}, heading, status, {}};
+  if (now.deepest > kRollbackDepth) {
     const PenetrationDepth& answer = now.deepest_answer;
     half.scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
   }
@@ -351,7 +351,7 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
                 whole,
                 {},
                 {plan.view_azimuth, plan.view_elevation},
-                kShownDepth,
+                kRollbackDepth,
                 options.video};
   duel.view.include(plan.view_lower);
   duel.view.include(plan.view_upper);
@@ -387,7 +387,7 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
         half_of(guarded, right, rows.rollback_depths, full_scale, "taken back to first contact", status);
     const std::string said = fmt::format("penetration at the end of the step {} / {}", length_text(left.deepest),
                                          length_text(right.deepest));
-    const bool telling = course.impacts.size() > known || left.deepest > 10 * kShownDepth;
+    const bool telling = course.impacts.size() > known || left.deepest > 10 * kRollbackDepth;
     const std::string time = fmt::format("{:.0f} ms", 1e3 * i * step);
     if (auto error = film_step(film, first, second, said, telling, telling || i == 0, time)) return *std::move(error);
     if (auto error = draw_impacts(guarded, course, known, close_up, whole, folder)) return *std::move(error);
@@ -411,7 +411,7 @@ int run_rollback(const DemoOptions& options) {
     report_failure(kind.error());
     return kDemoBadUsage;
   }
-  const auto worlds = choose_scenes(options, kScenes);
+  const auto worlds = choose_scenes(options, kRollbackScenes);
   if (!worlds) {
     report_failure(worlds.error());
     return kDemoBadUsage;

@@ -30,11 +30,11 @@ namespace {
 /// When the frames of the strip are taken, as shares of the whole: most happens at the start.
 constexpr std::array<double, 6> kTellingShares{0, 0.06, 0.14, 0.3, 0.6, 1};
 /// Depths below this are not worth an arrow.
-constexpr double kShownDepth = 2e-4;
+constexpr double kStackingDepth = 2e-4;
 /// Contacts that brake a body nearer than this to one that is drawn already are not drawn again.
 constexpr double kGhostsApart = 0.4;
 
-constexpr std::array<SceneChoice, 5> kScenes{
+constexpr std::array<SceneChoice, 5> kStackingScenes{
     SceneChoice{"two towers of 2 cm bodies that have to stand", true, scenes::small_towers},
     SceneChoice{"a pile of small bodies that start inside each other", true, scenes::deep_pile},
     SceneChoice{"a box slides over a flat mesh: contacts that brake it are drawn", false, scenes::slide_over_mesh},
@@ -198,8 +198,8 @@ void simulate(Run& run, int steps) {
     run.frame_steps.push_back(step);
     for (const auto& contender : run.contenders) {
       const Measurement& now = contender->history[step];
-      render::Scene scene = contender->world.picture(now, kShownDepth);
-      if (now.deepest > kShownDepth && !run.plan.should_glide) {
+      render::Scene scene = contender->world.picture(now, kStackingDepth);
+      if (now.deepest > kStackingDepth && !run.plan.should_glide) {
         const PenetrationDepth& answer = now.deepest_answer;
         scene.arrows.push_back({answer.witness_a, answer.witness_b, length_text(answer.depth)});
       }
@@ -233,7 +233,7 @@ Expected<int> draw_run(const Run& run, const DemoOptions& options, const std::fi
                 {options.width, options.height},
                 {},
                 {run.plan.view_azimuth, run.plan.view_elevation},
-                kShownDepth,
+                kStackingDepth,
                 options.video};
   plan.view.include(run.plan.view_lower);
   plan.view.include(run.plan.view_upper);
@@ -370,7 +370,7 @@ int run_stacking(const DemoOptions& options) {
   // The rival of a pdepth solver is Bullet's EPA; Bullet's solvers are shown against the exact one.
   const bool ours = *first == SolverKind::exact || *first == SolverKind::approximate;
   const SolverKind second = ours ? SolverKind::bullet_epa : SolverKind::exact;
-  const auto worlds = choose_scenes(options, kScenes);
+  const auto worlds = choose_scenes(options, kStackingScenes);
   if (!worlds) {
     report_failure(worlds.error());
     return kDemoBadUsage;

@@ -23,8 +23,8 @@ namespace {
 
 namespace palette = render::palette;
 
-constexpr double kDelta = 0.5;
-constexpr render::ViewAngle kAngle{.azimuth_degrees = -62, .elevation_degrees = 24};
+constexpr double kShallowDelta = 0.5;
+constexpr render::ViewAngle kShallowAngle{.azimuth_degrees = -62, .elevation_degrees = 24};
 
 /// Points spread evenly over an ellipsoid.
 ConvexPolytope pebble(int n, const Vec3& radii) {
@@ -83,7 +83,8 @@ Expected<render::Image> draw_bodies(const PosedShape& a, const PosedShape& b, co
   scene.ground.scale_bar = false;
   scene.focus = box;
   return renderer.draw(
-      scene, render::frame_box(box, size, kAngle, {.left = 0.08, .right = 0.08, .top = 0.1, .bottom = 0.1}), size);
+      scene, render::frame_box(box, size, kShallowAngle, {.left = 0.08, .right = 0.08, .top = 0.1, .bottom = 0.1}),
+      size);
 }
 
 Expected<render::Image> draw_search(const MinkowskiDifference& p, const Search& search, const PenetrationDepth& exact,
@@ -115,7 +116,8 @@ Expected<render::Image> draw_search(const MinkowskiDifference& p, const Search& 
   scene.ground.scale_bar = false;
   scene.focus = box;
   return renderer.draw(
-      scene, render::frame_box(box, size, kAngle, {.left = 0.04, .right = 0.04, .top = 0.22, .bottom = 0.05}), size);
+      scene, render::frame_box(box, size, kShallowAngle, {.left = 0.04, .right = 0.04, .top = 0.22, .bottom = 0.05}),
+      size);
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ Expected<render::Image> shallow_search_picture(render::Renderer& renderer, rende
   const Pose pose_a = Pose::from_quaternion({0.8, 0.36, 0.0, 0.48}, {0.25, -0.3, 0.58}).value();
   const PosedShape posed_a{&a, pose_a}, posed_b{&b, Pose()};
   Scratch scratch;
-  const auto grid = direction_grid(GridKind::geodesic, kDelta / 4);
+  const auto grid = direction_grid(GridKind::geodesic, kShallowDelta / 4);
   if (!grid) return grid.error();
   std::vector<Vec3> ends;
   Search search;
@@ -135,7 +137,7 @@ Expected<render::Image> shallow_search_picture(render::Renderer& renderer, rende
     if (!out) return out.error();
     ends.push_back(out->depth * u);
   }
-  const auto found = shallow_penetration(posed_a, posed_b, scratch, kDelta);
+  const auto found = shallow_penetration(posed_a, posed_b, scratch, kShallowDelta);
   if (!found) return found.error();
   search.radius = found->counts.radius;
   search.count = found->counts.visited;

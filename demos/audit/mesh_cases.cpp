@@ -63,12 +63,12 @@ Vec3 extreme(const Hull& hull, const Pose& pose, const Vec3& direction) {
                                              [&](const Vec3& p, const Vec3& q) { return p.dot(local) < q.dot(local); });
 }
 
-struct Box {
+struct HullBox {
   Vec3 centre;
   double size;
 };
 
-Box box_of(const Hull& hull) {
+HullBox box_of(const Hull& hull) {
   Vec3 low = hull.vertices.front();
   Vec3 high = low;
   for (const Vec3& p : hull.vertices) {

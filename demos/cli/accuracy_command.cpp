@@ -21,7 +21,7 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kAccuracyFooter =
     R"(A recorder answers --list with its engines, and --engine E --family F --pairs N --vertices V --seed S --out FILE
 with a contact record in FILE. Built beside this command where the packages are: record_peers (ours, Bullet in single
 precision, libccd, FCL, ODE) and record_peers_double (Bullet in double precision).
@@ -125,7 +125,7 @@ void add_accuracy_command(CLI::App& app, Action& action) {
   arguments->settings.threads = 0;
   audit::AccuracySettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand("accuracy", "Who fails what: engines over generated families of hard pairs");
-  command->footer(kFooter);
+  command->footer(kAccuracyFooter);
   command->add_option("--recorder", arguments->recorders, "Programs that record (default: those built beside this one)")
       ->delimiter(',');
   command->add_option("--engines", arguments->engines, "Only these")->delimiter(',');

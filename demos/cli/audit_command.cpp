@@ -19,7 +19,7 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(A record: one JSON object a line, shapes before they are used:
+constexpr const char* kAuditFooter = R"(A record: one JSON object a line, shapes before they are used:
   {"record":"pdepth-contacts/1","engine":"Bullet 3.24","scalar":"float32"}
   {"shape":"s1","is":{"type":"box","half_extents":[1,1,1]}}
   {"contact":7,"a":"s1","pose_a":POSE,"b":"s2","pose_b":POSE,
@@ -164,7 +164,7 @@ void add_audit_command(CLI::App& app, Action& action) {
   audit::AuditSettings& settings = arguments->settings;
   CLI::App* command =
       app.add_subcommand("audit", "Judge the contacts that an engine recorded against the exact answer");
-  command->footer(kFooter);
+  command->footer(kAuditFooter);
   command->add_option("RECORD", arguments->input, "The record, JSON lines; - is standard input")->required();
   command
       ->add_option("--tolerance", arguments->tolerance,

@@ -22,7 +22,8 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
+constexpr const char* kDepthFooter =
+    R"(Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
 x,y,z,r11,r12,r13,r21,...,r33 turns by a matrix. World point = R * point + (x,y,z).
 
 A mesh stands for the convex hull of its vertices. A moves by the translation, B stays.
@@ -107,8 +108,6 @@ std::string feature_in_words(const Feature& feature, const query::NamedShape& sh
   }
   return "none";
 }
-
-void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }
 
 void print_body(std::string_view name, const std::string& file, const ConvexPolytope& hull) {
   print_row(name, fmt::format("{}  (hull: {} vertices, {} edges, {} facets)", file, hull.num_vertices(),
@@ -226,7 +225,7 @@ int run_depth(const DepthArguments& arguments) {
 void add_depth_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<DepthArguments>();
   CLI::App* command = app.add_subcommand("depth", "Penetration depth (or distance) of two meshes");
-  command->footer(kFooter);
+  command->footer(kDepthFooter);
   command->add_option("A", arguments->file_a, "Mesh that moves: OBJ, STL, PLY, OFF or glTF")->required();
   command->add_option("B", arguments->file_b, "Mesh that stays")->required();
   command->add_option("--pose-a", arguments->pose_a, "Where A stands [the identity]");

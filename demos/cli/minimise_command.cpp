@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFooter =
+constexpr const char* kMinimiseFooter =
     R"(The predicate is a shell command that gets the line on its standard input; status 0 means "still of interest":
   pdepth minimise bad.jsonl --predicate 'pdepth query | grep -q limit_exceeded'
 What can be left out is left out (vertices, parts, optional fields), and numbers become short, as long as it holds.)";
@@ -173,7 +173,7 @@ int run_minimise(const MinimiseArguments& arguments) {
 void add_minimise_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<MinimiseArguments>();
   CLI::App* command = app.add_subcommand("minimise", "Shrink a line of the protocol while a command still accepts it");
-  command->footer(kFooter);
+  command->footer(kMinimiseFooter);
   command->add_option("LINE", arguments->input, "A file whose first line is shrunk; - is standard input")->required();
   command->add_option("--predicate", arguments->predicate, "Shell command; 0 = still of interest")->required();
   command->callback([arguments, &action] { action = [arguments] { return run_minimise(*arguments); }; });

@@ -31,6 +31,8 @@ std::string refuse_other_pictures(const std::string& file) {
   return std::filesystem::path(file).extension() == ".png" ? "" : file + ": pictures are written as PNG: name it *.png";
 }
 
+void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }
+
 std::string duration_in_words(std::int64_t nanoseconds) {
   const auto t = static_cast<double>(nanoseconds);
   if (t < 1e3) return fmt::format("{} ns", nanoseconds);

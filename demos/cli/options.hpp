@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pd::cli {
@@ -13,6 +14,9 @@ namespace pd::cli {
 
 /// A check for options: the commands write one format, whatever the file is called.
 [[nodiscard]] std::string refuse_other_pictures(const std::string& file);
+
+/// A line of an answer for people: its name and its value.
+void print_row(std::string_view name, const std::string& value);
 
 /// "850 ns", "3.1 ms".
 [[nodiscard]] std::string duration_in_words(std::int64_t nanoseconds);

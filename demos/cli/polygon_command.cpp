@@ -23,7 +23,7 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(P stays, Q moves. A file is
+constexpr const char* kPolygonFooter = R"(P stays, Q moves. A file is
   FILE.json     {"outer":[[x,y],...],"holes":[[[x,y],...],...]}, in P's unit
   FILE.svg#ID   an element of a drawing: path, rect, circle, ellipse, polygon or polyline, with the transforms above it;
                 #ID may be left out where there is one. The inside follows fill-rule; fill and stroke do not matter
@@ -108,8 +108,6 @@ PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r) {
 }
 
 // ---- words for people --------------------------------------------------------------------------------------------
-
-void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }
 
 void print_polygon(std::string_view name, const std::string& file, const drawing::PolygonFile& polygon) {
   const int holes = polygon.polygon.num_rings() - 1;
@@ -232,7 +230,7 @@ int run_polygon(const PolygonArguments& arguments) {
 void add_polygon_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<PolygonArguments>();
   CLI::App* command = app.add_subcommand("polygon", "How far one polygon must move to leave another, in the plane");
-  command->footer(kFooter);
+  command->footer(kPolygonFooter);
   command->add_option("P", arguments->file_p, "Polygon that stays: FILE.svg, FILE.svg#ID or FILE.json")->required();
   command->add_option("Q", arguments->file_q, "Polygon that moves")->required();
   command->add_option("--direction", arguments->direction, "Move along X,Y [the best direction]");

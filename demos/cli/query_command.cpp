@@ -17,7 +17,7 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(One JSON object a line in, one out, in the same order:
+constexpr const char* kQueryFooter = R"(One JSON object a line in, one out, in the same order:
   {"id":1,"query":"depth","a":SHAPE,"pose_a":POSE,"b":SHAPE,"pose_b":POSE}
   {"id":1,"class":"overlapping","depth":...,"lower":...,"upper":...,"translation":[...],...}
 A line that cannot be answered is answered by {"id":1,"error":{"code":...,"message":...,"where":...}}.
@@ -55,7 +55,7 @@ void add_query_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<QueryArguments>();
   query::StreamSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand("query", "Answer queries of the line protocol, one JSON object a line");
-  command->footer(kFooter);
+  command->footer(kQueryFooter);
   command->add_option("FILE", arguments->input, "Lines to answer; - is standard input")->capture_default_str();
   add_threads_option(*command, settings.threads, "answer");
   add_limit_options(*command, settings.limits);

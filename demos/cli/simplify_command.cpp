@@ -24,7 +24,7 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kFooter = R"(The result is convex, and lies on one side of the scan's convex hull:
+constexpr const char* kSimplifyFooter = R"(The result is convex, and lies on one side of the scan's convex hull:
   outer  encloses every point; along no direction does it stick out by more than epsilon / 2 of the scan's extent
   inner  is enclosed, its vertices are points of the scan; every extent is at least (1 - epsilon) of the scan's
 
@@ -136,7 +136,7 @@ int run_simplify(const SimplifyArguments& arguments) {
 void add_simplify_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<SimplifyArguments>();
   CLI::App* command = app.add_subcommand("simplify", "A small convex hull of a dense scan, with a stated error");
-  command->footer(kFooter);
+  command->footer(kSimplifyFooter);
   command->add_option("SCAN", arguments->input, "Points or mesh: PLY, OBJ, STL, OFF or glTF")->required();
   command->add_option("-o,--output", arguments->output, "The hull, as OBJ")->required();
   command->add_option("--epsilon", arguments->epsilon, "Error, relative to the scan's extent, in [1e-6, 1)")

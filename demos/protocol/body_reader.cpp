@@ -18,12 +18,6 @@ bool is_non_convex(const Node& line, std::string_view key) {
   return type != body->json().end() && (*type == "compound" || *type == "star");
 }
 
-template <class T>
-T value_or_refuse(Expected<T> expected, const Node& node) {
-  if (!expected) node.refuse(expected.error());
-  return std::move(expected).value();
-}
-
 NamedBody read_nested(const Node& node, const Limits& limits, int depth);
 
 NamedBody read_compound(const Node& node, const Limits& limits, int depth) {

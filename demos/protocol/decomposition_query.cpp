@@ -11,13 +11,6 @@ namespace {
 constexpr std::int64_t kMostProducts = std::int64_t{1} << 32;
 constexpr std::int64_t kMostFacets = std::int64_t{1} << 26;
 
-const ConvexPolytope& require_polytope(const NamedShape& named, const Node& node) {
-  if (named.shape.polytope() == nullptr || named.shape.margin() > 0) {
-    node.refuse("unsupported", "must be a polytope (convex, box, mesh) without a margin for this query");
-  }
-  return *named.shape.polytope();
-}
-
 }  // namespace
 
 void answer_decomposition(const Node& line, Session& session, JsonWriter& answer) {

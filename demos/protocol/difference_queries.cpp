@@ -33,14 +33,6 @@ DirectionalMethod read_directional_method(const Node& node) {
   node.refuse("bad_value", "unknown method; known: hierarchy, portal, overlay");
 }
 
-/// The polytope core of a body without a margin.
-const ConvexPolytope& require_polytope(const NamedShape& named, const Node& node) {
-  if (named.shape.polytope() == nullptr || named.shape.margin() > 0) {
-    node.refuse("unsupported", "must be a polytope (convex, box, mesh) without a margin for this query");
-  }
-  return *named.shape.polytope();
-}
-
 }  // namespace
 
 void answer_support_of_difference(const Node& line, Session& session, JsonWriter& answer) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pd/numeric/expected.hpp"
@@ -52,6 +53,13 @@ void require_object(const Node& node);
 void allow_only(const Node& object, std::initializer_list<std::string_view> keys);
 /// Refuses a value that is no array (bad_value).
 void require_array(const Node& node, std::string_view meaning);
+
+/// Unwraps a factory's answer.
+template <class T>
+T value_or_refuse(Expected<T> expected, const Node& node) {
+  if (!expected) node.refuse(expected.error());
+  return std::move(expected).value();
+}
 
 /// A finite number. "nan", "inf" and "-inf" as strings are refused as non_finite, anything else as bad_value.
 [[nodiscard]] double read_number(const Node& node);

@@ -11,13 +11,6 @@ namespace pd::query {
 
 namespace {
 
-/// Unwraps a factory's answer.
-template <class T>
-T value_or_refuse(Expected<T> expected, const Node& node) {
-  if (!expected) node.refuse(expected.error());
-  return std::move(expected).value();
-}
-
 int read_axis(const Node& node) {
   const std::string word = read_string(node);
   if (word == "x") return 0;
@@ -186,6 +179,13 @@ NamedShape read_shape(const Node& node, const Limits& limits) {
     shape.shape = value_or_refuse(shape.shape.with_margin(margin), node);
   }
   return shape;
+}
+
+const ConvexPolytope& require_polytope(const NamedShape& named, const Node& node) {
+  if (named.shape.polytope() == nullptr || named.shape.margin() > 0) {
+    node.refuse("unsupported", "must be a polytope (convex, box, mesh) without a margin for this query");
+  }
+  return *named.shape.polytope();
 }
 
 Pose read_pose(const Node& node) {

@@ -30,6 +30,9 @@ struct NamedShape {
 /// reads them).
 [[nodiscard]] NamedShape read_shape(const Node& node, const Limits& limits);
 
+/// The polytope core of a body without a margin; refused where there is none.
+[[nodiscard]] const ConvexPolytope& require_polytope(const NamedShape& named, const Node& node);
+
 /// Reads a pose; the identity where a part is missing.
 [[nodiscard]] Pose read_pose(const Node& node);
 

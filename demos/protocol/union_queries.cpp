@@ -13,12 +13,6 @@ namespace pd::query {
 
 namespace {
 
-template <class T>
-T value_or_refuse(Expected<T> expected, const Node& node) {
-  if (!expected) node.refuse(expected.error());
-  return std::move(expected).value();
-}
-
 void write_ids(std::string_view key, const std::vector<int>& ids, JsonWriter& answer) {
   answer.key(key).begin_array();
   for (const int id : ids) answer.integer(id);
@@ -219,7 +213,7 @@ void answer_union_contact_manifold(const Node& line, Session& session, JsonWrite
   answer.key("part_b").integer(depth.part_b);
 }
 
-std::string_view word_of(Feature::Kind kind) {
+std::string_view word_of_facet(Feature::Kind kind) {
   return kind == Feature::Kind::facet ? "facet" : kind == Feature::Kind::edge ? "edge" : "vertex";
 }
 
@@ -243,7 +237,7 @@ void answer_union_minkowski_difference(const Node& line, Session& session, JsonW
   answer.key("K").integer(static_cast<std::int64_t>(result.facets.size()));
   answer.key("facet_kinds").begin_array();
   for (const UnionDifference::Facet& facet : result.facets) {
-    answer.string(std::string(word_of(facet.on_a.kind)) + "-" + std::string(word_of(facet.on_b.kind)));
+    answer.string(std::string(word_of_facet(facet.on_a.kind)) + "-" + std::string(word_of_facet(facet.on_b.kind)));
   }
   answer.end_array();
   const auto write_parts = [&](std::string_view key, std::int32_t UnionDifference::Facet::*part) {

@@ -36,7 +36,7 @@ py::dict statistics_of(const Statistics& statistics) {
   return fields;
 }
 
-std::string repr_of(const PairAnswer& answer) {
+std::string repr_of_answer(const PairAnswer& answer) {
   const UnionDepth& depth = answer.depth;
   const auto number = [](double x) { return py::repr(py::float_(x)).cast<std::string>(); };
   std::string text = "<Depth " + std::string(to_string(depth.contact));
@@ -286,7 +286,7 @@ void bind_answer(py::module_& module) {
           "shape_a", [](const PairAnswer& x) { return x.a; }, "A.")
       .def_property_readonly(
           "shape_b", [](const PairAnswer& x) { return x.b; }, "B.")
-      .def("__repr__", &repr_of)
+      .def("__repr__", &repr_of_answer)
       .def(py::pickle(&state_of, &answer_of_state));
 }
 

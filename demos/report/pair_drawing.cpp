@@ -15,8 +15,8 @@ namespace pd::report {
 
 namespace {
 
-constexpr double kWidth = 340;
-constexpr double kHeight = 270;
+constexpr double kPairWidth = 340;
+constexpr double kPairHeight = 270;
 constexpr double kBorder = 16;
 constexpr double kYaw = 0.6;     // radians; the page's script begins there, too
 constexpr double kPitch = 0.28;  // radians above the horizon
@@ -46,14 +46,14 @@ class Lens {
       }
     }
     const Vec3 size = (high - low).cwiseMax(1e-9);
-    zoom_ = std::min((kWidth - 2 * kBorder) / size.x(), (kHeight - 2 * kBorder) / size.y());
+    zoom_ = std::min((kPairWidth - 2 * kBorder) / size.x(), (kPairHeight - 2 * kBorder) / size.y());
     centre_ = 0.5 * (low + high);
   }
   [[nodiscard]] double zoom() const { return zoom_; }
   /// Screen x, screen y (downwards), and how near to the eye.
   [[nodiscard]] Vec3 operator()(const Vec3& p) const {
     const Vec3 at = turned(p) - centre_;
-    return {kWidth / 2 + zoom_ * at.x(), kHeight / 2 - zoom_ * at.y(), at.z()};
+    return {kPairWidth / 2 + zoom_ * at.x(), kPairHeight / 2 - zoom_ * at.y(), at.z()};
   }
 
  private:
@@ -166,7 +166,7 @@ void write_body(const DrawnBody& body, std::string& text) {
 
 std::string drawing_of(const PairView& view, std::string_view label) {
   std::string text = fmt::format("<svg class=\"drawing\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n",
-                                 kWidth, kHeight, escaped(label));
+                                 kPairWidth, kPairHeight, escaped(label));
   const Lens seen(view);
   for (const DrawnBody& body : view.bodies) draw_edges(body.shape, seen, text);
   text += "<g class=\"facets\">\n";

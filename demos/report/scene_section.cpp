@@ -12,10 +12,10 @@ namespace pd::report {
 
 namespace {
 
-constexpr double kLeft = 54;
-constexpr double kWidth = 336;
-constexpr double kTop = 10;
-constexpr double kHeight = 120;
+constexpr double kSceneLeft = 54;
+constexpr double kSceneWidth = 336;
+constexpr double kSceneTop = 10;
+constexpr double kSceneHeight = 120;
 constexpr int kSeriesColours = 4;
 
 /// 1, 2 or 5 times a power of ten, at least `value`; 1 of nothing.
@@ -51,9 +51,11 @@ struct Plot {
   Axis axis;
   [[nodiscard]] double x(double time) const {
     const double span = scene.times.back() - scene.times.front();
-    return kLeft + (span > 0 ? kWidth * (time - scene.times.front()) / span : 0);
+    return kSceneLeft + (span > 0 ? kSceneWidth * (time - scene.times.front()) / span : 0);
   }
-  [[nodiscard]] double y(double value) const { return kTop + kHeight * (axis.high - value) / (axis.high - axis.low); }
+  [[nodiscard]] double y(double value) const {
+    return kSceneTop + kSceneHeight * (axis.high - value) / (axis.high - axis.low);
+  }
 };
 
 std::size_t time_of_frame(const SceneSection& scene, std::size_t frame) {
@@ -88,26 +90,26 @@ std::string chart(const Quantity& quantity, const SceneSection& scene) {
   std::string text = fmt::format(
       "<figure><figcaption>{0}</figcaption>\n<svg class=\"chart\" viewBox=\"0 0 400 156\" role=\"img\" "
       "aria-label=\"{0} over time\" data-left=\"{1}\" data-width=\"{2}\">\n",
-      escaped(quantity.name), kLeft, kWidth);
+      escaped(quantity.name), kSceneLeft, kSceneWidth);
   const auto out = std::back_inserter(text);
   for (const double share : {0.0, 0.5, 1.0}) {
     const double value = plot.axis.low + share * (plot.axis.high - plot.axis.low);
     fmt::format_to(out,
                    "<line class=\"rule\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text x=\"{3}\" "
                    "y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
-                   kLeft, kLeft + kWidth, plot.y(value), kLeft - 5, plot.y(value) + 4,
+                   kSceneLeft, kSceneLeft + kSceneWidth, plot.y(value), kSceneLeft - 5, plot.y(value) + 4,
                    escaped(report::quantity(value, quantity.unit)));
   }
   for (const double share : {0.0, 0.5, 1.0}) {
     const double time = scene.times.front() + share * (scene.times.back() - scene.times.front());
-    fmt::format_to(out, "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", kLeft + share * kWidth,
-                   kTop + kHeight + 17, share == 1 ? "end" : "middle",
+    fmt::format_to(out, "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", kSceneLeft + share * kSceneWidth,
+                   kSceneTop + kSceneHeight + 17, share == 1 ? "end" : "middle",
                    escaped(report::quantity(time, scene.time_unit)));
   }
   draw_lines(quantity, plot, text);
   const double now = plot.x(scene.times[time_of_frame(scene, scene.shown)]);
   fmt::format_to(out, "<line class=\"cursor\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>\n</svg></figure>\n",
-                 now, kTop, kTop + kHeight);
+                 now, kSceneTop, kSceneTop + kSceneHeight);
   return text;
 }
 
@@ -129,7 +131,7 @@ std::string figures(const SceneSection& scene) {
   return text + "</tbody></table></div>\n";
 }
 
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : escaped(text)) result += c == '\\' || c == '\n' || c == '\t' ? ' ' : c;
   return result + "\"";
@@ -140,17 +142,17 @@ std::string data_of(const SceneSection& scene) {
   std::vector<std::string> files;
   std::vector<std::string> contenders;
   std::vector<double> times;
-  for (const SceneSection::Frame& frame : scene.frames) files.push_back(quoted(frame.file));
-  for (const std::string& name : scene.contenders) contenders.push_back(quoted(name));
+  for (const SceneSection::Frame& frame : scene.frames) files.push_back(json_string(frame.file));
+  for (const std::string& name : scene.contenders) contenders.push_back(json_string(name));
   for (std::size_t i = 0; i < num_frames(scene); ++i) times.push_back(scene.times[time_of_frame(scene, i)]);
   std::string text = fmt::format(
       "{{\"alt\":{},\"time_unit\":{},\"files\":[{}],\"contenders\":[{}],\"times\":[{:.6g}],\"quantities\":[",
-      quoted(scene.title), quoted(scene.time_unit), fmt::join(files, ","), fmt::join(contenders, ","),
+      json_string(scene.title), json_string(scene.time_unit), fmt::join(files, ","), fmt::join(contenders, ","),
       fmt::join(times, ","));
   for (std::size_t q = 0; q < scene.quantities.size(); ++q) {
     const Quantity& quantity = scene.quantities[q];
-    text += fmt::format("{}{{\"name\":{},\"unit\":{},\"values\":[", q > 0 ? "," : "", quoted(quantity.name),
-                        quoted(quantity.unit));
+    text += fmt::format("{}{{\"name\":{},\"unit\":{},\"values\":[", q > 0 ? "," : "", json_string(quantity.name),
+                        json_string(quantity.unit));
     for (std::size_t c = 0; c < quantity.values.size(); ++c) {
       std::vector<double> at_frames;
       for (std::size_t i = 0; i < times.size(); ++i) at_frames.push_back(quantity.values[c][time_of_frame(scene, i)]);

@@ -4,10 +4,6 @@
 
 namespace pd::scenes {
 
-namespace {
-constexpr double kDensity = 700;  // wood
-}
-
 double Stream::next() {
   state_ ^= state_ << 13;
   state_ ^= state_ >> 7;

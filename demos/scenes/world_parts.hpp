@@ -22,6 +22,8 @@ class Stream {
   std::uint64_t state_;
 };
 
+inline constexpr double kDensity = 700;  ///< kg/m^3: wood
+
 /// A fixed box whose upper face is z = 0, `extent` to each side.
 [[nodiscard]] WorldBody ground_box(double extent);
 [[nodiscard]] WorldBody box(const Vec3& half_extents, const Vec3& at);

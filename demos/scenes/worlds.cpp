@@ -6,8 +6,6 @@ namespace pd::scenes {
 
 namespace {
 
-constexpr double kDensity = 700;  // wood
-
 WorldBody floor_below(double extent) {
   WorldBody body;
   body.points = box_points(Vec3(extent, extent, 0.25 * extent));

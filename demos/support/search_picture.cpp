@@ -17,8 +17,8 @@ namespace {
 
 namespace palette = render::palette;
 
-constexpr std::int64_t kMostFacets = 100'000;
-constexpr render::Insets kInsets{.left = 0.05, .right = 0.05, .top = 0.06, .bottom = 0.06};
+constexpr std::int64_t kMostSearchFacets = 100'000;
+constexpr render::Insets kSearchInsets{.left = 0.05, .right = 0.05, .top = 0.06, .bottom = 0.06};
 
 /// Those of a step's faces that `wanted` names, and no other points.
 template <class Wanted>
@@ -50,8 +50,8 @@ render::ViewAngle facing(const Vec3& normal) {
 
 SearchPictures::SearchPictures(const query::SearchFile& search, render::Size size) : search_(search), size_(size) {
   const query::Pair& pair = search.pair;
-  const auto difference =
-      minkowski_difference(*pair.a.shape.polytope(), pair.pose_a, *pair.b.shape.polytope(), pair.pose_b, kMostFacets);
+  const auto difference = minkowski_difference(*pair.a.shape.polytope(), pair.pose_a, *pair.b.shape.polytope(),
+                                               pair.pose_b, kMostSearchFacets);
   if (difference && !difference->facets.empty()) {
     difference_ = difference_mesh(
         *difference, [](std::size_t) { return true; }, [](std::size_t) { return palette::kInkFaint; });
@@ -88,7 +88,8 @@ Expected<render::Image> SearchPictures::draw(std::size_t index, render::Renderer
   scene.balls.push_back({.centre = step.support, .radius = 1.4 * dot, .colour = palette::kDepth});
   scene.ground.visible = false;
   scene.focus = box_;
-  return renderer.draw(scene, render::frame_box(box_, size_, facing(search_.steps.back().normal), kInsets), size_);
+  return renderer.draw(scene, render::frame_box(box_, size_, facing(search_.steps.back().normal), kSearchInsets),
+                       size_);
 }
 
 std::string SearchPictures::heading(std::size_t index) const {

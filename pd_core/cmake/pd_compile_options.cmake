@@ -6,16 +6,33 @@
 # -Wno-restrict: GCC 12 reports overlapping copies inside its own std::string (bug 105651) where operator+ is inlined.
 # -Wno-maybe-uninitialized: at -O3 GCC 12 reports the limbs of Boost's fixed-size integers beyond their size; Clang's own
 # analysis of uninitialised variables and the sanitizers watch instead.
+# -Wno-subobject-linkage: in a unity build GCC takes every source for a header, where a class must not hold what is anonymous.
 function(pd_compile_options target)
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
                                            -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
-                                           $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+                                           $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+                                           $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wno-subobject-linkage>)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
     target_compile_options(${target} PRIVATE -U__ARM_FEATURE_FMA)
   endif()
   if(PD_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+endfunction()
+
+# pd_unity_by_folder(<target>): where CMAKE_UNITY_BUILD is on, the sources of one folder are compiled as one, whatever batch size
+# is set: most of what a source costs is instances of Eigen's and the standard library's templates, the same in every source.
+# So a name in an anonymous namespace is its folder's. A source with the property SKIP_UNITY_BUILD_INCLUSION stays alone.
+function(pd_unity_by_folder target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE folder)
+    cmake_path(GET folder PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    string(MAKE_C_IDENTIFIER "${folder}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${group}")
+  endforeach()
 endfunction()
 
 # pd_precompile_headers(<target> [<header>...] | <target> REUSE_FROM <other>): what nearly every source of the target parses, and

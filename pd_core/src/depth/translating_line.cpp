@@ -21,7 +21,7 @@ using detail::RoundedDirection;
 using detail::VertexPair;
 
 /// t = level / slope in units of |motion|; level carries the pair's homogeneous factor once more than slope > 0.
-struct Crossing {
+struct ShadowEnd {
   Dyadic level;
   Dyadic slope;
 };
@@ -48,7 +48,7 @@ class ShadowSearch {
   }
 
   /// The end of Q on the ray's line forwards (sense 1) or backwards (-1). Requires `reaches_line`.
-  Crossing end(int sense) {
+  ShadowEnd end(int sense) {
     if (left_side_ == 0 && right_side_ == 0) return end_of_segment(sense);
     // Invariant: left lies on the line or to its left, right on it or to its right, not both on it.
     VertexPair left = left_, right = right_;
@@ -96,13 +96,13 @@ class ShadowSearch {
 
   /// Where the ray's line crosses the chord's: t <v, n> = <left, n> for n = d x chord, to which d is normal.
   /// <v, n> = <chord, v x d> > 0, because left lies to the left of right.
-  [[nodiscard]] Crossing crossing(const PairVector& chord, const VertexPair& left) const {
+  [[nodiscard]] ShadowEnd crossing(const PairVector& chord, const VertexPair& left) const {
     const Dyadic3 normal = cross(direction_, pair_.exact(chord));
     return {dot(pair_.exact(PairVector::point(left.a, left.b)), normal), dot(motion_, normal)};
   }
 
   /// Q lies on the ray's line: its extreme vertex along the motion's part normal to d, d x (v x d).
-  Crossing end_of_segment(int sense) {
+  ShadowEnd end_of_segment(int sense) {
     const Dyadic3 forwards = cross(direction_, across_);
     const Dyadic3 towards = sense > 0 ? forwards : negated(forwards);
     const VertexPair last = support(detail::ExactDirection(towards).unit, towards);
@@ -121,7 +121,7 @@ class ShadowSearch {
 };
 
 /// t |motion| rounded down and up. Requires level >= 0.
-void round(const PosedPair& pair, const Vec3& motion, const Crossing& c, double& lower, double& upper) {
+void round(const PosedPair& pair, const Vec3& motion, const ShadowEnd& c, double& lower, double& upper) {
   const Dyadic3 v = detail::to_dyadic(motion);
   const Dyadic denominator = c.slope * pair.homogeneous_factor();
   const detail::RootSum exact(Dyadic(0.0), 1, c.level * c.level * dot(v, v), denominator * denominator);
@@ -167,11 +167,11 @@ Expected<TranslatingLine> translating_line_in_difference(const PosedShape& a, co
   ShadowSearch search(pair, direction, motion);
   TranslatingLine line;
   if (search.reaches_line()) {
-    const Crossing last = search.end(1);
+    const ShadowEnd last = search.end(1);
     line.meets = last.level.sign() >= 0;
     if (line.meets) {
       round(pair, motion, last, line.last_lower, line.last_upper);
-      const Crossing first = search.end(-1);
+      const ShadowEnd first = search.end(-1);
       if (first.level.sign() > 0) round(pair, motion, first, line.first_lower, line.first_upper);
     }
   }

@@ -16,6 +16,9 @@ struct DoubleDouble {
   double lo = 0;
 };
 
+/// Relative error unit of double-double operations, each of which errs by less than 5u^2 < 2 kUdd.
+inline constexpr double kUdd = 0x1p-104;
+
 /// a + b exactly.
 inline DoubleDouble two_sum(double a, double b) {
   const double s = a + b;
@@ -86,5 +89,8 @@ inline DoubleDouble dot(const Vec3DD& a, const Vec3DD& b) { return a.x * b.x + a
 inline Vec3DD cross(const Vec3DD& a, const Vec3DD& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline Vec3DD scaled(const Vec3DD& v, const DoubleDouble& s) { return {v.x * s, v.y * s, v.z * s}; }
+/// The sum of the leading digits, absolute.
+inline double norm1(const Vec3DD& v) { return std::abs(v.x.hi) + std::abs(v.y.hi) + std::abs(v.z.hi); }
 
 }  // namespace pd::detail

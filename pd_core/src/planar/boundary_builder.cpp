@@ -5,11 +5,12 @@
 #include <numeric>
 #include <utility>
 
+#include "numeric/at.hpp"
+
 namespace pd::detail {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 double along(const Point2& direction, const Point2& p) { return direction[0] * p[0] + direction[1] * p[1]; }
 
 }  // namespace

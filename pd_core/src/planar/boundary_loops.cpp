@@ -5,14 +5,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "numeric/at.hpp"
 #include "numeric/quotient.hpp"
 #include "planar/boundary_builder.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Junction {
   Span span;

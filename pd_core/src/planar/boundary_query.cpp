@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "numeric/at.hpp"
 #include "planar/edge_ranges.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<Box2> boxes_of(const SumBoundary& boundary, const std::vector<Stretch>& stretches) {
   std::vector<Box2> boxes;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numeric/at.hpp"
 #include "planar/boundary_query.hpp"
 #include "planar/edge_ranges.hpp"
 #include "planar/ray_search.hpp"
@@ -11,13 +12,11 @@ namespace pd::detail {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// d x (point - y), and what it errs by: the point is within 2^-51 `size`; four times the rounding of the differences
 /// and products is left as air. What overflows is not certain.
-struct Side {
+struct RaySide {
   double value, air;
-  Side(const RoundedRay& ray, const Point2& x, double size)
+  RaySide(const RoundedRay& ray, const Point2& x, double size)
       : value(ray.d[0] * (x[1] - ray.y[1]) - ray.d[1] * (x[0] - ray.y[0])),
         air(0x1p-49 * ray.speed * (size + ray.reach) + 0x1p-1060) {}
   /// 1 left of the ray's line for certain, -1 right, 0 open.
@@ -34,7 +33,8 @@ struct Bounds {
 /// The crossing parts the edge as |value of a| : |value of b|, and the parameter as well. The values err by `air`, so
 /// does d . (point - y), so that the share errs by 2 air / sum at most and the parameter times d . d by less than what
 /// is taken here. Left open where the sum is not much more than air.
-Bounds bound_crossing(const RoundedRay& ray, const Point2& a, const Point2& b, const Side& at_a, const Side& at_b) {
+Bounds bound_crossing(const RoundedRay& ray, const Point2& a, const Point2& b, const RaySide& at_a,
+                      const RaySide& at_b) {
   const double sum = std::abs(at_a.value) + std::abs(at_b.value);
   if (!(sum >= 4 * at_a.air)) return {};
   const double from = ray.d[0] * (a[0] - ray.y[0]) + ray.d[1] * (a[1] - ray.y[1]);
@@ -51,7 +51,7 @@ Bounds bound_crossing(const RoundedRay& ray, const Point2& a, const Point2& b, c
 bool beside_line(const RoundedRay& ray, const Span& e) {
   const auto side = [&](const SumPoint& x) {
     const double size = std::max(std::abs(x.p[0]) + std::abs(x.q[0]), std::abs(x.p[1]) + std::abs(x.q[1]));
-    return Side(ray, {x.p[0] - x.q[0], x.p[1] - x.q[1]}, size).sign();
+    return RaySide(ray, {x.p[0] - x.q[0], x.p[1] - x.q[1]}, size).sign();
   };
   return side(e.s) * side(e.z) > 0;
 }
@@ -76,7 +76,7 @@ void BoundaryQuery::search_ray(RaySearch& search, const Point2& d, bool outer_on
                   });
       return;
     }
-    const Side at_a(ray, ends.a, ends.size), at_b(ray, ends.b, ends.size);
+    const RaySide at_a(ray, ends.a, ends.size), at_b(ray, ends.b, ends.size);
     const int a = at_a.sign(), b = at_b.sign();
     if (a * b > 0) return;
     if (a * b == 0 || ends.edge == EdgeEnds::kOpen) {

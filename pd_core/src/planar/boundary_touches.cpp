@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/at.hpp"
 #include "planar/boundary_builder.hpp"
 #include "planar/covered_intervals.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A point of a stretch inside another one belongs to the sums of both, and the other sum was met when the stretch's
 /// candidate was cut: only its stretches are looked at. (A tree of boxes over all of them had a star's long edges side

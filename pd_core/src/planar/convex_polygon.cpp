@@ -15,7 +15,7 @@ namespace pd {
 
 namespace {
 
-constexpr double kLargest = 1e300;
+constexpr double kLargestCoordinate = 1e300;
 /// Below this many vertices a binary search touches a few cache lines anyway.
 constexpr int kLeastTabulated = 64;
 
@@ -50,7 +50,8 @@ Expected<ConvexPolygon> ConvexPolygon::from_points(std::span<const Point2> point
     const std::string where = "points[" + std::to_string(i) + "]";
     for (const double c : points[i]) {
       if (!std::isfinite(c)) return Error{ErrorCode::non_finite, "two finite numbers are needed", where};
-      if (std::abs(c) > kLargest) return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", where};
+      if (std::abs(c) > kLargestCoordinate)
+        return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", where};
     }
   }
   if (points.empty()) return Error{ErrorCode::too_few_points, "a polygon needs at least three points", "points"};

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/at.hpp"
 #include "planar/slab_sweep.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 template <class N>
 N across(const Homogeneous<N>& x, const Point2& d) {

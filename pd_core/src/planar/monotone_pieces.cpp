@@ -4,13 +4,12 @@
 #include <set>
 #include <utility>
 
+#include "numeric/at.hpp"
 #include "pd/numeric/predicates.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A region under the sweep from left to right. Its vertices are numbered anew, 0 .. n - 1.
 class Region {

@@ -2,13 +2,9 @@
 
 #include <cassert>
 
+#include "numeric/at.hpp"
+
 namespace pd::detail {
-
-namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 SlabSweep::SlabSweep(DirectionSlabs& slabs)
     : slabs_(slabs), starting_(slabs.event_.size()), ending_(slabs.event_.size()), ahead_(slabs.extent_.size()) {

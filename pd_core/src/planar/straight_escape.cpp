@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/at.hpp"
 #include "numeric/length.hpp"
 #include "numeric/root_sum.hpp"
 #include "planar/monotone_boundary.hpp"
 
 namespace pd::detail {
-
-namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 StraightEscape::Way StraightEscape::run() {
   collect();

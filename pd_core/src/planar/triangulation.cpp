@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "numeric/at.hpp"
 #include "numeric/estimate.hpp"
 #include "pd/numeric/predicates.hpp"
 #include "planar/monotone_pieces.hpp"
@@ -12,8 +13,6 @@
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<std::int32_t> ring_ids(const Polygon& polygon, int ring, bool reversed) {
   std::vector<std::int32_t> ids(at(polygon.ring_end(ring) - polygon.ring_begin(ring)));

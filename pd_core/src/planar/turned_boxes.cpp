@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "numeric/at.hpp"
 #include "numeric/length.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 Point2 middle_of(const TurnedBoxes::Item& item) {
   Box2 box;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "numeric/at.hpp"
 #include "numeric/estimate.hpp"
 #include "numeric/quotient.hpp"
 
@@ -17,6 +18,7 @@ namespace pd {
 
 namespace {
 
+using detail::at;
 using detail::Dyadic;
 using detail::Estimate;
 
@@ -24,8 +26,6 @@ constexpr std::size_t kMostPlanes = 1 << 13;
 constexpr double kLargest = 1e100;
 /// What reaches farther than this times the largest distance of a plane from the origin is called unbounded.
 constexpr double kBound = 0x1p46;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::optional<Error> check(std::span<const Halfspace3> planes) {
   if (planes.size() < 4) {

@@ -20,13 +20,13 @@ MeshRef core_mesh(const ConvexShape& shape) {
 }
 
 std::vector<Vec3> sphere_directions() {
-  constexpr int kAround = 48;
-  constexpr int kMeridian = 24;
+  constexpr int kDirectionsAround = 48;
+  constexpr int kDirectionRows = 24;
   std::vector<Vec3> directions = {-Vec3::UnitZ(), Vec3::UnitZ()};
-  for (int row = 1; row < kMeridian; ++row) {
-    const double angle = std::numbers::pi * (static_cast<double>(row) / kMeridian - 0.5);
-    for (int step = 0; step < kAround; ++step) {
-      const double turn = 2 * std::numbers::pi * step / kAround;
+  for (int row = 1; row < kDirectionRows; ++row) {
+    const double angle = std::numbers::pi * (static_cast<double>(row) / kDirectionRows - 0.5);
+    for (int step = 0; step < kDirectionsAround; ++step) {
+      const double turn = 2 * std::numbers::pi * step / kDirectionsAround;
       directions.emplace_back(std::cos(angle) * std::cos(turn), std::cos(angle) * std::sin(turn), std::sin(angle));
     }
   }

@@ -7,12 +7,11 @@
 #include "depth/certificate/witness_points.hpp"
 #include "numeric/root_sum.hpp"
 #include "numeric/unit_roundoff.hpp"
+#include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
 
 /// The supporting features in a direction where the cores do not overlap: at most one of them a facet, its partner a
 /// vertex.

@@ -9,8 +9,6 @@ namespace pd::detail {
 
 namespace {
 
-constexpr double kUdd = 0x1p-104;  ///< relative error unit of double-double operations, each < 5u^2 < 2 kUdd
-
 double norm1(const FourDoubleDoubles& v) { return std::abs(v.hi[0]) + std::abs(v.hi[1]) + std::abs(v.hi[2]); }
 DoubleDouble sum(const FourDoubleDoubles& v) { return v[0] + v[1] + v[2]; }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "numeric/double_double.hpp"
+#include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
 
@@ -14,10 +14,6 @@ constexpr double kRelative = 32 * 0x1p-104;
 /// Beyond these, squares could leave the range of doubles.
 constexpr double kLeast = 0x1p-400;
 constexpr double kMost = 0x1p400;
-
-double norm1(const Vec3DD& v) { return std::abs(v.x.hi) + std::abs(v.y.hi) + std::abs(v.z.hi); }
-
-Vec3DD widened(const Vec3& v) { return {{v.x(), 0}, {v.y(), 0}, {v.z(), 0}}; }
 
 /// A number with its absolute error.
 struct Bounded {

@@ -16,8 +16,6 @@ namespace pd::detail {
 
 namespace {
 
-constexpr double kUdd = 0x1p-104;
-
 DoubleDouble scaled(const DoubleDouble& x, double power_of_two) { return {x.hi * power_of_two, x.lo * power_of_two}; }
 
 /// Within these magnitudes (or zero) squares and their roundings are exact in expansions.

@@ -2,16 +2,12 @@
 #include <cmath>
 
 #include "depth/certificate/nearest_facet_proof.hpp"
+#include "numeric/double_double.hpp"
 #include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr double kUdd = 0x1p-104;
-
-double norm1(const Vec3DD& v) { return std::abs(v.x.hi) + std::abs(v.y.hi) + std::abs(v.z.hi); }
-Vec3DD scaled(const Vec3DD& v, const DoubleDouble& s) { return {v.x * s, v.y * s, v.z * s}; }
 
 PairVector point(const VertexPair& p) { return PairVector::point(p.a, p.b); }
 PairVector edge(const VertexPair& p, const VertexPair& q) { return PairVector::difference(p.a, p.b, q.a, q.b); }

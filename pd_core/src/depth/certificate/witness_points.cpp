@@ -6,12 +6,11 @@
 #include <span>
 
 #include "depth/distance/gjk.hpp"
+#include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-Vec3 high(const Vec3DD& v) { return {v.x.hi, v.y.hi, v.z.hi}; }
 
 /// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
 /// be large and cancel.

@@ -39,8 +39,6 @@ SupportFace face_climbed_to(const ConvexPolytope& body, const Vec3& local, Sign&
   return face;
 }
 
-double norm1(const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); }
-
 /// Sign of <direction, to - from> in the body's frame by double-double; 0 where it does not tell.
 /// @param local  R^T of the direction's leading digits.
 /// @param size   the sum of those digits, absolute.

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "numeric/double_double.hpp"
+#include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-Vec3DD widened(const Vec3& v) { return {{v.x(), 0}, {v.y(), 0}, {v.z(), 0}}; }
-Vec3DD scaled(const Vec3DD& v, const DoubleDouble& s) { return {v.x * s, v.y * s, v.z * s}; }
 Vec3 rounded(const Vec3DD& v) { return {to_double(v.x), to_double(v.y), to_double(v.z)}; }
 bool less(const DoubleDouble& a, const DoubleDouble& b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
 

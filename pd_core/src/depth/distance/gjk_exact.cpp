@@ -53,9 +53,9 @@ std::optional<Projection> project(const Dyadic3* const* p, int count) {
 }
 
 /// Up to four vertices of P and one more, without repetition.
-class Simplex {
+class ExactSimplex {
  public:
-  explicit Simplex(const PosedPair& pair) : pair_(pair) {}
+  explicit ExactSimplex(const PosedPair& pair) : pair_(pair) {}
 
   void add(const VertexPair& id) {
     for (std::size_t i = 0; i < size_; ++i) {
@@ -121,7 +121,7 @@ class Simplex {
 };
 
 /// The simplex that the search ended with and where the closest point lies in it.
-ExactClosestPoint result_of(const Simplex& simplex, const Simplex::Face& face) {
+ExactClosestPoint result_of(const ExactSimplex& simplex, const ExactSimplex::Face& face) {
   ExactClosestPoint result;
   result.count = static_cast<int>(face.count);
   // Ratios of big numbers: both are brought to the same exponent before rounding.
@@ -137,12 +137,12 @@ ExactClosestPoint result_of(const Simplex& simplex, const Simplex::Face& face) {
 }  // namespace
 
 ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start, int count) {
-  Simplex simplex(pair);
+  ExactSimplex simplex(pair);
   for (int i = 0; i < count; ++i) simplex.add(start[i]);
   // The distance falls strictly at each step among finitely many simplices, so this ends.
   for (;;) {
     // 1. The closest point of the simplex, and the face that holds it.
-    const Simplex::Face face = simplex.closest_face();
+    const ExactSimplex::Face face = simplex.closest_face();
     const Dyadic3& y = face.closest.point;
     if (y.x.sign() == 0 && y.y.sign() == 0 && y.z.sign() == 0) return result_of(simplex, face);
 

@@ -140,7 +140,6 @@ class Hull {
     const Vec3DD v = pair_.approximate_dd(edge(f.v[0], f.v[2]));
     const Vec3DD n = cross(u, v);
     const DoubleDouble squared = dot(n, n);
-    const auto norm1 = [](const Vec3DD& x) { return std::abs(x.x.hi) + std::abs(x.y.hi) + std::abs(x.z.hi); };
     // The determinant <p, u x v> and the normal, each with the errors of its arguments and of double-double products.
     const double e = pair_.vector_error_dd();
     const double a = norm1(p) + 3 * e, b = norm1(u) + 3 * e, c = norm1(v) + 3 * e;

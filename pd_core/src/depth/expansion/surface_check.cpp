@@ -15,7 +15,7 @@ namespace pd::detail {
 
 namespace {
 
-using Face = SurfaceSnapshot::Face;
+using SnapshotFace = SurfaceSnapshot::Face;
 
 constexpr std::int32_t next(std::int32_t e) { return e == 2 ? 0 : e + 1; }
 constexpr std::int32_t last(std::int32_t e) { return e == 0 ? 2 : e - 1; }
@@ -42,7 +42,7 @@ class Check {
   [[nodiscard]] bool senses(int f) const {
     for (std::int32_t e = 0; e < 3; ++e) {
       const std::int32_t from = face(f).v[e], to = face(f).v[next(e)];
-      const Face& other = face(face(f).adj[e] >> 2);
+      const SnapshotFace& other = face(face(f).adj[e] >> 2);
       const std::int32_t h = face(f).adj[e] & 3;
       if (from == to || other.v[h] != to || other.v[next(h)] != from) return false;
     }
@@ -64,13 +64,13 @@ class Check {
     const int f = surface_.nearest;
     if (f < 0 || f >= static_cast<int>(surface_.faces.size())) return false;
     return std::none_of(surface_.faces.begin(), surface_.faces.end(),
-                        [&](const Face& other) { return other.distance < face(f).distance; });
+                        [&](const SnapshotFace& other) { return other.distance < face(f).distance; });
   }
 
   /// The solid angles of the faces (Van Oosterom and Strackee 1983) over that of the sphere.
   [[nodiscard]] bool winding() const {
     double angles = 0;
-    for (const Face& f : surface_.faces) {
+    for (const SnapshotFace& f : surface_.faces) {
       if (!(f.distance > rounding())) return true;
       const Vec3 &p = point(f.v[0]), &q = point(f.v[1]), &r = point(f.v[2]);
       const double a = p.norm(), b = q.norm(), c = r.norm();
@@ -93,7 +93,7 @@ class Check {
   }
 
  private:
-  [[nodiscard]] const Face& face(int f) const { return surface_.faces[static_cast<std::size_t>(f)]; }
+  [[nodiscard]] const SnapshotFace& face(int f) const { return surface_.faces[static_cast<std::size_t>(f)]; }
   [[nodiscard]] const Vec3& point(std::int32_t v) const { return surface_.points[static_cast<std::size_t>(v)]; }
   static DoubleDouble dot(const Vec3& x, const Vec3& y) {
     return two_product(x.x(), y.x()) + two_product(x.y(), y.y()) + two_product(x.z(), y.z());
@@ -147,7 +147,7 @@ void report_fault(const SurfaceSnapshot& surface, const SurfaceFault& fault) {
   const std::string_view rule = to_string(fault.rule);
   std::fprintf(stderr, "pdepth: an expanding polytope breaks the rule \"%.*s\" at face %d of %zu\n",
                static_cast<int>(rule.size()), rule.data(), fault.face, surface.faces.size());
-  for (const Face& f : surface.faces) {
+  for (const SnapshotFace& f : surface.faces) {
     std::fprintf(stderr, "  face");
     for (const std::int32_t v : f.v) {
       const Vec3& x = surface.points[static_cast<std::size_t>(v)];

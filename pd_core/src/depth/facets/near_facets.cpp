@@ -26,7 +26,7 @@ constexpr double kSideError = 0x1p-46;
 /// |n - exact| of a facet's unit normal: a few u as it is stored, 6u a coordinate for the turn, 4u for the length.
 constexpr double kNormalError = 24 * kUnitRoundoff;
 /// Two edges whose sine is below this are parallel up to rounding.
-constexpr double kParallel = 0x1p-40;
+constexpr double kParallelEdges = 0x1p-40;
 /// Pairs of edges, for each edge of both bodies, that may be tried; beyond that the overlay is cheaper.
 constexpr std::int64_t kPairsPerEdge = 256;
 
@@ -188,7 +188,7 @@ class NearFacetsSearch {
     if (least < -kSideError && most > kSideError) return true;
     const Vec3 across = b.direction.cross(a.direction);
     const double sine = across.norm();
-    if (sine < kParallel) {
+    if (sine < kParallelEdges) {
       if (distance_of_degenerate(a, b) > radius_) return true;
       hidden_ += (sine + 2 * kDirectionError) * std::min(a.length, b.length);
       return hidden_ <= kHiddenShare * settings_.width;

@@ -16,7 +16,7 @@ constexpr int kMostSteps = 5;
 /// Directions turn by less in one step, or the minimum is that of other features.
 constexpr double kMostTurn = 0.5;
 /// Narrower cones are worth no point of a surface.
-constexpr double kLeastReach = 0x1p-6;
+constexpr double kLeastCone = 0x1p-6;
 /// Constants of a cone err by some 2^-40 of themselves at worst.
 constexpr double kSafety = 1 - 0x1p-10;
 
@@ -328,7 +328,7 @@ class LocalSearch {
     if (!(inside > 0)) return 0;
     const double slope = std::abs(fall_) + face_error(difference_);
     double best = 0;
-    for (double reach = 1; reach > best && reach > kLeastReach; reach *= 0.5) {
+    for (double reach = 1; reach > best && reach > kLeastCone; reach *= 0.5) {
       const Growth growth = growth_of_pieces(reach);
       // Points that differ in roundness give up as much of it as they shift their weights along the edge.
       const double spare = 1 - highest() / (2 * growth.ww + growth.ball);

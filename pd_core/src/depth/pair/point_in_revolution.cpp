@@ -10,7 +10,7 @@ namespace pd::detail {
 namespace {
 
 /// A height over a plane errs by some 8u of radius and height together.
-constexpr double kHeightError = 16 * kUnitRoundoff;
+constexpr double kAxisHeightError = 16 * kUnitRoundoff;
 
 /// The point's distance from the axis, and the unit vector to it; on the axis any across.
 struct Across {
@@ -25,7 +25,7 @@ struct Across {
 };
 
 std::optional<PointInCore> found(const Vec3& point, double depth, const Vec3& unit, double size) {
-  const double lower = depth - kHeightError * size;
+  const double lower = depth - kAxisHeightError * size;
   if (!(lower > 0)) return std::nullopt;
   return PointInCore{lower, unit, point + depth * unit};
 }

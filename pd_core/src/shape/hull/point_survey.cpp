@@ -7,12 +7,12 @@
 namespace pd::detail {
 namespace {
 
-constexpr int kBlock = 512;
-constexpr int kLanes = 8;
+constexpr int kSurveyBlock = 512;
+constexpr int kSurveyLanes = 8;
 
 /// Consecutive points, coordinate by coordinate; the last block is filled up with its first point.
-struct Block {
-  std::array<double, kBlock> x, y, z;
+struct SurveyBlock {
+  std::array<double, kSurveyBlock> x, y, z;
 
   void load(std::span<const Vec3> points, double scale) {
     const std::size_t n = points.size();
@@ -29,16 +29,16 @@ struct Block {
 
 template <class Visit>
 void for_each_block(std::span<const Vec3> points, double scale, Visit visit) {
-  Block block;
-  for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
-    const std::size_t count = std::min<std::size_t>(kBlock, points.size() - begin);
+  SurveyBlock block;
+  for (std::size_t begin = 0; begin < points.size(); begin += kSurveyBlock) {
+    const std::size_t count = std::min<std::size_t>(kSurveyBlock, points.size() - begin);
     block.load(points.subspan(begin, count), scale);
     visit(block, begin, count);
   }
 }
 
 /// Least and greatest value of one line, and who has them.
-struct Range {
+struct LineRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   std::int32_t lowest = -1;
@@ -47,11 +47,11 @@ struct Range {
   /// The common case is that nothing in the block is further out; only then is it searched for who it is.
   template <class Value>
   void include(const Value& value, std::size_t begin) {
-    std::array<double, kLanes> least;
-    std::array<double, kLanes> most;
-    for (int lane = 0; lane < kLanes; ++lane) least[lane] = most[lane] = value(lane);
-    for (int i = kLanes; i < kBlock; i += kLanes) {
-      for (int lane = 0; lane < kLanes; ++lane) {
+    std::array<double, kSurveyLanes> least;
+    std::array<double, kSurveyLanes> most;
+    for (int lane = 0; lane < kSurveyLanes; ++lane) least[lane] = most[lane] = value(lane);
+    for (int i = kSurveyLanes; i < kSurveyBlock; i += kSurveyLanes) {
+      for (int lane = 0; lane < kSurveyLanes; ++lane) {
         const double v = value(i + lane);
         least[lane] = v < least[lane] ? v : least[lane];
         most[lane] = v > most[lane] ? v : most[lane];
@@ -78,8 +78,8 @@ struct Range {
 }  // namespace
 
 std::vector<std::int32_t> extreme_points(std::span<const Vec3> points) {
-  std::array<Range, 13> lines;
-  for_each_block(points, 1, [&](const Block& b, std::size_t begin, std::size_t) {
+  std::array<LineRange, 13> lines;
+  for_each_block(points, 1, [&](const SurveyBlock& b, std::size_t begin, std::size_t) {
     const auto include = [&](std::size_t line, auto value) { lines[line].include(value, begin); };
     include(0, [&](int i) { return b.x[i]; });
     include(1, [&](int i) { return b.y[i]; });
@@ -96,7 +96,7 @@ std::vector<std::int32_t> extreme_points(std::span<const Vec3> points) {
     include(12, [&](int i) { return b.x[i] - b.y[i] - b.z[i]; });
   });
   std::vector<std::int32_t> extremes;
-  for (const Range& line : lines) {
+  for (const LineRange& line : lines) {
     extremes.push_back(line.lowest);
     extremes.push_back(line.highest);
   }
@@ -108,8 +108,8 @@ std::vector<std::int32_t> extreme_points(std::span<const Vec3> points) {
 std::vector<std::int32_t> points_not_inside(std::span<const Vec3> points, double scale,
                                             const std::vector<HullTriangle>& hull) {
   std::vector<std::int32_t> outside;
-  std::array<double, kBlock> highest;
-  for_each_block(points, scale, [&](const Block& b, std::size_t begin, std::size_t count) {
+  std::array<double, kSurveyBlock> highest;
+  for_each_block(points, scale, [&](const SurveyBlock& b, std::size_t begin, std::size_t count) {
     highest.fill(-std::numeric_limits<double>::infinity());
     for (const HullTriangle& t : hull) {
       const double nx = t.normal[0];
@@ -117,7 +117,7 @@ std::vector<std::int32_t> points_not_inside(std::span<const Vec3> points, double
       const double nz = t.normal[2];
       // The plane moved inwards by its error; the slack of HullTriangle::error covers the rounding here.
       const double offset = t.offset - t.error;
-      for (int i = 0; i < kBlock; ++i) {
+      for (int i = 0; i < kSurveyBlock; ++i) {
         const double height = nx * b.x[i] + ny * b.y[i] + nz * b.z[i] - offset;
         highest[i] = height > highest[i] ? height : highest[i];
       }

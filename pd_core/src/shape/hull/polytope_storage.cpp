@@ -21,9 +21,9 @@ using Storage = ConvexPolytope::Storage;
 constexpr std::size_t kAlignment = 64;
 
 /// Hands out consecutive aligned arrays; without memory it only measures.
-class Block {
+class MemoryBlock {
  public:
-  explicit Block(std::byte* memory) : memory_(memory) {}
+  explicit MemoryBlock(std::byte* memory) : memory_(memory) {}
 
   template <class T>
   T* take(int count) {
@@ -71,7 +71,7 @@ struct Counts {
 
 int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
 
-Arrays take_arrays(Block& block, const Counts& n) {
+Arrays take_arrays(MemoryBlock& block, const Counts& n) {
   Arrays a{};
   a.storage = n.has_gauss_map ? block.take<SmallBodyStorage>(1) : block.take<Storage>(1);
   a.x = block.take<double>(n.padded);
@@ -299,10 +299,10 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   n.facets = loops.size();
   n.has_gauss_map = has_small_gauss_map(affine_dimension, n.vertices);
 
-  Block measure(nullptr);
+  MemoryBlock measure(nullptr);
   take_arrays(measure, n);
   auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
-  Block block(memory);
+  MemoryBlock block(memory);
   const Arrays out = take_arrays(block, n);
   std::shared_ptr<const Storage> shared(out.storage, release);
 

@@ -10,7 +10,7 @@ namespace pd::detail {
 
 namespace {
 
-double norm1(const Vec3& v) { return v.cwiseAbs().sum(); }
+double absolute_sum(const Vec3& v) { return v.cwiseAbs().sum(); }
 
 double coordinate(const Vec3& v, int axis) { return v[axis]; }
 const Dyadic& coordinate(const Dyadic3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
@@ -74,7 +74,7 @@ Feature whole_body(const ConvexPolytope& body, int facet) {
 InPlane::InPlane(const PosedPair& pair, const PairVector& u, const PairVector& v) : pair_(&pair) {
   const Vec3 x = pair.approximate(u), y = pair.approximate(v);
   const double e = pair.vector_error();
-  const double a = norm1(x), b = norm1(y);
+  const double a = absolute_sum(x), b = absolute_sum(y);
   const Vec3 n = x.cross(y);
   const double size = n.cwiseAbs().maxCoeff(&axis_);
   if (size > (e * (a + b + 2 * e) + 3 * kUnitRoundoff * a * b) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
@@ -89,7 +89,7 @@ InPlane::InPlane(const PosedPair& pair, const PairVector& u, const PairVector& v
 int InPlane::turn(const PairVector& x, const PairVector& y) const {
   const Vec3 p = pair_->approximate(x), q = pair_->approximate(y);
   const double e = pair_->vector_error();
-  const double a = norm1(p), b = norm1(q);
+  const double a = absolute_sum(p), b = absolute_sum(q);
   const double value = coordinate(Vec3(p.cross(q)), axis_);
   if (std::abs(value) > (e * (a + b + 2 * e) + 3 * kUnitRoundoff * a * b) * (1 + 16 * kUnitRoundoff) + 0x1p-900) {
     return value > 0 ? sign_ : -sign_;
