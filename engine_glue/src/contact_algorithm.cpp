@@ -10,6 +10,7 @@
 #include <limits>
 #include <typeinfo>
 
+#include "box_contacts.hpp"
 #include "cached_shape.hpp"
 #include "covered_contact.hpp"
 #include "installation.hpp"
@@ -69,6 +70,12 @@ void fetch_for_query(PairMemory& memory) {
   if (memory.num_points > 0) fetch_bytes(&memory.warm.state(), kWarmBytesAtRest);
 }
 
+/// What `replace_points` reads of it.
+void fetch_points(const PairMemory& memory) {
+  fetch(memory.points);
+  fetch(memory.num_points);
+}
+
 }  // namespace
 
 ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
@@ -123,15 +130,18 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     take_manifold(a, b);
   }
   result->setPersistentManifold(manifold_);
-  if (memory_) fetch_for_query(*memory_);
-
   const btConvexShape& shape_a = convex_shape(a);
   const btConvexShape& shape_b = convex_shape(b);
+  // Pieces of unions have neighbours that may cover their contacts.
+  const bool of_union = core.settings.unions_as_one && (is_piece(*a) || is_piece(*b));
+  const bool boxes = !of_union && are_boxes(shape_a, shape_b);
+  if (memory_) boxes ? fetch_points(*memory_) : fetch_for_query(*memory_);
+
   const btTransform& pose_a = a->getWorldTransform();
   const btTransform& pose_b = b->getWorldTransform();
   const btScalar threshold = reach_of_contacts(*result, *manifold_, shape_a, shape_b);
   // A pair that had points is asked at once: it hardly ever parts in a step, and the query says so if it does.
-  const bool touched = memory_ && memory_->num_points > 0;
+  const bool touched = memory_ && (boxes ? touched_ : memory_->num_points > 0);
   if (!touched && boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
     if (owns_manifold_) {
       manifold_->clearManifold();
@@ -145,32 +155,37 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     return;
   }
   auto buffers = core.buffers.lease();
-  PairAnswer answer;
-  // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
-  const std::uint64_t stamp = first ? 0 : installation_.stamp();
-  const bool as_one = core.settings.unions_as_one;
-  const BoxCorners corners{true, as_one && is_part(*a), as_one && is_part(*b)};
-  const auto outcome = core.answer(
-      shape_a, pose_a, shape_b, pose_b, corners, touched ? kAnyDistance : static_cast<double>(threshold), stamp,
-      memory_ ? memory_->shapes : buffers->recent, memory_ ? &memory_->warm : nullptr, *buffers, answer);
-  if (outcome == SolverCore::Outcome::unsupported) {
-    process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
-    return;
-  }
-  const bool answered = outcome == SolverCore::Outcome::answered;
-  ContactManifold fresh = answered ? contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold),
-                                                      buffers->manifold, DeepestPoint::as_lifted)
-                                   : ContactManifold();
-  if (answered && as_one && (is_piece(*a) || is_piece(*b))) {
-    buffers->cover.near.begin_pair();
-    keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold), static_cast<double>(info.m_timeStep),
-                   stamp, core, *buffers, fresh);
+  FreshPoints fresh;
+  if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(threshold), *buffers, fresh)) {
+    // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
+    // compared.
+    const std::uint64_t stamp = first ? 0 : installation_.stamp();
+    const BoxCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
+    PairAnswer answer;
+    const auto outcome = core.answer(
+        shape_a, pose_a, shape_b, pose_b, corners, touched ? kAnyDistance : static_cast<double>(threshold), stamp,
+        memory_ ? memory_->shapes : buffers->recent, memory_ ? &memory_->warm : nullptr, *buffers, answer);
+    if (outcome == SolverCore::Outcome::unsupported) {
+      process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
+      return;
+    }
+    if (outcome == SolverCore::Outcome::answered) {
+      ContactManifold manifold = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold),
+                                                  buffers->manifold, DeepestPoint::as_lifted);
+      if (of_union) {
+        buffers->cover.near.begin_pair();
+        keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold),
+                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, manifold);
+      }
+      fresh = fresh_points(manifold);
+    }
   }
   if (owns_manifold_) {
     PointSurroundings whole;
-    replace_points(*manifold_, *memory_, fresh_points(fresh), info.m_timeStep, *result, whole);
+    replace_points(*manifold_, *memory_, fresh, info.m_timeStep, *result, whole);
+    touched_ = memory_->num_points > 0;
   } else {
-    add_points(*manifold_, fresh_points(fresh), *result);
+    add_points(*manifold_, fresh, *result);
   }
 }
 

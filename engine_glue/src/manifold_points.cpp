@@ -117,9 +117,11 @@ FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) {
 
 FreshPoints fresh_points(const ContactManifold& manifold) {
   FreshPoints fresh;
+  const btVector3 normal = to_bullet(manifold.normal);
   for (int k = 0; k < manifold.count; ++k) {
-    fresh.points[static_cast<std::size_t>(k)] =
-        fresh_point(manifold.normal, manifold.points[static_cast<std::size_t>(k)]);
+    const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
+    fresh.points[static_cast<std::size_t>(k)] = {normal, to_bullet(point.position_b),
+                                                 static_cast<btScalar>(-point.depth), point.feature_id};
   }
   fresh.count = manifold.count;
   return fresh;

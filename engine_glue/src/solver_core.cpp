@@ -3,27 +3,18 @@
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "installation.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
+#include "query_meter.hpp"
 
 namespace pd::detail {
 
-namespace {
-
-/// One query in this many reads the clock: two readings cost a tenth of a short query.
-constexpr unsigned kClockSample = 16;
-
-/// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves
-/// uncertain, whatever the reach of a floor. Coordinates are known to half a unit in the last place, so that surfaces
-/// are to 2^-24 of the distance from the world's origin and of the body's size. In double precision that share, 2^-59,
-/// is below the rounding of the query's own sums, which comes to some 2^-47.
-double contact_tolerance(const PosedShape& a, const PosedShape& b) {
+double contact_tolerance(const Pose& a, const Pose& b, double smaller_radius) {
   constexpr double kShare = sizeof(btScalar) == sizeof(float) ? 0x1p-30 : 0x1p-46;
-  const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
-  return kShare * (farthest + std::min(bounding_radius(*a.shape), bounding_radius(*b.shape)));
+  const double farthest = a.translation().cwiseAbs().cwiseMax(b.translation().cwiseAbs()).maxCoeff();
+  return kShare * (farthest + smaller_radius);
 }
 
 bool in_range(const btTransform& pose) {
@@ -31,8 +22,6 @@ bool in_range(const btTransform& pose) {
   if (sizeof(btScalar) == sizeof(float)) return is_finite(pose);
   return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
-
-}  // namespace
 
 SolverCore::SolverCore(const BulletSolverSettings& chosen) : settings(chosen), cache(chosen.cache_capacity) {}
 SolverCore::~SolverCore() = default;
@@ -59,8 +48,7 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
                                        WarmCertificate* warm, ThreadBuffers& held, PairAnswer& out) {
   SolverCounters& counters = held.counters;
   counters.calls.add();
-  const bool sampled = held.queries++ % kClockSample == 0;
-  const auto start = sampled ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+  QueryMeter meter(held);
   const CachedShape& found_a = find(a, stamp, shapes[0], held);
   const CachedShape& found_b = find(b, stamp, shapes[1], held);
   if (!found_a.body || !found_b.body) {
@@ -81,7 +69,8 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
   depth_settings.delta = settings.delta;
   depth_settings.bracket = Bracket::contact;
   depth_settings.beyond = beyond;
-  depth_settings.contact_tolerance = contact_tolerance(out.a, out.b);
+  depth_settings.contact_tolerance =
+      contact_tolerance(out.a.pose, out.b.pose, std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
   out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, warm);
   counters.support_calls.add(out.depth.statistics.support_calls);
   if (out.depth.statistics.exact_signs > 0) {
@@ -90,24 +79,10 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
   if (!out.depth.bracket_reached) {
     counters.wider.add();
   }
-  switch (out.depth.contact) {
-    case ContactClass::overlapping:
-      counters.overlapping.add();
-      break;
-    case ContactClass::touching:
-      counters.touching.add();
-      break;
-    case ContactClass::separated:
-      counters.separated.add();
-      break;
-  }
   if (out.depth.warm) {
     counters.warm.add();
   }
-  if (sampled) {
-    const auto spent = std::chrono::steady_clock::now() - start;
-    counters.nanoseconds.add(kClockSample * std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count());
-  }
+  meter.count(out.depth.contact);
   return Outcome::answered;
 }
 

@@ -43,6 +43,16 @@ inline constexpr BoxCorners kSharpBoxPair{true, false, false};
 /// Closest points however far apart the bodies are.
 inline constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
+/// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves
+/// uncertain, whatever the reach of a floor. Coordinates are known to half a unit in the last place, so that surfaces
+/// are to 2^-24 of the distance from the world's origin and of the body's size. In double precision that share, 2^-59,
+/// is below the rounding of the query's own sums, which comes to some 2^-47.
+/// @param smaller_radius  of the smaller of both bodies.
+[[nodiscard]] double contact_tolerance(const Pose& a, const Pose& b, double smaller_radius);
+
+/// Whether a pose is one that the core takes: finite, and not too far.
+[[nodiscard]] bool in_range(const btTransform& pose);
+
 class SolverCore {
  public:
   explicit SolverCore(const BulletSolverSettings& settings);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "contact/manifold_clip.hpp"
 #include "contact/manifold_reduce.hpp"
@@ -28,12 +29,6 @@ using detail::ClipVertex;
 using detail::ContactFrame;
 using detail::Vec2;
 
-/// Two corners closer than this times the size of the intersection are one: a thousandth of a percent of a face is
-/// below what a solver can feel, and far above the rounding of a cut.
-constexpr double kMergeRatio = 1e-6;
-/// Of the breaking threshold: depths of a resting contact differ by so much from frame to frame.
-constexpr double kNoiseRatio = 1e-3;
-
 /// The corners of the intersection, lifted to both faces, that are no farther apart than the threshold.
 /// @return the depth of the deepest of them.
 double lift_corners(const ContactFrame& frame, double margin_a, double margin_b, double signed_depth,
@@ -51,7 +46,7 @@ double lift_corners(const ContactFrame& frame, double margin_a, double margin_b,
     // Along n no pair is deeper than the bodies are; what the lifted heights say beyond that is rounding.
     const double depth = std::min(height_b - height_a, signed_depth);
     const bool repeated = std::any_of(flat.begin(), flat.end(), [&](const Vec2& p) {
-      return (p - vertex.point).cwiseAbs().maxCoeff() <= kMergeRatio * size;
+      return (p - vertex.point).cwiseAbs().maxCoeff() <= detail::kMergeRatio * size;
     });
     if (depth < -breaking_threshold || repeated) continue;
     const Vec3 on_b = frame.origin + vertex.point.x() * frame.u + vertex.point.y() * frame.w + height_b * frame.n;
@@ -94,18 +89,21 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
   // 3. The witnesses join where the corners miss them by more than the noise of a resting contact.
   auto& points = buffers.points;
   auto& flat = buffers.flat;
-  const double noise = std::max(kNoiseRatio * breaking_threshold, kMergeRatio * size);
+  const double noise = std::max(detail::kNoiseRatio * breaking_threshold, detail::kMergeRatio * size);
   std::size_t first = points.size();
   if (points.empty() || deepest < signed_depth - noise) {
     const Vec3 on_b = answer.witness_b;
     points.push_back({on_b - signed_depth * n, on_b, signed_depth, detail::make_id(detail::IdKind::witness, 0, 0)});
     flat.push_back(frame.flatten(on_b));
   } else {
-    first = detail::deepest_point(points, flat, deepest, noise);
+    first = detail::deepest_point(std::span<const ContactPoint>(points), flat, deepest, noise);
   }
 
   // 4. Four of them.
-  if (points.size() > 4) detail::reduce_to_four(points, flat, first);
+  if (points.size() > 4) {
+    detail::reduce_to_four(std::span<ContactPoint>(points), flat, first);
+    points.resize(4);
+  }
   if (deepest_point == DeepestPoint::at_depth) end_at_depth(points, signed_depth, n);
   manifold.count = static_cast<int>(points.size());
   std::copy(points.begin(), points.end(), manifold.points.begin());

@@ -12,6 +12,10 @@ namespace {
 /// slides along the edges by up to 1 / 0.05 = 20 times what the bodies move.
 constexpr double kParallelSine = 0.05;
 
+std::int64_t corner_id(IdKind kind, std::int32_t vertex) {
+  return kind == IdKind::vertex_a ? make_id(kind, vertex, 0) : make_id(kind, 0, vertex);
+}
+
 /// Loop of a face across n, counter-clockwise about n; a segment is a loop of two.
 void load_polygon(const SupportingFace& face, const ContactFrame& frame, IdKind kind,
                   std::vector<ClipVertex>& polygon) {
@@ -21,8 +25,7 @@ void load_polygon(const SupportingFace& face, const ContactFrame& frame, IdKind 
   for (std::size_t i = 0; i < size; ++i) {
     const FaceVertex& vertex = face.vertices[i];
     const Vec3 x = vertex.point - origin;
-    const std::int64_t id = kind == IdKind::vertex_a ? make_id(kind, vertex.id, 0) : make_id(kind, 0, vertex.id);
-    polygon[i] = {{x.dot(u), x.dot(w)}, id, vertex.id, false};
+    polygon[i] = {{x.dot(u), x.dot(w)}, corner_id(kind, vertex.id), vertex.id, false};
   }
   double twice_area = 0;
   const ClipVertex* last = &polygon[0];
@@ -50,8 +53,8 @@ bool find_sides(const std::vector<ClipVertex>& polygon, const Vec2& from, const 
 }
 
 /// Sutherland-Hodgman: `polygon` cut to the left of the line from `from` to `to`, which is edge `edge` of the other
-/// loop.
-void clip(ClipBuffers& buffers, const Vec2& from, const Vec2& to, std::int32_t edge, std::int64_t corner_id) {
+/// loop, whose corners have ids of kind `window`.
+void clip(ClipBuffers& buffers, const Vec2& from, const Vec2& to, std::int32_t edge, IdKind window) {
   std::vector<ClipVertex>& polygon = buffers.polygon;
   std::vector<ClipVertex>& out = buffers.clipped;
   if (find_sides(polygon, from, to, buffers.sides)) return;
@@ -66,7 +69,9 @@ void clip(ClipBuffers& buffers, const Vec2& from, const Vec2& to, std::int32_t e
     }
     if ((side_here > 0 && side_next < 0) || (side_here < 0 && side_next > 0)) {
       const double s = side_here / (side_here - side_next);
-      const std::int64_t id = here.edge_of_b ? corner_id : make_id(IdKind::crossing, here.edge, edge);
+      // Two edges of the window meet where the later one starts.
+      const std::int64_t id = here.edge_of_b ? corner_id(window, side_here > 0 ? edge : here.edge)
+                                             : make_id(IdKind::crossing, here.edge, edge);
       ClipVertex crossing{here.point + s * (polygon[after].point - here.point), id, here.edge, here.edge_of_b};
       if (side_here > 0) {
         crossing.edge = edge;
@@ -144,11 +149,12 @@ void intersect_faces(const SupportingFace& a, const SupportingFace& b, const Con
   const bool cut_b = b.vertices.size() == 2;
   const auto& subject = cut_b ? b : a;
   const auto& window = cut_b ? a : b;
-  load_polygon(window, frame, cut_b ? IdKind::vertex_a : IdKind::vertex_b, buffers.window);
+  const IdKind of_window = cut_b ? IdKind::vertex_a : IdKind::vertex_b;
+  load_polygon(window, frame, of_window, buffers.window);
   const std::vector<ClipVertex>& edges = buffers.window;
   load_polygon(subject, frame, cut_b ? IdKind::vertex_b : IdKind::vertex_a, buffers.polygon);
   for (std::size_t i = 0; i < edges.size() && !buffers.polygon.empty(); ++i) {
-    clip(buffers, edges[i].point, edges[i + 1 < edges.size() ? i + 1 : 0].point, edges[i].edge, edges[i].id);
+    clip(buffers, edges[i].point, edges[i + 1 < edges.size() ? i + 1 : 0].point, edges[i].edge, of_window);
   }
 }
 

@@ -15,6 +15,7 @@
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/difference/bracket_width.hpp"
+#include "depth/facets/box_pair.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/feature.hpp"
 #include "pd/shape/pose.hpp"
@@ -22,12 +23,6 @@
 namespace pd::detail {
 
 inline constexpr int kBoxAxes = 15;
-
-/// A box whose edges run along the axes of its own frame.
-struct BoxFrame {
-  Vec3 centre;
-  Vec3 half_extents;
-};
 
 /// Centre and half extents, rounded, of a polytope that is exactly such a box.
 std::optional<BoxFrame> box_frame(const ConvexPolytope& p);

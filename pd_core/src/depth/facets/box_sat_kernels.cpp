@@ -78,9 +78,12 @@ PD_INLINE void keys_of_block(BlockKeys& out, int block, const BoxEdges& edges_a,
   }
   add_height(centre, n, c[0], c[1], c[2]);
   height -= centre;
-  const Lanes lowered = height - errors.turn * product;
   out.key = height * (height < zero ? -height : height) / squared;
-  out.lower_key = lowered * (lowered < zero ? -lowered : lowered) / squared;
+  out.lower_key = out.key;
+  if (errors.turn != 0) {
+    const Lanes lowered = height - errors.turn * product;
+    out.lower_key = lowered * (lowered < zero ? -lowered : lowered) / squared;
+  }
   out.shorter = length_u < length_v ? length_u : length_v;
 }
 
