@@ -29,10 +29,6 @@ using detail::Vec2;
 constexpr int kMostCorners = 8;
 /// And the witness.
 constexpr int kMostPoints = kMostCorners + 1;
-/// Edges that lie on each other but for rounding cut nothing off: what they would is one point with what stays, and ids
-/// would change from frame to frame.
-constexpr double kWindow = 1 + detail::kMergeRatio;
-
 /// A corner of the cut face in the other face's own coordinates, which run from -1 to 1 along its two edges.
 struct Corner {
   double s, t;
@@ -103,7 +99,7 @@ class BoxContactQuery : detail::BoxPair {
       return;
     }
     const BoxDistance found = distance();
-    out.manifold.normal = found.normal;
+    out.manifold.normal = found.normal.array() + 0.0;  // no negative zeros
     out.lower = -found.height - found.rounding;
     if (out.lower > breaking_threshold) {
       out.answered = true;
@@ -183,29 +179,28 @@ class BoxContactQuery : detail::BoxPair {
     const double s2 = face_a_.second.dot(s_of), t2 = face_a_.second.dot(t_of);
     polygon_ = &corners_[0];
     polygon_->count = 4;
-    const auto corner = [&](int i, double at_s, double at_t) {
-      const std::int32_t id = face_a_.ids[i];
+    const auto corner = [&](int i, int of_face, double at_s, double at_t) {
+      const std::int32_t id = face_a_.ids[of_face];
       polygon_->at[i] = {at_s, at_t, make_id(IdKind::vertex_a, id, 0), id, false};
     };
-    corner(0, s - (s1 + s2), t - (t1 + t2));
-    corner(1, s + (s1 - s2), t + (t1 - t2));
-    corner(2, s + (s1 + s2), t + (t1 + t2));
-    corner(3, s - (s1 - s2), t - (t1 - t2));
+    // As `contact_manifold` does: solvers take points in this order, and under ten iterations a tower of twenty
+    // stands 4.4 seconds when the first is at minus the first edge, 3.0 to 4.1 when the loop starts elsewhere.
+    corner(0, 1, s + (s1 - s2), t + (t1 - t2));
+    corner(1, 2, s + (s1 + s2), t + (t1 + t2));
+    corner(2, 3, s - (s1 - s2), t - (t1 - t2));
+    corner(3, 0, s - (s1 + s2), t - (t1 + t2));
     const double reach_s = std::abs(s1) + std::abs(s2), reach_t = std::abs(t1) + std::abs(t2);
-    const auto cut_unless = [&](bool inside, auto&& side, int edge) {
+    const auto cut_unless = [&](int edge, bool inside, auto&& side) {
       if (inside) return;
       Corners* const other = polygon_ == &corners_[0] ? &corners_[1] : &corners_[0];
       if (polygon_->count > 0) cut(*polygon_, side, face_b_.ids[edge], *other);
       if (polygon_->count > 0) polygon_ = other;
     };
-    cut_unless(
-        t - reach_t >= -kWindow, [](const Corner& c) { return 1 + c.t; }, 0);
-    cut_unless(
-        s + reach_s <= kWindow, [](const Corner& c) { return 1 - c.s; }, 1);
-    cut_unless(
-        t + reach_t <= kWindow, [](const Corner& c) { return 1 - c.t; }, 2);
-    cut_unless(
-        s - reach_s >= -kWindow, [](const Corner& c) { return 1 + c.s; }, 3);
+    // Along the window's loop.
+    cut_unless(0, t - reach_t >= -1, [](const Corner& c) { return 1 + c.t; });
+    cut_unless(1, s + reach_s <= 1, [](const Corner& c) { return 1 - c.s; });
+    cut_unless(2, t + reach_t <= 1, [](const Corner& c) { return 1 - c.t; });
+    cut_unless(3, s - reach_s >= -1, [](const Corner& c) { return 1 + c.s; });
   }
 
   /// Points of B's face, and how far A's reaches below them along the normal. @return the size of the intersection.
