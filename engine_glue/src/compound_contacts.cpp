@@ -203,14 +203,20 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
   const auto threshold = static_cast<double>(question.threshold);
-  const auto outcome = core.answer(shape_a, pair.a().getWorldTransform(), shape_b, pair.b().getWorldTransform(),
-                                   {true, is_part(pair.a()), is_part(pair.b())}, memory.met ? kAnyDistance : threshold,
-                                   question.stamp, memory.shapes, &memory.warm, buffers, answer);
+  ContactManifold points;
+  const PairQuestion asked{shape_a,
+                           pair.a().getWorldTransform(),
+                           shape_b,
+                           pair.b().getWorldTransform(),
+                           {true, is_part(pair.a()), is_part(pair.b())},
+                           memory.met ? kAnyDistance : threshold,
+                           question.stamp,
+                           memory.shapes,
+                           &memory.warm};
+  const auto outcome = core.contacts(asked, threshold, buffers, answer, points);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
   memory.met = answer.depth.signed_distance() <= threshold;
-  ContactManifold points =
-      contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
                  points);
   const auto [i, j] = pairs_.back();

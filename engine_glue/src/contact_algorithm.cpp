@@ -162,16 +162,22 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     const std::uint64_t stamp = first ? 0 : installation_.stamp();
     const BoxCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
     PairAnswer answer;
-    const auto outcome = core.answer(
-        shape_a, pose_a, shape_b, pose_b, corners, touched ? kAnyDistance : static_cast<double>(threshold), stamp,
-        memory_ ? memory_->shapes : buffers->recent, memory_ ? &memory_->warm : nullptr, *buffers, answer);
+    ContactManifold manifold;
+    const PairQuestion asked{shape_a,
+                             pose_a,
+                             shape_b,
+                             pose_b,
+                             corners,
+                             touched ? kAnyDistance : static_cast<double>(threshold),
+                             stamp,
+                             memory_ ? memory_->shapes : buffers->recent,
+                             memory_ ? &memory_->warm : nullptr};
+    const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, manifold);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
       return;
     }
     if (outcome == SolverCore::Outcome::answered) {
-      ContactManifold manifold = contact_manifold(answer.a, answer.b, answer.depth, static_cast<double>(threshold),
-                                                  buffers->manifold, DeepestPoint::as_lifted);
       if (of_union) {
         buffers->cover.near.begin_pair();
         keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold),

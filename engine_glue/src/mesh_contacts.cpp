@@ -171,10 +171,16 @@ SolverCore::Outcome MeshContacts::ask(const UnionQuestion& question, const Trian
                                       ThreadBuffers& buffers, PairAnswer& answer) const {
   const auto& body = static_cast<const btConvexShape&>(*question.a.getCollisionShape());
   const bool met = memory != nullptr && memory->met;
-  return core.answer(body, pose_a, triangle.shape(), question.b.getWorldTransform(), {true, is_part(question.a), false},
-                     met ? kAnyDistance : static_cast<double>(question.threshold), question.stamp,
-                     memory != nullptr ? memory->shapes : buffers.recent, memory != nullptr ? &memory->warm : nullptr,
-                     buffers, answer);
+  const PairQuestion asked{body,
+                           pose_a,
+                           triangle.shape(),
+                           question.b.getWorldTransform(),
+                           {true, is_part(question.a), false},
+                           met ? kAnyDistance : static_cast<double>(question.threshold),
+                           question.stamp,
+                           memory != nullptr ? memory->shapes : buffers.recent,
+                           memory != nullptr ? &memory->warm : nullptr};
+  return core.answer(asked, buffers, answer);
 }
 
 /// The contacts along the fronts of triangles that the body stands through, where none of the others leads off them.

@@ -44,8 +44,9 @@ std::optional<BulletPairAnswer> BulletPenetrationDepthSolver::query(const btConv
                                                                     WarmCertificate* warm) {
   auto buffers = core_->buffers.lease();
   detail::PairAnswer found;
-  if (core_->answer(a, transform_a, b, transform_b, detail::kSharpBoxPair, detail::kAnyDistance, 0, buffers->recent,
-                    warm, *buffers, found) != detail::SolverCore::Outcome::answered) {
+  const detail::PairQuestion question{a, transform_a,     b,   transform_b, detail::kSharpBoxPair, detail::kAnyDistance,
+                                      0, buffers->recent, warm};
+  if (core_->answer(question, *buffers, found) != detail::SolverCore::Outcome::answered) {
     return std::nullopt;
   }
   // Shared with the entries, so that the bodies live as long as the answer.

@@ -6,6 +6,7 @@
 
 #include "installation.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/contact/box_contact.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "query_meter.hpp"
 
@@ -22,6 +23,31 @@ bool in_range(const btTransform& pose) {
   if (sizeof(btScalar) == sizeof(float)) return is_finite(pose);
   return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
+
+namespace {
+
+double tolerance_of(const PairAnswer& pair) {
+  return contact_tolerance(pair.a.pose, pair.b.pose,
+                           std::min(bounding_radius(*pair.a.shape), bounding_radius(*pair.b.shape)));
+}
+
+/// Two boxes about their origins in one pass. @return false: in the general way
+bool measure_boxes(PairAnswer& pair, double breaking_threshold, ContactManifold& points) {
+  constexpr int kCorners = 8;
+  const ConvexPolytope& a = *pair.a.shape->polytope();
+  const ConvexPolytope& b = *pair.b.shape->polytope();
+  // Of a box without extent there are fewer; the last of the others, in lexicographic order, is that of all half
+  // extents.
+  if (a.num_vertices() != kCorners || b.num_vertices() != kCorners) return false;
+  const BoxContact found = box_contact({a.vertex(kCorners - 1), &pair.a.pose}, {b.vertex(kCorners - 1), &pair.b.pose},
+                                       tolerance_of(pair), breaking_threshold, BoxWitness::placed);
+  if (!found.answered) return false;
+  pair.depth = depth_of(found);
+  points = found.manifold;
+  return true;
+}
+
+}  // namespace
 
 SolverCore::SolverCore(const BulletSolverSettings& chosen) : settings(chosen), cache(chosen.cache_capacity) {}
 SolverCore::~SolverCore() = default;
@@ -42,36 +68,38 @@ CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, s
   return *known;
 }
 
-SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
-                                       const btTransform& pose_b, BoxCorners corners, double beyond,
-                                       std::uint64_t stamp, std::array<std::shared_ptr<CachedShape>, 2>& shapes,
-                                       WarmCertificate* warm, ThreadBuffers& held, PairAnswer& out) {
+SolverCore::Outcome SolverCore::place(const PairQuestion& question, ThreadBuffers& held, PairAnswer& out) {
   SolverCounters& counters = held.counters;
-  counters.calls.add();
-  QueryMeter meter(held);
-  const CachedShape& found_a = find(a, stamp, shapes[0], held);
-  const CachedShape& found_b = find(b, stamp, shapes[1], held);
+  const CachedShape& found_a = find(question.a, question.stamp, question.shapes[0], held);
+  const CachedShape& found_b = find(question.b, question.stamp, question.shapes[1], held);
   if (!found_a.body || !found_b.body) {
     counters.unsupported.add();
     const bool refuse_a = !found_a.body && found_a.refusal.code != ErrorCode::unsupported;
     const bool refuse_b = !found_b.body && found_b.refusal.code != ErrorCode::unsupported;
-    warn(found_a.body ? b : a, found_a.body ? found_b.refusal : found_a.refusal);
+    warn(found_a.body ? question.b : question.a, found_a.body ? found_b.refusal : found_a.refusal);
     return refuse_a || refuse_b ? Outcome::refused : Outcome::unsupported;
   }
-  if (!in_range(pose_a) || !in_range(pose_b)) {
+  if (!in_range(question.pose_a) || !in_range(question.pose_b)) {
     counters.refused_poses.add();
     return Outcome::refused;
   }
+  const BoxCorners& corners = question.corners;
   const bool pair = corners.sharp_pair && found_a.sharp && found_b.sharp;
-  out.a = {(found_a.sharp && (pair || corners.sharp_a) ? found_a.sharp : found_a.body).get(), to_pd(pose_a)};
-  out.b = {(found_b.sharp && (pair || corners.sharp_b) ? found_b.sharp : found_b.body).get(), to_pd(pose_b)};
+  const bool sharp_a = found_a.sharp && (pair || corners.sharp_a), sharp_b = found_b.sharp && (pair || corners.sharp_b);
+  out.a = {(sharp_a ? found_a.sharp : found_a.body).get(), to_pd(question.pose_a)};
+  out.b = {(sharp_b ? found_b.sharp : found_b.body).get(), to_pd(question.pose_b)};
+  out.boxes = sharp_a && sharp_b;
+  return Outcome::answered;
+}
+
+void SolverCore::measure(const PairQuestion& question, ThreadBuffers& held, PairAnswer& out) {
   DepthSettings depth_settings;
   depth_settings.delta = settings.delta;
   depth_settings.bracket = Bracket::contact;
-  depth_settings.beyond = beyond;
-  depth_settings.contact_tolerance =
-      contact_tolerance(out.a.pose, out.b.pose, std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
-  out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, warm);
+  depth_settings.beyond = question.beyond;
+  depth_settings.contact_tolerance = tolerance_of(out);
+  out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, question.warm);
+  SolverCounters& counters = held.counters;
   counters.support_calls.add(out.depth.statistics.support_calls);
   if (out.depth.statistics.exact_signs > 0) {
     counters.exact_signs.add(out.depth.statistics.exact_signs);
@@ -81,6 +109,28 @@ SolverCore::Outcome SolverCore::answer(const btConvexShape& a, const btTransform
   }
   if (out.depth.warm) {
     counters.warm.add();
+  }
+}
+
+SolverCore::Outcome SolverCore::answer(const PairQuestion& question, ThreadBuffers& held, PairAnswer& out) {
+  held.counters.calls.add();
+  QueryMeter meter(held);
+  const Outcome placed = place(question, held, out);
+  if (placed != Outcome::answered) return placed;
+  measure(question, held, out);
+  meter.count(out.depth.contact);
+  return Outcome::answered;
+}
+
+SolverCore::Outcome SolverCore::contacts(const PairQuestion& question, double breaking_threshold, ThreadBuffers& held,
+                                         PairAnswer& out, ContactManifold& points) {
+  held.counters.calls.add();
+  QueryMeter meter(held);
+  const Outcome placed = place(question, held, out);
+  if (placed != Outcome::answered) return placed;
+  if (!out.boxes || !measure_boxes(out, breaking_threshold, points)) {
+    measure(question, held, out);
+    points = contact_manifold(out.a, out.b, out.depth, breaking_threshold, held.manifold, DeepestPoint::as_lifted);
   }
   meter.count(out.depth.contact);
   return Outcome::answered;
@@ -106,7 +156,8 @@ bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& s
   auto held = buffers.lease();
   PairAnswer found;
   // Rounded corners: Bullet's detector takes its cores and adds the margins itself.
-  switch (answer(*a, pose_a, *b, pose_b, kRoundedBoxes, kAnyDistance, stamp, held->recent, nullptr, *held, found)) {
+  const PairQuestion question{*a, pose_a, *b, pose_b, kRoundedBoxes, kAnyDistance, stamp, held->recent, nullptr};
+  switch (answer(question, *held, found)) {
     case Outcome::answered:
       break;
     case Outcome::refused:

@@ -29,6 +29,7 @@ struct PairAnswer {
   PenetrationDepth depth;
   PosedShape a;
   PosedShape b;
+  bool boxes = false;  ///< two btBoxShapes, both taken sharp
 };
 
 /// Which btBoxShapes are taken without their margins; the others as Bullet's GJK sees every shape, core and margin.
@@ -42,6 +43,18 @@ inline constexpr BoxCorners kSharpBoxPair{true, false, false};
 
 /// Closest points however far apart the bodies are.
 inline constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
+
+struct PairQuestion {
+  const btConvexShape& a;
+  const btTransform& pose_a;
+  const btConvexShape& b;
+  const btTransform& pose_b;
+  BoxCorners corners;
+  double beyond;        ///< that the bodies are farther apart than this is all there is to know then
+  std::uint64_t stamp;  ///< of this step of this world (`BulletShapeCache::find`), 0: unknown
+  std::array<std::shared_ptr<CachedShape>, 2>& shapes;  ///< as found earlier: the pair's memory, or the buffers' last
+  WarmCertificate* warm;                                ///< of this pair, or nullptr
+};
 
 /// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves
 /// uncertain, whatever the reach of a floor. Coordinates are known to half a unit in the last place, so that surfaces
@@ -61,14 +74,11 @@ class SolverCore {
   /// What a query came to.
   enum class Outcome { answered, unsupported, refused };
 
-  /// @param beyond  that the bodies are farther apart than this is all there is to know then
-  /// @param stamp   of this step of this world (`BulletShapeCache::find`), 0: unknown
-  /// @param shapes  of this pair, as found earlier: the pair's memory, or the buffers' last ones
-  /// @param warm    of this pair, or nullptr
-  Outcome answer(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b, const btTransform& pose_b,
-                 BoxCorners corners, double beyond, std::uint64_t stamp,
-                 std::array<std::shared_ptr<CachedShape>, 2>& shapes, WarmCertificate* warm, ThreadBuffers& buffers,
-                 PairAnswer& answer);
+  Outcome answer(const PairQuestion& question, ThreadBuffers& buffers, PairAnswer& answer);
+
+  /// The same and the contact points (as lifted). Two boxes are answered in one pass, without features or a warm start.
+  Outcome contacts(const PairQuestion& question, double breaking_threshold, ThreadBuffers& buffers, PairAnswer& answer,
+                   ContactManifold& points);
 
   /// Bullet's call with a step's stamp.
   bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
@@ -99,6 +109,10 @@ class SolverCore {
  private:
   CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
                     ThreadBuffers& buffers);
+  /// Finds the bodies and places them.
+  Outcome place(const PairQuestion& question, ThreadBuffers& buffers, PairAnswer& answer);
+  /// The depth of placed bodies.
+  void measure(const PairQuestion& question, ThreadBuffers& buffers, PairAnswer& answer);
   void warn(const btConvexShape& shape, const Error& refusal);
 
   btGjkEpaPenetrationDepthSolver epa_;

@@ -12,6 +12,7 @@
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/difference/bracket_width.hpp"
 #include "depth/facets/box_pair.hpp"
+#include "depth/pair/double_answer.hpp"
 #include "numeric/floating_point_guard.hpp"
 
 namespace pd {
@@ -94,7 +95,7 @@ class BoxContactQuery : detail::BoxPair {
         half_b_(b.half_extents),
         origin_(a.pose->translation()) {}
 
-  void solve(double tolerance, double breaking_threshold, BoxContact& out) {
+  void solve(double tolerance, double breaking_threshold, BoxWitness witness, BoxContact& out) {
     if (!(reach_ > 0x1p-100 && reach_ < 0x1p100 && half_a_.minCoeff() > 0x1p-100 && half_b_.minCoeff() > 0x1p-100)) {
       return;
     }
@@ -117,9 +118,11 @@ class BoxContactQuery : detail::BoxPair {
     // A corner shows how near the boxes are at most; where none is near enough, the foot of the origin does.
     double missed = signed_depth - deepest_;
     BoxFoot at;
-    if (!reached || (found.depth <= 0 && missed > limit)) {
+    if (!reached || (found.depth <= 0 && missed > limit) || witness == BoxWitness::placed) {
       at = foot(found, 0.125 * limit);
       missed = at.missed;
+      out.witness_a = at.point_a + origin_;
+      out.witness_b = at.point_b + origin_;
     }
     if (found.depth > 0) {
       out.upper = -found.depth;
@@ -288,11 +291,22 @@ class BoxContactQuery : detail::BoxPair {
 
 }  // namespace
 
-BoxContact box_contact(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold) {
+BoxContact box_contact(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold,
+                       BoxWitness witness) {
   const detail::FloatingPointGuard guard;
   BoxContact out;
   const detail::BoxFrame frame_a{Vec3::Zero(), a.half_extents}, frame_b{Vec3::Zero(), b.half_extents};
-  BoxContactQuery(a, b, frame_a, frame_b).solve(tolerance, breaking_threshold, out);
+  BoxContactQuery(a, b, frame_a, frame_b).solve(tolerance, breaking_threshold, witness, out);
+  return out;
+}
+
+PenetrationDepth depth_of(const BoxContact& contact) {
+  PenetrationDepth out;
+  out.method = Method::overlay;
+  out.normal = contact.manifold.normal;
+  out.witness_a = contact.witness_a;
+  out.witness_b = contact.witness_b;
+  detail::set_signed_distance(0, contact.lower, contact.upper, out);
   return out;
 }
 
