@@ -116,7 +116,7 @@ class Cover {
         const UnionPiece& piece = buffers_.near[i];
         // Surfaces lie flush, not cores, where margins differ.
         const Vec3 level = corner + (buffers_.own.margin - piece.margin) * n;
-        most = std::max(most, covered_sine(piece, level, n, slack_, buffers_.active));
+        most = std::max(most, covered_sine(piece, level, n, slack_, least, buffers_.active));
       }
       least = std::min(least, most);
       if (least <= 0) break;
@@ -268,7 +268,7 @@ class SideRule {
   double covered_here(const Vec3& foot, const Vec3& n) {
     const UnionPiece& own = buffers_.cover.own;
     if (own.flat) {
-      const double own_sine = covered_sine(own, foot, n, slack_, buffers_.cover.active);
+      const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
       if (own_sine > kDecided) return own_sine;
       cover_.look_round(foot, own.margin, n);
     }

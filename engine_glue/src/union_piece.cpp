@@ -15,25 +15,31 @@ namespace {
 /// Of a direction in a cone of planes: rounding of a product of unit vectors, a few times over.
 constexpr double kFeasible = 1e-9;
 
-/// The largest <n, d> over unit d with <normal, d> <= 0 for all of `active`: the way of n's projection on the cone,
-/// which lies in its inside, on one of its sides or on the line of two.
-double largest_along(const std::vector<const Plane*>& active, const Vec3& n) {
+/// The largest <n, d> over unit d with <normal, d> <= 0 for all of `active`, or one that is enough: the way of n's
+/// projection on the cone, which lies in its inside, on one of its sides or on the line of two.
+double largest_along(const std::vector<const Plane*>& active, const Vec3& n, double enough) {
+  for (const Plane* plane : active) {
+    // No way leads farther along n than the sine of n's angle to a normal that it must not go along.
+    const double cosine = plane->normal.dot(n);
+    if (cosine > 0 && 1 - cosine * cosine <= kFeasible * kFeasible) return 0;
+  }
   double best = 0;
   const auto offer = [&](const Vec3& way) {
-    const double length = way.norm();
-    if (length <= kFeasible) return;
-    const double value = n.dot(way) / length;
+    const double along = n.dot(way);
+    if (!(along > 0)) return;
+    const double squared = way.squaredNorm();
+    if (along * along <= best * best * squared || squared <= kFeasible * kFeasible) return;
+    const double length = std::sqrt(squared);
     const auto against = [&](const Plane* plane) { return plane->normal.dot(way) > kFeasible * length; };
-    if (value > best && std::none_of(active.begin(), active.end(), against)) best = value;
+    if (std::none_of(active.begin(), active.end(), against)) best = along / length;
   };
   offer(n);
-  for (std::size_t i = 0; i < active.size(); ++i) {
+  for (std::size_t i = 0; i < active.size() && best < enough; ++i) {
     const Vec3& normal = active[i]->normal;
     offer(n - n.dot(normal) * normal);
-    for (std::size_t k = 0; k < i; ++k) {
+    for (std::size_t k = 0; k < i && best < enough; ++k) {
       const Vec3 line = normal.cross(active[k]->normal);
-      offer(line);
-      offer(-line);
+      offer(n.dot(line) < 0 ? Vec3(-line) : line);
     }
   }
   return best;
@@ -89,7 +95,14 @@ void set_piece(const PosedShape& body, UnionPiece& piece) {
 }
 
 void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& points, std::vector<Vec3>& spare) {
+  if (points.empty()) return;
+  // Planes that lie farther from one of the points than all others do cut nothing off.
+  const Vec3 centre = points[0];
+  double squared = 0;
+  for (const Vec3& point : points) squared = std::max(squared, (point - centre).squaredNorm());
+  const double reach = (1 + kFeasible) * std::sqrt(squared);
   for (const Plane& plane : piece.planes) {
+    if (plane.height(centre) + reach <= slack) continue;
     const std::size_t count = points.size();
     spare.clear();
     for (std::size_t i = 0; i < count; ++i) {
@@ -107,7 +120,7 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
   }
 }
 
-double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, double slack,
+double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, double slack, double enough,
                     std::vector<const Plane*>& active) {
   active.clear();
   for (const Plane& plane : piece.planes) {
@@ -115,7 +128,7 @@ double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, d
     if (height > slack) return -1;
     if (height >= -slack) active.push_back(&plane);
   }
-  return largest_along(active, n);
+  return largest_along(active, n, enough);
 }
 
 bool is_part(const btCollisionObjectWrapper& wrapper) {

@@ -47,8 +47,9 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
 
 /// The largest <n, d> as above, 0 where the piece has no such way; -1 where `point` lies outside of it by more than
 /// `slack`. Planes within `slack` of the point count as touching it. Time O(k^3) in those. `active` is memory for them.
+/// @param enough  a sine from which on no larger one is looked for.
 [[nodiscard]] double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, double slack,
-                                  std::vector<const Plane*>& active);
+                                  double enough, std::vector<const Plane*>& active);
 
 /// Whether the shape behind the wrapper is one piece of several.
 [[nodiscard]] bool is_piece(const btCollisionObjectWrapper& wrapper);
