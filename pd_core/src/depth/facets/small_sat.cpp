@@ -20,7 +20,7 @@ constexpr double kLowerError = 50 * kUnitRoundoff;
 constexpr double kUpperError = 24 * kUnitRoundoff;
 /// Below this share of a body's radius a sign in single precision may be wrong: an edge's two heights along a facet are
 /// rounded, then their difference, by 2^-22 together.
-constexpr double kSideError = 0x1p-21;
+constexpr double kSingleSideError = 0x1p-21;
 /// A point beyond a piece's border by no more than this, in units of the reach, is rounding.
 constexpr double kInside = 64 * kUnitRoundoff;
 
@@ -43,8 +43,8 @@ class SmallPair {
     row_by_row(normals_b_, b.normals);
     const Vec3& t = difference_.offset();
     const SmallSatErrors errors{0x1p-20 * difference_.reach(),
-                                static_cast<float>(kSideError * difference_.a().radius()),
-                                static_cast<float>(kSideError * difference_.b().radius())};
+                                static_cast<float>(kSingleSideError * difference_.a().radius()),
+                                static_cast<float>(kSingleSideError * difference_.b().radius())};
     const SmallSatNearest found = nearest_of_small(a, b, {t.x(), t.y(), t.z()}, errors);
     out.pieces = map_a_.facets + map_b_.facets + found.crossings + found.possible;
     const double reach = difference_.reach();
