@@ -12,7 +12,7 @@ namespace pd::detail {
 
 namespace {
 
-Vec3 half_extents(const btConvexShape& box) {
+Vec3 sharp_half_extents(const btConvexShape& box) {
   return to_pd(static_cast<const btBoxShape&>(box).getHalfExtentsWithMargin());
 }
 
@@ -23,7 +23,7 @@ bool box_contacts(const btConvexShape& a, const btTransform& transform_a, const 
   if (!in_range(transform_a) || !in_range(transform_b)) return false;
   QueryMeter meter(held);
   const Pose pose_a = to_pd(transform_a), pose_b = to_pd(transform_b);
-  const Vec3 half_a = half_extents(a), half_b = half_extents(b);
+  const Vec3 half_a = sharp_half_extents(a), half_b = sharp_half_extents(b);
   const double tolerance = contact_tolerance(pose_a, pose_b, std::min(half_a.norm(), half_b.norm()));
   const BoxContact found = box_contact({half_a, &pose_a}, {half_b, &pose_b}, tolerance, breaking_threshold);
   if (!found.answered) return false;
