@@ -119,6 +119,31 @@ TEST(Manifold, CrossedEdgesMeetInOnePoint) {
   EXPECT_NEAR(contact.manifold.points[0].position_b.x(), 0, 1e-9);
 }
 
+/// Within three degrees of each other, whatever their lengths, two edges share a stretch.
+TEST(Manifold, NearlyParallelEdgesShareAStretch) {
+  for (const double half : {0.1, 1.0, 10.0}) {
+    const ConvexShape rod = ConvexShape::capsule(0.25, half, 0).value();
+    const Contact along = touch(rod, pose(Vec3(0, 0.49, 0), Vec3::UnitY(), 0.02), rod, Pose());
+    ASSERT_EQ(along.manifold.count, 2) << half;
+    EXPECT_NEAR((along.manifold.points[0].position_b - along.manifold.points[1].position_b).norm(), 2 * half,
+                1e-3 * half);
+    EXPECT_EQ(touch(rod, pose(Vec3(0, 0.49, 0), Vec3::UnitY(), 0.1), rod, Pose()).manifold.count, 1) << half;
+  }
+}
+
+TEST(Manifold, CornersThatNearlyMeetAreOne) {
+  // A triangle on a face whose border cuts off a tip of a billionth.
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 3; ++k) {
+    for (const double y : {-1.0, 1.0}) corners.emplace_back(std::cos(2 * M_PI * k / 3), y, std::sin(2 * M_PI * k / 3));
+  }
+  const ConvexShape prism(ConvexPolytope::from_points(corners).value());
+  for (const double cut : {0.0, 1e-12, 1e-9}) {
+    const Contact contact = touch(prism, pose(Vec3(1 + cut, 1.99, 0)), box(2, 1, 2), Pose());
+    EXPECT_EQ(contact.manifold.count, 3) << cut;
+  }
+}
+
 TEST(Manifold, EdgeOnFaceHasTwoEnds) {
   const ConvexShape bar = box(1, 0.5, 0.5);
   const ConvexShape floor = box(5, 1, 5);

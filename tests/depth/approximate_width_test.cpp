@@ -64,6 +64,46 @@ TEST(ApproximateWidth, KernelKeepsItsFactor) {
   }
 }
 
+/// Far from the origin rounding is as large as the bounds of the extents say, and no larger.
+TEST(ApproximateWidth, KernelHoldsTheExactWidthFarOut) {
+  Scratch scratch;
+  scenes::Random random(53);
+  for (const Body& body : bodies()) {
+    for (const double far : {0x1p10, 0x1p20, 0x1p30}) {
+      const Vec3 offset = far * random.direction();
+      std::vector<Vec3> points = body.points;
+      for (Vec3& p : points) p += offset;
+      const ConvexShape shape(*ConvexPolytope::from_points(points));
+      const Width exact = width({&shape, Pose()}, scratch);
+      const ApproximateWidth found = *approximate_width(points, 0.1, scratch);
+      EXPECT_LE(found.lower, exact.upper) << body.name << " " << far;
+      EXPECT_GE(found.upper, exact.lower) << body.name << " " << far;
+    }
+  }
+}
+
+TEST(ApproximateWidth, KernelKeepsItsFactorAtEverySize) {
+  Scratch scratch;
+  for (const Body& body : bodies()) {
+    for (const double scale : {0x1p-900, 0x1p-300, 0x1p260, 0x1p490}) {
+      std::vector<Vec3> points = body.points;
+      for (Vec3& p : points) p *= scale;
+      const ConvexShape shape(*ConvexPolytope::from_points(points));
+      const Width exact = width({&shape, Pose()}, scratch);
+      const ApproximateWidth found = *approximate_width(points, 0.01, scratch);
+      EXPECT_LE(found.lower, exact.upper) << body.name << " " << scale;
+      EXPECT_GE(found.upper, exact.lower) << body.name << " " << scale;
+      EXPECT_LE(found.upper, 1.01 * found.lower + 1e-13 * scale) << body.name << " " << scale;
+    }
+  }
+}
+
+/// Two passes to choose directions by, one over all those chosen; the kernel's own width is the certificate.
+TEST(ApproximateWidth, EndsWithItsCertificate) {
+  Scratch scratch;
+  EXPECT_LE(approximate_width(scenes::box(Vec3(3, 1, 2)), 1, scratch)->passes, 3);
+}
+
 TEST(ApproximateWidth, ManyPointsFewPasses) {
   scenes::Random random(52);
   Scratch scratch;
@@ -99,6 +139,13 @@ TEST(ApproximateWidth, FlatSetsAndRefusals) {
   EXPECT_EQ(approximate_width(bad, 0.1, scratch).error().code, ErrorCode::non_finite);
   EXPECT_EQ(approximate_width(bad, 0.1, scratch).error().where, "points[1]");
   EXPECT_EQ(approximate_width(far, 0.1, scratch).error().code, ErrorCode::out_of_range);
+  // 1e150 is the last that is taken.
+  std::vector<Vec3> wide{{0, 0, 0}, {1e150, 0, 0}, {0, 1e150, 0}, {0, 0, 1e150}};
+  const auto widest = approximate_width(wide, 0.1, scratch);
+  ASSERT_TRUE(widest);
+  EXPECT_NEAR(widest->upper / 1e150, std::sqrt(1.0 / 3), 0.06);
+  wide[1].x() = std::nextafter(1e150, HUGE_VAL);
+  EXPECT_EQ(approximate_width(wide, 0.1, scratch).error().where, "points[1]");
 }
 
 }  // namespace

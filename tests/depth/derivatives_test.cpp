@@ -46,6 +46,17 @@ TEST(Derivatives, OfParallelFacesHaveADirectionAndNoRotation) {
   EXPECT_TRUE(std::isnan(d.normal_by_a.rotation(0, 0)));
 }
 
+TEST(Derivatives, ParallelFacesApartShareMoreThanAPointAtEverySize) {
+  Scratch scratch;
+  for (const double scale : {0x1p-60, 1.0, 0x1p60}) {
+    const ConvexShape cube(*ConvexPolytope::box(scale * Vec3(1, 1, 1)));
+    const Pose above = *Pose::from_matrix(Mat3::Identity(), scale * Vec3(.1, .2, 2.1));
+    const DepthDerivatives d = depth_derivatives({&cube, above}, {&cube, {}}, scratch);
+    EXPECT_TRUE(d.unique_direction) << scale;
+    EXPECT_FALSE(d.unique_witness) << scale;
+  }
+}
+
 TEST(Derivatives, OfAFlatDifferenceDoNotExist) {
   const ConvexShape square(*ConvexPolytope::from_points(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
   Scratch scratch;

@@ -370,6 +370,17 @@ TEST(DifferenceQueries, PointClassesAreExact) {
             ContactClass::overlapping);
 }
 
+TEST(DifferenceQueries, PointsAreTakenUpToTheLargestCoordinate) {
+  Scratch scratch;
+  const ConvexShape box(*ConvexPolytope::box({1, 1, 1}));
+  const PosedShape posed{&box, Pose()};
+  EXPECT_EQ(*point_in_difference(posed, posed, Vec3(kMaxCoordinate, 0, 0), scratch), ContactClass::separated);
+  const Vec3 beyond(0, -std::nextafter(kMaxCoordinate, HUGE_VAL), 0);
+  EXPECT_EQ(point_in_difference(posed, posed, beyond, scratch).error().where, "point");
+  EXPECT_TRUE(line_in_difference(posed, posed, Vec3(kMaxCoordinate, 0, 0), Vec3(1, 0, 0)));
+  EXPECT_EQ(line_in_difference(posed, posed, beyond, Vec3(1, 0, 0)).error().where, "point");
+}
+
 TEST(DifferenceQueries, LinesAgreeWithPointClasses) {
   std::mt19937_64 random(26);
   std::uniform_int_distribution<int> coordinate(-5, 5);

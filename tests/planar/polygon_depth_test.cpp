@@ -100,6 +100,18 @@ TEST(PolygonDepth, ASlotOfZeroWidthIsNoWayOut) {
   EXPECT_EQ(PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 1)))->statistics().loops, 2);
 }
 
+TEST(PolygonDepth, StraightOutThroughASlotIsOutAtItsMouth) {
+  // A block with a cut of width 2 from the top: a square of 2 that stands below it fits in without room on either side.
+  const oracle::Rings block{{{0, 0}, {10, 0}, {10, 10}, {6, 10}, {6, 4}, {4, 4}, {4, 10}, {0, 10}}};
+  const auto r = *PolygonDifference::of(pd::test::made(block), pd::test::made(square(0, 2)));
+  const oracle::PolygonOracle truth(block, square(0, 2));
+  for (const Point2& y : {Point2{4, 1}, Point2{4, 3}}) {
+    const Point2 up{0, 1};
+    EXPECT_NEAR(truth.straight_exit(y, up), 10 - y[1], 1e-12);
+    EXPECT_EQ(r.depth_along(y, up, Leave::straight).depth, 10 - y[1]);
+  }
+}
+
 TEST(PolygonDepth, ImplicitAgainstTheOracle) {
   SmallPolygons next(20261122);
   int answers = 0;

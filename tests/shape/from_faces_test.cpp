@@ -148,6 +148,7 @@ TEST(FromFaces, BadLists) {
     return faces;
   };
   expect_refusal(kCube, with(1, {4, 6, 7, 9}), ErrorCode::bad_faces, "faces[1]");
+  expect_refusal(kCube, with(1, {4, 6, 7, 8}), ErrorCode::bad_faces, "faces[1]");  // the first that is not there
   expect_refusal(kCube, with(1, {4, 6, 7, -1}), ErrorCode::bad_faces, "faces[1]");
   expect_refusal(kCube, with(2, {0, 1}), ErrorCode::bad_faces, "faces[2]");
   expect_refusal(kCube, with(3, {2, 3, 7, 3}), ErrorCode::bad_faces, "faces[3]");
@@ -174,6 +175,9 @@ TEST(FromFaces, Orientation) {
   EXPECT_EQ(build(kCube, one).error().code, ErrorCode::bad_faces);
   Faces all = kCubeFaces;
   for (auto& face : all) std::reverse(face.begin(), face.end());
+  expect_refusal(kCube, all, ErrorCode::bad_faces, "faces[0]");
+  // The face's own corners come last, level with it.
+  std::swap(all[0], all[1]);
   expect_refusal(kCube, all, ErrorCode::bad_faces, "faces[0]");
 }
 

@@ -340,6 +340,25 @@ TEST(Hull, MagnitudesThatSpanTheWholeRange) {
   }
 }
 
+TEST(Hull, ClustersWhoseProductsUnderflow) {
+  // Facets among points 2^-537 apart have normals of a few of the least numbers; on which side of them the far points
+  // lie, products of such say only up to a few of those.
+  std::mt19937_64 random(33);
+  std::uniform_int_distribution<int> coordinate(-4, 4);
+  for (int round = 0; round < 40; ++round) {
+    Points points{{1, 0.3, 0.2}, {0.2, 1, 0.3}, {0.3, 0.2, 1}};
+    for (int i = 0; i < 8; ++i) {
+      const int x = coordinate(random);
+      const int y = coordinate(random);
+      points.push_back(0x1p-537 * Vec3(x, y, coordinate(random)));
+    }
+    const ConvexPolytope p = hull(points);
+    const test::ExactHull expected = test::exact_hull(points);
+    ASSERT_EQ(test::combinatorics(p).vertices, expected.vertices) << "round " << round;
+    ASSERT_EQ(test::combinatorics(p).facets, expected.facets) << "round " << round;
+  }
+}
+
 TEST(Hull, SubnormalCoordinates) {
   Points points;
   for (int corner = 0; corner < 8; ++corner) {

@@ -327,6 +327,49 @@ TEST(Overlay, EqualBodiesAndPrisms) {
   }
 }
 
+/// Doubly covered polygons in one plane, however they face: the loop runs once round their difference, to the left.
+TEST(FlatDifference, LoopHasAllDifferencesOnItsLeft) {
+  std::mt19937_64 random(9);
+  std::uniform_int_distribution<int> coordinate(-3, 3);
+  const auto polygon = [&] {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 5; ++i) {
+      const int x = coordinate(random);
+      points.emplace_back(x, coordinate(random), 0);
+    }
+    return hull(points);
+  };
+  const Pose over = *Pose::from_quaternion({0, 1, 0, 0}, Vec3::Zero());  // half a turn about x
+  int judged = 0;
+  for (int i = 0; i < 200; ++i) {
+    const ConvexPolytope a = polygon(), b = polygon();
+    if (a.affine_dimension() != 2 || b.affine_dimension() != 2) continue;
+    for (const Pose& pose_a : {Pose(), over}) {
+      for (const Pose& pose_b : {Pose(), over}) {
+        const PosedPair pair(a, pose_a, b, pose_b);
+        const auto flat = flat_difference(pair);
+        ASSERT_TRUE(flat);
+        ASSERT_EQ(flat->affine_dimension, 2);
+        const InPlane plane(pair, flat->u, flat->v);
+        std::vector<DifferencePoint> loop;
+        sum_loop(pair, flat->faces, plane, loop);
+        ASSERT_GE(loop.size(), 3u);
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+          const DifferencePoint from = loop[k], to = loop[(k + 1) % loop.size()];
+          const PairVector side = PairVector::difference(from.a, from.b, to.a, to.b);
+          for (int va = 0; va < a.num_vertices(); ++va) {
+            for (int vb = 0; vb < b.num_vertices(); ++vb) {
+              EXPECT_GE(plane.turn(side, PairVector::difference(from.a, from.b, va, vb)), 0);
+            }
+          }
+        }
+        ++judged;
+      }
+    }
+  }
+  EXPECT_GT(judged, 400);
+}
+
 TEST(Overlay, AlignedBoxesHaveSixFacets) {
   const ConvexPolytope a = *ConvexPolytope::box(Vec3(1, 2, 3));
   const ConvexPolytope b = *ConvexPolytope::box(Vec3(2, 2, 1));

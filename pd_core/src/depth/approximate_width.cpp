@@ -56,8 +56,9 @@ class Facets : public OverlayVisitor {
   std::vector<ThinDirection> found;
 
  private:
+  /// Unit: the square of a product of two edges longer than 1e77 is infinite, and its normal would be 0.
   [[nodiscard]] Vec3 along(const Feature& edge) const {
-    return kernel_.vertex(edge.second) - kernel_.vertex(edge.first);
+    return (kernel_.vertex(edge.second) - kernel_.vertex(edge.first)).stableNormalized();
   }
   [[nodiscard]] int corner(const Feature& f) const {
     return f.kind == Feature::Kind::facet ? kernel_.facet_vertices(f.first)[0] : f.first;

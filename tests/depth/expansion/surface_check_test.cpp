@@ -163,6 +163,40 @@ TEST(SurfaceCheck, NoticesADentWhereConvexityIsPromised) {
   EXPECT_FALSE(find_fault(all, false)) << "the surface in doubles does not promise convexity";
 }
 
+/// The product that tells on which side of a sliver the origin lies is all rounding: its sign must not count.
+TEST(SurfaceCheck, TheOriginCloselyBehindASliver) {
+  constexpr double kHalfWidth = 1e-8, kBelow = 1e-13;
+  const Vec3 corners[4] = {
+      {-1, -kHalfWidth, -kBelow}, {1, -kHalfWidth, -kBelow}, {0.5, kHalfWidth, -kBelow}, {0, 0, 1}};
+  const std::int32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  std::mt19937_64 random(6);
+  for (int round = 0; round < 100; ++round) {
+    const Vec3 x = random_direction(random), y = x.cross(random_direction(random)).normalized(), z = x.cross(y);
+    SurfaceSnapshot all;
+    for (const Vec3& c : corners) all.points.push_back(c.x() * x + c.y() * y + c.z() * z);
+    for (std::int32_t f = 0; f < 4; ++f) {
+      SurfaceSnapshot::Face face{{faces[f][0], faces[f][1], faces[f][2]}, {}, {}, 0};
+      for (std::int32_t e = 0; e < 3; ++e) {
+        for (std::int32_t g = 0; g < 4; ++g) {
+          for (std::int32_t h = 0; h < 3; ++h) {
+            const bool across = faces[g][h] == faces[f][(e + 1) % 3] && faces[g][(h + 1) % 3] == faces[f][e];
+            if (across) face.adj[e] = 4 * g + h;
+          }
+        }
+      }
+      // The sliver's normal is known; that of its corners would be rounding, too.
+      const auto at = [&](int i) { return all.points[static_cast<std::size_t>(face.v[i])]; };
+      face.normal = f == 0 ? Vec3(-z) : Vec3((at(1) - at(0)).cross(at(2) - at(0)));
+      face.distance = f == 0 ? 0.5 * kBelow : 0.5 * face.normal.dot(at(0)) / face.normal.norm();
+      ASSERT_GT(face.distance, 0);
+      all.faces.push_back(face);
+    }
+    all.nearest = 0;
+    const auto fault = find_fault(all, false);
+    EXPECT_FALSE(fault) << to_string(fault->rule) << " at face " << fault->face << ", round " << round;
+  }
+}
+
 TEST(ExactHull, StaysAConvexHullOfNearlyDegeneratePoints) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);

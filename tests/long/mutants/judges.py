@@ -21,6 +21,9 @@ PROGRAMS = [
     ["bound_ratios", "--evaluations", "10000"],
     ["oracle_pairs", "--pairs", "1500", "--seed", "1"],
     ["oracle_pairs", "--pairs", "1500", "--seed", "2", "--bracket", "certified"],
+    ["grid_pairs", "--pairs", "200000", "--seed", "1"],
+    ["oracle_pairs", "--pairs", "1500", "--seed", "3", "--method", "overlay"],
+    ["oracle_pairs", "--pairs", "1500", "--seed", "4", "--method", "decomposition"],
 ]
 
 
