@@ -172,34 +172,6 @@ TEST(NearFacets, AnswersDoNotDependOnWhatTheBuffersHeld) {
   EXPECT_EQ(x.witness_a, y.witness_a);
 }
 
-/// What a larger pair left in them is no part of a smaller one, down to the number of facets measured.
-TEST(NearFacets, FacetsAreCountedAsInFreshBuffers) {
-  const auto ask = [](int n, std::uint64_t seed, NearFacetsBuffers& buffers) {
-    const scenes::PolytopePair pair = scenes::crossed_roofs(n, 1, seed);
-    Scratch scratch;
-    const ConvexShape a(pair.a), b(pair.b);
-    const PenetrationDepth exact = penetration_depth({&a, pair.pose_a}, {&b, pair.pose_b}, scratch);
-    PosedVerticesPair posed;
-    PolytopeDifference difference(pair.a, pair.pose_a, pair.b, pair.pose_b);
-    difference.prepare_supports(posed);
-    const InnerSurface surface = some_surface(difference);
-    std::vector<std::int32_t> stack;
-    const NearFacetsSettings settings{0.9 * exact.lower, 1.1 * exact.upper, kWidth};
-    return nearest_of_near_facets(pair.a, pair.pose_a, pair.b, pair.pose_b, difference, surface, settings, stack,
-                                  buffers);
-  };
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    NearFacetsBuffers fresh, used;
-    (void)ask(200, seed, used);
-    const NearFacets x = ask(40, seed, fresh), y = ask(40, seed, used);
-    EXPECT_GT(x.facets, 0);
-    EXPECT_EQ(x.facets, y.facets);
-    EXPECT_EQ(x.certified, y.certified);
-    EXPECT_EQ(x.lower, y.lower);
-    EXPECT_EQ(x.upper, y.upper);
-  }
-}
-
 TEST(LineLanes, KeepExactlyTheLinesWithinTheRadius) {
   // Lines of A along x at heights z = 0, 1, 2, ...; b along y through the origin, so that N = z and t = 0.
   constexpr int kCount = 70;
