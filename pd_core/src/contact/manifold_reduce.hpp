@@ -13,7 +13,7 @@
 
 namespace pd::detail {
 
-/// Two corners closer than this times the size of the intersection are one: a thousandth of a percent of a face is
+/// Two corners closer than this times the size of the intersection are one: a ten-thousandth of a percent of a face is
 /// below what a solver can feel, and far above the rounding of a cut.
 inline constexpr double kMergeRatio = 1e-6;
 /// Of the breaking threshold: depths of a resting contact differ by so much from frame to frame.
