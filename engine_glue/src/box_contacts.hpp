@@ -6,7 +6,8 @@
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
 #include "manifold_points.hpp"
-#include "solver_core.hpp"
+#include "pd/contact/box_contact.hpp"
+#include "thread_buffers.hpp"
 
 namespace pd::detail {
 
@@ -14,8 +15,12 @@ namespace pd::detail {
   return a.getShapeType() == BOX_SHAPE_PROXYTYPE && b.getShapeType() == BOX_SHAPE_PROXYTYPE;
 }
 
-/// Requires `are_boxes`. Counted as one query where it answers.
-/// @return false: `SolverCore::answer` has to be asked.
+/// Both with their margins inside, to the tolerance of contacts. Requires `are_boxes` and poses in range.
+[[nodiscard]] BoxContact ask_boxes(const btConvexShape& a, const Pose& pose_a, const btConvexShape& b,
+                                   const Pose& pose_b, double breaking_threshold, BoxWitness witness);
+
+/// A whole pair. Requires `are_boxes`. Counted as one query where it answers.
+/// @return false: `SolverCore::contacts` has to be asked, which is rare (`BoxContact::answered`).
 [[nodiscard]] bool box_contacts(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
                                 const btTransform& pose_b, double breaking_threshold, ThreadBuffers& held,
                                 FreshPoints& out);

@@ -111,17 +111,22 @@ ManifoldPoses poses_of(const btPersistentManifold& manifold) {
 
 }  // namespace
 
-FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) {
-  return {to_bullet(normal), to_bullet(point.position_b), static_cast<btScalar>(-point.depth), point.feature_id};
+namespace {
+
+FreshPoint fresh_point(const btVector3& normal, const ContactPoint& point) {
+  return {normal, to_bullet(point.position_b), static_cast<btScalar>(-point.depth), point.feature_id};
 }
+
+}  // namespace
+
+FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) { return fresh_point(to_bullet(normal), point); }
 
 FreshPoints fresh_points(const ContactManifold& manifold) {
   FreshPoints fresh;
   const btVector3 normal = to_bullet(manifold.normal);
   for (int k = 0; k < manifold.count; ++k) {
-    const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
-    fresh.points[static_cast<std::size_t>(k)] = {normal, to_bullet(point.position_b),
-                                                 static_cast<btScalar>(-point.depth), point.feature_id};
+    const auto i = static_cast<std::size_t>(k);
+    fresh.points[i] = fresh_point(normal, manifold.points[i]);
   }
   fresh.count = manifold.count;
   return fresh;

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "box_contacts.hpp"
 #include "installation.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pd/contact/box_contact.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "query_meter.hpp"
 
@@ -23,31 +23,6 @@ bool in_range(const btTransform& pose) {
   if (sizeof(btScalar) == sizeof(float)) return is_finite(pose);
   return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
-
-namespace {
-
-double tolerance_of(const PairAnswer& pair) {
-  return contact_tolerance(pair.a.pose, pair.b.pose,
-                           std::min(bounding_radius(*pair.a.shape), bounding_radius(*pair.b.shape)));
-}
-
-/// Two boxes about their origins in one pass. @return false: in the general way
-bool measure_boxes(PairAnswer& pair, double breaking_threshold, ContactManifold& points) {
-  constexpr int kCorners = 8;
-  const ConvexPolytope& a = *pair.a.shape->polytope();
-  const ConvexPolytope& b = *pair.b.shape->polytope();
-  // Of a box without extent there are fewer; the last of the others, in lexicographic order, is that of all half
-  // extents.
-  if (a.num_vertices() != kCorners || b.num_vertices() != kCorners) return false;
-  const BoxContact found = box_contact({a.vertex(kCorners - 1), &pair.a.pose}, {b.vertex(kCorners - 1), &pair.b.pose},
-                                       tolerance_of(pair), breaking_threshold, BoxWitness::placed);
-  if (!found.answered) return false;
-  pair.depth = depth_of(found);
-  points = found.manifold;
-  return true;
-}
-
-}  // namespace
 
 SolverCore::SolverCore(const BulletSolverSettings& chosen) : settings(chosen), cache(chosen.cache_capacity) {}
 SolverCore::~SolverCore() = default;
@@ -97,7 +72,8 @@ void SolverCore::measure(const PairQuestion& question, ThreadBuffers& held, Pair
   depth_settings.delta = settings.delta;
   depth_settings.bracket = Bracket::contact;
   depth_settings.beyond = question.beyond;
-  depth_settings.contact_tolerance = tolerance_of(out);
+  depth_settings.contact_tolerance =
+      contact_tolerance(out.a.pose, out.b.pose, std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
   out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, question.warm);
   SolverCounters& counters = held.counters;
   counters.support_calls.add(out.depth.statistics.support_calls);
@@ -128,7 +104,13 @@ SolverCore::Outcome SolverCore::contacts(const PairQuestion& question, double br
   QueryMeter meter(held);
   const Outcome placed = place(question, held, out);
   if (placed != Outcome::answered) return placed;
-  if (!out.boxes || !measure_boxes(out, breaking_threshold, points)) {
+  const BoxContact boxes =
+      out.boxes ? ask_boxes(question.a, out.a.pose, question.b, out.b.pose, breaking_threshold, BoxWitness::placed)
+                : BoxContact();
+  if (boxes.answered) {
+    out.depth = depth_of(boxes);
+    points = boxes.manifold;
+  } else {
     measure(question, held, out);
     points = contact_manifold(out.a, out.b, out.depth, breaking_threshold, held.manifold, DeepestPoint::as_lifted);
   }

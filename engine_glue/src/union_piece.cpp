@@ -19,9 +19,8 @@ constexpr double kFeasible = 1e-9;
 /// projection on the cone, which lies in its inside, on one of its sides or on the line of two.
 double largest_along(const std::vector<const Plane*>& active, const Vec3& n, double enough) {
   for (const Plane* plane : active) {
-    // No way leads farther along n than the sine of n's angle to a normal that it must not go along.
-    const double cosine = plane->normal.dot(n);
-    if (cosine > 0 && 1 - cosine * cosine <= kFeasible * kFeasible) return 0;
+    // No way leads farther along n than n lies from a normal that it must not go along: flush faces end here.
+    if ((plane->normal - n).squaredNorm() <= kFeasible * kFeasible) return 0;
   }
   double best = 0;
   const auto offer = [&](const Vec3& way) {

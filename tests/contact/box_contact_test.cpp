@@ -218,6 +218,50 @@ TEST(BoxContact, TouchingBoxesAreSaidToTouch) {
   for (int k = 0; k < 4; ++k) EXPECT_NEAR(found.manifold.points[k].depth, 0, 1e-14);
 }
 
+TEST(BoxContact, DepthIsThatOfTheGeneralQuery) {
+  std::mt19937_64 random(57);
+  pd::Scratch scratch;
+  int apart = 0, near = 0;
+  for (int i = 0; i < 500; ++i) {
+    Boxes boxes = draw(i % 2 == 0, random);
+    if (i % 5 == 0) {
+      boxes.pose_a = Pose::from_trusted_matrix(boxes.pose_a.rotation(), boxes.pose_a.translation() + Vec3(0, 5, 0));
+    }
+    const BoxContact found = pd::box_contact({boxes.half_a, &boxes.pose_a}, {boxes.half_b, &boxes.pose_b}, kTolerance,
+                                             kThreshold, pd::BoxWitness::placed);
+    if (!found.answered) continue;
+    const pd::PenetrationDepth depth = pd::depth_of(found);
+    const General general(boxes);
+    EXPECT_EQ(depth.contact, general.answer.contact) << i;
+    const double exact = general.tightest.signed_distance();
+    if (depth.contact == ContactClass::overlapping) {
+      EXPECT_LE(depth.lower, -exact + 1e-15) << i;
+      EXPECT_GE(depth.upper, -exact - 1e-15) << i;
+    } else if (depth.contact == ContactClass::separated) {
+      EXPECT_LE(depth.distance_lower, exact + 1e-15) << i;
+      EXPECT_GE(depth.distance_upper, exact - 1e-15) << i;
+      EXPECT_GE(depth.distance, depth.distance_lower) << i;
+      EXPECT_LE(depth.distance, depth.distance_upper) << i;
+    }
+    if (found.manifold.count == 0) {
+      ++apart;
+      EXPECT_GT(depth.signed_distance(), kThreshold) << i;
+      EXPECT_TRUE(std::isfinite(depth.distance_upper)) << i;
+      continue;
+    }
+    ++near;
+    EXPECT_NEAR((depth.witness_a - depth.witness_b).dot(depth.normal), depth.signed_distance(), 2 * kTolerance) << i;
+    for (const bool of_a : {true, false}) {
+      const Pose& pose = of_a ? boxes.pose_a : boxes.pose_b;
+      const Vec3& witness = of_a ? depth.witness_a : depth.witness_b;
+      const Vec3 local = pose.rotation().transpose() * (witness - pose.translation());
+      EXPECT_LE((local.cwiseAbs() - (of_a ? boxes.half_a : boxes.half_b)).maxCoeff(), 1e-6) << i;
+    }
+  }
+  EXPECT_GE(apart, 90);
+  EXPECT_GE(near, 100);
+}
+
 TEST(BoxContact, LeavesSizesOutOfRangeToTheGeneralQuery) {
   const Pose pose;
   for (const Vec3& half : {Vec3(0, 1, 1), Vec3(1e-40, 1, 1), Vec3(1e40, 1, 1), Vec3(NAN, 1, 1)}) {

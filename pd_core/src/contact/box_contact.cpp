@@ -30,6 +30,7 @@ using detail::Vec2;
 constexpr int kMostCorners = 8;
 /// And the witness.
 constexpr int kMostPoints = kMostCorners + 1;
+
 /// A corner of the cut face in the other face's own coordinates, which run from -1 to 1 along its two edges.
 struct Corner {
   double s, t;
@@ -104,7 +105,7 @@ class BoxContactQuery : detail::BoxPair {
     out.lower = -found.height - found.rounding;
     if (out.lower > breaking_threshold) {
       out.answered = true;
-      out.upper = HUGE_VAL;
+      out.upper = reach_ + slack();  // two centres are points of the boxes
       return;
     }
     const double limit = detail::BracketWidth{detail::kCertifiedWidth, tolerance}.limit(greatest_coordinate());
@@ -120,7 +121,7 @@ class BoxContactQuery : detail::BoxPair {
     BoxFoot at;
     if (!reached || (found.depth <= 0 && missed > limit) || witness == BoxWitness::placed) {
       at = foot(found, 0.125 * limit);
-      missed = at.missed;
+      if (!reached || at.missed < missed) missed = at.missed;
       out.witness_a = at.point_a + origin_;
       out.witness_b = at.point_b + origin_;
     }

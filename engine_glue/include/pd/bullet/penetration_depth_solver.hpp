@@ -64,7 +64,7 @@ struct BulletSolverStatistics {
   std::int64_t overlapping = 0;  ///< answers by class
   std::int64_t touching = 0;
   std::int64_t separated = 0;
-  std::int64_t warm = 0;           ///< answers that the certificate of an earlier frame gave
+  std::int64_t warm = 0;           ///< answers that the certificate of an earlier frame gave; two boxes need none
   std::int64_t unsupported = 0;    ///< pairs with a shape that has no exact form
   std::int64_t fallback = 0;       ///< of those, the ones that the fallback solver answered
   std::int64_t refused_poses = 0;  ///< pairs with a transform that is not finite or out of range

@@ -2,9 +2,9 @@
 /// Two boxes, the commonest pair of a physics engine: their signed distance and contact points in one pass, without a
 /// polytope, a memory or a search.
 ///
-/// The same answer as `penetration_depth` with Bracket::contact and `contact_manifold` give, from the fifteen axes of
-/// two boxes; a sixth of their work goes into telling that two polytopes are boxes, and half of it into faces of any
-/// number of corners. Constant time, no allocation.
+/// What `penetration_depth` with Bracket::contact and `contact_manifold` say of them, by the fifteen axes of two boxes
+/// (depth/facets/box_sat_kernels.hpp) and two rectangles cut by each other (Sutherland, Hodgman 1974). Where axes are
+/// equally near up to rounding, either may be taken, and exchanged bodies may take the other.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace pd {
 
 /// A box about the origin of its own frame, its edges along the axes, posed.
 struct PosedBox {
-  Vec3 half_extents;  ///< > 0
-  const Pose* pose = nullptr;
+  Vec3 half_extents;           ///< > 0
+  const Pose* pose = nullptr;  ///< of the caller, never null in a call
 };
 
 /// Whether the points next to each other are asked for, where the corners of the faces say as much.
@@ -36,9 +36,13 @@ struct BoxContact {
   Vec3 witness_b = Vec3::Zero();
 };
 
-/// @param tolerance  of `DepthSettings::contact_tolerance`: the bracket is at most max(2e-14 L, tolerance) wide.
-/// @param breaking_threshold  as for `contact_manifold`; boxes farther apart than that are `separated` by a plane, and
-/// `upper` is wide. Points are as lifted (`DeepestPoint::as_lifted`), ids those of `contact_manifold`.
+/// Lengths are in the unit of the input, points and the normal (from B to A) in the frame that both poses share.
+///
+/// @param a, b  finite poses. Half extents outside of 2^-100 to 2^100, or no numbers, are not answered.
+/// @param tolerance  of `DepthSettings::contact_tolerance`, >= 0: the bracket is at most max(2e-14 L, tolerance) wide.
+/// @param breaking_threshold  >= 0, as for `contact_manifold`; boxes farther apart than that are `separated` by a
+/// plane, without points, and `upper` is wide. Points are as lifted (`DeepestPoint::as_lifted`): the deepest may miss
+/// the depth by a thousandth of the threshold. Ids are those of `contact_manifold`. Constant time, no allocation.
 [[nodiscard]] BoxContact box_contact(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold,
                                      BoxWitness witness = BoxWitness::left_out);
 

@@ -81,7 +81,7 @@ class BoxPair {
   /// The vertex farthest along `sign` * normal; on equal heights the one with the lower id.
   static int farthest(const BoxGenerators& of, const Vec3& normal, double sign);
 
-  const Mat3& rotation_a_;
+  const Mat3& rotation_a_;  ///< of the pose, which has to outlive this
   const Mat3& rotation_b_;
   const Vec3 centre_a_;  ///< relative to A's translation
   const Vec3 centre_b_;  ///< relative to A's translation, too
