@@ -141,7 +141,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   const btTransform& pose_b = b->getWorldTransform();
   const btScalar threshold = reach_of_contacts(*result, *manifold_, shape_a, shape_b);
   // A pair that had points is asked at once: it hardly ever parts in a step, and the query says so if it does.
-  const bool touched = memory_ && (boxes ? touched_ : memory_->num_points > 0);
+  const bool touched = memory_ && memory_->num_points > 0;
   if (!touched && boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
     if (owns_manifold_) {
       manifold_->clearManifold();
@@ -189,7 +189,6 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   if (owns_manifold_) {
     PointSurroundings whole;
     replace_points(*manifold_, *memory_, fresh, info.m_timeStep, *result, whole);
-    touched_ = memory_->num_points > 0;
   } else {
     add_points(*manifold_, fresh, *result);
   }

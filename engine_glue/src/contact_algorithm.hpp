@@ -56,7 +56,6 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
   const Installation& installation_;
   btPersistentManifold* manifold_;
   bool owns_manifold_ = false;
-  bool touched_ = false;  ///< the last step left points: known without a look into the memory, which is not at hand
   std::unique_ptr<PairMemory> memory_;  ///< of pairs with a manifold of their own
 };
 
