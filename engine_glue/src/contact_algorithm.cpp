@@ -70,12 +70,6 @@ void fetch_for_query(PairMemory& memory) {
   if (memory.num_points > 0) fetch_bytes(&memory.warm.state(), kWarmBytesAtRest);
 }
 
-/// What `replace_points` reads of it.
-void fetch_points(const PairMemory& memory) {
-  fetch(memory.points);
-  fetch(memory.num_points);
-}
-
 }  // namespace
 
 ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
@@ -135,7 +129,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   // Pieces of unions have neighbours that may cover their contacts.
   const bool of_union = core.settings.unions_as_one && (is_piece(*a) || is_piece(*b));
   const bool boxes = !of_union && are_boxes(shape_a, shape_b);
-  if (memory_) boxes ? fetch_points(*memory_) : fetch_for_query(*memory_);
+  if (memory_ && !boxes) fetch_for_query(*memory_);
 
   const btTransform& pose_a = a->getWorldTransform();
   const btTransform& pose_b = b->getWorldTransform();
