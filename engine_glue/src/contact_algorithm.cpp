@@ -165,7 +165,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                              touched ? kAnyDistance : static_cast<double>(threshold),
                              stamp,
                              memory_ ? memory_->shapes : buffers->recent,
-                             memory_ ? &memory_->warm : nullptr};
+                             memory_ ? &memory_->warm : nullptr,
+                             boxes};
     const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, manifold);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);

@@ -105,8 +105,9 @@ SolverCore::Outcome SolverCore::contacts(const PairQuestion& question, double br
   const Outcome placed = place(question, held, out);
   if (placed != Outcome::answered) return placed;
   const BoxContact boxes =
-      out.boxes ? ask_boxes(question.a, out.a.pose, question.b, out.b.pose, breaking_threshold, BoxWitness::placed)
-                : BoxContact();
+      out.boxes && !question.boxes_asked
+          ? ask_boxes(question.a, out.a.pose, question.b, out.b.pose, breaking_threshold, BoxWitness::placed)
+          : BoxContact();
   if (boxes.answered) {
     out.depth = depth_of(boxes);
     points = boxes.manifold;

@@ -54,6 +54,7 @@ struct PairQuestion {
   std::uint64_t stamp;  ///< of this step of this world (`BulletShapeCache::find`), 0: unknown
   std::array<std::shared_ptr<CachedShape>, 2>& shapes;  ///< as found earlier: the pair's memory, or the buffers' last
   WarmCertificate* warm;                                ///< of this pair, or nullptr
+  bool boxes_asked = false;                             ///< `box_contacts` had no answer
 };
 
 /// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves
