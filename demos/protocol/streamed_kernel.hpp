@@ -16,10 +16,10 @@ namespace pd::query {
 /// Calls `visit` with chunks of the file's points.
 template <int D, class Visit>
 void visit_chunks(PointsFile& file, Visit&& visit) {
-  constexpr std::size_t kChunk = 65536;
+  constexpr std::size_t kPointsAtATime = 65536;
   std::vector<double> numbers;
   std::vector<dimension::Vector<D>> chunk;
-  while (file.next(numbers, kChunk)) {
+  while (file.next(numbers, kPointsAtATime)) {
     chunk.clear();
     for (std::size_t i = 0; i < numbers.size(); i += D) {
       chunk.push_back(Eigen::Map<const Eigen::Matrix<double, D, 1>>(numbers.data() + i));
