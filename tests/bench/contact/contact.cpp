@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "bench/contact/contact_report.hpp"
 #include "bench/contact/contact_run.hpp"
@@ -52,16 +52,17 @@ std::vector<std::string> scene_names(const ContactOptions& options) {
   return result;
 }
 
-/// The median over starts, field by field.
-ContactFigures median_of(const std::vector<ContactFigures>& starts) {
+/// The median over starts, field by field; of the steps' times, step by step.
+ContactFigures median_of(const std::vector<ContactStart>& starts) {
   ContactFigures result;
   for (const FigureColumn& column : figure_columns()) {
     std::vector<double> values;
-    for (const ContactFigures& figures : starts) {
-      values.push_back(figures.*column.field);
+    for (const ContactStart& start : starts) {
+      values.push_back(start.figures.*column.field);
     }
     result.*column.field = quantile(values, 0.5);
   }
+  quantiles_of_steps(starts, result);
   return result;
 }
 
@@ -109,13 +110,13 @@ int run_contact(const ContactOptions& options) {
         for (const ContactRun run : runs) {
           settings.push_back({run, rate, setting == "recommended", options.iterations});
         }
-        std::vector<std::vector<ContactFigures>> by_run(runs.size());
+        std::vector<std::vector<ContactStart>> by_run(runs.size());
         for (int start = 0; start < starts; ++start) {
           const scenes::ContactScene scene = scenes::contact_scene(name, static_cast<std::uint64_t>(start));
-          const auto figures = run_contact_scene(scene, settings, seconds);
+          std::vector<ContactStart> shown = run_contact_scene(scene, settings, seconds);
           for (std::size_t i = 0; i < runs.size(); ++i) {
-            by_run[i].push_back(figures[i]);
-            totals.add(figures[i]);
+            totals.add(shown[i].figures);
+            by_run[i].push_back(std::move(shown[i]));
           }
         }
         std::vector<ContactRow> block;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bench/measure/stopwatch.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -73,10 +74,7 @@ class Runner {
     done_ = done_ || steps_ >= num_steps_;
   }
 
-  [[nodiscard]] ContactFigures finish() {
-    figures_.step_p50_ms = quantile_or_zero(step_ms_, 0.5);
-    figures_.step_p99_ms = quantile_or_zero(step_ms_, 0.99);
-    figures_.step_max_ms = quantile_or_zero(step_ms_, 1);
+  [[nodiscard]] ContactStart finish() {
     figures_.query_ns = quantile_or_zero(query_ns_, 0.5);
     figures_.tail_speed = tail_steps_ > 0 ? tail_speed_ / tail_steps_ : 0;
     figures_.contacts = late_steps_ > 0 ? points_ / late_steps_ : 0;
@@ -87,7 +85,7 @@ class Runner {
     figures_.queries = static_cast<double>(statistics.calls);
     figures_.exact_signs = static_cast<double>(statistics.exact_signs);
     figures_.wider = static_cast<double>(statistics.wider_brackets);
-    return figures_;
+    return {figures_, std::move(step_ms_)};
   }
 
  private:
@@ -171,8 +169,28 @@ class Runner {
 
 }  // namespace
 
-std::vector<ContactFigures> run_contact_scene(const ContactScene& scene, const std::vector<ContactSetting>& settings,
-                                              double seconds) {
+void quantiles_of_steps(const std::vector<ContactStart>& starts, ContactFigures& figures) {
+  std::size_t longest = 0;
+  for (const ContactStart& start : starts) {
+    longest = std::max(longest, start.step_ms.size());
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 0; i < longest; ++i) {
+    std::vector<double> times;
+    for (const ContactStart& start : starts) {
+      if (i < start.step_ms.size()) {
+        times.push_back(start.step_ms[i]);
+      }
+    }
+    steps.push_back(quantile(times, 0.5));
+  }
+  figures.step_p50_ms = quantile_or_zero(steps, 0.5);
+  figures.step_p99_ms = quantile_or_zero(steps, 0.99);
+  figures.step_max_ms = quantile_or_zero(steps, 1);
+}
+
+std::vector<ContactStart> run_contact_scene(const ContactScene& scene, const std::vector<ContactSetting>& settings,
+                                            double seconds) {
   std::vector<std::unique_ptr<Runner>> runners;
   for (const ContactSetting& setting : settings) {
     runners.push_back(std::make_unique<Runner>(scene, setting, seconds));
@@ -186,7 +204,7 @@ std::vector<ContactFigures> run_contact_scene(const ContactScene& scene, const s
       }
     }
   }
-  std::vector<ContactFigures> result;
+  std::vector<ContactStart> result;
   for (const auto& runner : runners) {
     result.push_back(runner->finish());
   }

@@ -20,7 +20,7 @@ struct ContactSetting {
 
 /// What a run shows. Lengths in units of the scene's body size unless they say metres.
 struct ContactFigures {
-  double step_p50_ms = 0;
+  double step_p50_ms = 0;  ///< over steps, of each step's median over starts (`quantiles_of_steps`)
   double step_p99_ms = 0;
   double step_max_ms = 0;
   double query_ns = 0;       ///< median over steps of the mean nanoseconds a depth query (ours; 0 for Bullet's)
@@ -39,10 +39,20 @@ struct ContactFigures {
   double wider = 0;          ///< answers with a bracket wider than the poses deserve
 };
 
+/// What one start shows, but for the quantiles of its steps, and how long each step took.
+struct ContactStart {
+  ContactFigures figures;
+  std::vector<double> step_ms;
+};
+
+/// Sets the quantiles of `figures` from the times of several starts. The starts differ by a millionth of a body, so
+/// that a step costs them all the same; what the machine adds to one of them (a timer's tick is 50 us, ten steps of a
+/// single body) is not the step's own. Each step is therefore the median of the starts that reach it.
+void quantiles_of_steps(const std::vector<ContactStart>& starts, ContactFigures& figures);
+
 /// Runs the scene under every setting for `seconds`; settings share a step length. A scene whose goal is to stand ends
 /// for a setting when it has fallen. Steps are made in turns, so that disturbances of the machine meet all alike.
-[[nodiscard]] std::vector<ContactFigures> run_contact_scene(const scenes::ContactScene& scene,
-                                                            const std::vector<ContactSetting>& settings,
-                                                            double seconds);
+[[nodiscard]] std::vector<ContactStart> run_contact_scene(const scenes::ContactScene& scene,
+                                                          const std::vector<ContactSetting>& settings, double seconds);
 
 }  // namespace pd::bench
