@@ -1,6 +1,7 @@
 /// ConvexPolytope::from_points and box: every affine dimension, exact combinatorics, one storage for every order.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -112,6 +113,31 @@ TEST(Hull, VerticalPlanes) {
     EXPECT_EQ(p.affine_dimension(), 2);
     EXPECT_EQ(p.num_vertices(), 4);
   }
+}
+
+TEST(Hull, TrianglesAreOneInEveryOrder) {
+  const double ulp = 0x1p-52;
+  const Points triangles[] = {{{0.3, 0.1, -0.2}, {0.9, -0.4, 0.5}, {-0.1, 0.8, 0.7}},
+                              {{2, 0, 0}, {2, 1, -0.0}, {2, 0.0, 1}},
+                              {{1e290, 0, 1}, {-1e290, 1, 0}, {3e289, 1e290, 1e-300}},
+                              {{1e-310, 0, 0}, {0, 2e-310, 0}, {0, 0, 5e-324}},
+                              {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5 + ulp}}};
+  for (const Points& corners : triangles) {
+    // With a corner twice it goes by way of the search.
+    const ConvexPolytope searched = hull({corners[0], corners[1], corners[2], corners[1]});
+    ASSERT_EQ(searched.num_vertices(), 3);
+    int order[] = {0, 1, 2};
+    do {
+      const ConvexPolytope p = hull({corners[order[0]], corners[order[1]], corners[order[2]]});
+      EXPECT_EQ(p.affine_dimension(), 2);
+      EXPECT_TRUE(same_bits(p, searched));
+      for (int v = 0; v < 3; ++v) EXPECT_EQ(order[p.caller_id(v)], searched.caller_id(v));
+    } while (std::next_permutation(order, order + 3));
+  }
+  const ConvexPolytope flat = hull({{0.1, 0.2, 0.3}, {0.2, 0.4, 0.6}, {0, 0, 0}});
+  EXPECT_EQ(flat.affine_dimension(), 1);
+  EXPECT_EQ(hull({{1, 2, 3}, {4, 5, 6}, {1, 2, 3}}).affine_dimension(), 1);
+  EXPECT_EQ(hull({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}).affine_dimension(), 0);
 }
 
 TEST(Hull, BoxIdsAreBits) {

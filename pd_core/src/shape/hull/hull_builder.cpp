@@ -34,6 +34,22 @@ FacetLoops doubly_covered(const std::vector<int>& polygon) {
   return loops;
 }
 
+/// Of three points that are not on a line, what the search would end with. A mesh brings its triangles one by one.
+std::optional<ConvexPolytope> build_triangle(std::span<const Vec3> source, std::span<const std::int32_t> caller_ids,
+                                             double max_abs) {
+  HullPoints points(source, max_abs);
+  points.reserve(3);
+  for (std::int32_t i = 0; i < 3; ++i) points.append(i);
+  if (points.collinear(0, 1, 2)) return std::nullopt;
+  HullVertex vertices[3];
+  for (std::int32_t i = 0; i < 3; ++i) {
+    const Vec3 v = points.original(i);
+    vertices[i] = {v.x(), v.y(), v.z(), caller_ids.empty() ? i : caller_ids[static_cast<std::size_t>(i)]};
+  }
+  static const FacetLoops loops = doubly_covered({0, 1, 2});
+  return ConvexPolytope(lay_out(vertices, loops, 2));
+}
+
 }  // namespace
 
 std::optional<Error> refuse_points(std::span<const Vec3> points) {
@@ -65,6 +81,9 @@ std::optional<Error> refuse_points(std::span<const Vec3> points) {
 ConvexPolytope build_hull(std::span<const Vec3> source, std::span<const std::int32_t> caller_ids) {
   double max_abs = 0;
   for (const Vec3& p : source) max_abs = std::max(max_abs, p.cwiseAbs().maxCoeff());
+  if (source.size() == 3) {
+    if (std::optional<ConvexPolytope> triangle = build_triangle(source, caller_ids, max_abs)) return *triangle;
+  }
   HullPoints points(source, max_abs);
 
   // The hull of a few extreme points leaves few points outside, where there are many and they are not flat.

@@ -191,6 +191,18 @@ void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
   out.facet_offsets[facet] = filled;
 }
 
+/// What `write_surface` writes of a doubly covered triangle, whichever way round it was given.
+void write_triangle(const Arrays& out) {
+  constexpr HalfEdge kEdges[] = {{0, 2, 3, 0}, {0, 4, 5, 1}, {1, 0, 1, 1}, {1, 5, 4, 0}, {2, 1, 0, 0}, {2, 3, 2, 1}};
+  constexpr std::int32_t kNeighbours[] = {1, 2, 0, 2, 0, 1}, kLoops[] = {0, 1, 2, 0, 2, 1};
+  std::copy(std::begin(kEdges), std::end(kEdges), out.half_edges);
+  std::copy(std::begin(kNeighbours), std::end(kNeighbours), out.neighbours);
+  std::copy(std::begin(kLoops), std::end(kLoops), out.facet_vertices);
+  for (std::int32_t v = 0; v <= 3; ++v) out.neighbour_offsets[v] = 2 * v;
+  for (std::int32_t f = 0; f <= 2; ++f) out.facet_offsets[f] = 3 * f;
+  for (std::int32_t f = 0; f < 2; ++f) out.facet_half_edges[f] = f;
+}
+
 /// Adds the table of directions, in memory of its own: its size shows only when it is made.
 void add_table(Storage& s) {
   const DirectionTable table = direction_table(s);
@@ -241,7 +253,11 @@ std::vector<std::int32_t> place_vertices(std::span<const HullVertex> vertices, c
 void place_facets(const FacetLoops& loops, const std::vector<std::int32_t>& rank, int affine_dimension,
                   const Arrays& out, const Counts& n) {
   if (affine_dimension >= 2) {
-    write_surface(connect(loops, rank), out, n);
+    if (n.vertices == 3) {
+      write_triangle(out);
+    } else {
+      write_surface(connect(loops, rank), out, n);
+    }
     for (int f = 0; f < n.facets; ++f) {
       const std::int32_t* loop = out.facet_vertices + out.facet_offsets[f];
       const auto corner = [&](int i) { return Vec3(out.x[loop[i]], out.y[loop[i]], out.z[loop[i]]); };
