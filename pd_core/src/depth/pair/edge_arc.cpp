@@ -67,6 +67,10 @@ EdgeArc::Touch EdgeArc::touch(double x, double y) const {
   return touch(x, y, part_at(x * axis_u_ + y * axis_w_, std::sqrt(turned * turned + axis_edge_ * axis_edge_)));
 }
 
+bool EdgeArc::is_between(const Touch& from, const Touch& to, double x, double y) {
+  return from.x * y - from.y * x > 0 && x * to.y - y * to.x > 0;
+}
+
 double EdgeArc::curvature_radius(double across) const {
   return core_.radius * axis_edge_ * axis_edge_ / (across * across * across);
 }
@@ -88,8 +92,10 @@ double EdgeArc::floor_between(const Touch& from, const Touch& to, double (&middl
   const double to_y = (to.height - kept) * to.y + to.slope * to.x;
   middle[0] = to_y - from_y;
   middle[1] = from_x - to_x;
+  // Supports of a convex shadow have the direction across their chord between theirs, unless they are one up to
+  // rounding.
+  if (!is_between(from, to, middle[0], middle[1])) return least;
   const double length = std::sqrt(middle[0] * middle[0] + middle[1] * middle[1]);
-  if (!(length > 0)) return least;
   const double chord = std::min(from_x * middle[0] + from_y * middle[1], to_x * middle[0] + to_y * middle[1]) / length;
   double floor = kept + (chord < 0 ? 2 * chord : chord);
   const auto by_comparison = [&](const Touch& end, double inwards) {
@@ -127,16 +133,19 @@ double EdgeArc::between_parts(const Touch& from, const Touch& to) {
   for (const double sign : {1.0, -1.0}) {
     double x = core_.kink * axis_u_ - sign * aside * axis_w_, y = core_.kink * axis_w_ + sign * aside * axis_u_;
     const double length = std::sqrt(x * x + y * y);
-    if (!(length > 0)) return kNoFloor;
+    if (!(length > 0)) break;
     x /= length;
     y /= length;
-    if (from.x * y - from.y * x < 0 || x * to.y - y * to.x < 0) continue;
+    if (!is_between(from, to, x, y)) continue;
     const Touch before = touch(x, y, from.part), behind = touch(x, y, to.part);
     note(before, true);
     note(behind, true);
     return std::min(between(from, before), between(behind, to));
   }
-  return kNoFloor;
+  // One of the ends lies on the change up to rounding, or the whole arc does. No part is farther than P.
+  const Touch to_as_from = touch(to.x, to.y, from.part), from_as_to = touch(from.x, from.y, to.part);
+  return to.height - to_as_from.height <= from.height - from_as_to.height ? between(from, to_as_from)
+                                                                          : between(from_as_to, to);
 }
 
 /// Between two directions of the same part.
@@ -155,11 +164,8 @@ double EdgeArc::between(const Touch& from, const Touch& to) {
     }
     return std::min(between(from, low), between(low, to));
   }
-  // Across a chord that rounding is longer than, any direction may be.
-  const bool is_between = from.x * middle[1] - from.y * middle[0] > 0 && middle[0] * to.y - middle[1] * to.x > 0;
-  const double x = is_between ? middle[0] : from.x + to.x, y = is_between ? middle[1] : from.y + to.y;
-  const double length = std::sqrt(x * x + y * y);
-  const Touch next = touch(x / length, y / length, from.part);
+  const double length = std::sqrt(middle[0] * middle[0] + middle[1] * middle[1]);
+  const Touch next = touch(middle[0] / length, middle[1] / length, from.part);
   note(next, false);
   return std::min(between(from, next), between(next, to));
 }
@@ -173,7 +179,7 @@ EdgeArc::Touch EdgeArc::bottom(const Touch& from, const Touch& to) {
     const double length = std::sqrt(x * x + y * y);
     x /= length;
     y /= length;
-    if (from.x * y - from.y * x < 0 || x * to.y - y * to.x < 0) break;
+    if (!is_between(from, to, x, y)) break;
     low = touch(x, y, from.part);
     note(low, false);
     const double bend = curvature_radius(low.across) - low.height;

@@ -62,6 +62,8 @@ class EdgeArc {
   [[nodiscard]] Part part_at(double along, double across) const;
   [[nodiscard]] Touch touch(double x, double y, Part part) const;
   [[nodiscard]] Touch touch(double x, double y) const;
+  /// Strictly, of a direction of any length.
+  [[nodiscard]] static bool is_between(const Touch& from, const Touch& to, double x, double y);
   [[nodiscard]] double curvature_radius(double across) const;
   [[nodiscard]] double least_curvature_radius(const Touch& from, const Touch& to) const;
   /// At most h between the two; the direction across the chord, not of unit length, goes to `middle`.

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "depth/pair/edge_arc.hpp"
+#include "depth/pair/revolution_kernels.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "shape/support/polytope_support.hpp"
 
@@ -17,8 +19,6 @@ namespace {
 constexpr int kMostRevolutionFacets = 128;
 /// Directions that arcs may look at.
 constexpr int kMostTouches = 64;
-/// Of the squared sine of a direction's angle from the axis: below, a point of the rim is better not taken from it.
-constexpr double kNearAxis = 0x1p-10;
 /// Heights err by some 30u of the reach, points less.
 constexpr double kHeightError = 64 * kUnitRoundoff;
 /// Of the reach: how far feet may lie outside a face by rounding.
@@ -49,16 +49,6 @@ int axis_of_core(const ConvexShape::Core& core) {
   return -1;
 }
 
-/// A facet of V and the point of S that is farthest across it: rise * normal + shift * axis, or the middle of its disc.
-struct FacetTouch {
-  Vec3 normal;
-  double along;  ///< <axis, normal>
-  double level;  ///< of V
-  double rise;   ///< 0 of an apex and of a disc's middle
-  double shift;
-  double height;  ///< of V's facet and that point
-};
-
 class RevolutionSearch {
  public:
   RevolutionSearch(const ConvexPolytope& polytope, int of, const RevolvedCore& core, const SmoothDifference& difference)
@@ -68,7 +58,8 @@ class RevolutionSearch {
         sense_(of == 1 ? 1 : -1),
         core_(core),
         rotation_(difference.rotation_of(of)),
-        error_(kHeightError * difference.reach() + face_error(difference)) {}
+        error_(kHeightError * difference.reach() + face_error(difference)),
+        posed_(posed(polytope, rotation_, sense_, difference.offset())) {}
 
   std::optional<RevolutionDepth> run(double relative, double width, std::int64_t& support_calls) {
     look_across_facets();
@@ -84,7 +75,7 @@ class RevolutionSearch {
     if (least_.height < -error_) return apart();
     RevolutionDepth out;
     out.normal = least_.normal;
-    out.lower = std::min(floor_, least_.height) - error_;
+    out.lower = std::min(floor_, least_.height) - 2 * error_;
     if (!(out.lower > 0)) return std::nullopt;
     ++support_calls;
     out.touched = difference_.support(out.normal, nullptr).x;
@@ -99,6 +90,21 @@ class RevolutionSearch {
 
  private:
   enum class Place : unsigned char { facet, disc, edge, vertex };
+
+  /// V's matrix is a rotation up to rounding only: its cofactors turn normals.
+  static PosedPolytope posed(const ConvexPolytope& polytope, const Mat3& r, double sense, const Vec3& offset) {
+    PosedPolytope out{polytope.storage(), {}, {}, 0, {offset.x(), offset.y(), offset.z()}};
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+      for (int c = 0; c < 3; ++c) {
+        const int d = c == 2 ? 0 : c + 1, e = c == 0 ? 2 : c - 1;
+        out.matrix[3 * i + c] = sense * r(i, c);
+        out.cofactors[3 * i + c] = sense * (r(j, d) * r(k, e) - r(j, e) * r(k, d));
+      }
+    }
+    out.determinant = sense * (r(0, 0) * out.cofactors[0] + r(0, 1) * out.cofactors[1] + r(0, 2) * out.cofactors[2]);
+    return out;
+  }
 
   [[nodiscard]] std::optional<RevolutionDepth> apart() const {
     RevolutionDepth out;
@@ -119,47 +125,9 @@ class RevolutionSearch {
   }
 
   void look_across_facets() {
-    Mat3 turn = cofactors_of(rotation_);
-    const double determinant = rotation_.row(0).dot(turn.row(0));
-    turn *= sense_;
-    for (int f = 0; f < polytope_.num_facets(); ++f) {
-      FacetTouch& at = facets_[static_cast<std::size_t>(f)];
-      const Vec3& local = polytope_.facet_normal(f);
-      const Vec3 turned = turn * local;
-      const double inverse = 1 / turned.norm();
-      at.normal = inverse * turned;
-      at.level = determinant * inverse * polytope_.vertex(polytope_.facet_vertices(f)[0]).dot(local) +
-                 difference_.offset().dot(at.normal);
-      at.along = core_.axis.dot(at.normal);
-      double across_squared = 1 - at.along * at.along;
-      if (across_squared < kNearAxis) [[unlikely]]
-        across_squared = core_.axis.cross(at.normal).squaredNorm();
-      const double across = std::sqrt(across_squared);
-      const bool upper = core_.pointed ? 2 * core_.half_height * at.along > core_.radius * across : !(at.along < 0);
-      const double z = upper ? core_.half_height : -core_.half_height;
-      const double middle = at.level + z * at.along;
-      const bool apex = upper && core_.pointed;
-      const double height = apex ? middle : middle + core_.radius * across;
-      if (apex || across_squared < kNearAxis) {
-        at.rise = 0;
-        at.shift = z;
-        at.height = middle;
-      } else {
-        at.rise = core_.radius / across;
-        at.shift = z - at.along * at.rise;
-        at.height = height;
-      }
-      if (height < least_.height) take({height, at.normal, false}, Place::facet, f);
-    }
-  }
-
-  /// The cofactors of V's matrix, which is a rotation up to rounding only.
-  static Mat3 cofactors_of(const Mat3& r) {
-    Mat3 m;
-    m.row(0) = r.row(1).cross(r.row(2));
-    m.row(1) = r.row(2).cross(r.row(0));
-    m.row(2) = r.row(0).cross(r.row(1));
-    return m;
+    double height = 0;
+    const int f = facet_touches(posed_, core_, facets_.data(), height);
+    take({height, Vec3::Map(facets_[static_cast<std::size_t>(f)].normal), false}, Place::facet, f);
   }
 
   /// V's centre shows most of them to be high enough.
@@ -171,7 +139,8 @@ class RevolutionSearch {
       const Vec3 normal = side * core_.axis;
       const int vertex = support_vertex(polytope_, rotation_.transpose() * (sense_ * normal), -1);
       const double height = point(vertex).dot(normal) + core_.half_height;
-      if (height < least_.height) take({height, normal, false}, Place::disc, vertex);
+      // A facet that lies flush on it has come first.
+      if (height < least_.height - error_) take({height, normal, false}, Place::disc, vertex);
     }
   }
 
@@ -182,14 +151,15 @@ class RevolutionSearch {
       if (edge.twin < h) continue;
       const FacetTouch& left = facets_[static_cast<std::size_t>(edge.facet)];
       const FacetTouch& right = facets_[static_cast<std::size_t>(polytope_.half_edge(edge.twin).facet)];
-      const double cosine = left.normal.dot(right.normal);
+      const double cosine =
+          left.normal[0] * right.normal[0] + left.normal[1] * right.normal[1] + left.normal[2] * right.normal[2];
       // The one facet's point, as far as it goes across the other.
       const double left_across_right = right.level + left.rise * cosine + left.shift * right.along;
       if (std::min(left.height, left_across_right) >= least_.height) continue;
       const double right_across_left = left.level + right.rise * cosine + right.shift * left.along;
       if (std::min(right.height, right_across_left) >= least_.height) continue;
       LeastHeight found = least_;
-      EdgeArc arc(core_, point(edge.origin), left.normal, right.normal);
+      EdgeArc arc(core_, point(edge.origin), Vec3::Map(left.normal), Vec3::Map(right.normal));
       floor_ = std::min(floor_, arc.search(slack, touches_left, found));
       if (found.height < least_.height) take(found, Place::edge, h);
       if (!(floor_ > 0)) return;
@@ -200,19 +170,14 @@ class RevolutionSearch {
   void look_across_vertices() {
     const double steep = std::sqrt(1 - core_.kink * core_.kink);
     const double added = core_.pointed ? core_.half_height * core_.kink : core_.radius;
-    const auto least_of = [&](const Vec3& x) {
-      const double along = x.dot(core_.axis);
-      return core_.kink * along - steep * (x - along * core_.axis).norm() + added;
-    };
-    if (least_of(centre_) >= least_.height) return;
-    double greatest = -std::numeric_limits<double>::infinity();
+    const double along = centre_.dot(core_.axis);
+    if (core_.kink * along - steep * (centre_ - along * core_.axis).norm() + added >= least_.height) return;
+    const double greatest = vertex_circles(posed_, core_, circles_.data());
+    if (greatest + added >= least_.height) return;
     for (int v = 0; v < polytope_.num_vertices(); ++v) {
-      greatest = std::max(greatest, least_of(point(v)));
-      if (greatest >= least_.height) return;
-    }
-    const double level = greatest - 4 * error_;
-    for (int v = 0; v < polytope_.num_vertices(); ++v) {
-      if (least_of(point(v)) >= level) look_across_vertex(v, greatest, steep, added);
+      if (circles_[static_cast<std::size_t>(v)] >= greatest - 4 * error_) {
+        look_across_vertex(v, greatest + added, steep, added);
+      }
     }
   }
 
@@ -243,8 +208,7 @@ class RevolutionSearch {
         on_core = foot_on_facet(foot);
         break;
       case Place::disc:
-        on_core = foot - point(index_);
-        if ((*on_core - on_core->dot(core_.axis) * core_.axis).norm() > core_.radius + outside()) return std::nullopt;
+        on_core = foot_on_disc(foot);
         break;
       case Place::edge:
         on_core = foot_on_edge(foot);
@@ -279,50 +243,104 @@ class RevolutionSearch {
     return core_.pointed ? along > core_.kink : !(along < 0);
   }
 
+  /// A part of a segment, by shares of it.
+  struct Part {
+    double from = 0, to = 1;
+    [[nodiscard]] double middle() const { return 0.5 * (from + to); }
+    /// Where a linear function of these values at the ends is not below 0, but for `outside`.
+    void clip(double at_start, double at_end, double outside) {
+      if (std::min(at_start, at_end) >= -outside) return;
+      if (at_start < at_end) {
+        from = std::max(from, at_end > 0 ? at_start / (at_start - at_end) : at_end < -outside ? 2.0 : 1.0);
+      } else {
+        to = std::min(to, at_start > 0 ? at_start / (at_start - at_end) : at_start < -outside ? -1.0 : 0.0);
+      }
+    }
+    [[nodiscard]] bool is_there() const { return from <= to; }
+  };
+
   [[nodiscard]] std::optional<Vec3> foot_on_facet(const Vec3& foot) const {
     const Vec3& normal = least_.normal;
-    const Vec3 on_core = farthest_of_core(normal, is_upper(normal));
-    const Vec3 on_facet = foot - on_core;
+    const bool upper = is_upper(normal);
+    const Vec3 on_core = farthest_of_core(normal, upper);
+    const Vec3 start = foot - on_core;
+    // The core's own face: a point, a line of the mantle or a disc, of which the way to the facet's middle is looked
+    // at.
+    Vec3 way = Vec3::Zero();
+    const bool is_disc = on_core.cross(core_.axis).isZero(0) && !(upper && core_.pointed);
+    if (is_disc) {
+      const std::span<const std::int32_t> corners = polytope_.facet_vertices(index_);
+      for (const std::int32_t v : corners) way += point(v);
+      way = way / static_cast<double>(corners.size()) - start;
+    } else {
+      const Vec3 line = farthest_of_core(normal, !upper) - on_core;
+      if (std::abs(line.dot(normal)) <= outside()) way = -line;
+    }
+    Part part;
     const int first = polytope_.facet_half_edge(index_);
     int h = first;
     do {
       const HalfEdge& edge = polytope_.half_edge(h);
       const Vec3 from = point(edge.origin), along = point(polytope_.half_edge(edge.next).origin) - from;
-      if (sense_ * normal.cross(along).dot(on_facet - from) < -outside() * along.norm()) return std::nullopt;
+      const Vec3 inwards = sense_ * normal.cross(along);
+      const double at_start = inwards.dot(start - from);
+      part.clip(at_start, at_start + inwards.dot(way), outside() * along.norm());
       h = edge.next;
     } while (h != first);
-    return on_core;
+    if (!part.is_there()) return std::nullopt;
+    const double share = is_disc ? part.from : part.middle();
+    if (is_disc && share * way.norm() > core_.radius + outside()) return std::nullopt;
+    return on_core - share * way;
   }
 
-  /// Where the edge, and a line of the mantle where one is across, come to the foot.
+  /// Where the edge, and a line of the mantle where one is across, come to the foot:
+  /// from + share edge + on_core + rise line = foot.
   [[nodiscard]] std::optional<Vec3> foot_on_edge(const Vec3& foot) const {
     const Vec3& normal = least_.normal;
     const HalfEdge& half_edge = polytope_.half_edge(index_);
     const Vec3 from = point(half_edge.origin), edge = point(polytope_.half_edge(half_edge.twin).origin) - from;
-    const Vec3 lower = farthest_of_core(normal, false);
-    const bool upper = is_upper(normal);
-    Vec3 on_core = upper ? farthest_of_core(normal, true) : lower;
-    // from + share edge + on_core + rise mantle = foot
-    Vec3 mantle = Vec3::Zero();
-    if (least_.on_mantle) mantle = (upper ? lower : farthest_of_core(normal, true)) - on_core;
+    const Vec3 on_core = farthest_of_core(normal, false);
+    const Vec3 line = farthest_of_core(normal, true) - on_core;
     const Vec3 left = foot - from - on_core;
-    const double ee = edge.squaredNorm(), em = edge.dot(mantle), mm = mantle.squaredNorm();
-    const double le = left.dot(edge), lm = left.dot(mantle);
-    double share = le / ee, rise = 0;
-    if (least_.on_mantle) {
-      const double determinant = ee * mm - em * em;
-      if (!(determinant > 0x1p-30 * ee * mm)) return std::nullopt;
-      share = (le * mm - lm * em) / determinant;
-      rise = (lm * ee - le * em) / determinant;
-      on_core += rise * mantle;
+    const double ee = edge.squaredNorm(), el = edge.dot(line), ll = line.squaredNorm();
+    const double fe = left.dot(edge), fl = left.dot(line);
+    // A disc flush on the edge: foot_on_facet and foot_on_disc have what is common.
+    if (on_core.cross(core_.axis).isZero(0)) return std::nullopt;
+    const double outside_edge = outside() / std::sqrt(ee), outside_line = outside() / std::sqrt(ll);
+    const auto is_inside = [](double share, double outside) { return share >= -outside && share <= 1 + outside; };
+    if (!least_.on_mantle && std::abs(line.dot(normal)) > outside()) {
+      const double rise = is_upper(normal) ? 1 : 0;
+      if (!is_inside((fe - rise * el) / ee, outside_edge)) return std::nullopt;
+      return on_core + rise * line;
     }
-    const double least_share = -outside() / std::sqrt(ee);
-    if (!(share >= least_share && share <= 1 - least_share)) return std::nullopt;
-    if (least_.on_mantle) {
-      const double least_rise = -outside() / std::sqrt(mm);
-      if (!(rise >= least_rise && rise <= 1 - least_rise)) return std::nullopt;
+    const double determinant = ee * ll - el * el;
+    if (determinant > 0x1p-30 * ee * ll) {
+      const double share = (fe * ll - fl * el) / determinant, rise = (fl * ee - fe * el) / determinant;
+      if (!is_inside(share, outside_edge) || !is_inside(rise, outside_line)) return std::nullopt;
+      return on_core + rise * line;
     }
-    return on_core;
+    // Side by side.
+    Part part;
+    part.clip(fe, fe - el, outside_edge * ee);
+    part.clip(ee - fe, ee - fe + el, outside_edge * ee);
+    if (!part.is_there()) return std::nullopt;
+    return on_core + part.middle() * line;
+  }
+
+  /// Of a vertex below a disc, or of an edge from it that lies flush on it.
+  [[nodiscard]] std::optional<Vec3> foot_on_disc(const Vec3& foot) const {
+    const Vec3& normal = least_.normal;
+    const Vec3 middle = core_.half_height * normal;
+    const Vec3 to_vertex = foot - point(index_) - middle;
+    const double most = core_.radius + outside();
+    if (to_vertex.norm() <= most) return middle + to_vertex;
+    for (const std::int32_t next : polytope_.neighbours(index_)) {
+      const Vec3 edge = point(next) - point(index_);
+      if (std::abs(edge.dot(normal)) > outside()) continue;
+      const Vec3 nearest = to_vertex - std::clamp(to_vertex.dot(edge) / edge.squaredNorm(), 0.0, 1.0) * edge;
+      if (nearest.norm() <= most) return middle + nearest;
+    }
+    return std::nullopt;
   }
 
   const ConvexPolytope& polytope_;
@@ -337,7 +355,9 @@ class RevolutionSearch {
   Place place_ = Place::facet;
   int index_ = -1;  ///< of the facet, half-edge or vertex
   double floor_ = 0;
-  std::array<FacetTouch, kMostRevolutionFacets> facets_;
+  PosedPolytope posed_;
+  std::array<FacetTouch, kMostRevolutionFacets + 3> facets_;
+  std::array<double, kMostRevolutionFacets> circles_;
 };
 
 }  // namespace
@@ -347,7 +367,8 @@ std::optional<RevolutionDepth> revolution_depth(const PosedShape& a, const Posed
                                                 std::int64_t& support_calls) {
   const int of = a.shape->polytope() != nullptr ? 0 : 1;
   const ConvexPolytope* polytope = (of == 0 ? a : b).shape->polytope();
-  if (polytope == nullptr || polytope->affine_dimension() < 3 || polytope->num_facets() > kMostRevolutionFacets) {
+  if (polytope == nullptr || polytope->affine_dimension() < 3 ||
+      std::max(polytope->num_facets(), polytope->num_vertices()) > kMostRevolutionFacets) {
     return std::nullopt;
   }
   const ConvexShape::Core& round = difference.core_of(1 - of);
