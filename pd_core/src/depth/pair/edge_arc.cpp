@@ -10,6 +10,8 @@ namespace {
 
 /// Steps of Newton's method to the bottom of an arc; most need two.
 constexpr int kMostArcSteps = 4;
+/// Of what the height may still fall: the foot is off by the root of it, which the last step makes small.
+constexpr double kFlatBottom = 0x1p-16;
 /// Cosine of the widest part of an arc that is looked at in one: combinations of its ends are no longer than 2.
 constexpr double kWidestArc = -0.5;
 constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
@@ -183,7 +185,7 @@ EdgeArc::Touch EdgeArc::bottom(const Touch& from, const Touch& to) {
     low = touch(x, y, from.part);
     note(low, false);
     const double bend = curvature_radius(low.across) - low.height;
-    if (!(bend > 0) || low.slope * low.slope <= slack_ * bend) break;
+    if (!(bend > 0) || low.slope * low.slope <= kFlatBottom * slack_ * bend) break;
     const double turn = -low.slope / bend;
     x = low.x - turn * low.y;
     y = low.y + turn * low.x;

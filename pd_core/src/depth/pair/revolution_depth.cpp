@@ -219,8 +219,16 @@ class RevolutionSearch {
         break;
     }
     if (!on_core) return std::nullopt;
-    // P = B - A, where V has the offset.
-    return of_ == 1 ? Vec3(-*on_core) : Vec3(difference_.offset() - (foot - *on_core));
+    // P = B - A, where V has the offset. What is left of Newton's method lies across the edge, and B's point has it.
+    if (of_ == 1) return Vec3(-*on_core);
+    const Vec3 on_polytope = foot - *on_core;
+    return Vec3(difference_.offset() - (place_ == Place::edge ? nearest_on_edge(on_polytope) : on_polytope));
+  }
+
+  [[nodiscard]] Vec3 nearest_on_edge(const Vec3& x) const {
+    const HalfEdge& half_edge = polytope_.half_edge(index_);
+    const Vec3 from = point(half_edge.origin), edge = point(polytope_.half_edge(half_edge.twin).origin) - from;
+    return from + std::clamp((x - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0) * edge;
   }
 
   [[nodiscard]] double outside() const { return kFootOutside * difference_.reach(); }
