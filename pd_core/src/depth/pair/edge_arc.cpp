@@ -9,7 +9,7 @@ namespace pd::detail {
 namespace {
 
 /// Steps of Newton's method to the bottom of an arc; most need two.
-constexpr int kMostArcSteps = 4;
+constexpr int kMostArcSteps = 6;
 /// Of what the height may still fall: the foot is off by the root of it, which the last step makes small.
 constexpr double kFlatBottom = 0x1p-16;
 /// Cosine of the widest part of an arc that is looked at in one: combinations of its ends are no longer than 2.

@@ -259,10 +259,11 @@ class SmoothQuery {
     out_.witness_b = out_.witness_a;
   }
 
-  /// Of the cores' distance. What is left after the shapes' own margins may be far smaller: no relative error would do.
+  /// Of what is left of the cores' distance between the margins (BracketWidth::margin). Contacts ask for a length, and
+  /// where they have margins for nothing else.
   double relative_of_distance() const {
-    if (margin_ > taken_out_) return 0;
-    return taken_out_ > 0 ? kShareOfDelta * delta_ : delta_;
+    if (for_contact_ && margin_ > taken_out_) return 0;
+    return margin_ > 0 ? kShareOfDelta * delta_ : delta_;
   }
   BracketWidth width_of_distance() const { return {0.25 * kAbsolute, 0.5 * width_, margin_}; }
 
