@@ -18,11 +18,13 @@ constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-EdgeArc::EdgeArc(const RevolvedCore& core, const Vec3& point, const Vec3& from, const Vec3& to)
+EdgeArc::EdgeArc(const RevolvedCore& core, const Vec3& point, const Vec3& along, const Vec3& from, const Vec3& to)
     : core_(core), u_(from), end_x_(from.dot(to)) {
-  const Vec3 across = to - end_x_ * from;
-  end_y_ = across.norm();
-  w_ = across / end_y_;
+  // Of a sharp edge the normals are nearly opposite, and only the edge tells their plane.
+  Vec3 across = end_x_ < 0 ? Vec3(along.cross(from)) : Vec3(to - end_x_ * from);
+  if (across.dot(to) < 0) across = -across;
+  w_ = across / across.norm();
+  end_y_ = to.dot(w_);
   point_u_ = point.dot(u_);
   point_w_ = point.dot(w_);
   axis_u_ = core.axis.dot(u_);

@@ -36,8 +36,9 @@ struct LeastHeight {
 
 class EdgeArc {
  public:
-  /// @param point  of the edge. @param from, to  unit normals of the edge's facets, less than a half turn apart.
-  EdgeArc(const RevolvedCore& core, const Vec3& point, const Vec3& from, const Vec3& to);
+  /// @param point  of the edge. @param along  it, of any length, known to a few u of it. @param from, to  unit normals
+  /// of the edge's facets, less than a half turn apart.
+  EdgeArc(const RevolvedCore& core, const Vec3& point, const Vec3& along, const Vec3& from, const Vec3& to);
 
   /// Of P's height on the arc, or of `least.height` - `slack`, the less is returned, or what is certain to be below
   /// both, up to rounding. Lower heights met on the way go to `least`.

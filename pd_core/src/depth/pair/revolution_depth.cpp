@@ -159,7 +159,9 @@ class RevolutionSearch {
       const double right_across_left = left.level + right.rise * cosine + right.shift * left.along;
       if (std::min(right.height, right_across_left) >= least_.height) continue;
       LeastHeight found = least_;
-      EdgeArc arc(core_, point(edge.origin), Vec3::Map(left.normal), Vec3::Map(right.normal));
+      const int end = polytope_.half_edge(edge.twin).origin;
+      const Vec3 along = rotation_ * (polytope_.vertex(end) - polytope_.vertex(edge.origin));
+      EdgeArc arc(core_, point(edge.origin), along, Vec3::Map(left.normal), Vec3::Map(right.normal));
       floor_ = std::min(floor_, arc.search(slack, touches_left, found));
       if (found.height < least_.height) take(found, Place::edge, h);
       if (!(floor_ > 0)) return;
