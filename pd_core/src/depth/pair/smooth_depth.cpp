@@ -29,6 +29,9 @@ namespace {
 constexpr double kDefaultDelta = 1e-6;
 constexpr double kAbsolute = 1e-12;            ///< of L: where a bracket, and `touching`, stop
 constexpr double kShareOfDelta = 1 - 0x1p-10;  ///< the rest is left to the rounding of sums with margins
+/// Beside margins a core's distance comes to half the digits at little more: bodies at rest on each other stay within
+/// kAbsolute of L.
+constexpr double kShareBesideMargins = 0x1p-6;
 
 /// Of L: what witnesses may differ by across the normal.
 constexpr double kAcross = 1e-9;
@@ -151,10 +154,7 @@ class SmoothQuery {
                          out_.statistics.support_calls);
     if (!found) return false;
     if (found->is_apart) {
-      ExpansionResult core;
-      core.normal = found->normal;
-      core.upper = 0;
-      solve_apart(core);
+      solve_apart({.upper = 0, .normal = found->normal});
       return true;
     }
     buffers_.surface.vertices.push_back({found->touched, -1, -1});
@@ -262,8 +262,8 @@ class SmoothQuery {
   /// Of what is left of the cores' distance between the margins (BracketWidth::margin). Contacts ask for a length, and
   /// where they have margins for nothing else.
   double relative_of_distance() const {
-    if (for_contact_ && margin_ > taken_out_) return 0;
-    return margin_ > 0 ? kShareOfDelta * delta_ : delta_;
+    if (margin_ > taken_out_) return for_contact_ ? 0 : kShareBesideMargins * delta_;
+    return taken_out_ > 0 ? kShareOfDelta * delta_ : delta_;
   }
   BracketWidth width_of_distance() const { return {0.25 * kAbsolute, 0.5 * width_, margin_}; }
 
