@@ -15,13 +15,13 @@ namespace pd::detail {
 
 namespace {
 
-/// More than these an expanding polytope does not look at.
+/// Of more facets or vertices an expanding polytope looks at a few only, and is faster.
 constexpr int kMostRevolutionFacets = 128;
 /// Directions that arcs may look at.
 constexpr int kMostTouches = 64;
 /// A posed normal errs by 12u, with it the height of a point as far away as P reaches; products, sums and roots err by
 /// less than 20u of the reach.
-constexpr double kHeightError = 40 * kUnitRoundoff;
+constexpr double kPlaceHeightError = 40 * kUnitRoundoff;
 /// Of the reach: how far feet may lie outside a face by rounding.
 constexpr double kFootOutside = 1e-12;
 /// Of the bracket that is asked for: what an arc may leave open.
@@ -59,7 +59,7 @@ class RevolutionSearch {
         sense_(of == 1 ? 1 : -1),
         core_(core),
         rotation_(difference.rotation_of(of)),
-        error_(kHeightError * difference.reach()),
+        error_(kPlaceHeightError * difference.reach()),
         posed_(posed(polytope, rotation_, sense_, difference.offset())) {}
 
   std::optional<RevolutionDepth> run(double relative, double width, std::int64_t& support_calls) {

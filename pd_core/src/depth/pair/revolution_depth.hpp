@@ -37,9 +37,8 @@ struct RevolutionDepth {
   bool is_apart = false;  ///< P's height along `normal` is negative: nothing else is known
 };
 
-/// Of bodies more than touching or apart. Nothing where the pair is not of this kind, faces lie flush on each other so
-/// that the points are not told by one of them, or the bracket would be wider than `slack` of the depth (a share of
-/// it).
+/// Nothing where the pair is not of this kind or no more than touches, where faces lie flush on each other so that no
+/// common point is told, or where the bracket would be wider than `width` and than `relative` of the depth.
 ///
 /// Time: O(facets + edges), some dozen operations each, and some hundred for each arc that is not left out.
 [[nodiscard]] std::optional<RevolutionDepth> revolution_depth(const PosedShape& a, const PosedShape& b,
