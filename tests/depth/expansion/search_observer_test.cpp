@@ -115,14 +115,20 @@ TEST(SearchObserver, SeesTheExactHullWhereASmoothSearchLosesItsConvexity) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
-  const ConvexShape box(ConvexPolytope::box({1, 0.7, 0.4}).value());
+  // A prism of more facets than are looked at one by one.
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 140; ++k) {
+    const double angle = 2 * 3.14159265358979 * k / 140;
+    for (const double z : {-0.4, 0.4}) corners.emplace_back(std::cos(angle), 0.7 * std::sin(angle), z);
+  }
+  const ConvexShape prism(ConvexPolytope::from_points(corners).value());
   const ConvexShape cone = ConvexShape::cone(0.5, 1, 2).value();
   int on_hull = 0;
   for (int trial = 0; trial < 240; ++trial) {
     // Ruled bodies a hair inside each other, from 1e-9 down to 1e-12.
     const double deep = std::pow(10.0, -9 - trial % 4);
     const Mat3 turned = Eigen::AngleAxisd(3 * normal(random), direction()).toRotationMatrix();
-    const PosedShape a{&box, Pose()};
+    const PosedShape a{&prism, Pose()};
     PosedShape b{&cone, Pose::from_trusted_matrix(turned, 4 * direction())};
     Scratch scratch;
     const PenetrationDepth apart = penetration_depth(a, b, scratch);

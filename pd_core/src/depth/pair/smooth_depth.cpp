@@ -11,8 +11,10 @@
 #include "depth/distance/gjk_double_double.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/pair/contact_facets.hpp"
+#include "depth/pair/curved_on_facet.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/inscribed_balls.hpp"
+#include "depth/pair/revolution_depth.hpp"
 #include "depth/pair/same_core.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "depth/pair/smooth_face.hpp"
@@ -27,6 +29,9 @@ namespace {
 constexpr double kDefaultDelta = 1e-6;
 constexpr double kAbsolute = 1e-12;            ///< of L: where a bracket, and `touching`, stop
 constexpr double kShareOfDelta = 1 - 0x1p-10;  ///< the rest is left to the rounding of sums with margins
+/// Beside margins a core's distance comes to half the digits at little more: bodies at rest on each other stay within
+/// kAbsolute of L.
+constexpr double kShareBesideMargins = 0x1p-6;
 
 /// Of L: what witnesses may differ by across the normal.
 constexpr double kAcross = 1e-9;
@@ -61,9 +66,11 @@ class SmoothQuery {
 
   void solve() {
     out_.method = Method::expansion;
-    if (for_contact_ && solve_on_facet()) return;
+    if (for_contact_ && curved_on_facet(a_, b_, difference_, width_, warm_, out_)) return;
     buffers_.surface.clear();
-    if (!solve_apart_from_memory() && !solve_by_inscribed_balls()) solve_by_expansion();
+    if (!solve_apart_from_memory() && !solve_by_inscribed_balls() && !solve_by_touching_places()) {
+      solve_by_expansion();
+    }
     const double lower = out_.contact == ContactClass::overlapping ? out_.lower : out_.distance_lower;
     const double upper = out_.contact == ContactClass::overlapping ? out_.upper : out_.distance_upper;
     out_.bracket_reached = upper <= (1 + delta_) * lower * (1 + 0x1p-48);
@@ -137,6 +144,23 @@ class SmoothQuery {
     out_.contact = ContactClass::overlapping;
     set_depth(balls->lower + margin_, balls->upper + margin_, balls->normal);
     out_.witness_a = balls->on_a - a_.shape->margin() * out_.normal;
+    out_.witness_b = out_.witness_a + out_.translation;
+    return true;
+  }
+
+  bool solve_by_touching_places() {
+    const std::optional<RevolutionDepth> found =
+        revolution_depth(a_, b_, difference_, delta_, std::max(width_, 0.25 * kAbsolute * difference_.reach()),
+                         out_.statistics.support_calls);
+    if (!found) return false;
+    if (found->is_apart) {
+      solve_apart({.upper = 0, .normal = found->normal});
+      return true;
+    }
+    buffers_.surface.vertices.push_back({found->touched, -1, -1});
+    out_.contact = ContactClass::overlapping;
+    set_depth(found->lower + margin_, found->upper + margin_, found->normal);
+    out_.witness_a = found->on_a - margin_a_ * out_.normal;
     out_.witness_b = out_.witness_a + out_.translation;
     return true;
   }
@@ -235,9 +259,10 @@ class SmoothQuery {
     out_.witness_b = out_.witness_a;
   }
 
-  /// Of the cores' distance. What is left after the shapes' own margins may be far smaller: no relative error would do.
+  /// Of what is left of the cores' distance between the margins (BracketWidth::margin). Contacts ask for a length, and
+  /// where they have margins for nothing else.
   double relative_of_distance() const {
-    if (margin_ > taken_out_) return 0;
+    if (margin_ > taken_out_) return for_contact_ ? 0 : kShareBesideMargins * delta_;
     return taken_out_ > 0 ? kShareOfDelta * delta_ : delta_;
   }
   BracketWidth width_of_distance() const { return {0.25 * kAbsolute, 0.5 * width_, margin_}; }
@@ -311,39 +336,6 @@ class SmoothQuery {
   double signed_width() const {
     if (out_.contact == ContactClass::overlapping) return out_.upper - out_.lower;
     return out_.distance_upper - out_.distance_lower + out_.upper;
-  }
-
-  /// Bracket::contact: a curved body on the facet of a polytope that it lay on in the last frame, or on a polygon.
-  bool solve_on_facet() {
-    const int of = a_.shape->polytope() ? 0 : 1;
-    const PosedShape& owner = of == 0 ? a_ : b_;
-    const ConvexPolytope* polytope = owner.shape->polytope();
-    if (polytope == nullptr) return false;
-    WarmFacets* facets = warm_ ? &warm_->state().facets : nullptr;
-    if (facets != nullptr && !may_try(*facets)) return false;
-    int facet = facets != nullptr ? known_facet(*facets, of, *polytope) : -1;
-    const bool remembered = facet >= 0;
-    const double sense = of == 0 ? -1 : 1;
-    if (facet < 0 && polytope->affine_dimension() == 2) {
-      // P's centre lies before one of both sides.
-      const Vec3 normal = owner.pose.rotation() * polytope->facet_normal(0);
-      facet = -sense * difference_.centre().dot(normal) >= 0 ? 0 : 1;
-    }
-    if (facet < 0) return false;
-    const Vec3 offset = of == 0 ? difference_.offset() : Vec3(-difference_.offset());
-    const FacetContact contact =
-        facet_contact(*polytope, owner.pose.rotation(), facet, offset, difference_.centre_of(1 - of),
-                      support_plane_error(difference_), [&](const Vec3& unit) {
-                        return BodyPoint{difference_.support_of(1 - of, unit), -1};
-                      });
-    const bool narrow = contact.certified &&
-                        contact.upper - contact.lower <= std::max(kAbsolute * contact.largest, width_) * (1 + 0x1p-48);
-    if (remembered) count_try(*facets, narrow, kLongestFacetPause);
-    if (!narrow) return false;
-    set_contact_on_facet(contact, of == 0, {a_.shape->margin(), b_.shape->margin()},
-                         of == 0 ? Vec3(b_.pose.translation() - a_.pose.translation()) : Vec3(Vec3::Zero()), out_);
-    out_.warm = remembered;
-    return true;
   }
 
   const PosedShape& a_;

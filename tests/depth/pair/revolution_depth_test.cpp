@@ -1,0 +1,155 @@
+/// @file
+/// Cylinders and cones in polytopes by all places where a ball inside P can touch P: against a sweep of directions,
+/// with bodies that lie flush on each other, and points that lie in both bodies.
+
+#include "depth/pair/revolution_depth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "oracle/curved_oracle.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "scenes/shape_families.hpp"
+
+namespace pd::detail {
+namespace {
+
+using scenes::Random;
+
+constexpr double kSlack = 1e-11;
+
+/// Thin and flat ones among them.
+double random_size(Random& random) {
+  return random.integer(0, 3) == 0 ? random.uniform(0.02, 0.2) : random.uniform(0.4, 1.2);
+}
+
+ConvexShape random_revolution(Random& random) {
+  const double radius = random_size(random), half_height = random_size(random);
+  const int axis = random.integer(0, 2);
+  return random.integer(0, 1) == 0 ? *ConvexShape::cylinder(radius, half_height, axis)
+                                   : *ConvexShape::cone(radius, half_height, axis);
+}
+
+ConvexShape random_polytope(Random& random) {
+  if (random.integer(0, 1) == 0) {
+    return *ConvexPolytope::box({random_size(random), random_size(random), random_size(random)});
+  }
+  scenes::Points points = scenes::sphere_hull(random.integer(4, 40), random);
+  const Vec3 sizes(random_size(random), random_size(random), random_size(random));
+  for (Vec3& p : points) p = p.cwiseProduct(sizes);
+  return *ConvexPolytope::from_points(points);
+}
+
+/// By how much a point lies outside a body, at most.
+double outside(const PosedShape& body, const Vec3& point) {
+  const Vec3 p = body.pose.rotation().transpose() * (point - body.pose.translation());
+  if (const ConvexPolytope* polytope = body.shape->polytope()) {
+    double most = -1e300;
+    for (int f = 0; f < polytope->num_facets(); ++f) {
+      const Vec3 corner = polytope->vertex(polytope->facet_vertices(f)[0]);
+      most = std::max(most, polytope->facet_normal(f).dot(p - corner));
+    }
+    return most;
+  }
+  const auto* cylinder = std::get_if<Cylinder>(&body.shape->core());
+  const auto* cone = std::get_if<Cone>(&body.shape->core());
+  const int axis = cylinder ? cylinder->axis : cone->axis;
+  Vec3 across = p;
+  across[axis] = 0;
+  if (cylinder) return std::max(across.norm() - cylinder->radius, std::abs(p[axis]) - cylinder->half_height);
+  const double radius = cone->radius * (cone->half_height - p[axis]) / (2 * cone->half_height);
+  return std::max(across.norm() - radius, -p[axis] - cone->half_height);
+}
+
+bool is_by_places(const PenetrationDepth& answer) { return answer.statistics.support_calls == 1; }
+
+/// What every answer promises, of P's own height in long double, and how near to both bodies the points are.
+void check_answer(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer, const std::string& what) {
+  ASSERT_EQ(answer.contact, ContactClass::overlapping) << what;
+  ASSERT_TRUE(answer.bracket_reached) << what;
+  ASSERT_GE(answer.upper, oracle::difference_support(a, b, answer.normal)) << what;
+  ASSERT_LE(answer.lower, oracle::sweep_directions(a, b, 150, 3).least) << what;
+  if (!is_by_places(answer)) return;
+  ASSERT_LE(std::min(outside(a, answer.witness_a), outside(b, answer.witness_b)), kSlack) << what;
+  ASSERT_LE(outside(a, answer.witness_a), 1e-4) << what;
+  ASSERT_LE(outside(b, answer.witness_b), 1e-4) << what;  // what is left of slopes
+  ASSERT_LE((answer.witness_b - answer.witness_a - answer.translation).norm(), 1e-14) << what;
+}
+
+TEST(RevolutionDepth, IsThatOfASweepOfDirections) {
+  Random random(3);
+  Scratch scratch;
+  int overlapping = 0, by_places = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const ConvexShape round = random_revolution(random), polytope = random_polytope(random);
+    const PosedShape posed_round{&round, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
+    const PosedShape posed_polytope{
+        &polytope, *Pose::from_quaternion(random.quaternion(), random.uniform(0, 1.5) * random.direction())};
+    const PosedShape& a = i % 2 == 0 ? posed_round : posed_polytope;
+    const PosedShape& b = i % 2 == 0 ? posed_polytope : posed_round;
+    const PenetrationDepth answer = penetration_depth(a, b, scratch, {.bracket = Bracket::certified});
+    if (answer.contact != ContactClass::overlapping) {
+      ASSERT_LE(oracle::sweep_directions(a, b, 150, 3).least, 1e-11) << "pair " << i;
+      continue;
+    }
+    ++overlapping;
+    by_places += is_by_places(answer) ? 1 : 0;
+    check_answer(a, b, answer, "pair " + std::to_string(i));
+  }
+  EXPECT_GT(overlapping, 600);
+  EXPECT_GT(by_places, overlapping * 99 / 100);
+}
+
+/// Along each other's axes, in the middle of each other or moved along one, two or three axes: facets, discs, edges and
+/// lines of mantles lie flush on each other.
+TEST(RevolutionDepth, OfBodiesThatLieFlush) {
+  Random random(5);
+  Scratch scratch;
+  int overlapping = 0, by_places = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const ConvexShape round = random_revolution(random);
+    const bool regular = random.integer(0, 1) == 0;
+    const double size = random_size(random);
+    const ConvexShape box = regular ? *ConvexPolytope::box({size, size, size})
+                                    : *ConvexPolytope::box({size, random_size(random), random_size(random)});
+    Vec3 way = Vec3::Zero();
+    for (int k = random.integer(0, 3); k > 0; --k) way[random.integer(0, 2)] = random.uniform(-1, 1);
+    // By a half turn about an axis, by a quarter, or not at all: as far as doubles know a quarter turn.
+    const double half = std::sqrt(0.5);
+    const std::array<double, 4> turns[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {half, half, 0, 0}, {half, 0, half, 0}};
+    const PosedShape posed_round{&round, *Pose::from_quaternion(turns[random.integer(0, 3)], way)};
+    const PosedShape posed_box{&box, *Pose::from_quaternion(turns[random.integer(0, 3)], Vec3::Zero())};
+    const PosedShape& a = i % 2 == 0 ? posed_round : posed_box;
+    const PosedShape& b = i % 2 == 0 ? posed_box : posed_round;
+    const PenetrationDepth answer = penetration_depth(a, b, scratch, {.bracket = Bracket::certified});
+    if (answer.contact != ContactClass::overlapping) continue;
+    ++overlapping;
+    by_places += is_by_places(answer) ? 1 : 0;
+    check_answer(a, b, answer, "pair " + std::to_string(i));
+  }
+  EXPECT_GT(overlapping, 600);
+  EXPECT_GT(by_places, overlapping * 9 / 10);
+}
+
+TEST(RevolutionDepth, ACornerNextToTheMantle) {
+  const ConvexShape cylinder = *ConvexShape::cylinder(1, 2, 2);
+  const ConvexShape box = *ConvexPolytope::box({1, 1, 0.5});
+  // An edge of the box runs along the axis, a corner of its outline a tenth inside the mantle.
+  const double half = std::sqrt(0.5), way = 0.9 + std::sqrt(2.0);
+  const Pose on_edge = *Pose::from_matrix(Mat3{{half, -half, 0}, {half, half, 0}, {0, 0, 1}}, Vec3(way, 0, 0));
+  Scratch scratch;
+  const PenetrationDepth answer = penetration_depth({&cylinder, *Pose::from_quaternion({1, 0, 0, 0}, Vec3::Zero())},
+                                                    {&box, on_edge}, scratch, {.bracket = Bracket::certified});
+  EXPECT_EQ(answer.contact, ContactClass::overlapping);
+  EXPECT_NEAR(answer.depth, 0.1, 1e-13);
+  EXPECT_NEAR(std::abs(answer.normal.x()), 1, 1e-12);
+  EXPECT_TRUE(is_by_places(answer));
+}
+
+}  // namespace
+}  // namespace pd::detail
