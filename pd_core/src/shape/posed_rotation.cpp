@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "numeric/instruction_sets.hpp"
+#include "numeric/fused_products.hpp"
 
 namespace pd::detail {
 
@@ -39,16 +39,27 @@ QuaternionFactors factors_of(double w, double x, double y, double z) {
           {{w, w, w, 0}, {z, y, x, 0}}};
 }
 
-PD_INLINE void product_of(DoubleDoubleLanes& out, const double (&a)[4], const double (&b)[4]) {
+template <class P>
+PD_INLINE void product_of(DoubleDoubleLanesBy<P>& out, const double (&a)[4], const double (&b)[4]) {
   Lanes x, y;
   load(x, a);
   load(y, b);
   two_product(out, x, y);
 }
 
-PD_CLONES void rotation_entries(const QuaternionFactors& q, const DoubleDouble& squared_norm, RotationEntries& out) {
-  DoubleDoubleLanes norm, entries, square, left, right;
-  spread(norm, squared_norm);
+/// |q|^2.
+template <class P>
+PD_INLINE DoubleDouble sum_of(const DoubleDoubleLanesBy<P>& squares) {
+  FourDoubleDoubles s;
+  store(s, squares);
+  return s[0] + s[1] + s[2] + s[3];
+}
+
+template <class P>
+PD_INLINE void rotation_entries(const QuaternionFactors& q, const double (&wxyz)[4], RotationEntries& out) {
+  DoubleDoubleLanesBy<P> norm, entries, square, left, right;
+  product_of(square, wxyz, wxyz);
+  spread(norm, sum_of(square));
   product_of(entries, q.w, q.w);
   product_of(square, q.x, q.signed_x);
   add(entries, entries, square);
@@ -68,16 +79,11 @@ PD_CLONES void rotation_entries(const QuaternionFactors& q, const DoubleDouble& 
   store(out.differences, entries);
 }
 
-PD_INLINE void turn(DoubleDoubleLanes& out, const LocalVector& v) {
-  DoubleDoubleLanes column, coordinate, product;
-  load(column, (*v.columns)[0]);
-  spread(coordinate, v.coordinates[0]);
-  multiply(out, column, coordinate);
-  for (int j = 1; j < 3; ++j) {
-    load(column, (*v.columns)[j]);
-    spread(coordinate, v.coordinates[j]);
-    multiply(product, column, coordinate);
-    add(out, out, product);
+/// Of a quaternion of one component, whatever its length: a turn by 0 or by a half about an axis.
+void half_turn(const std::array<double, 4>& q, ColumnsDD& columns) {
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 4; ++i) columns[j].set(i, {});
+    columns[j].hi[j] = q[0] != 0 || q[static_cast<std::size_t>(j) + 1] != 0 ? 1 : -1;
   }
 }
 
@@ -98,10 +104,15 @@ void rotation_in_double_double(const Pose& pose, ColumnsDD& columns) {
     return;
   }
   const std::array<double, 4>& q = pose.quaternion_wxyz();
-  DoubleDouble norm{0, 0};
-  for (const double c : q) norm = norm + two_product(c, c);
+  if (std::count(q.begin(), q.end(), 0.0) == 3) {
+    half_turn(q, columns);
+    return;
+  }
+  const QuaternionFactors factors = factors_of(q[0], q[1], q[2], q[3]);
+  const double wxyz[4] = {q[0], q[1], q[2], q[3]};
   RotationEntries entries;
-  rotation_entries(factors_of(q[0], q[1], q[2], q[3]), norm, entries);
+  with_products([&](auto products)
+                    __attribute__((always_inline)) { rotation_entries<decltype(products)>(factors, wxyz, entries); });
   for (int j = 0; j < 3; ++j) {
     columns[j].set(j, entries.diagonal[j]);
     columns[j].set(3, {});
@@ -127,23 +138,6 @@ bool exchanges_axes(const Pose& pose, const ColumnsDD& columns) {
     if (std::abs(columns[0].hi[i]) + std::abs(columns[1].hi[i]) + std::abs(columns[2].hi[i]) != 1) return false;
   }
   return true;
-}
-
-PD_CLONES void turned_sum(const LocalVector& v, const LocalVector& w, const FourDoubleDoubles* offset,
-                          FourDoubleDoubles& out) {
-  DoubleDoubleLanes sum, more;
-  const Lanes zero = {0, 0, 0, 0};
-  sum.hi = sum.lo = zero;
-  if (v.columns != nullptr) turn(sum, v);
-  if (w.columns != nullptr) {
-    turn(more, w);
-    add(sum, sum, more);
-  }
-  if (offset != nullptr) {
-    load(more, *offset);
-    add(sum, sum, more);
-  }
-  store(out, sum);
 }
 
 Vec3DD turned_back(const ColumnsDD& r, const Vec3DD& x) {

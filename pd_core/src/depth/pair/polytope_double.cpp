@@ -158,7 +158,7 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.bracket != Bracket::certified || query.settings.method != Method::automatic) return false;
+  if (query.for_contact() || query.settings.method != Method::automatic) return false;
   if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
   if (along_same_axes(query.difference.rotation_a(), query.difference.rotation_b())) return false;
   const SmallSatDepth found =
@@ -166,6 +166,9 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   out.method = Method::overlay;
   out.statistics.facets_visited += found.pieces;
   ++out.statistics.support_calls;
+  if (query.bracket == Bracket::tightest) {
+    return found.status == SmallSatStatus::certified && prove_near_facet(query, found.nearest, out);
+  }
   if (found.status == SmallSatStatus::separated) {
     const DifferenceVertex first = query.difference.support(found.nearest.normal, nullptr);
     return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
