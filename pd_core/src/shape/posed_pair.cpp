@@ -150,8 +150,7 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
   const double scale = scale_ = std::ldexp(1.0, -scale_exponent_);
 
-  rotation_in_double_double(pose_a, body_a_.columns);
-  rotation_in_double_double(pose_b, body_b_.columns);
+  rotations_in_double_double(pose_a, pose_b, body_a_.columns, body_b_.columns);
   for (int i = 0; i < 9; ++i) {
     body_a_.rotation[i] = to_double(body_a_.columns[i % 3][i / 3]);
     body_b_.rotation[i] = to_double(body_b_.columns[i % 3][i / 3]);

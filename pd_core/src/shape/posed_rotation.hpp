@@ -13,8 +13,8 @@ namespace pd::detail {
 /// The columns of R; the last lanes are 0.
 using ColumnsDD = FourDoubleDoubles[3];
 
-/// R of a pose: a quaternion's from the exact rational, each entry within 2^-100; a matrix as it stands.
-void rotation_in_double_double(const Pose& pose, ColumnsDD& columns);
+/// R of both poses: a quaternion's from the exact rational, each entry within 2^-100; a matrix as it stands.
+void rotations_in_double_double(const Pose& pose_a, const Pose& pose_b, ColumnsDD& columns_a, ColumnsDD& columns_b);
 
 /// Whether R is what its columns hold, hi parts alone, exactly: a matrix, or a quaternion of one component, whose
 /// rotation is a turn by 0 or a half about an axis.
