@@ -206,12 +206,11 @@ class TranslationSearch {
     // What the other coordinates can make up for once the first is chosen.
     double range = height_;
     for (int i = 1; i < live; ++i) range += 1.01 * std::abs(components_[order[i]].hi) * (leeway() + ulp(order[i]));
+    const double step = ulp(first), inner_step = ulp(second);
     for (int i = -steps; i <= steps; ++i) {
       Vec3 t = base_;
-      t[first] += i * ulp(first);
-      DoubleDouble rest = depth_;
-      for (int k = 0; k < 3; ++k) rest = rest - components_[k] * t[k];
-      const double excess = -to_double(rest);
+      t[first] += i * step;
+      const double excess = beyond_plane(t);
       if (std::abs(excess) > range) continue;
       if (live < 3) {
         if (solve(t)) return true;
@@ -221,12 +220,23 @@ class TranslationSearch {
       if (row_.rise > 0 && !hopeful_candidates(row_, hopeful_)) continue;
       for (int j = -inner; j <= inner; ++j) {
         Vec3 candidate = t;
-        candidate[second] += j * ulp(second);
+        candidate[second] += j * inner_step;
         if ((row_.rise > 0 && hopeful_[j + inner] == 0) || !solve(candidate)) continue;
         return true;
       }
     }
     return false;
+  }
+
+  /// How far a candidate lies beyond the plane, off by less than 2^-50 of that and of an ulp.
+  [[nodiscard]] double beyond_plane(const Vec3& t) const {
+    if (aside_.usable) {
+      const Vec3 e = (t - base_) - residue_;
+      return components_[0].hi * e[0] + components_[1].hi * e[1] + components_[2].hi * e[2];
+    }
+    DoubleDouble rest = depth_;
+    for (int k = 0; k < 3; ++k) rest = rest - components_[k] * t[k];
+    return -to_double(rest);
   }
 
   /// What all rows of `hopeful_candidates` share. No rise where the steps of the solved coordinate are not all alike.
