@@ -95,5 +95,42 @@ TEST(DoubleDoubleLanes, MayBeTheirOwnOperands) {
   }
 }
 
+/// Whichever way the processor takes.
+TEST(DoubleDoubleLanes, HaveTheSameBitsWithFusedProducts) {
+  Numbers next;
+  for (int round = 0; round < 2000; ++round) {
+    const FourDoubleDoubles a = next.four(), b = next.four();
+    FourDoubleDoubles exact_product, product, quotient, turned;
+    DoubleDouble root_of_one;
+    const DoubleDouble positive{std::abs(a.hi[0]), a.hi[0] < 0 ? -a.lo[0] : a.lo[0]};
+    with_products([&](auto products) __attribute__((always_inline)) {
+      using P = decltype(products);
+      DoubleDoubleLanesBy<P> x, y, found;
+      load(x, a);
+      load(y, b);
+      two_product(found, x.hi, y.hi);
+      store(exact_product, found);
+      multiply(found, x, y);
+      store(product, found);
+      divide(found, x, y);
+      store(quotient, found);
+      cross(found, x, y);
+      store(turned, found);
+      root_of_one = root<P>(positive);
+    });
+    for (int i = 0; i < kLanes; ++i) {
+      expect_same(exact_product, i, two_product(a.hi[i], b.hi[i]));
+      expect_same(product, i, a[i] * b[i]);
+      expect_same(quotient, i, a[i] / b[i]);
+    }
+    const Vec3DD alone = cross(vector_of(a), vector_of(b));
+    expect_same(turned, 0, alone.x);
+    expect_same(turned, 1, alone.y);
+    expect_same(turned, 2, alone.z);
+    EXPECT_EQ(root_of_one.hi, sqrt(positive).hi);
+    EXPECT_EQ(root_of_one.lo, sqrt(positive).lo);
+  }
+}
+
 }  // namespace
 }  // namespace pd::detail

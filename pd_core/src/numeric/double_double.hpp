@@ -4,7 +4,8 @@
 /// Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997 (two-sum,
 /// two-product); Joldes, Muller, Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
 /// arithmetic", 2017 (the relative errors: sum of any signs 3u^2 + O(u^3) with the accurate algorithm, product 5u^2;
-/// u = 2^-53). No fused multiply-add: the bits must be those of every machine. Valid without over- or underflow.
+/// u = 2^-53). No fused multiply-add here: the bits must be those of every machine (kernels in lanes may take one
+/// where it gives the same bits, fused_products.hpp). Valid without over- or underflow.
 #pragma once
 
 #include <cmath>

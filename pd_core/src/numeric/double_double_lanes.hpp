@@ -4,13 +4,17 @@
 #pragma once
 
 #include "numeric/double_double.hpp"
+#include "numeric/fused_products.hpp"
 #include "numeric/lanes.hpp"
 
 namespace pd::detail {
 
-struct DoubleDoubleLanes {
+/// @tparam Products  how the errors of products are found.
+template <class Products>
+struct DoubleDoubleLanesBy {
   Lanes hi, lo;
 };
+using DoubleDoubleLanes = DoubleDoubleLanesBy<SplitProducts>;
 
 /// Four numbers as they are kept in memory.
 struct FourDoubleDoubles {
@@ -26,64 +30,71 @@ struct FourDoubleDoubles {
 /// The first three.
 inline Vec3DD vector_of(const FourDoubleDoubles& x) { return {x[0], x[1], x[2]}; }
 
-PD_INLINE void load(DoubleDoubleLanes& to, const FourDoubleDoubles& from) {
+template <class P>
+PD_INLINE void load(DoubleDoubleLanesBy<P>& to, const FourDoubleDoubles& from) {
   load(to.hi, from.hi);
   load(to.lo, from.lo);
 }
-PD_INLINE void store(FourDoubleDoubles& to, const DoubleDoubleLanes& from) {
+template <class P>
+PD_INLINE void store(FourDoubleDoubles& to, const DoubleDoubleLanesBy<P>& from) {
   store(to.hi, from.hi);
   store(to.lo, from.lo);
 }
 /// The same number in every lane.
-PD_INLINE void spread(DoubleDoubleLanes& to, const DoubleDouble& from) {
+template <class P>
+PD_INLINE void spread(DoubleDoubleLanesBy<P>& to, const DoubleDouble& from) {
   const Lanes zero = {0, 0, 0, 0};
   to.hi = zero + from.hi;
   to.lo = zero + from.lo;
 }
 
-PD_INLINE void two_sum(DoubleDoubleLanes& out, const Lanes& a, const Lanes& b) {
+template <class P>
+PD_INLINE void two_sum(DoubleDoubleLanesBy<P>& out, const Lanes& a, const Lanes& b) {
   const Lanes s = a + b;
   const Lanes bb = s - a;
   out.lo = (a - (s - bb)) + (b - bb);
   out.hi = s;
 }
-PD_INLINE void quick_two_sum(DoubleDoubleLanes& out, const Lanes& a, const Lanes& b) {
+template <class P>
+PD_INLINE void quick_two_sum(DoubleDoubleLanesBy<P>& out, const Lanes& a, const Lanes& b) {
   const Lanes s = a + b;
   out.lo = b - (s - a);
   out.hi = s;
 }
-PD_INLINE void two_product(DoubleDoubleLanes& out, const Lanes& a, const Lanes& b) {
-  constexpr double kSplit = 134217729.0;  // 2^27 + 1
+template <class P>
+PD_INLINE void two_product(DoubleDoubleLanesBy<P>& out, const Lanes& a, const Lanes& b) {
   const Lanes p = a * b;
-  const Lanes ca = kSplit * a, cb = kSplit * b;
-  const Lanes a_hi = ca - (ca - a), b_hi = cb - (cb - b);
-  const Lanes a_lo = a - a_hi, b_lo = b - b_hi;
-  out.lo = ((a_hi * b_hi - p) + a_hi * b_lo + a_lo * b_hi) + a_lo * b_lo;
+  P::error(out.lo, p, a, b);
   out.hi = p;
 }
 
-PD_INLINE void add(DoubleDoubleLanes& out, const DoubleDoubleLanes& a, const DoubleDoubleLanes& b) {
-  DoubleDoubleLanes s, t;
+template <class P>
+PD_INLINE void add(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a, const DoubleDoubleLanesBy<P>& b) {
+  DoubleDoubleLanesBy<P> s, t;
   two_sum(s, a.hi, b.hi);
   two_sum(t, a.lo, b.lo);
   quick_two_sum(s, s.hi, s.lo + t.hi);
   quick_two_sum(out, s.hi, s.lo + t.lo);
 }
-PD_INLINE void subtract(DoubleDoubleLanes& out, const DoubleDoubleLanes& a, const DoubleDoubleLanes& b) {
+template <class P>
+PD_INLINE void subtract(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a, const DoubleDoubleLanesBy<P>& b) {
   add(out, a, {-b.hi, -b.lo});
 }
-PD_INLINE void multiply(DoubleDoubleLanes& out, const DoubleDoubleLanes& a, const DoubleDoubleLanes& b) {
-  DoubleDoubleLanes p;
+template <class P>
+PD_INLINE void multiply(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a, const DoubleDoubleLanesBy<P>& b) {
+  DoubleDoubleLanesBy<P> p;
   two_product(p, a.hi, b.hi);
   quick_two_sum(out, p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
-PD_INLINE void multiply(DoubleDoubleLanes& out, const DoubleDoubleLanes& a, const Lanes& b) {
-  DoubleDoubleLanes p;
+template <class P>
+PD_INLINE void multiply(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a, const Lanes& b) {
+  DoubleDoubleLanesBy<P> p;
   two_product(p, a.hi, b);
   quick_two_sum(out, p.hi, p.lo + a.lo * b);
 }
-PD_INLINE void divide(DoubleDoubleLanes& out, const DoubleDoubleLanes& a, const DoubleDoubleLanes& b) {
-  DoubleDoubleLanes product, rest;
+template <class P>
+PD_INLINE void divide(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a, const DoubleDoubleLanesBy<P>& b) {
+  DoubleDoubleLanesBy<P> product, rest;
   const Lanes q1 = a.hi / b.hi;
   multiply(product, b, q1);
   subtract(rest, a, product);
@@ -91,16 +102,17 @@ PD_INLINE void divide(DoubleDoubleLanes& out, const DoubleDoubleLanes& a, const 
   multiply(product, b, q2);
   subtract(rest, rest, product);
   const Lanes q3 = rest.hi / b.hi;
-  DoubleDoubleLanes quotient;
+  DoubleDoubleLanesBy<P> quotient;
   quick_two_sum(quotient, q1, q2);
   add(out, quotient, {q3, Lanes{0, 0, 0, 0}});
 }
 /// u x v of the first three lanes.
-PD_INLINE void cross(DoubleDoubleLanes& out, const DoubleDoubleLanes& u, const DoubleDoubleLanes& v) {
+template <class P>
+PD_INLINE void cross(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& u, const DoubleDoubleLanesBy<P>& v) {
   const auto yzx = [](Lanes & to, const Lanes& x) __attribute__((always_inline)) {
     to = __builtin_shufflevector(x, x, 1, 2, 0, 3);
   };
-  DoubleDoubleLanes u_next, v_next, left, right, turned;
+  DoubleDoubleLanesBy<P> u_next, v_next, left, right, turned;
   yzx(u_next.hi, u.hi);
   yzx(u_next.lo, u.lo);
   yzx(v_next.hi, v.hi);
@@ -111,6 +123,19 @@ PD_INLINE void cross(DoubleDoubleLanes& out, const DoubleDoubleLanes& u, const D
   subtract(turned, left, right);
   yzx(out.hi, turned.hi);
   yzx(out.lo, turned.lo);
+}
+/// The root of a number, in the steps of `sqrt`.
+template <class P>
+PD_INLINE DoubleDouble root(const DoubleDouble& x) {
+  if (!(x.hi > 0)) return {0, 0};
+  const double s = __builtin_sqrt(x.hi);
+  DoubleDouble squared{s * s, 0};
+  P::error(squared.lo, squared.hi, s, s);
+  const DoubleDouble t = quick_two_sum(s, (x - squared).hi / (2 * s));
+  DoubleDouble product{t.hi * t.hi, 0};
+  P::error(product.lo, product.hi, t.hi, t.hi);
+  const DoubleDouble rest = x - quick_two_sum(product.hi, product.lo + (t.hi * t.lo + t.lo * t.hi));
+  return t + DoubleDouble{rest.hi / (2 * s), 0};
 }
 
 }  // namespace pd::detail

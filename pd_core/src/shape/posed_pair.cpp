@@ -25,6 +25,19 @@ std::array<Dyadic, 9> homogeneous_rotation(const std::array<double, 4>& q) {
           two * (yz - wx),   two * (xz - wy), two * (yz + wx), ww - xx - yy + zz};
 }
 
+/// R's numerators, and |q|^2 or 1.
+void numerators(const Pose& pose, Dyadic (&rotation)[9], Dyadic& denominator) {
+  if (!pose.is_quaternion()) {
+    for (int i = 0; i < 9; ++i) rotation[i] = Dyadic(pose.rotation()(i / 3, i % 3));
+    denominator = Dyadic(1.0);
+    return;
+  }
+  const std::array<Dyadic, 9> entries = homogeneous_rotation(pose.quaternion_wxyz());
+  std::copy(entries.begin(), entries.end(), rotation);
+  denominator = Dyadic(0.0);
+  for (const double c : pose.quaternion_wxyz()) denominator = denominator + Dyadic(c) * Dyadic(c);
+}
+
 /// Largest coordinate of |R| |v| over the vertices, bounded by the box of |v|.
 double reach(const ConvexPolytope& polytope, const ColumnsDD& columns, double scale) {
   const Vec3& box = polytope.max_abs_coordinates();
@@ -137,8 +150,7 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
   const double scale = scale_ = std::ldexp(1.0, -scale_exponent_);
 
-  rotation_in_double_double(pose_a, body_a_.columns);
-  rotation_in_double_double(pose_b, body_b_.columns);
+  rotations_in_double_double(pose_a, pose_b, body_a_.columns, body_b_.columns);
   for (int i = 0; i < 9; ++i) {
     body_a_.rotation[i] = to_double(body_a_.columns[i % 3][i / 3]);
     body_b_.rotation[i] = to_double(body_b_.columns[i % 3][i / 3]);
@@ -175,43 +187,41 @@ Vec3 PosedPair::approximate(const PairVector& v) const {
   return r;
 }
 
+TurnedSum PosedPair::turned(const PairVector& v) const {
+  return {LocalVector(*b_, body_b_.columns, scale_, v.b_to, v.b_from),
+          LocalVector(*a_, body_a_.columns, -scale_, v.a_to, v.a_from), v.translated ? &offset_dd_ : nullptr};
+}
+
 void PosedPair::approximate_dd(const PairVector& v, FourDoubleDoubles& out) const {
-  const LocalVector of_b(*b_, body_b_.columns, scale_, v.b_to, v.b_from);
-  const LocalVector of_a(*a_, body_a_.columns, -scale_, v.a_to, v.a_from);
-  turned_sum(of_b, of_a, v.translated ? &offset_dd_ : nullptr, out);
+  const TurnedSum sum = turned(v);
+  with_products([&](auto products) __attribute__((always_inline)) {
+    DoubleDoubleLanesBy<decltype(products)> lanes;
+    add_up(lanes, sum);
+    store(out, lanes);
+  });
 }
 
 Vec3DD PosedPair::in_frame_of_a(const Vec3DD& x) const { return turned_back(body_a_.columns, x); }
 Vec3DD PosedPair::in_frame_of_b(const Vec3DD& x) const { return turned_back(body_b_.columns, x); }
 
-void PosedPair::prepare_exact() const {
-  if (body_a_.exact_ready) return;
-  for (const auto& [body, pose] : {std::pair{&body_a_, pose_a_}, std::pair{&body_b_, pose_b_}}) {
-    body->denominator = Dyadic(1.0);
-    if (pose->is_quaternion()) {
-      const std::array<Dyadic, 9> numerators = homogeneous_rotation(pose->quaternion_wxyz());
-      std::copy(numerators.begin(), numerators.end(), body->rotation_exact);
-      body->denominator = Dyadic(0.0);
-      for (const double c : pose->quaternion_wxyz()) body->denominator = body->denominator + Dyadic(c) * Dyadic(c);
-    } else {
-      for (int i = 0; i < 9; ++i) body->rotation_exact[i] = Dyadic(pose->rotation()(i / 3, i % 3));
-    }
-    body->exact_ready = true;
-  }
-  homogeneous_factor_ = body_a_.denominator * body_b_.denominator;
+const PosedPair::ExactPlacing& PosedPair::exact_placing() const {
+  if (exact_) return *exact_;
+  ExactPlacing& made = exact_.emplace();
+  Dyadic denominator_a, denominator_b;
+  numerators(*pose_a_, made.rotation_a, denominator_a);
+  numerators(*pose_b_, made.rotation_b, denominator_b);
+  made.homogeneous_factor = denominator_a * denominator_b;
   // Bring both bodies to the common denominator once.
   for (int i = 0; i < 9; ++i) {
-    body_a_.rotation_exact[i] = body_a_.rotation_exact[i] * body_b_.denominator;
-    body_b_.rotation_exact[i] = body_b_.rotation_exact[i] * body_a_.denominator;
+    made.rotation_a[i] = made.rotation_a[i] * denominator_b;
+    made.rotation_b[i] = made.rotation_b[i] * denominator_a;
   }
-  offset_exact_ = (to_dyadic(pose_b_->translation()) - to_dyadic(pose_a_->translation()) - to_dyadic(origin_)) *
-                  homogeneous_factor_;
+  made.offset = (to_dyadic(pose_b_->translation()) - to_dyadic(pose_a_->translation()) - to_dyadic(origin_)) *
+                made.homogeneous_factor;
+  return made;
 }
 
-const Dyadic& PosedPair::homogeneous_factor() const {
-  prepare_exact();
-  return homogeneous_factor_;
-}
+const Dyadic& PosedPair::homogeneous_factor() const { return exact_placing().homogeneous_factor; }
 
 bool PosedPair::unrounded(const PairVector& v, bool rotated, Vec3& out) const {
   UnroundedSum sums[3];
@@ -251,15 +261,14 @@ bool PosedPair::unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N])
 }
 
 Dyadic3 PosedPair::exact(const PairVector& v) const {
-  prepare_exact();
+  const ExactPlacing& placing = exact_placing();
   Vec3 whole;
   if (doubles_rotate_ && unrounded(v, true, whole)) {
     const Dyadic3 x = to_dyadic(whole);
-    return pose_a_->is_quaternion() || pose_b_->is_quaternion() ? x * homogeneous_factor_ : x;
+    return pose_a_->is_quaternion() || pose_b_->is_quaternion() ? x * placing.homogeneous_factor : x;
   }
-  Dyadic3 r =
-      rotate(*b_, body_b_.rotation_exact, v.b_to, v.b_from) - rotate(*a_, body_a_.rotation_exact, v.a_to, v.a_from);
-  if (v.translated) r = r + offset_exact_;
+  Dyadic3 r = rotate(*b_, placing.rotation_b, v.b_to, v.b_from) - rotate(*a_, placing.rotation_a, v.a_to, v.a_from);
+  if (v.translated) r = r + placing.offset;
   std::int64_t words = 0;
   for (const Dyadic* x : {&r.x, &r.y, &r.z}) words = std::max<std::int64_t>(words, x->mantissa().backend().size());
   exact_work_ += words * words;

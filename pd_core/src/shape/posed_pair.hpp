@@ -56,6 +56,10 @@ class PosedPair {
   /// Lengths inside = lengths outside * 2^-scale_exponent.
   [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
 
+  /// R row by row, rounded; a matrix as it stands.
+  [[nodiscard]] const double (&rotation_a() const)[9] { return body_a_.rotation; }
+  [[nodiscard]] const double (&rotation_b() const)[9] { return body_b_.rotation; }
+
   /// The vector in doubles (scaled). |error| per coordinate <= vector_error().
   [[nodiscard]] Vec3 approximate(const PairVector& v) const;
   [[nodiscard]] double vector_error() const { return vector_error_; }
@@ -68,6 +72,8 @@ class PosedPair {
   }
   /// The same as lanes, the last of them 0.
   void approximate_dd(const PairVector& v, FourDoubleDoubles& out) const;
+  /// What that adds up, for kernels that go on with the sum.
+  [[nodiscard]] TurnedSum turned(const PairVector& v) const;
   [[nodiscard]] double vector_error_dd() const { return vector_error_dd_; }
   /// R_A^T x in double-double, each coordinate within 2^-100 of the sum of |x|.
   [[nodiscard]] Vec3DD in_frame_of_a(const Vec3DD& x) const;
@@ -109,13 +115,17 @@ class PosedPair {
 
  private:
   struct Body {
-    double rotation[9];        ///< R row by row, rounded from the exact rational when a quaternion
-    ColumnsDD columns;         ///< of R, in double-double
-    Dyadic rotation_exact[9];  ///< numerators over the common denominator of the pair
-    Dyadic denominator;        ///< |q|^2 or 1
-    bool exact_ready = false;
+    double rotation[9];  ///< R row by row, rounded from the exact rational when a quaternion
+    ColumnsDD columns;   ///< of R, in double-double
   };
-  void prepare_exact() const;
+  /// Exact numbers, which most pairs never ask for.
+  struct ExactPlacing {
+    Dyadic rotation_a[9];  ///< numerators over the common denominator of the pair
+    Dyadic rotation_b[9];
+    Dyadic homogeneous_factor;
+    Dyadic3 offset;
+  };
+  const ExactPlacing& exact_placing() const;
   /// R^-1 times the vectors, for one rotation R of all of them (the identity in the common frame), where no step
   /// rounds.
   template <int N>
@@ -133,15 +143,14 @@ class PosedPair {
   double scale_ = 1;  ///< 2^-scale_exponent_
   double vector_error_ = 0;
   double vector_error_dd_ = 0;
-  mutable Dyadic homogeneous_factor_;
-  mutable Body body_a_;
-  mutable Body body_b_;
+  Body body_a_;
+  Body body_b_;
   Vec3 origin_;
   Vec3 offset_;  ///< (t_B - t_A - origin) scaled, rounded
   FourDoubleDoubles offset_dd_;
   bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
   bool same_rotation_ = false;   ///< of A and B, exactly
-  mutable Dyadic3 offset_exact_;
+  mutable std::optional<ExactPlacing> exact_;
   mutable StageCounts stages_;
   mutable std::int64_t exact_work_ = 0;
 };

@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
-#include "numeric/instruction_sets.hpp"
+#include "numeric/fused_products.hpp"
 
 namespace pd::detail {
 
@@ -22,13 +23,16 @@ struct RotationEntries {
 /// Factors of the products that the numerators are made of, four lanes each, the last 0. In memory: valgrind does not
 /// know an instruction that puts them together in registers.
 struct QuaternionFactors {
+  double all[4];  ///< w, x, y, z
   double w[4], x[4], y[4], z[4];
   double signed_x[4], signed_y[4], signed_z[4];  ///< ww + xx - yy - zz, ww - xx + yy - zz, ww - xx - yy + zz
   double left[2][4], right[2][4];                ///< xy and wz, xz and wy, yz and wx
 };
 
-QuaternionFactors factors_of(double w, double x, double y, double z) {
-  return {{w, w, w, 0},
+QuaternionFactors factors_of(const std::array<double, 4>& q) {
+  const auto [w, x, y, z] = q;
+  return {{w, x, y, z},
+          {w, w, w, 0},
           {x, x, x, 0},
           {y, y, y, 0},
           {z, z, z, 0},
@@ -39,69 +43,64 @@ QuaternionFactors factors_of(double w, double x, double y, double z) {
           {{w, w, w, 0}, {z, y, x, 0}}};
 }
 
-PD_INLINE void product_of(DoubleDoubleLanes& out, const double (&a)[4], const double (&b)[4]) {
+template <class P>
+PD_INLINE void product_of(DoubleDoubleLanesBy<P>& out, const double (&a)[4], const double (&b)[4]) {
   Lanes x, y;
   load(x, a);
   load(y, b);
   two_product(out, x, y);
 }
 
-PD_CLONES void rotation_entries(const QuaternionFactors& q, const DoubleDouble& squared_norm, RotationEntries& out) {
-  DoubleDoubleLanes norm, entries, square, left, right;
-  spread(norm, squared_norm);
-  product_of(entries, q.w, q.w);
-  product_of(square, q.x, q.signed_x);
-  add(entries, entries, square);
-  product_of(square, q.y, q.signed_y);
-  add(entries, entries, square);
-  product_of(square, q.z, q.signed_z);
-  add(entries, entries, square);
-  divide(entries, entries, norm);
-  store(out.diagonal, entries);
-  product_of(left, q.left[0], q.left[1]);
-  product_of(right, q.right[0], q.right[1]);
-  add(entries, left, right);
-  divide(entries, {2.0 * entries.hi, 2.0 * entries.lo}, norm);
-  store(out.sums, entries);
-  subtract(entries, left, right);
-  divide(entries, {2.0 * entries.hi, 2.0 * entries.lo}, norm);
-  store(out.differences, entries);
+/// |q|^2.
+template <class P>
+PD_INLINE DoubleDouble sum_of(const DoubleDoubleLanesBy<P>& squares) {
+  FourDoubleDoubles s;
+  store(s, squares);
+  return s[0] + s[1] + s[2] + s[3];
 }
 
-PD_INLINE void turn(DoubleDoubleLanes& out, const LocalVector& v) {
-  DoubleDoubleLanes column, coordinate, product;
-  load(column, (*v.columns)[0]);
-  spread(coordinate, v.coordinates[0]);
-  multiply(out, column, coordinate);
-  for (int j = 1; j < 3; ++j) {
-    load(column, (*v.columns)[j]);
-    spread(coordinate, v.coordinates[j]);
-    multiply(product, column, coordinate);
-    add(out, out, product);
+/// Of one rotation or two, step by step: each is one long chain of operations, and a processor works on two at once.
+template <class P, int N>
+PD_INLINE void rotation_entries(const QuaternionFactors (&q)[2], RotationEntries (&out)[2]) {
+  DoubleDoubleLanesBy<P> norm[N], entries[N], square[N], left[N], right[N];
+  for (int k = 0; k < N; ++k) product_of(square[k], q[k].all, q[k].all);
+  for (int k = 0; k < N; ++k) spread(norm[k], sum_of(square[k]));
+  for (int k = 0; k < N; ++k) product_of(entries[k], q[k].w, q[k].w);
+  for (int k = 0; k < N; ++k) product_of(square[k], q[k].x, q[k].signed_x);
+  for (int k = 0; k < N; ++k) add(entries[k], entries[k], square[k]);
+  for (int k = 0; k < N; ++k) product_of(square[k], q[k].y, q[k].signed_y);
+  for (int k = 0; k < N; ++k) add(entries[k], entries[k], square[k]);
+  for (int k = 0; k < N; ++k) product_of(square[k], q[k].z, q[k].signed_z);
+  for (int k = 0; k < N; ++k) add(entries[k], entries[k], square[k]);
+  for (int k = 0; k < N; ++k) divide(entries[k], entries[k], norm[k]);
+  for (int k = 0; k < N; ++k) store(out[k].diagonal, entries[k]);
+  for (int k = 0; k < N; ++k) {
+    product_of(left[k], q[k].left[0], q[k].left[1]);
+    product_of(right[k], q[k].right[0], q[k].right[1]);
   }
+  for (int k = 0; k < N; ++k) add(entries[k], left[k], right[k]);
+  for (int k = 0; k < N; ++k) divide(entries[k], {2.0 * entries[k].hi, 2.0 * entries[k].lo}, norm[k]);
+  for (int k = 0; k < N; ++k) store(out[k].sums, entries[k]);
+  for (int k = 0; k < N; ++k) subtract(entries[k], left[k], right[k]);
+  for (int k = 0; k < N; ++k) divide(entries[k], {2.0 * entries[k].hi, 2.0 * entries[k].lo}, norm[k]);
+  for (int k = 0; k < N; ++k) store(out[k].differences, entries[k]);
 }
 
-/// Entries 0, 1 and -1 only.
-bool whole(const FourDoubleDoubles& column) {
-  return std::all_of(column.lo, column.lo + 3, [](double x) { return x == 0; }) &&
-         std::all_of(column.hi, column.hi + 3, [](double x) { return x == 0 || std::abs(x) == 1; });
-}
-
-}  // namespace
-
-void rotation_in_double_double(const Pose& pose, ColumnsDD& columns) {
-  if (!pose.is_quaternion()) {
-    for (int j = 0; j < 3; ++j) {
-      for (int i = 0; i < 3; ++i) columns[j].set(i, {pose.rotation()(i, j), 0});
-      columns[j].set(3, {});
-    }
-    return;
-  }
+/// Where no entry is rounded: a matrix, or a quaternion of one component, which is a turn by 0 or by a half about an
+/// axis, whatever its length.
+bool as_stored(const Pose& pose, ColumnsDD& columns) {
   const std::array<double, 4>& q = pose.quaternion_wxyz();
-  DoubleDouble norm{0, 0};
-  for (const double c : q) norm = norm + two_product(c, c);
-  RotationEntries entries;
-  rotation_entries(factors_of(q[0], q[1], q[2], q[3]), norm, entries);
+  const bool matrix = !pose.is_quaternion();
+  if (!matrix && std::count(q.begin(), q.end(), 0.0) != 3) return false;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) columns[j].set(i, {matrix ? pose.rotation()(i, j) : 0, 0});
+    columns[j].set(3, {});
+    if (!matrix) columns[j].hi[j] = q[0] != 0 || q[static_cast<std::size_t>(j) + 1] != 0 ? 1 : -1;
+  }
+  return true;
+}
+
+void columns_of(const RotationEntries& entries, ColumnsDD& columns) {
   for (int j = 0; j < 3; ++j) {
     columns[j].set(j, entries.diagonal[j]);
     columns[j].set(3, {});
@@ -112,6 +111,35 @@ void rotation_in_double_double(const Pose& pose, ColumnsDD& columns) {
   columns[1].set(0, entries.differences[0]);
   columns[0].set(2, entries.differences[1]);
   columns[2].set(1, entries.differences[2]);
+}
+
+/// Entries 0, 1 and -1 only.
+bool whole(const FourDoubleDoubles& column) {
+  return std::all_of(column.lo, column.lo + 3, [](double x) { return x == 0; }) &&
+         std::all_of(column.hi, column.hi + 3, [](double x) { return x == 0 || std::abs(x) == 1; });
+}
+
+}  // namespace
+
+void rotations_in_double_double(const Pose& pose_a, const Pose& pose_b, ColumnsDD& columns_a, ColumnsDD& columns_b) {
+  QuaternionFactors factors[2];
+  ColumnsDD* columns[2];
+  int count = 0;
+  for (const auto& [pose, of] : {std::pair{&pose_a, &columns_a}, std::pair{&pose_b, &columns_b}}) {
+    if (as_stored(*pose, *of)) continue;
+    factors[count] = factors_of(pose->quaternion_wxyz());
+    columns[count++] = of;
+  }
+  if (count == 0) return;
+  RotationEntries entries[2];
+  with_products([&](auto products) __attribute__((always_inline)) {
+    if (count == 2) {
+      rotation_entries<decltype(products), 2>(factors, entries);
+    } else {
+      rotation_entries<decltype(products), 1>(factors, entries);
+    }
+  });
+  for (int k = 0; k < count; ++k) columns_of(entries[k], *columns[k]);
 }
 
 bool stored_in_doubles(const Pose& pose, const ColumnsDD& columns) {
@@ -127,23 +155,6 @@ bool exchanges_axes(const Pose& pose, const ColumnsDD& columns) {
     if (std::abs(columns[0].hi[i]) + std::abs(columns[1].hi[i]) + std::abs(columns[2].hi[i]) != 1) return false;
   }
   return true;
-}
-
-PD_CLONES void turned_sum(const LocalVector& v, const LocalVector& w, const FourDoubleDoubles* offset,
-                          FourDoubleDoubles& out) {
-  DoubleDoubleLanes sum, more;
-  const Lanes zero = {0, 0, 0, 0};
-  sum.hi = sum.lo = zero;
-  if (v.columns != nullptr) turn(sum, v);
-  if (w.columns != nullptr) {
-    turn(more, w);
-    add(sum, sum, more);
-  }
-  if (offset != nullptr) {
-    load(more, *offset);
-    add(sum, sum, more);
-  }
-  store(out, sum);
 }
 
 Vec3DD turned_back(const ColumnsDD& r, const Vec3DD& x) {

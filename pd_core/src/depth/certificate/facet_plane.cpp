@@ -2,42 +2,53 @@
 
 #include <cmath>
 
-#include "numeric/instruction_sets.hpp"
+#include "numeric/fused_products.hpp"
 #include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-double norm1(const FourDoubleDoubles& v) { return std::abs(v.hi[0]) + std::abs(v.hi[1]) + std::abs(v.hi[2]); }
-DoubleDouble sum(const FourDoubleDoubles& v) { return v[0] + v[1] + v[2]; }
-
-struct PlaneProducts {
-  FourDoubleDoubles normal;          ///< n = u x v
-  FourDoubleDoubles normal_squares;  ///< of its coordinates
-  FourDoubleDoubles point_products;  ///< p_k n_k
+/// What a facet's plane is made of: its vectors' and its normal's 1-norms (n = u x v), the square of |n|, and n and
+/// <p, n> over |n|.
+struct PlaneParts {
+  double of_u, of_v, of_p, of_n;
+  double squared;
+  FourDoubleDoubles over_length;
 };
 
-PD_CLONES void plane_products(const FourDoubleDoubles& u, const FourDoubleDoubles& v, const FourDoubleDoubles& p,
-                              PlaneProducts& out) {
-  DoubleDoubleLanes left, right, normal, products;
-  load(left, u);
-  load(right, v);
-  cross(normal, left, right);
-  store(out.normal, normal);
-  multiply(products, normal, normal);
-  store(out.normal_squares, products);
-  load(left, p);
-  multiply(products, left, normal);
-  store(out.point_products, products);
+template <class P>
+PD_INLINE double norm1(const DoubleDoubleLanesBy<P>& v) {
+  return std::abs(v.hi[0]) + std::abs(v.hi[1]) + std::abs(v.hi[2]);
 }
 
-PD_CLONES void divide_all(const FourDoubleDoubles& numbers, const DoubleDouble& by, FourDoubleDoubles& out) {
-  DoubleDoubleLanes numerators, divisor, quotients;
-  load(numerators, numbers);
-  spread(divisor, by);
-  divide(quotients, numerators, divisor);
-  store(out, quotients);
+/// Of the first three lanes.
+template <class P>
+PD_INLINE DoubleDouble sum(const DoubleDoubleLanesBy<P>& v) {
+  return DoubleDouble{v.hi[0], v.lo[0]} + DoubleDouble{v.hi[1], v.lo[1]} + DoubleDouble{v.hi[2], v.lo[2]};
+}
+
+template <class P>
+PD_INLINE void measure_plane(const TurnedSum& of_u, const TurnedSum& of_v, const TurnedSum& of_p, PlaneParts& out) {
+  DoubleDoubleLanesBy<P> u, v, p, n, products;
+  add_up(u, of_u);
+  add_up(v, of_v);
+  add_up(p, of_p);
+  cross(n, u, v);
+  out.of_u = norm1(u);
+  out.of_v = norm1(v);
+  out.of_p = norm1(p);
+  out.of_n = norm1(n);
+  multiply(products, n, n);
+  const DoubleDouble squared = sum(products);
+  multiply(products, p, n);
+  const DoubleDouble offset = sum(products);
+  out.squared = squared.hi;
+  n.hi[3] = offset.hi;
+  n.lo[3] = offset.lo;
+  spread(products, root<P>(squared));
+  divide(n, n, products);
+  store(out.over_length, n);
 }
 
 /// Aligned boxes: where the edges lie in a coordinate plane, exactly, and the point's height over it is exact. No other
@@ -63,26 +74,18 @@ void snap_to_axis(const PosedPair& pair, const FacetOfDifference& facet, FacetPl
 
 FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet) {
   FacetPlane plane;
-  FourDoubleDoubles u, v, p;
-  pair.approximate_dd(facet.u, u);
-  pair.approximate_dd(facet.v, v);
-  pair.approximate_dd(facet.point(), p);
-  PlaneProducts found;
-  plane_products(u, v, p, found);
+  const TurnedSum of_u = pair.turned(facet.u), of_v = pair.turned(facet.v), of_p = pair.turned(facet.point());
+  PlaneParts found;
+  with_products([&](auto products)
+                    __attribute__((always_inline)) { measure_plane<decltype(products)>(of_u, of_v, of_p, found); });
   const double e = pair.vector_error_dd();
-  const double su = norm1(u), sv = norm1(v), sp = norm1(p), sn = norm1(found.normal);
+  const double su = found.of_u, sv = found.of_v, sp = found.of_p, sn = found.of_n;
   // Each coordinate of n: the errors of its two factors, then of two products and a difference.
   const double normal_error = (e * (su + sv + 2 * e) + 8 * kUdd * su * sv) * (1 + 16 * kUnitRoundoff) + 0x1p-900;
-  const DoubleDouble squared = sum(found.normal_squares);
-  const double length = std::sqrt(squared.hi);
+  const double length = std::sqrt(found.squared);
   if (!(length > 4 * normal_error)) return plane;
-  const DoubleDouble offset = sum(found.point_products);
-  found.normal.hi[3] = offset.hi;
-  found.normal.lo[3] = offset.lo;
-  FourDoubleDoubles quotients;
-  divide_all(found.normal, sqrt(squared), quotients);
-  plane.unit = vector_of(quotients);
-  plane.distance = quotients[3];
+  plane.unit = vector_of(found.over_length);
+  plane.distance = found.over_length[3];
   // distance = N / |n|: dN / |n| + |distance| d|n| / |n|, both over the least possible |n|; the operations' own
   // rounding last. A coordinate of the unit normal likewise, with |unit| <= 1. Largest error / bound that
   // `bound_ratios` found: 0.001 of either; the bound of the points that they are made of has most of it in hand.

@@ -26,7 +26,7 @@ struct FacetPlane {
   [[nodiscard]] bool known() const { return distance_error < std::numeric_limits<double>::infinity(); }
 };
 
-/// About 1700 instructions; no allocation.
+/// About 1200 instructions with fused products; no allocation.
 [[nodiscard]] FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet);
 
 /// The square of a plane's distance = numerator / denominator, in the homogeneous lengths of `PosedPair::exact`: fit to

@@ -17,6 +17,15 @@ std::optional<std::pair<std::int32_t, std::int32_t>> two_of(std::int32_t x, std:
 
 bool positive(const FacetPlane& plane) { return plane.known() && to_double(plane.distance) > plane.distance_error; }
 
+/// Whether the plane's normal points to the side of the origin, in doubles: no decision rests on it.
+bool faces_origin(const PosedPair& pair, const FacetOfDifference& facet) {
+  return pair.approximate(facet.u).cross(pair.approximate(facet.v)).dot(pair.approximate(facet.point())) < 0;
+}
+
+bool nearer_than(const FacetPlane& plane, double beyond) {
+  return to_double(plane.distance) + plane.distance_error < beyond;
+}
+
 /// The plane of a triangle's three points as that of a facet of A, a facet of B or two edges, which other decisions can
 /// be read off; else by its points.
 ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
@@ -43,8 +52,12 @@ ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
     const auto on_a = two_of(p.a, q.a, r.a);
     const auto on_b = two_of(p.b, q.b, r.b);
     if (on_a && on_b) {
-      if (measured(FacetOfDifference::from_edges(on_a->first, on_a->second, on_b->first, on_b->second))) return found;
-      if (measured(FacetOfDifference::from_edges(on_a->second, on_a->first, on_b->first, on_b->second))) return found;
+      auto [a0, a1] = *on_a;
+      const auto [b0, b1] = *on_b;
+      // One of the two directions has the origin behind its plane: the one that doubles favour is tried first.
+      if (faces_origin(pair, FacetOfDifference::from_edges(a0, a1, b0, b1))) std::swap(a0, a1);
+      if (measured(FacetOfDifference::from_edges(a0, a1, b0, b1))) return found;
+      if (measured(FacetOfDifference::from_edges(a1, a0, b0, b1))) return found;
     }
   }
   measured({{Feature::Kind::vertex, p.a, -1},
@@ -95,9 +108,17 @@ std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<
       }
     }
     if (nearer) continue;
-    if (!(to_double(best.plane.distance) + best.plane.distance_error < beyond)) return std::nullopt;
+    if (!nearer_than(best.plane, beyond)) return std::nullopt;
     return best;
   }
+}
+
+std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet, double beyond,
+                                       SupportFaces& faces) {
+  const ProvenFacet found{facet, measure_facet(pair, facet)};
+  if (!positive(found.plane) || !nearer_than(found.plane, beyond)) return std::nullopt;
+  if (!collect_faces(pair, facet, found.plane, faces)) return std::nullopt;
+  return found;
 }
 
 }  // namespace pd::detail

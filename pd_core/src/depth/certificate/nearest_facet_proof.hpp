@@ -39,6 +39,10 @@ struct ProvenFacet {
                                                              std::span<const SurfaceCorners> near, double beyond,
                                                              bool first_of_equals, SupportFaces& faces);
 
+/// The same of one piece of P's boundary where every other one is `beyond` or farther.
+[[nodiscard]] std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet,
+                                                     double beyond, SupportFaces& faces);
+
 /// Cores that are apart: the plane through P's point nearest to the origin, normal to it (distance negative), and that
 /// point as a combination of vertices of P.
 struct ProvenSeparation {

@@ -117,6 +117,10 @@ class Extent {
 /// holds many triples: two coordinates walk near the exact translation, the third (the one with the finest ulps) is
 /// solved for. Candidates are sifted in double-double before they are proved.
 ///
+/// Next to t* = depth * unit, known in double-double, all that matters is small: with e = t - t*, t lies <unit, e>
+/// beyond the plane, and |t|^2 exceeds the square of `upper` by 2 depth <unit, e> + |e|^2 less the cap's share. Both
+/// are sums of products of ordinary doubles whose errors, some 2^-50 of e, are as small as double-double's.
+///
 /// Solving puts a candidate so close beyond the plane (2^-92 of the depth where the normal's last coordinate is 1e-6)
 /// that the error of the plane itself decides, and decides alike for all of them: the plane is taken that much farther
 /// out, where the cap has room for it.
@@ -126,24 +130,46 @@ class TranslationSearch {
   TranslationSearch(Separation& separation, Extent& extent, const DoubleDouble& depth, double upper)
       : separation_(separation), extent_(extent), true_upper_(upper), exponent_(std::ilogb(upper)) {
     scale_ = std::ldexp(1.0, exponent_);
-    upper_ = std::ldexp(upper, -exponent_);
-    upper_squared_ = two_product(upper_, upper_);
-    depth_ = {std::ldexp(depth.hi, -exponent_), std::ldexp(depth.lo, -exponent_)};
-    const double room = to_double(DoubleDouble{upper_, 0} - depth_);
-    const double slack = std::ldexp(separation.slack(depth), -exponent_);
-    if (slack < 0.25 * room) depth_ = depth_ + DoubleDouble{slack, 0};
-    slack_ = slack;
+    const bool ordinary = std::abs(exponent_) <= kOrdinaryExponent;
+    const double shrink = ordinary ? 1 / scale_ : 0;
+    const auto near_one = [&](double x) { return ordinary ? x * shrink : std::ldexp(x, -exponent_); };
+    upper_ = near_one(upper);
+    depth_ = {near_one(depth.hi), near_one(depth.lo)};
+    height_ = to_double(DoubleDouble{upper_, 0} - depth_);
+    slack_ = near_one(separation.slack(depth));
+    double farther = 0;
+    if (slack_ < 0.25 * height_) {
+      farther = slack_;
+      depth_ = depth_ + DoubleDouble{slack_, 0};
+      height_ = to_double(DoubleDouble{upper_, 0} - depth_);
+    }
     const Vec3DD& unit = separation.unit();
     components_[0] = unit.x;
     components_[1] = unit.y;
     components_[2] = unit.z;
-    for (int i = 0; i < 3; ++i) base_[i] = (components_[i] * depth_).hi;
-    height_ = to_double(DoubleDouble{upper_, 0} - depth_);
+    for (int i = 0; i < 3; ++i) {
+      const DoubleDouble product = components_[i] * depth_;
+      base_[i] = product.hi;
+      residue_[i] = product.lo;
+    }
+    if (!ordinary || !separation.measured()) return;
+    aside_.usable = true;
+    aside_.farther = farther;
+    aside_.cap = height_ * (2 * depth_.hi + height_);
+    // Of <unit, t> - depth: the plane's own errors over |t|_1 <= sqrt(3) |t|, the length of `unit`, and double-double.
+    aside_.doubt = near_one(separation.depth_error()) + 2 * (6 * separation.unit_error() + 16 * kUdd);
+    aside_.doubt_of_length = kDoubt + 16 * separation.unit_error();
   }
 
   [[nodiscard]] const Vec3& translation() const { return translation_; }
 
-  bool at_base() { return accept(base_, excess_of_length(base_)); }
+  bool at_base() {
+    const double e[3] = {-residue_[0], -residue_[1], -residue_[2]};
+    const Verdict told = judged(e);
+    if (told == Verdict::open) return accept(base_, excess_of_length(base_));
+    if (told == Verdict::accepted) translation_ = scale_ * base_;
+    return told == Verdict::accepted;
+  }
 
   /// Within 4 ulp of L, a coordinate, of the exact translation.
   bool near_base() {
@@ -180,12 +206,11 @@ class TranslationSearch {
     // What the other coordinates can make up for once the first is chosen.
     double range = height_;
     for (int i = 1; i < live; ++i) range += 1.01 * std::abs(components_[order[i]].hi) * (leeway() + ulp(order[i]));
+    const double step = ulp(first), inner_step = ulp(second);
     for (int i = -steps; i <= steps; ++i) {
       Vec3 t = base_;
-      t[first] += i * ulp(first);
-      DoubleDouble rest = depth_;
-      for (int k = 0; k < 3; ++k) rest = rest - components_[k] * t[k];
-      const double excess = -to_double(rest);
+      t[first] += i * step;
+      const double excess = beyond_plane(t);
       if (std::abs(excess) > range) continue;
       if (live < 3) {
         if (solve(t)) return true;
@@ -195,12 +220,23 @@ class TranslationSearch {
       if (row_.rise > 0 && !hopeful_candidates(row_, hopeful_)) continue;
       for (int j = -inner; j <= inner; ++j) {
         Vec3 candidate = t;
-        candidate[second] += j * ulp(second);
+        candidate[second] += j * inner_step;
         if ((row_.rise > 0 && hopeful_[j + inner] == 0) || !solve(candidate)) continue;
         return true;
       }
     }
     return false;
+  }
+
+  /// How far a candidate lies beyond the plane, off by less than 2^-50 of that and of an ulp.
+  [[nodiscard]] double beyond_plane(const Vec3& t) const {
+    if (aside_.usable) {
+      const Vec3 e = (t - base_) - residue_;
+      return components_[0].hi * e[0] + components_[1].hi * e[1] + components_[2].hi * e[2];
+    }
+    DoubleDouble rest = depth_;
+    for (int k = 0; k < 3; ++k) rest = rest - components_[k] * t[k];
+    return -to_double(rest);
   }
 
   /// What all rows of `hopeful_candidates` share. No rise where the steps of the solved coordinate are not all alike.
@@ -236,7 +272,24 @@ class TranslationSearch {
   /// |t|^2 less the square of `upper`, off by less than kDoubt.
   [[nodiscard]] double excess_of_length(const Vec3& t) const {
     const DoubleDouble squared = two_product(t.x(), t.x()) + two_product(t.y(), t.y()) + two_product(t.z(), t.z());
-    return (squared - upper_squared_).hi;
+    return (squared - two_product(upper_, upper_)).hi;
+  }
+
+  enum class Verdict : std::uint8_t { rejected, accepted, open };
+
+  /// Of t* + e, where doubles tell: whether it is no longer than `upper`, and reaches the plane.
+  [[nodiscard]] Verdict judged(const double (&e)[3]) const {
+    if (!aside_.usable) return Verdict::open;
+    const double along[3] = {components_[0].hi * e[0], components_[1].hi * e[1], components_[2].hi * e[2]};
+    const double size = std::abs(along[0]) + std::abs(along[1]) + std::abs(along[2]);
+    if (!(size < kAside)) return Verdict::open;
+    const double beyond = along[0] + along[1] + along[2];
+    const double longer = 2 * depth_.hi * beyond + (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) - aside_.cap;
+    if (longer > aside_.doubt_of_length) return Verdict::rejected;
+    const double gap = beyond + aside_.farther;
+    const double error = aside_.doubt + 0x1p-50 * (size + aside_.farther);
+    if (gap < -error) return Verdict::rejected;
+    return gap > error && longer < -aside_.doubt_of_length ? Verdict::accepted : Verdict::open;
   }
 
   /// @param excess  `excess_of_length(candidate)`.
@@ -257,7 +310,47 @@ class TranslationSearch {
   }
 
   /// Solves for one coordinate, given the other two.
-  bool solve(Vec3 t) {
+  bool solve(const Vec3& t) {
+    const Verdict told = aside_.usable ? solve_in_doubles(t) : Verdict::open;
+    return told == Verdict::open ? solve_in_double_double(t) : told == Verdict::accepted;
+  }
+
+  /// Finds what double-double does, or leaves it open.
+  Verdict solve_in_doubles(Vec3 t) {
+    const double component = components_[solved_].hi;
+    double e[3];
+    double others = 0, size = 0, widest = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (i == solved_) continue;
+      e[i] = (t[i] - base_[i]) - residue_[i];
+      const double along = components_[i].hi * e[i];
+      others += along;
+      size += std::abs(along);
+      widest = std::max(widest, std::abs(e[i]));
+    }
+    const double shift = residue_[solved_] - others / component;
+    if (!(std::max(widest, std::abs(shift)) < kAside)) return Verdict::open;
+    double& x = t[solved_];
+    const double base = base_[solved_];
+    x = base + shift;
+    // The leeway is never less than 4 ulps of half of `upper`.
+    if (std::abs(x - base) > 0x1p-51 && beyond_leeway(std::abs(x - base))) x = base;
+    double excess = 0;
+    for (int outward = 0; outward < 2; ++outward) {
+      if (outward > 0) x = std::nextafter(x, component > 0 ? HUGE_VAL : -HUGE_VAL);
+      e[solved_] = (x - base) - residue_[solved_];
+      const double along = component * e[solved_];
+      excess = others + along;
+      if (!(std::abs(excess) > 0x1p-48 * (size + std::abs(along)) + 0x1p-100)) return Verdict::open;
+      if (excess > 0) break;
+    }
+    if (excess > 1.001 * height_) return Verdict::rejected;
+    const Verdict told = judged(e);
+    if (told == Verdict::accepted) translation_ = scale_ * t;
+    return told;
+  }
+
+  bool solve_in_double_double(Vec3 t) {
     const DoubleDouble& component = components_[solved_];
     DoubleDouble rest = depth_;
     for (int i = 0; i < 3; ++i) {
@@ -283,6 +376,19 @@ class TranslationSearch {
 
   /// Of squares of lengths in [1, 2): double-double errs by 2^-100 of them.
   static constexpr double kDoubt = 0x1p-90;
+  /// Beyond these powers of two products with the scale may leave the range of doubles.
+  static constexpr int kOrdinaryExponent = 900;
+  /// From t*, in units of the depth: farther away 2^-50 of it is more than double-double's errors.
+  static constexpr double kAside = 0x1p-46;
+
+  /// What `judged` needs besides t*.
+  struct Aside {
+    bool usable = false;
+    double farther = 0;  ///< how much farther out the plane was taken
+    double cap = 0;      ///< the square of `upper` less that of the depth
+    double doubt = 0;
+    double doubt_of_length = 0;
+  };
 
   Separation& separation_;
   Extent& extent_;
@@ -290,10 +396,11 @@ class TranslationSearch {
   int exponent_;
   double scale_;  ///< 2^exponent_
   double upper_;
-  DoubleDouble upper_squared_;
   DoubleDouble depth_;
   DoubleDouble components_[3];
-  Vec3 base_;
+  Vec3 base_;     ///< t*, rounded,
+  Vec3 residue_;  ///< and what t* is more than that
+  Aside aside_;
   double height_;
   double slack_;       ///< of the plane (Separation::slack)
   double leeway_ = 0;  ///< 0: not asked for yet
@@ -392,8 +499,7 @@ void Separation::measure(const PosedPair& pair, const FacetPlane& plane, double 
 }
 
 double Separation::slack(const DoubleDouble& depth) const {
-  const bool measured = depth_error_ < std::numeric_limits<double>::infinity();
-  const double error = measured ? depth_error_ : RootSum::kApproximationError * depth.hi;
+  const double error = measured() ? depth_error_ : RootSum::kApproximationError * depth.hi;
   // |t|_1 <= sqrt(3) |t|, and |t| exceeds the depth by an ulp or two.
   return 2 * error + 2 * depth.hi * (unit_error_ + 32 * kUdd);
 }
@@ -403,7 +509,7 @@ bool Separation::reached(const Vec3& t) {
     const double along = t[axis_] * (axis_ == 0 ? unit_.x.hi : axis_ == 1 ? unit_.y.hi : unit_.z.hi);
     return along == depth_.hi ? depth_.lo <= 0 : along > depth_.hi;
   }
-  if (depth_error_ < std::numeric_limits<double>::infinity()) {
+  if (measured()) {
     const DoubleDouble along = unit_.x * t.x() + unit_.y * t.y() + unit_.z * t.z();
     const double size = std::abs(t.x()) + std::abs(t.y()) + std::abs(t.z());
     const double error =

@@ -2,6 +2,7 @@
 /// A translation in doubles that separates two bodies exactly as stored and is no longer than the depth rounded up.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "depth/certificate/facet_plane.hpp"
@@ -44,6 +45,9 @@ class Separation {
   /// exactly).
   [[nodiscard]] const DoubleDouble& depth() const { return depth_; }
   [[nodiscard]] double depth_error() const { return depth_error_; }
+  /// Whether the above are what double-double measured, each coordinate of `unit` within `unit_error`.
+  [[nodiscard]] bool measured() const { return depth_error_ < std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] double unit_error() const { return unit_error_; }
   /// How much farther than `depth * unit`, for a depth known as well as this plane, a translation must go along `unit`
   /// to reach the plane for certain.
   [[nodiscard]] double slack(const DoubleDouble& depth) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "numeric/unit_roundoff.hpp"
 
@@ -21,6 +22,46 @@ class FacetSign final : public NormalSign {
   const FacetOfDifference& facet_;
 };
 
+/// A body's vertices against the plane's normal in the body's own frame: an edge takes three products.
+class LocalHeights {
+ public:
+  LocalHeights(const ConvexPolytope& body, const double (&rotation)[9], const Vec3& unit, double unit_error)
+      : x_(body.x()), y_(body.y()), z_(body.z()) {
+    double columns = 0;
+    for (int j = 0; j < 3; ++j) {
+      const double r0 = rotation[j], r1 = rotation[3 + j], r2 = rotation[6 + j];
+      normal_[j] = r0 * unit.x() + r1 * unit.y() + r2 * unit.z();
+      columns = std::max(columns, std::abs(r0) + std::abs(r1) + std::abs(r2));
+    }
+    // A coordinate of the normal: the unit's error and its rounding, the rotation's, a product and two sums; of a
+    // height then a difference, a product and two sums. No coordinate of `unit` is greater than 1.
+    relative_ = columns * (unit_error + 10 * kUnitRoundoff) * (1 + 16 * kUnitRoundoff);
+    const Vec3& box = body.max_abs_coordinates();
+    largest_error_ = 2 * relative_ * (box.x() + box.y() + box.z()) + kLeast;
+  }
+
+  /// Sign of the rise, 0 where doubles cannot tell.
+  [[nodiscard]] int rise(int from, int to) const {
+    const double x = x_[to] - x_[from], y = y_[to] - y_[from], z = z_[to] - z_[from];
+    const double value = x * normal_[0] + y * normal_[1] + z * normal_[2];
+    const double size = std::abs(value);
+    if (size > largest_error_ || size > relative_ * (std::abs(x) + std::abs(y) + std::abs(z)) + kLeast) {
+      return value > 0 ? 1 : -1;
+    }
+    return 0;
+  }
+
+ private:
+  static constexpr double kLeast = 0x1p-900;  ///< what underflow may lose, and more
+
+  const double* x_;
+  const double* y_;
+  const double* z_;
+  double normal_[3];
+  double relative_ = 0;  ///< error of a rise in units of the edge's 1-norm
+  double largest_error_ = 0;
+};
+
 /// Signs of <edge, normal of the plane>, exact, doubles first.
 class AlongNormal {
  public:
@@ -31,15 +72,28 @@ class AlongNormal {
     // The unit normal's own error and its rounding, products and sums; then the edge's error against |unit|_1 <= 2.
     relative_ = plane.unit_error + 8 * kUnitRoundoff;
     absolute_ = 2 * pair.vector_error() * (1 + 16 * kUnitRoundoff);
+    if (pair.scale_exponent() != 0) return;
+    of_a_.emplace(pair.a(), pair.rotation_a(), unit_, plane.unit_error);
+    of_b_.emplace(pair.b(), pair.rotation_b(), unit_, plane.unit_error);
   }
 
+  [[nodiscard]] int edge_a(int from, int to) const {
+    const int told = of_a_ ? of_a_->rise(from, to) : 0;
+    return told != 0 ? told : (*this)(PairVector::edge_a(from, to));
+  }
+  [[nodiscard]] int edge_b(int from, int to) const {
+    const int told = of_b_ ? of_b_->rise(from, to) : 0;
+    return told != 0 ? told : (*this)(PairVector::edge_b(from, to));
+  }
+
+ private:
   [[nodiscard]] int operator()(const PairVector& edge) const {
     DoubleDouble exact;
     if (axis_ >= 0 && pair_.exact_coordinate(edge, axis_, exact)) {
       const double value = exact.hi * unit_[axis_];
       return (value > 0) - (value < 0);
     }
-    if (filtered_) {
+    if (filtered_ && !of_a_) {
       const Vec3 e = pair_.approximate(edge);
       const double value = e.dot(unit_);
       const double size = std::abs(e.x()) + std::abs(e.y()) + std::abs(e.z());
@@ -48,7 +102,6 @@ class AlongNormal {
     return sign_.along(edge);
   }
 
- private:
   const PosedPair& pair_;
   const NormalSign& sign_;
   bool filtered_;
@@ -56,6 +109,8 @@ class AlongNormal {
   Vec3 unit_ = Vec3::Zero();
   double relative_ = 0;
   double absolute_ = 0;
+  std::optional<LocalHeights> of_a_;
+  std::optional<LocalHeights> of_b_;
 };
 
 /// Completes the face that some of its vertices are known of. `rises(from, to)`: sign of the change along the body's
@@ -126,9 +181,9 @@ bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const 
   const FacetSign sign(pair, facet);
   const AlongNormal along(pair, plane, sign);
   return collect(
-             pair.b(), facet.on_b, [&](int from, int to) { return along(PairVector::edge_b(from, to)); }, faces.on_b) &&
+             pair.b(), facet.on_b, [&](int from, int to) { return along.edge_b(from, to); }, faces.on_b) &&
          collect(
-             pair.a(), facet.on_a, [&](int from, int to) { return -along(PairVector::edge_a(from, to)); }, faces.on_a);
+             pair.a(), facet.on_a, [&](int from, int to) { return -along.edge_a(from, to); }, faces.on_a);
 }
 
 bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalSign& sign,
@@ -153,9 +208,9 @@ bool collect_faces(const PosedPair& pair, const FacetPlane& plane, const NormalS
     }
   }
   return complete(
-             pair.b(), [&](int from, int to) { return along(PairVector::edge_b(from, to)); }, faces.on_b) &&
+             pair.b(), [&](int from, int to) { return along.edge_b(from, to); }, faces.on_b) &&
          complete(
-             pair.a(), [&](int from, int to) { return -along(PairVector::edge_a(from, to)); }, faces.on_a);
+             pair.a(), [&](int from, int to) { return -along.edge_a(from, to); }, faces.on_a);
 }
 
 FacetFeatures features_of(const PosedPair& pair, const SupportFaces& faces, const Vec3& unit) {

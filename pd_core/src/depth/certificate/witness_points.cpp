@@ -15,9 +15,10 @@ namespace {
 /// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
 /// be large and cancel.
 Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& first, const Vec3& rest) {
-  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  const double scale = pair.scale_exponent() == 0 ? 1 : std::ldexp(1.0, pair.scale_exponent());
   const auto coordinate = [&](double t, const DoubleDouble& f, double r) {
-    return to_double(DoubleDouble{t, 0} + (f + DoubleDouble{r, 0}) * scale);
+    const DoubleDouble local = r == 0 ? f : f + DoubleDouble{r, 0};
+    return to_double(DoubleDouble{t, 0} + DoubleDouble{local.hi * scale, local.lo * scale});
   };
   return {coordinate(translation.x(), first.x, rest.x()), coordinate(translation.y(), first.y, rest.y()),
           coordinate(translation.z(), first.z, rest.z())};

@@ -62,6 +62,8 @@ class SmallPair {
     nearest.lower = std::sqrt(std::min(found.key, found.possible_key)) - kLowerError * reach;
     if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
     if (!(found.edge_a >= 0 ? below_edges(found, height, nearest) : below_facet(found, s, height, nearest))) return out;
+    const double others = std::min(found.others_key, found.possible_key);
+    if (others > 0) nearest.beyond = std::sqrt(others) - kLowerError * reach;
     nearest.certified = true;
     out.status = SmallSatStatus::certified;
     return out;

@@ -27,11 +27,17 @@ PD_INLINE void tops_along(const TurnedNormals& normals, const VertexArrays& othe
 
 struct NearestLane {
   Lanes key, id;
+  Lanes others;  ///< the least of the keys that lost
 };
 
-PD_INLINE void take_nearest(NearestLane& best, const Lanes& key, const Lanes& id) {
+/// Lanes from the id `end` on repeat another.
+PD_INLINE void take_nearest(NearestLane& best, const Lanes& found, const Lanes& id, double end) {
+  const Lanes none = Lanes{} + std::numeric_limits<double>::infinity();
+  const Lanes key = id < end ? found : none;
+  const Lanes lost = key < best.key ? best.key : key;
   best.id = key < best.key ? id : best.id;
   best.key = key < best.key ? key : best.key;
+  best.others = lost < best.others ? lost : best.others;
 }
 
 /// By facet of one body: where its plane lies but for the other body, and the square of its normal's length.
@@ -51,7 +57,7 @@ PD_INLINE void nearest_facets(NearestLane& best, FacetPlanes& planes, const Turn
     planes.squared[k] = n.x * n.x + n.y * n.y + n.z * n.z;
     Lanes key;
     key_of(key, planes.own[k] + top[k], planes.squared[k]);
-    take_nearest(best, key, id);
+    take_nearest(best, key, id, first_id + body.map.facets);
     id += kLanes;
   }
 }
@@ -239,7 +245,7 @@ PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const 
     const Lanes lowest = height - (along_e > zero ? along_e : zero) + (along_f < zero ? along_f : zero);
     Lanes key;
     key_of(key, lowest, n.x * n.x + n.y * n.y + n.z * n.z);
-    take_nearest(best, key, id);
+    take_nearest(best, key, id, pairs.count);
     id += kLanes;
   }
 }
@@ -280,11 +286,15 @@ PD_INLINE double largest_coordinate(const VertexArrays& a, const VertexArrays& b
 }
 
 /// Of equal keys the lowest id. Without branches: nothing here could be guessed.
-PD_INLINE int winner(const NearestLane& best, double& key) {
+/// @param others  the least key but the winner's.
+PD_INLINE int winner(const NearestLane& best, double& key, double& others) {
   const Lanes none = Lanes{} + std::numeric_limits<double>::infinity();
   key = least(best.key);
   const Lanes ids = best.key == Lanes{} + key ? best.id : none;
-  return static_cast<int>(least(ids));
+  const double id = least(ids);
+  const Lanes lost = best.id == Lanes{} + id ? best.others : best.key;
+  others = least(lost);
+  return static_cast<int>(id);
 }
 
 }  // namespace
@@ -296,7 +306,7 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
   const Lanes none = Lanes{0, 0, 0, 0} + std::numeric_limits<double>::infinity();
   SmallSatNearest out;
   out.possible_key = std::numeric_limits<double>::infinity();
-  NearestLane facet{none, none}, crossing{none, none};
+  NearestLane facet{none, none, none}, crossing{none, none, none};
   TurnedNormals normals;
   FacetPlanes planes_a, planes_b;
   Lanes top[kBlocks];
@@ -307,7 +317,7 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
   turn_normals(normals, b);
   tops_along(normals, a.posed, top, of_a);
   nearest_facets(facet, planes_b, normals, b, top, offset, kFacets);
-  const int nearest_facet = winner(facet, out.key);
+  const int nearest_facet = winner(facet, out.key, out.others_key);
   if (nearest_facet < kFacets) {
     out.facet_a = nearest_facet;
   } else {
@@ -330,9 +340,12 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
   }
   out.crossings = pairs.count;
   nearest_crossing(crossing, a, b, pairs, offset);
-  double key = 0;
-  const int nearest_pair = pairs.count > 0 ? winner(crossing, key) : 0;
-  if (pairs.count > 0 && key < out.key) {
+  if (pairs.count == 0) return out;
+  double key = 0, others = 0;
+  const int nearest_pair = winner(crossing, key, others);
+  out.others_key =
+      key < out.key ? (others < out.key ? others : out.key) : (key < out.others_key ? key : out.others_key);
+  if (key < out.key) {
     out.key = key;
     out.facet_a = out.facet_b = -1;
     out.edge_a = pairs.edge_a(nearest_pair);

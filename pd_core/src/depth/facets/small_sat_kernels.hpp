@@ -31,6 +31,7 @@ struct SmallSatNearest {
   int edge_a = -1;
   int edge_b = -1;
   double sign = 1;          ///< of edge of B x edge of A, to point outwards
+  double others_key = 0;    ///< no other facet, of edges that certainly cross, has a lesser key
   double largest = 0;       ///< |coordinate| of P
   double possible_key = 0;  ///< no pair of edges whose sides are not all certain has a facet with a lesser key
   int possible = 0;         ///< such pairs

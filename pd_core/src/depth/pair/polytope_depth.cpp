@@ -58,8 +58,8 @@ constexpr StageBeforeSearch kBeforeSearch[] = {
     answer_from_cached_faces,          // warm: a few planes of the last surface
     answer_apart_from_cached_simplex,  // warm: from the last closest point
     answer_boxes,                      // two boxes by their fifteen axes
-    answer_small_solids,               // two solids of few vertices by all facets of P
     prove_boxes,                       // the same on the stored numbers: the tightest bracket
+    answer_small_solids,               // two solids of few vertices by all facets of P
 };
 
 // Then the expansion (EPA) grows a surface inside P, from the last one where that serves (`grow_surface`).

@@ -94,6 +94,13 @@ bool along_same_axes(const Mat3& a, const Mat3& b) {
   return along(0, 0) && along(1, 1) && along(0, 1) && along(1, 0);
 }
 
+/// Whether one support tells that the bodies are apart, along the line between their frames' origins. Their distance is
+/// found from where a surface ends.
+bool apart_between_places(const PolytopeDifference& difference) {
+  const Vec3 back = -difference.offset();
+  return difference.support(back, nullptr).x.dot(back) < 0;
+}
+
 bool answer_boxes_for_contact(PolytopeQuery& query, const BoxFrame& box_a, const BoxFrame& box_b,
                               PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
@@ -158,14 +165,18 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.bracket != Bracket::certified || query.settings.method != Method::automatic) return false;
+  if (query.for_contact() || query.settings.method != Method::automatic) return false;
   if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
   if (along_same_axes(query.difference.rotation_a(), query.difference.rotation_b())) return false;
+  if (query.bracket == Bracket::tightest && apart_between_places(query.with_supports())) return false;
   const SmallSatDepth found =
       small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
   out.method = Method::overlay;
   out.statistics.facets_visited += found.pieces;
   ++out.statistics.support_calls;
+  if (query.bracket == Bracket::tightest) {
+    return found.status == SmallSatStatus::certified && prove_near_facet(query, found.nearest, out);
+  }
   if (found.status == SmallSatStatus::separated) {
     const DifferenceVertex first = query.difference.support(found.nearest.normal, nullptr);
     return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);

@@ -17,7 +17,8 @@ namespace pd::detail {
 /// Two boxes by their fifteen axes of separation (facets/box_sat.hpp).
 bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Two solids of few vertices by all facets of P (facets/small_sat.hpp).
+/// Two solids of few vertices by all facets of P (facets/small_sat.hpp); for the tightest bracket the nearest one is
+/// proved.
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start

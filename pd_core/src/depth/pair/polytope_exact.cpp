@@ -56,18 +56,40 @@ std::span<const DifferenceVertex> first_simplex(PolytopeQuery& query, const Expa
   return std::span(vertices).first(count);
 }
 
+bool answer_from_proof(PolytopeQuery& query, const std::optional<ProvenFacet>& proven, PenetrationDepth& out) {
+  if (!proven) return false;
+  answer_overlapping(query.exact(), proven->facet, proven->plane, query.buffers.faces, query.pair.margins,
+                     query.bracket, out);
+  return true;
+}
+
 /// The nearest facet proved among `near`; every other piece of the surface is `beyond` or farther (in the caller's
 /// lengths).
 /// @param first_of_equals  as in `prove_nearest_facet`.
 bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond, bool first_of_equals,
                  PenetrationDepth& out) {
   const PosedPair& posed = query.exact();
-  SupportFaces& faces = query.buffers.faces;
-  const auto proven =
-      prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()), first_of_equals, faces);
-  if (!proven) return false;
-  answer_overlapping(posed, proven->facet, proven->plane, faces, query.pair.margins, query.bracket, out);
-  return true;
+  return answer_from_proof(query,
+                           prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()),
+                                               first_of_equals, query.buffers.faces),
+                           out);
+}
+
+/// The piece as a facet of P.
+FacetOfDifference facet_of(const PolytopePair& pair, const PosedPair& posed, const NearFacets& found) {
+  switch (found.kind) {
+    case NearFacetsBuffers::Kind::facet_of_a:
+      return FacetOfDifference::from_facet_of_a(*pair.a, found.facet, found.vertex);
+    case NearFacetsBuffers::Kind::facet_of_b:
+      return FacetOfDifference::from_facet_of_b(*pair.b, found.facet, found.vertex);
+    case NearFacetsBuffers::Kind::edges:
+      break;
+  }
+  const auto& [a0, a1] = found.edge_a;
+  const auto& [b0, b1] = found.edge_b;
+  const FacetOfDifference facet = FacetOfDifference::from_edges(a0, a1, b0, b1);
+  const Vec3 n = posed.approximate(facet.u).cross(posed.approximate(facet.v));
+  return n.dot(found.normal) > 0 ? facet : FacetOfDifference::from_edges(a1, a0, b0, b1);
 }
 
 /// The origin is known to lie in P: in its interior, or `nearest` says where.
@@ -199,6 +221,15 @@ bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& ou
   const std::vector<SurfaceCorners>& near = query.buffers.near_facets.nearest;
   if (!(beyond > 0) || near.size() > kMaxNearFaces) return false;
   return prove_among(query, near, beyond, false, out);
+}
+
+bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
+  if (!(found.beyond > 0)) return false;
+  const PosedPair& posed = query.exact();
+  return answer_from_proof(query,
+                           prove_facet(posed, facet_of(query.pair, posed, found),
+                                       std::ldexp(found.beyond, -posed.scale_exponent()), query.buffers.faces),
+                           out);
 }
 
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "depth/expansion/expanding_polytope.hpp"
+#include "depth/facets/near_facets.hpp"
 #include "depth/pair/polytope_query.hpp"
 
 namespace pd::detail {
@@ -28,6 +29,9 @@ bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, Penetra
 /// and what lies beyond cover the boundary, as the triangles of a surface enclose a ball: the proof is the same.
 /// @param beyond  no other piece is nearer to the origin; 0: not known.
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out);
+
+/// The same where doubles have told the nearest piece from all others, which are `found.beyond` or farther.
+bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out);
 
 /// Exact expansion from the surface's nearest face, the origin inside the surface for certain.
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
