@@ -18,8 +18,8 @@
 #define PD_INLINE inline __attribute__((always_inline))
 
 /// PD_FUSED: compiles a function for AVX2 with fused multiply-add, which `has_fused_products` must have been asked for.
-/// Contraction is off there, too: nothing is fused but what asks for it (fused_products.hpp). Not defined where there is
-/// no such choice to make.
+/// Contraction is off there, too: nothing is fused but what asks for it (fused_products.hpp). Not defined where there
+/// is no such choice to make.
 #if defined(__x86_64__) && !defined(__clang__) && !defined(PD_ISA_BASELINE)
 #define PD_FUSED __attribute__((target("avx2,fma")))
 #endif
