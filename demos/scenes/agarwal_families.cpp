@@ -71,6 +71,22 @@ Points patch_body(int m, const PatchShape& shape, Random& random) {
   return points;
 }
 
+/// One of the jittered roofs, its arc in the plane y = 0 and as high as the origin.
+Points jittered_roof(int n, Random& random) {
+  constexpr double kSlope = 0.2679491924311227;  // tan 15 degrees
+  constexpr double kFar = 4;
+  Points points;
+  const double step = 2 * kSlope / (n - 5);
+  for (int i = 0; i < n - 4; ++i) {
+    const ArcPoint p = on_circle(-kSlope + step * (i + 0.25 * random.uniform(-1, 1)), 0);
+    points.emplace_back(p.x, 0, p.z);
+  }
+  for (const double x : {-kFar, kFar}) {
+    for (const double y : {-kFar, kFar}) points.emplace_back(x, y, -1.5 * kSlope * kFar);
+  }
+  return points;
+}
+
 double power_of_two_above(double x) {
   double p = 1;
   while (p < x) p *= 2;
@@ -188,6 +204,14 @@ PolytopePair round_patch(int m, const PatchShape& shape, double overlap, std::ui
 
 PolytopePair crossed_roofs(int n, double overlap, std::uint64_t seed) {
   return round_patch((n - 10) / 2, {0.1, 0.2, 0}, overlap, seed);
+}
+
+PolytopePair jittered_roofs(int n, double overlap, std::uint64_t seed) {
+  Random random(seed);
+  const Points a = jittered_roof(n, random), b = jittered_roof(n, random);
+  const double most = overlap == 1 ? 1e-3 : 0;
+  const Vec3 shift = most * random.point(-1, 1);
+  return crossed(a, b, shift, overlap + shift.z());
 }
 
 PolytopePair fogel_halperin_weibel(int facets_a, int facets_b, double overlap) {

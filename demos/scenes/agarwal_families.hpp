@@ -52,6 +52,13 @@ struct PatchShape {
 /// The round patch with slopes up to 0.1 and bodies of n >= 12 vertices each.
 [[nodiscard]] PolytopePair crossed_roofs(int n, double overlap, std::uint64_t seed);
 
+/// Two vaults crossed at right angles, each an arc of n - 4 points of a unit circle over slopes of 15 degrees to both
+/// sides, their slopes off by up to a quarter of a step, closed by four far corners, which half of the arc's points are
+/// joined to. The top of each is at the middle of the other's circle at overlap 1, where all facets are nearly tied;
+/// there the bodies are off it by up to 1e-3 along each axis, as a search would rarely find them in line. Requires n
+/// >= 7.
+[[nodiscard]] PolytopePair jittered_roofs(int n, double overlap, std::uint64_t seed);
+
 /// Polytopes with `facets_a` and `facets_b` facets (each >= 4) and the most facets that a sum of such two can have, 4mn
 /// - 9m - 9n + 26 [FHW]. Built otherwise than there: a simple polytope all of whose 2m - 4 vertices lie on its shadow,
 /// pressed nearly flat; of two such, crossed, every two vertices make a vertex of P, and Euler's formula gives K.

@@ -16,6 +16,9 @@ struct Sizes {
   PairFamily family;
   std::vector<int> all;
   std::vector<int> quick;
+  bool jittered = false;
+
+  [[nodiscard]] std::string_view name() const { return name_of({family, 0, DepthClass::deep, jittered}); }
 };
 
 /// Boxes have 8 vertices whatever is asked for.
@@ -24,10 +27,11 @@ const std::vector<Sizes>& known() {
       {PairFamily::box, {8}, {8}},
       {PairFamily::cubes, {8}, {8}},
       {PairFamily::sphere, {8, 32, 128, 512, 2048}, {8, 32, 128}},
-      {PairFamily::needle, {32, 128, 512}, {128}},
+      {PairFamily::needle, {8, 32, 128, 512}, {128}},
       {PairFamily::prism, {32, 128, 512}, {128}},
-      {PairFamily::grid, {32, 128, 512}, {128}},
+      {PairFamily::grid, {8, 32, 128, 512}, {128}},
       {PairFamily::roofs, {32, 128, 512}, {32}},
+      {PairFamily::roofs, {8, 32, 128, 512}, {}, true},
   };
   return sizes;
 }
@@ -61,12 +65,15 @@ Draw aligned_cubes(DepthClass depth, std::uint64_t seed, std::uint64_t number) {
 
 Draw crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   const double overlap = cell.depth == DepthClass::shallow ? 0.01 : cell.depth == DepthClass::mid ? 0.1 : 1;
+  const auto make = cell.jittered ? scenes::jittered_roofs : scenes::crossed_roofs;
   const scenes::PolytopePair pair =
-      scenes::crossed_roofs(cell.vertices, overlap, seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL);
+      make(cell.vertices, overlap, seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL);
   return {{ConvexShape(pair.a), ConvexShape(pair.b)}, pair.pose_a, pair.pose_b};
 }
 
 }  // namespace
+
+std::string_view name_of(const Cell& cell) { return cell.jittered ? "jittered_roofs" : scenes::to_string(cell.family); }
 
 Vec3 extreme(const ConvexShape& shape, const Mat3& rotation, const Vec3& direction) {
   const scenes::Points points = vertices_of(shape);
@@ -103,22 +110,22 @@ Draw placed(const Bodies& bodies, double size, DepthClass depth, scenes::Random&
 Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& families, const std::vector<int>& vertices,
                                          bool quick) {
   for (const std::string& name : families) {
-    const bool there = std::any_of(known().begin(), known().end(),
-                                   [&](const Sizes& s) { return scenes::to_string(s.family) == name; });
+    const bool there = std::any_of(known().begin(), known().end(), [&](const Sizes& s) { return s.name() == name; });
     if (!there) {
       return Error{ErrorCode::bad_value, "no family of this name: " + name, "--families"};
     }
   }
   std::vector<Cell> cells;
   for (const Sizes& s : known()) {
-    const std::string name(scenes::to_string(s.family));
+    const std::string name(s.name());
     if (!families.empty() && std::find(families.begin(), families.end(), name) == families.end()) continue;
     const bool fixed = s.all.size() == 1;
+    // Quick leaves out what it has no size of.
     const std::vector<int>& sizes = !vertices.empty() && !fixed ? vertices : quick ? s.quick : s.all;
     for (const int n : sizes) {
       if (!holds(vertices, n)) continue;
       for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
-        cells.push_back({s.family, n, depth});
+        cells.push_back({s.family, n, depth, s.jittered});
       }
     }
   }

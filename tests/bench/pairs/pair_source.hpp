@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/peers/solver.hpp"
@@ -15,7 +16,11 @@ struct Cell {
   scenes::PairFamily family;
   int vertices;
   scenes::DepthClass depth;
+  bool jittered = false;  ///< of roofs: `scenes::jittered_roofs`
 };
+
+/// The family's name.
+[[nodiscard]] std::string_view name_of(const Cell& cell);
 
 struct Draw {
   Bodies bodies;

@@ -110,11 +110,11 @@ std::vector<Row> rows_of(const Solvers& solvers, const std::vector<Tally>& talli
 
 std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers) {
   std::vector<Row> rows;
-  std::map<std::pair<scenes::PairFamily, scenes::DepthClass>, std::vector<char>> slow;
+  std::map<std::pair<std::string_view, scenes::DepthClass>, std::vector<char>> slow;
   print_header();
   for (const Cell& cell : settings.cells) {
     std::vector<Tally> tallies(solvers.size());
-    std::vector<char>& sits_out = slow[{cell.family, cell.depth}];
+    std::vector<char>& sits_out = slow[{name_of(cell), cell.depth}];
     sits_out.resize(solvers.size(), 0);
     int refused = 0;
     std::uint64_t number = 0;
@@ -123,8 +123,8 @@ std::vector<Row> run_pairs(const PairsSettings& settings, Solvers& solvers) {
       const bool measured = d && measure_draw(*d, solvers, kSlowNs, sits_out, tallies);
       ++(measured ? done : refused);
     }
-    const std::vector<Row> block = rows_of(solvers, tallies, scenes::to_string(cell.family), cell.vertices,
-                                           scenes::to_string(cell.depth), kBulletEpa);
+    const std::vector<Row> block =
+        rows_of(solvers, tallies, name_of(cell), cell.vertices, scenes::to_string(cell.depth), kBulletEpa);
     print_rows(block);
     rows.insert(rows.end(), block.begin(), block.end());
   }
