@@ -29,7 +29,7 @@ const std::vector<Sizes>& known() {
       {PairFamily::sphere, {8, 32, 128, 512, 2048}, {8, 32, 128}},
       {PairFamily::needle, {8, 32, 128, 512}, {128}},
       {PairFamily::prism, {32, 128, 512}, {128}},
-      {PairFamily::grid, {8, 32, 128, 512}, {128}},
+      {PairFamily::grid, {32, 128, 512}, {128}},
       {PairFamily::roofs, {32, 128, 512}, {32}},
       {PairFamily::roofs, {8, 32, 128, 512}, {}, true},
   };
