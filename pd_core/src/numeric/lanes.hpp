@@ -7,6 +7,9 @@
 #pragma once
 
 #include <cstdint>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "numeric/instruction_sets.hpp"
 
@@ -26,13 +29,11 @@ PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from,
 PD_INLINE void load(Floats& to, const float* from) { __builtin_memcpy(&to, from, sizeof(Floats)); }
 PD_INLINE void store(double* to, const Lanes& from) { __builtin_memcpy(to, &from, sizeof(Lanes)); }
 
-typedef double HalfLanes __attribute__((vector_size(16)));
-
 /// Rounded as std::sqrt, which the compiler leaves alone for the sake of errno.
 PD_INLINE void take_roots(Lanes& v) {
 #if defined(__SSE2__)
-  const HalfLanes low = __builtin_ia32_sqrtpd(__builtin_shufflevector(v, v, 0, 1));
-  const HalfLanes high = __builtin_ia32_sqrtpd(__builtin_shufflevector(v, v, 2, 3));
+  const __m128d low = _mm_sqrt_pd(__builtin_shufflevector(v, v, 0, 1));
+  const __m128d high = _mm_sqrt_pd(__builtin_shufflevector(v, v, 2, 3));
   v = __builtin_shufflevector(low, high, 0, 1, 2, 3);
 #else
   v = Lanes{__builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]), __builtin_sqrt(v[3])};
