@@ -209,8 +209,7 @@ PolytopePair crossed_roofs(int n, double overlap, std::uint64_t seed) {
 PolytopePair jittered_roofs(int n, double overlap, std::uint64_t seed) {
   Random random(seed);
   const Points a = jittered_roof(n, random), b = jittered_roof(n, random);
-  const double most = overlap == 1 ? 1e-3 : 0;
-  const Vec3 shift = most * random.point(-1, 1);
+  const Vec3 shift = 1e-3 * random.point(-1, 1);
   return crossed(a, b, shift, overlap + shift.z());
 }
 

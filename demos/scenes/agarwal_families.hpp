@@ -53,10 +53,9 @@ struct PatchShape {
 [[nodiscard]] PolytopePair crossed_roofs(int n, double overlap, std::uint64_t seed);
 
 /// Two vaults crossed at right angles, each an arc of n - 4 points of a unit circle over slopes of 15 degrees to both
-/// sides, their slopes off by up to a quarter of a step, closed by four far corners, which half of the arc's points are
-/// joined to. The top of each is at the middle of the other's circle at overlap 1, where all facets are nearly tied;
-/// there the bodies are off it by up to 1e-3 along each axis, as a search would rarely find them in line. Requires n
-/// >= 7.
+/// sides, their slopes off by up to a quarter of a step, closed by four far corners that half of the arc's points are
+/// joined to. The bodies are off their places by up to 1e-3 along each axis, so that nothing is tied by symmetry. At
+/// overlap 1 the top of each is at the middle of the other's circle, and all facets are nearly tied. Requires n >= 7.
 [[nodiscard]] PolytopePair jittered_roofs(int n, double overlap, std::uint64_t seed);
 
 /// Polytopes with `facets_a` and `facets_b` facets (each >= 4) and the most facets that a sum of such two can have, 4mn
