@@ -15,6 +15,7 @@
 #include "one_sided.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "piece_memories.hpp"
+#include "rounded_box.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -38,34 +39,33 @@ std::uint64_t number_of(const MetTriangle& triangle) {
          static_cast<std::uint32_t>(triangle.index);
 }
 
-/// Collects the triangles that a box meets, but for those without area, which have no surface, and those whose corners
-/// are no numbers.
-class TrianglesInBox : public btTriangleCallback {
+/// Collects the triangles within reach of a body, but for those without area, which have no surface, and those whose
+/// corners are no numbers.
+class TrianglesInReach : public btTriangleCallback {
  public:
-  /// @param reach  how far from the box triangles count
-  TrianglesInBox(const btVector3& lower, const btVector3& upper, btScalar reach, std::vector<MetTriangle>& met)
-      : lower_(lower - btVector3(reach, reach, reach)),
-        upper_(upper + btVector3(reach, reach, reach)),
-        middle_(0.5 * (to_pd(lower) + to_pd(upper))),
-        half_(0.5 * (to_pd(upper) - to_pd(lower))),
-        // What rounding of the box and of the heights may add.
-        reach_(1.001 * static_cast<double>(reach) +
-               (sizeof(btScalar) == sizeof(float) ? 0x1p-20 : 0x1p-48) * (to_pd(lower_).norm() + to_pd(upper_).norm())),
-        met_(met) {}
+  /// @param pose  of the body in the mesh's frame
+  /// @param reach  how far from the body triangles count
+  TrianglesInReach(const btConvexShape& body, const btTransform& pose, btScalar reach, std::vector<MetTriangle>& met)
+      : box_(rounded_box(body, pose)), met_(met) {
+    body.getAabb(pose, lower_, upper_);
+    lower_ -= btVector3(reach, reach, reach);
+    upper_ += btVector3(reach, reach, reach);
+    // What rounding of the boxes may add.
+    reach_ = 1.001 * static_cast<double>(reach) + kRounding * (to_pd(lower_).norm() + to_pd(upper_).norm());
+  }
 
   void processTriangle(btVector3* corners, int part, int index) override {
     for (int axis = 0; axis < 3; ++axis) {
       const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
       if (low > upper_[axis] || high < lower_[axis]) return;
     }
-    const Vec3 across = (to_pd(corners[1]) - to_pd(corners[0])).cross(to_pd(corners[2]) - to_pd(corners[0]));
+    const Vec3 points[3] = {to_pd(corners[0]), to_pd(corners[1]), to_pd(corners[2])};
+    const Vec3 across = (points[1] - points[0]).cross(points[2] - points[0]);
     if (!across.allFinite() || across.isZero(0)) {
       ++skipped;
       return;
     }
-    // The box lies on one side of the triangle's plane, farther than contacts reach.
-    const double height = across.dot(middle_ - to_pd(corners[0]));
-    if (std::abs(height) > across.cwiseAbs().dot(half_) + reach_ * across.norm()) return;
+    if (out_of_reach(box_, points, across, reach_, kRounding)) return;
     met_.push_back({{corners[0], corners[1], corners[2]}, part, index});
   }
 
@@ -75,10 +75,11 @@ class TrianglesInBox : public btTriangleCallback {
   int skipped = 0;
 
  private:
+  static constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-20 : 0x1p-48;
+
+  RoundedBox box_;
   btVector3 lower_;
   btVector3 upper_;
-  Vec3 middle_;
-  Vec3 half_;
   double reach_;
   std::vector<MetTriangle>& met_;
 };
@@ -218,10 +219,8 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   one_sided_.clear();
   memories_.begin();
   if (!is_finite(convex.getWorldTransform()) || !is_finite(pose)) return true;
-  btVector3 lower;
-  btVector3 upper;
-  body.getAabb(pose.inverseTimes(convex.getWorldTransform()), lower, upper);
-  TrianglesInBox collector(lower, upper, concave.getMargin() + question.threshold, triangles_);
+  TrianglesInReach collector(body, pose.inverseTimes(convex.getWorldTransform()),
+                             concave.getMargin() + question.threshold, triangles_);
   concave.processAllTriangles(&collector, collector.lower(), collector.upper());
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair();
