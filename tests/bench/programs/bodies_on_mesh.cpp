@@ -1,7 +1,7 @@
 /// @file
-/// `bodies_on_mesh`: 36 bodies of one kind that came to rest on a flat or wavy triangle mesh, a step under Bullet's
-/// algorithms and under ours in one run: milliseconds, queries, those that a memory answered, contact points, bodies
-/// that fell through. For instructions, one side alone under callgrind, less a run of no steps:
+/// `bodies_on_mesh`: 36 bodies of one kind, or piles of them, that came to rest on a flat or wavy triangle mesh, a step
+/// under Bullet's algorithms and under ours in one run: milliseconds, queries, those that a memory answered, contact
+/// points, bodies that fell through. For instructions, one side alone under callgrind, less a run of no steps:
 ///
 ///     valgrind --tool=callgrind --toggle-collect='btDiscreteDynamicsWorld::stepSimulation*'
 ///       bodies_on_mesh --kinds cylinder --grounds waves --runs pdepth --settle 0 --steps 20
@@ -33,7 +33,20 @@ class Random {
   std::uint32_t state_ = 12345;
 };
 
+btCollisionShape* hull_of_100(pd::test::BulletWorld& world) {
+  auto* hull = world.shape<btConvexHullShape>();
+  Random random;
+  for (int i = 0; i < 100; ++i) {
+    const btVector3 way(random.next(), random.next(), random.next());
+    hull->addPoint(btScalar(.3) * way.normalized(), false);
+  }
+  hull->recalcLocalAabb();
+  return hull;
+}
+
 btCollisionShape* shape_of(const std::string& kind, pd::test::BulletWorld& world) {
+  if (kind == "sphere") return world.shape<btSphereShape>(.25F);
+  if (kind == "hull") return hull_of_100(world);
   if (kind == "cylinder") return world.shape<btCylinderShape>(btVector3(.25F, .3F, .25F));
   if (kind == "cone") return world.shape<btConeShape>(.25F, .5F);
   if (kind == "capsule") return world.shape<btCapsuleShape>(.2F, .3F);
@@ -43,7 +56,7 @@ btCollisionShape* shape_of(const std::string& kind, pd::test::BulletWorld& world
   return world.shape<btMultiSphereShape>(centres, radii, 3);
 }
 
-void run(const std::string& kind, const std::string& ground, bool ours, int settle, int steps) {
+void run(const std::string& kind, const std::string& ground, bool ours, int layers, int settle, int steps) {
   pd::test::UnionWorld world(ours);
   const auto corner = [&](int i, int k) {
     const double x = kExtent * (2.0 * i / kCells - 1), z = kExtent * (2.0 * k / kCells - 1);
@@ -58,9 +71,10 @@ void run(const std::string& kind, const std::string& ground, bool ours, int sett
   }
   world.fixed(world.mesh(triangles, CONVEX_DISTANCE_MARGIN))->setFriction(.7F);
   Random random;
-  for (int i = 0; i < kSide * kSide; ++i) {
+  for (int i = 0; i < layers * kSide * kSide; ++i) {
     const auto across = [&](int place) { return 1.2F * (static_cast<btScalar>(place) - 2.5F) + .1F * random.next(); };
-    const btVector3 at(across(i % kSide), 3 + .3F * random.next(), across(i / kSide));
+    const auto above = static_cast<btScalar>(i / (kSide * kSide));
+    const btVector3 at(across(i % kSide), 3 + above + .3F * random.next(), across(i / kSide % kSide));
     btQuaternion turn(random.next(), random.next(), random.next(), random.next());
     btRigidBody* body =
         world.moving(shape_of(kind, world.bullet), btTransform(turn.normalized(), at), btVector3(0, 0, 0));
@@ -91,14 +105,16 @@ void run(const std::string& kind, const std::string& ground, bool ours, int sett
 
 int main(int argc, char** argv) {
   CLI::App app("A step of bodies that rest on a triangle mesh");
-  std::vector<std::string> kinds{"cylinder", "cone", "multisphere", "capsule", "box"};
+  std::vector<std::string> kinds{"cylinder", "cone", "multisphere", "capsule", "box", "sphere", "hull"};
   std::vector<std::string> grounds{"flat", "waves"};
   std::vector<std::string> runs{"bullet", "pdepth"};
+  int layers = 1;
   int settle = 240;
   int steps = 120;
   app.add_option("--kinds", kinds)->delimiter(',')->check(CLI::IsMember(kinds));
   app.add_option("--grounds", grounds)->delimiter(',')->check(CLI::IsMember(grounds));
   app.add_option("--runs", runs)->delimiter(',')->check(CLI::IsMember(runs));
+  app.add_option("--layers", layers, "of 36 bodies each")->check(CLI::PositiveNumber);
   app.add_option("--settle", settle, "steps before those that are measured")->check(CLI::NonNegativeNumber);
   app.add_option("--steps", steps)->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
@@ -106,7 +122,7 @@ int main(int argc, char** argv) {
               "contacts", "lost");
   for (const std::string& kind : kinds) {
     for (const std::string& ground : grounds) {
-      for (const std::string& name : runs) run(kind, ground, name == "pdepth", settle, steps);
+      for (const std::string& name : runs) run(kind, ground, name == "pdepth", layers, settle, steps);
     }
   }
   return 0;
