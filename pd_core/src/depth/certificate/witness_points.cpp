@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "depth/distance/gjk.hpp"
 #include "numeric/vector_double_double.hpp"
@@ -53,6 +52,37 @@ class RecentVertices {
   std::int32_t ids_[kMost] = {-1, -1, -1, -1};
   Vec3DD points_[kMost];
   int next_ = 0;
+};
+
+/// A face's vertices as seen from the first of them, turned once: every step of a search asks for the farthest.
+class FaceEdges {
+ public:
+  /// @param along  turns the edge from the face's first vertex to another one.
+  template <class Along>
+  FaceEdges(const SupportFace& face, const Along& along) : face_(face), kept_(std::min(face.size(), kMost)) {
+    for (std::size_t i = 1; i < kept_; ++i) edges_[i] = along(face[i]);
+  }
+
+  /// The first one of those farthest along `direction`.
+  template <class Along>
+  [[nodiscard]] std::int32_t farthest(const Vec3& direction, const Along& along) const {
+    std::size_t found = 0;
+    double most = 0;
+    for (std::size_t i = 1; i < face_.size(); ++i) {
+      const double height = (i < kept_ ? edges_[i] : along(face_[i])).dot(direction);
+      if (!(most < height)) continue;
+      most = height;
+      found = i;
+    }
+    return face_[found];
+  }
+
+ private:
+  static constexpr std::size_t kMost = 32;  ///< further ones are turned again
+
+  const SupportFace& face_;
+  std::size_t kept_;
+  Vec3 edges_[kMost];  ///< but the first
 };
 
 Vec3 point_of_a(const PosedPair& pair, const VertexPair* ids, const double* weights, int count, const Vec3DD& negated) {
@@ -117,20 +147,9 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
     const Vec3 x = high(p - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
     return DifferenceVertex{x - x.dot(unit) * unit, a, b};
   };
-  const auto extreme = [&](const SupportFace& face, const Vec3& direction, const auto& value) {
-    std::int32_t farthest = face.front();
-    if (face.size() == 1) return farthest;
-    double most = value(farthest).dot(direction);
-    for (const std::int32_t v : std::span(face).subspan(1)) {
-      const double height = value(v).dot(direction);
-      if (!(most < height)) continue;
-      most = height;
-      farthest = v;
-    }
-    return farthest;
-  };
   const auto edge_b = [&](std::int32_t v) { return pair.approximate(PairVector::edge_b(on_b.front(), v)); };
   const auto edge_a = [&](std::int32_t v) { return Vec3(-pair.approximate(PairVector::edge_a(on_a.front(), v))); };
+  const FaceEdges edges_a(on_a, edge_a), edges_b(on_b, edge_b);
 
   DifferenceVertex simplex[4] = {difference(on_a.front(), on_b.front())};
   double weights[4] = {1, 0, 0, 0};
@@ -142,7 +161,7 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
     double next_weights[4];
     int next_count = count;
     std::copy(simplex, simplex + count, next);
-    next[next_count++] = difference(extreme(on_a, -point, edge_a), extreme(on_b, -point, edge_b));
+    next[next_count++] = difference(edges_a.farthest(-point, edge_a), edges_b.farthest(-point, edge_b));
     point = closest_point_on_simplex(next, next_count, next_weights, true);
     if (!(point.squaredNorm() < best)) break;
     count = next_count;
