@@ -130,6 +130,22 @@ bool add_coordinate(const ConvexPolytope& p, const ColumnsDD& r, int k, double s
   return true;
 }
 
+/// Rows of R that pass one coordinate on, or its opposite.
+void find_own_coordinates(const ConvexPolytope& p, const double (&r)[9], PosedPair::OwnCoordinate (&own)[3]) {
+  const double* const coordinates[3] = {p.x(), p.y(), p.z()};
+  for (int k = 0; k < 3; ++k) {
+    const double* const row = r + 3 * k;
+    for (int j = 0; j < 3; ++j) {
+      if (std::abs(row[j]) == 1 && row[(j + 1) % 3] == 0 && row[(j + 2) % 3] == 0) own[k] = {coordinates[j], row[j], j};
+    }
+  }
+}
+
+/// Adds sign (x[to] - x[from]). False where the sum needs more than double-double.
+bool add_own_coordinate(const double* x, double sign, int to, int from, DoubleDouble& sum) {
+  return (to < 0 || add_exactly(sum, sign * x[to])) && (from < 0 || add_exactly(sum, -sign * x[from]));
+}
+
 Dyadic3 rotate(const ConvexPolytope& p, const Dyadic (&r)[9], int to, int from) {
   if (to < 0 && from < 0) return {};
   const Vec3 zero = Vec3::Zero();
@@ -171,6 +187,11 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   doubles_rotate_ = scale_exponent_ == 0 && origin.isZero(0) && stored_in_doubles(pose_a, body_a_.columns) &&
                     stored_in_doubles(pose_b, body_b_.columns) && offset_exact[0].lo == 0 && offset_exact[1].lo == 0 &&
                     offset_exact[2].lo == 0;
+
+  if (doubles_rotate_) {
+    find_own_coordinates(a, body_a_.rotation, own_a_);
+    find_own_coordinates(b, body_b_.rotation, own_b_);
+  }
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
@@ -239,6 +260,11 @@ bool PosedPair::unrounded(const PairVector& v, bool rotated, Vec3& out) const {
 
 bool PosedPair::exact_coordinate(const PairVector& v, int k, DoubleDouble& out) const {
   out = {v.translated ? offset_[k] : 0, 0};
+  const OwnCoordinate &of_a = own_a_[k], &of_b = own_b_[k];
+  if (of_a.x != nullptr && of_b.x != nullptr) {
+    return add_own_coordinate(of_b.x, of_b.sign, v.b_to, v.b_from, out) &&
+           add_own_coordinate(of_a.x, -of_a.sign, v.a_to, v.a_from, out);
+  }
   return doubles_rotate_ && add_coordinate(*b_, body_b_.columns, k, 1, v.b_to, v.b_from, out) &&
          add_coordinate(*a_, body_a_.columns, k, -1, v.a_to, v.a_from, out);
 }

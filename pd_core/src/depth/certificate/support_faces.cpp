@@ -62,23 +62,12 @@ class LocalHeights {
   double largest_error_ = 0;
 };
 
-/// The coordinate of a body's own that is the height over a plane across a coordinate axis, up to a factor, where both
-/// rotations are stored as doubles and this one takes no other there: edges rise as it does, exactly.
+/// Over a plane across a coordinate axis, where a body's vertices rise as one of their own coordinates does, exactly.
 class CoordinateHeights {
  public:
-  /// @param axis, sign  the plane's.
-  CoordinateHeights(const ConvexPolytope& body, const double (&rotation)[9], int axis, double sign) {
-    const double* const coordinates[3] = {body.x(), body.y(), body.z()};
-    int entries = 0;
-    for (int j = 0; j < 3; ++j) {
-      const double entry = rotation[3 * axis + j];
-      if (entry == 0) continue;
-      ++entries;
-      height_ = coordinates[j];
-      reversed_ = entry * sign < 0;
-    }
-    if (entries != 1) height_ = nullptr;
-  }
+  CoordinateHeights() = default;
+  /// @param sign  of the plane's normal along its axis.
+  CoordinateHeights(const PosedPair::OwnCoordinate& own, double sign) : height_(own.x), reversed_(own.sign * sign < 0) {}
 
   [[nodiscard]] bool known() const { return height_ != nullptr; }
   [[nodiscard]] int rise(int from, int to) const {
@@ -103,21 +92,21 @@ class AlongNormal {
     absolute_ = 2 * pair.vector_error() * (1 + 16 * kUnitRoundoff);
     if (pair.scale_exponent() != 0) return;
     if (axis_ >= 0) {
-      along_a_.emplace(pair.a(), pair.rotation_a(), axis_, unit_[axis_]);
-      along_b_.emplace(pair.b(), pair.rotation_b(), axis_, unit_[axis_]);
-      if (along_a_->known() && along_b_->known()) return;
+      along_a_ = CoordinateHeights(pair.own_coordinate_a(axis_), unit_[axis_]);
+      along_b_ = CoordinateHeights(pair.own_coordinate_b(axis_), unit_[axis_]);
+      if (along_a_.known() && along_b_.known()) return;
     }
     of_a_.emplace(pair.a(), pair.rotation_a(), unit_, plane.unit_error);
     of_b_.emplace(pair.b(), pair.rotation_b(), unit_, plane.unit_error);
   }
 
   [[nodiscard]] int edge_a(int from, int to) const {
-    if (along_a_ && along_a_->known()) return along_a_->rise(from, to);
+    if (along_a_.known()) return along_a_.rise(from, to);
     const int told = of_a_ ? of_a_->rise(from, to) : 0;
     return told != 0 ? told : (*this)(PairVector::edge_a(from, to));
   }
   [[nodiscard]] int edge_b(int from, int to) const {
-    if (along_b_ && along_b_->known()) return along_b_->rise(from, to);
+    if (along_b_.known()) return along_b_.rise(from, to);
     const int told = of_b_ ? of_b_->rise(from, to) : 0;
     return told != 0 ? told : (*this)(PairVector::edge_b(from, to));
   }
@@ -145,8 +134,8 @@ class AlongNormal {
   Vec3 unit_ = Vec3::Zero();
   double relative_ = 0;
   double absolute_ = 0;
-  std::optional<CoordinateHeights> along_a_;
-  std::optional<CoordinateHeights> along_b_;
+  CoordinateHeights along_a_;
+  CoordinateHeights along_b_;
   std::optional<LocalHeights> of_a_;
   std::optional<LocalHeights> of_b_;
 };

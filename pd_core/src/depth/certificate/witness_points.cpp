@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "depth/distance/gjk.hpp"
+#include "numeric/double_double_lanes.hpp"
 #include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
@@ -24,33 +25,36 @@ Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& f
 }
 
 /// -R_A v.
-Vec3DD negated_vertex_a(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd({v, -1, -1, -1, false}); }
+PairVector opposite_of_a(std::int32_t v) { return {v, -1, -1, -1, false}; }
+Vec3DD negated_vertex_a(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd(opposite_of_a(v)); }
 /// R_B v.
-Vec3DD vertex_b(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd({-1, -1, v, -1, false}); }
+PairVector place_of_b(std::int32_t v) { return {-1, -1, v, -1, false}; }
+Vec3DD vertex_b(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd(place_of_b(v)); }
 
 /// The last few rotated vertices of a body: a search comes back to them, and each takes nine products.
 class RecentVertices {
  public:
-  explicit RecentVertices(const PosedPair& pair, Vec3DD (*rotated)(const PosedPair&, std::int32_t))
-      : pair_(pair), rotated_(rotated) {}
+  /// @param vertex  of the body, as a vector of the pair.
+  RecentVertices(const PosedPair& pair, PairVector (*vertex)(std::int32_t)) : pair_(pair), vertex_(vertex) {}
 
-  const Vec3DD& operator()(std::int32_t v) {
+  const FourDoubleDoubles& operator()(std::int32_t v) {
     for (int i = 0; i < kMost; ++i) {
       if (ids_[i] == v) return points_[i];
     }
     const int i = next_;
     next_ = (next_ + 1) % kMost;
     ids_[i] = v;
-    return points_[i] = rotated_(pair_, v);
+    pair_.approximate_dd(vertex_(v), points_[i]);
+    return points_[i];
   }
 
  private:
   static constexpr int kMost = 4;
 
   const PosedPair& pair_;
-  Vec3DD (*rotated_)(const PosedPair&, std::int32_t);
+  PairVector (*vertex_)(std::int32_t);
   std::int32_t ids_[kMost] = {-1, -1, -1, -1};
-  Vec3DD points_[kMost];
+  FourDoubleDoubles points_[kMost];
   int next_ = 0;
 };
 
@@ -140,11 +144,19 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
     const Vec3 a = point_on_edge_of_a(pair, faces, target);
     return {a, a + translation};
   }
-  RecentVertices negated_a(pair, negated_vertex_a), of_b(pair, vertex_b);
-  const Vec3DD offset = pair.approximate_dd({-1, -1, -1, -1, true});
+  RecentVertices negated_a(pair, opposite_of_a), of_b(pair, place_of_b);
+  FourDoubleDoubles offset;
+  pair.approximate_dd({-1, -1, -1, -1, true}, offset);
   const auto difference = [&](std::int32_t a, std::int32_t b) {
-    const Vec3DD p = of_b(b) + negated_a(a) + offset;  // local coordinates may be large and cancel
-    const Vec3 x = high(p - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
+    // Local coordinates may be large and cancel.
+    DoubleDoubleLanes sum, more;
+    load(sum, of_b(b));
+    load(more, negated_a(a));
+    add(sum, sum, more);
+    load(more, offset);
+    add(sum, sum, more);
+    subtract(sum, sum, DoubleDoubleLanes{{target.x(), target.y(), target.z(), 0}, {0, 0, 0, 0}});
+    const Vec3 x(sum.hi[0], sum.hi[1], sum.hi[2]);
     return DifferenceVertex{x - x.dot(unit) * unit, a, b};
   };
   const auto edge_b = [&](std::int32_t v) { return pair.approximate(PairVector::edge_b(on_b.front(), v)); };
@@ -170,7 +182,7 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
   }
   VertexPair ids[3];
   for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
-  const Vec3 a = point_of_a(pair, ids, weights, count, negated_a(ids[0].a));
+  const Vec3 a = point_of_a(pair, ids, weights, count, vector_of(negated_a(ids[0].a)));
   return {a, a + translation};
 }
 
