@@ -163,8 +163,12 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   const double largest = std::max({a.max_abs_coordinate(), b.max_abs_coordinate(), offset.cwiseAbs().maxCoeff(),
                                    origin.cwiseAbs().maxCoeff(), 0x1p-1000});
   // Rescale only where a product of three lengths could leave the range of doubles: within it scaling changes no bit.
-  scale_exponent_ = (largest > 0x1p100 || largest < 0x1p-100) ? std::ilogb(largest) : 0;
-  const double scale = scale_ = std::ldexp(1.0, -scale_exponent_);
+  if (largest > 0x1p100 || largest < 0x1p-100) {
+    scale_exponent_ = std::ilogb(largest);
+    scale_ = std::ldexp(1.0, -scale_exponent_);
+    outwards_ = std::ldexp(1.0, scale_exponent_);
+  }
+  const double scale = scale_;
 
   rotations_in_double_double(pose_a, pose_b, body_a_.columns, body_b_.columns);
   for (int i = 0; i < 9; ++i) {

@@ -55,6 +55,9 @@ class PosedPair {
 
   /// Lengths inside = lengths outside * 2^-scale_exponent.
   [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
+  /// 2^-scale_exponent and 2^scale_exponent.
+  [[nodiscard]] double inwards() const { return scale_; }
+  [[nodiscard]] double outwards() const { return outwards_; }
 
   /// R row by row, rounded; a matrix as it stands.
   [[nodiscard]] const double (&rotation_a() const)[9] { return body_a_.rotation; }
@@ -151,6 +154,7 @@ class PosedPair {
   const Pose* pose_b_;
   int scale_exponent_ = 0;
   double scale_ = 1;  ///< 2^-scale_exponent_
+  double outwards_ = 1;
   double vector_error_ = 0;
   double vector_error_dd_ = 0;
   Body body_a_;

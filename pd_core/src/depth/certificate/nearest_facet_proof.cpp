@@ -113,11 +113,17 @@ std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<
   }
 }
 
-std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet, double beyond,
-                                       SupportFaces& faces) {
+std::optional<ProvenFacet> prove_supporting_facet(const PosedPair& pair, const FacetOfDifference& facet,
+                                                  double beyond) {
   const ProvenFacet found{facet, measure_facet(pair, facet)};
   if (!positive(found.plane) || !nearer_than(found.plane, beyond)) return std::nullopt;
-  if (!collect_faces(pair, facet, found.plane, faces)) return std::nullopt;
+  return found;
+}
+
+std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet, double beyond,
+                                       SupportFaces& faces) {
+  const std::optional<ProvenFacet> found = prove_supporting_facet(pair, facet, beyond);
+  if (!found || !collect_faces(pair, facet, found->plane, faces)) return std::nullopt;
   return found;
 }
 

@@ -15,7 +15,7 @@ namespace {
 /// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
 /// be large and cancel.
 Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& first, const Vec3& rest) {
-  const double scale = pair.scale_exponent() == 0 ? 1 : std::ldexp(1.0, pair.scale_exponent());
+  const double scale = pair.outwards();
   const auto coordinate = [&](double t, const DoubleDouble& f, double r) {
     const DoubleDouble local = r == 0 ? f : f + DoubleDouble{r, 0};
     return to_double(DoubleDouble{t, 0} + DoubleDouble{local.hi * scale, local.lo * scale});
@@ -128,7 +128,7 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
                                       const Vec3& translation) {
   const SupportFace& on_a = faces.on_a;
   const SupportFace& on_b = faces.on_b;
-  const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
+  const Vec3 target = translation * pair.inwards();
   // A vertex is where it is, whatever it lies on.
   const VertexPair first{on_a.front(), on_b.front()};
   const double whole = 1;

@@ -77,7 +77,7 @@ bool answer_boxes_from_proof(PolytopeQuery& query, const std::optional<ProvenFac
 std::optional<ProvenFacet> prove_nearest(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond,
                                          bool first_of_equals) {
   const PosedPair& posed = query.exact();
-  return prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()), first_of_equals,
+  return prove_nearest_facet(posed, near, beyond * posed.inwards(), first_of_equals,
                              query.buffers.faces);
 }
 
@@ -146,7 +146,7 @@ bool answer_by_overlay(PolytopeQuery& query, PenetrationDepth& out, double upper
   const PosedPair& posed = query.exact();
   out.method = Method::overlay;
   const bool exactly = query.bracket == Bracket::tightest;
-  const double scaled_upper = std::ldexp(upper, -posed.scale_exponent());
+  const double scaled_upper = upper * posed.inwards();
   answer_from_facet(query, overlay_depth(posed, query.buffers.overlay, exactly, scaled_upper), out);
   return true;
 }
@@ -168,7 +168,7 @@ bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surfac
     for (const DifferenceVertex& v : query.buffers.surface.vertices) buffers.vertices.push_back({v.a, v.b});
   }
   DecompositionSettings settings;
-  if (surface.lower > 0) settings.upper = std::ldexp(surface.upper, -posed.scale_exponent());
+  if (surface.lower > 0) settings.upper = surface.upper * posed.inwards();
   settings.vertices = buffers.vertices;
   settings.seed = query.settings.seed;
   settings.exactly = query.bracket == Bracket::tightest;
@@ -196,8 +196,13 @@ bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out) {
     if (aligned == AlignedBoxes::tied) return false;
     if (aligned == AlignedBoxes::found) return answer_boxes_from_proof(query, nearest, out);
   }
-  const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b);
+  SupportFaces& faces = query.buffers.faces;
+  const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, faces);
   if (found.count == 0) return false;
+  if (found.only) {
+    return answer_boxes_from_proof(query, prove_supporting_facet(posed, *found.only, found.beyond * posed.inwards()),
+                                   out);
+  }
   for (int i = 0; i < 9; ++i) {
     if ((found.parallel >> i & 1U) == 0 || (i % 4 == 0 && posed.same_rotation())) continue;
     // Edge k of a box runs from vertex 0 to vertex 4 >> k.
@@ -238,7 +243,7 @@ bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, Penetration
   const PosedPair& posed = query.exact();
   return answer_from_proof(query,
                            prove_facet(posed, facet_of(query.pair, posed, found),
-                                       std::ldexp(found.beyond, -posed.scale_exponent()), query.buffers.faces),
+                                       found.beyond * posed.inwards(), query.buffers.faces),
                            out);
 }
 
