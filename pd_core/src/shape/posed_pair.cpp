@@ -130,8 +130,8 @@ bool add_coordinate(const ConvexPolytope& p, const ColumnsDD& r, int k, double s
   return true;
 }
 
-/// Rows of R that pass one coordinate on, or its opposite.
-void find_own_coordinates(const ConvexPolytope& p, const double (&r)[9], PosedPair::OwnCoordinate (&own)[3]) {
+/// Rows of R that pass one coordinate on, or its opposite. @return whether all do.
+bool find_own_coordinates(const ConvexPolytope& p, const double (&r)[9], PosedPair::OwnCoordinate (&own)[3]) {
   const double* const coordinates[3] = {p.x(), p.y(), p.z()};
   for (int k = 0; k < 3; ++k) {
     const double* const row = r + 3 * k;
@@ -139,6 +139,7 @@ void find_own_coordinates(const ConvexPolytope& p, const double (&r)[9], PosedPa
       if (std::abs(row[j]) == 1 && row[(j + 1) % 3] == 0 && row[(j + 2) % 3] == 0) own[k] = {coordinates[j], row[j], j};
     }
   }
+  return own[0].x != nullptr && own[1].x != nullptr && own[2].x != nullptr;
 }
 
 /// Adds sign (x[to] - x[from]). False where the sum needs more than double-double.
@@ -193,8 +194,8 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
                     offset_exact[2].lo == 0;
 
   if (doubles_rotate_) {
-    find_own_coordinates(a, body_a_.rotation, own_a_);
-    find_own_coordinates(b, body_b_.rotation, own_b_);
+    has_own_coordinates_ =
+        find_own_coordinates(a, body_a_.rotation, own_a_) && find_own_coordinates(b, body_b_.rotation, own_b_);
   }
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
@@ -218,6 +219,15 @@ TurnedSum PosedPair::turned(const PairVector& v) const {
 }
 
 void PosedPair::approximate_dd(const PairVector& v, FourDoubleDoubles& out) const {
+  // A vertex alone: no step below would round. A sum of zeros is +0, as theirs.
+  if (has_own_coordinates_ && !v.translated && v.a_from < 0 && v.b_from < 0 && (v.a_to < 0) != (v.b_to < 0)) {
+    const bool of_b = v.b_to >= 0;
+    const OwnCoordinate(&own)[3] = of_b ? own_b_ : own_a_;
+    const int vertex = of_b ? v.b_to : v.a_to;
+    for (int k = 0; k < 3; ++k) out.set(k, {(of_b ? own[k].sign : -own[k].sign) * own[k].x[vertex] + 0.0, 0});
+    out.set(3, {});
+    return;
+  }
   const TurnedSum sum = turned(v);
   with_products([&](auto products) __attribute__((always_inline)) {
     DoubleDoubleLanesBy<decltype(products)> lanes;

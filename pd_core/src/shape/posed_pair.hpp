@@ -93,6 +93,8 @@ class PosedPair {
     double sign = 1;
     int axis = -1;  ///< of the body
   };
+  /// Whether all six are.
+  [[nodiscard]] bool has_own_coordinates() const { return has_own_coordinates_; }
   [[nodiscard]] const OwnCoordinate& own_coordinate_a(int k) const { return own_a_[k]; }
   [[nodiscard]] const OwnCoordinate& own_coordinate_b(int k) const { return own_b_[k]; }
   /// t_B - t_A - origin (scaled), rounded; as it is where `doubles_rotate`.
@@ -165,6 +167,7 @@ class PosedPair {
   bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
   OwnCoordinate own_a_[3];
   OwnCoordinate own_b_[3];
+  bool has_own_coordinates_ = false;
   bool same_rotation_ = false;  ///< of A and B, exactly
   mutable std::optional<ExactPlacing> exact_;
   mutable StageCounts stages_;

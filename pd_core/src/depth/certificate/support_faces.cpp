@@ -80,6 +80,9 @@ class CoordinateHeights {
   bool reversed_ = false;
 };
 
+/// Of more vertices the edges of those in the plane are asked.
+constexpr int kMostScanned = 256;
+
 /// Signs of <edge, normal of the plane>, exact, doubles first.
 class AlongNormal {
  public:
@@ -181,6 +184,18 @@ bool collect(const ConvexPolytope& body, const Feature& feature, Rises&& rises, 
   return complete(body, rises, face);
 }
 
+/// All vertices as far along a coordinate as one of them. False where others are farther.
+bool scan(const ConvexPolytope& body, const PosedPair::OwnCoordinate& own, double sign, int known, SupportFace& face) {
+  face.clear();
+  const double upwards = own.sign * sign, level = upwards * own.x[known];
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    const double height = upwards * own.x[v];
+    if (height > level) return false;
+    if (height == level) face.push_back(v);
+  }
+  return true;
+}
+
 Feature feature_of(const ConvexPolytope& body, const SupportFace& face, const Mat3& rotation, const Vec3& outward) {
   if (face.size() == 1) return {Feature::Kind::vertex, face[0], -1};
   if (face.size() == 2) return {Feature::Kind::edge, face[0], face[1]};
@@ -205,6 +220,12 @@ int facet_holding(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, 
 
 bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
                    SupportFaces& faces) {
+  if (plane.axis >= 0 && pair.has_own_coordinates() &&
+      std::max(pair.a().num_vertices(), pair.b().num_vertices()) <= kMostScanned) {
+    const double sign = to_double(plane.axis == 0 ? plane.unit.x : plane.axis == 1 ? plane.unit.y : plane.unit.z);
+    return scan(pair.b(), pair.own_coordinate_b(plane.axis), sign, facet.b, faces.on_b) &&
+           scan(pair.a(), pair.own_coordinate_a(plane.axis), -sign, facet.a, faces.on_a);
+  }
   const FacetSign sign(pair, facet);
   const AlongNormal along(pair, plane, sign);
   return collect(
