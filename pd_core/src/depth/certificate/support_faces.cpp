@@ -81,7 +81,7 @@ class CoordinateHeights {
 };
 
 /// Of more vertices the edges of those in the plane are asked.
-constexpr int kMostScanned = 256;
+constexpr int kMostScanned = 64;
 
 /// Signs of <edge, normal of the plane>, exact, doubles first.
 class AlongNormal {
