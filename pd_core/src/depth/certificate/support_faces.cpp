@@ -67,7 +67,8 @@ class CoordinateHeights {
  public:
   CoordinateHeights() = default;
   /// @param sign  of the plane's normal along its axis.
-  CoordinateHeights(const PosedPair::OwnCoordinate& own, double sign) : height_(own.x), reversed_(own.sign * sign < 0) {}
+  CoordinateHeights(const PosedPair::OwnCoordinate& own, double sign)
+      : height_(own.x), reversed_(own.sign * sign < 0) {}
 
   [[nodiscard]] bool known() const { return height_ != nullptr; }
   [[nodiscard]] int rise(int from, int to) const {

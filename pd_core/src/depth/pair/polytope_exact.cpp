@@ -77,8 +77,7 @@ bool answer_boxes_from_proof(PolytopeQuery& query, const std::optional<ProvenFac
 std::optional<ProvenFacet> prove_nearest(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond,
                                          bool first_of_equals) {
   const PosedPair& posed = query.exact();
-  return prove_nearest_facet(posed, near, beyond * posed.inwards(), first_of_equals,
-                             query.buffers.faces);
+  return prove_nearest_facet(posed, near, beyond * posed.inwards(), first_of_equals, query.buffers.faces);
 }
 
 /// The piece as a facet of P.
@@ -228,8 +227,8 @@ bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, Penetra
   }
   // An exact expansion from the nearest face would end at its facet, too, of several equally near.
   const bool first_of_equals = surface.status == ExpansionStatus::certified;
-  return answer_from_proof(
-      query, prove_nearest(query, std::span(near).first(count), limit - 2 * error, first_of_equals), out);
+  return answer_from_proof(query,
+                           prove_nearest(query, std::span(near).first(count), limit - 2 * error, first_of_equals), out);
 }
 
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out) {
@@ -241,10 +240,9 @@ bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& ou
 bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
   if (!(found.beyond > 0)) return false;
   const PosedPair& posed = query.exact();
-  return answer_from_proof(query,
-                           prove_facet(posed, facet_of(query.pair, posed, found),
-                                       found.beyond * posed.inwards(), query.buffers.faces),
-                           out);
+  return answer_from_proof(
+      query,
+      prove_facet(posed, facet_of(query.pair, posed, found), found.beyond * posed.inwards(), query.buffers.faces), out);
 }
 
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {

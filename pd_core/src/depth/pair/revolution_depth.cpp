@@ -146,8 +146,8 @@ class RevolutionSearch {
     }
   }
 
-  /// The core holds the origin: of two facets of V that lie no nearer than P does, the edge's own points show its arc to
-  /// be high enough. So only edges of nearer facets are looked at.
+  /// The core holds the origin: of two facets of V that lie no nearer than P does, the edge's own points show its arc
+  /// to be high enough. So only edges of nearer facets are looked at.
   void look_along_edges(double slack) {
     int touches_left = kMostTouches;
     const double reach = least_.height;
