@@ -52,13 +52,6 @@ PD_INLINE void measure_plane(const TurnedSum& of_u, const TurnedSum& of_v, const
   store(out.over_length, n);
 }
 
-void set_axis_normal(int k, double sign, const DoubleDouble& height, FacetPlane& plane) {
-  plane.unit = {{k == 0 ? sign : 0, 0}, {k == 1 ? sign : 0, 0}, {k == 2 ? sign : 0, 0}};
-  plane.distance = sign > 0 ? height : -height;
-  plane.unit_error = plane.distance_error = 0;
-  plane.axis = k;
-}
-
 /// Where the facet's edges lie in the coordinate plane across axis k, exactly, and the point's height over it is exact:
 /// sets the plane. No other sign than the normal's need be known.
 bool set_axis(const PosedPair& pair, const FacetOfDifference& facet, int k, double sign, FacetPlane& plane) {
@@ -66,7 +59,7 @@ bool set_axis(const PosedPair& pair, const FacetOfDifference& facet, int k, doub
   if (!pair.exact_coordinate(facet.u, k, u) || u.hi != 0) return false;
   if (!pair.exact_coordinate(facet.v, k, v) || v.hi != 0) return false;
   if (!pair.exact_coordinate(facet.point(), k, p)) return false;
-  set_axis_normal(k, sign, p, plane);
+  plane = plane_across_axis(k, sign, p);
   return true;
 }
 
@@ -101,10 +94,19 @@ void snap_to_axis(const PosedPair& pair, const FacetOfDifference& facet, FacetPl
 
 }  // namespace
 
+FacetPlane plane_across_axis(int axis, double sign, const DoubleDouble& coordinate) {
+  FacetPlane plane;
+  plane.unit = {{axis == 0 ? sign : 0, 0}, {axis == 1 ? sign : 0, 0}, {axis == 2 ? sign : 0, 0}};
+  plane.distance = sign > 0 ? coordinate : -coordinate;
+  plane.distance_error = 0;
+  plane.axis = axis;
+  return plane;
+}
+
 bool set_axis_plane(const PosedPair& pair, const PairVector& point, int axis, FacetPlane& plane) {
   DoubleDouble height;
   if (!pair.exact_coordinate(point, axis, height) || height.hi == 0) return false;
-  set_axis_normal(axis, height.hi > 0 ? 1 : -1, height, plane);
+  plane = plane_across_axis(axis, height.hi > 0 ? 1 : -1, height);
   return true;
 }
 

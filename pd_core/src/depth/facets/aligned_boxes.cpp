@@ -13,15 +13,6 @@ constexpr int kFirst = 0, kLast = 7;
 /// The vertex of either end that is farthest in the direction `sign` of the frame's axis.
 int end_vertex(const PosedPair::OwnCoordinate& along, double sign) { return along.sign * sign > 0 ? kLast : kFirst; }
 
-/// The four vertices of a box with those of `vertex` along its own axis.
-void set_side(int own_axis, int vertex, SupportFace& face) {
-  const int bit = 4 >> own_axis;
-  face.clear();
-  for (int v = kFirst; v <= kLast; ++v) {
-    if ((v & bit) == (vertex & bit)) face.push_back(v);
-  }
-}
-
 bool less(const DoubleDouble& x, const DoubleDouble& y) { return x.hi < y.hi || (x.hi == y.hi && x.lo < y.lo); }
 
 }  // namespace
@@ -53,13 +44,9 @@ AlignedBoxes nearest_of_aligned_boxes(const PosedPair& pair, ProvenFacet& neares
   const PosedPair::OwnCoordinate &of_a = pair.own_coordinate_a(axis), &of_b = pair.own_coordinate_b(axis);
   const int a = end_vertex(of_a, -sign), b = end_vertex(of_b, sign);
   nearest.facet = FacetOfDifference::from_facet_of_b(pair.b(), facet_of_box(pair.b(), of_b.axis, b == kLast), a);
-  nearest.plane = {};
-  nearest.plane.unit = {{axis == 0 ? sign : 0, 0}, {axis == 1 ? sign : 0, 0}, {axis == 2 ? sign : 0, 0}};
-  nearest.plane.distance = least;
-  nearest.plane.distance_error = 0;
-  nearest.plane.axis = axis;
-  set_side(of_a.axis, a, faces.on_a);
-  set_side(of_b.axis, b, faces.on_b);
+  nearest.plane = plane_across_axis(axis, sign, sign > 0 ? least : -least);
+  collect_box_face(7 & ~(4 >> of_a.axis), a, faces.on_a);
+  collect_box_face(7 & ~(4 >> of_b.axis), b, faces.on_b);
   return AlignedBoxes::found;
 }
 

@@ -165,8 +165,8 @@ class BoxSat : public BoxPair {
     const int flat_a = block == 0 ? plane : block == 1 ? 0 : bit(block - 2);
     const int flat_b = block == 1 ? plane : block == 0 ? 0 : bit(lane);
     if (!rises(of_a_, flat_a, n, turn) || !rises(of_b_, flat_b, n, turn)) return std::nullopt;
-    set_face(flat_a, corner.a, faces.on_a);
-    set_face(flat_b, corner.b, faces.on_b);
+    collect_box_face(flat_a, corner.a, faces.on_a);
+    collect_box_face(flat_b, corner.b, faces.on_b);
     const bool high_a = (corner.a & bit(across)) != 0, high_b = (corner.b & bit(across)) != 0;
     if (block == 0) return FacetOfDifference::from_facet_of_a(a_, facet_of_box(a_, across, high_a), corner.b);
     if (block == 1) return FacetOfDifference::from_facet_of_b(b_, facet_of_box(b_, across, high_b), corner.a);
@@ -175,13 +175,6 @@ class BoxSat : public BoxPair {
     const bool outwards = (n.dot(centre_) > 0) == (along_a == along_b);
     const int a0 = corner.a ^ (outwards ? 0 : flat_a);
     return FacetOfDifference::from_edges(a0, a0 ^ flat_a, corner.b, corner.b ^ flat_b);
-  }
-  /// The vertices that differ from one of them in the bits of `flat` alone.
-  static void set_face(int flat, int vertex, SupportFace& face) {
-    face.clear();
-    for (int v = 0; v < 8; ++v) {
-      if (((v ^ vertex) & ~flat) == 0) face.push_back(v);
-    }
   }
 
   static double signed_root(double key) { return std::copysign(std::sqrt(std::abs(key)), key); }
@@ -293,6 +286,13 @@ int facet_of_box(const ConvexPolytope& p, int axis, bool positive) {
   int f = 0;
   while ((positive ? 1 : -1) * p.facet_normal(f)[axis] < 0.5) ++f;
   return f;
+}
+
+void collect_box_face(int flat, int vertex, SupportFace& face) {
+  face.clear();
+  for (int v = 0; v < 8; ++v) {
+    if (((v ^ vertex) & ~flat) == 0) face.push_back(v);
+  }
 }
 
 BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,

@@ -30,6 +30,9 @@ std::optional<BoxFrame> box_frame(const ConvexPolytope& p);
 /// The facet of such a box across an axis, at its upper or lower end.
 int facet_of_box(const ConvexPolytope& p, int axis, bool positive);
 
+/// The vertices of a box that differ from one of them in bits of `flat` alone; 4 for x, 2 for y, 1 for z.
+void collect_box_face(int flat, int vertex, SupportFace& face);
+
 enum class BoxPairStatus : std::uint8_t { certified, separated, undecided };
 
 struct BoxPairDepth {
