@@ -53,6 +53,13 @@ inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
   return quick_two_sum(s.hi, s.lo + t.lo);
 }
 inline DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + (-b); }
+/// a - b with the same bits, where b is a up to rounding: the difference of the high parts is exact (Sterbenz), so that
+/// their two-sum, the first link of a chain, is one operation.
+inline DoubleDouble difference_of_near(const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble t = two_sum(a.lo, -b.lo);
+  const DoubleDouble s = quick_two_sum(a.hi - b.hi, t.hi);
+  return quick_two_sum(s.hi, s.lo + t.lo);
+}
 inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble p = two_product(a.hi, b.hi);
   return quick_two_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));

@@ -1,6 +1,6 @@
 /// @file
-/// Double-double arithmetic of four numbers at once. Every lane takes the steps of double_double.hpp in their order, so
-/// that its bits are those of the numbers on their own.
+/// Double-double arithmetic of four numbers at once. Every lane takes the steps of double_double.hpp in their order,
+/// but for sums that are exact in one, so that its bits are those of the numbers on their own.
 #pragma once
 
 #include "numeric/double_double.hpp"
@@ -81,6 +81,14 @@ PD_INLINE void subtract(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P
   add(out, a, {-b.hi, -b.lo});
 }
 template <class P>
+PD_INLINE void difference_of_near(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a,
+                                  const DoubleDoubleLanesBy<P>& b) {
+  DoubleDoubleLanesBy<P> s, t;
+  two_sum(t, a.lo, -b.lo);
+  quick_two_sum(s, a.hi - b.hi, t.hi);
+  quick_two_sum(out, s.hi, s.lo + t.lo);
+}
+template <class P>
 PD_INLINE void multiply(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>& a, const DoubleDoubleLanesBy<P>& b) {
   DoubleDoubleLanesBy<P> p;
   two_product(p, a.hi, b.hi);
@@ -97,10 +105,10 @@ PD_INLINE void divide(DoubleDoubleLanesBy<P>& out, const DoubleDoubleLanesBy<P>&
   DoubleDoubleLanesBy<P> product, rest;
   const Lanes q1 = a.hi / b.hi;
   multiply(product, b, q1);
-  subtract(rest, a, product);
+  difference_of_near(rest, a, product);
   const Lanes q2 = rest.hi / b.hi;
   multiply(product, b, q2);
-  subtract(rest, rest, product);
+  difference_of_near(rest, rest, product);
   const Lanes q3 = rest.hi / b.hi;
   DoubleDoubleLanesBy<P> quotient;
   quick_two_sum(quotient, q1, q2);
@@ -131,10 +139,10 @@ PD_INLINE DoubleDouble root(const DoubleDouble& x) {
   const double s = __builtin_sqrt(x.hi);
   DoubleDouble squared{s * s, 0};
   P::error(squared.lo, squared.hi, s, s);
-  const DoubleDouble t = quick_two_sum(s, (x - squared).hi / (2 * s));
+  const DoubleDouble t = quick_two_sum(s, difference_of_near(x, squared).hi / (2 * s));
   DoubleDouble product{t.hi * t.hi, 0};
   P::error(product.lo, product.hi, t.hi, t.hi);
-  const DoubleDouble rest = x - quick_two_sum(product.hi, product.lo + (t.hi * t.lo + t.lo * t.hi));
+  const DoubleDouble rest = difference_of_near(x, quick_two_sum(product.hi, product.lo + (t.hi * t.lo + t.lo * t.hi)));
   return t + DoubleDouble{rest.hi / (2 * s), 0};
 }
 

@@ -55,6 +55,9 @@ class PosedPair {
 
   /// Lengths inside = lengths outside * 2^-scale_exponent.
   [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
+  /// 2^-scale_exponent and 2^scale_exponent.
+  [[nodiscard]] double inwards() const { return scale_; }
+  [[nodiscard]] double outwards() const { return outwards_; }
 
   /// R row by row, rounded; a matrix as it stands.
   [[nodiscard]] const double (&rotation_a() const)[9] { return body_a_.rotation; }
@@ -84,6 +87,18 @@ class PosedPair {
   [[nodiscard]] bool doubles_rotate() const { return doubles_rotate_; }
   /// A coordinate itself, where `doubles_rotate` and double-double holds it. @return whether that is so.
   [[nodiscard]] bool exact_coordinate(const PairVector& v, int k, DoubleDouble& out) const;
+  /// A coordinate of a body's turned vertices that is one of their own or its opposite, where `doubles_rotate`.
+  struct OwnCoordinate {
+    const double* x = nullptr;  ///< of the body's vertices; null: there is none
+    double sign = 1;
+    int axis = -1;  ///< of the body
+  };
+  /// Whether all six are.
+  [[nodiscard]] bool has_own_coordinates() const { return has_own_coordinates_; }
+  [[nodiscard]] const OwnCoordinate& own_coordinate_a(int k) const { return own_a_[k]; }
+  [[nodiscard]] const OwnCoordinate& own_coordinate_b(int k) const { return own_b_[k]; }
+  /// t_B - t_A - origin (scaled), rounded; as it is where `doubles_rotate`.
+  [[nodiscard]] const Vec3& offset() const { return offset_; }
   /// Whether R_A = R_B, exactly.
   [[nodiscard]] bool same_rotation() const { return same_rotation_; }
 
@@ -141,6 +156,7 @@ class PosedPair {
   const Pose* pose_b_;
   int scale_exponent_ = 0;
   double scale_ = 1;  ///< 2^-scale_exponent_
+  double outwards_ = 1;
   double vector_error_ = 0;
   double vector_error_dd_ = 0;
   Body body_a_;
@@ -149,7 +165,10 @@ class PosedPair {
   Vec3 offset_;  ///< (t_B - t_A - origin) scaled, rounded
   FourDoubleDoubles offset_dd_;
   bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
-  bool same_rotation_ = false;   ///< of A and B, exactly
+  OwnCoordinate own_a_[3];
+  OwnCoordinate own_b_[3];
+  bool has_own_coordinates_ = false;
+  bool same_rotation_ = false;  ///< of A and B, exactly
   mutable std::optional<ExactPlacing> exact_;
   mutable StageCounts stages_;
   mutable std::int64_t exact_work_ = 0;

@@ -1,14 +1,17 @@
 /// @file
 /// Two boxes by their fifteen axes (certified bracket) against the tightest answer, which goes through exact
-/// arithmetic.
+/// arithmetic; what that takes from the axes, and from stored numbers where they are aligned.
 #include "depth/facets/box_sat.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
+#include "depth/facets/aligned_boxes.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 
@@ -54,6 +57,11 @@ double outside(const Vec3& point, const Pose& pose, const Vec3& half) {
   return ((pose.rotation().transpose() * (point - pose.translation())).cwiseAbs() - half).maxCoeff();
 }
 
+detail::BoxNearFacets near_facets(const Boxes& boxes, detail::SupportFaces& faces) {
+  const ConvexPolytope &a = *boxes.a.polytope(), &b = *boxes.b.polytope();
+  return detail::box_near_facets(a, *detail::box_frame(a), boxes.pose_a, b, *detail::box_frame(b), boxes.pose_b, faces);
+}
+
 class BoxPairs : public ::testing::TestWithParam<Turn> {};
 
 TEST_P(BoxPairs, CertifiedBracketsHoldTheExactDepth) {
@@ -96,6 +104,7 @@ TEST(BoxNearFacets, NoFacetLeftOutIsNearer) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> power(-9, -5), share(0.05, 0.3);
   std::normal_distribution<double> normal;
+  detail::SupportFaces faces;
   int asked = 0, left_out = 0;
   for (int i = 0; i < 4000; ++i) {
     SCOPED_TRACE(i);
@@ -119,9 +128,7 @@ TEST(BoxNearFacets, NoFacetLeftOutIsNearer) {
     const Vec3 offset = (share(random) * width * outward - middle).cast<double>();
     boxes.pose_a = *Pose::from_matrix(of_a, Vec3::Zero());
     boxes.pose_b = *Pose::from_matrix(of_b, offset);
-    const ConvexPolytope &a = *boxes.a.polytope(), &b = *boxes.b.polytope();
-    const detail::BoxNearFacets found =
-        detail::box_near_facets(a, *detail::box_frame(a), boxes.pose_a, b, *detail::box_frame(b), boxes.pose_b);
+    const detail::BoxNearFacets found = near_facets(boxes, faces);
     if (found.count == 0) continue;
     ++asked;
     // Bits of the axes along which the corners of a listed facet differ, of A and of B.
@@ -146,6 +153,91 @@ TEST(BoxNearFacets, NoFacetLeftOutIsNearer) {
   }
   EXPECT_GT(asked, 500);
   EXPECT_GT(left_out, asked);
+}
+
+/// The faces of a facet that is left alone are told by signs of its axis: by exact signs along edges they are the same.
+TEST(BoxNearFacets, TheOnlyFacetHasTheFacesThatExactSignsFind) {
+  std::mt19937_64 random(9);
+  detail::SupportFaces told, exact;
+  int asked = 0, edges = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE(i);
+    const Boxes boxes = draw(Turn::any, random);
+    const detail::BoxNearFacets found = near_facets(boxes, told);
+    if (!found.only) continue;
+    ++asked;
+    edges += found.only->on_a.kind == Feature::Kind::edge;
+    const detail::PosedPair pair(*boxes.a.polytope(), boxes.pose_a, *boxes.b.polytope(), boxes.pose_b);
+    ASSERT_TRUE(detail::prove_facet(pair, *found.only, found.beyond, exact));
+    EXPECT_EQ(told.on_a, exact.on_a);
+    EXPECT_EQ(told.on_b, exact.on_b);
+  }
+  EXPECT_GT(asked, 2000);
+  EXPECT_GT(edges, 200);
+}
+
+/// Boxes on a grid of eighths, turned by right angles: their difference is a box of eighths, whose nearest facet is
+/// found, or told to be tied, in whole numbers.
+TEST(AlignedBoxes, TheNearestFacetOrATie) {
+  std::mt19937_64 random(10);
+  std::uniform_int_distribution<int> eighths(1, 8), place(-9, 9), order(0, 5), side(0, 1);
+  const auto half = [&]() -> Vec3 { return Vec3(eighths(random), eighths(random), eighths(random)) / 8; };
+  const auto turn = [&] {
+    Mat3 m = Mat3::Zero();
+    int axes[3] = {0, 1, 2};
+    for (int k = order(random); k > 0; --k) std::next_permutation(axes, axes + 3);
+    for (int k = 0; k < 3; ++k) m(axes[k], k) = side(random) != 0 ? 1 : -1;
+    if (m.determinant() < 0) m.col(0) = -m.col(0);
+    return m;
+  };
+  detail::SupportFaces told, exact;
+  int found = 0, tied = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE(i);
+    const Vec3 half_a = half(), half_b = half();
+    const ConvexPolytope a = *ConvexPolytope::box(half_a), b = *ConvexPolytope::box(half_b);
+    const Pose pose_a = *Pose::from_matrix(turn(), Vec3::Zero());
+    const Pose pose_b = *Pose::from_matrix(turn(), Vec3(place(random), place(random), place(random)) / 8);
+    const Vec3 reach = (pose_a.rotation() * half_a).cwiseAbs() + (pose_b.rotation() * half_b).cwiseAbs();
+    const Vec3 sides[2] = {reach + pose_b.translation(), reach - pose_b.translation()};
+    const double least = std::min(sides[0].minCoeff(), sides[1].minCoeff());
+    const auto as_near = (sides[0].array() == least).count() + (sides[1].array() == least).count();
+    const detail::PosedPair pair(a, pose_a, b, pose_b);
+    detail::ProvenFacet nearest;
+    const detail::AlignedBoxes answer = detail::nearest_of_aligned_boxes(pair, nearest, told);
+    if (answer != detail::AlignedBoxes::found) {
+      EXPECT_EQ(answer, detail::AlignedBoxes::tied);
+      EXPECT_TRUE(least <= 0 || as_near > 1);
+      ++tied;
+      continue;
+    }
+    ++found;
+    EXPECT_EQ(as_near, 1);
+    EXPECT_EQ(nearest.plane.distance.hi, least);
+    EXPECT_EQ(nearest.plane.distance.lo, 0);
+    const detail::FacetPlane plane = detail::measure_facet(pair, nearest.facet);
+    EXPECT_EQ(plane.axis, nearest.plane.axis);
+    EXPECT_EQ(plane.distance.hi, least);
+    ASSERT_TRUE(detail::collect_faces(pair, nearest.facet, plane, exact));
+    EXPECT_EQ(told.on_a, exact.on_a);
+    EXPECT_EQ(told.on_b, exact.on_b);
+  }
+  EXPECT_GT(found, 500);
+  EXPECT_GT(tied, 500);
+}
+
+/// A turn that is not of right angles, and an offset that no double holds.
+TEST(AlignedBoxes, OtherPairs) {
+  const ConvexPolytope box = *ConvexPolytope::box({1, 2, 3});
+  detail::SupportFaces faces;
+  detail::ProvenFacet nearest;
+  const Pose turned = *Pose::from_matrix(Eigen::AngleAxisd(0.1, Vec3::UnitX()).matrix(), Vec3::Zero());
+  const Pose wide = *Pose::from_matrix(Mat3::Identity(), {1, 0, 0});
+  const Pose fine = *Pose::from_matrix(Mat3::Identity(), {0x1p-60, 0, 0});
+  for (const auto& [pose_a, pose_b] : {std::pair{Pose(), turned}, std::pair{wide, fine}}) {
+    const detail::PosedPair pair(box, pose_a, box, pose_b);
+    EXPECT_EQ(detail::nearest_of_aligned_boxes(pair, nearest, faces), detail::AlignedBoxes::other);
+  }
 }
 
 TEST(BoxFrame, OnlyBoxesAlongTheirOwnAxes) {

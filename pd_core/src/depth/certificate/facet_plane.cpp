@@ -1,6 +1,7 @@
 #include "depth/certificate/facet_plane.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 #include "numeric/fused_products.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -51,29 +52,68 @@ PD_INLINE void measure_plane(const TurnedSum& of_u, const TurnedSum& of_v, const
   store(out.over_length, n);
 }
 
-/// Aligned boxes: where the edges lie in a coordinate plane, exactly, and the point's height over it is exact. No other
-/// sign than the normal's need be known.
-void snap_to_axis(const PosedPair& pair, const FacetOfDifference& facet, FacetPlane& plane) {
-  const DoubleDouble unit[3] = {plane.unit.x, plane.unit.y, plane.unit.z};
+/// Where the facet's edges lie in the coordinate plane across axis k, exactly, and the point's height over it is exact:
+/// sets the plane. No other sign than the normal's need be known.
+bool set_axis(const PosedPair& pair, const FacetOfDifference& facet, int k, double sign, FacetPlane& plane) {
+  DoubleDouble u, v, p;
+  if (!pair.exact_coordinate(facet.u, k, u) || u.hi != 0) return false;
+  if (!pair.exact_coordinate(facet.v, k, v) || v.hi != 0) return false;
+  if (!pair.exact_coordinate(facet.point(), k, p)) return false;
+  plane = plane_across_axis(k, sign, p);
+  return true;
+}
+
+/// Aligned boxes, before anything is measured.
+enum class Alignment : std::uint8_t { none, found, open };
+Alignment align_with_axis(const PosedPair& pair, const FacetOfDifference& facet, FacetPlane& plane) {
+  const Vec3 u = pair.approximate(facet.u), v = pair.approximate(facet.v);
+  const double e = pair.vector_error();
   for (int k = 0; k < 3; ++k) {
-    if (!(std::abs(unit[k].hi) > 0.5)) continue;
-    DoubleDouble u, v, p;
-    if (!pair.exact_coordinate(facet.u, k, u) || u.hi != 0) return;
-    if (!pair.exact_coordinate(facet.v, k, v) || v.hi != 0) return;
-    if (!pair.exact_coordinate(facet.point(), k, p)) return;
-    const double sign = unit[k].hi > 0 ? 1 : -1;
-    plane.unit = {{k == 0 ? sign : 0, 0}, {k == 1 ? sign : 0, 0}, {k == 2 ? sign : 0, 0}};
-    plane.distance = sign > 0 ? p : -p;
-    plane.unit_error = plane.distance_error = 0;
-    plane.axis = k;
+    // What is zero is computed as no more than its error.
+    if (std::abs(u[k]) > e || std::abs(v[k]) > e) continue;
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const double normal = u[i] * v[j] - u[j] * v[i];
+    // The errors of the factors, of two products and of a difference.
+    const double su = std::abs(u[i]) + std::abs(u[j]) + 2 * e, sv = std::abs(v[i]) + std::abs(v[j]) + 2 * e;
+    const double error = (e * (su + sv) + 4 * kUnitRoundoff * su * sv) * (1 + 16 * kUnitRoundoff) + 0x1p-900;
+    if (!(std::abs(normal) > error)) return Alignment::open;
+    return set_axis(pair, facet, k, normal > 0 ? 1 : -1, plane) ? Alignment::found : Alignment::open;
+  }
+  return Alignment::none;
+}
+
+/// The same once the normal is measured.
+void snap_to_axis(const PosedPair& pair, const FacetOfDifference& facet, FacetPlane& plane) {
+  const double unit[3] = {plane.unit.x.hi, plane.unit.y.hi, plane.unit.z.hi};
+  for (int k = 0; k < 3; ++k) {
+    if (!(std::abs(unit[k]) > 0.5)) continue;
+    set_axis(pair, facet, k, unit[k] > 0 ? 1 : -1, plane);
     return;
   }
 }
 
 }  // namespace
 
+FacetPlane plane_across_axis(int axis, double sign, const DoubleDouble& coordinate) {
+  FacetPlane plane;
+  plane.unit = {{axis == 0 ? sign : 0, 0}, {axis == 1 ? sign : 0, 0}, {axis == 2 ? sign : 0, 0}};
+  plane.distance = sign > 0 ? coordinate : -coordinate;
+  plane.distance_error = 0;
+  plane.axis = axis;
+  return plane;
+}
+
+bool set_axis_plane(const PosedPair& pair, const PairVector& point, int axis, FacetPlane& plane) {
+  DoubleDouble height;
+  if (!pair.exact_coordinate(point, axis, height) || height.hi == 0) return false;
+  plane = plane_across_axis(axis, height.hi > 0 ? 1 : -1, height);
+  return true;
+}
+
 FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet) {
   FacetPlane plane;
+  const Alignment aligned = pair.doubles_rotate() ? align_with_axis(pair, facet, plane) : Alignment::none;
+  if (aligned == Alignment::found) return plane;
   const TurnedSum of_u = pair.turned(facet.u), of_v = pair.turned(facet.v), of_p = pair.turned(facet.point());
   PlaneParts found;
   with_products([&](auto products)
@@ -95,7 +135,7 @@ FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet) 
   plane.distance_error =
       ((product + 2 * normal_error * magnitude) / least + 64 * kUdd * magnitude) * (1 + 32 * kUnitRoundoff) + 0x1p-900;
   plane.unit_error = (3 * normal_error / least + 64 * kUdd) * (1 + 16 * kUnitRoundoff);
-  if (pair.doubles_rotate()) snap_to_axis(pair, facet, plane);
+  if (aligned == Alignment::open) snap_to_axis(pair, facet, plane);
   return plane;
 }
 

@@ -26,6 +26,13 @@ struct FacetPlane {
   [[nodiscard]] bool known() const { return distance_error < std::numeric_limits<double>::infinity(); }
 };
 
+/// The plane across a coordinate axis with the normal `sign` times the axis and that exact coordinate.
+[[nodiscard]] FacetPlane plane_across_axis(int axis, double sign, const DoubleDouble& coordinate);
+
+/// The plane across a coordinate axis with that point of P in it, where its height is exact: of the two normals the one
+/// along which the point lies, which must not be 0.
+[[nodiscard]] bool set_axis_plane(const PosedPair& pair, const PairVector& point, int axis, FacetPlane& plane);
+
 /// About 1200 instructions with fused products; no allocation.
 [[nodiscard]] FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet);
 

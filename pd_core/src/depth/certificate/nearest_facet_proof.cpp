@@ -22,8 +22,34 @@ bool faces_origin(const PosedPair& pair, const FacetOfDifference& facet) {
   return pair.approximate(facet.u).cross(pair.approximate(facet.v)).dot(pair.approximate(facet.point())) < 0;
 }
 
+FacetOfDifference by_points(const SurfaceCorners& t) {
+  const VertexPair &p = t.v[0], &q = t.v[1], &r = t.v[2];
+  return {{Feature::Kind::vertex, p.a, -1},
+          {Feature::Kind::vertex, p.b, -1},
+          PairVector::difference(p.a, p.b, q.a, q.b),
+          PairVector::difference(p.a, p.b, r.a, r.b),
+          p.a,
+          p.b};
+}
+
 bool nearer_than(const FacetPlane& plane, double beyond) {
   return to_double(plane.distance) + plane.distance_error < beyond;
+}
+
+/// The plane of a triangle across a coordinate axis, told by stored coordinates: its three vertices of A, and those of
+/// B, agree in one that is known exactly.
+bool classify_across_axis(const PosedPair& pair, const SurfaceCorners& t, ProvenFacet& found) {
+  if (!pair.has_own_coordinates()) return false;
+  const VertexPair &p = t.v[0], &q = t.v[1], &r = t.v[2];
+  for (int k = 0; k < 3; ++k) {
+    const double* const a = pair.own_coordinate_a(k).x;
+    const double* const b = pair.own_coordinate_b(k).x;
+    if (a[p.a] != a[q.a] || a[p.a] != a[r.a] || b[p.b] != b[q.b] || b[p.b] != b[r.b]) continue;
+    if (!set_axis_plane(pair, PairVector::point(p.a, p.b), k, found.plane)) return false;
+    found.facet = by_points(t);
+    return true;
+  }
+  return false;
 }
 
 /// The plane of a triangle's three points as that of a facet of A, a facet of B or two edges, which other decisions can
@@ -31,6 +57,7 @@ bool nearer_than(const FacetPlane& plane, double beyond) {
 ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
   const VertexPair &p = t.v[0], &q = t.v[1], &r = t.v[2];
   ProvenFacet found;
+  if (classify_across_axis(pair, t, found)) return found;
   const auto measured = [&](const FacetOfDifference& facet) {
     found = {facet, measure_facet(pair, facet)};
     return positive(found.plane);
@@ -60,12 +87,7 @@ ProvenFacet classify(const PosedPair& pair, const SurfaceCorners& t) {
       if (measured(FacetOfDifference::from_edges(a1, a0, b0, b1))) return found;
     }
   }
-  measured({{Feature::Kind::vertex, p.a, -1},
-            {Feature::Kind::vertex, p.b, -1},
-            PairVector::difference(p.a, p.b, q.a, q.b),
-            PairVector::difference(p.a, p.b, r.a, r.b),
-            p.a,
-            p.b});
+  measured(by_points(t));
   return found;
 }
 
@@ -113,11 +135,17 @@ std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<
   }
 }
 
-std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet, double beyond,
-                                       SupportFaces& faces) {
+std::optional<ProvenFacet> prove_supporting_facet(const PosedPair& pair, const FacetOfDifference& facet,
+                                                  double beyond) {
   const ProvenFacet found{facet, measure_facet(pair, facet)};
   if (!positive(found.plane) || !nearer_than(found.plane, beyond)) return std::nullopt;
-  if (!collect_faces(pair, facet, found.plane, faces)) return std::nullopt;
+  return found;
+}
+
+std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet, double beyond,
+                                       SupportFaces& faces) {
+  const std::optional<ProvenFacet> found = prove_supporting_facet(pair, facet, beyond);
+  if (!found || !collect_faces(pair, facet, found->plane, faces)) return std::nullopt;
   return found;
 }
 

@@ -43,6 +43,10 @@ struct ProvenFacet {
 [[nodiscard]] std::optional<ProvenFacet> prove_facet(const PosedPair& pair, const FacetOfDifference& facet,
                                                      double beyond, SupportFaces& faces);
 
+/// The same where the facet's plane is known to support P.
+[[nodiscard]] std::optional<ProvenFacet> prove_supporting_facet(const PosedPair& pair, const FacetOfDifference& facet,
+                                                                double beyond);
+
 /// Cores that are apart: the plane through P's point nearest to the origin, normal to it (distance negative), and that
 /// point as a combination of vertices of P.
 struct ProvenSeparation {

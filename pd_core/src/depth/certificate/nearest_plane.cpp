@@ -57,7 +57,7 @@ void Separation::measure(const PosedPair& pair, const FacetPlane& plane, double 
       return;
     }
   }
-  const double scale = std::ldexp(1.0, pair.scale_exponent());
+  const double scale = pair.outwards();
   depth_ = scaled(plane.distance, scale) + margins_;
   // The sum's own error is relative to its greater part, which the other may cancel.
   const double largest = std::max(std::abs(plane.distance.hi) * scale, margins_.hi);

@@ -62,6 +62,28 @@ class LocalHeights {
   double largest_error_ = 0;
 };
 
+/// Over a plane across a coordinate axis, where a body's vertices rise as one of their own coordinates does, exactly.
+class CoordinateHeights {
+ public:
+  CoordinateHeights() = default;
+  /// @param sign  of the plane's normal along its axis.
+  CoordinateHeights(const PosedPair::OwnCoordinate& own, double sign)
+      : height_(own.x), reversed_(own.sign * sign < 0) {}
+
+  [[nodiscard]] bool known() const { return height_ != nullptr; }
+  [[nodiscard]] int rise(int from, int to) const {
+    const int sign = (height_[to] > height_[from]) - (height_[to] < height_[from]);
+    return reversed_ ? -sign : sign;
+  }
+
+ private:
+  const double* height_ = nullptr;
+  bool reversed_ = false;
+};
+
+/// Of more vertices the edges of those in the plane are asked.
+constexpr int kMostScanned = 64;
+
 /// Signs of <edge, normal of the plane>, exact, doubles first.
 class AlongNormal {
  public:
@@ -73,15 +95,22 @@ class AlongNormal {
     relative_ = plane.unit_error + 8 * kUnitRoundoff;
     absolute_ = 2 * pair.vector_error() * (1 + 16 * kUnitRoundoff);
     if (pair.scale_exponent() != 0) return;
+    if (axis_ >= 0) {
+      along_a_ = CoordinateHeights(pair.own_coordinate_a(axis_), unit_[axis_]);
+      along_b_ = CoordinateHeights(pair.own_coordinate_b(axis_), unit_[axis_]);
+      if (along_a_.known() && along_b_.known()) return;
+    }
     of_a_.emplace(pair.a(), pair.rotation_a(), unit_, plane.unit_error);
     of_b_.emplace(pair.b(), pair.rotation_b(), unit_, plane.unit_error);
   }
 
   [[nodiscard]] int edge_a(int from, int to) const {
+    if (along_a_.known()) return along_a_.rise(from, to);
     const int told = of_a_ ? of_a_->rise(from, to) : 0;
     return told != 0 ? told : (*this)(PairVector::edge_a(from, to));
   }
   [[nodiscard]] int edge_b(int from, int to) const {
+    if (along_b_.known()) return along_b_.rise(from, to);
     const int told = of_b_ ? of_b_->rise(from, to) : 0;
     return told != 0 ? told : (*this)(PairVector::edge_b(from, to));
   }
@@ -109,6 +138,8 @@ class AlongNormal {
   Vec3 unit_ = Vec3::Zero();
   double relative_ = 0;
   double absolute_ = 0;
+  CoordinateHeights along_a_;
+  CoordinateHeights along_b_;
   std::optional<LocalHeights> of_a_;
   std::optional<LocalHeights> of_b_;
 };
@@ -154,6 +185,18 @@ bool collect(const ConvexPolytope& body, const Feature& feature, Rises&& rises, 
   return complete(body, rises, face);
 }
 
+/// All vertices as far along a coordinate as one of them. False where others are farther.
+bool scan(const ConvexPolytope& body, const PosedPair::OwnCoordinate& own, double sign, int known, SupportFace& face) {
+  face.clear();
+  const double upwards = own.sign * sign, level = upwards * own.x[known];
+  for (int v = 0; v < body.num_vertices(); ++v) {
+    const double height = upwards * own.x[v];
+    if (height > level) return false;
+    if (height == level) face.push_back(v);
+  }
+  return true;
+}
+
 Feature feature_of(const ConvexPolytope& body, const SupportFace& face, const Mat3& rotation, const Vec3& outward) {
   if (face.size() == 1) return {Feature::Kind::vertex, face[0], -1};
   if (face.size() == 2) return {Feature::Kind::edge, face[0], face[1]};
@@ -178,6 +221,12 @@ int facet_holding(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, 
 
 bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
                    SupportFaces& faces) {
+  if (plane.axis >= 0 && pair.has_own_coordinates() &&
+      std::max(pair.a().num_vertices(), pair.b().num_vertices()) <= kMostScanned) {
+    const double sign = to_double(plane.axis == 0 ? plane.unit.x : plane.axis == 1 ? plane.unit.y : plane.unit.z);
+    return scan(pair.b(), pair.own_coordinate_b(plane.axis), sign, facet.b, faces.on_b) &&
+           scan(pair.a(), pair.own_coordinate_a(plane.axis), -sign, facet.a, faces.on_a);
+  }
   const FacetSign sign(pair, facet);
   const AlongNormal along(pair, plane, sign);
   return collect(

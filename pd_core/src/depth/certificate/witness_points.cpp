@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "depth/distance/gjk.hpp"
+#include "numeric/double_double_lanes.hpp"
 #include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
@@ -15,7 +15,7 @@ namespace {
 /// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
 /// be large and cancel.
 Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& first, const Vec3& rest) {
-  const double scale = pair.scale_exponent() == 0 ? 1 : std::ldexp(1.0, pair.scale_exponent());
+  const double scale = pair.outwards();
   const auto coordinate = [&](double t, const DoubleDouble& f, double r) {
     const DoubleDouble local = r == 0 ? f : f + DoubleDouble{r, 0};
     return to_double(DoubleDouble{t, 0} + DoubleDouble{local.hi * scale, local.lo * scale});
@@ -25,34 +25,68 @@ Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& f
 }
 
 /// -R_A v.
-Vec3DD negated_vertex_a(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd({v, -1, -1, -1, false}); }
+PairVector opposite_of_a(std::int32_t v) { return {v, -1, -1, -1, false}; }
+Vec3DD negated_vertex_a(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd(opposite_of_a(v)); }
 /// R_B v.
-Vec3DD vertex_b(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd({-1, -1, v, -1, false}); }
+PairVector place_of_b(std::int32_t v) { return {-1, -1, v, -1, false}; }
+Vec3DD vertex_b(const PosedPair& pair, std::int32_t v) { return pair.approximate_dd(place_of_b(v)); }
 
 /// The last few rotated vertices of a body: a search comes back to them, and each takes nine products.
 class RecentVertices {
  public:
-  explicit RecentVertices(const PosedPair& pair, Vec3DD (*rotated)(const PosedPair&, std::int32_t))
-      : pair_(pair), rotated_(rotated) {}
+  /// @param vertex  of the body, as a vector of the pair.
+  RecentVertices(const PosedPair& pair, PairVector (*vertex)(std::int32_t)) : pair_(pair), vertex_(vertex) {}
 
-  const Vec3DD& operator()(std::int32_t v) {
+  const FourDoubleDoubles& operator()(std::int32_t v) {
     for (int i = 0; i < kMost; ++i) {
       if (ids_[i] == v) return points_[i];
     }
     const int i = next_;
     next_ = (next_ + 1) % kMost;
     ids_[i] = v;
-    return points_[i] = rotated_(pair_, v);
+    pair_.approximate_dd(vertex_(v), points_[i]);
+    return points_[i];
   }
 
  private:
   static constexpr int kMost = 4;
 
   const PosedPair& pair_;
-  Vec3DD (*rotated_)(const PosedPair&, std::int32_t);
+  PairVector (*vertex_)(std::int32_t);
   std::int32_t ids_[kMost] = {-1, -1, -1, -1};
-  Vec3DD points_[kMost];
+  FourDoubleDoubles points_[kMost];
   int next_ = 0;
+};
+
+/// A face's vertices as seen from the first of them, turned once: every step of a search asks for the farthest.
+class FaceEdges {
+ public:
+  /// @param along  turns the edge from the face's first vertex to another one.
+  template <class Along>
+  FaceEdges(const SupportFace& face, const Along& along) : face_(face), kept_(std::min(face.size(), kMost)) {
+    for (std::size_t i = 1; i < kept_; ++i) edges_[i] = along(face[i]);
+  }
+
+  /// The first one of those farthest along `direction`.
+  template <class Along>
+  [[nodiscard]] std::int32_t farthest(const Vec3& direction, const Along& along) const {
+    std::size_t found = 0;
+    double most = 0;
+    for (std::size_t i = 1; i < face_.size(); ++i) {
+      const double height = (i < kept_ ? edges_[i] : along(face_[i])).dot(direction);
+      if (!(most < height)) continue;
+      most = height;
+      found = i;
+    }
+    return face_[found];
+  }
+
+ private:
+  static constexpr std::size_t kMost = 32;  ///< further ones are turned again
+
+  const SupportFace& face_;
+  std::size_t kept_;
+  Vec3 edges_[kMost];  ///< but the first
 };
 
 Vec3 point_of_a(const PosedPair& pair, const VertexPair* ids, const double* weights, int count, const Vec3DD& negated) {
@@ -94,7 +128,7 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
                                       const Vec3& translation) {
   const SupportFace& on_a = faces.on_a;
   const SupportFace& on_b = faces.on_b;
-  const Vec3 target = translation * std::ldexp(1.0, -pair.scale_exponent());
+  const Vec3 target = translation * pair.inwards();
   // A vertex is where it is, whatever it lies on.
   const VertexPair first{on_a.front(), on_b.front()};
   const double whole = 1;
@@ -110,27 +144,24 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
     const Vec3 a = point_on_edge_of_a(pair, faces, target);
     return {a, a + translation};
   }
-  RecentVertices negated_a(pair, negated_vertex_a), of_b(pair, vertex_b);
-  const Vec3DD offset = pair.approximate_dd({-1, -1, -1, -1, true});
+  RecentVertices negated_a(pair, opposite_of_a), of_b(pair, place_of_b);
+  FourDoubleDoubles offset;
+  pair.approximate_dd({-1, -1, -1, -1, true}, offset);
   const auto difference = [&](std::int32_t a, std::int32_t b) {
-    const Vec3DD p = of_b(b) + negated_a(a) + offset;  // local coordinates may be large and cancel
-    const Vec3 x = high(p - Vec3DD{{target.x(), 0}, {target.y(), 0}, {target.z(), 0}});
+    // Local coordinates may be large and cancel.
+    DoubleDoubleLanes sum, more;
+    load(sum, of_b(b));
+    load(more, negated_a(a));
+    add(sum, sum, more);
+    load(more, offset);
+    add(sum, sum, more);
+    subtract(sum, sum, DoubleDoubleLanes{{target.x(), target.y(), target.z(), 0}, {0, 0, 0, 0}});
+    const Vec3 x(sum.hi[0], sum.hi[1], sum.hi[2]);
     return DifferenceVertex{x - x.dot(unit) * unit, a, b};
-  };
-  const auto extreme = [&](const SupportFace& face, const Vec3& direction, const auto& value) {
-    std::int32_t farthest = face.front();
-    if (face.size() == 1) return farthest;
-    double most = value(farthest).dot(direction);
-    for (const std::int32_t v : std::span(face).subspan(1)) {
-      const double height = value(v).dot(direction);
-      if (!(most < height)) continue;
-      most = height;
-      farthest = v;
-    }
-    return farthest;
   };
   const auto edge_b = [&](std::int32_t v) { return pair.approximate(PairVector::edge_b(on_b.front(), v)); };
   const auto edge_a = [&](std::int32_t v) { return Vec3(-pair.approximate(PairVector::edge_a(on_a.front(), v))); };
+  const FaceEdges edges_a(on_a, edge_a), edges_b(on_b, edge_b);
 
   DifferenceVertex simplex[4] = {difference(on_a.front(), on_b.front())};
   double weights[4] = {1, 0, 0, 0};
@@ -142,7 +173,7 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
     double next_weights[4];
     int next_count = count;
     std::copy(simplex, simplex + count, next);
-    next[next_count++] = difference(extreme(on_a, -point, edge_a), extreme(on_b, -point, edge_b));
+    next[next_count++] = difference(edges_a.farthest(-point, edge_a), edges_b.farthest(-point, edge_b));
     point = closest_point_on_simplex(next, next_count, next_weights, true);
     if (!(point.squaredNorm() < best)) break;
     count = next_count;
@@ -151,7 +182,7 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
   }
   VertexPair ids[3];
   for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
-  const Vec3 a = point_of_a(pair, ids, weights, count, negated_a(ids[0].a));
+  const Vec3 a = point_of_a(pair, ids, weights, count, vector_of(negated_a(ids[0].a)));
   return {a, a + translation};
 }
 

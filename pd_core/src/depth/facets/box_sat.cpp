@@ -44,7 +44,7 @@ class BoxSat : public BoxPair {
     return out;
   }
 
-  BoxNearFacets near_facets() const {
+  BoxNearFacets near_facets(SupportFaces& faces) const {
     BoxNearFacets out;
     const double rounding = 20 * kUnitRoundoff * reach_;  // as in `solve`
     const double c[3] = {centre_.x(), centre_.y(), centre_.z()};
@@ -57,20 +57,23 @@ class BoxSat : public BoxPair {
     if (!(keys.key[nearest] > 0)) return out;
     const double upper = std::sqrt(keys.key[nearest]) + rounding;
     const double farther = (upper + rounding) * (1 + 0x1p-50);
+    const double far_key = farther * farther;
     out.beyond = std::numeric_limits<double>::infinity();
     add_near(nearest, keys, upper, out);
     for (int axis = 0; axis < kBoxAxisSlots; ++axis) {
       if (axis % 4 == 3 || axis == nearest) continue;
-      const bool left_out = !(keys.lower_key[axis] < std::numeric_limits<double>::infinity());
-      if (left_out && axis >= 8) {
+      const double key = keys.lower_key[axis];
+      const bool left_out = !(key < std::numeric_limits<double>::infinity());
+      if (key > far_key && !left_out) {
+        out.beyond = upper;
+      } else if (left_out && axis >= 8) {
         out.parallel |= 1U << (3 * (axis / 4 - 2) + axis % 4);
-      } else if (!left_out && keys.lower_key[axis] > farther * farther) {
-        out.beyond = std::min(out.beyond, upper);
       } else if (left_out || !add_near(axis, keys, upper, out)) {
         out.count = 0;
         return out;
       }
     }
+    if (out.count == 1 && out.parallel == 0) out.only = supporting_facet(nearest, out.near[0].v[0], faces);
     return out;
   }
 
@@ -138,6 +141,40 @@ class BoxSat : public BoxPair {
     const int first = bit(lane), second = bit((lane + 1) % 3);
     if (block == 0) return {{{va, vb}, {va ^ first, vb}, {va ^ second, vb}}};
     return {{{va, vb}, {va, vb ^ first}, {va, vb ^ second}}};
+  }
+
+  /// Whether generators that do not lie in the plane of the axis rise along its normal n for certain: n, of its length,
+  /// errs by 10u of |u| |v|, a generator by 3u, their product by 4u.
+  static bool rises(const BoxGenerators& of, int but, const Vec3& n, double turn) {
+    for (int k = 0; k < 3; ++k) {
+      if ((but & bit(k)) != 0) continue;
+      const Vec3 g = generator(of, k);
+      if (!(std::abs(g.dot(n)) > turn * of.length[k])) return false;
+    }
+    return true;
+  }
+  /// The facet of the axis at that corner, and the faces in its plane, where it supports P for certain.
+  std::optional<FacetOfDifference> supporting_facet(int axis, const VertexPair& corner, SupportFaces& faces) const {
+    Vec3 u, v;
+    spanning(of_a_, of_b_, axis, u, v);
+    const Vec3 n = u.cross(v);
+    const double turn = 2 * kBoxTurn * u.norm() * v.norm();
+    const int block = axis / 4, lane = axis % 4;
+    const int across = (lane + 2) % 3;
+    const int plane = 7 & ~bit(across);
+    const int flat_a = block == 0 ? plane : block == 1 ? 0 : bit(block - 2);
+    const int flat_b = block == 1 ? plane : block == 0 ? 0 : bit(lane);
+    if (!rises(of_a_, flat_a, n, turn) || !rises(of_b_, flat_b, n, turn)) return std::nullopt;
+    collect_box_face(flat_a, corner.a, faces.on_a);
+    collect_box_face(flat_b, corner.b, faces.on_b);
+    const bool high_a = (corner.a & bit(across)) != 0, high_b = (corner.b & bit(across)) != 0;
+    if (block == 0) return FacetOfDifference::from_facet_of_a(a_, facet_of_box(a_, across, high_a), corner.b);
+    if (block == 1) return FacetOfDifference::from_facet_of_b(b_, facet_of_box(b_, across, high_b), corner.a);
+    // Of the edges as they leave the corner, that of B times that of A points outwards, or back.
+    const bool along_a = (corner.a & flat_a) == 0, along_b = (corner.b & flat_b) == 0;
+    const bool outwards = (n.dot(centre_) > 0) == (along_a == along_b);
+    const int a0 = corner.a ^ (outwards ? 0 : flat_a);
+    return FacetOfDifference::from_edges(a0, a0 ^ flat_a, corner.b, corner.b ^ flat_b);
   }
 
   static double signed_root(double key) { return std::copysign(std::sqrt(std::abs(key)), key); }
@@ -251,6 +288,13 @@ int facet_of_box(const ConvexPolytope& p, int axis, bool positive) {
   return f;
 }
 
+void collect_box_face(int flat, int vertex, SupportFace& face) {
+  face.clear();
+  for (int v = 0; v < 8; ++v) {
+    if (((v ^ vertex) & ~flat) == 0) face.push_back(v);
+  }
+}
+
 BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
                             const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
                             const BracketWidth& width) {
@@ -258,8 +302,9 @@ BoxPairDepth box_pair_depth(const ConvexPolytope& a, const BoxFrame& frame_a, co
 }
 
 BoxNearFacets box_near_facets(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
-                              const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b) {
-  return BoxSat(a, frame_a, pose_a, b, frame_b, pose_b).near_facets();
+                              const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
+                              SupportFaces& faces) {
+  return BoxSat(a, frame_a, pose_a, b, frame_b, pose_b).near_facets(faces);
 }
 
 BoxPairContact box_pair_contact(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,

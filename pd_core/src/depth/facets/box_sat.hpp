@@ -30,6 +30,9 @@ std::optional<BoxFrame> box_frame(const ConvexPolytope& p);
 /// The facet of such a box across an axis, at its upper or lower end.
 int facet_of_box(const ConvexPolytope& p, int axis, bool positive);
 
+/// The vertices of a box that differ from one of them in bits of `flat` alone; 4 for x, 2 for y, 1 for z.
+void collect_box_face(int flat, int vertex, SupportFace& face);
+
 enum class BoxPairStatus : std::uint8_t { certified, separated, undecided };
 
 struct BoxPairDepth {
@@ -76,13 +79,16 @@ struct BoxNearFacets {
   int count = 0;                           ///< 0: the class is in doubt, or there are more
   std::array<SurfaceCorners, kMost> near;  ///< a triangle in each, the nearest first
   double beyond = 0;                       ///< what no other facet is nearer than, for certain
+  std::optional<FacetOfDifference> only;   ///< the one facet of `near`, where its plane supports P for certain
   /// Bit 3 i + j: edge i of A and edge j of B are parallel up to rounding. If they are not exactly, their facets are
   /// not among the above.
   unsigned parallel = 0;
 };
 
 /// Requires extents between 2^-100 and 2^100. Constant time, no allocation.
+/// @param faces  filled with the faces in the plane of `only`.
 BoxNearFacets box_near_facets(const ConvexPolytope& a, const BoxFrame& frame_a, const Pose& pose_a,
-                              const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b);
+                              const ConvexPolytope& b, const BoxFrame& frame_b, const Pose& pose_b,
+                              SupportFaces& faces);
 
 }  // namespace pd::detail

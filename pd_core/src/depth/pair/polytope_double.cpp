@@ -12,6 +12,7 @@
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
 #include "numeric/unit_roundoff.hpp"
+#include "shape/small_gauss_map.hpp"
 
 namespace pd::detail {
 
@@ -84,14 +85,32 @@ void set_answer(const PolytopeQuery& query, const NearFacets& found, Penetration
   }
 }
 
-/// Whether the axes of one body run along those of the other, about: what was built along its axes then meets facet on
-/// facet, which leaves solids of few vertices to the surface.
+/// Whether a solid of few vertices has facets across all three of its axes.
+bool built_along_axes(const SmallGaussMap& map) {
+  bool across_x = false, across_y = false, across_z = false;
+  for (int f = 0; f < map.facets; ++f) {
+    across_x = across_x || std::abs(map.nx[f]) == 1;
+    across_y = across_y || std::abs(map.ny[f]) == 1;
+    across_z = across_z || std::abs(map.nz[f]) == 1;
+  }
+  return across_x && across_y && across_z;
+}
+
+/// Whether the axes of one body run along those of the other, about.
 bool along_same_axes(const Mat3& a, const Mat3& b) {
   const auto along = [&](int i, int j) {
     const double cosine = std::abs(a.col(i).dot(b.col(j)));
     return std::min(cosine, std::abs(1 - cosine)) < 0x1p-20;
   };
   return along(0, 0) && along(1, 1) && along(0, 1) && along(1, 0);
+}
+
+/// Whether many facets of two solids of few vertices meet in common planes, which leaves them to the surface: what was
+/// built along axes that they share, and copies of one shape that are turned alike.
+bool many_flush_facets(const PolytopePair& pair, const PolytopeDifference& difference) {
+  if (!along_same_axes(difference.rotation_a(), difference.rotation_b())) return false;
+  const SmallGaussMap &a = small_gauss_map(*pair.a), &b = small_gauss_map(*pair.b);
+  return (built_along_axes(a) && built_along_axes(b)) || std::equal(a.nx, a.nx + a.facets, b.nx);
 }
 
 /// Whether one support tells that the bodies are apart, along the line between their frames' origins. Their distance is
@@ -167,7 +186,7 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.for_contact() || query.settings.method != Method::automatic) return false;
   if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
-  if (along_same_axes(query.difference.rotation_a(), query.difference.rotation_b())) return false;
+  if (many_flush_facets(query.pair, query.difference)) return false;
   if (query.bracket == Bracket::tightest && apart_between_places(query.with_supports())) return false;
   const SmallSatDepth found =
       small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());

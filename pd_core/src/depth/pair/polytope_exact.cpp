@@ -8,6 +8,7 @@
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
+#include "depth/facets/aligned_boxes.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
@@ -63,16 +64,20 @@ bool answer_from_proof(PolytopeQuery& query, const std::optional<ProvenFacet>& p
   return true;
 }
 
+bool answer_boxes_from_proof(PolytopeQuery& query, const std::optional<ProvenFacet>& proven, PenetrationDepth& out) {
+  if (!answer_from_proof(query, proven, out)) return false;
+  out.method = Method::overlay;
+  out.statistics.facets_visited += kBoxAxes;
+  return true;
+}
+
 /// The nearest facet proved among `near`; every other piece of the surface is `beyond` or farther (in the caller's
 /// lengths).
 /// @param first_of_equals  as in `prove_nearest_facet`.
-bool prove_among(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond, bool first_of_equals,
-                 PenetrationDepth& out) {
+std::optional<ProvenFacet> prove_nearest(PolytopeQuery& query, std::span<const SurfaceCorners> near, double beyond,
+                                         bool first_of_equals) {
   const PosedPair& posed = query.exact();
-  return answer_from_proof(query,
-                           prove_nearest_facet(posed, near, std::ldexp(beyond, -posed.scale_exponent()),
-                                               first_of_equals, query.buffers.faces),
-                           out);
+  return prove_nearest_facet(posed, near, beyond * posed.inwards(), first_of_equals, query.buffers.faces);
 }
 
 /// The piece as a facet of P.
@@ -140,7 +145,7 @@ bool answer_by_overlay(PolytopeQuery& query, PenetrationDepth& out, double upper
   const PosedPair& posed = query.exact();
   out.method = Method::overlay;
   const bool exactly = query.bracket == Bracket::tightest;
-  const double scaled_upper = std::ldexp(upper, -posed.scale_exponent());
+  const double scaled_upper = upper * posed.inwards();
   answer_from_facet(query, overlay_depth(posed, query.buffers.overlay, exactly, scaled_upper), out);
   return true;
 }
@@ -162,7 +167,7 @@ bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surfac
     for (const DifferenceVertex& v : query.buffers.surface.vertices) buffers.vertices.push_back({v.a, v.b});
   }
   DecompositionSettings settings;
-  if (surface.lower > 0) settings.upper = std::ldexp(surface.upper, -posed.scale_exponent());
+  if (surface.lower > 0) settings.upper = surface.upper * posed.inwards();
   settings.vertices = buffers.vertices;
   settings.seed = query.settings.seed;
   settings.exactly = query.bracket == Bracket::tightest;
@@ -183,19 +188,27 @@ bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   if (!box_a) return false;
   const std::optional<BoxFrame> box_b = box_frame(*pair.b);
   if (!box_b || !query.within_range()) return false;
-  const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b);
-  if (found.count == 0) return false;
   const PosedPair& posed = query.exact();
+  if (posed.doubles_rotate()) {
+    ProvenFacet nearest;
+    const AlignedBoxes aligned = nearest_of_aligned_boxes(posed, nearest, query.buffers.faces);
+    if (aligned == AlignedBoxes::tied) return false;
+    if (aligned == AlignedBoxes::found) return answer_boxes_from_proof(query, nearest, out);
+  }
+  SupportFaces& faces = query.buffers.faces;
+  const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, faces);
+  if (found.count == 0) return false;
+  if (found.only) {
+    return answer_boxes_from_proof(query, prove_supporting_facet(posed, *found.only, found.beyond * posed.inwards()),
+                                   out);
+  }
   for (int i = 0; i < 9; ++i) {
     if ((found.parallel >> i & 1U) == 0 || (i % 4 == 0 && posed.same_rotation())) continue;
     // Edge k of a box runs from vertex 0 to vertex 4 >> k.
     if (!posed.parallel(PairVector::edge_a(0, 4 >> i / 3), PairVector::edge_b(0, 4 >> i % 3))) return false;
   }
   const auto near = std::span(found.near).first(static_cast<std::size_t>(found.count));
-  if (!prove_among(query, near, found.beyond, false, out)) return false;
-  out.method = Method::overlay;
-  out.statistics.facets_visited += kBoxAxes;
-  return true;
+  return answer_boxes_from_proof(query, prove_nearest(query, near, found.beyond, false), out);
 }
 
 bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
@@ -214,22 +227,22 @@ bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, Penetra
   }
   // An exact expansion from the nearest face would end at its facet, too, of several equally near.
   const bool first_of_equals = surface.status == ExpansionStatus::certified;
-  return prove_among(query, std::span(near).first(count), limit - 2 * error, first_of_equals, out);
+  return answer_from_proof(query,
+                           prove_nearest(query, std::span(near).first(count), limit - 2 * error, first_of_equals), out);
 }
 
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out) {
   const std::vector<SurfaceCorners>& near = query.buffers.near_facets.nearest;
   if (!(beyond > 0) || near.size() > kMaxNearFaces) return false;
-  return prove_among(query, near, beyond, false, out);
+  return answer_from_proof(query, prove_nearest(query, near, beyond, false), out);
 }
 
 bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
   if (!(found.beyond > 0)) return false;
   const PosedPair& posed = query.exact();
-  return answer_from_proof(query,
-                           prove_facet(posed, facet_of(query.pair, posed, found),
-                                       std::ldexp(found.beyond, -posed.scale_exponent()), query.buffers.faces),
-                           out);
+  return answer_from_proof(
+      query,
+      prove_facet(posed, facet_of(query.pair, posed, found), found.beyond * posed.inwards(), query.buffers.faces), out);
 }
 
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {

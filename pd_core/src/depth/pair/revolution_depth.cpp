@@ -146,28 +146,42 @@ class RevolutionSearch {
     }
   }
 
+  /// The core holds the origin: of two facets of V that lie no nearer than P does, the edge's own points show its arc
+  /// to be high enough. So only edges of nearer facets are looked at.
   void look_along_edges(double slack) {
     int touches_left = kMostTouches;
-    for (int h = 0; h < polytope_.num_half_edges(); ++h) {
-      const HalfEdge& edge = polytope_.half_edge(h);
-      if (edge.twin < h) continue;
-      const FacetTouch& left = facets_[static_cast<std::size_t>(edge.facet)];
-      const FacetTouch& right = facets_[static_cast<std::size_t>(polytope_.half_edge(edge.twin).facet)];
-      const double cosine =
-          left.normal[0] * right.normal[0] + left.normal[1] * right.normal[1] + left.normal[2] * right.normal[2];
-      // The one facet's point, as far as it goes across the other.
-      const double left_across_right = right.level + left.rise * cosine + left.shift * right.along;
-      if (std::min(left.height, left_across_right) >= least_.height) continue;
-      const double right_across_left = left.level + right.rise * cosine + right.shift * left.along;
-      if (std::min(right.height, right_across_left) >= least_.height) continue;
-      LeastHeight found = least_;
-      const int end = polytope_.half_edge(edge.twin).origin;
-      const Vec3 along = rotation_ * (polytope_.vertex(end) - polytope_.vertex(edge.origin));
-      EdgeArc arc(core_, point(edge.origin), along, Vec3::Map(left.normal), Vec3::Map(right.normal));
-      floor_ = std::min(floor_, arc.search(slack, touches_left, found));
-      if (found.height < least_.height) take(found, Place::edge, h);
-      if (!(floor_ > 0)) return;
+    const double reach = least_.height;
+    for (int f = 0; f < polytope_.num_facets(); ++f) {
+      if (facets_[static_cast<std::size_t>(f)].level >= reach) continue;
+      const int first = polytope_.facet_half_edge(f);
+      int h = first;
+      do {
+        const HalfEdge& edge = polytope_.half_edge(h);
+        const int beyond = polytope_.half_edge(edge.twin).facet;
+        const bool seen = beyond < f && facets_[static_cast<std::size_t>(beyond)].level < reach;
+        if (!seen) look_along_edge(std::min(h, edge.twin), slack, touches_left);
+        if (!(floor_ > 0)) return;
+        h = edge.next;
+      } while (h != first);
     }
+  }
+
+  void look_along_edge(int h, double slack, int& touches_left) {
+    const HalfEdge &edge = polytope_.half_edge(h), &back = polytope_.half_edge(edge.twin);
+    const FacetTouch& left = facets_[static_cast<std::size_t>(edge.facet)];
+    const FacetTouch& right = facets_[static_cast<std::size_t>(back.facet)];
+    const double cosine =
+        left.normal[0] * right.normal[0] + left.normal[1] * right.normal[1] + left.normal[2] * right.normal[2];
+    // The one facet's point, as far as it goes across the other.
+    const double left_across_right = right.level + left.rise * cosine + left.shift * right.along;
+    if (std::min(left.height, left_across_right) >= least_.height) return;
+    const double right_across_left = left.level + right.rise * cosine + right.shift * left.along;
+    if (std::min(right.height, right_across_left) >= least_.height) return;
+    LeastHeight found = least_;
+    const Vec3 along = rotation_ * (polytope_.vertex(back.origin) - polytope_.vertex(edge.origin));
+    EdgeArc arc(core_, point(edge.origin), along, Vec3::Map(left.normal), Vec3::Map(right.normal));
+    floor_ = std::min(floor_, arc.search(slack, touches_left, found));
+    if (found.height < least_.height) take(found, Place::edge, h);
   }
 
   /// 4. of the file's comment.
