@@ -3,7 +3,8 @@
 ///
 /// pi = min over unit n of h_P(n), and the minimum is at a facet normal of P: a facet of B, a facet of -A, or the cross
 /// product of an edge of each. Any direction gives an upper bound, so that a superset of the candidates does no harm;
-/// doubles with an error bound discard all but the few nearly least ones, which are compared as rationals.
+/// doubles with an error bound discard all but the nearly least ones, quadruple precision with one of its own all but
+/// those that tie to some 2^-100, and these are compared as rationals.
 #pragma once
 
 #include <vector>
@@ -22,10 +23,12 @@ struct Verdict {
   std::vector<Vec3> unit_normals;  ///< the same, unit, rounded
   ExactLength distance;            ///< 0 unless separated; only when asked for
   bool distance_known = false;
+  int compared_exactly = 0;  ///< directions whose heights were compared as rationals, not the first one
 };
 
 struct JudgeSettings {
-  bool distance = true;  ///< find the exact distance of separated bodies
+  bool distance = true;     ///< find the exact distance of separated bodies
+  bool quad_filter = true;  ///< let quadruple precision leave out what is not least; the verdict is the same without
 };
 
 /// Class, depth, all optimal directions, and distance of two posed bodies, exactly.
