@@ -10,23 +10,19 @@ namespace {
 /// What the proof below asks of every coordinate of a point and of the offset, in the filter's units.
 constexpr double kLargest = 4;
 
-/// Error of a support as computed. With u = 2^-113:
-///   n   is brought to a largest component in [1, 2): 1 <= |n| < 2 sqrt 3 < 3.5. Truncated to 113 bits, each component
-///   errs
-///       by less than 2 u of itself, or by 2^-300 where it is flushed: |dn| <= 2.1 u |n| < 7.4 u.
-///   w   a point or the offset, |w| <= 4 sqrt 3 < 7: likewise |dw| <= 2.1 u |w| < 14.8 u.
-///   One dot product: three products and two sums err by <= 3.1 u |w| |n| < 76 u; what w errs, |dw| |n| < 52 u; what n
-///   errs,
-///       |w| |dn| < 52 u: less than 181 u, second orders included.
-///   h   offset + the largest of B's + the largest of -A's: three dot products, 543 u, each of them at most 24.5, and
-///   two
-///       sums of at most 49 and 73.5: 122.5 u more. The largest of values that err by 181 u errs by no more than that.
+/// Error of a support as computed, with u = 2^-113.
+/// - n is brought to a largest component in [1, 2), so that 1 <= |n| < 2 sqrt 3 < 3.5. Truncated to 113 bits each
+///   component errs by less than 2 u of itself, or by 2^-300 where it is flushed: |dn| <= 2.1 u |n| < 7.4 u.
+/// - w is a point or the offset, |w| <= 4 sqrt 3 < 7; likewise |dw| <= 2.1 u |w| < 14.8 u.
+/// - A dot product: its three products and two sums err by 3.1 u |w| |n| < 76 u, what w errs costs |dw| |n| < 52 u, what
+///   n errs |w| |dn| < 52 u: less than 181 u, second orders included. The largest of several errs by no more.
+/// - h is a sum of three of them, 543 u, each below 24.5, whose sums, below 49 and 73.5, are rounded: 123 u more.
 /// Less than 666 u.
 constexpr double kSupportError = 0x1p-103;  // 1024 u
 
-/// |n|^2 as computed: 3.1 u of itself for the roundings, twice 2.1 u for what n errs. The quotient of squares: at most
-/// one u each for h -+ error, its square (twice that and one more), the quotient and the last product. Less than 7.4 u
-/// + 5 u.
+/// Relative error of the bounds but for that: |n|^2 as computed errs by 3.1 u for its roundings and twice 2.1 u for what
+/// n errs; h -+ the error by u, its square by twice that and u, the quotient and the last product by u each.
+/// Less than 13 u.
 constexpr double kRatioError = 0x1p-108;  // 32 u
 
 }  // namespace
