@@ -52,10 +52,10 @@ int compare(const Quad& bound, const Integer& h, const IVec& n, int unit_exponen
 /// Directions of P's facets and others: cross products of differences of the points.
 std::vector<IVec> directions(const ExactPair& pair) {
   std::vector<IVec> differences;
-  for (int i = 1; i < std::min<int>(4, static_cast<int>(pair.a().exact.size())); ++i) {
+  for (int i = 1; i < std::min<int>(6, static_cast<int>(pair.a().exact.size())); ++i) {
     differences.push_back(pair.point_a(i) - pair.point_a(i - 1));
   }
-  for (int i = 1; i < std::min<int>(4, static_cast<int>(pair.b().exact.size())); ++i) {
+  for (int i = 1; i < std::min<int>(6, static_cast<int>(pair.b().exact.size())); ++i) {
     differences.push_back(pair.point_b(i) - pair.point_b(i - 1));
   }
   std::vector<IVec> result;
@@ -72,7 +72,7 @@ TEST(QuadFilter, BoundsHoldTheExactHeight) {
   int positive = 0;
   int negative = 0;
   int unknown = 0;
-  for_each_pair(8, 3, [&](const ExactPair& pair, PairFamily) {
+  for_each_pair(8, 8, [&](const ExactPair& pair, PairFamily) {
     QuadFilter filter(pair);
     for (const IVec& n : directions(pair)) {
       const Vec3 unit = to_unit(n);
