@@ -14,15 +14,15 @@ constexpr double kLargest = 4;
 /// - n is brought to a largest component in [1, 2), so that 1 <= |n| < 2 sqrt 3 < 3.5. Truncated to 113 bits each
 ///   component errs by less than 2 u of itself, or by 2^-300 where it is flushed: |dn| <= 2.1 u |n| < 7.4 u.
 /// - w is a point or the offset, |w| <= 4 sqrt 3 < 7; likewise |dw| <= 2.1 u |w| < 14.8 u.
-/// - A dot product: its three products and two sums err by 3.1 u |w| |n| < 76 u, what w errs costs |dw| |n| < 52 u, what
-///   n errs |w| |dn| < 52 u: less than 181 u, second orders included. The largest of several errs by no more.
+/// - A dot product errs by 3.1 u |w| |n| < 76 u for its products and sums, |dw| |n| < 52 u for what w errs and
+///   |w| |dn| < 52 u for what n errs: less than 181 u, second orders included. The largest of several errs by no more.
 /// - h is a sum of three of them, 543 u, each below 24.5, whose sums, below 49 and 73.5, are rounded: 123 u more.
-/// Less than 666 u. The largest that the test's sample finds is 8 u.
+/// Less than 666 u. The test's sample reaches 8 u.
 constexpr double kSupportError = 0x1.5p-104;  // 672 u
 
-/// Relative error of the bounds but for that: |n|^2 as computed errs by 3.1 u for its roundings and twice 2.1 u for what
-/// n errs; h -+ the error by u, its square by twice that and u, the quotient and the last product by u each.
-/// Less than 13 u.
+/// Relative error of the bounds but for that: |n|^2 as computed errs by 3.1 u for its roundings and twice 2.1 u for
+/// what n errs; h -+ the error by u, its square by twice that and u, the quotient and the last product by u each. Less
+/// than 13 u.
 constexpr double kRatioError = 0x1p-108;  // 32 u
 
 }  // namespace
