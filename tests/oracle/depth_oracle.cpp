@@ -12,6 +12,8 @@ namespace pd::oracle {
 namespace {
 
 constexpr double kUlp = 0x1p-53;
+/// Bits of coordinates from which quadruple precision is cheaper than the exact comparison.
+constexpr int kWide = 512;
 
 /// A direction that may be a facet normal of P.
 struct Candidate {
@@ -91,7 +93,7 @@ struct SideBits {
 
 class Search {
  public:
-  Search(const ExactPair& pair, bool quad_filter) : pair_(pair), quad_filter_(quad_filter) {}
+  Search(const ExactPair& pair, QuadFiltering filtering) : pair_(pair), filtering_(filtering) {}
 
   /// Finds the least h_P(n) / |n|; returns its sign, and stops early when it is negative.
   int run(Verdict& verdict) {
@@ -196,6 +198,7 @@ class Search {
   /// Leaves out what is certainly not least, in quadruple precision. Returns -1 when a candidate separates for certain.
   int discard(std::vector<Sharp>& sharp) const {
     QuadFilter quad(pair_);
+    if (filtering_ == QuadFiltering::wide_coordinates && quad.unit_exponent() < kWide) return 1;
     std::vector<std::optional<SquaredHeight>> heights;
     heights.reserve(sharp.size());
     std::optional<Quad> least;
@@ -233,7 +236,7 @@ class Search {
     }
     std::erase_if(sharp, [&](const Sharp& s) { return s.lower > upper; });
     std::sort(sharp.begin(), sharp.end(), [](const Sharp& p, const Sharp& q) { return p.lower < q.lower; });
-    if (quad_filter_ && sharp.size() > 1 && discard(sharp) < 0) return -1;
+    if (filtering_ != QuadFiltering::never && sharp.size() > 1 && discard(sharp) < 0) return -1;
     Integer best_h;
     Integer best_n2;
     for (const Sharp& s : sharp) {
@@ -264,7 +267,7 @@ class Search {
   }
 
   const ExactPair& pair_;
-  bool quad_filter_;
+  QuadFiltering filtering_;
   double upper_ = std::numeric_limits<double>::infinity();
   std::vector<Candidate> candidates_;
   std::vector<char> seen_;
@@ -282,7 +285,7 @@ Verdict judge(const ExactPair& pair, const JudgeSettings& settings) {
     verdict.contact = verdict.distance.numerator.is_zero() ? ContactClass::touching : ContactClass::separated;
     return verdict;
   }
-  const int sign = Search(pair, settings.quad_filter).run(verdict);
+  const int sign = Search(pair, settings.quad_filtering).run(verdict);
   verdict.contact = sign > 0 ? ContactClass::overlapping : sign == 0 ? ContactClass::touching : ContactClass::separated;
   if (sign < 0) {
     verdict.normals.clear();

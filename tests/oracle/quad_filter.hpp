@@ -44,7 +44,8 @@ class QuadFilter {
   /// 2^-99) in units of the larger body, h the height.
   [[nodiscard]] std::optional<SquaredHeight> squared_height(const IVec& n, const Vec3& unit);
 
-  /// A height in the filter's units is a height in the pair's integers times 2^-unit_exponent().
+  /// A height in the filter's units is a height in the pair's integers times 2^-unit_exponent(): the bits of
+  /// coordinates.
   [[nodiscard]] int unit_exponent() const { return unit_exponent_; }
 
  private:

@@ -116,8 +116,8 @@ TEST(QuadFilter, VerdictsAreTheSameWithout) {
   int without = 0;
   for (const int n : {6, 24}) {
     for_each_pair(n, 3, [&](const ExactPair& pair, PairFamily family) {
-      const Verdict fast = judge(pair, {.distance = false});
-      const Verdict plain = judge(pair, {.distance = false, .quad_filter = false});
+      const Verdict fast = judge(pair, {.distance = false, .quad_filtering = QuadFiltering::always});
+      const Verdict plain = judge(pair, {.distance = false, .quad_filtering = QuadFiltering::never});
       EXPECT_EQ(fast.contact, plain.contact);
       EXPECT_EQ(fast.depth.compare(plain.depth), 0);
       ASSERT_EQ(fast.normals.size(), plain.normals.size());
@@ -126,6 +126,10 @@ TEST(QuadFilter, VerdictsAreTheSameWithout) {
         EXPECT_EQ(fast.unit_normals[k], plain.unit_normals[k]);
       }
       EXPECT_LE(fast.compared_exactly, plain.compared_exactly);
+      const Verdict usual = judge(pair, {.distance = false});
+      EXPECT_EQ(usual.contact, plain.contact);
+      EXPECT_EQ(usual.depth.compare(plain.depth), 0);
+      EXPECT_EQ(usual.normals.size(), plain.normals.size());
       if (family == PairFamily::ulp_noise) {
         with_filter += fast.compared_exactly;
         without += plain.compared_exactly;
