@@ -1,10 +1,14 @@
 /// @file
 /// glTF 2 (.gltf, .glb) through Assimp: every mesh of the scene, once for every node that shows it.
+#include <assimp/BaseImporter.h>
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <Eigen/Core>
 #include <assimp/Importer.hpp>
+#include <memory>
+#include <string_view>
 
 #include "mesh/mesh_text.hpp"
 
@@ -49,10 +53,22 @@ struct SceneReader {
   }
 };
 
+/// Leaves no reader but those of glTF: by its first bytes a file of that name would else be given to any of fifty, some
+/// of which never come to an end.
+void keep_gltf_only(Assimp::Importer& importer) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const aiImporterDesc* const description = importer.GetImporterInfo(i);
+    if (std::string_view(description->mFileExtensions).find("gltf") != std::string_view::npos) continue;
+    const std::unique_ptr<Assimp::BaseImporter> other(importer.GetImporter(i));
+    importer.UnregisterLoader(other.get());
+  }
+}
+
 }  // namespace
 
 MeshPoints read_gltf(const std::string& path, std::int64_t max_vertices) {
   Assimp::Importer importer;
+  keep_gltf_only(importer);
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     refuse("unreadable_file", std::string("no glTF that can be read: ") + importer.GetErrorString(), "");

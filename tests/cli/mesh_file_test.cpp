@@ -178,6 +178,13 @@ TEST_F(MeshFile, GltfAppliesNodeTransforms) {
   EXPECT_EQ(mesh.points[1], Vec3(12, 0, 0)) << "a child's scale and its parent's translation";
   EXPECT_EQ(mesh.points[3], Vec3(0, 0, 5));
   EXPECT_EQ(refusal("bad.gltf", "{"), "unreadable_file");
+  // Its name says what a file is, not its first bytes.
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(read("triangle.ply", ply).points.size(), 3u);
+  EXPECT_EQ(refusal("triangle.glb", ply), "unreadable_file");
+  EXPECT_EQ(refusal("triangle.gltf", ply), "unreadable_file");
 }
 
 TEST_F(MeshFile, ShapesNameTheFilesVertices) {

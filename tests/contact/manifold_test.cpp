@@ -210,6 +210,35 @@ TEST(Manifold, HullsOfSpheresStandOnTheirPolygonsAndLines) {
               2 * std::sqrt(1 - 0.125 * 0.125), 1e-9);
 }
 
+TEST(Manifold, HullsOfSpheresOfSizesFarApartHaveContactPoints) {
+  // Brought to size 1, three of the spheres nearly coincide: the area between them is below the range of doubles.
+  const ConvexShape point(ConvexPolytope::from_points(std::vector<Vec3>{Vec3::Zero()}).value());
+  int asked = 0;
+  for (const double far : {1e100, 1e160, 1e200, 1e300}) {
+    for (const double unit : {1e-100, 1e-30, 1.0, 1e30}) {
+      const std::vector<pd::Sphere> spheres{{unit * Vec3(-7, 0, 0), 2 * unit},
+                                            {unit * Vec3(0, 0.0625, 0.75), 3 * unit},
+                                            {{0, unit, -far}, 0},
+                                            {unit * Vec3(4, -7.375, 4), 3 * unit}};
+      const auto hull = pd::ConvexShape::hull_of_spheres(spheres);
+      if (!hull) continue;
+      const ConvexShape& needle = *hull;
+      ++asked;
+      pd::Scratch scratch;
+      pd::ManifoldScratch buffers;
+      const pd::PenetrationDepth answer = pd::penetration_depth({&needle, Pose()}, {&point, Pose()}, scratch);
+      const ContactManifold manifold =
+          pd::contact_manifold({&needle, Pose()}, {&point, Pose()}, answer, 0.1 * unit, buffers);
+      EXPECT_GE(manifold.count, 1) << far << ' ' << unit;
+      for (int i = 0; i < manifold.count; ++i) {
+        EXPECT_TRUE(manifold.points[i].position_a.allFinite()) << far << ' ' << unit;
+        EXPECT_TRUE(manifold.points[i].position_b.allFinite()) << far << ' ' << unit;
+      }
+    }
+  }
+  EXPECT_GE(asked, 8);
+}
+
 TEST(Manifold, TiltedFaceKeepsOnlyWhatIsNear) {
   const ConvexShape cube = box(0.5, 0.5, 0.5);
   const ConvexShape floor = box(5, 1, 5);

@@ -3,12 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <optional>
+
+#include "oracle/quad_filter.hpp"
 
 namespace pd::oracle {
 
 namespace {
 
 constexpr double kUlp = 0x1p-53;
+/// Bits of coordinates from which quadruple precision is cheaper than the exact comparison.
+constexpr int kWide = 512;
 
 /// A direction that may be a facet normal of P.
 struct Candidate {
@@ -88,7 +93,7 @@ struct SideBits {
 
 class Search {
  public:
-  explicit Search(const ExactPair& pair) : pair_(pair) {}
+  Search(const ExactPair& pair, QuadFiltering filtering) : pair_(pair), filtering_(filtering) {}
 
   /// Finds the least h_P(n) / |n|; returns its sign, and stops early when it is negative.
   int run(Verdict& verdict) {
@@ -183,14 +188,40 @@ class Search {
     return 1;
   }
 
+  /// A candidate with its normal exact and as accurate as a double can be.
+  struct Sharp {
+    IVec normal;
+    Vec3 unit;
+    double lower;
+  };
+
+  /// Leaves out what is certainly not least, in quadruple precision. Returns -1 when a candidate separates for certain.
+  int discard(std::vector<Sharp>& sharp) const {
+    QuadFilter quad(pair_);
+    if (filtering_ == QuadFiltering::wide_coordinates && quad.unit_exponent() < kWide) return 1;
+    std::vector<std::optional<SquaredHeight>> heights;
+    heights.reserve(sharp.size());
+    std::optional<Quad> least;
+    for (const Sharp& s : sharp) {
+      heights.push_back(quad.squared_height(s.normal, s.unit));
+      const auto& height = heights.back();
+      if (!height) continue;
+      if (height->negative) return -1;
+      if (!least || height->upper < *least) least = height->upper;
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < sharp.size(); ++k) {
+      if (heights[k] && heights[k]->lower > *least) continue;
+      if (kept != k) sharp[kept] = std::move(sharp[k]);
+      ++kept;
+    }
+    sharp.resize(kept);
+    return 1;
+  }
+
   int decide(Verdict& verdict) {
     // Accurate normals first (exact cross product, then rounded): near-parallel edges lose their large error bounds.
     const double error = 1024 * kUlp * pair_.magnitude();
-    struct Sharp {
-      IVec normal;
-      Vec3 unit;
-      double lower;
-    };
     std::vector<Sharp> sharp;
     double upper = upper_;
     for (const Candidate& c : candidates_) {
@@ -203,11 +234,12 @@ class Search {
       upper = std::min(upper, h + error);
       if (s.lower <= upper) sharp.push_back(std::move(s));
     }
+    std::erase_if(sharp, [&](const Sharp& s) { return s.lower > upper; });
     std::sort(sharp.begin(), sharp.end(), [](const Sharp& p, const Sharp& q) { return p.lower < q.lower; });
+    if (filtering_ != QuadFiltering::never && sharp.size() > 1 && discard(sharp) < 0) return -1;
     Integer best_h;
     Integer best_n2;
     for (const Sharp& s : sharp) {
-      if (s.lower > upper) break;
       bool repeated = false;
       for (std::size_t k = 0; k < verdict.normals.size() && !repeated; ++k) {
         repeated = verdict.unit_normals[k].dot(s.unit) > 0 &&
@@ -218,6 +250,7 @@ class Search {
       Integer h = pair_.exact_support(s.normal, s.unit);
       if (h.sign() < 0) return -1;
       Integer n2 = dot(s.normal, s.normal);
+      verdict.compared_exactly += !verdict.normals.empty();
       const int order = verdict.normals.empty() ? -1 : (h * h * best_n2 - best_h * best_h * n2).sign();
       if (order > 0) continue;
       if (order < 0) {
@@ -234,6 +267,7 @@ class Search {
   }
 
   const ExactPair& pair_;
+  QuadFiltering filtering_;
   double upper_ = std::numeric_limits<double>::infinity();
   std::vector<Candidate> candidates_;
   std::vector<char> seen_;
@@ -251,7 +285,7 @@ Verdict judge(const ExactPair& pair, const JudgeSettings& settings) {
     verdict.contact = verdict.distance.numerator.is_zero() ? ContactClass::touching : ContactClass::separated;
     return verdict;
   }
-  const int sign = Search(pair).run(verdict);
+  const int sign = Search(pair, settings.quad_filtering).run(verdict);
   verdict.contact = sign > 0 ? ContactClass::overlapping : sign == 0 ? ContactClass::touching : ContactClass::separated;
   if (sign < 0) {
     verdict.normals.clear();

@@ -3,9 +3,11 @@
 ///
 /// pi = min over unit n of h_P(n), and the minimum is at a facet normal of P: a facet of B, a facet of -A, or the cross
 /// product of an edge of each. Any direction gives an upper bound, so that a superset of the candidates does no harm;
-/// doubles with an error bound discard all but the few nearly least ones, which are compared as rationals.
+/// doubles with an error bound discard all but the nearly least ones, quadruple precision with one of its own all but
+/// those that tie to some 2^-100, and these are compared as rationals.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "oracle/exact_pair.hpp"
@@ -22,10 +24,16 @@ struct Verdict {
   std::vector<Vec3> unit_normals;  ///< the same, unit, rounded
   ExactLength distance;            ///< 0 unless separated; only when asked for
   bool distance_known = false;
+  int compared_exactly = 0;  ///< directions whose heights were compared as rationals, not the first one
 };
+
+/// Where quadruple precision leaves out directions that are not least before the others are compared as rationals. The
+/// verdict is the same: where coordinates are of 512 bits and more, most of the time is saved.
+enum class QuadFiltering : std::uint8_t { never, wide_coordinates, always };
 
 struct JudgeSettings {
   bool distance = true;  ///< find the exact distance of separated bodies
+  QuadFiltering quad_filtering = QuadFiltering::wide_coordinates;
 };
 
 /// Class, depth, all optimal directions, and distance of two posed bodies, exactly.

@@ -13,13 +13,29 @@ namespace {
 /// Of the size: spheres that a plane misses by no more than this touch it.
 constexpr double kOnPlane = 1e-9;
 
+/// From one sphere to another, and by how much the first one is larger, times a power of two that brings the way to
+/// size 1: between spheres that nearly coincide beside one far away, products of lengths are below the range of
+/// doubles.
+struct Way {
+  Vec3 apart;
+  double larger;
+
+  Way(const Sphere& from, const Sphere& to) : apart(to.centre - from.centre), larger(from.radius - to.radius) {
+    const double most = apart.cwiseAbs().maxCoeff();
+    if (!(most > 0)) return;
+    const double scale = std::ldexp(1.0, std::clamp(-std::ilogb(most), -1022, 1022));
+    apart *= scale;
+    larger *= scale;
+  }
+};
+
 /// The unit vector nearest to `near` in whose direction two spheres reach equally far; none where the larger one
 /// reaches farther everywhere, or `near` runs along the line of their centres.
 std::optional<Vec3> tie_of_two(const Sphere& p, const Sphere& q, const Vec3& near) {
-  const Vec3 apart = q.centre - p.centre;
-  const double length = apart.norm();
-  const Vec3 along = apart / length;
-  const double sine = (p.radius - q.radius) / length;
+  const Way way(p, q);
+  const double length = way.apart.norm();
+  const Vec3 along = way.apart / length;
+  const double sine = way.larger / length;
   const Vec3 across = near - near.dot(along) * along;
   const double cosine_squared = 1 - sine * sine, rest = across.norm();
   if (!(cosine_squared > 0) || !(rest > 0)) return std::nullopt;
@@ -28,12 +44,13 @@ std::optional<Vec3> tie_of_two(const Sphere& p, const Sphere& q, const Vec3& nea
 
 /// The same of three: of the two solutions the one nearer to `near`.
 std::optional<Vec3> tie_of_three(const Sphere& p, const Sphere& q, const Sphere& r, const Vec3& near) {
-  const Vec3 u = q.centre - p.centre, v = r.centre - p.centre;
+  const Way to_q(p, q), to_r(p, r);
+  const Vec3 &u = to_q.apart, &v = to_r.apart;
   const Vec3 normal = u.cross(v);
   const double area_squared = normal.squaredNorm();
   if (!(area_squared > kOnPlane * kOnPlane * u.squaredNorm() * v.squaredNorm())) return std::nullopt;
   // n = x + t normal with <u, x> = r_p - r_q, <v, x> = r_p - r_r and x in the span of u and v.
-  const Vec3 x = ((p.radius - q.radius) * v.cross(normal) + (p.radius - r.radius) * normal.cross(u)) / area_squared;
+  const Vec3 x = (to_q.larger * v.cross(normal) + to_r.larger * normal.cross(u)) / area_squared;
   const double left = 1 - x.squaredNorm();
   if (!(left > 0)) return std::nullopt;
   return x + (normal.dot(near) < 0 ? -1 : 1) * std::sqrt(left / area_squared) * normal;

@@ -40,6 +40,31 @@ ConvexShape random_shape(int kind, scenes::Random& random) {
 /// Kinds that are searched for whatever the other body is.
 constexpr int kSearched[] = {0, 1, 2, 6};
 
+TEST(Smooth, NormalsBesideHugeMarginsAreUnitVectors) {
+  // Brought to size 1 the cores are so small that squares of their lengths, or products of those, underflow.
+  Scratch scratch;
+  scenes::Random random(47);
+  for (const double margin : {1e70, 1e100, 1e140, 1e160, 1e200}) {
+    for (int kind = 0; kind < 8; ++kind) {
+      for (int k = 0; k < 30; ++k) {
+        const ConvexShape a = random_shape(kind, random);
+        std::vector<Vec3> corners;
+        for (int i = 0; i < 4; ++i) corners.push_back(3 * random.direction());
+        const ConvexShape b = *ConvexShape(*ConvexPolytope::from_points(corners)).with_margin(margin);
+        const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.uniform(0, 3) * random.direction());
+        const Pose pose_b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+        SCOPED_TRACE("kind " + std::to_string(kind) + ", try " + std::to_string(k));
+        const PenetrationDepth r = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
+        ASSERT_EQ(r.contact, ContactClass::overlapping);
+        EXPECT_LT(std::abs(r.normal.norm() - 1), 1e-14) << margin;
+        EXPECT_LE((r.translation / margin).norm(), r.upper / margin * (1 + 1e-14)) << margin;
+        EXPECT_LE(r.lower, r.upper);
+        EXPECT_GE(r.lower, margin * (1 - 1e-14));
+      }
+    }
+  }
+}
+
 TEST(Smooth, BracketsAgreeWithTheSweep) {
   Scratch scratch;
   scenes::Random random(23);

@@ -252,7 +252,12 @@ class TranslationSearch {
   }
 
   [[nodiscard]] double ulp(int i) const { return std::nextafter(std::abs(base_[i]), HUGE_VAL) - std::abs(base_[i]); }
-  [[nodiscard]] int reach(int i) { return std::clamp(static_cast<int>(leeway() / ulp(i)), 4, kMostSteps); }
+  /// Steps to try of a coordinate, either way. Where 2^31 of them and more make up the leeway, a few or many are the
+  /// same place; the comparison stands before the conversion, which is undefined there and differs between machines.
+  [[nodiscard]] int reach(int i) {
+    const double steps = leeway() / ulp(i);
+    return steps < 0x1p31 ? std::clamp(static_cast<int>(steps), 4, kMostSteps) : 4;
+  }
 
   static double ulps_of(double extent) { return 4 * (std::nextafter(extent, HUGE_VAL) - extent); }
   double leeway() {

@@ -232,8 +232,8 @@ class SmoothQuery {
     out_.lower = std::max(0.0, lower * (1 - 0x1p-52));
     out_.depth = upper * (1 + 0x1p-52);
     out_.upper = upper * (1 + 0x1p-50);
-    out_.normal = normal;
-    out_.translation = out_.depth * normal;
+    out_.normal = unit_of(normal);
+    out_.translation = out_.depth * out_.normal;
   }
 
   void set_witnesses(const DifferenceVertex* corners, const double* weights, int count) {
@@ -252,7 +252,7 @@ class SmoothQuery {
 
   void fill_touching(const Vec3& normal) {
     out_.contact = ContactClass::touching;
-    out_.normal = normal;
+    out_.normal = unit_of(normal);
     const DifferenceVertex s = difference_.support(normal, nullptr);
     const double one = 1;
     set_witnesses(&s, &one, 1);
