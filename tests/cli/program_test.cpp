@@ -195,7 +195,7 @@ TEST_F(Program, DifferenceDemoDrawsAnyTwoMeshes) {
 }
 
 TEST_F(Program, DepthTracesItsSearch) {
-  const Outcome traced = run("depth cube.obj spike.off --trace search.jsonl");
+  const Outcome traced = run("depth cube.obj spike.off --method expansion --trace search.jsonl");
   EXPECT_EQ(traced.status, 0) << traced.err;
   EXPECT_EQ(traced.err, "");
   const std::string lines = read("search.jsonl");
