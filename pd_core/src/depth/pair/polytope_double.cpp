@@ -105,12 +105,17 @@ bool along_same_axes(const Mat3& a, const Mat3& b) {
   return along(0, 0) && along(1, 1) && along(0, 1) && along(1, 0);
 }
 
+bool have_same_normals(const SmallGaussMap& a, const SmallGaussMap& b) {
+  const auto same = [&](const double* x, const double* y) { return std::equal(x, x + a.facets, y); };
+  return a.facets == b.facets && same(a.nx, b.nx) && same(a.ny, b.ny) && same(a.nz, b.nz);
+}
+
 /// Whether many facets of two solids of few vertices meet in common planes, which leaves them to the surface: what was
 /// built along axes that they share, and copies of one shape that are turned alike.
 bool many_flush_facets(const PolytopePair& pair, const PolytopeDifference& difference) {
   if (!along_same_axes(difference.rotation_a(), difference.rotation_b())) return false;
   const SmallGaussMap &a = small_gauss_map(*pair.a), &b = small_gauss_map(*pair.b);
-  return (built_along_axes(a) && built_along_axes(b)) || std::equal(a.nx, a.nx + a.facets, b.nx);
+  return (built_along_axes(a) && built_along_axes(b)) || have_same_normals(a, b);
 }
 
 /// Whether one support tells that the bodies are apart, along the line between their frames' origins. Their distance is
