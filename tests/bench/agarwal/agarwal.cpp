@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 
+#include "bench/measure/processor_time.hpp"
 #include "bench/measure/table.hpp"
 #include "bench/report/bench_report.hpp"
 #ifdef PD_BENCH_WITH_RENDER
@@ -37,12 +37,6 @@ constexpr AgarwalFamily kSmooth[] = {AgarwalFamily::lens, AgarwalFamily::patch, 
                                      AgarwalFamily::flat_patch};
 constexpr AgarwalFamily kTilted[] = {AgarwalFamily::tilt_noise, AgarwalFamily::low_tilt_noise,
                                      AgarwalFamily::flat_tilt_noise};
-
-double processor_time_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
 
 bool asked_for(const AgarwalSettings& settings, std::string_view name) {
   return settings.chapters.empty() ||
@@ -88,9 +82,9 @@ std::vector<double> least_times_ns(std::span<const std::function<void()>> tasks,
   }
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < tasks.size(); ++k) {
-      const double begin = processor_time_ns();
+      const double begin = processor_seconds();
       tasks[k]();
-      least[k] = std::min(least[k], processor_time_ns() - begin);
+      least[k] = std::min(least[k], 1e9 * (processor_seconds() - begin));
     }
   }
   return least;

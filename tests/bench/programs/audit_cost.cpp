@@ -12,7 +12,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -20,18 +19,13 @@
 
 #include "audit/audit_stream.hpp"
 #include "audit/exact_depth.hpp"
+#include "bench/measure/processor_time.hpp"
 #include "pd/depth/penetration_depth.hpp"
 
 namespace {
 
 using pd::audit::Audit;
 using pd::audit::RecordedContact;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// A file without a name that holds a text.
 class MemoryFile {
@@ -62,20 +56,20 @@ struct Cost {
 };
 
 double audit_seconds(const MemoryFile& block) {
-  const double start = thread_seconds();
+  const double start = pd::bench::processor_seconds();
   Audit audit;
   pd::audit::AuditSettings settings;
   settings.worst_kept = 5;
   pd::audit::audit_record(block.from_the_start(), settings, {}, audit);
-  return thread_seconds() - start;
+  return pd::bench::processor_seconds() - start;
 }
 
 double query_seconds(const std::vector<RecordedContact>& contacts, double tolerance, pd::Scratch& scratch) {
-  const double start = thread_seconds();
+  const double start = pd::bench::processor_seconds();
   for (const RecordedContact& contact : contacts) {
     if (!pd::audit::body_depth(contact, tolerance / 10, scratch)) throw std::runtime_error("a pair without an answer");
   }
-  return thread_seconds() - start;
+  return pd::bench::processor_seconds() - start;
 }
 
 Cost measure(const std::string& text, bool queries_first, pd::Scratch& scratch) {

@@ -4,8 +4,6 @@
 /// Times are processor seconds of the calling thread, the least of some runs, so that a busy machine does not blur
 /// them. Qhull's time is that of qh_new_qhull with its default options; ours includes checking the input and laying out
 /// the result.
-#include <time.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
@@ -13,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "shape/point_clouds.hpp"
 
@@ -24,20 +23,14 @@ namespace {
 
 using pd::test::Points;
 
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// The least time of runs that together take a second at most, of ten at most.
 double least_time(const std::function<void()>& work) {
   double least = std::numeric_limits<double>::infinity();
   double total = 0;
   for (int run = 0; run < 10 && (run == 0 || total < 1); ++run) {
-    const double begin = processor_seconds();
+    const double begin = pd::bench::processor_seconds();
     work();
-    const double taken = processor_seconds() - begin;
+    const double taken = pd::bench::processor_seconds() - begin;
     least = std::min(least, taken);
     total += taken;
   }
@@ -80,7 +73,7 @@ int main(int argc, char** argv) {
       {"sphere", [&](int n) { return pd::test::sphere_cloud(n, seed); }},
       {"cube_sides", [&](int n) { return pd::test::cube_sides(n, seed); }}};
   for (const auto& [name, make] : clouds) {
-    for (int n = 1000; n <= largest; n *= 10) {
+    for (int n = 128; n <= largest; n = n < 1000 ? 1000 : 10 * n) {
       const Points points = make(n);
       int vertices = 0;
       int facets = 0;

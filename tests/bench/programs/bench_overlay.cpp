@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "depth/facets/overlay_depth.hpp"
 #include "scenes/shape_families.hpp"
 
@@ -24,19 +24,12 @@ using pd::Pose;
 using pd::Vec3;
 namespace scenes = pd::scenes;
 
-/// Processor time of this thread in microseconds: a busy machine's waiting does not count.
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
-
 /// Microseconds of one call, the mean of `calls`.
 template <class Task>
 double time_of(int calls, Task&& task) {
-  const double begin = processor_time();
+  const double begin = pd::bench::processor_seconds();
   for (int i = 0; i < calls; ++i) task();
-  return (processor_time() - begin) / calls;
+  return 1e6 * (pd::bench::processor_seconds() - begin) / calls;
 }
 
 struct ArcTable {

@@ -7,10 +7,10 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <string>
 #include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "pd/compound/compound_difference.hpp"
 #include "pd/compound/warm_union.hpp"
 #include "pd/depth/scratch.hpp"
@@ -24,12 +24,7 @@ using pd::Pose;
 using pd::Vec3;
 namespace scenes = pd::scenes;
 
-/// Processor time of this thread in milliseconds.
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
+double processor_ms() { return 1e3 * pd::bench::processor_seconds(); }
 
 /// Exponent of y in x by least squares over the logarithms.
 double exponent(const std::vector<double>& x, const std::vector<double>& y) {
@@ -64,13 +59,13 @@ void measure_stars(int largest, std::uint64_t seed) {
     const Compound a = compound_of(scenes::star_prism(k, 0.5, random)),
                    b = compound_of(scenes::star_prism(k, 0.5, random));
     const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.5, 0.1, 0.2});
-    double begin = processor_time();
+    double begin = processor_ms();
     const auto built = pd::minkowski_difference({&a, pose}, {&b, Pose()});
-    const double built_ms = processor_time() - begin;
+    const double built_ms = processor_ms() - begin;
     pd::Scratch scratch;
-    begin = processor_time();
+    begin = processor_ms();
     const auto answer = pd::penetration_depth(pd::PosedCompound{&a, pose}, pd::PosedCompound{&b, Pose()}, scratch);
-    const double search_ms = processor_time() - begin;
+    const double search_ms = processor_ms() - begin;
     if (!built || !answer) continue;
     const double mn = static_cast<double>(a.parts().size() * b.parts().size());
     std::printf("%6.0f %8d %10lld %10zu %10zu %12lld %10.0f %12lld %10.0f\n", mn, static_cast<int>(8 * k),
@@ -100,9 +95,9 @@ void measure_balls(int levels, std::uint64_t seed) {
                    b = compound_of(scenes::rough_ball((total + 1) / 2, 0.3, random));
     const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.3, 0.1, 0.2});
     pd::Scratch scratch;
-    const double begin = processor_time();
+    const double begin = processor_ms();
     const auto answer = pd::penetration_depth(pd::PosedCompound{&a, pose}, pd::PosedCompound{&b, Pose()}, scratch);
-    const double spent = processor_time() - begin;
+    const double spent = processor_ms() - begin;
     if (!answer) continue;
     sizes.push_back(static_cast<double>(a.parts().size() * b.parts().size()));
     time.push_back(spent);
@@ -129,12 +124,12 @@ void measure_bracket(std::uint64_t seed) {
       pd::UnionSettings settings;
       settings.method = pd::UnionMethod::octree;
       settings.delta = delta;
-      const double begin = processor_time();
+      const double begin = processor_ms();
       const auto answer = pd::penetration_depth(pd::PosedCompound{&body, pose},
                                                 pd::PosedCompound{&bodies[0].second, Pose()}, scratch, settings);
       if (!answer) continue;
       std::printf("%10s %10.0f %10lld %10.1f %12.2e\n", name.c_str(), 1 / delta,
-                  static_cast<long long>(answer->work.cells), processor_time() - begin,
+                  static_cast<long long>(answer->work.cells), processor_ms() - begin,
                   answer->upper / answer->lower - 1);
       std::fflush(stdout);
       inverse.push_back(1 / delta);
@@ -179,11 +174,11 @@ void measure_coherent(int frames, std::uint64_t seed) {
       for (double& x : q) x /= length;
       const Pose pose = *Pose::from_quaternion(q, row.offset + 0.001 * frame * Vec3(1, 0.5, 0));
       const pd::PosedCompound a{&row.a, pose}, b{&row.b, Pose()};
-      const double begin = processor_time();
+      const double begin = processor_ms();
       const auto cold = pd::penetration_depth(a, b, scratch);
-      const double between = processor_time();
+      const double between = processor_ms();
       const auto warm = pd::penetration_depth(a, b, scratch, {}, &memory);
-      const double end = processor_time();
+      const double end = processor_ms();
       if (!cold || !warm || cold->contact != warm->contact || cold->lower != warm->lower) {
         std::printf("%s: frame %d differs\n", row.name, frame);
         return;

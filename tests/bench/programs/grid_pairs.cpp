@@ -12,11 +12,11 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "bench/programs/pair_progress.hpp"
 #include "oracle/grid_answer_check.hpp"
 #include "oracle/grid_pool.hpp"
@@ -42,13 +42,6 @@ struct Settings {
   std::vector<std::string> brackets;
   int laws = 8;
 };
-
-/// Processor time of this thread.
-double now() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct Tally {
   std::int64_t pairs = 0;
@@ -93,7 +86,7 @@ class Run {
     pd::Scratch scratch;
     grid::Judge judge;
     Totals own;
-    const double start = now();
+    const double start = pd::bench::processor_seconds();
     constexpr std::int64_t kBatch = 4096;
     while (!out_of_time()) {
       const std::int64_t from = next_.fetch_add(kBatch);
@@ -102,7 +95,7 @@ class Run {
       for (std::int64_t i = from; i < to; ++i) judge_one(settings_.first + i, scratch, judge, own);
       progress_.add(to - from);
     }
-    own.seconds = now() - start;
+    own.seconds = pd::bench::processor_seconds() - start;
     const std::lock_guard lock(mutex_);
     totals_.add(own);
   }

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -20,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
@@ -66,12 +66,6 @@ std::vector<Query> queries() {
            }}};
 }
 
-double now() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 /// Seconds of the query about the pair, least of `runs`; none where a body is refused.
 std::optional<double> cost(const Query& query, const PointPair& pair, Workplace& place, int runs) {
   const auto a = pd::ConvexPolytope::from_points(pair.a);
@@ -81,9 +75,9 @@ std::optional<double> cost(const Query& query, const PointPair& pair, Workplace&
   const pd::ConvexShape shape_b(*b);
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < runs; ++run) {
-    const double start = now();
+    const double start = pd::bench::processor_seconds();
     query.ask({&shape_a, pair.pose_a}, {&shape_b, pair.pose_b}, place);
-    least = std::min(least, now() - start);
+    least = std::min(least, pd::bench::processor_seconds() - start);
   }
   return least;
 }
@@ -222,9 +216,10 @@ void search(const Query& query, int size, const Settings& settings, std::ofstrea
   const double slowest = starts.front().seconds;
   starts.resize(std::min(starts.size(), static_cast<std::size_t>(settings.climbers)));
   Random random(settings.seed + 77 * static_cast<std::uint64_t>(size));
-  const double start = now();
+  const double start = pd::bench::processor_seconds();
   int tried = 0;
-  for (std::size_t turn = 0; now() - start < settings.seconds; turn = (turn + 1) % starts.size()) {
+  for (std::size_t turn = 0; pd::bench::processor_seconds() - start < settings.seconds;
+       turn = (turn + 1) % starts.size()) {
     Found& climber = starts[turn];
     PointPair next = changed(climber.pair, random);
     ++tried;
