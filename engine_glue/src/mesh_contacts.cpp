@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "covered_contact.hpp"
+#include "flat_ground.hpp"
+#include "met_triangle.hpp"
 #include "one_sided.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "piece_memories.hpp"
@@ -27,12 +29,6 @@ constexpr double kClear = 1 + 0x1p-6;
 
 /// Triangles of one step that a pair remembers, some 2 KB each; those met after them begin anew each step.
 constexpr std::size_t kMostRemembered = 128;
-
-struct MetTriangle {
-  btVector3 corners[3];
-  int part;
-  int index;
-};
 
 std::uint64_t number_of(const MetTriangle& triangle) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) |
@@ -156,6 +152,7 @@ class MeshContacts final : public UnionContacts {
   void add_fronts(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
 
   std::vector<MetTriangle> triangles_;
+  FlatGround flat_;
   PieceMemories memories_;
   OneSided one_sided_;
 };
@@ -225,6 +222,10 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair();
   if (collector.skipped > 0) buffers->counters.skipped_triangles.add(collector.skipped);
+  if (flat_.find(question, triangles_, core, *buffers, memory, patches)) {
+    memories_.end(memory.pieces);
+    return true;
+  }
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const TriangleInResult triangle(question.result, mesh, triangles_[i], concave.getMargin());
     PairAnswer answer;

@@ -119,6 +119,19 @@ SolverCore::Outcome SolverCore::contacts(const PairQuestion& question, double br
   return Outcome::answered;
 }
 
+SolverCore::Outcome SolverCore::stand_on(const GroundQuestion& question, ThreadBuffers& held, HalfspaceContact& out) {
+  // Whoever asks has another way to ask, where what cannot be answered is counted.
+  const CachedShape& found = find(question.body, question.stamp, question.shape, held);
+  if (!found.body) return Outcome::unsupported;
+  if (!in_range(question.pose)) return Outcome::refused;
+  held.counters.calls.add();
+  QueryMeter meter(held);
+  out = halfspace_contact({found.body.get(), to_pd(question.pose)}, question.ground, question.threshold, held.manifold);
+  held.counters.support_calls.add(2);
+  meter.count(out.contact);
+  return Outcome::answered;
+}
+
 void SolverCore::warn(const btConvexShape& shape, const Error& refusal) {
   const std::uint64_t bit = std::uint64_t{1} << (shape.getShapeType() & 63);
   if ((warned_.fetch_or(bit, std::memory_order_relaxed) & bit) != 0 || !settings.warning) {

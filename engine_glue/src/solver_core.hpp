@@ -15,6 +15,7 @@
 #include "pair_registry.hpp"
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/shape_cache.hpp"
+#include "pd/contact/halfspace_contact.hpp"
 #include "thread_buffers.hpp"
 
 class btCollisionDispatcher;
@@ -57,6 +58,16 @@ struct PairQuestion {
   bool boxes_asked = false;                             ///< `box_contacts` had no answer
 };
 
+/// A body on a plane.
+struct GroundQuestion {
+  const btConvexShape& body;  ///< taken as Bullet's GJK sees it, core and margin
+  const btTransform& pose;
+  Halfspace3 ground;                    ///< in the world
+  std::uint64_t stamp;                  ///< as of a PairQuestion
+  std::shared_ptr<CachedShape>& shape;  ///< the body as found earlier
+  double threshold;                     ///< up to which gap points are contacts
+};
+
 /// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves
 /// uncertain, whatever the reach of a floor. Coordinates are known to half a unit in the last place, so that surfaces
 /// are to 2^-24 of the distance from the world's origin and of the body's size. In double precision that share, 2^-59,
@@ -80,6 +91,9 @@ class SolverCore {
   /// The same and the contact points (as lifted). Two boxes are answered in one pass, without features or a warm start.
   Outcome contacts(const PairQuestion& question, double breaking_threshold, ThreadBuffers& buffers, PairAnswer& answer,
                    ContactManifold& points);
+
+  /// A body on a plane: its distance and its contact points.
+  Outcome stand_on(const GroundQuestion& question, ThreadBuffers& buffers, HalfspaceContact& answer);
 
   /// Bullet's call with a step's stamp.
   bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,

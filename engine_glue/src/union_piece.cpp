@@ -46,11 +46,14 @@ double largest_along(const std::vector<const Plane*>& active, const Vec3& n, dou
 
 }  // namespace
 
-double seam_slack(const PosedShape& a, const PosedShape& b) {
-  const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
-  const double size = std::min(bounding_radius(*a.shape), bounding_radius(*b.shape));
+double seam_slack(double size, double farthest) {
   constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
   return 0x1p-18 * size + kRounding * farthest;
+}
+
+double seam_slack(const PosedShape& a, const PosedShape& b) {
+  const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
+  return seam_slack(std::min(bounding_radius(*a.shape), bounding_radius(*b.shape)), farthest);
 }
 
 void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece& piece) {

@@ -33,6 +33,9 @@ struct UnionPiece {
 
 /// How far the surfaces of pieces that are meant to meet may lie apart: seams agree to 1e-7 of the bodies, poses to
 /// half a unit in the last place.
+/// @param size  radius of the smaller body
+/// @param farthest  largest coordinate of the poses
+[[nodiscard]] double seam_slack(double size, double farthest);
 [[nodiscard]] double seam_slack(const PosedShape& a, const PosedShape& b);
 
 /// Sides first, then edges; no planes where the corners are no triangle.

@@ -4,24 +4,11 @@
 #include <cmath>
 #include <span>
 
-#include "contact/manifold_clip.hpp"
+#include "contact/manifold_buffers.hpp"
 #include "contact/manifold_reduce.hpp"
-#include "contact/supporting_face.hpp"
 #include "depth/pair/scaled_shape.hpp"
 
 namespace pd {
-
-namespace detail {
-
-struct ManifoldBuffers {
-  SupportingFace face_a;
-  SupportingFace face_b;
-  ClipBuffers clip;
-  std::vector<ContactPoint> points;
-  std::vector<Vec2> flat;  ///< the points across the normal
-};
-
-}  // namespace detail
 
 namespace {
 

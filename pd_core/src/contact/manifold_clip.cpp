@@ -145,8 +145,9 @@ void intersect_faces(const SupportingFace& a, const SupportingFace& b, const Con
     overlap_of_segments(a, b, frame, buffers.polygon);
     return;
   }
-  // A segment is cut by the polygon, never the other way around: a loop of two has no inside.
-  const bool cut_b = b.vertices.size() == 2;
+  // A segment is cut by the polygon, never the other way around: a loop of two has no inside. Else the face of more
+  // corners is cut, by fewer edges: a disc on a floor mostly lies inside of all four.
+  const bool cut_b = b.vertices.size() == 2 || (a.vertices.size() > 2 && b.vertices.size() > a.vertices.size());
   const auto& subject = cut_b ? b : a;
   const auto& window = cut_b ? a : b;
   const IdKind of_window = cut_b ? IdKind::vertex_a : IdKind::vertex_b;

@@ -1,0 +1,141 @@
+#include "flat_ground.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+#include <algorithm>
+
+#include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "solver_core.hpp"
+#include "union_algorithm.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Of coordinates: corners of a plane that its author rounded to Bullet's scalar.
+constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
+/// Of the body's thickness: so deep, its shortest way out is back to where most of it is, over edges or not.
+constexpr double kShallow = 0.25;
+
+std::array<Vec3, 3> corners_of(const MetTriangle& triangle) {
+  return {to_pd(triangle.corners[0]), to_pd(triangle.corners[1]), to_pd(triangle.corners[2])};
+}
+
+/// Whether a point of the triangle's plane lies in it, moved out by `slack`.
+bool holds(const MetTriangle& triangle, const Vec3& across, const Vec3& point, double slack) {
+  const std::array<Vec3, 3> corners = corners_of(triangle);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 outward = (corners[(i + 1) % 3] - corners[i]).cross(across);
+    const double height = outward.dot(point - corners[i]);
+    if (height > 0 && height * height > slack * slack * outward.squaredNorm()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool FlatGround::sort_by_plane(const std::vector<MetTriangle>& triangles) {
+  across_.clear();
+  farthest_ = 0;
+  for (const MetTriangle& triangle : triangles) {
+    const std::array<Vec3, 3> corners = corners_of(triangle);
+    across_.push_back((corners[1] - corners[0]).cross(corners[2] - corners[0]));
+    for (const Vec3& corner : corners) farthest_ = std::max(farthest_, corner.cwiseAbs().maxCoeff());
+  }
+  plane_of_.assign(triangles.size(), -1);
+  planes_.clear();
+  const double rounding = kFlat * farthest_;
+  for (std::size_t left = triangles.size(); left > 0;) {
+    if (planes_.size() == kMostPlanes) return false;
+    std::size_t seed = triangles.size();
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (plane_of_[i] >= 0) continue;
+      if (seed == triangles.size() || across_[i].squaredNorm() > across_[seed].squaredNorm()) seed = i;
+    }
+    const Vec3 normal = across_[seed].normalized();
+    const double offset = normal.dot(to_pd(triangles[seed].corners[0]));
+    const int number = static_cast<int>(planes_.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (plane_of_[i] >= 0) continue;
+      const std::array<Vec3, 3> corners = corners_of(triangles[i]);
+      const bool flat = std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
+        return std::abs(normal.dot(corner) - offset) <= rounding;
+      });
+      if (!flat && i != seed) continue;
+      plane_of_[i] = number;
+      --left;
+    }
+    planes_.push_back({seed, {}, {}});
+  }
+  return true;
+}
+
+bool FlatGround::ask(const UnionQuestion& question, const std::vector<MetTriangle>& triangles, SolverCore& core,
+                     ThreadBuffers& buffers, PairMemory& memory, Plane& plane, int number) {
+  const auto& body = static_cast<const btConvexShape&>(*question.a.getCollisionShape());
+  const btTransform& body_pose = question.a.getWorldTransform();
+  const Pose mesh_pose = to_pd(question.b.getWorldTransform());
+  const auto margin = static_cast<double>(question.b.getCollisionShape()->getMargin());
+
+  // 1. The plane in the world, its normal to the side where the body is.
+  const std::array<Vec3, 3> local = corners_of(triangles[plane.seed]);
+  const Vec3 corner = mesh_pose.apply(local[0]);
+  Vec3 normal = (mesh_pose.apply(local[1]) - corner).cross(mesh_pose.apply(local[2]) - corner).normalized();
+  const bool behind = normal.dot(to_pd(body_pose.getOrigin()) - corner) < 0;
+  if (behind) normal = -normal;
+  if (core.settings.one_sided_meshes) {
+    // Fronts are where corners run counter-clockwise.
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (plane_of_[i] == number && (across_[i].dot(across_[plane.seed]) < 0) != behind) return false;
+    }
+  }
+
+  // 2. The body on it.
+  HalfspaceContact found;
+  const GroundQuestion asked{body,           body_pose,        {normal, normal.dot(corner) + margin},
+                             question.stamp, memory.shapes[0], static_cast<double>(question.threshold)};
+  if (core.stand_on(asked, buffers, found) != SolverCore::Outcome::answered) return false;
+  plane.points = found.manifold;
+  if (found.manifold.count == 0) return true;
+  if (-found.lower > kShallow * (found.highest - found.lower)) return false;
+
+  // 3. What is under its points.
+  const double slack =
+      seam_slack(bounding_radius(*memory.shapes[0]->body),
+                 std::max(farthest_, to_pd(body_pose.getOrigin()).cwiseAbs().maxCoeff()));
+  for (int k = 0; k < plane.points.count; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Vec3 foot = mesh_pose.rotation().transpose() *
+                      (plane.points.points[at].position_b - margin * normal - mesh_pose.translation());
+    std::size_t under = 0;
+    while (under < triangles.size() &&
+           (plane_of_[under] != number || !holds(triangles[under], across_[under], foot, slack))) {
+      ++under;
+    }
+    if (under == triangles.size()) return false;
+    plane.triangles[at] = static_cast<int>(under);
+  }
+  return true;
+}
+
+bool FlatGround::find(const UnionQuestion& question, const std::vector<MetTriangle>& triangles, SolverCore& core,
+                      ThreadBuffers& buffers, PairMemory& memory, Patches& patches) {
+  if (triangles.empty() || is_piece(question.a) || !sort_by_plane(triangles)) return false;
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    if (!ask(question, triangles, core, buffers, memory, planes_[p], static_cast<int>(p))) return false;
+  }
+  for (const Plane& plane : planes_) {
+    for (int k = 0; k < plane.points.count; ++k) {
+      ContactManifold point = plane.points;
+      point.points[0] = plane.points.points[static_cast<std::size_t>(k)];
+      point.count = 1;
+      // Features are the body's alone, and go on from triangle to triangle.
+      patches.add(point, plane.triangles[static_cast<std::size_t>(k)], -1, -1);
+    }
+  }
+  return true;
+}
+
+}  // namespace pd::detail
