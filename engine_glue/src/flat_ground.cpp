@@ -102,9 +102,8 @@ bool FlatGround::ask(const UnionQuestion& question, const std::vector<MetTriangl
   if (-found.lower > kShallow * (found.highest - found.lower)) return false;
 
   // 3. What is under its points.
-  const double slack =
-      seam_slack(bounding_radius(*memory.shapes[0]->body),
-                 std::max(farthest_, to_pd(body_pose.getOrigin()).cwiseAbs().maxCoeff()));
+  const double slack = seam_slack(bounding_radius(*memory.shapes[0]->body),
+                                  std::max(farthest_, to_pd(body_pose.getOrigin()).cwiseAbs().maxCoeff()));
   for (int k = 0; k < plane.points.count; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const Vec3 foot = mesh_pose.rotation().transpose() *

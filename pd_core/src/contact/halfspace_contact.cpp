@@ -48,8 +48,7 @@ HalfspaceContact halfspace_contact(const PosedShape& a, const Halfspace3& ground
   out.manifold.normal = n;
   const Farthest lowest = farthest(a, -n);
   const double distance = height(lowest.point) - margin;
-  const double error =
-      kRounding * (a.pose.translation().norm() + bounding_radius(*a.shape) + std::abs(ground.offset));
+  const double error = kRounding * (a.pose.translation().norm() + bounding_radius(*a.shape) + std::abs(ground.offset));
   out.lower = distance - error;
   out.upper = distance + error;
   if (out.lower > 0) {
@@ -77,7 +76,9 @@ HalfspaceContact halfspace_contact(const PosedShape& a, const Halfspace3& ground
     deepest = std::max(deepest, depth);
   };
   detail::supporting_face(a, -n, lowest.feature, buffers.face_a);
+  const bool single = buffers.face_a.vertices.size() == 1;  // the lowest point itself
   for (const detail::FaceVertex& vertex : buffers.face_a.vertices) {
+    if (single) break;
     // No point of the body lies lower than its lowest; what a corner says beyond that is rounding.
     const double depth = std::min(margin - height(vertex.point), -distance);
     if (depth >= -breaking_threshold) {
