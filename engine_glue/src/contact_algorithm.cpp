@@ -74,20 +74,11 @@ void fetch_for_query(PairMemory& memory) {
 
 ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                                    const btCollisionObjectWrapper* b, const Installation& installation)
-    : btActivatingCollisionAlgorithm(info, a, b), installation_(installation), manifold_(info.m_manifold) {}
+    : btActivatingCollisionAlgorithm(info, a, b),
+      installation_(installation),
+      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold) {}
 
-ContactAlgorithm::~ContactAlgorithm() {
-  if (owns_manifold_) {
-    installation_.core().pairs.remove(manifold_);
-    m_dispatcher->releaseManifold(manifold_);
-  }
-}
-
-void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
-  if (owns_manifold_) {
-    manifolds.push_back(manifold_);
-  }
-}
+void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) { manifold_.append_to(manifolds); }
 
 btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                                              const btCollisionObjectWrapper* a,
@@ -109,40 +100,30 @@ btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btC
 
 bool ContactAlgorithm::sharp_parts() const { return installation_.core().settings.unions_as_one; }
 
-void ContactAlgorithm::take_manifold(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
-  manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
-  owns_manifold_ = true;
-  memory_ = std::make_unique<PairMemory>();
-  installation_.core().pairs.add(manifold_, memory_.get());
-}
-
 void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         const btDispatcherInfo& info, btManifoldResult* result) {
   SolverCore& core = installation_.core();
-  const bool first = manifold_ == nullptr;
-  if (first) {
-    take_manifold(a, b);
-  }
-  result->setPersistentManifold(manifold_);
+  const bool first = manifold_.take(*a, *b);
+  btPersistentManifold& manifold = manifold_.get();
+  PairMemory* const memory = manifold_.memory();
+  result->setPersistentManifold(&manifold);
   const btConvexShape& shape_a = convex_shape(a);
   const btConvexShape& shape_b = convex_shape(b);
   // Pieces of unions have neighbours that may cover their contacts.
   const bool of_union = core.settings.unions_as_one && (is_piece(*a) || is_piece(*b));
   const bool boxes = !of_union && are_boxes(shape_a, shape_b);
-  if (memory_ && !boxes) fetch_for_query(*memory_);
+  if (memory != nullptr && !boxes) fetch_for_query(*memory);
 
   const btTransform& pose_a = a->getWorldTransform();
   const btTransform& pose_b = b->getWorldTransform();
-  const btScalar threshold = reach_of_contacts(*result, *manifold_, shape_a, shape_b);
+  const btScalar threshold = reach_of_contacts(*result, manifold, shape_a, shape_b);
   // A pair that had points is asked at once: it hardly ever parts in a step, and the query says so if it does.
-  const bool touched = memory_ && memory_->num_points > 0;
+  const bool touched = memory != nullptr && memory->num_points > 0;
   if (!touched && boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
-    if (owns_manifold_) {
-      manifold_->clearManifold();
-    }
+    manifold_.clear();
     return;
   }
-  fetch(*manifold_);
+  fetch(manifold);
   if (core.closed()) {
     btGjkEpaPenetrationDepthSolver epa;
     process_by_bullet(epa, shape_a, pose_a, shape_b, pose_b, info, result);
@@ -156,7 +137,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     const std::uint64_t stamp = first ? 0 : installation_.stamp();
     const BoxCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
     PairAnswer answer;
-    ContactManifold manifold;
+    ContactManifold points;
     const PairQuestion asked{shape_a,
                              pose_a,
                              shape_b,
@@ -164,10 +145,10 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                              corners,
                              touched ? kAnyDistance : static_cast<double>(threshold),
                              stamp,
-                             memory_ ? memory_->shapes : buffers->recent,
-                             memory_ ? &memory_->warm : nullptr,
+                             memory != nullptr ? memory->shapes : buffers->recent,
+                             memory != nullptr ? &memory->warm : nullptr,
                              boxes};
-    const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, manifold);
+    const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, points);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
       return;
@@ -176,17 +157,12 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       if (of_union) {
         buffers->cover.near.begin_pair();
         keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold),
-                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, manifold);
+                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, points);
       }
-      fresh = fresh_points(manifold);
+      fresh = fresh_points(points);
     }
   }
-  if (owns_manifold_) {
-    PointSurroundings whole;
-    replace_points(*manifold_, *memory_, fresh, info.m_timeStep, *result, whole);
-  } else {
-    add_points(*manifold_, fresh, *result);
-  }
+  manifold_.replace(fresh, info.m_timeStep, *result);
 }
 
 void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a,
@@ -197,16 +173,14 @@ void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver,
     btVoronoiSimplexSolver simplex;
     btGjkPairDetector detector(&a, &b, &simplex, &solver);
     btGjkPairDetector::ClosestPointInput input;
-    const btScalar reach = a.getMargin() + b.getMargin() + manifold_->getContactBreakingThreshold() +
+    const btScalar reach = a.getMargin() + b.getMargin() + manifold_.get().getContactBreakingThreshold() +
                            result->m_closestPointDistanceThreshold;
     input.m_maximumDistanceSquared = reach * reach;
     input.m_transformA = transform_a;
     input.m_transformB = transform_b;
     detector.getClosestPoints(input, *result, info.m_debugDraw);
   }
-  if (owns_manifold_) {
-    result->refreshContactPoints();
-  }
+  manifold_.refresh(*result);
 }
 
 btScalar ContactAlgorithm::calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo&,

@@ -9,7 +9,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btConvexPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
-#include "pair_registry.hpp"
+#include "own_manifold.hpp"
 #include "pd/contact/manifold.hpp"
 
 namespace pd::detail {
@@ -25,7 +25,6 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
  public:
   ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                    const btCollisionObjectWrapper* b, const Installation& installation);
-  ~ContactAlgorithm() override;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
@@ -48,15 +47,12 @@ class ContactAlgorithm final : public btActivatingCollisionAlgorithm {
   };
 
  private:
-  void take_manifold(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b);
   void process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a, const btTransform& transform_a,
                          const btConvexShape& b, const btTransform& transform_b, const btDispatcherInfo& info,
                          btManifoldResult* result);
 
   const Installation& installation_;
-  btPersistentManifold* manifold_;
-  bool owns_manifold_ = false;
-  std::unique_ptr<PairMemory> memory_;  ///< of pairs with a manifold of their own
+  OwnManifold manifold_;
 };
 
 }  // namespace pd::detail

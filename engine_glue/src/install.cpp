@@ -24,12 +24,12 @@ void for_each_convex_pair(Visit&& visit) {
   }
 }
 
-/// Convex bodies against meshes, in both orders.
+/// Convex bodies against meshes and planes, in both orders.
 template <class Visit>
-void for_each_mesh_pair(Visit&& visit) {
+void for_each_ground_pair(Visit&& visit) {
   for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
     for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
-      if (btBroadphaseProxy::isConvex(i) && detail::takes_mesh(j)) {
+      if (btBroadphaseProxy::isConvex(i) && (detail::takes_mesh(j) || j == STATIC_PLANE_PROXYTYPE)) {
         visit(i, j, false);
         visit(j, i, true);
       }
@@ -68,9 +68,10 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
     dispatcher.registerClosestPointsCreateFunc(i, j, whole ? installation.one_shot(true) : installation.persistent());
   });
   btCollisionConfiguration* configuration = dispatcher.getCollisionConfiguration();
-  for_each_mesh_pair([&](int i, int j, bool swapped) {
-    dispatcher.registerCollisionCreateFunc(
-        i, j, whole ? installation.mesh(swapped) : configuration->getCollisionAlgorithmCreateFunc(i, j));
+  for_each_ground_pair([&](int i, int j, bool swapped) {
+    const bool plane = (swapped ? i : j) == STATIC_PLANE_PROXYTYPE;
+    btCollisionAlgorithmCreateFunc* ours = plane ? installation.plane(swapped) : installation.mesh(swapped);
+    dispatcher.registerCollisionCreateFunc(i, j, whole ? ours : configuration->getCollisionAlgorithmCreateFunc(i, j));
   });
   for_each_compound_pair([&](int i, int j) {
     dispatcher.registerCollisionCreateFunc(
@@ -107,7 +108,7 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   const auto give_back = [&](int i, int j) {
     dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
   };
-  for_each_mesh_pair([&](int i, int j, bool) { give_back(i, j); });
+  for_each_ground_pair([&](int i, int j, bool) { give_back(i, j); });
   for_each_compound_pair(give_back);
   if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
     dynamics->removeAction(installation->step_action());

@@ -20,6 +20,8 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       mesh_(*this, mesh_contacts, false),
       swapped_mesh_(*this, mesh_contacts, true),
       compound_(*this, compound_contacts, false),
+      plane_(*this, false),
+      swapped_plane_(*this, true),
       persistent_(&depth_solver_) {}
 
 btCollisionAlgorithm* Installation::bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,

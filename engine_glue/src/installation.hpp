@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "contact_algorithm.hpp"
+#include "plane_algorithm.hpp"
 #include "union_algorithm.hpp"
 
 class btCollisionDispatcher;
@@ -37,6 +38,8 @@ class Installation {
   [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
   /// For the table of contacts: pairs with a compound, of compounds and convex bodies.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }
+  /// For the table of contacts: convex against plane, or (`swapped`) plane against convex.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* plane(bool swapped) { return swapped ? &swapped_plane_ : &plane_; }
   /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a dispatcher.
   [[nodiscard]] btCollisionAlgorithm* bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
                                                         const btCollisionObjectWrapper* a,
@@ -79,6 +82,8 @@ class Installation {
   UnionAlgorithm::CreateFunc mesh_;
   UnionAlgorithm::CreateFunc swapped_mesh_;
   UnionAlgorithm::CreateFunc compound_;
+  PlaneAlgorithm::CreateFunc plane_;
+  PlaneAlgorithm::CreateFunc swapped_plane_;
   btConvexConvexAlgorithm::CreateFunc persistent_;
 };
 

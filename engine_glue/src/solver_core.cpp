@@ -126,7 +126,8 @@ SolverCore::Outcome SolverCore::stand_on(const GroundQuestion& question, ThreadB
   if (!in_range(question.pose)) return Outcome::refused;
   held.counters.calls.add();
   QueryMeter meter(held);
-  out = halfspace_contact({found.body.get(), to_pd(question.pose)}, question.ground, question.threshold, held.manifold);
+  const ConvexShape* body = (question.sharp_box && found.sharp ? found.sharp : found.body).get();
+  out = halfspace_contact({body, to_pd(question.pose)}, question.ground, question.threshold, held.manifold);
   held.counters.support_calls.add(2);
   meter.count(out.contact);
   return Outcome::answered;

@@ -60,12 +60,13 @@ struct PairQuestion {
 
 /// A body on a plane.
 struct GroundQuestion {
-  const btConvexShape& body;  ///< taken as Bullet's GJK sees it, core and margin
+  const btConvexShape& body;  ///< taken as Bullet's GJK sees it, core and margin, but for sharp boxes
   const btTransform& pose;
   Halfspace3 ground;                    ///< in the world
   std::uint64_t stamp;                  ///< as of a PairQuestion
   std::shared_ptr<CachedShape>& shape;  ///< the body as found earlier
   double threshold;                     ///< up to which gap points are contacts
+  bool sharp_box = false;               ///< a btBoxShape without its margin
 };
 
 /// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves

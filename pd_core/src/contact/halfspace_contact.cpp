@@ -56,8 +56,8 @@ HalfspaceContact halfspace_contact(const PosedShape& a, const Halfspace3& ground
   } else {
     out.contact = out.upper < 0 ? ContactClass::overlapping : ContactClass::touching;
   }
-  out.highest = height(farthest(a, n).point) + margin;
   if (distance > breaking_threshold) return out;
+  out.highest = height(farthest(a, n).point) + margin;
 
   // 2. The corners of the face that looks down, each as deep as it is.
   detail::ManifoldBuffers& buffers = scratch.buffers();

@@ -1,7 +1,7 @@
 /// @file
 /// `bodies_on_mesh`: 36 bodies of one kind, or piles of them, that came to rest on a flat or wavy triangle mesh, a step
 /// under Bullet's algorithms and under ours in one run: milliseconds, queries, those that a memory answered, contact
-/// points, bodies that fell through. For instructions, one side alone under callgrind, less a run of no steps:
+/// points, bodies that fell through or off. For instructions, one side alone under callgrind:
 ///
 ///     valgrind --tool=callgrind --toggle-collect='btDiscreteDynamicsWorld::stepSimulation*'
 ///       bodies_on_mesh --kinds cylinder --grounds waves --runs pdepth --settle 0 --steps 20

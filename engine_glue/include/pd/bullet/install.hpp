@@ -17,18 +17,20 @@ enum class BulletContacts {
 
 /// Every pair of convex shapes of the world, in both of the dispatcher's tables, and (one_shot) in that of contacts
 /// every convex shape against a mesh or heightfield: box/box, sphere and capsule pairs, the convex children of
-/// compounds, and the triangles of meshes and heightfields included. Works at any time, also between steps: pairs that
+/// compounds, and the triangles of meshes and heightfields included; and against a `btStaticPlaneShape`, all of whose
+/// contact points are there from the first step. Works at any time, also between steps: pairs that
 /// have an algorithm already lose it and get a new one (with their contact points) at the next step.
 ///
-/// Not covered, because Bullet decides without asking the tables: convex against `btStaticPlaneShape` (Bullet's support
-/// in the plane's direction, which is exact up to rounding), soft bodies, ray and sweep queries (`convexSweepTest`; use
-/// `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the host registers later win.
+/// Not covered, because Bullet decides without asking the tables: soft bodies, ray and sweep queries (`convexSweepTest`;
+/// use `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the host registers later
+/// win.
 ///
 /// How shapes and their margins are taken ("inside" as in shape_conversion.hpp):
 ///
 /// | pair | one_shot | persistent |
 /// |---|---|---|
 /// | two btBoxShapes | sharp, full half extents, as Bullet's own box/box | rounded: the margin lies inside |
+/// | btBoxShape and a plane, which has no margin | sharp | sharp (Bullet's own algorithm) |
 /// | btBoxShape and anything else; cylinders | rounded by the margin, which lies inside | the same |
 /// | hulls, point clouds, triangles, cones | rounded by the margin, which lies outside | the same |
 /// | spheres, capsules, multispheres | exact; the margin is the (least) radius | the same |
@@ -56,7 +58,7 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver,
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 
-/// Gives every pair that `install` took (convex shapes, meshes, compounds) back to the algorithms of the dispatcher's
+/// Gives every pair that `install` took (convex shapes, planes, meshes, compounds) back to the algorithms of the dispatcher's
 /// own configuration (not to create functions that the host had registered before). Contacts are found again at the
 /// next step.
 /// @return false, and nothing changed, where the solver is not installed in this world's dispatcher.

@@ -16,9 +16,9 @@ struct HalfspaceContact {
   /// which is the shortest out of it.
   double lower = 0;
   double upper = 0;
-  /// How far the body's farthest point lies above the half-space, along the normal; up to rounding.
-  double highest = 0;
   ContactManifold manifold;  ///< its normal is the half-space's; no points beyond the threshold
+  /// Of a body with points: how far its farthest point lies above the half-space, along the normal; up to rounding.
+  double highest = 0;
 };
 
 /// Lengths are in the unit of the input, points in the frame that `ground` and the pose share. The body is A.

@@ -1,0 +1,113 @@
+#include "plane_algorithm.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+
+#include "installation.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "prefetch.hpp"
+#include "solver_core.hpp"
+
+namespace pd::detail {
+
+// Bullet's pool of algorithms holds no larger ones.
+static_assert(sizeof(PlaneAlgorithm) <= sizeof(btConvexConvexAlgorithm));
+
+namespace {
+
+/// Whether the body's bounding box is farther above the plane than contacts reach: so are most bodies of a pile, each
+/// of which meets the plane's endless box.
+bool box_above(const btConvexShape& body, const btTransform& pose, const Halfspace3& ground, double reach) {
+  btVector3 lower;
+  btVector3 upper;
+  body.getAabb(pose, lower, upper);
+  const Vec3 low = to_pd(lower), high = to_pd(upper);
+  const Vec3 least = ground.normal.cwiseProduct(low).cwiseMin(ground.normal.cwiseProduct(high));
+  return least.sum() > ground.offset + reach;
+}
+
+}  // namespace
+
+PlaneAlgorithm::PlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                               const btCollisionObjectWrapper* b, const Installation& installation, bool swapped)
+    : btActivatingCollisionAlgorithm(info, a, b),
+      installation_(installation),
+      swapped_(swapped),
+      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold) {}
+
+PlaneAlgorithm::~PlaneAlgorithm() {
+  if (bullets_ == nullptr) return;
+  bullets_->~btCollisionAlgorithm();
+  m_dispatcher->freeCollisionAlgorithm(bullets_);
+}
+
+void PlaneAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+  manifold_.append_to(manifolds);
+  if (bullets_ != nullptr) bullets_->getAllContactManifolds(manifolds);
+}
+
+btCollisionAlgorithm* PlaneAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                           const btCollisionObjectWrapper* a,
+                                                                           const btCollisionObjectWrapper* b) {
+  const BulletSolverSettings& settings = installation.core().settings;
+  if (settings.takes_pair && !settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user)) {
+    return installation.bullets_algorithm(info, a, b);
+  }
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(PlaneAlgorithm));
+  return new (memory) PlaneAlgorithm(info, a, b, installation, m_swapped);
+}
+
+bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& plane, bool first,
+                          btManifoldResult& result, FreshPoints& fresh) {
+  SolverCore& core = installation_.core();
+  if (core.closed()) return false;
+  const auto& shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());
+  const Pose pose = to_pd(plane.getWorldTransform());
+  if (!is_finite(plane.getWorldTransform())) return true;
+  const Vec3 local = to_pd(shape.getPlaneNormal());
+  const Vec3 normal = (pose.rotation() * local).normalized();
+  const Vec3 point = pose.apply(static_cast<double>(shape.getPlaneConstant()) * local);
+  const Halfspace3 ground{normal, normal.dot(point)};
+  const auto threshold =
+      static_cast<double>(manifold_.get().getContactBreakingThreshold() + result.m_closestPointDistanceThreshold);
+  const auto& convex = static_cast<const btConvexShape&>(*body.getCollisionShape());
+  PairMemory* const memory = manifold_.memory();
+  const bool touched = memory != nullptr && memory->num_points > 0;
+  if (!touched && box_above(convex, body.getWorldTransform(), ground, threshold)) return true;
+  auto buffers = core.buffers.lease();
+  // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
+  const GroundQuestion asked{convex,
+                             body.getWorldTransform(),
+                             ground,
+                             first ? 0 : installation_.stamp(),
+                             memory != nullptr ? memory->shapes[0] : buffers->recent[0],
+                             threshold,
+                             true};
+  HalfspaceContact found;
+  const SolverCore::Outcome outcome = core.stand_on(asked, *buffers, found);
+  if (outcome == SolverCore::Outcome::answered) fresh = fresh_points(found.manifold);
+  return outcome != SolverCore::Outcome::unsupported;
+}
+
+void PlaneAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                                      const btDispatcherInfo& info, btManifoldResult* result) {
+  const btCollisionObjectWrapper& body = swapped_ ? *b : *a;
+  const btCollisionObjectWrapper& plane = swapped_ ? *a : *b;
+  const bool first = manifold_.take(body, plane);
+  result->setPersistentManifold(&manifold_.get());
+  FreshPoints fresh;
+  if (find(body, plane, first, *result, fresh)) {
+    manifold_.replace(fresh, info.m_timeStep, *result);
+    return;
+  }
+  manifold_.clear();
+  if (bullets_ == nullptr) {
+    btCollisionAlgorithmConstructionInfo own(m_dispatcher, 0);
+    bullets_ = installation_.bullets_algorithm(own, a, b);
+  }
+  bullets_->processCollision(a, b, info, result);
+}
+
+}  // namespace pd::detail
