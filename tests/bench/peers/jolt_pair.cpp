@@ -1,0 +1,188 @@
+#include "bench/peers/jolt_pair.hpp"
+
+#include <Jolt/Jolt.h>
+// Jolt's own header comes before all its others.
+#include <Jolt/Core/Memory.h>
+#include <Jolt/Geometry/AABox.h>
+#include <Jolt/Geometry/ConvexSupport.h>
+#include <Jolt/Geometry/EPAPenetrationDepth.h>
+#include <Jolt/Physics/Collision/Shape/BoxShape.h>
+#include <Jolt/Physics/Collision/Shape/CapsuleShape.h>
+#include <Jolt/Physics/Collision/Shape/CylinderShape.h>
+#include <Jolt/Physics/Collision/Shape/SphereShape.h>
+
+#include <cfloat>
+#include <cmath>
+
+namespace pd::bench {
+
+namespace {
+
+using JPH::ConvexShape;
+using JPH::Mat44;
+using JPH::Vec3;
+using JPH::Vec4;
+
+constexpr float kTolerance = 1e-5F;
+
+Vec3 to_jolt(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+std::array<float, 3> from_jolt(const Vec3& v) { return {v.GetX(), v.GetY(), v.GetZ()}; }
+
+/// Vertices side by side. Jolt's hull shape would scan them among other numbers, drop some, and take 256 at most.
+struct Hull {
+  JPH::Array<Vec3> vertices;
+  JPH::PolygonConvexSupport<JPH::Array<Vec3>> support{vertices};
+
+  explicit Hull(const JoltBody& body) {
+    for (const auto& v : body.vertices) vertices.push_back(to_jolt(v));
+  }
+  Hull(const Hull&) = delete;
+  Hull& operator=(const Hull&) = delete;
+  const auto& core() const { return support; }
+  const auto& whole() const { return support; }
+  float radius() const { return 0; }
+};
+
+struct Box {
+  JPH::AABox box;
+
+  explicit Box(const JoltBody& body) : box(-to_jolt(body.radii), to_jolt(body.radii)) {}
+  const auto& core() const { return box; }
+  const auto& whole() const { return box; }
+  float radius() const { return 0; }
+};
+
+/// A support mapping that Jolt calls as those of its own shapes.
+template <class Map>
+class Mapped final : public ConvexShape::Support {
+ public:
+  explicit Mapped(Map map) : map_(std::move(map)) {}
+  Vec3 GetSupport(JPH::Vec3Arg direction) const override { return map_(direction); }
+  float GetConvexRadius() const override { return 0; }
+
+ private:
+  Map map_;
+};
+
+template <class Map>
+std::unique_ptr<ConvexShape::Support> mapped(Map map) {
+  return std::make_unique<Mapped<Map>>(std::move(map));
+}
+
+/// Shapes of Jolt's own without a convex radius but that of spheres and capsules; cones and ellipsoids by formulas.
+class Any {
+ public:
+  explicit Any(const JoltBody& body) {
+    using Kind = JoltBody::Kind;
+    if (body.kind == Kind::sphere) shape_ = new JPH::SphereShape(body.radius);
+    if (body.kind == Kind::capsule) shape_ = new JPH::CapsuleShape(body.half_height, body.radius);
+    if (body.kind == Kind::cylinder) shape_ = new JPH::CylinderShape(body.half_height, body.radius, 0.0F);
+    if (body.kind == Kind::box) shape_ = new JPH::BoxShape(to_jolt(body.radii), 0.0F);
+    if (shape_ != nullptr) {
+      const Vec3 one = Vec3::sOne();
+      core_ = shape_->GetSupportFunction(ConvexShape::ESupportMode::ExcludeConvexRadius, buffers_[0], one);
+      whole_ = shape_->GetSupportFunction(ConvexShape::ESupportMode::IncludeConvexRadius, buffers_[1], one);
+      return;
+    }
+    if (body.kind == Kind::ellipsoid) {
+      own_ = mapped([radii = to_jolt(body.radii)](JPH::Vec3Arg d) {
+        const Vec3 scaled = radii * d;
+        const float length = scaled.Length();
+        return length > 0 ? radii * scaled / length : Vec3(radii.GetX(), 0, 0);
+      });
+    } else if (body.kind == Kind::cone) {
+      own_ = mapped([radius = body.radius, half = body.half_height](JPH::Vec3Arg d) {
+        const float across = std::sqrt(d.GetX() * d.GetX() + d.GetZ() * d.GetZ());
+        if (2 * half * d.GetY() > radius * across) return Vec3(0, half, 0);
+        const float scale = across > 0 ? radius / across : 0;
+        return Vec3(scale * d.GetX(), -half, scale * d.GetZ());
+      });
+    } else {
+      hull_ = std::make_unique<Hull>(body);
+      own_ = mapped([&support = hull_->support](JPH::Vec3Arg d) { return support.GetSupport(d); });
+    }
+    core_ = whole_ = own_.get();
+  }
+  Any(const Any&) = delete;
+  Any& operator=(const Any&) = delete;
+  const auto& core() const { return *core_; }
+  const auto& whole() const { return *whole_; }
+  float radius() const { return core_->GetConvexRadius(); }
+
+ private:
+  JPH::Ref<ConvexShape> shape_;
+  ConvexShape::SupportBuffer buffers_[2];
+  std::unique_ptr<Hull> hull_;
+  std::unique_ptr<ConvexShape::Support> own_;
+  const ConvexShape::Support* core_ = nullptr;
+  const ConvexShape::Support* whole_ = nullptr;
+};
+
+/// The steps of Jolt's convex against convex, in A's frame.
+template <class A, class B>
+class Pair final : public JoltPair {
+ public:
+  Pair(const JoltBody& a, const JoltBody& b) : a_(a), b_(b) {}
+
+  void stand(const std::array<float, 9>& c, const std::array<float, 3>& t) override {
+    b_in_a_ = Mat44(Vec4(c[0], c[1], c[2], 0), Vec4(c[3], c[4], c[5], 0), Vec4(c[6], c[7], c[8], 0),
+                    Vec4(t[0], t[1], t[2], 1));
+  }
+  JoltAnswer depth() override {
+    using Status = JPH::EPAPenetrationDepth::EStatus;
+    Vec3 axis = first_axis();
+    Vec3 on_a = Vec3::sZero();
+    Vec3 on_b = Vec3::sZero();
+    JPH::EPAPenetrationDepth solver;
+    const JPH::TransformedConvexObject core_b(b_in_a_, b_.core());
+    const Status status =
+        solver.GetPenetrationDepthStepGJK(a_.core(), a_.radius(), core_b, b_.radius(), kTolerance, axis, on_a, on_b);
+    if (status == Status::NotColliding) return {};
+    if (status == Status::Indeterminate) {
+      const JPH::TransformedConvexObject whole_b(b_in_a_, b_.whole());
+      if (!solver.GetPenetrationDepthStepEPA(a_.whole(), whole_b, kTolerance, axis, on_a, on_b)) return {};
+    }
+    return {true, false, from_jolt(on_a), from_jolt(on_b), {}};
+  }
+  JoltAnswer distance(float limit, bool warm) override {
+    if (!warm || axis_.IsNearZero()) axis_ = first_axis();
+    Vec3 on_a = Vec3::sZero();
+    Vec3 on_b = Vec3::sZero();
+    JPH::GJKClosestPoint solver;
+    const JPH::TransformedConvexObject core_b(b_in_a_, b_.core());
+    const float squared = solver.GetClosestPoints(a_.core(), core_b, kTolerance, limit * limit, axis_, on_a, on_b);
+    return {squared == 0, squared == FLT_MAX, from_jolt(on_a), from_jolt(on_b), from_jolt(axis_)};
+  }
+
+ private:
+  [[nodiscard]] Vec3 first_axis() const {
+    const Vec3 between = b_in_a_.GetTranslation();
+    return between.IsNearZero() ? Vec3::sAxisX() : between;
+  }
+
+  A a_;
+  B b_;
+  Mat44 b_in_a_ = Mat44::sIdentity();
+  Vec3 axis_ = Vec3::sZero();
+};
+
+}  // namespace
+
+std::string jolt_version() {
+  return std::to_string(JPH_VERSION_MAJOR) + "." + std::to_string(JPH_VERSION_MINOR) + "." +
+         std::to_string(JPH_VERSION_PATCH);
+}
+
+std::unique_ptr<JoltPair> make_jolt_pair(const JoltBody& a, const JoltBody& b) {
+  static const bool allocator = [] {
+    JPH::RegisterDefaultAllocator();
+    return true;
+  }();
+  static_cast<void>(allocator);
+  using Kind = JoltBody::Kind;
+  if (a.kind == Kind::hull && b.kind == Kind::hull) return std::make_unique<Pair<Hull, Hull>>(a, b);
+  if (a.kind == Kind::box && b.kind == Kind::box) return std::make_unique<Pair<Box, Box>>(a, b);
+  return std::make_unique<Pair<Any, Any>>(a, b);
+}
+
+}  // namespace pd::bench
