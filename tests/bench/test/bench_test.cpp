@@ -84,6 +84,23 @@ class Judged : public testing::Test {
   Answer right_;
 };
 
+TEST(Contest, TheFastestPeerThatIsRightEverywhereCounts) {
+  const auto row = [](const char* solver, int pairs, double ns, int wrong) {
+    Row r{"box", 8, "mid", solver, pairs, ns};
+    r.wrong = wrong;
+    return r;
+  };
+  const std::vector<Row> rows = {row("pdepth-auto", 12, 500, 0), row("wrong-once", 12, 100, 1),
+                                 row("skips-one", 11, 200, 0), row("slow", 12, 900, 0), row("right", 12, 400, 0)};
+  const std::vector<BestPeer> best = best_peers(rows, {"pdepth-auto", {}});
+  ASSERT_EQ(best.size(), 1u);
+  ASSERT_NE(best[0].peer, nullptr);
+  EXPECT_EQ(best[0].peer->solver, "right");
+  EXPECT_TRUE(best[0].lost());
+  EXPECT_FALSE(best_peers(rows, {"pdepth-auto", {"slow"}})[0].lost());
+  EXPECT_EQ(best_peers(rows, {"pdepth-auto", {"absent"}})[0].peer, nullptr);
+}
+
 TEST_F(Judged, RightAnswersPass) {
   EXPECT_FALSE(wrong(right_));
   EXPECT_FALSE(wrong(right_, Precision::binary32));
