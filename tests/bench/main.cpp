@@ -38,6 +38,7 @@ struct Options {
   std::vector<std::string> solvers;
   std::uint64_t seed = 0;
   bool quick = false;
+  bool turned = false;
   int pairs = 0;
   int frames = 200;
   std::string csv;
@@ -131,6 +132,7 @@ int pairs_command(const Options& o) {
   print_preamble(o);
   PairsSettings settings;
   settings.cells = *cells;
+  for (Cell& cell : settings.cells) cell.turned = o.turned;
   settings.seed = o.seed;
   settings.pairs = pairs_of(o);
   return finish(run_pairs(settings, solvers), "Cold single pairs", o, {{std::string(kOurs), {}}});
@@ -262,6 +264,7 @@ CLI::App* add_pairs(CLI::App& app, Options& o) {
   add_common(*command, o);
   add_family_options(*command, o);
   add_pair_options(*command, o);
+  command->add_flag("--turned", o.turned, "turns cubes, grids and roofs at random as well, both bodies together");
   return command;
 }
 

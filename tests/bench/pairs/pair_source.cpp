@@ -80,6 +80,14 @@ Draw crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   return {{ConvexShape(pair.a), ConvexShape(pair.b)}, pair.pose_a, pair.pose_b};
 }
 
+/// What is parallel stays so to the last bit where both rotations are by right angles.
+void turn(Draw& draw, const std::array<double, 4>& quaternion) {
+  const Mat3 rotation = Pose::from_quaternion(quaternion, Vec3::Zero())->rotation();
+  for (Pose* pose : {&draw.pose_a, &draw.pose_b}) {
+    *pose = Pose::from_trusted_matrix(rotation * pose->rotation(), rotation * pose->translation());
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(const Cell& cell) {
@@ -157,6 +165,14 @@ Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& familie
 }
 
 std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
+  if (cell.turned &&
+      (cell.family == PairFamily::cubes || cell.family == PairFamily::roofs || cell.family == PairFamily::grid)) {
+    Cell upright = cell;
+    upright.turned = false;
+    std::optional<Draw> d = draw(upright, seed, number);
+    if (d) turn(*d, scenes::Random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 23).quaternion());
+    return d;
+  }
   if (cell.family == PairFamily::cubes) return aligned_cubes(cell, seed, number);
   if (cell.family == PairFamily::roofs) return crossed_roofs(cell, seed, number);
   scenes::PointPair pair = scenes::make_pair(cell.family, cell.vertices, cell.depth, seed * 1000003 + number);

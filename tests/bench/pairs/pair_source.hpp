@@ -26,6 +26,7 @@ struct Cell {
   int vertices;
   scenes::DepthClass depth;
   Variant variant = Variant::own;
+  bool turned = false;  ///< cubes, grids and roofs: both bodies by one random rotation, which all others have anyway
 };
 
 /// The family's name.
