@@ -187,6 +187,11 @@ std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t num
   const auto b = ConvexPolytope::from_points(pair.b);
   if (!a || !b) return std::nullopt;
   Draw d{{ConvexShape(*a), ConvexShape(*b)}, pair.pose_a, pair.pose_b};
+  // Lenses of four corners lie on one side of their origin: the scenes' own deep place only makes them touch.
+  if (cell.family == PairFamily::grid && cell.vertices == 8 && cell.depth == DepthClass::deep) {
+    const Vec3 t = d.pose_a.apply(extent_of(pair.a).middle) - d.pose_b.rotation() * extent_of(pair.b).middle;
+    d.pose_b = Pose::from_trusted_matrix(d.pose_b.rotation(), t);
+  }
   if (cell.family != PairFamily::needle && !pressed) return d;
   scenes::Random random(seed + number * 0xD1B54A32D192ED03ULL);
   return placed(d.bodies, extent_of(pair.a).size.minCoeff(), cell.depth, random);
