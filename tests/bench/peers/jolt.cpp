@@ -59,11 +59,11 @@ enum class JoltQuery : std::uint8_t { depth, distance, beyond };
 
 class JoltAttempt final : public Attempt {
  public:
-  JoltAttempt(const Bodies& bodies, JoltQuery query, bool warm) : query_(query), warm_(warm) {
+  JoltAttempt(const Bodies& bodies, JoltQuery query, bool warm, bool wide) : query_(query), warm_(warm) {
     const JoltBody a = to_jolt(bodies.a), b = to_jolt(bodies.b);
     if (stands(a)) turn_a_ = upright();
     if (stands(b)) turn_b_ = upright();
-    pair_ = make_jolt_pair(a, b);
+    pair_ = make_jolt_pair(a, b, wide);
   }
   void stand(const Pose& a, const Pose& b) override {
     const Pose at_a = scenes::to_single(a), at_b = scenes::to_single(b);
@@ -97,25 +97,30 @@ class JoltAttempt final : public Attempt {
 
 class JoltSolver final : public Solver {
  public:
-  JoltSolver(std::string_view name, JoltQuery query, bool warm = false) : name_(name), query_(query), warm_(warm) {}
+  JoltSolver(std::string_view name, JoltQuery query, bool warm = false, bool wide = false)
+      : name_(name), query_(query), warm_(warm), wide_(wide) {}
   [[nodiscard]] std::string_view name() const override { return name_; }
   [[nodiscard]] Precision precision() const override { return Precision::binary32; }
   [[nodiscard]] bool takes(const Bodies& bodies) const override {
     return !std::holds_alternative<SphereHull>(bodies.a.core()) && !std::holds_alternative<SphereHull>(bodies.b.core());
   }
   [[nodiscard]] std::unique_ptr<Attempt> prepare(const Bodies& bodies) override {
-    return std::make_unique<JoltAttempt>(bodies, query_, warm_);
+    return std::make_unique<JoltAttempt>(bodies, query_, warm_, wide_);
   }
 
  private:
   std::string_view name_;
   JoltQuery query_;
   bool warm_;
+  bool wide_;
 };
 
 }  // namespace
 
-void add_jolt(Solvers& solvers) { solvers.push_back(std::make_unique<JoltSolver>("jolt-epa", JoltQuery::depth)); }
+void add_jolt(Solvers& solvers) {
+  solvers.push_back(std::make_unique<JoltSolver>("jolt-epa", JoltQuery::depth));
+  solvers.push_back(std::make_unique<JoltSolver>("jolt-epa-wide", JoltQuery::depth, false, true));
+}
 
 void add_jolt_apart(Solvers& solvers) {
   solvers.push_back(std::make_unique<JoltSolver>("jolt-gjk", JoltQuery::distance));

@@ -10,6 +10,7 @@
 #include <Jolt/Physics/Collision/Shape/CapsuleShape.h>
 #include <Jolt/Physics/Collision/Shape/CylinderShape.h>
 #include <Jolt/Physics/Collision/Shape/SphereShape.h>
+#include <immintrin.h>
 
 #include <cfloat>
 #include <cmath>
@@ -41,6 +42,50 @@ struct Hull {
   const auto& core() const { return support; }
   const auto& whole() const { return support; }
   float radius() const { return 0; }
+};
+
+/// Our scan over the vertices, eight at a time: coordinates apart, the last group filled up with copies of the first
+/// vertex.
+class WideHull {
+ public:
+  explicit WideHull(const JoltBody& body) : points_(body.vertices.begin(), body.vertices.end()) {
+    while (points_.size() % 8 != 0) points_.push_back(points_[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      coordinates_[k].resize(points_.size());
+      for (std::size_t i = 0; i < points_.size(); ++i) coordinates_[k][i] = points_[i][k];
+    }
+  }
+  Vec3 GetSupport(JPH::Vec3Arg direction) const {
+    const __m256 x = _mm256_set1_ps(direction.GetX());
+    const __m256 y = _mm256_set1_ps(direction.GetY());
+    const __m256 z = _mm256_set1_ps(direction.GetZ());
+    __m256 most = _mm256_set1_ps(-FLT_MAX);
+    __m256i where = _mm256_setzero_si256();
+    __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    for (std::size_t i = 0; i < points_.size(); i += 8) {
+      const __m256 height = _mm256_fmadd_ps(x, _mm256_loadu_ps(&coordinates_[0][i]),
+                                            _mm256_fmadd_ps(y, _mm256_loadu_ps(&coordinates_[1][i]),
+                                                            _mm256_mul_ps(z, _mm256_loadu_ps(&coordinates_[2][i]))));
+      const __m256 higher = _mm256_cmp_ps(height, most, _CMP_GT_OQ);
+      most = _mm256_max_ps(most, height);
+      where = _mm256_blendv_epi8(where, index, _mm256_castps_si256(higher));
+      index = _mm256_add_epi32(index, _mm256_set1_epi32(8));
+    }
+    __m256 best = _mm256_max_ps(most, _mm256_permute2f128_ps(most, most, 1));
+    best = _mm256_max_ps(best, _mm256_permute_ps(best, 0x4e));
+    best = _mm256_max_ps(best, _mm256_permute_ps(best, 0xb1));
+    const int lane = __builtin_ctz(static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(most, best, _CMP_EQ_OQ))));
+    alignas(32) std::array<int, 8> indices;
+    _mm256_store_si256(reinterpret_cast<__m256i*>(indices.data()), where);
+    return to_jolt(points_[static_cast<std::size_t>(indices[static_cast<std::size_t>(lane & 7)])]);
+  }
+  const auto& core() const { return *this; }
+  const auto& whole() const { return *this; }
+  float radius() const { return 0; }
+
+ private:
+  std::vector<std::array<float, 3>> points_;
+  std::array<std::vector<float>, 3> coordinates_;
 };
 
 struct Box {
@@ -173,13 +218,14 @@ std::string jolt_version() {
          std::to_string(JPH_VERSION_PATCH);
 }
 
-std::unique_ptr<JoltPair> make_jolt_pair(const JoltBody& a, const JoltBody& b) {
+std::unique_ptr<JoltPair> make_jolt_pair(const JoltBody& a, const JoltBody& b, bool wide) {
   static const bool allocator = [] {
     JPH::RegisterDefaultAllocator();
     return true;
   }();
   static_cast<void>(allocator);
   using Kind = JoltBody::Kind;
+  if (wide && a.kind == Kind::hull && b.kind == Kind::hull) return std::make_unique<Pair<WideHull, WideHull>>(a, b);
   if (a.kind == Kind::hull && b.kind == Kind::hull) return std::make_unique<Pair<Hull, Hull>>(a, b);
   if (a.kind == Kind::box && b.kind == Kind::box) return std::make_unique<Pair<Box, Box>>(a, b);
   return std::make_unique<Pair<Any, Any>>(a, b);

@@ -44,6 +44,7 @@ class JoltPair {
 /// "5.5.1"
 [[nodiscard]] std::string jolt_version();
 
-[[nodiscard]] std::unique_ptr<JoltPair> make_jolt_pair(const JoltBody& a, const JoltBody& b);
+/// @param wide  two hulls by a scan of ours over their vertices instead of Jolt's
+[[nodiscard]] std::unique_ptr<JoltPair> make_jolt_pair(const JoltBody& a, const JoltBody& b, bool wide);
 
 }  // namespace pd::bench
