@@ -67,6 +67,23 @@ TEST(PairSource, DrawsRepeatAndNamesAreChecked) {
   EXPECT_EQ(vertices_of(once.bodies.a), vertices_of(again.bodies.a));
 }
 
+TEST(PairSource, VariantsHaveTheirSizesAndTurningKeepsTheDepth) {
+  EXPECT_EQ(choose_cells({"ellipsoid"}, {}, false)->size(), 12u);
+  EXPECT_EQ(choose_cells({"flat"}, {}, false)->size(), 12u);
+  EXPECT_EQ(choose_cells({"cubes1e-7"}, {}, false)->size(), 3u);
+  EXPECT_FALSE(choose_cells({"cubes1e-7"}, {32}, false));
+  Cell cell{PairFamily::grid, 8, DepthClass::deep};
+  const auto depth = [&] {
+    const Draw d = *draw(cell, 7, 3);
+    Scratch scratch;
+    return penetration_depth({&d.bodies.a, d.pose_a}, {&d.bodies.b, d.pose_b}, scratch).depth;
+  };
+  const double upright = depth();
+  cell.turned = true;
+  EXPECT_GT(upright, 0.05);
+  EXPECT_NEAR(depth(), upright, 1e-14);
+}
+
 class Judged : public testing::Test {
  protected:
   Judged() : draw_(*draw({PairFamily::sphere, 32, DepthClass::mid}, 1, 0)), bodies_(draw_.bodies) {
