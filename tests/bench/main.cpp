@@ -38,6 +38,7 @@ struct Options {
   std::vector<std::string> solvers;
   std::uint64_t seed = 0;
   bool quick = false;
+  bool turned = false;
   int pairs = 0;
   int frames = 200;
   std::string csv;
@@ -103,8 +104,10 @@ void print_preamble(const Options& o) {
 int pairs_of(const Options& o) { return o.pairs > 0 ? o.pairs : o.quick ? 12 : 72; }
 
 /// The summary and the files that were asked for. 1 where one of ours was wrong or a file could not be written.
-int finish(const std::vector<Row>& rows, const std::string& what, const Options& o) {
+int finish(const std::vector<Row>& rows, const std::string& what, const Options& o,
+           const std::vector<Contest>& contests) {
   print_summary(rows);
+  for (const Contest& contest : contests) print_contest(rows, contest);
   bool good = o.csv.empty() || write_text(o.csv, to_csv(rows));
   good = write_report(o.report, report_of_pairs(rows, what)) && good;
   if (!o.plots.empty()) {
@@ -129,9 +132,10 @@ int pairs_command(const Options& o) {
   print_preamble(o);
   PairsSettings settings;
   settings.cells = *cells;
+  for (Cell& cell : settings.cells) cell.turned = o.turned;
   settings.seed = o.seed;
   settings.pairs = pairs_of(o);
-  return finish(run_pairs(settings, solvers), "Cold single pairs", o);
+  return finish(run_pairs(settings, solvers), "Cold single pairs", o, {{std::string(kOurs), {}}});
 }
 
 int meshes_command(const Options& o) {
@@ -142,7 +146,8 @@ int meshes_command(const Options& o) {
   add_peers(solvers);
   if (!select(solvers, o.solvers)) return 2;
   print_preamble(o);
-  return finish(run_meshes(*meshes, pairs_of(o), o.seed, solvers), "Hulls of your meshes", o);
+  return finish(run_meshes(*meshes, pairs_of(o), o.seed, solvers), "Hulls of your meshes", o,
+                {{std::string(kOurs), {}}});
 }
 
 /// Without options of its own: the quick cells, ours beside Bullet's EPA.
@@ -183,7 +188,18 @@ int apart_command(const Options& o) {
   if (!select(solvers, o.solvers)) return 2;
   print_preamble(o);
   const int pairs = o.pairs > 0 ? o.pairs : o.quick ? 4 : 24;
-  return finish(run_apart({*cells, pairs, o.seed}, solvers), "Bodies apart (ratios to Bullet's pair detector)", o);
+  const std::vector<std::string> cold = {std::string(kBulletGjk), "fcl-libccd", "fcl-own-gjk", "jolt-gjk",
+                                         "mujoco-distance",       "box3d-gjk"};
+  const std::vector<std::string> beyond = {"bullet-beyond", "jolt-beyond", "mujoco-beyond"};
+  const auto with = [](std::vector<std::string> names, std::initializer_list<const char*> more) {
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+  };
+  return finish(run_apart({*cells, pairs, o.seed}, solvers), "Bodies apart (ratios to Bullet's pair detector)", o,
+                {{"pdepth-distance", cold},
+                 {"pdepth-distance-warm", with(cold, {"jolt-gjk-warm", "box3d-gjk-warm"})},
+                 {"pdepth-beyond", beyond},
+                 {"pdepth-beyond-warm", with(beyond, {"jolt-beyond-warm"})}});
 }
 
 int curved_command(const Options& o) {
@@ -195,7 +211,8 @@ int curved_command(const Options& o) {
   if (!select(solvers, o.solvers)) return 2;
   print_preamble(o);
   const int pairs = o.pairs > 0 ? o.pairs : o.quick ? 8 : 40;
-  return finish(run_curved({*cells, pairs, o.seed}, solvers), "Curved bodies in each other", o);
+  return finish(run_curved({*cells, pairs, o.seed}, solvers), "Curved bodies in each other", o,
+                {{std::string(kOurs), {}}, {"pdepth-warm", {}}});
 }
 
 int hash_command(const Options& o) {
@@ -247,6 +264,7 @@ CLI::App* add_pairs(CLI::App& app, Options& o) {
   add_common(*command, o);
   add_family_options(*command, o);
   add_pair_options(*command, o);
+  command->add_flag("--turned", o.turned, "turns cubes, grids and roofs at random as well, both bodies together");
   return command;
 }
 

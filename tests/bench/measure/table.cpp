@@ -77,6 +77,44 @@ void print_summary(const std::vector<Row>& rows) {
   }
 }
 
+std::vector<BestPeer> best_peers(const std::vector<Row>& rows, const Contest& contest) {
+  std::vector<BestPeer> best;
+  for (const Row& ours : rows) {
+    if (ours.solver != contest.ours) continue;
+    BestPeer cell{&ours, nullptr};
+    for (const Row& r : rows) {
+      const bool same = r.family == ours.family && r.vertices == ours.vertices && r.depth == ours.depth;
+      const bool named = std::find(contest.peers.begin(), contest.peers.end(), r.solver) != contest.peers.end();
+      const bool peer = contest.peers.empty() ? !r.solver.starts_with("pdepth") : named;
+      if (!same || !peer || r.wrong > 0 || r.pairs < ours.pairs) continue;
+      if (cell.peer == nullptr || r.p50_ns < cell.peer->p50_ns) cell.peer = &r;
+    }
+    best.push_back(cell);
+  }
+  return best;
+}
+
+void print_contest(const std::vector<Row>& rows, const Contest& contest) {
+  const std::vector<BestPeer> cells = best_peers(rows, contest);
+  if (cells.empty()) return;
+  fmt::print("\n{} beside the fastest peer with no wrong answer: x Bullet, x Bullet, ours over the peer's\n",
+             contest.ours);
+  std::size_t lost = 0;
+  for (const BestPeer& cell : cells) {
+    const Row& ours = *cell.ours;
+    if (cell.peer == nullptr) {
+      fmt::print("  {:<19} {:>8} {:<8} {:>7} {:>7}  no peer\n", ours.family, ours.vertices, ours.depth,
+                 number_text(ours.ratio_to_bullet, 3), "-");
+      continue;
+    }
+    lost += cell.lost() ? 1 : 0;
+    fmt::print("  {:<19} {:>8} {:<8} {:>7} {:>7} {:>6.2f}  {}{}\n", ours.family, ours.vertices, ours.depth,
+               number_text(ours.ratio_to_bullet, 3), number_text(cell.peer->ratio_to_bullet, 3),
+               ours.p50_ns / cell.peer->p50_ns, cell.peer->solver, cell.lost() ? "  LOST" : "");
+  }
+  fmt::print("  {} of {} cells lost\n", lost, cells.size());
+}
+
 std::string to_csv(const std::vector<Row>& rows) {
   std::string text = std::string(kColumns) + "\n";
   for (const Row& r : rows) {

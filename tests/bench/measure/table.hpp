@@ -42,6 +42,25 @@ void print_rows(const std::vector<Row>& cell);
 /// Geometric means of the ratios, and the sum of wrong answers, of each solver over all cells.
 void print_summary(const std::vector<Row>& rows);
 
+/// One of ours beside the peers that answer the same question.
+struct Contest {
+  std::string ours;
+  std::vector<std::string> peers;  ///< none: every solver that is not ours
+};
+
+/// The fastest peer that answered all of a cell's questions, none of them wrong.
+struct BestPeer {
+  const Row* ours = nullptr;
+  const Row* peer = nullptr;  ///< null: there is none
+
+  [[nodiscard]] bool lost() const { return peer != nullptr && (ours->wrong > 0 || ours->p50_ns > peer->p50_ns); }
+};
+
+/// One for each cell that `contest.ours` ran in, in the order of the rows. Refers to `rows`.
+[[nodiscard]] std::vector<BestPeer> best_peers(const std::vector<Row>& rows, const Contest& contest);
+/// Each cell's, and how many cells the peer is faster in.
+void print_contest(const std::vector<Row>& rows, const Contest& contest);
+
 /// Columns family,vertices,depth,solver,pairs,p50_ns,p99_ns,ratio_to_bullet,wrong,allocations; an unknown ratio is
 /// empty.
 [[nodiscard]] std::string to_csv(const std::vector<Row>& rows);

@@ -90,10 +90,12 @@ void measure(const Bodies& bodies, const std::vector<Frame>& frames, Solvers& so
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<std::vector<std::unique_ptr<Attempt>>> attempts(solvers.size());
     for (std::size_t s = 0; s < solvers.size(); ++s) {
+      if (!solvers[s]->takes(bodies)) continue;
       for (int k = 0; k < kSideBySide; ++k) attempts[s].push_back(solvers[s]->prepare(bodies));
     }
     for (std::size_t i = 0; i < frames.size(); ++i) {
       for (std::size_t s = 0; s < solvers.size(); ++s) {
+        if (attempts[s].empty()) continue;
         Lane& lane = lanes[s];
         for (auto& attempt : attempts[s]) attempt->stand(frames[i].a, frames[i].b);
         const std::int64_t before = allocations();
@@ -211,7 +213,10 @@ std::vector<CoherentRow> run_coherent(const CoherentSettings& settings, Solvers&
     std::vector<Lane> lanes(solvers.size());
     measure(bodies->bodies, frames_of(sequence, bodies->bodies, settings.frames, random), solvers, lanes);
     std::vector<CoherentRow> block;
-    for (std::size_t s = 0; s < solvers.size(); ++s) block.push_back(to_row(sequence, lanes[s], solvers[s]->name()));
+    for (std::size_t s = 0; s < solvers.size(); ++s) {
+      if (lanes[s].errors.empty()) continue;
+      block.push_back(to_row(sequence, lanes[s], solvers[s]->name()));
+    }
     for (const CoherentRow& bullet : std::vector<CoherentRow>(block)) {
       if (bullet.solver != kBulletEpa) continue;
       for (CoherentRow& row : block) {

@@ -16,9 +16,9 @@ struct Sizes {
   PairFamily family;
   std::vector<int> all;
   std::vector<int> quick;
-  bool jittered = false;
+  Variant variant = Variant::own;
 
-  [[nodiscard]] std::string_view name() const { return name_of({family, 0, DepthClass::deep, jittered}); }
+  [[nodiscard]] std::string_view name() const { return name_of({family, 0, DepthClass::deep, variant}); }
 };
 
 /// Boxes have 8 vertices whatever is asked for.
@@ -29,9 +29,12 @@ const std::vector<Sizes>& known() {
       {PairFamily::sphere, {8, 32, 128, 512, 2048}, {8, 32, 128}},
       {PairFamily::needle, {8, 32, 128, 512}, {128}},
       {PairFamily::prism, {32, 128, 512}, {128}},
-      {PairFamily::grid, {32, 128, 512}, {128}},
+      {PairFamily::grid, {8, 32, 128, 512}, {128}},
       {PairFamily::roofs, {32, 128, 512}, {32}},
-      {PairFamily::roofs, {8, 32, 128, 512}, {}, true},
+      {PairFamily::roofs, {8, 32, 128, 512}, {}, Variant::jittered},
+      {PairFamily::sphere, {32, 128, 512, 2048}, {}, Variant::ellipsoid},
+      {PairFamily::sphere, {8, 32, 128, 512}, {}, Variant::flat},
+      {PairFamily::cubes, {8}, {}, Variant::nearly_aligned},
   };
   return sizes;
 }
@@ -40,7 +43,8 @@ bool holds(const std::vector<int>& values, int value) {
   return values.empty() || std::find(values.begin(), values.end(), value) != values.end();
 }
 
-Draw aligned_cubes(DepthClass depth, std::uint64_t seed, std::uint64_t number) {
+Draw aligned_cubes(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
+  const DepthClass depth = cell.depth;
   scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 17);
   const auto extents = [&] {
     return Vec3(random.integer(1, 8) / 8.0, random.integer(1, 8) / 8.0, random.integer(1, 8) / 8.0);
@@ -58,22 +62,49 @@ Draw aligned_cubes(DepthClass depth, std::uint64_t seed, std::uint64_t number) {
     }
     if (random.integer(0, 1) != 0) offset[axis] = -offset[axis];
   }
-  return {{ConvexShape(*ConvexPolytope::box(a)), ConvexShape(*ConvexPolytope::box(b))},
-          Pose(),
-          Pose::from_trusted_matrix(Mat3::Identity(), offset)};
+  Draw d{{ConvexShape(*ConvexPolytope::box(a)), ConvexShape(*ConvexPolytope::box(b))},
+         Pose(),
+         Pose::from_trusted_matrix(Mat3::Identity(), offset)};
+  if (cell.variant == Variant::nearly_aligned) {
+    const Vec3 half_turn = 5e-8 * random.direction();
+    d.pose_b = *Pose::from_quaternion({1, half_turn.x(), half_turn.y(), half_turn.z()}, offset);
+  }
+  return d;
 }
 
 Draw crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   const double overlap = cell.depth == DepthClass::shallow ? 0.01 : cell.depth == DepthClass::mid ? 0.1 : 1;
-  const auto make = cell.jittered ? scenes::jittered_roofs : scenes::crossed_roofs;
+  const auto make = cell.variant == Variant::jittered ? scenes::jittered_roofs : scenes::crossed_roofs;
   const scenes::PolytopePair pair =
       make(cell.vertices, overlap, seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL);
   return {{ConvexShape(pair.a), ConvexShape(pair.b)}, pair.pose_a, pair.pose_b};
 }
 
+/// What is parallel stays so to the last bit where both rotations are by right angles.
+void turn(Draw& draw, const std::array<double, 4>& quaternion) {
+  const Mat3 rotation = Pose::from_quaternion(quaternion, Vec3::Zero())->rotation();
+  for (Pose* pose : {&draw.pose_a, &draw.pose_b}) {
+    *pose = Pose::from_trusted_matrix(rotation * pose->rotation(), rotation * pose->translation());
+  }
+}
+
 }  // namespace
 
-std::string_view name_of(const Cell& cell) { return cell.jittered ? "jittered_roofs" : scenes::to_string(cell.family); }
+std::string_view name_of(const Cell& cell) {
+  switch (cell.variant) {
+    case Variant::own:
+      return scenes::to_string(cell.family);
+    case Variant::jittered:
+      return "jittered_roofs";
+    case Variant::ellipsoid:
+      return "ellipsoid";
+    case Variant::flat:
+      return "flat";
+    case Variant::nearly_aligned:
+      return "cubes1e-7";
+  }
+  return {};
+}
 
 Vec3 extreme(const ConvexShape& shape, const Mat3& rotation, const Vec3& direction) {
   const scenes::Points points = vertices_of(shape);
@@ -125,7 +156,7 @@ Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& familie
     for (const int n : sizes) {
       if (!holds(vertices, n)) continue;
       for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
-        cells.push_back({s.family, n, depth, s.jittered});
+        cells.push_back({s.family, n, depth, s.variant});
       }
     }
   }
@@ -134,14 +165,34 @@ Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& familie
 }
 
 std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
-  if (cell.family == PairFamily::cubes) return aligned_cubes(cell.depth, seed, number);
+  if (cell.turned &&
+      (cell.family == PairFamily::cubes || cell.family == PairFamily::roofs || cell.family == PairFamily::grid)) {
+    Cell upright = cell;
+    upright.turned = false;
+    std::optional<Draw> d = draw(upright, seed, number);
+    if (d) turn(*d, scenes::Random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 23).quaternion());
+    return d;
+  }
+  if (cell.family == PairFamily::cubes) return aligned_cubes(cell, seed, number);
   if (cell.family == PairFamily::roofs) return crossed_roofs(cell, seed, number);
-  const scenes::PointPair pair = scenes::make_pair(cell.family, cell.vertices, cell.depth, seed * 1000003 + number);
+  scenes::PointPair pair = scenes::make_pair(cell.family, cell.vertices, cell.depth, seed * 1000003 + number);
+  const bool pressed = cell.variant == Variant::ellipsoid || cell.variant == Variant::flat;
+  if (pressed) {
+    const Vec3 semi_axes = cell.variant == Variant::flat ? Vec3(1, 1, 0.01) : Vec3(1, 0.5, 0.25);
+    for (scenes::Points* points : {&pair.a, &pair.b}) {
+      for (Vec3& p : *points) p = semi_axes.cwiseProduct(p);
+    }
+  }
   const auto a = ConvexPolytope::from_points(pair.a);
   const auto b = ConvexPolytope::from_points(pair.b);
   if (!a || !b) return std::nullopt;
   Draw d{{ConvexShape(*a), ConvexShape(*b)}, pair.pose_a, pair.pose_b};
-  if (cell.family != PairFamily::needle) return d;
+  // Lenses of four corners lie on one side of their origin: the scenes' own deep place only makes them touch.
+  if (cell.family == PairFamily::grid && cell.vertices == 8 && cell.depth == DepthClass::deep) {
+    const Vec3 t = d.pose_a.apply(extent_of(pair.a).middle) - d.pose_b.rotation() * extent_of(pair.b).middle;
+    d.pose_b = Pose::from_trusted_matrix(d.pose_b.rotation(), t);
+  }
+  if (cell.family != PairFamily::needle && !pressed) return d;
   scenes::Random random(seed + number * 0xD1B54A32D192ED03ULL);
   return placed(d.bodies, extent_of(pair.a).size.minCoeff(), cell.depth, random);
 }

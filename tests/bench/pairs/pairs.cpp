@@ -48,7 +48,7 @@ bool measure_draw(const Draw& draw, Solvers& solvers, double slow_ns, std::vecto
   std::vector<Lane> lanes;
   int rounds = 0;
   for (std::size_t s = 0; s < solvers.size(); ++s) {
-    if (sits_out[s] != 0) continue;
+    if (sits_out[s] != 0 || !solvers[s]->takes(draw.bodies)) continue;
     Lane lane{s, solvers[s]->prepare(draw.bodies), {}};
     lane.attempt->stand(draw.pose_a, draw.pose_b);
     // The first run grows buffers and loads caches. One slow run may be the machine's doing, two are the solver's.

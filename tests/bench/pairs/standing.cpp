@@ -26,7 +26,9 @@ struct Lane {
 
 void measure_frames(const Bodies& bodies, const std::vector<Standing>& frames, Solvers& solvers,
                     const FrameJudge& error, std::vector<Tally>& tallies, const std::vector<char>& sits_out) {
-  const auto runs = [&](std::size_t s) { return sits_out.empty() || sits_out[s] == 0; };
+  std::vector<char> taken;
+  for (const auto& solver : solvers) taken.push_back(solver->takes(bodies) ? 1 : 0);
+  const auto runs = [&](std::size_t s) { return taken[s] != 0 && (sits_out.empty() || sits_out[s] == 0); };
   std::vector<Lane> lanes(solvers.size());
   for (Lane& lane : lanes) lane.least_ns.assign(frames.size(), std::numeric_limits<double>::infinity());
   for (int pass = 0; pass < kPasses; ++pass) {

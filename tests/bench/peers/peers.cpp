@@ -26,12 +26,21 @@ double length_of(const ConvexShape& shape) {
 namespace {
 
 /// Those that take curved shapes as they take hulls.
-void add_ccd_and_fcl([[maybe_unused]] Solvers& solvers) {
+void add_all_but_bullet([[maybe_unused]] Solvers& solvers) {
 #ifdef PD_BENCH_WITH_CCD
   add_ccd(solvers);
 #endif
 #ifdef PD_BENCH_WITH_FCL
   add_fcl(solvers);
+#endif
+#ifdef PD_BENCH_WITH_JOLT
+  add_jolt(solvers);
+#endif
+#ifdef PD_BENCH_WITH_MUJOCO
+  add_mujoco(solvers);
+#endif
+#ifdef PD_BENCH_WITH_BOX3D
+  add_box3d(solvers);
 #endif
 }
 
@@ -41,7 +50,7 @@ void add_peers(Solvers& solvers) {
 #ifdef PD_BENCH_WITH_BULLET
   add_bullet(solvers);
 #endif
-  add_ccd_and_fcl(solvers);
+  add_all_but_bullet(solvers);
 }
 
 void add_peers_apart([[maybe_unused]] Solvers& solvers) {
@@ -54,13 +63,22 @@ void add_peers_apart([[maybe_unused]] Solvers& solvers) {
 #ifdef PD_BENCH_WITH_FCL
   add_fcl_apart(solvers);
 #endif
+#ifdef PD_BENCH_WITH_JOLT
+  add_jolt_apart(solvers);
+#endif
+#ifdef PD_BENCH_WITH_MUJOCO
+  add_mujoco_apart(solvers);
+#endif
+#ifdef PD_BENCH_WITH_BOX3D
+  add_box3d_apart(solvers);
+#endif
 }
 
 void add_peers_curved(Solvers& solvers) {
 #ifdef PD_BENCH_WITH_BULLET
   add_bullet_curved(solvers);
 #endif
-  add_ccd_and_fcl(solvers);
+  add_all_but_bullet(solvers);
 }
 
 std::vector<std::string> peer_notes() {
@@ -79,6 +97,15 @@ std::vector<std::string> peer_notes() {
   notes.push_back(fcl_note());
 #else
   notes.emplace_back("FCL: missing when this was built");
+#endif
+#ifdef PD_BENCH_WITH_JOLT
+  notes.push_back(jolt_note());
+#endif
+#ifdef PD_BENCH_WITH_MUJOCO
+  notes.push_back(mujoco_note());
+#endif
+#ifdef PD_BENCH_WITH_BOX3D
+  notes.push_back(box3d_note());
 #endif
   return notes;
 }

@@ -53,6 +53,8 @@ class Solver {
   virtual ~Solver() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
   [[nodiscard]] virtual Precision precision() const = 0;
+  /// False: it has no such shape, or not of so many vertices, and is not run.
+  [[nodiscard]] virtual bool takes(const Bodies&) const { return true; }
   /// Refers to `bodies`.
   [[nodiscard]] virtual std::unique_ptr<Attempt> prepare(const Bodies& bodies) = 0;
 };
@@ -79,20 +81,23 @@ inline constexpr std::string_view kOde = "ode";
 void add_ours(Solvers& solvers, bool every_engine, bool remembering);
 
 /// Bullet's EPA and Minkowski sampling in the precision that this program was built for, libccd's EPA and MPR, FCL's
-/// signed distance and contact query: those whose packages were there when the bench was built.
+/// signed distance and contact query, Jolt's and MuJoCo's expanding polytopes and box3d's separating axis test: those
+/// that were there when the bench was built. Boxes are told to the last three as boxes.
 void add_peers(Solvers& solvers);
 
 /// Bodies apart: "how far" (pdepth-distance) and "by more than the limit?" (pdepth-beyond), each with and without the
 /// memory of the pair.
 void add_ours_apart(Solvers& solvers);
-/// Bullet's pair detector, FCL's distance by both of its solvers, and libccd's GJK, which says only whether they meet.
+/// Bullet's pair detector, FCL's distance by both of its solvers, libccd's GJK, which says only whether they meet, and
+/// the GJK of Jolt, MuJoCo and box3d, with and without a limit or the memory of the pair where they have these.
 void add_peers_apart(Solvers& solvers);
 
 /// Curved bodies that overlap: pdepth-auto (Bracket::certified, delta 1e-6), and pdepth-warm with the memory of the
 /// pair.
 void add_ours_curved(Solvers& solvers);
 /// Bullet's EPA, its pair detector with that EPA, FCL's signed distance and contact query, and libccd's EPA and MPR,
-/// each on its own primitive shapes.
+///
+/// and Jolt's, MuJoCo's and box3d's solvers, each on its own primitive shapes.
 void add_peers_curved(Solvers& solvers);
 
 /// One line for each package: its version, or that it is missing.
@@ -106,9 +111,18 @@ void add_ccd_apart(Solvers& solvers);
 void add_fcl_apart(Solvers& solvers);
 void add_bullet_curved(Solvers& solvers);
 void add_fcl(Solvers& solvers);
+void add_jolt(Solvers& solvers);
+void add_jolt_apart(Solvers& solvers);
+void add_mujoco(Solvers& solvers);
+void add_mujoco_apart(Solvers& solvers);
+void add_box3d(Solvers& solvers);
+void add_box3d_apart(Solvers& solvers);
 /// Bodies must be solids round the origin of their frames.
 void add_ode(Solvers& solvers);
 [[nodiscard]] std::string bullet_note();
 [[nodiscard]] std::string fcl_note();
+[[nodiscard]] std::string jolt_note();
+[[nodiscard]] std::string mujoco_note();
+[[nodiscard]] std::string box3d_note();
 
 }  // namespace pd::bench

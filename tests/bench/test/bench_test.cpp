@@ -67,6 +67,23 @@ TEST(PairSource, DrawsRepeatAndNamesAreChecked) {
   EXPECT_EQ(vertices_of(once.bodies.a), vertices_of(again.bodies.a));
 }
 
+TEST(PairSource, VariantsHaveTheirSizesAndTurningKeepsTheDepth) {
+  EXPECT_EQ(choose_cells({"ellipsoid"}, {}, false)->size(), 12u);
+  EXPECT_EQ(choose_cells({"flat"}, {}, false)->size(), 12u);
+  EXPECT_EQ(choose_cells({"cubes1e-7"}, {}, false)->size(), 3u);
+  EXPECT_FALSE(choose_cells({"cubes1e-7"}, {32}, false));
+  Cell cell{PairFamily::grid, 8, DepthClass::deep};
+  const auto depth = [&] {
+    const Draw d = *draw(cell, 7, 3);
+    Scratch scratch;
+    return penetration_depth({&d.bodies.a, d.pose_a}, {&d.bodies.b, d.pose_b}, scratch).depth;
+  };
+  const double upright = depth();
+  cell.turned = true;
+  EXPECT_GT(upright, 0.05);
+  EXPECT_NEAR(depth(), upright, 1e-14);
+}
+
 class Judged : public testing::Test {
  protected:
   Judged() : draw_(*draw({PairFamily::sphere, 32, DepthClass::mid}, 1, 0)), bodies_(draw_.bodies) {
@@ -83,6 +100,23 @@ class Judged : public testing::Test {
   JudgedBodies bodies_;
   Answer right_;
 };
+
+TEST(Contest, TheFastestPeerThatIsRightEverywhereCounts) {
+  const auto row = [](const char* solver, int pairs, double ns, int wrong) {
+    Row r{"box", 8, "mid", solver, pairs, ns};
+    r.wrong = wrong;
+    return r;
+  };
+  const std::vector<Row> rows = {row("pdepth-auto", 12, 500, 0), row("wrong-once", 12, 100, 1),
+                                 row("skips-one", 11, 200, 0), row("slow", 12, 900, 0), row("right", 12, 400, 0)};
+  const std::vector<BestPeer> best = best_peers(rows, {"pdepth-auto", {}});
+  ASSERT_EQ(best.size(), 1u);
+  ASSERT_NE(best[0].peer, nullptr);
+  EXPECT_EQ(best[0].peer->solver, "right");
+  EXPECT_TRUE(best[0].lost());
+  EXPECT_FALSE(best_peers(rows, {"pdepth-auto", {"slow"}})[0].lost());
+  EXPECT_EQ(best_peers(rows, {"pdepth-auto", {"absent"}})[0].peer, nullptr);
+}
 
 TEST_F(Judged, RightAnswersPass) {
   EXPECT_FALSE(wrong(right_));
