@@ -31,8 +31,17 @@ struct RememberedPoint {
 struct PieceMemory {
   std::uint64_t pieces = 0;  ///< both children's numbers, or the triangle's
   bool met = false;          ///< the last step was within reach of contacts
+  /// Of two children: as long as their ways (`ChildMotion`) come to less, they are farther apart than contacts reach.
+  double apart_until = 0;
   WarmCertificate warm;
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
+};
+
+/// Of a child of a compound: where it was last, and a bound of how far any of its points has come since it was met.
+struct ChildMotion {
+  std::shared_ptr<CachedShape> shape;
+  btTransform pose;
+  double way = 0;
 };
 
 class ManifoldOwner;
@@ -48,6 +57,7 @@ struct PairMemory {
   int num_points = 0;
   btScalar seconds = 0;             ///< of the step that the points' impulses belong to
   std::vector<PieceMemory> pieces;  ///< sorted by number
+  std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
   int union_pause = 0;              ///< steps for which the whole unions are not asked again (deep_union.hpp)
   int union_refusals = 0;           ///< in a row
 

@@ -81,6 +81,10 @@ class SolverCore {
   Outcome contacts(const PairQuestion& question, double breaking_threshold, ThreadBuffers& buffers, PairAnswer& answer,
                    ContactManifold& points);
 
+  /// What a shape was converted to. `known`: as found earlier, brought up to date.
+  CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
+                    ThreadBuffers& buffers);
+
   /// Bullet's call with a step's stamp.
   bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
                       const btConvexShape* b, const btTransform& pose_a, const btTransform& pose_b, btVector3& v,
@@ -108,8 +112,6 @@ class SolverCore {
   PairRegistry pairs;
 
  private:
-  CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
-                    ThreadBuffers& buffers);
   /// Finds the bodies and places them.
   Outcome place(const PairQuestion& question, ThreadBuffers& buffers, PairAnswer& answer);
   /// The depth of placed bodies.
