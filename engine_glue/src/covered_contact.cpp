@@ -90,9 +90,22 @@ Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
 
 class Cover {
  public:
-  Cover(const btCollisionObjectWrapper& wrapper, double slack, double window, std::uint64_t stamp, SolverCore& core,
-        CoverBuffers& buffers)
-      : wrapper_(wrapper), slack_(slack), window_(window), stamp_(stamp), core_(core), buffers_(buffers) {}
+  Cover(const Side& side, double slack, double window, std::uint64_t stamp, SolverCore& core, CoverBuffers& buffers)
+      : wrapper_(side.wrapper),
+        own_(side.own),
+        slack_(slack),
+        window_(window),
+        stamp_(stamp),
+        core_(core),
+        buffers_(buffers) {}
+
+  /// Sets the piece at hand.
+  void take_own() {
+    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, stamp_, core_) : nullptr;
+    const bool solid = kept != nullptr && !kept->planes.empty();
+    buffers_.own = solid ? kept : &buffers_.made;
+    if (!solid) set_piece(own_, buffers_.made);
+  }
 
   /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
   /// @return whether there is anything
@@ -100,84 +113,151 @@ class Cover {
     // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
     const double reach = 1.5 * window_ + slack_;
     const Beyond beyond{n, n.dot(foot) + margin + 2 * slack_};
-    count_ = buffers_.near.find(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_);
-    return count_ > 0;
+    buffers_.near.forget_made();
+    buffers_.near.find(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.found);
+    return !buffers_.found.empty();
   }
 
   /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
-  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where a corner is free.
-  double covered(const Vec3& foot, const Vec3& n) {
-    feature_at(foot, n);
-    if (buffers_.feature.empty()) return -1;
-    double least = kBeyondDoubt;
+  /// the corners of its part within the window and its middle, kBeyondDoubt where it is more; -1 where one is free. Of
+  /// a facet, no more is found out than whether it is kDecided.
+  double covered(Vec3 foot, const Vec3& n) {
+    const Touched touched = touched_at(foot, n);
+    if (!touched.any) return -1;
+    double least = std::min(kBeyondDoubt, most_covered(foot, n, kBeyondDoubt));
+    if (least <= (touched.facet >= 0 ? kDecided : 0)) return least;
+    if (touched.facet >= 0 && is_sealed(static_cast<std::size_t>(touched.facet))) return kBeyondDoubt;
+    set_feature(touched, foot, n);
     for (const Vec3& corner : buffers_.feature) {
-      double most = -1;
-      for (int i = 0; i < count_ && most < least; ++i) {
-        const UnionPiece& piece = buffers_.near[i];
-        // Surfaces lie flush, not cores, where margins differ.
-        const Vec3 level = corner + (buffers_.own.margin - piece.margin) * n;
-        most = std::max(most, covered_sine(piece, level, n, slack_, least, buffers_.active));
-      }
-      least = std::min(least, most);
+      least = std::min(least, most_covered(corner, n, least));
       if (least <= 0) break;
     }
     return least;
   }
 
+  /// Whether one other piece covers all of the piece's facet: so it covers every part of it. Found out once a step,
+  /// with a slack of the piece's own, so that it does not matter which contact asked first.
+  bool is_sealed(std::size_t facet) {
+    UnionPiece& own = *buffers_.own;
+    if (&own == &buffers_.made) return false;
+    own.sealed.resize(own.planes.size(), UnionPiece::Seal::unknown);
+    if (own.sealed[facet] == UnionPiece::Seal::unknown) {
+      own.sealed[facet] = find_seal(facet) ? UnionPiece::Seal::sealed : UnionPiece::Seal::open;
+    }
+    return own.sealed[facet] == UnionPiece::Seal::sealed;
+  }
+
  private:
+  /// What of the piece touches a point.
+  struct Touched {
+    bool any = false;
+    int facet = -1;  ///< that of the normal asked for
+    const Plane* first = nullptr;
+    const Plane* second = nullptr;
+    int count = 0;
+  };
+
+  /// The largest sine of all pieces near at a point of this one's core, or one that is enough.
+  double most_covered(const Vec3& point, const Vec3& n, double enough) {
+    double most = -1;
+    for (const UnionPiece* near : buffers_.found) {
+      if (most >= enough) break;
+      const UnionPiece& piece = *near;
+      // Surfaces lie flush, not cores, where margins differ.
+      const Vec3 level = point + (buffers_.own->margin - piece.margin) * n;
+      most = std::max(most, covered_sine(piece, level, n, slack_, enough, buffers_.active));
+    }
+    return most;
+  }
+
+  bool find_seal(std::size_t facet) {
+    const UnionPiece& own = *buffers_.own;
+    const ConvexPolytope& polytope = *own_.shape->polytope();
+    const Vec3& n = own.planes[facet].normal;
+    const double slack = 0.5 * seam_slack(own_, own_);
+    std::vector<Vec3>& corners = buffers_.feature;
+    corners.clear();
+    Vec3 middle = Vec3::Zero();
+    for (const auto v : polytope.facet_vertices(static_cast<int>(facet))) {
+      corners.push_back(own_.pose.apply(polytope.vertex(v)));
+      middle += corners.back();
+    }
+    middle /= static_cast<double>(corners.size());
+    double reach = 0;
+    for (const Vec3& corner : corners) reach = std::max(reach, (corner - middle).norm());
+    const Beyond beyond{n, n.dot(middle) + own.margin + 2 * slack};
+    buffers_.near.find(wrapper_, middle, reach + 2 * slack, &beyond, stamp_, core_, buffers_.around);
+    const auto covers = [&](const UnionPiece* piece) {
+      const double up = own.margin - piece->margin;
+      return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
+        return covered_sine(*piece, corner + up * n, n, slack, kBeyondDoubt, buffers_.active) > kDecided;
+      });
+    };
+    return std::any_of(buffers_.around.begin(), buffers_.around.end(), covers);
+  }
+
+  /// @param foot  moved into the piece, and on the facet if there is one
+  Touched touched_at(Vec3& foot, const Vec3& n) const {
+    const std::vector<Plane>& planes = buffers_.own->planes;
+    Touched touched;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const Plane& plane = planes[i];
+      const double height = plane.height(foot);
+      if (height > 2 * slack_) return {};
+      // The edges of a triangle are no facets.
+      if (!buffers_.own->flat && plane.normal.dot(n) >= 1 - kSameNormal) touched.facet = static_cast<int>(i);
+      if (height < -2 * slack_) continue;
+      if (touched.count == 0) touched.first = &plane;
+      if (touched.count == 1) touched.second = &plane;
+      ++touched.count;
+    }
+    touched.any = true;
+    for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
+    if (touched.facet >= 0) {
+      const Plane& facet = planes[static_cast<std::size_t>(touched.facet)];
+      foot -= facet.height(foot) * facet.normal;
+    }
+    return touched;
+  }
+
   /// The part of the feature within the window, by its corners. They lie in the piece up to half the slack, so that a
   /// flush neighbour holds them.
-  void feature_at(Vec3 foot, const Vec3& n) {
-    const std::vector<Plane>& planes = buffers_.own.planes;
+  void set_feature(const Touched& touched, const Vec3& foot, const Vec3& n) {
     std::vector<Vec3>& feature = buffers_.feature;
     feature.clear();
-    const Plane* facet = nullptr;
-    const Plane* touched[2] = {nullptr, nullptr};
-    int count = 0;
-    for (const Plane& plane : planes) {
-      const double height = plane.height(foot);
-      if (height > 2 * slack_) return;
-      // The edges of a triangle are no facets.
-      if (!buffers_.own.flat && plane.normal.dot(n) >= 1 - kSameNormal) facet = &plane;
-      if (height < -2 * slack_) continue;
-      if (count < 2) touched[count] = &plane;
-      ++count;
-    }
-    for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
-    if (facet != nullptr) {
-      foot -= facet->height(foot) * facet->normal;
+    const bool flat = buffers_.own->flat;
+    if (touched.facet >= 0) {
       const Vec3 u = n.unitOrthogonal() * window_;
       const Vec3 w = n.cross(u);
       feature = {foot + u + w, foot - u + w, foot - u - w, foot + u - w};
-      clip_to_piece(buffers_.own, 0.5 * slack_, feature, buffers_.spare);
+      clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
       return;
     }
-    feature = {foot};
     // Of a triangle, its two sides and one edge; of a solid, two facets.
-    if (count != (buffers_.own.flat ? 3 : 2)) return;
-    const Plane* second = buffers_.own.flat ? edge_of_triangle(foot) : touched[1];
-    Vec3 along = second != nullptr ? Vec3(touched[0]->normal.cross(second->normal)) : Vec3(Vec3::Zero());
+    if (touched.count != (flat ? 3 : 2)) return;
+    const Plane* second = flat ? edge_of_triangle(foot) : touched.second;
+    Vec3 along = second != nullptr ? Vec3(touched.first->normal.cross(second->normal)) : Vec3(Vec3::Zero());
     if (along.norm() <= kLevel) return;
     along *= window_ / along.norm();
     feature = {foot - along, foot + along};
-    clip_to_piece(buffers_.own, 0.5 * slack_, feature, buffers_.spare);
-    feature.push_back(foot);
+    clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
   }
 
   const Plane* edge_of_triangle(const Vec3& foot) const {
-    for (std::size_t i = 2; i < buffers_.own.planes.size(); ++i) {
-      if (buffers_.own.planes[i].height(foot) >= -2 * slack_) return &buffers_.own.planes[i];
+    const std::vector<Plane>& planes = buffers_.own->planes;
+    for (std::size_t i = 2; i < planes.size(); ++i) {
+      if (planes[i].height(foot) >= -2 * slack_) return &planes[i];
     }
     return nullptr;
   }
 
   const btCollisionObjectWrapper& wrapper_;
+  const PosedShape& own_;
   double slack_;
   double window_;
   std::uint64_t stamp_;
   SolverCore& core_;
   CoverBuffers& buffers_;
-  int count_ = 0;
 };
 
 void drop(ContactManifold& points, int i) {
@@ -219,7 +299,7 @@ class SideRule {
         window_(window),
         slack_(slack),
         buffers_(buffers),
-        cover_(side.wrapper, slack, window, stamp, core, buffers.cover) {}
+        cover_(side_, slack, window, stamp, core, buffers.cover) {}
 
   /// @return whether `points` was changed
   bool apply(double depth, const Vec3& witness, ContactManifold& points) {
@@ -229,8 +309,8 @@ class SideRule {
     const Vec3 foot = witness - margin * n;
     const bool flat = is_flat(side_.own);
     if (!flat && !cover_.look_round(foot, margin, n)) return false;
-    UnionPiece& own = buffers_.cover.own;
-    set_piece(side_.own, own);
+    cover_.take_own();
+    const UnionPiece& own = *buffers_.cover.own;
     if (own.planes.empty()) return false;
     const auto best =
         std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
@@ -266,7 +346,7 @@ class SideRule {
   /// A contact in the middle of a triangle that does not push along its normal is the triangle's own: what lies round
   /// it is not looked for.
   double covered_here(const Vec3& foot, const Vec3& n) {
-    const UnionPiece& own = buffers_.cover.own;
+    const UnionPiece& own = *buffers_.cover.own;
     if (own.flat) {
       const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
       if (own_sine > kDecided) return own_sine;
@@ -277,7 +357,7 @@ class SideRule {
 
   /// A solid's facet: each point by itself.
   bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
-    const double margin = buffers_.cover.own.margin;
+    const double margin = buffers_.cover.own->margin;
     const int before = points.count;
     for (int i = points.count - 1; i >= 0; --i) {
       const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(i)]) - margin * n;
@@ -290,19 +370,19 @@ class SideRule {
 
   double depth_along(const Plane& facet, Vec3& farthest) const {
     farthest = farthest_against(side_.other, facet.normal);
-    return side_.other.shape->margin() + buffers_.cover.own.margin - facet.height(farthest);
+    return side_.other.shape->margin() + buffers_.cover.own->margin - facet.height(farthest);
   }
 
   ContactManifold turned(const Plane& facet) {
     Vec3 farthest;
     const double depth = depth_along(facet, farthest);
     if (depth < -threshold_) return {};
-    return along_facet(side_, facet, depth, farthest, threshold_, slack_, buffers_.cover.own, buffers_.manifold);
+    return along_facet(side_, facet, depth, farthest, threshold_, slack_, *buffers_.cover.own, buffers_.manifold);
   }
 
   /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach.
   ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
-    const UnionPiece& own = buffers_.cover.own;
+    const UnionPiece& own = *buffers_.cover.own;
     if (!own.flat) cover_.look_round(foot, own.margin, Vec3::Zero());
     std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
     facets.clear();
@@ -318,7 +398,9 @@ class SideRule {
     }
     std::sort(facets.begin(), facets.end());
     for (int i = 0; i < std::min(kTries, static_cast<int>(facets.size())); ++i) {
-      const Plane& facet = own.planes[static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second)];
+      const auto f = static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second);
+      if (cover_.is_sealed(f)) continue;
+      const Plane& facet = own.planes[f];
       ContactManifold points = turned(facet);
       for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
         const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(k)]) - own.margin * facet.normal;
@@ -371,7 +453,7 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
 
 ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer, const Vec3& front,
                             double threshold, ThreadBuffers& buffers) {
-  UnionPiece& own = buffers.cover.own;
+  UnionPiece& own = buffers.cover.made;
   set_piece(answer.b, own);
   if (own.planes.empty()) return {};
   const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];

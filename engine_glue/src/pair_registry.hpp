@@ -55,11 +55,11 @@ struct PairMemory {
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
-  btScalar seconds = 0;             ///< of the step that the points' impulses belong to
-  std::vector<PieceMemory> pieces;  ///< sorted by number
+  btScalar seconds = 0;                              ///< of the step that the points' impulses belong to
+  std::vector<PieceMemory> pieces;                   ///< sorted by number
   std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
-  int union_pause = 0;              ///< steps for which the whole unions are not asked again (deep_union.hpp)
-  int union_refusals = 0;           ///< in a row
+  int union_pause = 0;     ///< steps for which the whole unions are not asked again (deep_union.hpp)
+  int union_refusals = 0;  ///< in a row
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
