@@ -185,7 +185,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b_);
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   auto buffers = core.buffers.lease();
-  buffers->cover.near.begin_pair(stamp);
+  buffers->cover.begin_pair(stamp);
   move(children_a_, stamp, core, *buffers, memory.children[0]);
   move(children_b_, stamp, core, *buffers, memory.children[1]);
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
@@ -205,6 +205,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
       const double way = motion_a.way + motion_b.way;
       if (still_apart(remembered, motion_a, motion_b, way + static_cast<double>(threshold))) continue;
       pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
+      if (remembered.shapes[0] != motion_a.shape) remembered.shapes[0] = motion_a.shape;
+      if (remembered.shapes[1] != motion_b.shape) remembered.shapes[1] = motion_b.shape;
       const ChildrenInResult pair(result, a, child_a, b, child_b);
       if (!ask(pair, question, core, way, remembered, *buffers, patches)) return false;
     }
@@ -259,7 +261,9 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
                            memory.met ? kAnyDistance : threshold,
                            question.stamp,
                            memory.shapes,
-                           &memory.warm};
+                           &memory.warm,
+                           false,
+                           true};
   const auto outcome = core.contacts(asked, threshold, buffers, answer, points);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;

@@ -19,10 +19,6 @@ constexpr double kSameNormal = 1e-10;
 /// A way that leads less than this (as a sine) against a normal covers nothing: a contact that is off by so much gives
 /// a body that rests on it 1e-4 m/s a second aside.
 constexpr double kLevel = 1e-5;
-/// From here on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
-constexpr double kDecided = 0.02;
-/// More than this is not told apart.
-constexpr double kBeyondDoubt = 2 * kDecided;
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
 /// Facets tried in place of a covered one.
@@ -99,12 +95,16 @@ class Cover {
         core_(core),
         buffers_(buffers) {}
 
-  /// Sets the piece at hand.
-  void take_own() {
+  /// Takes the piece at hand from those kept. @return whether it is one of them
+  bool take_kept() {
     UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, stamp_, core_) : nullptr;
-    const bool solid = kept != nullptr && !kept->planes.empty();
-    buffers_.own = solid ? kept : &buffers_.made;
-    if (!solid) set_piece(own_, buffers_.made);
+    if (kept == nullptr || kept->planes.empty()) return false;
+    buffers_.own = kept;
+    return true;
+  }
+  void make_own() {
+    buffers_.own = &buffers_.made;
+    set_piece(own_, buffers_.made);
   }
 
   /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
@@ -126,7 +126,6 @@ class Cover {
     if (!touched.any) return -1;
     double least = std::min(kBeyondDoubt, most_covered(foot, n, kBeyondDoubt));
     if (least <= (touched.facet >= 0 ? kDecided : 0)) return least;
-    if (touched.facet >= 0 && is_sealed(static_cast<std::size_t>(touched.facet))) return kBeyondDoubt;
     set_feature(touched, foot, n);
     for (const Vec3& corner : buffers_.feature) {
       least = std::min(least, most_covered(corner, n, least));
@@ -135,16 +134,11 @@ class Cover {
     return least;
   }
 
-  /// Whether one other piece covers all of the piece's facet: so it covers every part of it. Found out once a step,
-  /// with a slack of the piece's own, so that it does not matter which contact asked first.
-  bool is_sealed(std::size_t facet) {
-    UnionPiece& own = *buffers_.own;
-    if (&own == &buffers_.made) return false;
-    own.sealed.resize(own.planes.size(), UnionPiece::Seal::unknown);
-    if (own.sealed[facet] == UnionPiece::Seal::unknown) {
-      own.sealed[facet] = find_seal(facet) ? UnionPiece::Seal::sealed : UnionPiece::Seal::open;
-    }
-    return own.sealed[facet] == UnionPiece::Seal::sealed;
+  /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
+  [[nodiscard]] bool is_sealed(std::size_t facet) const {
+    if (buffers_.own == &buffers_.made) return false;
+    return buffers_.sealed.sealed(static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()),
+                                  wrapper_.m_index, facet, core_);
   }
 
  private:
@@ -168,32 +162,6 @@ class Cover {
       most = std::max(most, covered_sine(piece, level, n, slack_, enough, buffers_.active));
     }
     return most;
-  }
-
-  bool find_seal(std::size_t facet) {
-    const UnionPiece& own = *buffers_.own;
-    const ConvexPolytope& polytope = *own_.shape->polytope();
-    const Vec3& n = own.planes[facet].normal;
-    const double slack = 0.5 * seam_slack(own_, own_);
-    std::vector<Vec3>& corners = buffers_.feature;
-    corners.clear();
-    Vec3 middle = Vec3::Zero();
-    for (const auto v : polytope.facet_vertices(static_cast<int>(facet))) {
-      corners.push_back(own_.pose.apply(polytope.vertex(v)));
-      middle += corners.back();
-    }
-    middle /= static_cast<double>(corners.size());
-    double reach = 0;
-    for (const Vec3& corner : corners) reach = std::max(reach, (corner - middle).norm());
-    const Beyond beyond{n, n.dot(middle) + own.margin + 2 * slack};
-    buffers_.near.find(wrapper_, middle, reach + 2 * slack, &beyond, stamp_, core_, buffers_.around);
-    const auto covers = [&](const UnionPiece* piece) {
-      const double up = own.margin - piece->margin;
-      return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
-        return covered_sine(*piece, corner + up * n, n, slack, kBeyondDoubt, buffers_.active) > kDecided;
-      });
-    };
-    return std::any_of(buffers_.around.begin(), buffers_.around.end(), covers);
   }
 
   /// @param foot  moved into the piece, and on the facet if there is one
@@ -307,16 +275,24 @@ class SideRule {
     if (pushes_from_triangle(n)) return false;
     const double margin = side_.own.shape->margin();
     const Vec3 foot = witness - margin * n;
-    const bool flat = is_flat(side_.own);
-    if (!flat && !cover_.look_round(foot, margin, n)) return false;
-    cover_.take_own();
+    const bool kept = cover_.take_kept();
+    if (!kept) {
+      if (!is_flat(side_.own) && !cover_.look_round(foot, margin, n)) return false;
+      cover_.make_own();
+    }
     const UnionPiece& own = *buffers_.cover.own;
     if (own.planes.empty()) return false;
     const auto best =
         std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
                          [&](const Plane& x, const Plane& y) { return x.normal.dot(n) < y.normal.dot(n); });
     const double cosine = best->normal.dot(n);
-    if (cosine >= 1 - kSameNormal) return !own.flat && facet_contact(depth, best->normal, foot, points);
+    const bool facet = cosine >= 1 - kSameNormal;
+    if (facet && cover_.is_sealed(static_cast<std::size_t>(best - own.planes.begin()))) {
+      points = nearest_free(n, depth, foot);
+      return true;
+    }
+    if (kept && !cover_.look_round(foot, margin, n)) return false;
+    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points);
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;
     if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(n))) return false;

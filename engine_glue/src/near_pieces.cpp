@@ -136,7 +136,6 @@ void NearPieces::make(const btConvexShape& shape, std::uint64_t visit, std::uint
   if (child.made == visit) return;
   child.made = visit;
   child.piece.planes.clear();
-  child.piece.sealed.clear();
   const auto shapes = core.cache.find(shape, stamp);
   if (shapes->body) set_solid(shapes->sharp ? *shapes->sharp : *shapes->body, to_pd(child.pose), child.piece);
 }

@@ -55,6 +55,7 @@ struct PairQuestion {
   std::array<std::shared_ptr<CachedShape>, 2>& shapes;  ///< as found earlier: the pair's memory, or the buffers' last
   WarmCertificate* warm;                                ///< of this pair, or nullptr
   bool boxes_asked = false;                             ///< `box_contacts` had no answer
+  bool shapes_current = false;                          ///< `shapes` are those of this step
 };
 
 /// What the core may leave open (`DepthSettings::contact_tolerance`): 1/64 of what a pose in single precision leaves

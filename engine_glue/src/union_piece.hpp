@@ -29,10 +29,12 @@ struct UnionPiece {
   std::vector<Plane> planes;  ///< the piece is where all heights are <= 0
   double margin = 0;
   bool flat = false;  ///< a triangle: its first two planes are its two sides
-  /// Of a solid's facets: whether one other piece covers all of it, for all that is known (covered_contact.cpp).
-  enum class Seal : std::uint8_t { unknown, open, sealed };
-  std::vector<Seal> sealed;
 };
+
+/// A sine from which on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
+inline constexpr double kDecided = 0.02;
+/// More than this is not told apart.
+inline constexpr double kBeyondDoubt = 2 * kDecided;
 
 /// How far the surfaces of pieces that are meant to meet may lie apart: seams agree to 1e-7 of the bodies, poses to
 /// half a unit in the last place.
