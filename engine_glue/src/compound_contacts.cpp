@@ -185,7 +185,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b_);
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   auto buffers = core.buffers.lease();
-  buffers->cover.begin_pair(stamp);
+  buffers->cover.near.begin_pair(stamp);
   move(children_a_, stamp, core, *buffers, memory.children[0]);
   move(children_b_, stamp, core, *buffers, memory.children[1]);
   for (std::size_t i = 0; i < children_a_.size(); ++i) {

@@ -97,7 +97,7 @@ class Cover {
 
   /// Takes the piece at hand from those kept. @return whether it is one of them
   bool take_kept() {
-    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, stamp_, core_) : nullptr;
+    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, core_) : nullptr;
     if (kept == nullptr || kept->planes.empty()) return false;
     buffers_.own = kept;
     return true;
@@ -114,7 +114,7 @@ class Cover {
     const double reach = 1.5 * window_ + slack_;
     const Beyond beyond{n, n.dot(foot) + margin + 2 * slack_};
     buffers_.near.forget_made();
-    buffers_.near.find(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.found);
+    buffers_.near.find(wrapper_, foot, reach, slack_, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.found);
     return !buffers_.found.empty();
   }
 
@@ -137,8 +137,8 @@ class Cover {
   /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
   [[nodiscard]] bool is_sealed(std::size_t facet) const {
     if (buffers_.own == &buffers_.made) return false;
-    return buffers_.sealed.sealed(static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()),
-                                  wrapper_.m_index, facet, core_);
+    return buffers_.near.facts().sealed(static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()),
+                                        wrapper_.m_index, facet, core_);
   }
 
  private:

@@ -20,7 +20,6 @@
 
 #include "near_pieces.hpp"
 #include "pd/contact/manifold.hpp"
-#include "sealed_facets.hpp"
 #include "union_piece.hpp"
 
 namespace pd::detail {
@@ -31,16 +30,9 @@ struct ThreadBuffers;
 
 /// Memory of `keep_uncovered`, one a thread.
 struct CoverBuffers {
-  /// To be called for each pair in each step, with its stamp (0: unknown).
-  void begin_pair(std::uint64_t stamp) {
-    near.begin_pair(stamp);
-    sealed.begin_pair(stamp);
-  }
-
   UnionPiece made;          ///< of a piece that `near` does not keep
   UnionPiece* own = &made;  ///< the piece at hand
   NearPieces near;
-  SealedFacets sealed;
   std::vector<const UnionPiece*> found;  ///< near the contact
   std::vector<const Plane*> active;
   std::vector<Vec3> feature;

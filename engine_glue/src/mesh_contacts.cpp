@@ -223,7 +223,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
                              concave.getMargin() + question.threshold, triangles_);
   concave.processAllTriangles(&collector, collector.lower(), collector.upper());
   auto buffers = core.buffers.lease();
-  buffers->cover.begin_pair(question.stamp);
+  buffers->cover.near.begin_pair(question.stamp);
   if (collector.skipped > 0) buffers->counters.skipped_triangles.add(collector.skipped);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const TriangleInResult triangle(question.result, mesh, triangles_[i], concave.getMargin());

@@ -17,6 +17,8 @@ namespace {
 
 /// Of so few children each is compared; of more, Bullet's tree is asked.
 constexpr int kFewChildren = 32;
+/// Of so few, each is looked at where it is.
+constexpr int kVeryFewChildren = 4;
 /// Compounds of one step that are kept at a time.
 constexpr std::size_t kMostCompounds = 64;
 
@@ -93,7 +95,7 @@ void NearPieces::begin_pair(std::uint64_t stamp) {
   if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostCompounds) num_compounds_ = 0;
   stamp_ = stamp;
   recent_ = {};
-  ++pair_;
+  facts_.begin_pair(stamp);
 }
 
 NearPieces::PosedCompound& NearPieces::compound_of(const btCollisionObject& body, const btCompoundShape& shape,
@@ -131,16 +133,15 @@ NearPieces::Child& NearPieces::posed_child(PosedCompound& compound, int i) {
   return child;
 }
 
-void NearPieces::make(const btConvexShape& shape, std::uint64_t visit, std::uint64_t stamp, SolverCore& core,
-                      Child& child) {
+void NearPieces::make(const CachedShape* shape, std::uint64_t visit, Child& child) {
   if (child.made == visit) return;
   child.made = visit;
   child.piece.planes.clear();
-  const auto shapes = core.cache.find(shape, stamp);
-  if (shapes->body) set_solid(shapes->sharp ? *shapes->sharp : *shapes->body, to_pd(child.pose), child.piece);
+  if (shape == nullptr || !shape->body) return;
+  set_solid(shape->sharp ? *shape->sharp : *shape->body, to_pd(child.pose), child.piece);
 }
 
-UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, std::uint64_t stamp, SolverCore& core) {
+UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& core) {
   const btCollisionObjectWrapper* parent = piece.m_parent;
   if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return nullptr;
   PosedCompound& compound =
@@ -148,41 +149,48 @@ UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, std::uint64_
                   parent->getWorldTransform());
   if (compound.shape->getChildShape(piece.m_index) != piece.getCollisionShape()) return nullptr;
   Child& child = posed_child(compound, piece.m_index);
-  make(static_cast<const btConvexShape&>(*piece.getCollisionShape()), compound.visit, stamp, core, child);
+  make(facts_.shape_of(*compound.shape, piece.m_index, core), compound.visit, child);
   return &child.piece;
 }
 
 void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
-                                  const btCollisionObject* body, Search& search) {
+                                  const btCollisionObject* body, const std::vector<int>* among, Search& search) {
   PosedCompound* known = body != nullptr ? &compound_of(*body, compound, pose) : nullptr;
-  for_each_child_near(compound, pose.invXform(search.centre), search.reach, [&](int i) {
+  const auto visit = [&](int i) {
     if (i == except) return;
     const btCollisionShape& shape = *compound.getChildShape(i);
     if (known == nullptr || !shape.isConvex()) {
       collect(shape, pose * compound.getChildTransform(i), nullptr, search);
-    } else {
-      collect_convex(static_cast<const btConvexShape&>(shape), posed_child(*known, i), known->visit, search);
+      return;
     }
-  });
+    Child& child = posed_child(*known, i);
+    if (!within(child, search)) return;
+    make(facts_.shape_of(compound, i, search.core), known->visit, child);
+    if (!child.piece.planes.empty()) search.found.push_back(&child.piece);
+  };
+  if (among != nullptr) {
+    for (const int i : *among) visit(i);
+  } else {
+    for_each_child_near(compound, pose.invXform(search.centre), search.reach, visit);
+  }
 }
 
-void NearPieces::collect_convex(const btConvexShape& shape, Child& child, std::uint64_t visit, Search& search) {
+bool NearPieces::within(const Child& child, const Search& search) {
   for (int i = 0; i < 3; ++i) {
-    if (child.lower[i] > search.centre[i] + search.reach || child.upper[i] < search.centre[i] - search.reach) return;
+    if (child.lower[i] > search.centre[i] + search.reach || child.upper[i] < search.centre[i] - search.reach) {
+      return false;
+    }
   }
-  if (search.beyond != nullptr) {
-    const Vec3& n = search.beyond->n;
-    const Vec3 far = n.cwiseProduct(to_pd(child.lower)).cwiseMax(n.cwiseProduct(to_pd(child.upper)));
-    if (far.sum() <= search.beyond->level) return;
-  }
-  make(shape, visit, search.stamp, search.core, child);
-  if (!child.piece.planes.empty()) search.found.push_back(&child.piece);
+  if (search.beyond == nullptr) return true;
+  const Vec3& n = search.beyond->n;
+  const Vec3 far = n.cwiseProduct(to_pd(child.lower)).cwiseMax(n.cwiseProduct(to_pd(child.upper)));
+  return far.sum() > search.beyond->level;
 }
 
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                          Search& search) {
   if (shape.isCompound()) {
-    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, nullptr, search);
+    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, nullptr, nullptr, search);
   } else if (shape.isConcave()) {
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
@@ -193,14 +201,17 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     Child& child = next_made();
     child.pose = pose;
     shape.getAabb(pose, child.lower, child.upper);
-    const std::size_t before = search.found.size();
-    collect_convex(static_cast<const btConvexShape&>(shape), child, ++visits_, search);
-    num_made_ += search.found.size() - before;
+    if (!within(child, search)) return;
+    make(search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp).get(), ++visits_, child);
+    if (child.piece.planes.empty()) return;
+    search.found.push_back(&child.piece);
+    ++num_made_;
   }
 }
 
-void NearPieces::find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
-                      std::uint64_t stamp, SolverCore& core, std::vector<const UnionPiece*>& found) {
+void NearPieces::find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, double slack,
+                      const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+                      std::vector<const UnionPiece*>& found) {
   found.clear();
   Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, found};
   for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
@@ -209,8 +220,12 @@ void NearPieces::find(const btCollisionObjectWrapper& piece, const Vec3& point, 
     if (shape.isConcave()) {
       collect(shape, parent.getWorldTransform(), child, search);
     } else if (shape.isCompound()) {
-      collect_children(static_cast<const btCompoundShape&>(shape), parent.getWorldTransform(), child->m_index,
-                       parent.m_parent == nullptr ? parent.getCollisionObject() : nullptr, search);
+      const auto& compound = static_cast<const btCompoundShape&>(shape);
+      const bool whole = parent.m_parent == nullptr;
+      const bool known = whole && child == &piece && compound.getNumChildShapes() > kVeryFewChildren;
+      collect_children(compound, parent.getWorldTransform(), child->m_index,
+                       whole ? parent.getCollisionObject() : nullptr,
+                       known ? facts_.neighbours(compound, child->m_index, 4 * slack, core) : nullptr, search);
     }
   }
 }

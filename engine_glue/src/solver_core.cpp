@@ -34,13 +34,17 @@ CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, s
                         [&](const btTriangleShape& triangle) { return cache.find(triangle, stamp); });
     return *known;
   }
+  refresh(shape, stamp, known);
+  return *known;
+}
+
+void SolverCore::refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known) {
   const bool current = stamp != 0 && known && known->source == &shape &&
                        known->compared.load(std::memory_order_relaxed) == stamp &&
                        known->signature == shape_signature(shape);
   if (!current) {
     known = cache.find(shape, stamp);
   }
-  return *known;
 }
 
 SolverCore::Outcome SolverCore::place(const PairQuestion& question, ThreadBuffers& held, PairAnswer& out) {

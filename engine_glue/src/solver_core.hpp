@@ -82,7 +82,9 @@ class SolverCore {
   Outcome contacts(const PairQuestion& question, double breaking_threshold, ThreadBuffers& buffers, PairAnswer& answer,
                    ContactManifold& points);
 
-  /// What a shape was converted to. `known`: as found earlier, brought up to date.
+  /// Brings up to date what a shape that is no triangle was converted to. `known`: as found earlier, or null.
+  void refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known);
+  /// The same of every shape.
   CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
                     ThreadBuffers& buffers);
 

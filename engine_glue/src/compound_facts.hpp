@@ -1,5 +1,6 @@
 /// @file
-/// The facets inside of a compound: those that one other child covers whole, so that no contact leads out over them.
+/// What the children of a compound are to each other: which touch, and which facets lie inside, where one other child
+/// covers all of them, so that no contact leads out over them.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
@@ -16,10 +17,9 @@ namespace pd::detail {
 
 class SolverCore;
 
-/// What is known of the facets of compounds, one table a thread. It follows from the children's shapes and places
-/// alone, with a slack of their own, so that it does not matter when or where it was found out; both are compared once
-/// a step.
-class SealedFacets {
+/// One table a thread. What it says follows from the children's shapes and places alone, with a slack of their own, so
+/// that it does not matter when or where it was found out; both are compared once a step.
+class CompoundFacts {
  public:
   /// To be called for each pair in each step.
   /// @param stamp  of this step, 0: unknown, so that children are compared again
@@ -31,6 +31,16 @@ class SealedFacets {
   /// Whether another child covers all of a facet, beyond doubt. False where the child is no solid polytope.
   [[nodiscard]] bool sealed(const btCompoundShape& compound, int child, std::size_t facet, SolverCore& core);
 
+  /// The children other than this one whose boxes come within `reach` of its own, and perhaps a few more; nullptr: they
+  /// are not known for so large a reach.
+  [[nodiscard]] const std::vector<int>* neighbours(const btCompoundShape& compound, int child, double reach,
+                                                   SolverCore& core);
+
+  /// What a child was converted to, of this step; null where it is not convex.
+  [[nodiscard]] const CachedShape* shape_of(const btCompoundShape& compound, int child, SolverCore& core) {
+    return known_of(compound, core).children[static_cast<std::size_t>(child)].shape.get();
+  }
+
  private:
   enum class Seal : std::uint8_t { unknown, open, sealed };
   struct Child {
@@ -38,9 +48,11 @@ class SealedFacets {
     btTransform place;
     std::shared_ptr<CachedShape> shape;
     UnionPiece piece;  ///< in the compound's frame
-    Vec3 lower = Vec3::Zero();
-    Vec3 upper = Vec3::Zero();
+    btVector3 lower;
+    btVector3 upper;
     std::vector<Seal> facets;
+    double reach = -1;  ///< of `neighbours`; negative: they are not known
+    std::vector<int> neighbours;
   };
   struct Known {
     std::uint64_t stamp = 0;
@@ -48,6 +60,7 @@ class SealedFacets {
     std::vector<Child> children;
   };
 
+  Known& known_of(const btCompoundShape& compound, SolverCore& core);
   void compare(const btCompoundShape& compound, SolverCore& core, Known& known) const;
   bool find_seal(const Known& known, std::size_t child, std::size_t facet);
 
@@ -56,6 +69,9 @@ class SealedFacets {
   std::vector<const Plane*> active_;
   std::uint64_t stamp_ = 0;
   std::uint64_t pair_ = 0;
+  Known* recent_ = nullptr;  ///< asked for last, of pair `recent_pair_`
+  const btCompoundShape* recent_of_ = nullptr;
+  std::uint64_t recent_pair_ = 0;
 };
 
 }  // namespace pd::detail
