@@ -216,6 +216,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
     leave_as_one(question, core, memory, *buffers, patches);
   } else {
     memory.union_pause = memory.union_refusals = 0;
+    memory.union_way.setZero();
   }
   return true;
 }
@@ -228,7 +229,7 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
     return;
   }
   DeepUnion::Way way;
-  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, way);
+  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, memory.union_way, way);
   if (outcome == DeepUnion::Outcome::over_budget) {
     memory.union_refusals = std::min(memory.union_refusals + 1, kMostRefusals);
     memory.union_pause = (1 << memory.union_refusals) - 1;
@@ -236,8 +237,9 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
     return;
   }
   memory.union_refusals = 0;
-  if (outcome != DeepUnion::Outcome::found) return;
+  if (outcome != DeepUnion::Outcome::found && outcome != DeepUnion::Outcome::nearly) return;
   buffers.counters.deep_unions.add();
+  if (outcome == DeepUnion::Outcome::nearly) buffers.counters.deep_unions_nearly.add();
   // The children that touch last need not touch yet.
   const ChildPair last(place_of(way.a, children_a_), place_of(way.b, children_b_));
   auto pair = std::find(pairs_.begin(), pairs_.end(), last);

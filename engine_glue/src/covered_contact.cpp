@@ -21,6 +21,8 @@ constexpr double kSameNormal = 1e-10;
 constexpr double kLevel = 1e-5;
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
+/// From so many on, what a facet inside of them is known for spares a search.
+constexpr int kManyChildren = 4;
 /// Facets tried in place of a covered one.
 constexpr int kTries = 4;
 
@@ -95,16 +97,19 @@ class Cover {
         core_(core),
         buffers_(buffers) {}
 
-  /// Takes the piece at hand from those kept. @return whether it is one of them
-  bool take_kept() {
-    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, core_) : nullptr;
-    if (kept == nullptr || kept->planes.empty()) return false;
-    buffers_.own = kept;
-    return true;
+  /// Whether the piece is one of many children of a body's compound.
+  [[nodiscard]] bool of_many() const {
+    const btCollisionObjectWrapper* parent = wrapper_.m_parent;
+    return parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isCompound() &&
+           static_cast<const btCompoundShape*>(parent->getCollisionShape())->getNumChildShapes() > kManyChildren;
   }
-  void make_own() {
-    buffers_.own = &buffers_.made;
-    set_piece(own_, buffers_.made);
+
+  /// Sets the piece at hand: one that is kept, or made anew.
+  void take_own() {
+    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, core_) : nullptr;
+    const bool solid = kept != nullptr && !kept->planes.empty();
+    buffers_.own = solid ? kept : &buffers_.made;
+    if (!solid) set_piece(own_, buffers_.made);
   }
 
   /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
@@ -136,7 +141,7 @@ class Cover {
 
   /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
   [[nodiscard]] bool is_sealed(std::size_t facet) const {
-    if (buffers_.own == &buffers_.made) return false;
+    if (buffers_.own == &buffers_.made || !of_many()) return false;
     return buffers_.near.facts().sealed(static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()),
                                         wrapper_.m_index, facet, core_);
   }
@@ -275,11 +280,10 @@ class SideRule {
     if (pushes_from_triangle(n)) return false;
     const double margin = side_.own.shape->margin();
     const Vec3 foot = witness - margin * n;
-    const bool kept = cover_.take_kept();
-    if (!kept) {
-      if (!is_flat(side_.own) && !cover_.look_round(foot, margin, n)) return false;
-      cover_.make_own();
-    }
+    // Of few pieces, most have none near that could cover.
+    const bool seals = cover_.of_many();
+    if (!seals && !is_flat(side_.own) && !cover_.look_round(foot, margin, n)) return false;
+    cover_.take_own();
     const UnionPiece& own = *buffers_.cover.own;
     if (own.planes.empty()) return false;
     const auto best =
@@ -291,7 +295,7 @@ class SideRule {
       points = nearest_free(n, depth, foot);
       return true;
     }
-    if (kept && !cover_.look_round(foot, margin, n)) return false;
+    if (seals && !cover_.look_round(foot, margin, n)) return false;
     if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points);
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;

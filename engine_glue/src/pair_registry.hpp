@@ -58,8 +58,9 @@ struct PairMemory {
   btScalar seconds = 0;                              ///< of the step that the points' impulses belong to
   std::vector<PieceMemory> pieces;                   ///< sorted by number
   std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
-  int union_pause = 0;     ///< steps for which the whole unions are not asked again (deep_union.hpp)
-  int union_refusals = 0;  ///< in a row
+  int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
+  int union_refusals = 0;         ///< in a row
+  Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
