@@ -124,17 +124,21 @@ class Cover {
   }
 
   /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
-  /// the corners of its part within the window and its middle, kBeyondDoubt where it is more; -1 where one is free. Of
-  /// a facet, no more is found out than whether it is kDecided.
+  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no more
+  /// is found out than whether it is kDecided.
   double covered(Vec3 foot, const Vec3& n) {
     const Touched touched = touched_at(foot, n);
     if (!touched.any) return -1;
-    double least = std::min(kBeyondDoubt, most_covered(foot, n, kBeyondDoubt));
-    if (least <= (touched.facet >= 0 ? kDecided : 0)) return least;
+    double least = kBeyondDoubt;
+    if (touched.facet < 0) {
+      least = std::min(least, most_covered(foot, n, least));
+      if (least <= 0) return least;
+    }
     set_feature(touched, foot, n);
+    if (buffers_.feature.empty() && touched.facet >= 0) return -1;
     for (const Vec3& corner : buffers_.feature) {
       least = std::min(least, most_covered(corner, n, least));
-      if (least <= 0) break;
+      if (least <= (touched.facet >= 0 ? kDecided : 0)) break;
     }
     return least;
   }
