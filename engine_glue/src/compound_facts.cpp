@@ -14,7 +14,7 @@ namespace pd::detail {
 namespace {
 
 /// Compounds that a thread remembers.
-constexpr std::size_t kMostCompounds = 256;
+constexpr std::size_t kMostKnownCompounds = 256;
 
 /// Of a child's diagonal: what comes so near counts as its neighbour.
 constexpr btScalar kNeighbourhood = 0x1p-6F;
@@ -25,7 +25,7 @@ const ConvexShape* taken_of(const CachedShape& shape) { return shape.sharp ? sha
 
 CompoundFacts::Known& CompoundFacts::known_of(const btCompoundShape& compound, SolverCore& core) {
   if (recent_ != nullptr && recent_pair_ == pair_ && recent_of_ == &compound) return *recent_;
-  if (compounds_.size() >= kMostCompounds && !compounds_.contains(&compound)) compounds_.clear();
+  if (compounds_.size() >= kMostKnownCompounds && !compounds_.contains(&compound)) compounds_.clear();
   Known& known = compounds_[&compound];
   if (stamp_ == 0 ? known.pair != pair_ : known.stamp != stamp_) compare(compound, core, known);
   recent_ = &known;

@@ -124,8 +124,8 @@ class Cover {
   }
 
   /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
-  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no more
-  /// is found out than whether it is kDecided.
+  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no
+  /// more is found out than whether it is kDecided.
   double covered(Vec3 foot, const Vec3& n) {
     const Touched touched = touched_at(foot, n);
     if (!touched.any) return -1;

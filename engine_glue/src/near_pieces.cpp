@@ -20,7 +20,7 @@ constexpr int kFewChildren = 32;
 /// Of so few, each is looked at where it is.
 constexpr int kVeryFewChildren = 4;
 /// Compounds of one step that are kept at a time.
-constexpr std::size_t kMostCompounds = 64;
+constexpr std::size_t kMostPosedCompounds = 64;
 
 bool meets(const btDbvtVolume& volume, const btVector3& lower, const btVector3& upper) {
   for (int i = 0; i < 3; ++i) {
@@ -92,7 +92,7 @@ NearPieces::Child& NearPieces::next_made() {
 }
 
 void NearPieces::begin_pair(std::uint64_t stamp) {
-  if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostCompounds) num_compounds_ = 0;
+  if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostPosedCompounds) num_compounds_ = 0;
   stamp_ = stamp;
   recent_ = {};
   facts_.begin_pair(stamp);
