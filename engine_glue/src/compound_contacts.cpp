@@ -4,6 +4,7 @@
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "covered_contact.hpp"
 #include "deep_union.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
 #include "piece_memories.hpp"
 #include "solver_core.hpp"
 
@@ -104,6 +106,22 @@ int place_of(const Child& child, std::vector<Child>& children) {
   return place;
 }
 
+/// How far a point within `radius` of the frame's origin has come at the most, turning by the nearest rotations
+/// included.
+double moved_at_most(const btTransform& from, const btTransform& to, double radius) {
+  if (from == to) return 0;
+  double turned = 0;
+  for (int i = 0; i < 3; ++i) turned += (to_pd(to.getBasis()[i]) - to_pd(from.getBasis()[i])).squaredNorm();
+  return (1 + 0x1p-16) * (std::sqrt(turned) * radius + (to_pd(to.getOrigin()) - to_pd(from.getOrigin())).norm());
+}
+
+/// Whether two children cannot have come within reach of each other since they were last asked.
+/// @param way_and_reach  what both have come, and up to which gap there are contacts
+bool still_apart(const PieceMemory& memory, const ChildMotion& a, const ChildMotion& b, double way_and_reach) {
+  return way_and_reach < memory.apart_until * (1 - 0x1p-40) && memory.shapes[0] == a.shape &&
+         memory.shapes[1] == b.shape;
+}
+
 bool all_convex(const std::vector<Child>& children) {
   return std::all_of(children.begin(), children.end(), [](const Child& child) { return child.shape->isConvex(); });
 }
@@ -117,9 +135,13 @@ class CompoundContacts final : public UnionContacts {
   }
 
  private:
+  /// Brings what is remembered of the near children of one body up to date.
+  static void move(const std::vector<Child>& children, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                   std::vector<ChildMotion>& motions);
   /// One pair's points. @return false where a child has no exact form
-  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, PieceMemory& memory,
-           ThreadBuffers& buffers, Patches& patches);
+  /// @param way  of both children
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
+           PieceMemory& memory, ThreadBuffers& buffers, Patches& patches);
   /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
   void leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory, ThreadBuffers& buffers,
                     Patches& patches);
@@ -130,6 +152,24 @@ class CompoundContacts final : public UnionContacts {
   PieceMemories memories_;
   DeepUnion deep_;
 };
+
+void CompoundContacts::move(const std::vector<Child>& children, std::uint64_t stamp, SolverCore& core,
+                            ThreadBuffers& buffers, std::vector<ChildMotion>& motions) {
+  for (const Child& child : children) {
+    const auto place = static_cast<std::size_t>(child.index + 1);
+    if (place >= motions.size()) motions.resize(place + 1);
+    ChildMotion& motion = motions[place];
+    const bool met = motion.shape != nullptr;
+    const CachedShape& found = core.find(static_cast<const btConvexShape&>(*child.shape), stamp, motion.shape, buffers);
+    if (met && found.body) {
+      double radius = bounding_radius(*found.body);
+      if (found.sharp) radius = std::max(radius, bounding_radius(*found.sharp));
+      // Rounded up, so that the way that is left is no less than the way that was come.
+      motion.way = (motion.way + moved_at_most(motion.pose, child.pose, radius)) * (1 + 0x1p-52);
+    }
+    motion.pose = child.pose;
+  }
+}
 
 bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
   const auto& [a, b, seconds, threshold, stamp, result] = question;
@@ -145,7 +185,9 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b_);
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   auto buffers = core.buffers.lease();
-  buffers->cover.near.begin_pair();
+  buffers->cover.near.begin_pair(stamp);
+  move(children_a_, stamp, core, *buffers, memory.children[0]);
+  move(children_b_, stamp, core, *buffers, memory.children[1]);
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
     for (std::size_t j = 0; j < children_b_.size(); ++j) {
@@ -157,9 +199,16 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
       }
       const std::uint64_t number = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child_a.index + 1)) << 32U) |
                                    static_cast<std::uint32_t>(child_b.index + 1);
+      PieceMemory& remembered = memories_.take(memory.pieces, number);
+      const ChildMotion& motion_a = memory.children[0][static_cast<std::size_t>(child_a.index + 1)];
+      const ChildMotion& motion_b = memory.children[1][static_cast<std::size_t>(child_b.index + 1)];
+      const double way = motion_a.way + motion_b.way;
+      if (still_apart(remembered, motion_a, motion_b, way + static_cast<double>(threshold))) continue;
       pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
+      if (remembered.shapes[0] != motion_a.shape) remembered.shapes[0] = motion_a.shape;
+      if (remembered.shapes[1] != motion_b.shape) remembered.shapes[1] = motion_b.shape;
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, question, core, memories_.take(memory.pieces, number), *buffers, patches)) return false;
+      if (!ask(pair, question, core, way, remembered, *buffers, patches)) return false;
     }
   }
   memories_.end(memory.pieces);
@@ -167,6 +216,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
     leave_as_one(question, core, memory, *buffers, patches);
   } else {
     memory.union_pause = memory.union_refusals = 0;
+    memory.union_way.setZero();
   }
   return true;
 }
@@ -179,7 +229,7 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
     return;
   }
   DeepUnion::Way way;
-  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, way);
+  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, memory.union_way, way);
   if (outcome == DeepUnion::Outcome::over_budget) {
     memory.union_refusals = std::min(memory.union_refusals + 1, kMostRefusals);
     memory.union_pause = (1 << memory.union_refusals) - 1;
@@ -187,8 +237,9 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
     return;
   }
   memory.union_refusals = 0;
-  if (outcome != DeepUnion::Outcome::found) return;
+  if (outcome != DeepUnion::Outcome::found && outcome != DeepUnion::Outcome::nearly) return;
   buffers.counters.deep_unions.add();
+  if (outcome == DeepUnion::Outcome::nearly) buffers.counters.deep_unions_nearly.add();
   // The children that touch last need not touch yet.
   const ChildPair last(place_of(way.a, children_a_), place_of(way.b, children_b_));
   auto pair = std::find(pairs_.begin(), pairs_.end(), last);
@@ -197,7 +248,7 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
   patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.a.index, way.b.index);
 }
 
-bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core,
+bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
                            PieceMemory& memory, ThreadBuffers& buffers, Patches& patches) {
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
@@ -212,11 +263,14 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
                            memory.met ? kAnyDistance : threshold,
                            question.stamp,
                            memory.shapes,
-                           &memory.warm};
+                           &memory.warm,
+                           false,
+                           true};
   const auto outcome = core.contacts(asked, threshold, buffers, answer, points);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
   memory.met = answer.depth.signed_distance() <= threshold;
+  memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
                  points);
   const auto [i, j] = pairs_.back();

@@ -19,12 +19,10 @@ constexpr double kSameNormal = 1e-10;
 /// A way that leads less than this (as a sine) against a normal covers nothing: a contact that is off by so much gives
 /// a body that rests on it 1e-4 m/s a second aside.
 constexpr double kLevel = 1e-5;
-/// From here on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
-constexpr double kDecided = 0.02;
-/// More than this is not told apart.
-constexpr double kBeyondDoubt = 2 * kDecided;
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
+/// From so many on, what a facet inside of them is known for spares a search.
+constexpr int kManyChildren = 4;
 /// Facets tried in place of a covered one.
 constexpr int kTries = 4;
 
@@ -90,9 +88,29 @@ Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
 
 class Cover {
  public:
-  Cover(const btCollisionObjectWrapper& wrapper, double slack, double window, std::uint64_t stamp, SolverCore& core,
-        CoverBuffers& buffers)
-      : wrapper_(wrapper), slack_(slack), window_(window), stamp_(stamp), core_(core), buffers_(buffers) {}
+  Cover(const Side& side, double slack, double window, std::uint64_t stamp, SolverCore& core, CoverBuffers& buffers)
+      : wrapper_(side.wrapper),
+        own_(side.own),
+        slack_(slack),
+        window_(window),
+        stamp_(stamp),
+        core_(core),
+        buffers_(buffers) {}
+
+  /// Whether the piece is one of many children of a body's compound.
+  [[nodiscard]] bool of_many() const {
+    const btCollisionObjectWrapper* parent = wrapper_.m_parent;
+    return parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isCompound() &&
+           static_cast<const btCompoundShape*>(parent->getCollisionShape())->getNumChildShapes() > kManyChildren;
+  }
+
+  /// Sets the piece at hand: one that is kept, or made anew.
+  void take_own() {
+    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, core_) : nullptr;
+    const bool solid = kept != nullptr && !kept->planes.empty();
+    buffers_.own = solid ? kept : &buffers_.made;
+    if (!solid) set_piece(own_, buffers_.made);
+  }
 
   /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
   /// @return whether there is anything
@@ -100,84 +118,123 @@ class Cover {
     // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
     const double reach = 1.5 * window_ + slack_;
     const Beyond beyond{n, n.dot(foot) + margin + 2 * slack_};
-    count_ = buffers_.near.find(wrapper_, foot, reach, n.isZero(0) ? nullptr : &beyond, stamp_, core_);
-    return count_ > 0;
+    buffers_.near.forget_made();
+    buffers_.near.find(wrapper_, foot, reach, slack_, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.found);
+    return !buffers_.found.empty();
   }
 
   /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
-  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where a corner is free.
-  double covered(const Vec3& foot, const Vec3& n) {
-    feature_at(foot, n);
-    if (buffers_.feature.empty()) return -1;
+  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no
+  /// more is found out than whether it is kDecided.
+  double covered(Vec3 foot, const Vec3& n) {
+    const Touched touched = touched_at(foot, n);
+    if (!touched.any) return -1;
     double least = kBeyondDoubt;
+    if (touched.facet < 0) {
+      least = std::min(least, most_covered(foot, n, least));
+      if (least <= 0) return least;
+    }
+    set_feature(touched, foot, n);
+    if (buffers_.feature.empty() && touched.facet >= 0) return -1;
     for (const Vec3& corner : buffers_.feature) {
-      double most = -1;
-      for (int i = 0; i < count_ && most < least; ++i) {
-        const UnionPiece& piece = buffers_.near[i];
-        // Surfaces lie flush, not cores, where margins differ.
-        const Vec3 level = corner + (buffers_.own.margin - piece.margin) * n;
-        most = std::max(most, covered_sine(piece, level, n, slack_, least, buffers_.active));
-      }
-      least = std::min(least, most);
-      if (least <= 0) break;
+      least = std::min(least, most_covered(corner, n, least));
+      if (least <= (touched.facet >= 0 ? kDecided : 0)) break;
     }
     return least;
   }
 
+  /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
+  [[nodiscard]] bool is_sealed(std::size_t facet) const {
+    if (buffers_.own == &buffers_.made || !of_many()) return false;
+    return buffers_.near.facts().sealed(static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()),
+                                        wrapper_.m_index, facet, core_);
+  }
+
  private:
+  /// What of the piece touches a point.
+  struct Touched {
+    bool any = false;
+    int facet = -1;  ///< that of the normal asked for
+    const Plane* first = nullptr;
+    const Plane* second = nullptr;
+    int count = 0;
+  };
+
+  /// The largest sine of all pieces near at a point of this one's core, or one that is enough.
+  double most_covered(const Vec3& point, const Vec3& n, double enough) {
+    double most = -1;
+    for (const UnionPiece* near : buffers_.found) {
+      if (most >= enough) break;
+      const UnionPiece& piece = *near;
+      // Surfaces lie flush, not cores, where margins differ.
+      const Vec3 level = point + (buffers_.own->margin - piece.margin) * n;
+      most = std::max(most, covered_sine(piece, level, n, slack_, enough, buffers_.active));
+    }
+    return most;
+  }
+
+  /// @param foot  moved into the piece, and on the facet if there is one
+  Touched touched_at(Vec3& foot, const Vec3& n) const {
+    const std::vector<Plane>& planes = buffers_.own->planes;
+    Touched touched;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const Plane& plane = planes[i];
+      const double height = plane.height(foot);
+      if (height > 2 * slack_) return {};
+      // The edges of a triangle are no facets.
+      if (!buffers_.own->flat && plane.normal.dot(n) >= 1 - kSameNormal) touched.facet = static_cast<int>(i);
+      if (height < -2 * slack_) continue;
+      if (touched.count == 0) touched.first = &plane;
+      if (touched.count == 1) touched.second = &plane;
+      ++touched.count;
+    }
+    touched.any = true;
+    for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
+    if (touched.facet >= 0) {
+      const Plane& facet = planes[static_cast<std::size_t>(touched.facet)];
+      foot -= facet.height(foot) * facet.normal;
+    }
+    return touched;
+  }
+
   /// The part of the feature within the window, by its corners. They lie in the piece up to half the slack, so that a
   /// flush neighbour holds them.
-  void feature_at(Vec3 foot, const Vec3& n) {
-    const std::vector<Plane>& planes = buffers_.own.planes;
+  void set_feature(const Touched& touched, const Vec3& foot, const Vec3& n) {
     std::vector<Vec3>& feature = buffers_.feature;
     feature.clear();
-    const Plane* facet = nullptr;
-    const Plane* touched[2] = {nullptr, nullptr};
-    int count = 0;
-    for (const Plane& plane : planes) {
-      const double height = plane.height(foot);
-      if (height > 2 * slack_) return;
-      // The edges of a triangle are no facets.
-      if (!buffers_.own.flat && plane.normal.dot(n) >= 1 - kSameNormal) facet = &plane;
-      if (height < -2 * slack_) continue;
-      if (count < 2) touched[count] = &plane;
-      ++count;
-    }
-    for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
-    if (facet != nullptr) {
-      foot -= facet->height(foot) * facet->normal;
+    const bool flat = buffers_.own->flat;
+    if (touched.facet >= 0) {
       const Vec3 u = n.unitOrthogonal() * window_;
       const Vec3 w = n.cross(u);
       feature = {foot + u + w, foot - u + w, foot - u - w, foot + u - w};
-      clip_to_piece(buffers_.own, 0.5 * slack_, feature, buffers_.spare);
+      clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
       return;
     }
-    feature = {foot};
     // Of a triangle, its two sides and one edge; of a solid, two facets.
-    if (count != (buffers_.own.flat ? 3 : 2)) return;
-    const Plane* second = buffers_.own.flat ? edge_of_triangle(foot) : touched[1];
-    Vec3 along = second != nullptr ? Vec3(touched[0]->normal.cross(second->normal)) : Vec3(Vec3::Zero());
+    if (touched.count != (flat ? 3 : 2)) return;
+    const Plane* second = flat ? edge_of_triangle(foot) : touched.second;
+    Vec3 along = second != nullptr ? Vec3(touched.first->normal.cross(second->normal)) : Vec3(Vec3::Zero());
     if (along.norm() <= kLevel) return;
     along *= window_ / along.norm();
     feature = {foot - along, foot + along};
-    clip_to_piece(buffers_.own, 0.5 * slack_, feature, buffers_.spare);
-    feature.push_back(foot);
+    clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
   }
 
   const Plane* edge_of_triangle(const Vec3& foot) const {
-    for (std::size_t i = 2; i < buffers_.own.planes.size(); ++i) {
-      if (buffers_.own.planes[i].height(foot) >= -2 * slack_) return &buffers_.own.planes[i];
+    const std::vector<Plane>& planes = buffers_.own->planes;
+    for (std::size_t i = 2; i < planes.size(); ++i) {
+      if (planes[i].height(foot) >= -2 * slack_) return &planes[i];
     }
     return nullptr;
   }
 
   const btCollisionObjectWrapper& wrapper_;
+  const PosedShape& own_;
   double slack_;
   double window_;
   std::uint64_t stamp_;
   SolverCore& core_;
   CoverBuffers& buffers_;
-  int count_ = 0;
 };
 
 void drop(ContactManifold& points, int i) {
@@ -219,7 +276,7 @@ class SideRule {
         window_(window),
         slack_(slack),
         buffers_(buffers),
-        cover_(side.wrapper, slack, window, stamp, core, buffers.cover) {}
+        cover_(side_, slack, window, stamp, core, buffers.cover) {}
 
   /// @return whether `points` was changed
   bool apply(double depth, const Vec3& witness, ContactManifold& points) {
@@ -227,16 +284,23 @@ class SideRule {
     if (pushes_from_triangle(n)) return false;
     const double margin = side_.own.shape->margin();
     const Vec3 foot = witness - margin * n;
-    const bool flat = is_flat(side_.own);
-    if (!flat && !cover_.look_round(foot, margin, n)) return false;
-    UnionPiece& own = buffers_.cover.own;
-    set_piece(side_.own, own);
+    // Of few pieces, most have none near that could cover.
+    const bool seals = cover_.of_many();
+    if (!seals && !is_flat(side_.own) && !cover_.look_round(foot, margin, n)) return false;
+    cover_.take_own();
+    const UnionPiece& own = *buffers_.cover.own;
     if (own.planes.empty()) return false;
     const auto best =
         std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
                          [&](const Plane& x, const Plane& y) { return x.normal.dot(n) < y.normal.dot(n); });
     const double cosine = best->normal.dot(n);
-    if (cosine >= 1 - kSameNormal) return !own.flat && facet_contact(depth, best->normal, foot, points);
+    const bool facet = cosine >= 1 - kSameNormal;
+    if (facet && cover_.is_sealed(static_cast<std::size_t>(best - own.planes.begin()))) {
+      points = nearest_free(n, depth, foot);
+      return true;
+    }
+    if (seals && !cover_.look_round(foot, margin, n)) return false;
+    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points);
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;
     if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(n))) return false;
@@ -266,7 +330,7 @@ class SideRule {
   /// A contact in the middle of a triangle that does not push along its normal is the triangle's own: what lies round
   /// it is not looked for.
   double covered_here(const Vec3& foot, const Vec3& n) {
-    const UnionPiece& own = buffers_.cover.own;
+    const UnionPiece& own = *buffers_.cover.own;
     if (own.flat) {
       const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
       if (own_sine > kDecided) return own_sine;
@@ -277,7 +341,7 @@ class SideRule {
 
   /// A solid's facet: each point by itself.
   bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
-    const double margin = buffers_.cover.own.margin;
+    const double margin = buffers_.cover.own->margin;
     const int before = points.count;
     for (int i = points.count - 1; i >= 0; --i) {
       const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(i)]) - margin * n;
@@ -290,19 +354,19 @@ class SideRule {
 
   double depth_along(const Plane& facet, Vec3& farthest) const {
     farthest = farthest_against(side_.other, facet.normal);
-    return side_.other.shape->margin() + buffers_.cover.own.margin - facet.height(farthest);
+    return side_.other.shape->margin() + buffers_.cover.own->margin - facet.height(farthest);
   }
 
   ContactManifold turned(const Plane& facet) {
     Vec3 farthest;
     const double depth = depth_along(facet, farthest);
     if (depth < -threshold_) return {};
-    return along_facet(side_, facet, depth, farthest, threshold_, slack_, buffers_.cover.own, buffers_.manifold);
+    return along_facet(side_, facet, depth, farthest, threshold_, slack_, *buffers_.cover.own, buffers_.manifold);
   }
 
   /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach.
   ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
-    const UnionPiece& own = buffers_.cover.own;
+    const UnionPiece& own = *buffers_.cover.own;
     if (!own.flat) cover_.look_round(foot, own.margin, Vec3::Zero());
     std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
     facets.clear();
@@ -318,7 +382,9 @@ class SideRule {
     }
     std::sort(facets.begin(), facets.end());
     for (int i = 0; i < std::min(kTries, static_cast<int>(facets.size())); ++i) {
-      const Plane& facet = own.planes[static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second)];
+      const auto f = static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second);
+      if (cover_.is_sealed(f)) continue;
+      const Plane& facet = own.planes[f];
       ContactManifold points = turned(facet);
       for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
         const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(k)]) - own.margin * facet.normal;
@@ -371,7 +437,7 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
 
 ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer, const Vec3& front,
                             double threshold, ThreadBuffers& buffers) {
-  UnionPiece& own = buffers.cover.own;
+  UnionPiece& own = buffers.cover.made;
   set_piece(answer.b, own);
   if (own.planes.empty()) return {};
   const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];

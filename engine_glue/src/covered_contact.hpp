@@ -30,8 +30,10 @@ struct ThreadBuffers;
 
 /// Memory of `keep_uncovered`, one a thread.
 struct CoverBuffers {
-  UnionPiece own;
+  UnionPiece made;          ///< of a piece that `near` does not keep
+  UnionPiece* own = &made;  ///< the piece at hand
   NearPieces near;
+  std::vector<const UnionPiece*> found;  ///< near the contact
   std::vector<const Plane*> active;
   std::vector<Vec3> feature;
   std::vector<Vec3> spare;

@@ -1,11 +1,15 @@
 #include "deep_union.hpp"
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "pd/bullet/scalar.hpp"
 #include "pd/compound/compound_depth.hpp"
 #include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/directional_depth.hpp"
 #include "solver_core.hpp"
 #include "union_algorithm.hpp"
 #include "union_piece.hpp"
@@ -18,6 +22,14 @@ namespace {
 constexpr double kDeep = 0.25;
 /// cos 45 degrees.
 constexpr double kTogether = 0.7;
+/// Ways out that are no longer than this times the deepest pair's depth, which none is shorter than, are short enough.
+constexpr double kShort = 1.5;
+/// From here on a shorter one is not looked for.
+constexpr double kShortest = 1.05;
+/// Of the children in each other, the deepest, whose ways are tried.
+constexpr std::size_t kMostOwnWays = 4;
+/// Children that one straight way may have to pass.
+constexpr int kMostStops = 12;
 /// What one answer may take.
 constexpr std::size_t kMostPairs = 1 << 10;
 constexpr std::int64_t kMostFacets = 1 << 14;
@@ -36,17 +48,24 @@ const Child& child_of(const std::vector<Child>& children, int number) {
   return *std::find_if(children.begin(), children.end(), [&](const Child& child) { return child.index == number; });
 }
 
+Vec3 velocity_of(const btCollisionObject& object) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
+}
+
 }  // namespace
 
 void DeepUnion::clear() {
   deepest_ = 0;
   deepest_pair_.depth.depth = 0;
   normals_.clear();
+  own_ways_.clear();
   torn_ = false;
 }
 
 void DeepUnion::add(const PairAnswer& answer, int child_a, int child_b, const ContactManifold& left) {
   if (answer.depth.contact != ContactClass::overlapping) return;
+  own_ways_.emplace_back(answer.depth.depth, answer.depth.normal);
   if (answer.depth.depth > deepest_pair_.depth.depth) {
     deepest_pair_ = answer;
     child_a_ = child_a;
@@ -106,10 +125,96 @@ bool DeepUnion::deepest_pair_leads_out(ThreadBuffers& buffers) const {
   return true;
 }
 
+std::optional<DeepUnion::Exit> DeepUnion::exit_along(const Vec3& n, double limit, ThreadBuffers& buffers) const {
+  DepthSettings settings;
+  settings.bracket = Bracket::contact;
+  settings.beyond = 0;
+  Exit exit;
+  exit.along = n;
+  exit.length = deepest_pair_.depth.depth;
+  const std::size_t count_b = b_.posed.size();
+  const std::size_t count = a_.posed.size() * count_b;
+  // Round and round, until all have been asked at one place.
+  int stops = 0;
+  for (std::size_t k = 0, free = 0; free < count; k = k + 1 < count ? k + 1 : 0) {
+    const std::size_t i = k / count_b;
+    const std::size_t j = k % count_b;
+    ++free;
+    const Vec3 way = exit.length * n;
+    const btVector3 moved_by = to_bullet(way);
+    const Child& child_a = a_.children[i];
+    if (apart({child_a.box.lower + moved_by, child_a.box.upper + moved_by}, b_.children[j].box, 0)) continue;
+    const PosedShape moved{a_.posed[i].shape, Pose::from_trusted_matrix(a_.posed[i].pose.rotation(),
+                                                                        a_.posed[i].pose.translation() + way)};
+    const double slack = seam_slack(moved, b_.posed[j]);
+    settings.contact_tolerance = slack;
+    const PenetrationDepth left = penetration_depth(moved, b_.posed[j], buffers.scratch, settings);
+    if (left.contact != ContactClass::overlapping || left.depth <= slack) continue;
+    const auto onwards = directional_depth(moved, b_.posed[j], n, buffers.scratch);
+    if (!onwards || onwards.value().contact != ContactClass::overlapping || ++stops > kMostStops) return std::nullopt;
+    exit.length += onwards.value().upper;
+    if (exit.length > limit) return std::nullopt;
+    exit.a = i;
+    exit.b = j;
+    exit.facet = onwards.value().normal;
+    free = 1;
+  }
+  return stops > 0 ? std::optional<Exit>(exit) : std::nullopt;
+}
+
+std::optional<DeepUnion::Exit> DeepUnion::short_exit(const UnionQuestion& question, const Vec3& last,
+                                                     ThreadBuffers& buffers) {
+  const double least = deepest_pair_.depth.depth;
+  std::optional<Exit> best;
+  const auto offer = [&](const Vec3& n) {
+    if (best && best->length <= kShortest * least) return;
+    const double length = n.norm();
+    if (!(length > 0) || !std::isfinite(length)) return;
+    auto exit = exit_along(n / length, best ? best->length : kShort * least, buffers);
+    if (!exit) return;
+    best = exit;
+    // Straight off what parts last it may be shorter still.
+    if (auto turned = exit_along(exit->facet, exit->length, buffers)) best = turned;
+  };
+  offer(last);
+  std::stable_sort(own_ways_.begin(), own_ways_.end(),
+                   [](const OwnWay& x, const OwnWay& y) { return x.first > y.first; });
+  const std::size_t count = std::min(own_ways_.size(), kMostOwnWays);
+  for (std::size_t i = 0; i < count; ++i) offer(own_ways_[i].second);
+  for (std::size_t i = 1; i < count; ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      offer(own_ways_[i].first * own_ways_[i].second + own_ways_[k].first * own_ways_[k].second);
+    }
+  }
+  // Back the way it came.
+  offer(velocity_of(*question.b.getCollisionObject()) - velocity_of(*question.a.getCollisionObject()));
+  return best;
+}
+
+bool DeepUnion::lead_out(const Exit& exit, const UnionQuestion& question, ThreadBuffers& buffers, Way& way) const {
+  const PosedShape& a = a_.posed[exit.a];
+  const PosedShape& b = b_.posed[exit.b];
+  const Vec3 by = exit.length * exit.along;
+  const PosedShape moved{a.shape, Pose::from_trusted_matrix(a.pose.rotation(), a.pose.translation() + by)};
+  DepthSettings settings;
+  settings.bracket = Bracket::contact;
+  PenetrationDepth there = penetration_depth(moved, b, buffers.scratch, settings);
+  there.contact = ContactClass::overlapping;
+  there.normal = exit.along;
+  there.depth = exit.length;
+  there.distance = 0;
+  there.witness_a = there.witness_b - by;
+  way.points =
+      contact_manifold(a, b, there, static_cast<double>(question.threshold), buffers.manifold, DeepestPoint::as_lifted);
+  way.a = a_.children[exit.a];
+  way.b = b_.children[exit.b];
+  return way.points.count > 0;
+}
+
 DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
-                                       Way& way) {
-  if (!collect(question.a, question.b, deepest_pair_.depth.depth, question, core, a_) ||
-      !collect(question.b, question.a, deepest_pair_.depth.depth, question, core, b_)) {
+                                       Vec3& last, Way& way) {
+  if (!collect(question.a, question.b, kShort * deepest_pair_.depth.depth, question, core, a_) ||
+      !collect(question.b, question.a, kShort * deepest_pair_.depth.depth, question, core, b_)) {
     return Outcome::unsupported;
   }
   if (deepest_pair_leads_out(buffers)) {
@@ -117,7 +222,14 @@ DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore
                                   static_cast<double>(question.threshold), buffers.manifold, DeepestPoint::as_lifted);
     way.a = child_of(a_.children, child_a_);
     way.b = child_of(b_.children, child_b_);
+    last = deepest_pair_.depth.normal;
     return Outcome::found;
+  }
+  const bool few = a_.posed.size() * b_.posed.size() <= kMostPairs;
+  if (const auto exit = few ? short_exit(question, last, buffers) : std::nullopt;
+      exit && lead_out(*exit, question, buffers, way)) {
+    last = exit->along;
+    return Outcome::nearly;
   }
   UnionSettings settings;
   settings.method = UnionMethod::facets;
@@ -141,6 +253,7 @@ DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore
       reach = 2 * depth.depth;
       continue;
     }
+    last = depth.normal;
     const auto i = static_cast<std::size_t>(depth.part_a);
     const auto j = static_cast<std::size_t>(depth.part_b);
     const double margin_a = a_.posed[i].shape->margin();

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cached_shape.hpp"
@@ -35,14 +37,17 @@ class DeepUnion {
     Child b;
   };
   enum class Outcome {
-    found,
+    found,        ///< the shortest way
+    nearly,       ///< one that is at most half as long again
     apart,        ///< only margins meet
     over_budget,  ///< more pairs of children within reach, or facets of their differences, than one answer may take
     unsupported   ///< a child within reach is smooth
   };
-  /// The shortest way out of b's cores for a's, all children that it could meet included; rounded children go on by
-  /// their margins. Time as said in compound_depth.hpp for the children within reach.
-  Outcome find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Way& way);
+  /// The shortest way out of b's cores for a's, all children that it could meet included, or one that is little longer
+  /// (`nearly`); rounded children go on by their margins. Time as said in compound_depth.hpp for the children within
+  /// reach.
+  /// @param last  unit, along which the pair was led out in the last step, or zero; set to the way found
+  Outcome find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Vec3& last, Way& way);
 
  private:
   struct Side {
@@ -58,11 +63,31 @@ class DeepUnion {
   /// union of the differences P_ij holds each of them. Requires: all children within that reach are collected.
   [[nodiscard]] bool deepest_pair_leads_out(ThreadBuffers& buffers) const;
 
+  using OwnWay = std::pair<double, Vec3>;
+  /// A straight way for A out of B, not to the nearest place for certain.
+  struct Exit {
+    Vec3 along = Vec3::UnitX();  ///< unit
+    double length = 0;
+    std::size_t a = 0;  ///< the children that part last
+    std::size_t b = 0;
+    Vec3 facet = Vec3::UnitX();  ///< the normal by which they part
+  };
+  /// Out along `n` (unit), where that is no longer than `limit`. Requires: all children within that reach are
+  /// collected.
+  [[nodiscard]] std::optional<Exit> exit_along(const Vec3& n, double limit, ThreadBuffers& buffers) const;
+  /// A way that is at most half as long again as the deepest pair's own, which none is shorter than: the last step's,
+  /// the ways of the deepest children and of two of them together, and back the way that A came are tried, each
+  /// turned straight off what parts last. Much cheaper than the shortest, and the same from step to step.
+  [[nodiscard]] std::optional<Exit> short_exit(const UnionQuestion& question, const Vec3& last, ThreadBuffers& buffers);
+  /// The contact that leads out. @return false where it has no points
+  bool lead_out(const Exit& exit, const UnionQuestion& question, ThreadBuffers& buffers, Way& way) const;
+
   double deepest_ = 0;       ///< of the children that are deep
   PairAnswer deepest_pair_;  ///< of all children
   int child_a_ = -1;         ///< of that pair
   int child_b_ = -1;
-  std::vector<Vec3> normals_;  ///< of their contacts that are left
+  std::vector<Vec3> normals_;     ///< of their contacts that are left
+  std::vector<OwnWay> own_ways_;  ///< of children in each other: how deep, along which normal
   bool torn_ = false;
   Side a_;
   Side b_;

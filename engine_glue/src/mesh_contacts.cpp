@@ -220,7 +220,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
                              concave.getMargin() + question.threshold, triangles_);
   concave.processAllTriangles(&collector, collector.lower(), collector.upper());
   auto buffers = core.buffers.lease();
-  buffers->cover.near.begin_pair();
+  buffers->cover.near.begin_pair(question.stamp);
   if (collector.skipped > 0) buffers->counters.skipped_triangles.add(collector.skipped);
   if (flat_.find(question, triangles_, core, *buffers, memory, patches)) {
     memories_.end(memory.pieces);

@@ -17,6 +17,10 @@ namespace {
 
 /// Of so few children each is compared; of more, Bullet's tree is asked.
 constexpr int kFewChildren = 32;
+/// Of so few, each is looked at where it is.
+constexpr int kVeryFewChildren = 4;
+/// Compounds of one step that are kept at a time.
+constexpr std::size_t kMostPosedCompounds = 64;
 
 bool meets(const btDbvtVolume& volume, const btVector3& lower, const btVector3& upper) {
   for (int i = 0; i < 3; ++i) {
@@ -51,13 +55,14 @@ struct NearPieces::Search {
   const Beyond* beyond;
   std::uint64_t stamp;
   SolverCore& core;
+  std::vector<const UnionPiece*>& found;
 };
 
 class NearPieces::TrianglesOf : public btTriangleCallback {
  public:
-  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Beyond* beyond,
+  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Search& search,
               NearPieces& list)
-      : pose_(pose), margin_(margin), except_(except), beyond_(beyond), list_(list) {}
+      : pose_(pose), margin_(margin), except_(except), beyond_(search.beyond), found_(search.found), list_(list) {}
   void processTriangle(btVector3* corners, int part, int index) override {
     if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
     const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
@@ -68,7 +73,7 @@ class NearPieces::TrianglesOf : public btTriangleCallback {
     UnionPiece& piece = list_.next_made().piece;
     set_triangle(points, margin_, piece);
     if (piece.planes.empty()) return;
-    list_.found_.push_back(&piece);
+    found_.push_back(&piece);
     ++list_.num_made_;
   }
 
@@ -77,6 +82,7 @@ class NearPieces::TrianglesOf : public btTriangleCallback {
   double margin_;
   const btCollisionObjectWrapper* except_;
   const Beyond* beyond_;
+  std::vector<const UnionPiece*>& found_;
   NearPieces& list_;
 };
 
@@ -85,94 +91,143 @@ NearPieces::Child& NearPieces::next_made() {
   return made_[num_made_];
 }
 
-std::vector<NearPieces::Child>& NearPieces::children_of(const btCollisionObject& body, int count) {
-  for (std::size_t i = 0; i < num_compounds_; ++i) {
-    if (compounds_[i].body == &body) return compounds_[i].children;
+void NearPieces::begin_pair(std::uint64_t stamp) {
+  if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostPosedCompounds) num_compounds_ = 0;
+  stamp_ = stamp;
+  recent_ = {};
+  facts_.begin_pair(stamp);
+}
+
+NearPieces::PosedCompound& NearPieces::compound_of(const btCollisionObject& body, const btCompoundShape& shape,
+                                                   const btTransform& pose) {
+  for (PosedCompound* recent : recent_) {
+    if (recent != nullptr && recent->body == &body) return *recent;
   }
-  if (num_compounds_ == compounds_.size()) compounds_.emplace_back();
-  PosedCompound& compound = compounds_[num_compounds_++];
-  compound.body = &body;
-  if (compound.children.size() < static_cast<std::size_t>(count)) {
-    compound.children.resize(static_cast<std::size_t>(count));
+  const auto end = compounds_.begin() + static_cast<std::ptrdiff_t>(num_compounds_);
+  auto found = std::find_if(compounds_.begin(), end, [&](const PosedCompound& known) { return known.body == &body; });
+  const bool known = found != end;
+  if (!known) {
+    if (num_compounds_ == compounds_.size()) compounds_.emplace_back();
+    found = compounds_.begin() + static_cast<std::ptrdiff_t>(num_compounds_++);
   }
-  return compound.children;
+  PosedCompound& compound = *found;
+  if (!known || compound.shape != &shape || !(compound.pose == pose)) {
+    compound.body = &body;
+    compound.shape = &shape;
+    compound.pose = pose;
+    compound.visit = ++visits_;
+  }
+  const auto count = static_cast<std::size_t>(shape.getNumChildShapes());
+  if (compound.children.size() < count) compound.children.resize(count);
+  recent_ = {&compound, recent_[0]};
+  return compound;
+}
+
+NearPieces::Child& NearPieces::posed_child(PosedCompound& compound, int i) {
+  Child& child = compound.children[static_cast<std::size_t>(i)];
+  if (child.posed != compound.visit) {
+    child.posed = compound.visit;
+    child.pose = compound.pose * compound.shape->getChildTransform(i);
+    compound.shape->getChildShape(i)->getAabb(child.pose, child.lower, child.upper);
+  }
+  return child;
+}
+
+void NearPieces::make(const CachedShape* shape, std::uint64_t visit, Child& child) {
+  if (child.made == visit) return;
+  child.made = visit;
+  child.piece.planes.clear();
+  if (shape == nullptr || !shape->body) return;
+  set_solid(shape->sharp ? *shape->sharp : *shape->body, to_pd(child.pose), child.piece);
+}
+
+UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& core) {
+  const btCollisionObjectWrapper* parent = piece.m_parent;
+  if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return nullptr;
+  PosedCompound& compound =
+      compound_of(*parent->getCollisionObject(), static_cast<const btCompoundShape&>(*parent->getCollisionShape()),
+                  parent->getWorldTransform());
+  if (compound.shape->getChildShape(piece.m_index) != piece.getCollisionShape()) return nullptr;
+  Child& child = posed_child(compound, piece.m_index);
+  make(facts_.shape_of(*compound.shape, piece.m_index, core), compound.visit, child);
+  return &child.piece;
 }
 
 void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
-                                  const btCollisionObject* body, Search& search) {
-  std::vector<Child>* known = body != nullptr ? &children_of(*body, compound.getNumChildShapes()) : nullptr;
-  for_each_child_near(compound, pose.invXform(search.centre), search.reach, [&](int i) {
+                                  const btCollisionObject* body, const std::vector<int>* among, Search& search) {
+  PosedCompound* known = body != nullptr ? &compound_of(*body, compound, pose) : nullptr;
+  const auto visit = [&](int i) {
     if (i == except) return;
     const btCollisionShape& shape = *compound.getChildShape(i);
     if (known == nullptr || !shape.isConvex()) {
       collect(shape, pose * compound.getChildTransform(i), nullptr, search);
       return;
     }
-    Child& child = (*known)[static_cast<std::size_t>(i)];
-    if (child.posed != pair_) {
-      child.posed = pair_;
-      child.pose = pose * compound.getChildTransform(i);
-      shape.getAabb(child.pose, child.lower, child.upper);
-    }
-    collect_convex(static_cast<const btConvexShape&>(shape), child, search);
-  });
+    Child& child = posed_child(*known, i);
+    if (!within(child, search)) return;
+    make(facts_.shape_of(compound, i, search.core), known->visit, child);
+    if (!child.piece.planes.empty()) search.found.push_back(&child.piece);
+  };
+  if (among != nullptr) {
+    for (const int i : *among) visit(i);
+  } else {
+    for_each_child_near(compound, pose.invXform(search.centre), search.reach, visit);
+  }
 }
 
-void NearPieces::collect_convex(const btConvexShape& shape, Child& child, Search& search) {
+bool NearPieces::within(const Child& child, const Search& search) {
   for (int i = 0; i < 3; ++i) {
-    if (child.lower[i] > search.centre[i] + search.reach || child.upper[i] < search.centre[i] - search.reach) return;
+    if (child.lower[i] > search.centre[i] + search.reach || child.upper[i] < search.centre[i] - search.reach) {
+      return false;
+    }
   }
-  if (search.beyond != nullptr) {
-    const Vec3& n = search.beyond->n;
-    const Vec3 far = n.cwiseProduct(to_pd(child.lower)).cwiseMax(n.cwiseProduct(to_pd(child.upper)));
-    if (far.sum() <= search.beyond->level) return;
-  }
-  if (child.made != pair_) {
-    child.made = pair_;
-    child.piece.planes.clear();
-    const auto shapes = search.core.cache.find(shape, search.stamp);
-    if (shapes->body) set_solid(shapes->sharp ? *shapes->sharp : *shapes->body, to_pd(child.pose), child.piece);
-  }
-  if (!child.piece.planes.empty()) found_.push_back(&child.piece);
+  if (search.beyond == nullptr) return true;
+  const Vec3& n = search.beyond->n;
+  const Vec3 far = n.cwiseProduct(to_pd(child.lower)).cwiseMax(n.cwiseProduct(to_pd(child.upper)));
+  return far.sum() > search.beyond->level;
 }
 
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                          Search& search) {
   if (shape.isCompound()) {
-    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, nullptr, search);
+    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, nullptr, nullptr, search);
   } else if (shape.isConcave()) {
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
     const btVector3 extent(search.reach, search.reach, search.reach);
-    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search.beyond, *this);
+    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {
     Child& child = next_made();
     child.pose = pose;
-    child.made = 0;
     shape.getAabb(pose, child.lower, child.upper);
-    const std::size_t before = found_.size();
-    collect_convex(static_cast<const btConvexShape&>(shape), child, search);
-    num_made_ += found_.size() - before;
+    if (!within(child, search)) return;
+    make(search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp).get(), ++visits_, child);
+    if (child.piece.planes.empty()) return;
+    search.found.push_back(&child.piece);
+    ++num_made_;
   }
 }
 
-int NearPieces::find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
-                     std::uint64_t stamp, SolverCore& core) {
-  Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core};
-  found_.clear();
-  num_made_ = 0;
+void NearPieces::find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, double slack,
+                      const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+                      std::vector<const UnionPiece*>& found) {
+  found.clear();
+  Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, found};
   for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
     const btCollisionObjectWrapper& parent = *child->m_parent;
     const btCollisionShape& shape = *parent.getCollisionShape();
     if (shape.isConcave()) {
       collect(shape, parent.getWorldTransform(), child, search);
     } else if (shape.isCompound()) {
-      collect_children(static_cast<const btCompoundShape&>(shape), parent.getWorldTransform(), child->m_index,
-                       parent.m_parent == nullptr ? parent.getCollisionObject() : nullptr, search);
+      const auto& compound = static_cast<const btCompoundShape&>(shape);
+      const bool whole = parent.m_parent == nullptr;
+      const bool known = whole && child == &piece && compound.getNumChildShapes() > kVeryFewChildren;
+      collect_children(compound, parent.getWorldTransform(), child->m_index,
+                       whole ? parent.getCollisionObject() : nullptr,
+                       known ? facts_.neighbours(compound, child->m_index, 4 * slack, core) : nullptr, search);
     }
   }
-  return static_cast<int>(found_.size());
 }
 
 }  // namespace pd::detail

@@ -5,10 +5,12 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <vector>
 
+#include "compound_facts.hpp"
 #include "union_piece.hpp"
 
 class btConvexShape;
@@ -23,57 +25,72 @@ struct Beyond {
   double level;
 };
 
-/// Finds pieces, and keeps the children of a pair's compounds in place once they were looked at: the contacts of one
-/// pair ask for the same few, again and again.
+/// Finds pieces, and keeps the children of a step's compounds in place once they were looked at: its contacts ask for
+/// the same few, again and again.
 class NearPieces {
  public:
-  /// Forgets the children: bodies have moved, or are others. To be called for each pair in each step.
-  void begin_pair() {
-    num_compounds_ = 0;
-    ++pair_;
-  }
+  /// To be called for each pair in each step: what belongs to another step is forgotten, and what has moved since.
+  /// @param stamp  of this step, 0: unknown, so that nothing is kept
+  void begin_pair(std::uint64_t stamp);
 
-  /// The other pieces of the union that come within `reach` of a point, in world coordinates. Compounds in compounds
+  /// The other pieces of the union that come within `reach` of a point of this piece, in world coordinates, and within
+  /// `slack` of the piece itself, which is not looked at closely. Compounds in compounds
   /// and meshes in compounds included; curved parts are left out, since contacts inside of them do not arise from
   /// seams.
   /// @param beyond  null, or: pieces whose surface does not come beyond it are left out
-  /// @return how many; they are read by [], until the next search
-  int find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, const Beyond* beyond,
-           std::uint64_t stamp, SolverCore& core);
-  [[nodiscard]] const UnionPiece& operator[](int i) const { return *found_[static_cast<std::size_t>(i)]; }
+  /// @param found  valid until `forget_made` or the next pair
+  void find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, double slack, const Beyond* beyond,
+            std::uint64_t stamp, SolverCore& core, std::vector<const UnionPiece*>& found);
+  [[nodiscard]] CompoundFacts& facts() { return facts_; }
+
+  /// Makes room: what was found may go.
+  void forget_made() { num_made_ = 0; }
+
+  /// The piece itself, where it is kept: a child of a compound that is all of its body; else nullptr.
+  [[nodiscard]] UnionPiece* kept(const btCollisionObjectWrapper& piece, SolverCore& core);
 
  private:
   struct Search;
   class TrianglesOf;
   struct Child {
-    std::uint64_t posed = 0;  ///< the pair for which this was posed
-    std::uint64_t made = 0;   ///< the pair for which `piece` was made
+    std::uint64_t posed = 0;  ///< the compound's visit for which this was posed
+    std::uint64_t made = 0;   ///< the visit for which `piece` was made
     btTransform pose;
     btVector3 lower;
     btVector3 upper;
     UnionPiece piece;
   };
   struct PosedCompound {
-    const btCollisionObject* body;
+    const btCollisionObject* body = nullptr;
+    const btCompoundShape* shape = nullptr;
+    btTransform pose;
+    std::uint64_t visit = 0;  ///< what is kept under another number is out of date
     std::vector<Child> children;
   };
 
   void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                Search& search);
-  /// @param body  of which the compound is the whole, or null
+  /// @param body   of which the compound is the whole, or null
+  /// @param among  the children that are looked at; null: all that are near
   void collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
-                        const btCollisionObject* body, Search& search);
-  void collect_convex(const btConvexShape& shape, Child& child, Search& search);
-  std::vector<Child>& children_of(const btCollisionObject& body, int count);
+                        const btCollisionObject* body, const std::vector<int>* among, Search& search);
+  /// Whether a child's box comes within reach.
+  static bool within(const Child& child, const Search& search);
+  /// The body's, whose shape this is.
+  PosedCompound& compound_of(const btCollisionObject& body, const btCompoundShape& shape, const btTransform& pose);
+  static Child& posed_child(PosedCompound& compound, int i);
+  static void make(const CachedShape* shape, std::uint64_t visit, Child& child);
   /// Not taken before `num_made_` grows.
   Child& next_made();
 
-  std::vector<const UnionPiece*> found_;
+  CompoundFacts facts_;
   std::deque<Child> made_;  ///< for pieces that are no children of a whole body
   std::size_t num_made_ = 0;
   std::deque<PosedCompound> compounds_;
   std::size_t num_compounds_ = 0;
-  std::uint64_t pair_ = 1;
+  std::array<PosedCompound*, 2> recent_{};  ///< those of the pair at hand
+  std::uint64_t stamp_ = 0;
+  std::uint64_t visits_ = 0;
 };
 
 }  // namespace pd::detail

@@ -31,8 +31,17 @@ struct RememberedPoint {
 struct PieceMemory {
   std::uint64_t pieces = 0;  ///< both children's numbers, or the triangle's
   bool met = false;          ///< the last step was within reach of contacts
+  /// Of two children: as long as their ways (`ChildMotion`) come to less, they are farther apart than contacts reach.
+  double apart_until = 0;
   WarmCertificate warm;
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
+};
+
+/// Of a child of a compound: where it was last, and a bound of how far any of its points has come since it was met.
+struct ChildMotion {
+  std::shared_ptr<CachedShape> shape;
+  btTransform pose;
+  double way = 0;
 };
 
 class ManifoldOwner;
@@ -46,10 +55,12 @@ struct PairMemory {
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
-  btScalar seconds = 0;             ///< of the step that the points' impulses belong to
-  std::vector<PieceMemory> pieces;  ///< sorted by number
-  int union_pause = 0;              ///< steps for which the whole unions are not asked again (deep_union.hpp)
-  int union_refusals = 0;           ///< in a row
+  btScalar seconds = 0;                              ///< of the step that the points' impulses belong to
+  std::vector<PieceMemory> pieces;                   ///< sorted by number
+  std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
+  int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
+  int union_refusals = 0;         ///< in a row
+  Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {

@@ -87,6 +87,7 @@ BulletSolverStatistics BulletPenetrationDepthSolver::statistics() const {
     result.covered_contacts += counters.covered.read();
     result.skipped_triangles += counters.skipped_triangles.read();
     result.deep_unions += counters.deep_unions.read();
+    result.deep_unions_nearly += counters.deep_unions_nearly.read();
     result.deep_unions_left += counters.deep_unions_left.read();
   });
   return result;

@@ -34,19 +34,24 @@ CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, s
                         [&](const btTriangleShape& triangle) { return cache.find(triangle, stamp); });
     return *known;
   }
+  refresh(shape, stamp, known);
+  return *known;
+}
+
+void SolverCore::refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known) {
   const bool current = stamp != 0 && known && known->source == &shape &&
                        known->compared.load(std::memory_order_relaxed) == stamp &&
                        known->signature == shape_signature(shape);
   if (!current) {
     known = cache.find(shape, stamp);
   }
-  return *known;
 }
 
 SolverCore::Outcome SolverCore::place(const PairQuestion& question, ThreadBuffers& held, PairAnswer& out) {
   SolverCounters& counters = held.counters;
-  const CachedShape& found_a = find(question.a, question.stamp, question.shapes[0], held);
-  const CachedShape& found_b = find(question.b, question.stamp, question.shapes[1], held);
+  const bool known = question.shapes_current;
+  const CachedShape& found_a = known ? *question.shapes[0] : find(question.a, question.stamp, question.shapes[0], held);
+  const CachedShape& found_b = known ? *question.shapes[1] : find(question.b, question.stamp, question.shapes[1], held);
   if (!found_a.body || !found_b.body) {
     counters.unsupported.add();
     const bool refuse_a = !found_a.body && found_a.refusal.code != ErrorCode::unsupported;

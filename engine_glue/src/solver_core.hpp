@@ -56,6 +56,7 @@ struct PairQuestion {
   std::array<std::shared_ptr<CachedShape>, 2>& shapes;  ///< as found earlier: the pair's memory, or the buffers' last
   WarmCertificate* warm;                                ///< of this pair, or nullptr
   bool boxes_asked = false;                             ///< `box_contacts` had no answer
+  bool shapes_current = false;                          ///< `shapes` are those of this step
 };
 
 /// A body on a plane.
@@ -95,6 +96,11 @@ class SolverCore {
 
   /// A body on a plane: its distance and its contact points.
   Outcome stand_on(const GroundQuestion& question, ThreadBuffers& buffers, HalfspaceContact& answer);
+  /// Brings up to date what a shape that is no triangle was converted to. `known`: as found earlier, or null.
+  void refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known);
+  /// The same of every shape.
+  CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
+                    ThreadBuffers& buffers);
 
   /// Bullet's call with a step's stamp.
   bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
@@ -123,8 +129,6 @@ class SolverCore {
   PairRegistry pairs;
 
  private:
-  CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
-                    ThreadBuffers& buffers);
   /// Finds the bodies and places them.
   Outcome place(const PairQuestion& question, ThreadBuffers& buffers, PairAnswer& answer);
   /// The depth of placed bodies.

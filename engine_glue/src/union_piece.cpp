@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pd/bullet/scalar.hpp"
@@ -16,29 +17,47 @@ namespace {
 constexpr double kFeasible = 1e-9;
 
 /// The largest <n, d> over unit d with <normal, d> <= 0 for all of `active`, or one that is enough: the way of n's
-/// projection on the cone, which lies in its inside, on one of its sides or on the line of two.
+/// projection on the cone, which lies in its inside, on one of its sides or on the line of two, and has non-negative
+/// multipliers there.
 double largest_along(const std::vector<const Plane*>& active, const Vec3& n, double enough) {
-  for (const Plane* plane : active) {
+  std::array<double, 16> first;
+  bool inside = true;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const double height = active[i]->normal.dot(n);
+    if (i < first.size()) first[i] = height;
     // No way leads farther along n than n lies from a normal that it must not go along: flush faces end here.
-    if ((plane->normal - n).squaredNorm() <= kFeasible * kFeasible) return 0;
+    if (height > 0.5 && (active[i]->normal - n).squaredNorm() <= kFeasible * kFeasible) return 0;
+    inside = inside && height <= kFeasible;
   }
+  const auto height_of = [&](std::size_t i) { return i < first.size() ? first[i] : active[i]->normal.dot(n); };
+  if (inside) return 1;
   double best = 0;
-  const auto offer = [&](const Vec3& way) {
-    const double along = n.dot(way);
-    if (!(along > 0)) return;
-    const double squared = way.squaredNorm();
-    if (along * along <= best * best * squared || squared <= kFeasible * kFeasible) return;
-    const double length = std::sqrt(squared);
-    const auto against = [&](const Plane* plane) { return plane->normal.dot(way) > kFeasible * length; };
-    if (std::none_of(active.begin(), active.end(), against)) best = along / length;
+  const auto leads_out = [&](const Vec3& way, double length, std::size_t i, std::size_t k) {
+    for (std::size_t m = 0; m < active.size(); ++m) {
+      if (m != i && m != k && active[m]->normal.dot(way) > kFeasible * length) return true;
+    }
+    return false;
   };
-  offer(n);
   for (std::size_t i = 0; i < active.size() && best < enough; ++i) {
     const Vec3& normal = active[i]->normal;
-    offer(n - n.dot(normal) * normal);
+    const double height = height_of(i);
+    const double along = 1 - height * height;
+    if (height > 0 && along > best * best && along > kFeasible * kFeasible) {
+      const double length = std::sqrt(along);
+      if (!leads_out(n - height * normal, length, i, i)) best = length;
+    }
     for (std::size_t k = 0; k < i && best < enough; ++k) {
-      const Vec3 line = normal.cross(active[k]->normal);
-      offer(n.dot(line) < 0 ? Vec3(-line) : line);
+      const double cosine = normal.dot(active[k]->normal);
+      const double other = height_of(k);
+      if (height - cosine * other < -kFeasible || other - cosine * height < -kFeasible) continue;
+      Vec3 line = normal.cross(active[k]->normal);
+      const double squared = line.squaredNorm();
+      double rise = n.dot(line);
+      if (rise < 0) line = -line;
+      rise = std::abs(rise);
+      if (rise * rise <= best * best * squared || squared <= kFeasible * kFeasible) continue;
+      const double length = std::sqrt(squared);
+      if (!leads_out(line, length, i, k)) best = rise / length;
     }
   }
   return best;

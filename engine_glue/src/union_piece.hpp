@@ -31,6 +31,11 @@ struct UnionPiece {
   bool flat = false;  ///< a triangle: its first two planes are its two sides
 };
 
+/// A sine from which on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
+inline constexpr double kDecided = 0.02;
+/// More than this is not told apart.
+inline constexpr double kBeyondDoubt = 2 * kDecided;
+
 /// How far the surfaces of pieces that are meant to meet may lie apart: seams agree to 1e-7 of the bodies, poses to
 /// half a unit in the last place.
 /// @param size  radius of the smaller body

@@ -80,10 +80,13 @@ struct BulletSolverStatistics {
   std::int64_t covered_contacts = 0;
   /// Triangles of meshes that were left out of contacts: corners that are no numbers, or no area. Counted each time.
   std::int64_t skipped_triangles = 0;
-  /// Pairs of bodies with compounds, deep in each other, that were answered by the exact depth of the whole unions.
+  /// Pairs of bodies with compounds, deep in each other, that were answered as whole unions.
   std::int64_t deep_unions = 0;
   /// The same, left to their pieces since the whole would take more than its budget of pairs or facets, or lately did.
   std::int64_t deep_unions_left = 0;
+  /// Of `deep_unions`, those led out by a way that is at most half as long again as the shortest; the others by the
+  /// shortest.
+  std::int64_t deep_unions_nearly = 0;
 };
 
 /// Drop-in for Bullet's EPA and Minkowski solvers. Re-entrant: each thread inside a call has buffers and counters of
