@@ -25,6 +25,7 @@ bool InnerSurface::rebuild(double flat) {
   nearness_.assign(count, {kRemoved, 0});
   for (std::size_t i = 0; i < count; ++i) nearness_[i].vertex = static_cast<std::int32_t>(i);
   for (int f = 0; f < slots_; ++f) {
+    if (keys_[f] == kRemoved) continue;  // free slots name vertices of earlier surfaces
     for (const std::int32_t v : triangles_[f].v) nearness_[v].key = std::min(nearness_[v].key, keys_[f]);
   }
   nearness_.back().key = std::numeric_limits<double>::lowest();
