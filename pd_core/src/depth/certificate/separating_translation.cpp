@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "numeric/expansion.hpp"
 #include "numeric/instruction_sets.hpp"
@@ -415,7 +416,8 @@ class TranslationSearch {
 double outward_translation(Separation& separation, const DoubleDouble& depth, double upper, Vec3& translation) {
   const Vec3DD& unit = separation.unit();
   const DoubleDouble components[3] = {unit.x, unit.y, unit.z};
-  const int exponent = std::ilogb(depth.hi);
+  // A depth below the least number rounds to 0, and the first number away from 0 is far enough.
+  const int exponent = std::ilogb(std::max(depth.hi, std::numeric_limits<double>::denorm_min()));
   const DoubleDouble near_one{std::ldexp(depth.hi, -exponent), std::ldexp(depth.lo, -exponent)};
   // One round, as the plane is known to far less than an ulp; growing strides, so that nothing else can hang here.
   for (double ulps = 1;; ulps *= 2) {
