@@ -35,6 +35,7 @@ const std::vector<Sizes>& known() {
       {PairFamily::sphere, {32, 128, 512, 2048}, {}, Variant::ellipsoid},
       {PairFamily::sphere, {8, 32, 128, 512}, {}, Variant::flat},
       {PairFamily::cubes, {8}, {}, Variant::nearly_aligned},
+      {PairFamily::cubes, {8}, {}, Variant::resting},
   };
   return sizes;
 }
@@ -72,6 +73,20 @@ Draw aligned_cubes(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   return d;
 }
 
+/// A lies on B, anywhere on its upper face but for its rim.
+Draw boxes_at_rest(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
+  scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 29);
+  const auto extents = [&] { return Vec3(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1)); };
+  const Vec3 a = extents();
+  const Vec3 b = extents();
+  const double sunk = cell.depth == DepthClass::shallow ? 1e-6 : cell.depth == DepthClass::mid ? 1e-4 : 1e-2;
+  const Vec3 place(random.uniform(-0.9, 0.9) * b.x(), random.uniform(-0.9, 0.9) * b.y(), a.z() + b.z() - sunk);
+  const double t = random.uniform(-1, 1), length = std::hypot(1, t);
+  return {{ConvexShape(*ConvexPolytope::box(a)), ConvexShape(*ConvexPolytope::box(b))},
+          *Pose::from_quaternion({1 / length, 0, 0, t / length}, place),
+          Pose()};
+}
+
 Draw crossed_roofs(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   const double overlap = cell.depth == DepthClass::shallow ? 0.01 : cell.depth == DepthClass::mid ? 0.1 : 1;
   const auto make = cell.variant == Variant::jittered ? scenes::jittered_roofs : scenes::crossed_roofs;
@@ -102,6 +117,8 @@ std::string_view name_of(const Cell& cell) {
       return "flat";
     case Variant::nearly_aligned:
       return "cubes1e-7";
+    case Variant::resting:
+      return "resting";
   }
   return {};
 }
@@ -173,6 +190,7 @@ std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t num
     if (d) turn(*d, scenes::Random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 23).quaternion());
     return d;
   }
+  if (cell.variant == Variant::resting) return boxes_at_rest(cell, seed, number);
   if (cell.family == PairFamily::cubes) return aligned_cubes(cell, seed, number);
   if (cell.family == PairFamily::roofs) return crossed_roofs(cell, seed, number);
   scenes::PointPair pair = scenes::make_pair(cell.family, cell.vertices, cell.depth, seed * 1000003 + number);

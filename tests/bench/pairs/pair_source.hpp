@@ -13,11 +13,12 @@ namespace pd::bench {
 
 /// What the bench makes of a family of the scenes.
 enum class Variant : std::uint8_t {
-  own,            ///< the family itself
-  jittered,       ///< of roofs: `scenes::jittered_roofs`
-  ellipsoid,      ///< of spheres: points on an ellipsoid of semi-axes 1, 1/2, 1/4
-  flat,           ///< of spheres: semi-axes 1, 1, 1/100
-  nearly_aligned  ///< of cubes: B turned by 1e-7 rad
+  own,             ///< the family itself
+  jittered,        ///< of roofs: `scenes::jittered_roofs`
+  ellipsoid,       ///< of spheres: points on an ellipsoid of semi-axes 1, 1/2, 1/4
+  flat,            ///< of spheres: semi-axes 1, 1, 1/100
+  nearly_aligned,  ///< of cubes: B turned by 1e-7 rad
+  resting          ///< of cubes: a box at rest on another, turned about the vertical
 };
 
 /// One row of the table: a family, its size and how deep the bodies stand.
@@ -57,8 +58,9 @@ struct Extent {
 [[nodiscard]] Draw placed(const Bodies& bodies, double size, scenes::DepthClass depth, scenes::Random& random);
 
 /// The pair of this number. Cubes are placed here, aligned with the axes (or nearly) and overlapping by 1/64 or 1/8 of
-/// a unit, needles, ellipsoids and flat hulls by `placed`; all others are the scenes' own. Nothing where the bodies
-/// happen not to be what the cell asks for (the next number is another draw).
+/// a unit, or at rest, in each other by 1e-6 (shallow), 1e-4 (mid) or 1e-2 (deep) of a unit; needles, ellipsoids and
+/// flat hulls by `placed`; all others are the scenes' own. Nothing where the bodies happen not to be what the cell asks
+/// for (the next number is another draw).
 [[nodiscard]] std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t number);
 
 }  // namespace pd::bench

@@ -71,6 +71,7 @@ TEST(PairSource, VariantsHaveTheirSizesAndTurningKeepsTheDepth) {
   EXPECT_EQ(choose_cells({"ellipsoid"}, {}, false)->size(), 12u);
   EXPECT_EQ(choose_cells({"flat"}, {}, false)->size(), 12u);
   EXPECT_EQ(choose_cells({"cubes1e-7"}, {}, false)->size(), 3u);
+  EXPECT_EQ(choose_cells({"resting"}, {}, false)->size(), 3u);
   EXPECT_FALSE(choose_cells({"cubes1e-7"}, {32}, false));
   Cell cell{PairFamily::grid, 8, DepthClass::deep};
   const auto depth = [&] {
