@@ -296,6 +296,8 @@ class TranslationSearch {
   /// @param excess  `excess_of_length(candidate)`.
   bool accept(const Vec3& candidate, double excess) {
     const Vec3 t = scale_ * candidate;
+    // A quotient of numbers hundreds of powers of two apart may be none.
+    if (!t.allFinite()) return false;
     if (!no_longer(candidate, excess, t) || !separation_.reached(t)) return false;
     translation_ = t;
     return true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "depth/pair/core_class.hpp"
@@ -14,14 +15,17 @@ namespace pd::detail {
 void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& grid, const DepthSettings& settings,
                    ScratchBuffers& buffers, PenetrationDepth& out, ShallowCounts& counts) {
   const PenetrationDepth cores = coarse_core_depth(pair, buffers);
-  const bool thin = pair.a->affine_dimension() < 2 || pair.b->affine_dimension() < 2;
-  if (cores.contact != ContactClass::overlapping || thin) {
+  const auto answer_by = [&](Method method) {
     DepthSettings exact;
     exact.bracket = settings.bracket;
-    exact.method = thin ? Method::overlay : Method::automatic;
+    exact.method = method;
     polytope_depth(pair, exact, buffers, nullptr, out);
     counts.visited = out.statistics.facets_visited;
     out.method = Method::shallow;
+  };
+  const bool thin = pair.a->affine_dimension() < 2 || pair.b->affine_dimension() < 2;
+  if (cores.contact != ContactClass::overlapping || thin) {
+    answer_by(thin ? Method::overlay : Method::automatic);
     return;
   }
 
@@ -56,7 +60,13 @@ void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& 
   counts.steps = search.steps();
   counts.degrees = search.degrees();
 
-  answer_overlapping(posed, nearest_piece(walk, search.visited()), pair.margins, settings.bracket, buffers.faces, out);
+  const std::optional<FacetOfDifference> nearest = nearest_piece(walk, search.visited());
+  if (!nearest) {
+    // Bodies of which one is a rounding beside the other: no ray met a facet that is whole.
+    answer_by(Method::automatic);
+    return;
+  }
+  answer_overlapping(posed, *nearest, pair.margins, settings.bracket, buffers.faces, out);
   out.method = Method::shallow;
   out.statistics.support_calls = cores.statistics.support_calls + shooter.support_calls();
   out.statistics.facets_visited = cores.statistics.facets_visited + counts.visited;

@@ -251,7 +251,7 @@ std::vector<NearPiece> near_pieces(const PosedPair& pair, const std::vector<Over
 
 }  // namespace
 
-FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<OverlayPiece>& pieces) {
+std::optional<FacetOfDifference> nearest_piece(const OverlayWalk& walk, const std::vector<OverlayPiece>& pieces) {
   const PosedPair& pair = walk.pair();
   const auto rank = [&](const OverlayPiece& piece) {
     const FacetOfDifference f = facet_of(pair, piece);
@@ -277,6 +277,7 @@ FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<Overl
       best_squared = squared;
     }
   }
+  if (!best) return std::nullopt;
   return facet_of(pair, *best);
 }
 

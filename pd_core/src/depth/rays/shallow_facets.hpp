@@ -69,7 +69,8 @@ class ShallowSearch {
 };
 
 /// The visited piece whose plane is nearest to the origin, exactly; of several the first in the order of the overlay
-/// engine.
-[[nodiscard]] FacetOfDifference nearest_piece(const OverlayWalk& walk, const std::vector<OverlayPiece>& pieces);
+/// engine. Nothing where none of them is a whole facet with an area.
+[[nodiscard]] std::optional<FacetOfDifference> nearest_piece(const OverlayWalk& walk,
+                                                             const std::vector<OverlayPiece>& pieces);
 
 }  // namespace pd::detail
