@@ -75,9 +75,9 @@ TEST(PieceMemories, CurvedBodiesOnAMeshAreAnsweredFromMemory) {
   scene.world.step(60);
   const auto statistics = scene.world.solver.statistics();
   EXPECT_GT(statistics.calls, 0);
-  // The others are triangles just met and capsules' closed forms; in double precision, whose poses leave less open, also
-  // cylinders and cones that only just touch. Triangles out of reach, which memory answers best, are not asked at all.
-  // .88 in single precision, .82 in double; without memories 0.
+  // The others are triangles just met and capsules' closed forms; in double precision, whose poses leave less open,
+  // also cylinders and cones that only just touch. Triangles out of reach, which memory answers best, are not asked at
+  // all. .88 in single precision, .82 in double; without memories 0.
   EXPECT_GT(static_cast<double>(statistics.warm), .75 * static_cast<double>(statistics.calls));
   EXPECT_EQ(statistics.exact_signs, 0);
 }

@@ -21,9 +21,9 @@ enum class BulletContacts {
 /// contact points are there from the first step. Works at any time, also between steps: pairs that
 /// have an algorithm already lose it and get a new one (with their contact points) at the next step.
 ///
-/// Not covered, because Bullet decides without asking the tables: soft bodies, ray and sweep queries (`convexSweepTest`;
-/// use `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the host registers later
-/// win.
+/// Not covered, because Bullet decides without asking the tables: soft bodies, ray and sweep queries
+/// (`convexSweepTest`; use `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the
+/// host registers later win.
 ///
 /// How shapes and their margins are taken ("inside" as in shape_conversion.hpp):
 ///
@@ -58,9 +58,9 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver,
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 
-/// Gives every pair that `install` took (convex shapes, planes, meshes, compounds) back to the algorithms of the dispatcher's
-/// own configuration (not to create functions that the host had registered before). Contacts are found again at the
-/// next step.
+/// Gives every pair that `install` took (convex shapes, planes, meshes, compounds) back to the algorithms of the
+/// dispatcher's own configuration (not to create functions that the host had registered before). Contacts are found
+/// again at the next step.
 /// @return false, and nothing changed, where the solver is not installed in this world's dispatcher.
 bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver);
 
