@@ -40,7 +40,9 @@ class BoxSat : public BoxPair {
     if (!(nearest.lower_key > 0)) return out;
     out.lower = std::sqrt(nearest.lower_key) - rounding - (kBoxParallelSine + 2 * kBoxTurn) * nearest.slivers;
     if (!(out.lower > 0) || out.upper - out.lower > width.limit(greatest_coordinate())) return out;
-    if (place_witness(nearest.axis, distance, out)) out.status = BoxPairStatus::certified;
+    if (place_witness(nearest.axis, distance, out) || place_on_faces(nearest.axis, distance, out)) {
+      out.status = BoxPairStatus::certified;
+    }
     return out;
   }
 
@@ -99,7 +101,8 @@ class BoxSat : public BoxPair {
   }
 
  private:
-  void set_features(int axis, BoxPairContact& out) const {
+  template <class Answer>
+  void set_features(int axis, Answer& out) const {
     const int block = axis / 4, lane = axis % 4;
     const int across = (lane + 2) % 3;
     const int va = farthest(of_a_, out.normal, -1), vb = farthest(of_b_, out.normal, 1);
@@ -191,38 +194,33 @@ class BoxSat : public BoxPair {
     const double slack = 64 * kUnitRoundoff * reach_;
     const int block = axis / 4, lane = axis % 4;
     const int va = farthest(of_a_, out.normal, -1), vb = farthest(of_b_, out.normal, 1);
+    if (block >= 2) {
+      const int i = block - 2, j = lane;
+      const Vec3 e = generator(of_a_, i), other = generator(of_b_, j);
+      // middle of the edge of B + t other - (middle of the edge of A + s e) = x, |s|, |t| <= 1
+      const Vec3 middle_a = vertex(of_a_, centre_a_, va | bit(i)) - e;
+      const Vec3 gap = vertex(of_b_, centre_b_, vb | bit(j)) - other - middle_a - x;
+      const Vec3 n = e.cross(other);
+      const double squared = n.squaredNorm();
+      const double s = gap.cross(other).dot(n) / squared, t = gap.cross(e).dot(n) / squared;
+      if (!(std::abs(s) <= 1 && std::abs(t) <= 1)) return false;
+      if (!((gap + t * other - s * e).squaredNorm() <= slack * slack)) return false;
+      out.point_a = middle_a + s * e;
+      out.feature_a = {Feature::Kind::edge, va & ~bit(i), va | bit(i)};
+      out.feature_b = {Feature::Kind::edge, vb & ~bit(j), vb | bit(j)};
+      return true;
+    }
     // The facet's axis is the one that does not span it; lanes span (0, 1), (1, 2), (2, 0).
     const int across = (lane + 2) % 3;
-    if (block == 0 && on_facet_of_a(across, va, vb, x, slack, out)) return true;
-    if (block == 1 && on_facet_of_b(across, va, vb, x, slack, out)) return true;
-    if (block >= 2 && on_edges(va, block - 2, vb, lane, x, slack, out)) return true;
-    // Two facets that lie flush, as those of boxes at rest, whatever axis along their normal came first: a corner of
-    // one on the other, or two edges that cross.
-    const int loose_a = loose_axes(of_a_, out.normal), loose_b = loose_axes(of_b_, out.normal);
-    const int across_a = across_of(loose_a), across_b = across_of(loose_b);
-    if (across_a < 0 || across_b < 0) return false;
-    if (block != 0 && on_facet_of_a(across_a, va, vb, x, slack, out)) return true;
-    if (block != 1 && on_facet_of_b(across_b, va, vb, x, slack, out)) return true;
-    for (int sides = 0; sides < 16; ++sides) {
-      const int i = (across_a + 1 + (sides & 1)) % 3, j = (across_b + 1 + (sides >> 1 & 1)) % 3;
-      const int beside_a = loose_a & ~bit(i), beside_b = loose_b & ~bit(j);
-      const int at_a = (va & ~beside_a) | ((sides & 4) != 0 ? beside_a : 0);
-      const int at_b = (vb & ~beside_b) | ((sides & 8) != 0 ? beside_b : 0);
-      if (on_edges(at_a, i, at_b, j, x, slack, out)) return true;
+    if (block == 0) {
+      return vertex_on_facet(of_b_, centre_b_, vb, out.normal, [&](const Vec3& b, int v) {
+        if (!inside(of_a_, across, b - x - centre_a_, slack)) return false;
+        out.point_a = b - x;
+        out.feature_a = {Feature::Kind::facet, facet_of_box(a_, across, (va & bit(across)) != 0), -1};
+        out.feature_b = {Feature::Kind::vertex, v, -1};
+        return true;
+      });
     }
-    return false;
-  }
-
-  bool on_facet_of_a(int across, int va, int vb, const Vec3& x, double slack, BoxPairDepth& out) const {
-    return vertex_on_facet(of_b_, centre_b_, vb, out.normal, [&](const Vec3& b, int v) {
-      if (!inside(of_a_, across, b - x - centre_a_, slack)) return false;
-      out.point_a = b - x;
-      out.feature_a = {Feature::Kind::facet, facet_of_box(a_, across, (va & bit(across)) != 0), -1};
-      out.feature_b = {Feature::Kind::vertex, v, -1};
-      return true;
-    });
-  }
-  bool on_facet_of_b(int across, int va, int vb, const Vec3& x, double slack, BoxPairDepth& out) const {
     return vertex_on_facet(of_a_, centre_a_, va, out.normal, [&](const Vec3& a, int v) {
       if (!inside(of_b_, across, a + x - centre_b_, slack)) return false;
       out.point_a = a;
@@ -231,36 +229,15 @@ class BoxSat : public BoxPair {
       return true;
     });
   }
-  /// The edge of A along its axis i at vertex va, and that of B along j at vb.
-  bool on_edges(int va, int i, int vb, int j, const Vec3& x, double slack, BoxPairDepth& out) const {
-    const Vec3 e = generator(of_a_, i), other = generator(of_b_, j);
-    // middle of the edge of B + t other - (middle of the edge of A + s e) = x, |s|, |t| <= 1
-    const Vec3 middle_a = vertex(of_a_, centre_a_, va | bit(i)) - e;
-    const Vec3 gap = vertex(of_b_, centre_b_, vb | bit(j)) - other - middle_a - x;
-    const Vec3 n = e.cross(other);
-    const double squared = n.squaredNorm();
-    const double s = gap.cross(other).dot(n) / squared, t = gap.cross(e).dot(n) / squared;
-    if (!(std::abs(s) <= 1 && std::abs(t) <= 1)) return false;
-    if (!((gap + t * other - s * e).squaredNorm() <= slack * slack)) return false;
-    out.point_a = middle_a + s * e;
-    out.feature_a = {Feature::Kind::edge, va & ~bit(i), va | bit(i)};
-    out.feature_b = {Feature::Kind::edge, vb & ~bit(j), vb | bit(j)};
-    return true;
-  }
 
-  /// The axes along which the body's corners are as far along the normal, within rounding: a bit each.
-  [[nodiscard]] int loose_axes(const BoxGenerators& of, const Vec3& normal) const {
-    const double level = 16 * kUnitRoundoff * reach_;
-    int loose = 0;
-    for (int k = 0; k < 3; ++k) loose |= std::abs(generator(of, k).dot(normal)) <= level ? bit(k) : 0;
-    return loose;
-  }
-  /// The third axis, where two are loose; -1 elsewhere.
-  static int across_of(int loose) {
-    for (int k = 0; k < 3; ++k) {
-      if ((loose | bit(k)) == 7 && (loose & bit(k)) == 0) return k;
-    }
-    return -1;
+  /// The same where faces lie flush, as those of boxes at rest, whatever axis along their normal came first. False
+  /// where they miss each other.
+  bool place_on_faces(int axis, double distance, BoxPairDepth& out) const {
+    const BoxFoot at = foot({axis, out.normal, distance}, 0);
+    if (!(at.missed <= slack())) return false;
+    out.point_a = at.point_a;
+    set_features(axis, out);
+    return true;
   }
 
   /// Tries the farthest vertex, and those as far within rounding where facets are parallel.
@@ -268,7 +245,9 @@ class BoxSat : public BoxPair {
   bool vertex_on_facet(const BoxGenerators& of, const Vec3& centre, int farthest_id, const Vec3& normal,
                        Try&& fits) const {
     if (fits(vertex(of, centre, farthest_id), farthest_id)) return true;
-    const int loose = loose_axes(of, normal);
+    const double level = 16 * kUnitRoundoff * reach_;
+    int loose = 0;
+    for (int k = 0; k < 3; ++k) loose |= std::abs(generator(of, k).dot(normal)) <= level ? bit(k) : 0;
     for (int v = 0; v < 8; ++v) {
       if ((v & ~loose) != (farthest_id & ~loose) || v == farthest_id) continue;
       if (fits(vertex(of, centre, v), v)) return true;
