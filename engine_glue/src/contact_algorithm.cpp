@@ -83,9 +83,7 @@ void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) { mani
 btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                                              const btCollisionObjectWrapper* a,
                                                                              const btCollisionObjectWrapper* b) {
-  const BulletSolverSettings& settings = installation.core().settings;
-  if (settings.takes_pair && installation.dispatcher() != nullptr &&
-      !settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user)) {
+  if (installation.dispatcher() != nullptr && !installation.takes(*a, *b)) {
     const int type_a = a->getCollisionShape()->getShapeType();
     const int type_b = b->getCollisionShape()->getShapeType();
     btCollisionConfiguration* configuration = installation.dispatcher()->getCollisionConfiguration();

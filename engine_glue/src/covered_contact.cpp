@@ -1,11 +1,10 @@
 #include "covered_contact.hpp"
 
-#include <BulletDynamics/Dynamics/btRigidBody.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "solver_core.hpp"
@@ -403,11 +402,6 @@ class SideRule {
   Cover cover_;
 };
 
-Vec3 velocity(const btCollisionObjectWrapper& wrapper) {
-  const btRigidBody* body = btRigidBody::upcast(wrapper.getCollisionObject());
-  return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
-}
-
 }  // namespace
 
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
@@ -416,7 +410,9 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
   if (points.count == 0) return;
   const double slack = seam_slack(answer.a, answer.b);
   double depth = -answer.depth.signed_distance();
-  const double window = threshold + std::abs(depth) + seconds * (velocity(a) - velocity(b)).norm();
+  const double window =
+      threshold + std::abs(depth) +
+      seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject())).norm();
   Vec3 witness_b = answer.depth.witness_b;
   if (is_piece(b)) {
     SideRule rule({b, answer.b, answer.a, true, front}, threshold, window, slack, stamp, core, buffers);

@@ -1,11 +1,10 @@
 #include "deep_union.hpp"
 
-#include <BulletDynamics/Dynamics/btRigidBody.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/compound/compound_depth.hpp"
 #include "pd/contact/time_of_impact.hpp"
@@ -46,11 +45,6 @@ std::optional<Compound> union_of_cores(const std::vector<PosedShape>& posed) {
 /// The child of this number, which is there.
 const Child& child_of(const std::vector<Child>& children, int number) {
   return *std::find_if(children.begin(), children.end(), [&](const Child& child) { return child.index == number; });
-}
-
-Vec3 velocity_of(const btCollisionObject& object) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
 }
 
 }  // namespace
@@ -187,7 +181,7 @@ std::optional<DeepUnion::Exit> DeepUnion::short_exit(const UnionQuestion& questi
     }
   }
   // Back the way it came.
-  offer(velocity_of(*question.b.getCollisionObject()) - velocity_of(*question.a.getCollisionObject()));
+  offer(linear_velocity(*question.b.getCollisionObject()) - linear_velocity(*question.a.getCollisionObject()));
   return best;
 }
 

@@ -24,6 +24,11 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       swapped_plane_(*this, true),
       persistent_(&depth_solver_) {}
 
+bool Installation::takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const {
+  const BulletSolverSettings& settings = core_.settings;
+  return !settings.takes_pair || settings.takes_pair(*a.getCollisionObject(), *b.getCollisionObject(), settings.user);
+}
+
 btCollisionAlgorithm* Installation::bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
                                                       const btCollisionObjectWrapper* a,
                                                       const btCollisionObjectWrapper* b) const {

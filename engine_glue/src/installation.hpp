@@ -40,6 +40,8 @@ class Installation {
   [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }
   /// For the table of contacts: convex against plane, or (`swapped`) plane against convex.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* plane(bool swapped) { return swapped ? &swapped_plane_ : &plane_; }
+  /// Whether the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
+  [[nodiscard]] bool takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const;
   /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a dispatcher.
   [[nodiscard]] btCollisionAlgorithm* bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
                                                         const btCollisionObjectWrapper* a,

@@ -2,6 +2,7 @@
 /// The motion between two Bullet transforms as pd_core means it.
 #pragma once
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransform.h>
 
 #include <Eigen/Geometry>
@@ -19,6 +20,12 @@ inline RigidMotion motion_between(const btTransform& from, const btTransform& to
   const Eigen::AngleAxisd turn(Mat3(to_pd(to.getBasis()) * to_pd(from.getBasis()).transpose()));
   motion.angular_velocity = turn.angle() / duration * turn.axis();
   return motion;
+}
+
+/// Of its centre of mass; zero where it is no rigid body.
+inline Vec3 linear_velocity(const btCollisionObject& object) {
+  const btRigidBody* const body = btRigidBody::upcast(&object);
+  return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
 }
 
 /// A body that turns about its own origin.

@@ -5,9 +5,9 @@
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
+#include "bullets_stand_in.hpp"
 #include "installation.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "prefetch.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -35,26 +35,20 @@ PlaneAlgorithm::PlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
     : btActivatingCollisionAlgorithm(info, a, b),
       installation_(installation),
       swapped_(swapped),
-      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold) {}
+      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold),
+      bullets_(std::make_unique<BulletsStandIn>(installation, *info.m_dispatcher1)) {}
 
-PlaneAlgorithm::~PlaneAlgorithm() {
-  if (bullets_ == nullptr) return;
-  bullets_->~btCollisionAlgorithm();
-  m_dispatcher->freeCollisionAlgorithm(bullets_);
-}
+PlaneAlgorithm::~PlaneAlgorithm() = default;
 
 void PlaneAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   manifold_.append_to(manifolds);
-  if (bullets_ != nullptr) bullets_->getAllContactManifolds(manifolds);
+  bullets_->append_to(manifolds);
 }
 
 btCollisionAlgorithm* PlaneAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                                            const btCollisionObjectWrapper* a,
                                                                            const btCollisionObjectWrapper* b) {
-  const BulletSolverSettings& settings = installation.core().settings;
-  if (settings.takes_pair && !settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user)) {
-    return installation.bullets_algorithm(info, a, b);
-  }
+  if (!installation.takes(*a, *b)) return installation.bullets_algorithm(info, a, b);
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(PlaneAlgorithm));
   return new (memory) PlaneAlgorithm(info, a, b, installation, m_swapped);
 }
@@ -99,15 +93,12 @@ void PlaneAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
   result->setPersistentManifold(&manifold_.get());
   FreshPoints fresh;
   if (find(body, plane, first, *result, fresh)) {
+    bullets_->release();
     manifold_.replace(fresh, info.m_timeStep, *result);
     return;
   }
   manifold_.clear();
-  if (bullets_ == nullptr) {
-    btCollisionAlgorithmConstructionInfo own(m_dispatcher, 0);
-    bullets_ = installation_.bullets_algorithm(own, a, b);
-  }
-  bullets_->processCollision(a, b, info, result);
+  bullets_->process(a, b, info, result);
 }
 
 }  // namespace pd::detail

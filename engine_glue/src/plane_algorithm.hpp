@@ -11,6 +11,7 @@
 
 namespace pd::detail {
 
+class BulletsStandIn;
 class Installation;
 
 /// Bullet's own algorithm finds one point a step, the farthest in the plane, so that a face needs several steps to lie
@@ -48,7 +49,7 @@ class PlaneAlgorithm final : public btActivatingCollisionAlgorithm {
   const Installation& installation_;
   bool swapped_;
   OwnManifold manifold_;
-  btCollisionAlgorithm* bullets_ = nullptr;  ///< answers for what we do not
+  std::unique_ptr<BulletsStandIn> bullets_;
 };
 
 }  // namespace pd::detail

@@ -133,7 +133,7 @@ SolverCore::Outcome SolverCore::stand_on(const GroundQuestion& question, ThreadB
   QueryMeter meter(held);
   const ConvexShape* body = (question.sharp_box && found.sharp ? found.sharp : found.body).get();
   out = halfspace_contact({body, to_pd(question.pose)}, question.ground, question.threshold, held.manifold);
-  held.counters.support_calls.add(2);
+  held.counters.support_calls.add(out.manifold.count > 0 ? 2 : 1);
   meter.count(out.contact);
   return Outcome::answered;
 }

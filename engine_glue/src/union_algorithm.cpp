@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "bullets_stand_in.hpp"
 #include "installation.hpp"
 #include "solver_core.hpp"
 
@@ -18,26 +19,17 @@ struct UnionAlgorithm::State {
   State(const Installation& of, const btCollisionAlgorithmConstructionInfo& info, bool is_swapped,
         std::unique_ptr<UnionContacts> finder)
       : installation(of),
-        construction(info),
         swapped(is_swapped),
         contacts(std::move(finder)),
-        manifolds(of.core(), *info.m_dispatcher1) {}
-  ~State() {
-    if (bullets != nullptr) {
-      bullets->~btCollisionAlgorithm();
-      construction.m_dispatcher1->freeCollisionAlgorithm(bullets);
-    }
-  }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+        manifolds(of.core(), *info.m_dispatcher1),
+        bullets(of, *info.m_dispatcher1) {}
 
   const Installation& installation;
-  btCollisionAlgorithmConstructionInfo construction;
   bool swapped;
   std::unique_ptr<UnionContacts> contacts;
   PatchManifolds manifolds;
   Patches patches;
-  btCollisionAlgorithm* bullets = nullptr;  ///< answers for what we do not
+  BulletsStandIn bullets;
   bool used = false;
 };
 
@@ -52,17 +44,16 @@ UnionAlgorithm::~UnionAlgorithm() = default;
 btCollisionAlgorithm* UnionAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                                            const btCollisionObjectWrapper* a,
                                                                            const btCollisionObjectWrapper* b) {
-  const BulletSolverSettings& settings = installation.core().settings;
-  const bool ours =
-      !settings.takes_pair || settings.takes_pair(*a->getCollisionObject(), *b->getCollisionObject(), settings.user);
-  if (!ours || !settings.unions_as_one) return installation.bullets_algorithm(info, a, b);
+  if (!installation.takes(*a, *b) || !installation.core().settings.unions_as_one) {
+    return installation.bullets_algorithm(info, a, b);
+  }
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(UnionAlgorithm));
   return new (memory) UnionAlgorithm(info, a, b, installation, m_swapped, contacts());
 }
 
 void UnionAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   state_->manifolds.append_to(manifolds);
-  if (state_->bullets != nullptr) state_->bullets->getAllContactManifolds(manifolds);
+  state_->bullets.append_to(manifolds);
 }
 
 void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
@@ -79,13 +70,13 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     const UnionQuestion question{one, other, static_cast<double>(info.m_timeStep), threshold, stamp, *result};
     s.patches.clear();
     if (s.contacts->find(question, s.installation.core(), s.manifolds.memory(), s.patches)) {
+      s.bullets.release();
       s.contacts->replace(question, s.patches, s.manifolds);
       return;
     }
   }
   s.manifolds.clear();
-  if (s.bullets == nullptr) s.bullets = s.installation.bullets_algorithm(s.construction, a, b);
-  s.bullets->processCollision(a, b, info, result);
+  s.bullets.process(a, b, info, result);
 }
 
 }  // namespace pd::detail
