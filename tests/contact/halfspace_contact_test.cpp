@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
@@ -66,6 +67,69 @@ Ground ground(std::mt19937_64& random) {
   return result;
 }
 
+/// Turned anyhow, so that its lowest point lies `depth` below the ground.
+Pose lowered(const ConvexShape& body, const pd::Halfspace3& under, double depth, std::mt19937_64& random,
+             pd::ManifoldScratch& buffers) {
+  const Pose pose = turned(random, Vec3(3, -2, 1));
+  const auto first = pd::halfspace_contact({&body, pose}, under, kThreshold, buffers);
+  return Pose::from_trusted_matrix(pose.rotation(), pose.translation() - (first.lower + depth) * under.normal);
+}
+
+typedef Eigen::Matrix<long double, 3, 1> Long3;
+
+/// Of the body's lowest point over the ground, in the 64 bits of long doubles; rotations as they are stored.
+long double signed_distance(const ConvexShape& body, const Pose& pose, const pd::Halfspace3& under) {
+  const Long3 n = under.normal.cast<long double>();
+  const Long3 local = pose.rotation().cast<long double>().transpose() * n;
+  long double lowest = 0;
+  if (const ConvexPolytope* polytope = body.polytope()) {
+    lowest = HUGE_VALL;
+    for (int v = 0; v < polytope->num_vertices(); ++v) {
+      lowest = std::min(lowest, local.dot(polytope->vertex(v).cast<long double>()));
+    }
+  } else if (const auto* e = std::get_if<pd::Ellipsoid>(&body.core())) {
+    lowest = -e->radii.cast<long double>().cwiseProduct(local).norm();
+  } else {
+    const auto* cylinder = std::get_if<pd::Cylinder>(&body.core());
+    const auto* cone = std::get_if<pd::Cone>(&body.core());
+    const int axis = cylinder != nullptr ? cylinder->axis : cone->axis;
+    Long3 radial = local;
+    radial[axis] = 0;
+    const long double round = radial.norm() * static_cast<long double>(cylinder ? cylinder->radius : cone->radius);
+    lowest = cylinder != nullptr ? -round - std::abs(local[axis]) * static_cast<long double>(cylinder->half_height)
+                                 : std::min(-round - local[axis] * static_cast<long double>(cone->half_height),
+                                            local[axis] * static_cast<long double>(cone->half_height));
+  }
+  return lowest + n.dot(pose.translation().cast<long double>()) - static_cast<long double>(body.margin()) -
+         static_cast<long double>(under.offset);
+}
+
+TEST(HalfspaceContact, TheBracketHoldsTheDistance) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> deep(-1e-14, 1e-14), power(-8, 8);
+  pd::ManifoldScratch buffers;
+  long double most = 0;
+  for (int round = 0; round < 400; ++round) {
+    Ground under = ground(random);
+    // Far from the origin, too, where what is added up is large beside the distance.
+    const double away = std::pow(10, power(random));
+    const Vec3 by = away * Vec3(.3, -.5, .8);
+    under.halfspace.offset += under.halfspace.normal.dot(by);
+    for (const ConvexShape& body : bodies(random)) {
+      const Pose pose = lowered(body, under.halfspace, deep(random), random, buffers);
+      const auto found = pd::halfspace_contact({&body, pose}, under.halfspace, kThreshold, buffers);
+      // Curved cores turn by the nearest rotation, which is the stored one to some units of rounding.
+      const long double exact = signed_distance(body, pose, under.halfspace);
+      EXPECT_LE(static_cast<long double>(found.lower), exact);
+      EXPECT_GE(static_cast<long double>(found.upper), exact);
+      const long double middle = (static_cast<long double>(found.lower) + static_cast<long double>(found.upper)) / 2;
+      most = std::max(most, 2 * std::abs(exact - middle) / static_cast<long double>(found.upper - found.lower));
+    }
+  }
+  // The bound is used, not only held.
+  EXPECT_GT(most, .01L);
+}
+
 TEST(HalfspaceContact, IsTheDistanceFromALargeBox) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> deep(-.1, .1);
@@ -74,12 +138,8 @@ TEST(HalfspaceContact, IsTheDistanceFromALargeBox) {
   int overlapping = 0;
   for (int round = 0; round < 40; ++round) {
     const Ground under = ground(random);
-    const Vec3& n = under.halfspace.normal;
     for (const ConvexShape& body : bodies(random)) {
-      Pose pose = turned(random, Vec3(3, -2, 1));
-      // Placed so that its lowest point lies where it is wanted.
-      const auto first = pd::halfspace_contact({&body, pose}, under.halfspace, kThreshold, buffers);
-      pose = Pose::from_trusted_matrix(pose.rotation(), pose.translation() - (first.lower + deep(random)) * n);
+      const Pose pose = lowered(body, under.halfspace, deep(random), random, buffers);
       const auto found = pd::halfspace_contact({&body, pose}, under.halfspace, kThreshold, buffers);
       const pd::PenetrationDepth answer = pd::penetration_depth({&body, pose}, {&under.box, under.pose}, scratch);
       const double distance = answer.signed_distance();
@@ -106,9 +166,7 @@ TEST(HalfspaceContact, HasThePointsOfALargeBox) {
     const Ground under = ground(random);
     const Vec3& n = under.halfspace.normal;
     for (const ConvexShape& body : bodies(random)) {
-      Pose pose = turned(random, Vec3(3, -2, 1));
-      const auto first = pd::halfspace_contact({&body, pose}, under.halfspace, kThreshold, buffers);
-      pose = Pose::from_trusted_matrix(pose.rotation(), pose.translation() - (first.lower + .01) * n);
+      const Pose pose = lowered(body, under.halfspace, .01, random, buffers);
       const auto found = pd::halfspace_contact({&body, pose}, under.halfspace, kThreshold, buffers);
       const pd::PenetrationDepth answer = pd::penetration_depth({&body, pose}, {&under.box, under.pose}, scratch);
       const pd::ContactManifold wanted = pd::contact_manifold({&body, pose}, {&under.box, under.pose}, answer,
