@@ -137,6 +137,42 @@ TEST(PosedPair, NumbersThatDoNotRoundGiveTheSameSigns) {
   EXPECT_GT(exact, 1000);
 }
 
+/// A coordinate along the axis of a turn, or across half a turn, is the body's own though the others are rounded, and
+/// the offset may need two doubles.
+TEST(PosedPair, TurnsAboutAnAxisKeepOneCoordinate) {
+  const ConvexPolytope a = box(1, 0.75, 0.125), b = box(0.25, 1.5, 2);
+  const Vec3 here(0.25, 0.5, -1), there(0x1p-60, -0x1p-70, 0x1p-80);
+  struct Turn {
+    Pose pose;
+    int axis;  ///< whose coordinate is kept; -1: none
+  };
+  const Turn turns[] = {{quaternion(1, 0, 0, 0.3, here), 2},   {quaternion(0.2, 0, -1.7, 0, here), 1},
+                        {quaternion(0.4, 0.9, 0, 0, here), 0}, {quaternion(0, 0.3, 1, 0, here), 2},
+                        {quaternion(0, 1, 0, 0.2, here), 1},   {quaternion(0, 0, 0.8, 1, here), 0},
+                        {quaternion(1, 0.1, 0, 0.3, here), -1}};
+  for (const Turn& turn : turns) {
+    const Pose pose_b(*Pose::from_quaternion({1, 0, 0, 0}, there));
+    const PosedPair pair(a, turn.pose, b, pose_b);
+    EXPECT_FALSE(pair.doubles_rotate());
+    std::mt19937_64 bits(3);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(pair.has_own_coordinate(k), k == turn.axis);
+      for (int i = 0; i < 50; ++i) {
+        const PairVector v = any_vector(bits);
+        pd::detail::DoubleDouble x;
+        if (!pair.exact_coordinate(v, k, x)) {
+          EXPECT_NE(k, turn.axis);
+          continue;
+        }
+        const Dyadic3 exact = pair.exact(v);
+        const Dyadic& coordinate = k == 0 ? exact.x : k == 1 ? exact.y : exact.z;
+        EXPECT_EQ(((Dyadic(x.hi) + Dyadic(x.lo)) * pair.homogeneous_factor() - coordinate).sign(), 0);
+      }
+    }
+    expect_exact_signs(pair, 200);
+  }
+}
+
 /// Corners of two lenses that stand across each other: long coordinates, whose edges are parallel all the same.
 TEST(PosedPair, TiesOfExchangedAxesTakeNoBigNumbers) {
   const ConvexPolytope a = box(0.1, 0.7, 1.3);

@@ -8,6 +8,7 @@
 #include "numeric/unit_roundoff.hpp"
 #include "numeric/unrounded.hpp"
 #include "pd/numeric/predicates.hpp"
+#include "shape/zero_pattern.hpp"
 
 namespace pd::detail {
 
@@ -88,11 +89,6 @@ bool difference_of(const ConvexPolytope& p, const ColumnsDD* turn, int to, int f
   return true;
 }
 
-bool equal_rotations(const Pose& a, const Pose& b) {
-  if (a.is_quaternion() != b.is_quaternion()) return false;
-  return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
-}
-
 /// Adds sign R (to - from), or sign (to - from) without a rotation. Each coordinate of the difference must be exact.
 bool add_rotated(const ConvexPolytope& p, const double* r, double sign, int to, int from, UnroundedSum (&sums)[3]) {
   if (to < 0 && from < 0) return true;
@@ -130,13 +126,17 @@ bool add_coordinate(const ConvexPolytope& p, const ColumnsDD& r, int k, double s
   return true;
 }
 
-/// Rows of R that pass one coordinate on, or its opposite. @return whether all do.
-bool find_own_coordinates(const ConvexPolytope& p, const double (&r)[9], PosedPair::OwnCoordinate (&own)[3]) {
+/// Rows of R that pass one coordinate on, or its opposite: of a matrix as they stand; of a quaternion those whose other
+/// two entries vanish, whatever the third rounds to. @return whether all do.
+bool find_own_coordinates(const ConvexPolytope& p, const Pose& pose, std::uint32_t zeros, const double (&r)[9],
+                          PosedPair::OwnCoordinate (&own)[3]) {
+  if (zeros == 0) return false;
   const double* const coordinates[3] = {p.x(), p.y(), p.z()};
   for (int k = 0; k < 3; ++k) {
-    const double* const row = r + 3 * k;
     for (int j = 0; j < 3; ++j) {
-      if (std::abs(row[j]) == 1 && row[(j + 1) % 3] == 0 && row[(j + 2) % 3] == 0) own[k] = {coordinates[j], row[j], j};
+      const std::uint32_t others = (7u & ~(1u << j)) << (3 * k);
+      if ((zeros & others) != others || !(pose.is_quaternion() || std::abs(r[3 * k + j]) == 1)) continue;
+      own[k] = {coordinates[j], r[3 * k + j] > 0 ? 1.0 : -1.0, j};
     }
   }
   return own[0].x != nullptr && own[1].x != nullptr && own[2].x != nullptr;
@@ -188,15 +188,19 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   }
   offset_dd_.set(3, {});
   offset_ = Vec3(offset_scaled[0], offset_scaled[1], offset_scaled[2]);
-  same_rotation_ = equal_rotations(pose_a, pose_b);
+  same_rotation_ = detail::same_rotation(pose_a, pose_b);
+  zeros_a_ = zero_entries(pose_a);
+  zeros_b_ = same_rotation_ ? zeros_a_ : zero_entries(pose_b);
   doubles_rotate_ = scale_exponent_ == 0 && origin.isZero(0) && stored_in_doubles(pose_a, body_a_.columns) &&
                     stored_in_doubles(pose_b, body_b_.columns) && offset_exact[0].lo == 0 && offset_exact[1].lo == 0 &&
                     offset_exact[2].lo == 0;
 
-  if (doubles_rotate_) {
-    has_own_coordinates_ =
-        find_own_coordinates(a, body_a_.rotation, own_a_) && find_own_coordinates(b, body_b_.rotation, own_b_);
+  if (scale_exponent_ == 0 && origin.isZero(0)) {
+    const bool all_a = find_own_coordinates(a, pose_a, zeros_a_, body_a_.rotation, own_a_);
+    const bool all_b = find_own_coordinates(b, pose_b, zeros_b_, body_b_.rotation, own_b_);
+    all_own_coordinates_ = doubles_rotate_ && all_a && all_b;
   }
+  if (same_rotation_) zeros_a_ = zeros_b_ = kZerosOfNoRotation;
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
@@ -220,7 +224,7 @@ TurnedSum PosedPair::turned(const PairVector& v) const {
 
 void PosedPair::approximate_dd(const PairVector& v, FourDoubleDoubles& out) const {
   // A vertex alone: no step below would round. A sum of zeros is +0, as theirs.
-  if (has_own_coordinates_ && !v.translated && v.a_from < 0 && v.b_from < 0 && (v.a_to < 0) != (v.b_to < 0)) {
+  if (all_own_coordinates_ && !v.translated && v.a_from < 0 && v.b_from < 0 && (v.a_to < 0) != (v.b_to < 0)) {
     const bool of_b = v.b_to >= 0;
     const OwnCoordinate(&own)[3] = of_b ? own_b_ : own_a_;
     const int vertex = of_b ? v.b_to : v.a_to;
@@ -273,14 +277,20 @@ bool PosedPair::unrounded(const PairVector& v, bool rotated, Vec3& out) const {
 }
 
 bool PosedPair::exact_coordinate(const PairVector& v, int k, DoubleDouble& out) const {
-  out = {v.translated ? offset_[k] : 0, 0};
-  const OwnCoordinate &of_a = own_a_[k], &of_b = own_b_[k];
-  if (of_a.x != nullptr && of_b.x != nullptr) {
+  out = v.translated ? offset_dd_[k] : DoubleDouble{};
+  if (has_own_coordinate(k)) {
+    const OwnCoordinate &of_a = own_a_[k], &of_b = own_b_[k];
     return add_own_coordinate(of_b.x, of_b.sign, v.b_to, v.b_from, out) &&
            add_own_coordinate(of_a.x, -of_a.sign, v.a_to, v.a_from, out);
   }
   return doubles_rotate_ && add_coordinate(*b_, body_b_.columns, k, 1, v.b_to, v.b_from, out) &&
          add_coordinate(*a_, body_a_.columns, k, -1, v.a_to, v.a_from, out);
+}
+
+std::uint32_t PosedPair::zero_coordinates(const PairVector& v) const {
+  if (v.translated) return 0;
+  return detail::zero_coordinates(*a_, zeros_a_, v.a_from, v.a_to) &
+         detail::zero_coordinates(*b_, zeros_b_, v.b_from, v.b_to);
 }
 
 template <int N>
@@ -347,6 +357,10 @@ std::optional<int> PosedPair::sign_determinant_rounded(const PairVector& u, cons
       ++stages_.filtered;
       return sign(value);
     }
+  }
+  if (vanishes_term_by_term(zero_coordinates(u), zero_coordinates(v), zero_coordinates(w))) {
+    ++stages_.exact;
+    return 0;
   }
   Vec3 whole[3];
   if (unrounded<3>({&u, &v, &w}, whole) && orient3d(Vec3::Zero(), whole[1], whole[2], whole[0]) == 0) {
@@ -429,6 +443,7 @@ bool PosedPair::parallel(const PairVector& u, const PairVector& v) const {
     return false;
   }
   ++stages_.exact;
+  if (cross_vanishes_term_by_term(zero_coordinates(u), zero_coordinates(v))) return true;
   Vec3 whole[2];
   if (unrounded<2>({&u, &v}, whole)) return collinear(Vec3::Zero(), whole[0], whole[1]);
   const Dyadic3 e = cross(exact(u), exact(v));

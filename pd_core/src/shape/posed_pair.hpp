@@ -85,20 +85,29 @@ class PosedPair {
 
   /// Both rotations, and the offset, are stored as doubles: coordinates may be exact in double-double.
   [[nodiscard]] bool doubles_rotate() const { return doubles_rotate_; }
-  /// A coordinate itself, where `doubles_rotate` and double-double holds it. @return whether that is so.
+  /// A coordinate itself, where both bodies have it as their own, or where `doubles_rotate`, and double-double holds
+  /// it.
+  /// @return whether that is so.
   [[nodiscard]] bool exact_coordinate(const PairVector& v, int k, DoubleDouble& out) const;
-  /// A coordinate of a body's turned vertices that is one of their own or its opposite, where `doubles_rotate`.
+  /// A coordinate of a body's turned vertices that is one of their own or its opposite: along the axis of a turn, say.
   struct OwnCoordinate {
     const double* x = nullptr;  ///< of the body's vertices; null: there is none
     double sign = 1;
     int axis = -1;  ///< of the body
   };
-  /// Whether all six are.
-  [[nodiscard]] bool has_own_coordinates() const { return has_own_coordinates_; }
+  /// Whether both bodies have coordinate k as their own, and any or all three.
+  [[nodiscard]] bool has_own_coordinate(int k) const { return own_a_[k].x != nullptr && own_b_[k].x != nullptr; }
+  [[nodiscard]] bool has_an_own_coordinate() const {
+    return has_own_coordinate(0) || has_own_coordinate(1) || has_own_coordinate(2);
+  }
   [[nodiscard]] const OwnCoordinate& own_coordinate_a(int k) const { return own_a_[k]; }
   [[nodiscard]] const OwnCoordinate& own_coordinate_b(int k) const { return own_b_[k]; }
   /// t_B - t_A - origin (scaled), rounded; as it is where `doubles_rotate`.
   [[nodiscard]] const Vec3& offset() const { return offset_; }
+  /// Whether the bodies' origins are one point, which is the origin, exactly.
+  [[nodiscard]] bool at_one_place() const {
+    return origin_.isZero(0) && pose_a_->translation() == pose_b_->translation();
+  }
   /// Whether R_A = R_B, exactly.
   [[nodiscard]] bool same_rotation() const { return same_rotation_; }
 
@@ -146,6 +155,8 @@ class PosedPair {
   template <int N>
   [[nodiscard]] bool unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N]) const;
   [[nodiscard]] bool unrounded(const PairVector& v, bool rotated, Vec3& out) const;
+  /// Bit k: coordinate k is zero, read off the stored numbers; in the common frame, where there is one.
+  [[nodiscard]] std::uint32_t zero_coordinates(const PairVector& v) const;
   /// The sign of the determinant of three vectors of one body each, as differences of stored coordinates: in the frame
   /// of a rotation that all share, or where both rotations do no more than exchange and reverse axes.
   [[nodiscard]] std::optional<int> sign_by_differences(const PairVector* const (&vectors)[3]) const;
@@ -167,8 +178,10 @@ class PosedPair {
   bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
   OwnCoordinate own_a_[3];
   OwnCoordinate own_b_[3];
-  bool has_own_coordinates_ = false;
-  bool same_rotation_ = false;  ///< of A and B, exactly
+  bool all_own_coordinates_ = false;  ///< of both bodies, and `doubles_rotate_`
+  bool same_rotation_ = false;        ///< of A and B, exactly
+  std::uint32_t zeros_a_ = 0;  ///< entries of the rotations that are zero (`zero_entries`); of none, where both are one
+  std::uint32_t zeros_b_ = 0;
   mutable std::optional<ExactPlacing> exact_;
   mutable StageCounts stages_;
   mutable std::int64_t exact_work_ = 0;

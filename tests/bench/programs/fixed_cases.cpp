@@ -5,6 +5,8 @@
 ///
 /// Instruction counts repeat where times do not, so that a slower hot path is seen in review.
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -109,6 +111,16 @@ struct FixedCurved {
 constexpr FixedCurved kCurved[] = {{"cylinder_box_edge", false, 10},   // a rim on an edge
                                    {"cylinder_box_facet", false, 14},  // a rim on a facet
                                    {"cone_hull_32", true, 10}};
+
+/// Two boxes cold, in the tightest bracket, that need no search: at rest, one turned about the vertical, and at one
+/// place, turned a little.
+struct FixedTie {
+  const char* name;
+  std::array<double, 4> turn;
+  double height;
+};
+constexpr FixedTie kTies[] = {{"tightest_boxes_at_rest", {1, 0, 0, 0.3}, 0.299},
+                              {"tightest_boxes_at_one_place", {1, 1e-8, 2e-8, 3e-8}, 0}};
 
 /// Two bricks flush on each other, cold, for contacts.
 struct FixedFlush {
@@ -259,6 +271,20 @@ int main(int argc, char** argv) {
                 static_cast<long long>(answer.statistics.support_calls));
     return 0;
   }
+  for (const FixedTie& c : kTies) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::ConvexShape a(*pd::ConvexPolytope::box(pd::Vec3(0.3, 0.7, 0.1)));
+    const pd::ConvexShape b(*pd::ConvexPolytope::box(pd::Vec3(1, 0.6, 0.2)));
+    const double length = std::hypot(c.turn[0], c.turn[3]);
+    const std::array<double, 4> turn{c.turn[0] / length, c.turn[1], c.turn[2], c.turn[3] / length};
+    const pd::PosedShape posed_a{&a, *pd::Pose::from_quaternion(turn, {0.0, 0.0, c.height})}, posed_b{&b, pd::Pose()};
+    const pd::DepthSettings settings;
+    pd::Scratch scratch;
+    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, settings);
+    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &settings);
+    std::printf("%s: depth in [%.17g, %.17g]\n", c.name, answer.lower, answer.upper);
+    return 0;
+  }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     const pd::bench::FlushBricks bricks(c.gap);
@@ -277,6 +303,7 @@ int main(int argc, char** argv) {
   for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
   for (const FixedDistance& c : kDistances) std::fprintf(stderr, " %s", c.name);
   for (const FixedCurved& c : kCurved) std::fprintf(stderr, " %s", c.name);
+  for (const FixedTie& c : kTies) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;

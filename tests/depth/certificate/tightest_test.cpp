@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <vector>
 
 #include "oracle/judged_pair.hpp"
 
@@ -91,6 +93,55 @@ TEST(Tightest, AlignedBoxesAreExactInDoubles) {
     EXPECT_EQ(answer.translation, answer.depth * normal);
     // The answer, and three pairs of parallel edges, whose poses are stored in different ways.
     EXPECT_LE(answer.statistics.exact_signs, 4);
+  }
+}
+
+/// A box at rest on another, turned about the vertical: faces, edges and corners share one plane, which stored numbers
+/// tell.
+TEST(Tightest, BoxesAtRestAreExactAlongTheVertical) {
+  Scratch scratch;
+  const ConvexShape a(*ConvexPolytope::box(Vec3(0.3, 0.7, 0.1))), b(*ConvexPolytope::box(Vec3(1, 0.6, 0.2)));
+  for (int i = 0; i < 40; ++i) {
+    const double half = 0.07 * i - 1.3, sunk = std::ldexp(1.0, -5 - i);
+    const Pose pose_a = *Pose::from_quaternion({std::cos(half), 0, 0, std::sin(half)}, {0.4, -0.3, 0.3 - sunk});
+    const PenetrationDepth answer = penetration_depth({&a, pose_a}, {&b, Pose()}, scratch);
+    ASSERT_EQ(answer.contact, ContactClass::overlapping);
+    EXPECT_EQ(answer.method, Method::overlay);
+    EXPECT_EQ(answer.statistics.support_calls, 0);
+    EXPECT_EQ(answer.normal, Vec3::UnitZ());
+    // A sum of doubles, whose digits fit into the 64 bits of long doubles.
+    const long double depth = static_cast<long double>(0.1) + 0.2 - pose_a.translation().z();
+    EXPECT_LE(answer.lower, depth);
+    EXPECT_GE(answer.depth, depth);
+    EXPECT_LE(answer.depth, std::nextafter(answer.lower, 1.0));
+    const PenetrationDepth searched =
+        penetration_depth({&a, pose_a}, {&b, Pose()}, scratch, {.method = Method::overlay});
+    EXPECT_EQ(answer.lower, searched.lower);
+    EXPECT_EQ(answer.upper, searched.upper);
+  }
+}
+
+/// Bodies at one place tie with their images, but where one is no image of itself: a face moved out by one double is
+/// not the nearest any more.
+TEST(Tightest, BodiesAtOnePlaceTieWithTheirImagesOnly) {
+  Scratch scratch;
+  const ConvexShape b(*ConvexPolytope::box(Vec3(0.5, 2, 2)));
+  for (const double ulps : {0.0, 1.0, -1.0}) {
+    const double right = 0.25 + ulps * 0x1p-54;
+    std::vector<Vec3> corners;
+    for (int v = 0; v < 8; ++v) {
+      corners.emplace_back((v & 4) != 0 ? right : -0.25, (v & 2) != 0 ? 1 : -1, (v & 1) != 0 ? 1 : -1);
+    }
+    const ConvexShape a(*ConvexPolytope::from_points(corners));
+    const Pose pose_a = *Pose::from_quaternion({1, 1e-9, 2e-9, 3e-9}, Vec3::Zero());
+    const PenetrationDepth answer = penetration_depth({&a, pose_a}, {&b, Pose()}, scratch);
+    const PenetrationDepth searched =
+        penetration_depth({&a, pose_a}, {&b, Pose()}, scratch, {.method = Method::overlay});
+    EXPECT_EQ(answer.lower, searched.lower) << ulps;
+    EXPECT_EQ(answer.upper, searched.upper) << ulps;
+    // It leaves by its left face, to the right, where its right face is farther out.
+    if (ulps == 0) continue;
+    EXPECT_EQ(answer.normal.x() > 0, ulps > 0) << answer.normal.transpose();
   }
 }
 

@@ -63,7 +63,7 @@ bool set_axis(const PosedPair& pair, const FacetOfDifference& facet, int k, doub
   return true;
 }
 
-/// Aligned boxes, before anything is measured.
+/// Aligned boxes, and ones turned about an axis, before anything is measured.
 enum class Alignment : std::uint8_t { none, found, open };
 Alignment align_with_axis(const PosedPair& pair, const FacetOfDifference& facet, FacetPlane& plane) {
   const Vec3 u = pair.approximate(facet.u), v = pair.approximate(facet.v);
@@ -112,7 +112,8 @@ bool set_axis_plane(const PosedPair& pair, const PairVector& point, int axis, Fa
 
 FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet) {
   FacetPlane plane;
-  const Alignment aligned = pair.doubles_rotate() ? align_with_axis(pair, facet, plane) : Alignment::none;
+  const bool may_align = pair.doubles_rotate() || pair.has_an_own_coordinate();
+  const Alignment aligned = may_align ? align_with_axis(pair, facet, plane) : Alignment::none;
   if (aligned == Alignment::found) return plane;
   const TurnedSum of_u = pair.turned(facet.u), of_v = pair.turned(facet.v), of_p = pair.turned(facet.point());
   PlaneParts found;

@@ -39,9 +39,9 @@ bool nearer_than(const FacetPlane& plane, double beyond) {
 /// The plane of a triangle across a coordinate axis, told by stored coordinates: its three vertices of A, and those of
 /// B, agree in one that is known exactly.
 bool classify_across_axis(const PosedPair& pair, const SurfaceCorners& t, ProvenFacet& found) {
-  if (!pair.has_own_coordinates()) return false;
   const VertexPair &p = t.v[0], &q = t.v[1], &r = t.v[2];
   for (int k = 0; k < 3; ++k) {
+    if (!pair.has_own_coordinate(k)) continue;
     const double* const a = pair.own_coordinate_a(k).x;
     const double* const b = pair.own_coordinate_b(k).x;
     if (a[p.a] != a[q.a] || a[p.a] != a[r.a] || b[p.b] != b[q.b] || b[p.b] != b[r.b]) continue;
@@ -98,12 +98,37 @@ bool lies_in(const SurfaceCorners& t, const SupportFaces& faces) {
   });
 }
 
+/// Whether a body is its own image in its origin. Vertices are in lexicographic order, which the image reverses.
+bool symmetric(const ConvexPolytope& body) {
+  const int last = body.num_vertices() - 1;
+  for (const double* const x : {body.x(), body.y(), body.z()}) {
+    for (int v = 0; 2 * v <= last; ++v) {
+      if (x[v] != -x[last - v]) return false;
+    }
+  }
+  return true;
+}
+
+/// Whether the faces hold the triangle's image in the origin, and P is its own: bodies at one place tie at every facet,
+/// which fractions would take long to say.
+bool ties_with_opposite(const PosedPair& pair, const SurfaceCorners& t, const SupportFaces& faces) {
+  if (!pair.at_one_place()) return false;
+  const int last_a = pair.a().num_vertices() - 1, last_b = pair.b().num_vertices() - 1;
+  SurfaceCorners image;
+  std::transform(std::begin(t.v), std::end(t.v), std::begin(image.v), [&](const VertexPair& p) {
+    return VertexPair{last_a - p.a, last_b - p.b};
+  });
+  return lies_in(image, faces) && symmetric(pair.a()) && symmetric(pair.b());
+}
+
 /// Sign of x's distance less y's, both positive: in double-double, else as fractions.
-int compare_distances(const PosedPair& pair, const ProvenFacet& x, const ProvenFacet& y) {
+/// @param tied  whether they are known to be equal, asked before fractions are.
+template <class Tied>
+int compare_distances(const PosedPair& pair, const ProvenFacet& x, const ProvenFacet& y, Tied&& tied) {
   const double gap = to_double(x.plane.distance - y.plane.distance);
   const double error = (x.plane.distance_error + y.plane.distance_error) * (1 + 0x1p-40);
   if (std::abs(gap) > error) return gap < 0 ? -1 : 1;
-  if (error == 0) return 0;
+  if (error == 0 || tied()) return 0;
   return compare(squared_distance(pair, x.facet), squared_distance(pair, y.facet));
 }
 
@@ -121,7 +146,7 @@ std::optional<ProvenFacet> prove_nearest_facet(const PosedPair& pair, std::span<
       if (i == chosen || lies_in(near[i], faces)) continue;
       const ProvenFacet other = classify(pair, near[i]);
       if (!positive(other.plane)) return std::nullopt;
-      const int order = compare_distances(pair, other, best);
+      const int order = compare_distances(pair, other, best, [&] { return ties_with_opposite(pair, near[i], faces); });
       if (order == 0 && !(first_of_equals && chosen == 0)) return std::nullopt;
       if (order < 0) {
         best = other;

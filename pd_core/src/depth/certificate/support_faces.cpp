@@ -221,7 +221,7 @@ int facet_holding(const ConvexPolytope& body, std::int32_t v0, std::int32_t v1, 
 
 bool collect_faces(const PosedPair& pair, const FacetOfDifference& facet, const FacetPlane& plane,
                    SupportFaces& faces) {
-  if (plane.axis >= 0 && pair.has_own_coordinates() &&
+  if (plane.axis >= 0 && pair.has_own_coordinate(plane.axis) &&
       std::max(pair.a().num_vertices(), pair.b().num_vertices()) <= kMostScanned) {
     const double sign = to_double(plane.axis == 0 ? plane.unit.x : plane.axis == 1 ? plane.unit.y : plane.unit.z);
     return scan(pair.b(), pair.own_coordinate_b(plane.axis), sign, facet.b, faces.on_b) &&

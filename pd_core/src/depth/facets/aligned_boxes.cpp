@@ -1,7 +1,6 @@
 #include "depth/facets/aligned_boxes.hpp"
 
 #include "depth/facets/box_sat.hpp"
-#include "numeric/unrounded.hpp"
 
 namespace pd::detail {
 
@@ -23,12 +22,15 @@ AlignedBoxes nearest_of_aligned_boxes(const PosedPair& pair, ProvenFacet& neares
   double sign = 0;
   bool tied = false;
   for (int k = 0; k < 3; ++k) {
+    if (!pair.has_own_coordinate(k)) return AlignedBoxes::other;
+  }
+  for (int k = 0; k < 3; ++k) {
     const PosedPair::OwnCoordinate &of_a = pair.own_coordinate_a(k), &of_b = pair.own_coordinate_b(k);
-    if (of_a.x == nullptr || of_b.x == nullptr) return AlignedBoxes::other;
     for (const double s : {1.0, -1.0}) {
-      DoubleDouble height{s * pair.offset()[k], 0};
-      if (!add_exactly(height, s * of_b.sign * of_b.x[end_vertex(of_b, s)])) return AlignedBoxes::other;
-      if (!add_exactly(height, -s * of_a.sign * of_a.x[end_vertex(of_a, -s)])) return AlignedBoxes::other;
+      const PairVector corner = PairVector::point(end_vertex(of_a, -s), end_vertex(of_b, s));
+      DoubleDouble height;
+      if (!pair.exact_coordinate(corner, k, height)) return AlignedBoxes::other;
+      if (s < 0) height = -height;
       if (!(height.hi > 0)) return AlignedBoxes::tied;
       if (axis >= 0 && !less(height, least)) {
         tied = tied || !less(least, height);

@@ -38,11 +38,19 @@ class BoxSat : public BoxPair {
       return out;
     }
     if (!(nearest.lower_key > 0)) return out;
-    out.lower = std::sqrt(nearest.lower_key) - rounding - (kBoxParallelSine + 2 * kBoxTurn) * nearest.slivers;
-    if (!(out.lower > 0) || out.upper - out.lower > width.limit(greatest_coordinate())) return out;
-    if (place_witness(nearest.axis, distance, out) || place_on_faces(nearest.axis, distance, out)) {
-      out.status = BoxPairStatus::certified;
+    const double slivers = (kBoxParallelSine + 2 * kBoxTurn) * nearest.slivers;
+    out.lower = std::sqrt(nearest.lower_key) - rounding - slivers;
+    const double limit = width.limit(greatest_coordinate());
+    const auto narrow = [&] { return out.lower > 0 && out.upper - out.lower <= limit; };
+    if (narrow()) {
+      if (!place_witness(nearest.axis, distance, out) && !place_on_faces(nearest.axis, distance, out)) return out;
+    } else {
+      const std::optional<double> missed = place_on_faces(nearest.axis, distance, out);
+      if (!missed) return out;
+      out.lower = lower_beside_foot(distance - *missed - rounding, out.normal, rounding) - slivers;
+      if (!narrow()) return out;
     }
+    out.status = BoxPairStatus::certified;
     return out;
   }
 
@@ -230,14 +238,37 @@ class BoxSat : public BoxPair {
     });
   }
 
-  /// The same where faces lie flush, as those of boxes at rest, whatever axis along their normal came first. False
-  /// where they miss each other.
-  bool place_on_faces(int axis, double distance, BoxPairDepth& out) const {
+  /// The same where faces lie flush, as those of boxes at rest, whatever axis along their normal came first.
+  /// @return how far from the foot; nothing where the faces miss each other.
+  std::optional<double> place_on_faces(int axis, double distance, BoxPairDepth& out) const {
     const BoxFoot at = foot({axis, out.normal, distance}, 0);
-    if (!(at.missed <= slack())) return false;
+    if (!(at.missed <= slack())) return std::nullopt;
     out.point_a = at.point_a;
     set_features(axis, out);
-    return true;
+    return at.missed;
+  }
+
+  /// Edges of flush faces cross along the faces' own normal, and those turned by little against each other know it
+  /// badly. But a point of P as far along the normal as `foot_lower` keeps every plane that is turned from it by a
+  /// small angle away by that times its cosine.
+  double lower_beside_foot(double foot_lower, const Vec3& normal, double rounding) const {
+    constexpr double kSmallAngle = 0x1p-28;  // its cosine rounds to 1
+    const double c[3] = {centre_.x(), centre_.y(), centre_.z()};
+    BoxAxisKeys keys;
+    box_axis_keys({of_a_, of_a_}, {of_b_, of_b_}, c, {kBoxTurn * reach_, kBoxParallelSine}, keys);
+    double lower = foot_lower * (1 - kUnitRoundoff);
+    for (int axis = 0; axis < kBoxAxisSlots; ++axis) {
+      const double of_axis = signed_root(keys.lower_key[axis]) - rounding;
+      if (axis % 4 == 3 || !(of_axis < lower)) continue;
+      Vec3 u, v;
+      spanning(of_a_, of_b_, axis, u, v);
+      const Vec3 n = u.cross(v);
+      const double turn = kBoxTurn * u.norm() * v.norm() / n.norm();
+      const Vec3 m = outward(n);
+      if (m.dot(normal) > 0 && m.cross(normal).norm() + 2 * turn < kSmallAngle) continue;
+      lower = of_axis;
+    }
+    return lower;
   }
 
   /// Tries the farthest vertex, and those as far within rounding where facets are parallel.

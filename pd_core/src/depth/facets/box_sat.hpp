@@ -4,10 +4,11 @@
 /// Why it proves anything: every facet of P is spanned by two generators. A computed normal turns from the true one by
 /// rounding over the sine of their angle, and h_P changes by at most that times the reach. Two generators parallel up
 /// to rounding are taken for parallel: turning one into the other's direction moves no point of P by more than that
-/// sine times its length.
+/// sine times its length. Planes whose normals lie next to the winner's are as far as its foot, which lies in P.
 ///
 /// The certificate fails, and the caller grows a surface, where the bracket is too wide (edges nearly but not quite
-/// parallel), where the point below the origin is not inside the winner, and where the class is in doubt.
+/// parallel, unless they cross along the winner's normal), where the point below the origin is not inside the winner,
+/// and where the class is in doubt.
 #pragma once
 
 #include <array>

@@ -189,11 +189,14 @@ bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   const std::optional<BoxFrame> box_b = box_frame(*pair.b);
   if (!box_b || !query.within_range()) return false;
   const PosedPair& posed = query.exact();
-  if (posed.doubles_rotate()) {
-    ProvenFacet nearest;
-    const AlignedBoxes aligned = nearest_of_aligned_boxes(posed, nearest, query.buffers.faces);
-    if (aligned == AlignedBoxes::tied) return false;
-    if (aligned == AlignedBoxes::found) return answer_boxes_from_proof(query, nearest, out);
+  ProvenFacet aligned;
+  switch (nearest_of_aligned_boxes(posed, aligned, query.buffers.faces)) {
+    case AlignedBoxes::tied:
+      return false;
+    case AlignedBoxes::found:
+      return answer_boxes_from_proof(query, aligned, out);
+    case AlignedBoxes::other:
+      break;
   }
   SupportFaces& faces = query.buffers.faces;
   const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, faces);

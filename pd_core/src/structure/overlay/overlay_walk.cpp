@@ -6,7 +6,6 @@
 
 #include "numeric/unit_roundoff.hpp"
 #include "shape/support/polytope_support.hpp"
-#include "structure/overlay/zero_pattern.hpp"
 
 namespace pd::detail {
 
@@ -47,10 +46,7 @@ FacetOfDifference facet_of(const PosedPair& pair, const OverlayPiece& piece) {
                                        pair.b().half_edge(piece.b).origin, pair.b().target(piece.b));
 }
 
-OverlayWalk::OverlayWalk(const PosedPair& pair, OverlayBuffers& buffers)
-    : pair_(&pair), buffers_(&buffers), zero_entries_{zero_entries(pair.pose_a()), zero_entries(pair.pose_b())} {
-  // One rotation of both bodies factors out of every determinant.
-  if (same_rotation(pair.pose_a(), pair.pose_b())) zero_entries_ = {zero_entries(Pose()), zero_entries(Pose())};
+OverlayWalk::OverlayWalk(const PosedPair& pair, OverlayBuffers& buffers) : pair_(&pair), buffers_(&buffers) {
   pose_edges(pair, true, buffers.a);
   pose_edges(pair, false, buffers.b);
   pose_facets(pair.a(), buffers.b, buffers.a);
@@ -84,13 +80,7 @@ int OverlayWalk::decide_exactly(bool edge_of_a, int half_edge, int facet, bool s
   const auto corner = FacetOfDifference::corners(facet_body, facet);
   const PairVector u = edge_vector(!edge_of_a, corner[0], corner[1]);
   const PairVector v = edge_vector(!edge_of_a, corner[0], corner[2]);
-  const std::uint32_t turned = edge_of_a ? zero_entries_[0] : zero_entries_[1];
-  const std::uint32_t facing = edge_of_a ? zero_entries_[1] : zero_entries_[0];
-  const bool vanishes = vanishes_term_by_term(
-      zero_coordinates(edge_body, turned, edge_body.half_edge(half_edge).origin, edge_body.target(half_edge)),
-      zero_coordinates(facet_body, facing, corner[0], corner[1]),
-      zero_coordinates(facet_body, facing, corner[0], corner[2]));
-  const int sign = vanishes ? 0 : pair_->sign_determinant(e, u, v);
+  const int sign = pair_->sign_determinant(e, u, v);
   if (sign != 0 || !symbolic) return sign;
 
   // <e, n> = 0. Turning A moves <e, n> by <omega, e x n> when e is of A, and by -<omega, e x n> when n is.

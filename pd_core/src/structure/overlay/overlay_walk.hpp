@@ -101,7 +101,6 @@ class OverlayWalk {
 
   const PosedPair* pair_;
   OverlayBuffers* buffers_;
-  std::array<std::uint32_t, 2> zero_entries_;  ///< of the rotations of A and B
   bool (*sink_)(void*, std::span<const OverlayPiece>) = nullptr;
   void* context_ = nullptr;
   std::size_t filled_ = 0;

@@ -22,6 +22,7 @@ inline std::uint32_t zero_entries(const Pose& pose) {
   }
   // Off the diagonal an entry is 2 (p q +- r s): zero when both products are, whatever rounding does.
   const std::array<double, 4>& q = pose.quaternion_wxyz();
+  if (q[0] != 0 && q[1] != 0 && q[2] != 0 && q[3] != 0) return 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (i == j) continue;
@@ -32,17 +33,22 @@ inline std::uint32_t zero_entries(const Pose& pose) {
   return mask;
 }
 
+/// Those of the identity.
+inline constexpr std::uint32_t kZerosOfNoRotation = 0b011'101'110;
+
 /// Whether the two rotations are one, on the stored numbers.
 inline bool same_rotation(const Pose& a, const Pose& b) {
   if (a.is_quaternion() != b.is_quaternion()) return false;
   return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
 }
 
-/// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is.
+/// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is. -1 stands for the origin
+/// of the body's frame.
 inline std::uint32_t zero_coordinates(const ConvexPolytope& body, std::uint32_t rotation, int from, int to) {
-  const std::uint32_t still = static_cast<std::uint32_t>(body.x()[from] == body.x()[to]) |
-                              static_cast<std::uint32_t>(body.y()[from] == body.y()[to]) << 1 |
-                              static_cast<std::uint32_t>(body.z()[from] == body.z()[to]) << 2;
+  const auto same = [&](const double* x) {
+    return static_cast<std::uint32_t>((from < 0 ? 0 : x[from]) == (to < 0 ? 0 : x[to]));
+  };
+  const std::uint32_t still = same(body.x()) | same(body.y()) << 1 | same(body.z()) << 2;
   std::uint32_t mask = 0;
   for (int i = 0; i < 3; ++i) {
     if (((rotation >> (3 * i) | still) & 7u) == 7u) mask |= 1u << i;
@@ -56,6 +62,13 @@ inline bool vanishes_term_by_term(std::uint32_t e, std::uint32_t u, std::uint32_
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   return std::all_of(kTerms.begin(), kTerms.end(),
                      [&](const std::array<int, 3>& t) { return ((e >> t[0] | u >> t[1] | v >> t[2]) & 1u) != 0; });
+}
+
+/// The same of the coordinates of a cross product.
+inline bool cross_vanishes_term_by_term(std::uint32_t u, std::uint32_t v) {
+  constexpr std::array<std::array<int, 2>, 6> kTerms{{{1, 2}, {2, 1}, {2, 0}, {0, 2}, {0, 1}, {1, 0}}};
+  return std::all_of(kTerms.begin(), kTerms.end(),
+                     [&](const std::array<int, 2>& t) { return ((u >> t[0] | v >> t[1]) & 1u) != 0; });
 }
 
 }  // namespace pd::detail

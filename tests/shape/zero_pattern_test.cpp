@@ -1,6 +1,6 @@
 /// @file
 /// Zeros read off the stored numbers: an entry of a rotation is named zero when it is, whatever the other numbers are.
-#include "structure/overlay/zero_pattern.hpp"
+#include "shape/zero_pattern.hpp"
 
 #include <gtest/gtest.h>
 
