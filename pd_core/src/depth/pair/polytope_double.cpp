@@ -5,6 +5,7 @@
 
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
+#include "depth/distance/closest_of_few.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/facets/small_sat.hpp"
@@ -17,6 +18,9 @@
 namespace pd::detail {
 
 namespace {
+
+/// Bodies that these do not show apart are asked for their depth first.
+constexpr int kSupportsToShowApart = 1;
 
 /// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
 /// as far from it to within the bracket.
@@ -188,6 +192,19 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   return true;
 }
 
+bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
+  if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
+  if (query.difference.climbs() || !query.within_range() || remembers_surface(query)) return false;
+  const Vec3 centre = query.difference.centre();
+  if (!(centre.squaredNorm() > 0)) return false;
+  const FewSettings settings{
+      .relative = relative_of_distance(query), .width = query.width(), .shown_after = kSupportsToShowApart};
+  const ClosestOfFew found = closest_of_few(query.with_supports(), {}, -centre, settings, out.statistics.support_calls);
+  if (!answer_apart(query, found.nearest, out)) return false;
+  out.method = Method::expansion;
+  return true;
+}
+
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.for_contact() || query.settings.method != Method::automatic) return false;
   if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
@@ -294,6 +311,13 @@ double relative_of_distance(const PolytopeQuery& query) {
 }
 
 ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
+  // The tightest bracket's bits are those of the simplex, so that its search stays what it was.
+  if (query.bracket != Bracket::tightest && !query.difference.climbs()) {
+    const FewSettings settings{.relative = relative_of_distance(query), .width = query.width()};
+    const ClosestOfFew found =
+        closest_of_few(query.with_supports(), start, Vec3::Zero(), settings, statistics.support_calls);
+    if (found.nearest.certified) return found.nearest;
+  }
   return closest_point(query.with_supports(), start, relative_of_distance(query), query.width(), query.buffers.stack,
                        statistics.support_calls);
 }

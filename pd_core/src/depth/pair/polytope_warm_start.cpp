@@ -120,9 +120,10 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   if (!answer_apart(query, nearest, out)) return false;
   out.method = Method::expansion;
   out.warm = true;
-  state.direction = out.normal;
   return true;
 }
+
+bool remembers_surface(const PolytopeQuery& query) { return query.warm && !query.warm->state().faces.empty(); }
 
 bool restore_surface(PolytopeQuery& query) {
   if (!is_of_pair(query.warm->state(), query.pair)) query.warm->clear();
@@ -188,6 +189,7 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest) {
   if (!query.warm) return;
   WarmState& state = bind_to_pair(*query.warm, query.pair);
+  state.direction = nearest.normal;
   state.apart_count = nearest.count;
   for (int i = 0; i < nearest.count; ++i) state.apart[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
 }
