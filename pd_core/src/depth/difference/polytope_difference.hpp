@@ -163,6 +163,14 @@ class PolytopeDifference {
 
   /// A point inside P, rounded.
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
+  /// A |coordinate| of P that is about the largest, of the vertices that come first and last: of most bodies two ends.
+  [[nodiscard]] double coordinate_of_ends() const {
+    const Vec3 a0 = rotation_a_ * a_.vertex(0), a1 = rotation_a_ * a_.vertex(a_.num_vertices() - 1);
+    const Vec3 b0 = rotation_b_ * b_.vertex(0), b1 = rotation_b_ * b_.vertex(b_.num_vertices() - 1);
+    const Vec3 most = b0.cwiseMax(b1) - a0.cwiseMin(a1) + offset_;
+    const Vec3 least = b0.cwiseMin(b1) - a0.cwiseMax(a1) + offset_;
+    return most.cwiseAbs().cwiseMax(least.cwiseAbs()).maxCoeff();
+  }
   /// At least |x| for every point of P.
   [[nodiscard]] double reach() const { return reach_; }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for

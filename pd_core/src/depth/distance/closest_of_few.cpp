@@ -12,11 +12,17 @@ ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<cons
   VertexPair first[4];
   for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
   const Vec3& t = difference.offset();
+  const double limit = settings.width.limit(difference.coordinate_of_ends());
+  const bool any_distance = settings.beyond == std::numeric_limits<double>::infinity();
   const NearestOfFew found =
       nearest_of_few({difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}}, first,
                      static_cast<int>(start.size()), {direction.x(), direction.y(), direction.z()},
-                     {settings.beyond + error.lower, settings.width.of_size, settings.width.length,
-                      error.upper + error.lower, settings.shown_after});
+                     {.gap = limit - (error.upper + error.lower),
+                      .beyond = settings.beyond + error.lower,
+                      .within = any_distance ? 0 : settings.beyond,
+                      .apart = error.lower,
+                      .shown_after = settings.shown_after,
+                      .deepest = settings.deepest});
   support_calls += found.supports;
   ClosestOfFew out;
   ClosestPoint& r = out.nearest;
@@ -41,8 +47,7 @@ ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<cons
   // weights.
   const bool along = (r.point + length * r.normal).squaredNorm() <= 36 * error.upper * error.upper;
   r.certified = along && r.lower > 0 &&
-                (r.upper - r.lower <= settings.width.limit(found.largest) ||
-                 settings.width.is_within(settings.relative, r.lower, r.upper));
+                (r.upper - r.lower <= limit || settings.width.is_within(settings.relative, r.lower, r.upper));
   return out;
 }
 

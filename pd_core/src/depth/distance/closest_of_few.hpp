@@ -19,8 +19,11 @@ struct ClosestOfFew {
 struct FewSettings {
   double relative = 0;  ///< as for `closest_point`
   BracketWidth width;
-  double beyond = std::numeric_limits<double>::infinity();  ///< a plane farther than this is enough
-  int shown_after = std::numeric_limits<int>::max();  ///< given up where so many supports have not shown bodies apart
+  /// A plane farther than this is enough, and a point of P that is no farther shows that there is none.
+  double beyond = std::numeric_limits<double>::infinity();
+  /// Given up where so many supports have not shown the bodies apart, or the first one lies deeper than this.
+  int shown_after = std::numeric_limits<int>::max();
+  double deepest = std::numeric_limits<double>::infinity();
 };
 
 /// @param start      vertices of P to begin with, at most four.

@@ -148,34 +148,16 @@ PD_INLINE bool add_vertex(NearestFace& face, const Point& s) {
   return true;
 }
 
+PD_INLINE bool is_corner(const NearestFace& face, const Point& s) {
+  for (int i = 0; i < 3; ++i) {
+    if (i < face.count && face.corners[i].a == s.a && face.corners[i].b == s.b) return true;
+  }
+  return false;
+}
+
 PD_INLINE Point vertex(const FewVertices& bodies, int a, int b) {
   return {(bodies.b.x[b] + bodies.a.x[a]) + bodies.offset[0], (bodies.b.y[b] + bodies.a.y[a]) + bodies.offset[1],
           (bodies.b.z[b] + bodies.a.z[a]) + bodies.offset[2], a, b};
-}
-
-/// The greatest of a body's coordinates of one kind, or their negatives.
-PD_INLINE double greatest_of(const double* x, int count, double sign) {
-  Lanes best, other;
-  load(best, x);
-  best *= sign;
-  for (int i = kLanes; i < count; i += kLanes) {
-    load(other, x + i);
-    other *= sign;
-    best = other > best ? other : best;
-  }
-  return greatest(best);
-}
-
-/// The greatest |coordinate| of P on the side of its first vertices where the offset is longest.
-PD_INLINE double farthest_coordinate(const FewVertices& bodies) {
-  const double* const t = bodies.offset;
-  const double x = t[0] < 0 ? -t[0] : t[0], y = t[1] < 0 ? -t[1] : t[1], z = t[2] < 0 ? -t[2] : t[2];
-  const int k = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
-  const double* const of_a = k == 0 ? bodies.a.x : k == 1 ? bodies.a.y : bodies.a.z;
-  const double* const of_b = k == 0 ? bodies.b.x : k == 1 ? bodies.b.y : bodies.b.z;
-  const double sign = t[k] < 0 ? -1 : 1;
-  const double sum = greatest_of(of_a, bodies.a.count, sign) + greatest_of(of_b, bodies.b.count, sign) + sign * t[k];
-  return sum < 0 ? -sum : sum;
 }
 
 }  // namespace
@@ -185,9 +167,6 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
   NearestOfFew out;
   NearestFace face{};
   Direction d = unit(direction);
-  out.largest = farthest_coordinate(bodies);
-  const double by_size = goal.of_size * out.largest;
-  const double gap = (by_size > goal.width ? by_size : goal.width) - goal.rounding;
   bool shown = false;
   for (int step = 0; step < kMostSupports; ++step) {
     Point s;
@@ -205,16 +184,15 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
         out.status = NearestOfFew::Status::beyond;
         return out;
       }
-      shown = shown || out.height > goal.rounding;
-      if (!shown && out.supports >= goal.shown_after) return out;
-      bool last = face.count > 0 && face.length - out.height <= gap;
-      for (int i = 0; i < face.count; ++i) last = last || (face.corners[i].a == s.a && face.corners[i].b == s.b);
-      if (last) break;
+      shown = shown || out.height > goal.apart;
+      if (!shown && (out.supports >= goal.shown_after || out.height < -goal.deepest)) return out;
+      if ((face.count > 0 && face.length - out.height <= goal.gap) || is_corner(face, s)) break;
     }
     const double length = face.length;
     if (!add_vertex(face, s)) return out;
     // Supports that rounding takes for farther ones.
     if (step >= count && out.supports > 1 && !(face.length < length)) break;
+    if (!(face.length > goal.within)) return out;
     d = face.toward;
   }
   if (!shown) return out;

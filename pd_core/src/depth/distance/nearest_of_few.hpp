@@ -21,14 +21,14 @@ struct FewVertices {
 };
 
 struct NearestGoal {
-  /// A plane farther from the origin ends the search.
-  double beyond;
-  /// So does a nearest point no farther behind its plane than this share of L, or this length, less `rounding`.
-  double of_size;
-  double width;
-  double rounding;
-  /// A plane must have shown the bodies apart after so many supports.
+  double gap;     ///< a nearest point no farther behind its plane ends the search
+  double beyond;  ///< so does a plane farther from the origin,
+  double within;  ///< and a point of P that is no farther
+  /// A plane at more than `apart` must have shown the bodies apart after so many supports, and the first one must lie
+  /// no deeper than `deepest`.
+  double apart;
   int shown_after;
+  double deepest;
 };
 
 struct NearestOfFew {
@@ -42,7 +42,6 @@ struct NearestOfFew {
   double direction[3] = {0, 0, 0};  ///< unit; of the last support
   double height = 0;                ///< of the plane there: <x, direction> <= -height in P
   VertexPair support{0, 0};
-  double largest = 0;  ///< a |coordinate| of P, about the largest
   int count = 0;
   VertexPair simplex[3];
   double points[3][3];  ///< of P, by the simplex' vertices

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 #include "depth/difference/smooth_difference.hpp"
-#include "depth/distance/gjk.hpp"
+#include "depth/distance/closest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -16,8 +17,6 @@ namespace {
 
 /// More are the business of the full query, which ends with the closest points.
 constexpr int kMostSupports = 12;
-/// From the plane of the last frame: what it does not part, the full query's own memory answers sooner.
-constexpr int kMostWarmSupports = 1;
 
 struct SeparatingPlane {
   Vec3 normal;         ///< unit
@@ -26,10 +25,21 @@ struct SeparatingPlane {
   bool at_once;        ///< by the direction that the search began with
 };
 
+/// From a vertex of P on, of bodies of few vertices: a search in lanes.
+std::optional<SeparatingPlane> find_plane_of_few(PolytopeDifference& difference, const DifferenceVertex& first,
+                                                 double least, PosedVerticesPair& posed, std::int64_t& support_calls) {
+  difference.prepare_supports(posed);
+  FewSettings settings;
+  settings.beyond = least;
+  const ClosestOfFew found = closest_of_few(difference, {&first, 1}, Vec3::Zero(), settings, support_calls);
+  if (!found.beyond) return std::nullopt;
+  return SeparatingPlane{found.nearest.normal, found.nearest.lower, found.next_to_plane, false};
+}
+
 /// @param least  of the cores' distance.
 template <class Difference>
-std::optional<SeparatingPlane> find_plane(const Difference& difference, const Vec3& start, double least, int most,
-                                          std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
+std::optional<SeparatingPlane> find_plane(Difference& difference, const Vec3& start, double least,
+                                          ScratchBuffers& buffers, std::int64_t& support_calls) {
   const double error = support_plane_error(difference);
   const double length_of_start = start.norm();
   if (!(length_of_start > 0)) return std::nullopt;
@@ -37,13 +47,16 @@ std::optional<SeparatingPlane> find_plane(const Difference& difference, const Ve
   DifferenceVertex simplex[4];
   double weights[4];
   int count = 0;
-  for (int step = 0; step < most; ++step) {
+  for (int step = 0; step < kMostSupports; ++step) {
     DifferenceVertex s = difference.support_in_bodies(unit);
     ++support_calls;
     if (-s.x.dot(unit) - error > least) {
-      s = difference.certified_support(unit, s, stack);
+      s = difference.certified_support(unit, s, buffers.stack);
       const double lower = -s.x.dot(unit) - error;
       if (lower > least) return SeparatingPlane{unit, lower, s, step == 0};
+    }
+    if constexpr (std::is_same_v<Difference, PolytopeDifference>) {
+      if (!difference.climbs()) return find_plane_of_few(difference, s, least, buffers.posed, support_calls);
     }
     for (int i = 0; i < count; ++i) {
       if (simplex[i].a == s.a && simplex[i].b == s.b) return std::nullopt;
@@ -77,15 +90,14 @@ class BeyondQuery {
       : a_(a), b_(b), beyond_(std::max(beyond, 0.0)), buffers_(buffers), warm_(warm), out_(out) {}
 
   template <class Difference>
-  bool answer(const Difference& difference) {
+  bool answer(Difference& difference) {
     const Vec3 remembered = warm_ ? warm_->state().direction : Vec3(Vec3::Zero());
     const bool warm = remembered.squaredNorm() > 0;
     const double margin = a_.shape->margin() + b_.shape->margin();
     // Three sums round, each by u of what it sums.
     const double round = 8 * kUnitRoundoff * (beyond_ + margin + difference.reach());
-    const auto plane =
-        find_plane(difference, warm ? remembered : Vec3(-difference.centre()), beyond_ + margin + round,
-                   warm ? kMostWarmSupports : kMostSupports, buffers_.stack, out_.statistics.support_calls);
+    const auto plane = find_plane(difference, warm ? remembered : Vec3(-difference.centre()), beyond_ + margin + round,
+                                  buffers_, out_.statistics.support_calls);
     if (!plane) return false;
     out_.contact = ContactClass::separated;
     out_.method = Method::expansion;
@@ -125,9 +137,11 @@ bool answer_beyond(const PosedShape& a, const PosedShape& b, const DepthSettings
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   if (polytope_a == nullptr || polytope_b == nullptr) {
-    return extreme_exponent(a, b) == 0 && query.answer(SmoothDifference(a, b, buffers.points));
+    if (extreme_exponent(a, b) != 0) return false;
+    SmoothDifference difference(a, b, buffers.points);
+    return query.answer(difference);
   }
-  const PolytopeDifference difference(*polytope_a, a.pose, *polytope_b, b.pose);
+  PolytopeDifference difference(*polytope_a, a.pose, *polytope_b, b.pose);
   // Squares of lengths are ordinary numbers.
   return difference.reach() > 0x1p-100 && difference.reach() < 0x1p100 && query.answer(difference);
 }

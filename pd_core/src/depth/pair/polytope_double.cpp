@@ -19,8 +19,15 @@ namespace pd::detail {
 
 namespace {
 
-/// Bodies that these do not show apart are asked for their depth first.
-constexpr int kSupportsToShowApart = 1;
+/// Bodies that one support towards P's centre does not show apart are asked for their depth first. Of slender ones,
+/// which lie across each other and whose depth takes a long search, it need only not show them deep, and a few more may
+/// tell.
+struct ShownApart {
+  double least_share_of_reach = 0.15;  ///< slender: P's centre is nearer to the origin
+  double deepest_share = 0.3;          ///< of the way to the centre
+  int supports = 4;
+};
+constexpr ShownApart kShownApart;
 
 /// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
 /// as far from it to within the bracket.
@@ -87,6 +94,22 @@ void set_answer(const PolytopeQuery& query, const NearFacets& found, Penetration
   } else {
     set_contact_of_facet(query.pair, found, out);
   }
+}
+
+/// Up to four corners of a facet of P.
+std::size_t corners_of_piece(const PolytopeQuery& query, const NearFacets& piece, DifferenceVertex (&corners)[4]) {
+  const PolytopeDifference& difference = query.difference;
+  if (piece.kind == NearFacetsBuffers::Kind::edges) {
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = difference.vertex(piece.edge_a[i % 2], piece.edge_b[i / 2]);
+    return 4;
+  }
+  const bool of_a = piece.kind == NearFacetsBuffers::Kind::facet_of_a;
+  const auto loop = (of_a ? query.pair.a : query.pair.b)->facet_vertices(piece.facet);
+  const std::size_t count = std::min<std::size_t>(loop.size(), 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    corners[i] = of_a ? difference.vertex(loop[i], piece.vertex) : difference.vertex(piece.vertex, loop[i]);
+  }
+  return count;
 }
 
 /// Whether a solid of few vertices has facets across all three of its axes.
@@ -196,9 +219,13 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
   if (query.difference.climbs() || !query.within_range() || remembers_surface(query)) return false;
   const Vec3 centre = query.difference.centre();
-  if (!(centre.squaredNorm() > 0)) return false;
-  const FewSettings settings{
-      .relative = relative_of_distance(query), .width = query.width(), .shown_after = kSupportsToShowApart};
+  const double way = centre.norm();
+  if (!(way > 0)) return false;
+  const bool slender = way < kShownApart.least_share_of_reach * query.difference.reach();
+  const FewSettings settings{.relative = relative_of_distance(query),
+                             .width = query.width(),
+                             .shown_after = slender ? kShownApart.supports : 1,
+                             .deepest = kShownApart.deepest_share * way};
   const ClosestOfFew found = closest_of_few(query.with_supports(), {}, -centre, settings, out.statistics.support_calls);
   if (!answer_apart(query, found.nearest, out)) return false;
   out.method = Method::expansion;
@@ -219,8 +246,9 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
     return found.status == SmallSatStatus::certified && prove_near_facet(query, found.nearest, out);
   }
   if (found.status == SmallSatStatus::separated) {
-    const DifferenceVertex first = query.difference.support(found.nearest.normal, nullptr);
-    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+    DifferenceVertex corners[4];
+    const std::size_t count = corners_of_piece(query, found.nearest, corners);
+    return answer_apart(query, closest_point(query, std::span(corners).first(count), out.statistics), out);
   }
   if (found.status == SmallSatStatus::undecided) return false;
   set_answer(query, found.nearest, out);

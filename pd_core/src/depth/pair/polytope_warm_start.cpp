@@ -74,7 +74,8 @@ ClosestPoint confirmed_closest_point(const PolytopeQuery& query, std::span<const
   }
   r.upper = length + error.upper;
   r.lower = -s.x.dot(r.normal) - error.lower;
-  r.certified = r.lower > 0 && (r.upper - r.lower <= query.width().limit(largest) ||
+  const auto narrow_for = [&](double size) { return r.upper - r.lower <= query.width().limit(size); };
+  r.certified = r.lower > 0 && (narrow_for(largest) || narrow_for(difference.coordinate_of_ends()) ||
                                 query.width().is_within(relative_of_distance(query), r.lower, r.upper));
   return r;
 }
