@@ -6,34 +6,38 @@
 
 namespace pd::detail {
 
-ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
-                            const Vec3& direction, const FewSettings& settings, std::int64_t& support_calls) {
-  const DistanceErrors error = distance_errors(difference);
-  VertexPair first[4];
-  for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
-  const Vec3& t = difference.offset();
-  const double limit = settings.width.limit(difference.coordinate_of_ends());
-  const bool any_distance = settings.beyond == std::numeric_limits<double>::infinity();
-  const NearestOfFew found =
-      nearest_of_few({difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}}, first,
-                     static_cast<int>(start.size()), {direction.x(), direction.y(), direction.z()},
-                     {.gap = limit - (error.upper + error.lower),
-                      .beyond = settings.beyond + error.lower,
-                      .within = any_distance ? 0 : settings.beyond,
-                      .apart = error.lower,
-                      .shown_after = settings.shown_after,
-                      .deepest = settings.deepest});
-  support_calls += found.supports;
-  ClosestOfFew out;
-  ClosestPoint& r = out.nearest;
+namespace {
+
+/// What a plane by a scan of all posed vertices may lie too far, in units of the reach: vertices err by 4 sqrt(3) u of
+/// their body's radius, two compared products by 3u each, the offset by u, the sum of a vertex of P by 2u, its product
+/// by 3u and the normal's length by 4u.
+constexpr double kScannedPlaneError = 24 * kUnitRoundoff;
+
+/// Of a nearest point behind its plane, in units of the reach: nothing but rounding lies between them.
+constexpr double kSearchGap = 4 * kUnitRoundoff;
+
+FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
+  return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
+          difference.rotation_b().data(), difference.offset().data()};
+}
+
+/// Whether the bracket is narrow for L, of which the simplex tells something at once.
+bool is_narrow(const PolytopeDifference& difference, const ClosestPoint& r, double relative,
+               const BracketWidth& width) {
+  double largest = 0;
+  for (int i = 0; i < r.count; ++i) largest = std::max(largest, r.simplex[i].x.cwiseAbs().maxCoeff());
+  const double found = r.upper - r.lower;
+  return found <= width.limit(largest) || width.is_within(relative, r.lower, r.upper) ||
+         found <= width.limit(difference.coordinate_of_ends());
+}
+
+/// The bracket of what a search has ended with.
+ClosestPoint closest_point(const PolytopeDifference& difference, const NearestOfFew& found, const DistanceErrors& error,
+                           double relative, const BracketWidth& width) {
+  ClosestPoint r;
   r.normal = {found.direction[0], found.direction[1], found.direction[2]};
   r.lower = found.height - error.lower;
-  if (found.status == NearestOfFew::Status::beyond) {
-    out.beyond = true;
-    out.next_to_plane = difference.vertex(found.support.a, found.support.b);
-    return out;
-  }
-  if (found.status == NearestOfFew::Status::undecided) return out;
+  if (found.status != NearestOfFew::Status::nearest) return r;
   r.count = found.count;
   for (int i = 0; i < found.count; ++i) {
     const double* const x = found.points[i];
@@ -43,12 +47,49 @@ ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<cons
   }
   const double length = r.point.norm();
   r.upper = length + error.upper;
-  // Witnesses along the normal: the search turns across its last edge or triangle, whatever rounding did to the
-  // weights.
+  // Witnesses along the normal, which is across the last edge or triangle whatever rounding did to the weights.
   const bool along = (r.point + length * r.normal).squaredNorm() <= 36 * error.upper * error.upper;
-  r.certified = along && r.lower > 0 &&
-                (r.upper - r.lower <= limit || settings.width.is_within(settings.relative, r.lower, r.upper));
+  r.certified = along && r.lower > 0 && is_narrow(difference, r, relative, width);
+  return r;
+}
+
+}  // namespace
+
+ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
+                            const Vec3& direction, const FewSettings& settings, std::int64_t& support_calls) {
+  const DistanceErrors error{distance_errors(difference).upper, kScannedPlaneError * difference.reach()};
+  VertexPair first[4];
+  for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
+  const Vec3& t = difference.offset();
+  const bool any_distance = settings.beyond == std::numeric_limits<double>::infinity();
+  const NearestOfFew found =
+      nearest_of_few({difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}}, first,
+                     static_cast<int>(start.size()), {direction.x(), direction.y(), direction.z()},
+                     {.gap = kSearchGap * difference.reach(),
+                      .beyond = settings.beyond + error.lower,
+                      .within = any_distance ? 0 : settings.beyond,
+                      .apart = error.lower,
+                      .at_once = settings.at_once});
+  support_calls += found.supports;
+  ClosestOfFew out{.nearest = closest_point(difference, found, error, settings.relative, settings.width)};
+  if (found.status == NearestOfFew::Status::beyond) {
+    out.beyond = true;
+    out.next_to_plane = difference.vertex(found.support.a, found.support.b);
+  }
   return out;
+}
+
+ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
+                                    double relative, const BracketWidth& width) {
+  return closest_point(difference,
+                       confirm_nearest_of_few(in_frames(difference), simplex.data(), static_cast<int>(simplex.size())),
+                       distance_errors(difference), relative, width);
+}
+
+DifferenceVertex support_of_few(const PolytopeDifference& difference, const Vec3& direction) {
+  DifferenceVertex s;
+  support_of_few(in_frames(difference), {direction.x(), direction.y(), direction.z()}, s.x.data(), s.a, s.b);
+  return s;
 }
 
 }  // namespace pd::detail

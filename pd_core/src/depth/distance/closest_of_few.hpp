@@ -21,9 +21,7 @@ struct FewSettings {
   BracketWidth width;
   /// A plane farther than this is enough, and a point of P that is no farther shows that there is none.
   double beyond = std::numeric_limits<double>::infinity();
-  /// Given up where so many supports have not shown the bodies apart, or the first one lies deeper than this.
-  int shown_after = std::numeric_limits<int>::max();
-  double deepest = std::numeric_limits<double>::infinity();
+  bool at_once = false;  ///< given up where the first support does not show the bodies apart
 };
 
 /// @param start      vertices of P to begin with, at most four.
@@ -32,5 +30,13 @@ struct FewSettings {
 /// `certified` is false where the origin may lie in P or rounding left the bracket wider than asked.
 ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
                             const Vec3& direction, const FewSettings& settings, std::int64_t& support_calls);
+
+/// The same of one to three vertices of P alone, certified where one support shows P no nearer: for bodies that need
+/// not be turned for it.
+ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
+                                    double relative, const BracketWidth& width);
+
+/// `support_in_bodies` of few vertices.
+DifferenceVertex support_of_few(const PolytopeDifference& difference, const Vec3& direction);
 
 }  // namespace pd::detail

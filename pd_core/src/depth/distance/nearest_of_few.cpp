@@ -1,163 +1,69 @@
 #include "depth/distance/nearest_of_few.hpp"
 
-#include <limits>
-
-#include "numeric/lanes.hpp"
-#include "shape/support/scan_lanes.hpp"
+#include "depth/distance/simplex_lanes.hpp"
 
 namespace pd::detail {
 
 namespace {
 
 constexpr int kMostSupports = 32;
-/// The normal of a flatter triangle is rounding.
-constexpr double kLeastSineSquared = 0x1p-52;
-
-struct Point {
-  double x, y, z;
-  std::int32_t a = -1, b = -1;
-};
-
-struct LaneVectors {
-  Lanes x, y, z;
-};
-
-/// A face of the simplex in whose relative interior the nearest point lies.
-struct NearestFace {
-  int count = 0;
-  Point corners[3];
-  double weights[3];
-  Direction toward;   ///< unit; from the nearest point to the origin
-  double length = 0;  ///< of the nearest point
-};
-
-PD_INLINE double dot(const Point& p, const Direction& d) { return p.x * d.x + p.y * d.y + p.z * d.z; }
-PD_INLINE void dot(Lanes& out, const LaneVectors& u, const LaneVectors& v) { out = u.x * v.x + u.y * v.y + u.z * v.z; }
-PD_INLINE void cross(LaneVectors& out, const LaneVectors& u, const LaneVectors& v) {
-  out.x = u.y * v.z - u.z * v.y;
-  out.y = u.z * v.x - u.x * v.z;
-  out.z = u.x * v.y - u.y * v.x;
-}
-/// Lane i holds what lane i + 1 did, of three.
-PD_INLINE void turn(Lanes& out, const Lanes& v) { out = __builtin_shufflevector(v, v, 1, 2, 0, 1); }
-PD_INLINE void turn(LaneVectors& out, const LaneVectors& v) {
-  turn(out.x, v.x);
-  turn(out.y, v.y);
-  turn(out.z, v.z);
-}
 
 PD_INLINE Direction unit(const double (&v)[3]) {
   const double share = 1 / __builtin_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   return {share * v[0], share * v[1], share * v[2]};
 }
 
-/// `toward` along v or against it, whichever leads from the face to the origin.
-PD_INLINE void look_back(NearestFace& face, const Direction& v) {
-  const double along = dot(face.corners[0], v);
-  const double share = 1 / __builtin_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-  const double back = along > 0 ? -share : share;
-  face.toward = {back * v.x, back * v.y, back * v.z};
-  face.length = -(along * back);
-}
-
-PD_INLINE void take_vertex(NearestFace& face, const Point& s) {
-  face.count = 1;
-  face.corners[0] = s;
-  face.weights[0] = 1;
-}
-
-/// The face of the old one and the vertex s that holds the point nearest to the origin, among those that hold s, and
-/// the normal of that face there, of any length. False where the tetrahedron of all four holds the origin.
-PD_INLINE bool take_nearest_face(NearestFace& face, const Point& s, Direction& normal) {
-  // Lane i: the edge from s to corner i, and the triangle with corner i + 1. Corners that are not there repeat others,
-  // and what they span is flat.
-  const int second = face.count > 1 ? 1 : 0, third = face.count > 2 ? 2 : 0;
-  const Point p[3] = {face.corners[0], face.corners[second], face.corners[third]};
-  const LaneVectors to_s = {Lanes{s.x, s.x, s.x, s.x}, Lanes{s.y, s.y, s.y, s.y}, Lanes{s.z, s.z, s.z, s.z}};
-  const LaneVectors e = {Lanes{p[0].x, p[1].x, p[2].x, p[0].x} - to_s.x, Lanes{p[0].y, p[1].y, p[2].y, p[0].y} - to_s.y,
-                         Lanes{p[0].z, p[1].z, p[2].z, p[0].z} - to_s.z};
-  LaneVectors next_e, n, c, next_c;
-  turn(next_e, e);
-  cross(n, e, next_e);
-  cross(c, e, to_s);
-  turn(next_c, c);
-  Lanes ee, along, cc, nn, level, weight, next_weight, next_ee;
-  dot(ee, e, e);
-  dot(along, e, to_s);
-  dot(cc, c, c);
-  dot(nn, n, n);
-  dot(level, n, to_s);
-  dot(weight, n, next_c);
-  dot(next_weight, n, c);
-  turn(next_ee, ee);
-  along = -along;
-  next_weight = -next_weight;
-  const Lanes zero = {0, 0, 0, 0};
-  if (face.count == 3) {
-    // The origin lies on the inner side of a triangle where the third corner does.
-    const double volume = n.x[0] * e.x[2] + n.y[0] * e.y[2] + n.z[0] * e.z[2];
-    if ((mask_of_four(level * volume < zero) & 7U) == 7U) return false;
-  }
-  const Lanes own_weight = nn - weight - next_weight;
-  const Flags in_triangle =
-      (weight > zero) & (next_weight > zero) & (own_weight > zero) & (nn > kLeastSineSquared * (ee * next_ee));
-  const Flags in_edge = (along > zero) & (along < ee);
-  const Lanes none = zero + std::numeric_limits<double>::infinity();
-  const Lanes triangle = in_triangle ? level * level / nn : none;
-  const Lanes edge = in_edge ? cc / ee : none;
-  const double nearest = least(edge < triangle ? edge : triangle);
-  if (!(nearest < s.x * s.x + s.y * s.y + s.z * s.z)) {
-    take_vertex(face, s);
-    normal = {s.x, s.y, s.z};
-    return true;
-  }
-  const Lanes in_lanes = zero + nearest;
-  const unsigned triangles = mask_of_four(triangle == in_lanes);
-  if (triangles != 0) {
-    const int i = __builtin_ctz(triangles);
-    face.count = 3;
-    face.corners[0] = p[i];
-    face.corners[1] = p[i == 2 ? 0 : i + 1];
-    face.corners[2] = s;
-    const double share = 1 / nn[i];
-    face.weights[0] = share * weight[i];
-    face.weights[1] = share * next_weight[i];
-    face.weights[2] = share * own_weight[i];
-    normal = {n.x[i], n.y[i], n.z[i]};
-    return true;
-  }
-  const int i = __builtin_ctz(mask_of_four(edge == in_lanes));
-  face.count = 2;
-  face.corners[0] = p[i];
-  face.corners[1] = s;
-  face.weights[0] = along[i] / ee[i];
-  face.weights[1] = 1 - face.weights[0];
-  // Across the edge whatever rounding did to the weights: c x e is the nearest point times |e|^2.
-  normal = {c.y[i] * e.z[i] - c.z[i] * e.y[i], c.z[i] * e.x[i] - c.x[i] * e.z[i], c.x[i] * e.y[i] - c.y[i] * e.x[i]};
-  return true;
-}
-
-PD_INLINE bool add_vertex(NearestFace& face, const Point& s) {
-  Direction normal{s.x, s.y, s.z};
-  if (face.count == 0) {
-    take_vertex(face, s);
-  } else if (!take_nearest_face(face, s, normal)) {
-    return false;
-  }
-  look_back(face, normal);
-  return true;
-}
-
-PD_INLINE bool is_corner(const NearestFace& face, const Point& s) {
+PD_INLINE bool is_corner(const NearestLaneFace& face, const LanePoint& s) {
   for (int i = 0; i < 3; ++i) {
     if (i < face.count && face.corners[i].a == s.a && face.corners[i].b == s.b) return true;
   }
   return false;
 }
 
-PD_INLINE Point vertex(const FewVertices& bodies, int a, int b) {
+PD_INLINE LanePoint vertex(const FewVertices& bodies, int a, int b) {
   return {(bodies.b.x[b] + bodies.a.x[a]) + bodies.offset[0], (bodies.b.y[b] + bodies.a.y[a]) + bodies.offset[1],
           (bodies.b.z[b] + bodies.a.z[a]) + bodies.offset[2], a, b};
+}
+
+PD_INLINE Direction turned(const double* r, double x, double y, double z) {
+  return {r[0] * x + r[3] * y + r[6] * z, r[1] * x + r[4] * y + r[7] * z, r[2] * x + r[5] * y + r[8] * z};
+}
+PD_INLINE Direction into_frame(const double* r, const Direction& d) {
+  return {r[0] * d.x + r[1] * d.y + r[2] * d.z, r[3] * d.x + r[4] * d.y + r[5] * d.z,
+          r[6] * d.x + r[7] * d.y + r[8] * d.z};
+}
+PD_INLINE LanePoint posed_vertex(const FewVerticesInFrames& bodies, int a, int b) {
+  const Direction on_a = turned(bodies.rotation_a, bodies.a.x[a], bodies.a.y[a], bodies.a.z[a]);
+  const Direction on_b = turned(bodies.rotation_b, bodies.b.x[b], bodies.b.y[b], bodies.b.z[b]);
+  return {(on_b.x - on_a.x) + bodies.offset[0], (on_b.y - on_a.y) + bodies.offset[1],
+          (on_b.z - on_a.z) + bodies.offset[2], a, b};
+}
+
+PD_INLINE LanePoint support(const FewVerticesInFrames& bodies, const Direction& d) {
+  return posed_vertex(bodies, farthest(bodies.a, into_frame(bodies.rotation_a, {-d.x, -d.y, -d.z})),
+                      farthest(bodies.b, into_frame(bodies.rotation_b, d)));
+}
+
+PD_INLINE void put(double (&out)[3], double x, double y, double z) {
+  out[0] = x;
+  out[1] = y;
+  out[2] = z;
+}
+/// The plane of a support.
+PD_INLINE void put_plane(NearestOfFew& out, const LanePoint& s, const Direction& d) {
+  put(out.direction, d.x, d.y, d.z);
+  out.height = -dot(s, d);
+  out.support = {s.a, s.b};
+}
+PD_INLINE void put_face(NearestOfFew& out, const NearestLaneFace& face) {
+  out.status = NearestOfFew::Status::nearest;
+  out.count = face.count;
+  for (int i = 0; i < face.count; ++i) {
+    const LanePoint& p = face.corners[i];
+    out.simplex[i] = {p.a, p.b};
+    put(out.points[i], p.x, p.y, p.z);
+    out.weights[i] = face.weights[i];
+  }
 }
 
 }  // namespace
@@ -165,27 +71,23 @@ PD_INLINE Point vertex(const FewVertices& bodies, int a, int b) {
 PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count,
                                       const double (&direction)[3], const NearestGoal& goal) {
   NearestOfFew out;
-  NearestFace face{};
+  NearestLaneFace face{};
   Direction d = unit(direction);
   bool shown = false;
   for (int step = 0; step < kMostSupports; ++step) {
-    Point s;
+    LanePoint s;
     if (step < count) {
       s = vertex(bodies, start[step].a, start[step].b);
     } else {
       s = vertex(bodies, farthest(bodies.a, d), farthest(bodies.b, d));
       ++out.supports;
-      out.height = -dot(s, d);
-      out.support = {s.a, s.b};
-      out.direction[0] = d.x;
-      out.direction[1] = d.y;
-      out.direction[2] = d.z;
+      put_plane(out, s, d);
       if (out.height > goal.beyond) {
         out.status = NearestOfFew::Status::beyond;
         return out;
       }
       shown = shown || out.height > goal.apart;
-      if (!shown && (out.supports >= goal.shown_after || out.height < -goal.deepest)) return out;
+      if (!shown && goal.at_once) return out;
       if ((face.count > 0 && face.length - out.height <= goal.gap) || is_corner(face, s)) break;
     }
     const double length = face.length;
@@ -195,18 +97,34 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
     if (!(face.length > goal.within)) return out;
     d = face.toward;
   }
-  if (!shown) return out;
-  out.status = NearestOfFew::Status::nearest;
-  out.count = face.count;
-  for (int i = 0; i < face.count; ++i) {
-    const Point& p = face.corners[i];
-    out.simplex[i] = {p.a, p.b};
-    out.points[i][0] = p.x;
-    out.points[i][1] = p.y;
-    out.points[i][2] = p.z;
-    out.weights[i] = face.weights[i];
-  }
+  if (shown) put_face(out, face);
   return out;
+}
+
+PD_CLONES NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count) {
+  NearestOfFew out;
+  NearestLaneFace face{};
+  LanePoint p[3];
+  for (int i = 0; i < count; ++i) p[i] = posed_vertex(bodies, simplex[i].a, simplex[i].b);
+  if (count < 3 || !take_triangle(face, p[0], p[1], p[2])) {
+    for (int i = 0; i < count; ++i) (void)add_vertex(face, p[i]);
+  }
+  const Direction& d = face.toward;
+  const LanePoint s = support(bodies, d);
+  out.supports = 1;
+  put_plane(out, s, d);
+  put_face(out, face);
+  return out;
+}
+
+PD_CLONES void support_of_few(const FewVerticesInFrames& bodies, const double (&direction)[3], double* x,
+                              std::int32_t& a, std::int32_t& b) {
+  const LanePoint s = support(bodies, {direction[0], direction[1], direction[2]});
+  x[0] = s.x;
+  x[1] = s.y;
+  x[2] = s.z;
+  a = s.a;
+  b = s.b;
 }
 
 }  // namespace pd::detail

@@ -1,9 +1,6 @@
 /// @file
 /// The point of P nearest to the origin for two bodies whose vertices are few enough to be scanned: Gilbert, Johnson,
-/// Keerthi 1988 as one kernel. It proves nothing: closest_of_few.hpp does.
-///
-/// Each step keeps the face of the simplex that holds its nearest point. After the first step that face holds the
-/// newest vertex, so that three edges and three triangles are all there is to look at: one lane each.
+/// Keerthi 1988 as one kernel (simplex_lanes.hpp). It proves nothing: closest_of_few.hpp does.
 ///
 /// Compiled for several instruction sets; every lane on its own: the same bits on each.
 #pragma once
@@ -20,15 +17,21 @@ struct FewVertices {
   double offset[3];
 };
 
+/// The same as they are, and what turns them, column by column.
+struct FewVerticesInFrames {
+  VertexArrays a;
+  VertexArrays b;
+  const double* rotation_a;
+  const double* rotation_b;
+  const double* offset;
+};
+
 struct NearestGoal {
   double gap;     ///< a nearest point no farther behind its plane ends the search
   double beyond;  ///< so does a plane farther from the origin,
   double within;  ///< and a point of P that is no farther
-  /// A plane at more than `apart` must have shown the bodies apart after so many supports, and the first one must lie
-  /// no deeper than `deepest`.
-  double apart;
-  int shown_after;
-  double deepest;
+  double apart;   ///< a plane at more than this shows the bodies apart,
+  bool at_once;   ///< and the first one must
 };
 
 struct NearestOfFew {
@@ -52,5 +55,13 @@ struct NearestOfFew {
 /// @param direction  where to look first if there are none, any length but 0.
 NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count, const double (&direction)[3],
                             const NearestGoal& goal);
+
+/// What the nearest point of these vertices of P is, one to three, and the support behind it. `height` tells whether it
+/// is P's, too.
+NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count);
+
+/// The vertex of P farthest in a direction of any length: its coordinates and ids.
+void support_of_few(const FewVerticesInFrames& bodies, const double (&direction)[3], double* x, std::int32_t& a,
+                    std::int32_t& b);
 
 }  // namespace pd::detail

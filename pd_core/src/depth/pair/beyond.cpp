@@ -36,6 +36,13 @@ std::optional<SeparatingPlane> find_plane_of_few(PolytopeDifference& difference,
   return SeparatingPlane{found.nearest.normal, found.nearest.lower, found.next_to_plane, false};
 }
 
+DifferenceVertex support(const PolytopeDifference& difference, const Vec3& unit) {
+  return difference.climbs() ? difference.support_in_bodies(unit) : support_of_few(difference, unit);
+}
+DifferenceVertex support(const SmoothDifference& difference, const Vec3& unit) {
+  return difference.support_in_bodies(unit);
+}
+
 /// @param least  of the cores' distance.
 template <class Difference>
 std::optional<SeparatingPlane> find_plane(Difference& difference, const Vec3& start, double least,
@@ -48,7 +55,7 @@ std::optional<SeparatingPlane> find_plane(Difference& difference, const Vec3& st
   double weights[4];
   int count = 0;
   for (int step = 0; step < kMostSupports; ++step) {
-    DifferenceVertex s = difference.support_in_bodies(unit);
+    DifferenceVertex s = support(difference, unit);
     ++support_calls;
     if (-s.x.dot(unit) - error > least) {
       s = difference.certified_support(unit, s, buffers.stack);

@@ -19,16 +19,6 @@ namespace pd::detail {
 
 namespace {
 
-/// Bodies that one support towards P's centre does not show apart are asked for their depth first. Of slender ones,
-/// which lie across each other and whose depth takes a long search, it need only not show them deep, and a few more may
-/// tell.
-struct ShownApart {
-  double least_share_of_reach = 0.15;  ///< slender: P's centre is nearer to the origin
-  double deepest_share = 0.3;          ///< of the way to the centre
-  int supports = 4;
-};
-constexpr ShownApart kShownApart;
-
 /// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
 /// as far from it to within the bracket.
 bool bound_is_of_face(const InnerSurface& surface, const ExpansionResult& result) {
@@ -203,8 +193,15 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   out.method = Method::overlay;
   out.statistics.facets_visited += kBoxAxes;
   if (boxes.status == BoxPairStatus::separated) {
-    const DifferenceVertex first = query.with_supports().support(boxes.normal, nullptr);
-    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+    const PolytopeDifference& difference = query.with_supports();
+    DifferenceVertex first[3];
+    std::size_t count = 0;
+    if (boxes.nearest) {
+      for (const VertexPair& corner : boxes.nearest->v) first[count++] = difference.vertex(corner.a, corner.b);
+    } else {
+      first[count++] = difference.support(boxes.normal, nullptr);
+    }
+    return answer_apart(query, closest_point(query, std::span(first).first(count), out.statistics), out);
   }
   if (boxes.status == BoxPairStatus::undecided) return false;
   set_depth(pair, boxes.lower, boxes.upper, boxes.normal, out);
@@ -219,13 +216,8 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
   if (query.difference.climbs() || !query.within_range() || remembers_surface(query)) return false;
   const Vec3 centre = query.difference.centre();
-  const double way = centre.norm();
-  if (!(way > 0)) return false;
-  const bool slender = way < kShownApart.least_share_of_reach * query.difference.reach();
-  const FewSettings settings{.relative = relative_of_distance(query),
-                             .width = query.width(),
-                             .shown_after = slender ? kShownApart.supports : 1,
-                             .deepest = kShownApart.deepest_share * way};
+  if (!(centre.squaredNorm() > 0)) return false;
+  const FewSettings settings{.relative = relative_of_distance(query), .width = query.width(), .at_once = true};
   const ClosestOfFew found = closest_of_few(query.with_supports(), {}, -centre, settings, out.statistics.support_calls);
   if (!answer_apart(query, found.nearest, out)) return false;
   out.method = Method::expansion;

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "depth/distance/closest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
@@ -50,8 +51,8 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   return true;
 }
 
-/// The closest point on these vertices of P, certified where P reaches no farther: for one support the bodies need not
-/// be turned, and of many vertices those next to the contact tell.
+/// The closest point on these vertices of P, certified where those next to them show that P reaches no farther: for
+/// bodies of many vertices.
 ClosestPoint confirmed_closest_point(const PolytopeQuery& query, std::span<const DifferenceVertex> vertices) {
   const PolytopeDifference& difference = query.difference;
   ClosestPoint r;
@@ -66,12 +67,8 @@ ClosestPoint confirmed_closest_point(const PolytopeQuery& query, std::span<const
   if (!(length > 4 * error.lower)) return r;
   r.normal = search_direction(r.simplex, r.count, r.point, length, 6 * error.upper);
   DifferenceVertex s;
-  if (difference.climbs()) {
-    const DifferenceVertex corners[3] = {r.simplex[0], r.simplex[std::min(1, r.count - 1)], r.simplex[r.count - 1]};
-    if (!difference.confirm_support(r.normal, s, corners)) return r;
-  } else {
-    s = difference.support_in_bodies(r.normal);
-  }
+  const DifferenceVertex corners[3] = {r.simplex[0], r.simplex[std::min(1, r.count - 1)], r.simplex[r.count - 1]};
+  if (!difference.confirm_support(r.normal, s, corners)) return r;
   r.upper = length + error.upper;
   r.lower = -s.x.dot(r.normal) - error.lower;
   const auto narrow_for = [&](double size) { return r.upper - r.lower <= query.width().limit(size); };
@@ -112,12 +109,19 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   if (state.apart_count == 0 || !query.within_range()) return false;
   const int count = std::exchange(state.apart_count, 0);
   if (!is_of_pair(state, query.pair)) return false;
-  DifferenceVertex vertices[3];
-  query.difference.posed_vertices(state.apart, count, vertices);
-  const auto start = std::span(vertices).first(static_cast<std::size_t>(count));
-  ClosestPoint nearest = confirmed_closest_point(query, start);
   out.statistics.support_calls += 1;
-  if (!nearest.certified) nearest = closest_point(query, start, out.statistics);
+  const auto ids = std::span(state.apart).first(static_cast<std::size_t>(count));
+  ClosestPoint nearest;
+  if (!query.difference.climbs()) {
+    nearest = confirm_closest_of_few(query.difference, ids, relative_of_distance(query), query.width());
+  }
+  if (!nearest.certified) {
+    DifferenceVertex vertices[3];
+    query.difference.posed_vertices(ids.data(), count, vertices);
+    const auto start = std::span(vertices).first(ids.size());
+    if (query.difference.climbs()) nearest = confirmed_closest_point(query, start);
+    if (!nearest.certified) nearest = closest_point(query, start, out.statistics);
+  }
   if (!answer_apart(query, nearest, out)) return false;
   out.method = Method::expansion;
   out.warm = true;
