@@ -175,11 +175,13 @@ class PolytopeDifference {
   [[nodiscard]] double reach() const { return reach_; }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
-  [[nodiscard]] double point_error() const { return 10.5 * kUnitRoundoff * reach_; }
+  [[nodiscard]] double point_error() const { return kPointError * reach_; }
   /// h_P(n) / |n| exceeds <s, n> / |n| of a certified support s by at most this: twice the error of comparing two
   /// vertices, in a body's frame, where the rotated direction errs by 4u |n| and the product by 3u |n| |v|, or posed,
   /// where a vertex errs by 4u sqrt(3) |v| instead.
-  [[nodiscard]] double support_error() const { return 20 * kUnitRoundoff * reach_; }
+  [[nodiscard]] double support_error() const { return kSupportError * reach_; }
+  static constexpr double kPointError = 10.5 * kUnitRoundoff;
+  static constexpr double kSupportError = 20 * kUnitRoundoff;
 
  private:
   /// `x` without its mantissa: a factor that rounds nothing.

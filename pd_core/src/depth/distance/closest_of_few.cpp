@@ -86,10 +86,4 @@ ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::s
                        distance_errors(difference), relative, width);
 }
 
-DifferenceVertex support_of_few(const PolytopeDifference& difference, const Vec3& direction) {
-  DifferenceVertex s;
-  support_of_few(in_frames(difference), {direction.x(), direction.y(), direction.z()}, s.x.data(), s.a, s.b);
-  return s;
-}
-
 }  // namespace pd::detail

@@ -36,7 +36,4 @@ ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<cons
 ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
                                     double relative, const BracketWidth& width);
 
-/// `support_in_bodies` of few vertices.
-DifferenceVertex support_of_few(const PolytopeDifference& difference, const Vec3& direction);
-
 }  // namespace pd::detail

@@ -39,9 +39,9 @@ PD_INLINE LanePoint posed_vertex(const FewVerticesInFrames& bodies, int a, int b
           (on_b.z - on_a.z) + bodies.offset[2], a, b};
 }
 
-PD_INLINE LanePoint support(const FewVerticesInFrames& bodies, const Direction& d) {
-  return posed_vertex(bodies, farthest(bodies.a, into_frame(bodies.rotation_a, {-d.x, -d.y, -d.z})),
-                      farthest(bodies.b, into_frame(bodies.rotation_b, d)));
+PD_INLINE VertexPair farthest_in_frames(const FewVerticesInFrames& bodies, const Direction& d) {
+  return {farthest(bodies.a, into_frame(bodies.rotation_a, {-d.x, -d.y, -d.z})),
+          farthest(bodies.b, into_frame(bodies.rotation_b, d))};
 }
 
 PD_INLINE void put(double (&out)[3], double x, double y, double z) {
@@ -110,21 +110,22 @@ PD_CLONES NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies,
     for (int i = 0; i < count; ++i) (void)add_vertex(face, p[i]);
   }
   const Direction& d = face.toward;
-  const LanePoint s = support(bodies, d);
+  const VertexPair s = farthest_in_frames(bodies, d);
   out.supports = 1;
-  put_plane(out, s, d);
+  put_plane(out, posed_vertex(bodies, s.a, s.b), d);
   put_face(out, face);
   return out;
 }
 
-PD_CLONES void support_of_few(const FewVerticesInFrames& bodies, const double (&direction)[3], double* x,
-                              std::int32_t& a, std::int32_t& b) {
-  const LanePoint s = support(bodies, {direction[0], direction[1], direction[2]});
-  x[0] = s.x;
-  x[1] = s.y;
-  x[2] = s.z;
-  a = s.a;
-  b = s.b;
+PD_CLONES SupportOfFew support_of_few(const FewVerticesInFrames& bodies, const double (&direction)[3]) {
+  SupportOfFew out;
+  out.ids = farthest_in_frames(bodies, {direction[0], direction[1], direction[2]});
+  const auto [a, b] = out.ids;
+  const Direction on_a = turned(bodies.rotation_a, bodies.a.x[a], bodies.a.y[a], bodies.a.z[a]);
+  const Direction on_b = turned(bodies.rotation_b, bodies.b.x[b], bodies.b.y[b], bodies.b.z[b]);
+  put(out.on_a, on_a.x, on_a.y, on_a.z);
+  put(out.on_b, on_b.x, on_b.y, on_b.z);
+  return out;
 }
 
 }  // namespace pd::detail

@@ -60,8 +60,12 @@ NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, 
 /// is P's, too.
 NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count);
 
-/// The vertex of P farthest in a direction of any length: its coordinates and ids.
-void support_of_few(const FewVerticesInFrames& bodies, const double (&direction)[3], double* x, std::int32_t& a,
-                    std::int32_t& b);
+/// The vertices of A and B farthest in a direction of P, of any length: turned, but not moved.
+struct SupportOfFew {
+  VertexPair ids;
+  double on_a[3];
+  double on_b[3];
+};
+SupportOfFew support_of_few(const FewVerticesInFrames& bodies, const double (&direction)[3]);
 
 }  // namespace pd::detail
