@@ -56,20 +56,17 @@ ClosestPoint closest_point(const PolytopeDifference& difference, const NearestOf
 }  // namespace
 
 ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
-                            const Vec3& direction, const FewSettings& settings, std::int64_t& support_calls) {
+                            const FewSettings& settings, std::int64_t& support_calls) {
   const DistanceErrors error{distance_errors(difference).upper, kScannedPlaneError * difference.reach()};
   VertexPair first[4];
   for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
   const Vec3& t = difference.offset();
   const bool any_distance = settings.beyond == std::numeric_limits<double>::infinity();
-  const NearestOfFew found =
-      nearest_of_few({difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}}, first,
-                     static_cast<int>(start.size()), {direction.x(), direction.y(), direction.z()},
-                     {.gap = kSearchGap * difference.reach(),
-                      .beyond = settings.beyond + error.lower,
-                      .within = any_distance ? 0 : settings.beyond,
-                      .apart = error.lower,
-                      .at_once = settings.at_once});
+  const NearestOfFew found = nearest_of_few({difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}}, first,
+                                            static_cast<int>(start.size()),
+                                            {.gap = kSearchGap * difference.reach(),
+                                             .beyond = settings.beyond + error.lower,
+                                             .within = any_distance ? 0 : settings.beyond});
   support_calls += found.supports;
   ClosestOfFew out{.nearest = closest_point(difference, found, error, settings.relative, settings.width)};
   if (found.status == NearestOfFew::Status::beyond) {

@@ -21,15 +21,13 @@ struct FewSettings {
   BracketWidth width;
   /// A plane farther than this is enough, and a point of P that is no farther shows that there is none.
   double beyond = std::numeric_limits<double>::infinity();
-  bool at_once = false;  ///< given up where the first support does not show the bodies apart
 };
 
-/// @param start      vertices of P to begin with, at most four.
-/// @param direction  where to look first if there are none, any length but 0.
+/// @param start  vertices of P to begin with, one to four.
 /// Requires that the difference does not climb, has `prepare_supports` called, and a reach between 2^-100 and 2^100.
 /// `certified` is false where the origin may lie in P or rounding left the bracket wider than asked.
 ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
-                            const Vec3& direction, const FewSettings& settings, std::int64_t& support_calls);
+                            const FewSettings& settings, std::int64_t& support_calls);
 
 /// The same of one to three vertices of P alone, certified where one support shows P no nearer: for bodies that need
 /// not be turned for it.

@@ -8,11 +8,6 @@ namespace {
 
 constexpr int kMostSupports = 32;
 
-PD_INLINE Direction unit(const double (&v)[3]) {
-  const double share = 1 / __builtin_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  return {share * v[0], share * v[1], share * v[2]};
-}
-
 PD_INLINE bool is_corner(const NearestLaneFace& face, const LanePoint& s) {
   for (int i = 0; i < 3; ++i) {
     if (i < face.count && face.corners[i].a == s.a && face.corners[i].b == s.b) return true;
@@ -69,16 +64,15 @@ PD_INLINE void put_face(NearestOfFew& out, const NearestLaneFace& face) {
 }  // namespace
 
 PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count,
-                                      const double (&direction)[3], const NearestGoal& goal) {
+                                      const NearestGoal& goal) {
   NearestOfFew out;
   NearestLaneFace face{};
-  Direction d = unit(direction);
-  bool shown = false;
   for (int step = 0; step < kMostSupports; ++step) {
     LanePoint s;
     if (step < count) {
       s = vertex(bodies, start[step].a, start[step].b);
     } else {
+      const Direction d = face.toward;
       s = vertex(bodies, farthest(bodies.a, d), farthest(bodies.b, d));
       ++out.supports;
       put_plane(out, s, d);
@@ -86,18 +80,15 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
         out.status = NearestOfFew::Status::beyond;
         return out;
       }
-      shown = shown || out.height > goal.apart;
-      if (!shown && goal.at_once) return out;
-      if ((face.count > 0 && face.length - out.height <= goal.gap) || is_corner(face, s)) break;
+      if (face.length - out.height <= goal.gap || is_corner(face, s)) break;
     }
     const double length = face.length;
     if (!add_vertex(face, s)) return out;
     // Supports that rounding takes for farther ones.
-    if (step >= count && out.supports > 1 && !(face.length < length)) break;
+    if (step >= count && !(face.length < length)) break;
     if (!(face.length > goal.within)) return out;
-    d = face.toward;
   }
-  if (shown) put_face(out, face);
+  put_face(out, face);
   return out;
 }
 

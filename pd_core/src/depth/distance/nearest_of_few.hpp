@@ -30,8 +30,6 @@ struct NearestGoal {
   double gap;     ///< a nearest point no farther behind its plane ends the search
   double beyond;  ///< so does a plane farther from the origin,
   double within;  ///< and a point of P that is no farther
-  double apart;   ///< a plane at more than this shows the bodies apart,
-  bool at_once;   ///< and the first one must
 };
 
 struct NearestOfFew {
@@ -51,10 +49,8 @@ struct NearestOfFew {
   double weights[3];    ///< of the nearest point; they sum to 1 up to rounding
 };
 
-/// @param start      vertices of P to begin with, at most four.
-/// @param direction  where to look first if there are none, any length but 0.
-NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count, const double (&direction)[3],
-                            const NearestGoal& goal);
+/// @param start  vertices of P to begin with, one to four.
+NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count, const NearestGoal& goal);
 
 /// What the nearest point of these vertices of P is, one to three, and the support behind it. `height` tells whether it
 /// is P's, too.

@@ -120,8 +120,7 @@ class BeyondQuery {
     const DifferenceVertex first = difference.vertex(s.ids.a, s.ids.b);
     FewSettings settings;
     settings.beyond = least(reach);
-    const ClosestOfFew found =
-        closest_of_few(difference, {&first, 1}, Vec3::Zero(), settings, out_.statistics.support_calls);
+    const ClosestOfFew found = closest_of_few(difference, {&first, 1}, settings, out_.statistics.support_calls);
     if (!found.beyond) return false;
     fill({found.nearest.normal, found.nearest.lower, found.next_to_plane, false},
          points_of(difference, found.next_to_plane), difference.point_error(), reach);

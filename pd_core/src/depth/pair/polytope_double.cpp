@@ -19,6 +19,10 @@ namespace pd::detail {
 
 namespace {
 
+/// A support towards P's centre shows bodies apart only if that is no nearer to the origin than this share of the
+/// reach: measured on boxes, prisms, needles and round hulls.
+constexpr double kLeastWayShown = 0.3;
+
 /// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
 /// as far from it to within the bracket.
 bool bound_is_of_face(const InnerSurface& surface, const ExpansionResult& result) {
@@ -215,11 +219,13 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
   if (query.difference.climbs() || !query.within_range() || remembers_surface(query)) return false;
-  const Vec3 centre = query.difference.centre();
-  if (!(centre.squaredNorm() > 0)) return false;
-  const FewSettings settings{.relative = relative_of_distance(query), .width = query.width(), .at_once = true};
-  const ClosestOfFew found = closest_of_few(query.with_supports(), {}, -centre, settings, out.statistics.support_calls);
-  if (!answer_apart(query, found.nearest, out)) return false;
+  const Vec3 back = -query.difference.centre();
+  const double reach = query.difference.reach();
+  if (!(back.squaredNorm() > kLeastWayShown * kLeastWayShown * reach * reach)) return false;
+  const DifferenceVertex first = query.with_supports().support(back, nullptr);
+  ++out.statistics.support_calls;
+  if (!(first.x.dot(back) < 0)) return false;
+  if (!answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out)) return false;
   out.method = Method::expansion;
   return true;
 }
@@ -334,8 +340,7 @@ ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVerte
   // The tightest bracket's bits are those of the simplex, so that its search stays what it was.
   if (query.bracket != Bracket::tightest && !query.difference.climbs()) {
     const FewSettings settings{.relative = relative_of_distance(query), .width = query.width()};
-    const ClosestOfFew found =
-        closest_of_few(query.with_supports(), start, Vec3::Zero(), settings, statistics.support_calls);
+    const ClosestOfFew found = closest_of_few(query.with_supports(), start, settings, statistics.support_calls);
     if (found.nearest.certified) return found.nearest;
   }
   return closest_point(query.with_supports(), start, relative_of_distance(query), query.width(), query.buffers.stack,
