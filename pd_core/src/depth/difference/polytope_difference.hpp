@@ -50,8 +50,8 @@ class PolytopeDifference {
   /// difference and serve no other.
   void prepare_supports(PosedVerticesPair& posed) {
     if (climbs_ || posed_a_.count > 0) return;
-    posed_a_ = posed.a.transform(a_, -rotation_a_);
-    posed_b_ = posed.b.transform(b_, rotation_b_);
+    posed_a_ = posed.a.transform(a_, rotation_a_, -1);
+    posed_b_ = posed.b.transform(b_, rotation_b_, 1);
   }
 
   /// A point of P that maximises <x, direction>, found from a vertex already at hand (`near`, or nullptr).
@@ -165,8 +165,8 @@ class PolytopeDifference {
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
   /// A |coordinate| of P that is about the largest, of the vertices that come first and last: of most bodies two ends.
   [[nodiscard]] double coordinate_of_ends() const {
-    const Vec3 a0 = rotation_a_ * a_.vertex(0), a1 = rotation_a_ * a_.vertex(a_.num_vertices() - 1);
-    const Vec3 b0 = rotation_b_ * b_.vertex(0), b1 = rotation_b_ * b_.vertex(b_.num_vertices() - 1);
+    const int last_a = a_.num_vertices() - 1, last_b = b_.num_vertices() - 1;
+    const Vec3 a0 = turned_a(0), a1 = turned_a(last_a), b0 = turned_b(0), b1 = turned_b(last_b);
     const Vec3 most = b0.cwiseMax(b1) - a0.cwiseMin(a1) + offset_;
     const Vec3 least = b0.cwiseMin(b1) - a0.cwiseMax(a1) + offset_;
     return most.cwiseAbs().cwiseMax(least.cwiseAbs()).maxCoeff();
@@ -191,6 +191,16 @@ class PolytopeDifference {
   [[nodiscard]] static int search(const ConvexPolytope& body, const Vec3& scaled) {
     return body.num_vertices() > kScanLimit ? farthest_in_table(body.storage(), scaled)
                                             : support_vertex(body, scaled, -1);
+  }
+
+  /// A vertex as it is turned, but not moved.
+  [[nodiscard]] Vec3 turned_a(int v) const {
+    if (posed_a_.count > 0) return -Vec3(posed_a_.x[v], posed_a_.y[v], posed_a_.z[v]);
+    return rotation_a_ * a_.vertex(v);
+  }
+  [[nodiscard]] Vec3 turned_b(int v) const {
+    if (posed_b_.count > 0) return {posed_b_.x[v], posed_b_.y[v], posed_b_.z[v]};
+    return rotation_b_ * b_.vertex(v);
   }
 
   const ConvexPolytope& a_;

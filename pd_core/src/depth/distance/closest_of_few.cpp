@@ -1,6 +1,7 @@
 #include "depth/distance/closest_of_few.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "depth/distance/nearest_of_few.hpp"
 
@@ -19,6 +20,11 @@ constexpr double kSearchGap = 4 * kUnitRoundoff;
 FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
   return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
           difference.rotation_b().data(), difference.offset().data()};
+}
+
+FewVertices posed(const PolytopeDifference& difference) {
+  const Vec3& t = difference.offset();
+  return {difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}};
 }
 
 /// Whether the bracket is narrow for L, of which the simplex tells something at once.
@@ -55,25 +61,29 @@ ClosestPoint closest_point(const PolytopeDifference& difference, const NearestOf
 
 }  // namespace
 
-ClosestOfFew closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
-                            const FewSettings& settings, std::int64_t& support_calls) {
-  const DistanceErrors error{distance_errors(difference).upper, kScannedPlaneError * difference.reach()};
+ClosestPoint closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
+                            double relative, const BracketWidth& width, std::int64_t& support_calls) {
   VertexPair first[4];
   for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
-  const Vec3& t = difference.offset();
-  const bool any_distance = settings.beyond == std::numeric_limits<double>::infinity();
-  const NearestOfFew found = nearest_of_few({difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}}, first,
-                                            static_cast<int>(start.size()),
-                                            {.gap = kSearchGap * difference.reach(),
-                                             .beyond = settings.beyond + error.lower,
-                                             .within = any_distance ? 0 : settings.beyond});
+  const NearestOfFew found =
+      nearest_of_few(posed(difference), first, static_cast<int>(start.size()),
+                     {kSearchGap * difference.reach(), std::numeric_limits<double>::infinity(), 0});
   support_calls += found.supports;
-  ClosestOfFew out{.nearest = closest_point(difference, found, error, settings.relative, settings.width)};
-  if (found.status == NearestOfFew::Status::beyond) {
-    out.beyond = true;
-    out.next_to_plane = difference.vertex(found.support.a, found.support.b);
-  }
-  return out;
+  return closest_point(difference, found, {distance_errors(difference).upper, kScannedPlaneError * difference.reach()},
+                       relative, width);
+}
+
+std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, const DifferenceVertex& first,
+                                       double least, std::int64_t& support_calls) {
+  const double error = kScannedPlaneError * difference.reach();
+  const VertexPair start{first.a, first.b};
+  const NearestOfFew found =
+      nearest_of_few(posed(difference), &start, 1, {kSearchGap * difference.reach(), least + error, least});
+  support_calls += found.supports;
+  if (found.status != NearestOfFew::Status::beyond) return std::nullopt;
+  return PlaneOfFew{{found.direction[0], found.direction[1], found.direction[2]},
+                    found.height - error,
+                    difference.vertex(found.support.a, found.support.b)};
 }
 
 ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::span<const VertexPair> simplex,

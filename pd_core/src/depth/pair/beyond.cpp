@@ -118,12 +118,10 @@ class BeyondQuery {
     PolytopeDifference difference(a, a_.pose, b, b_.pose);
     difference.prepare_supports(buffers_.posed);
     const DifferenceVertex first = difference.vertex(s.ids.a, s.ids.b);
-    FewSettings settings;
-    settings.beyond = least(reach);
-    const ClosestOfFew found = closest_of_few(difference, {&first, 1}, settings, out_.statistics.support_calls);
-    if (!found.beyond) return false;
-    fill({found.nearest.normal, found.nearest.lower, found.next_to_plane, false},
-         points_of(difference, found.next_to_plane), difference.point_error(), reach);
+    const auto plane = plane_of_few(difference, first, least(reach), out_.statistics.support_calls);
+    if (!plane) return false;
+    fill({plane->normal, plane->lower, plane->s, false}, points_of(difference, plane->s), difference.point_error(),
+         reach);
     return true;
   }
 

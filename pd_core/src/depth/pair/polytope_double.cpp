@@ -339,9 +339,9 @@ double relative_of_distance(const PolytopeQuery& query) {
 ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
   // The tightest bracket's bits are those of the simplex, so that its search stays what it was.
   if (query.bracket != Bracket::tightest && !query.difference.climbs()) {
-    const FewSettings settings{.relative = relative_of_distance(query), .width = query.width()};
-    const ClosestOfFew found = closest_of_few(query.with_supports(), start, settings, statistics.support_calls);
-    if (found.nearest.certified) return found.nearest;
+    const ClosestPoint found = closest_of_few(query.with_supports(), start, relative_of_distance(query), query.width(),
+                                              statistics.support_calls);
+    if (found.certified) return found;
   }
   return closest_point(query.with_supports(), start, relative_of_distance(query), query.width(), query.buffers.stack,
                        statistics.support_calls);

@@ -136,16 +136,20 @@ PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock& first, const
   return right < left ? right : left;
 }
 
-PD_CLONES void transform_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y,
-                                  double* z) {
+PD_CLONES void transform_vertices(const VertexArrays& vertices, const double* rotation, double sign, double* x,
+                                  double* y, double* z) {
+  const double* const r = rotation;
+  const Direction rows[3] = {{sign * r[0], sign * r[3], sign * r[6]},
+                             {sign * r[1], sign * r[4], sign * r[7]},
+                             {sign * r[2], sign * r[5], sign * r[8]}};
   const int padded = (vertices.count + kVertexBlock - 1) / kVertexBlock * kVertexBlock;
   for (int i = 0; i < padded; i += kLanes) {
     Lanes turned;
-    heights(turned, vertices, i, {matrix[0], matrix[1], matrix[2]});
+    heights(turned, vertices, i, rows[0]);
     store(x + i, turned);
-    heights(turned, vertices, i, {matrix[3], matrix[4], matrix[5]});
+    heights(turned, vertices, i, rows[1]);
     store(y + i, turned);
-    heights(turned, vertices, i, {matrix[6], matrix[7], matrix[8]});
+    heights(turned, vertices, i, rows[2]);
     store(z + i, turned);
   }
 }
