@@ -7,6 +7,7 @@
 #include "depth/distance/closest_of_few.hpp"
 #include "depth/distance/nearest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
+#include "depth/facets/box_sat.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -115,6 +116,11 @@ class BeyondQuery {
            reach);
       return true;
     }
+    if (const auto plane = plane_of_boxes(a, b, reach)) {
+      fill(*plane, points_of(PolytopeDifference(a, a_.pose, b, b_.pose), plane->s),
+           PolytopeDifference::kPointError * reach, reach);
+      return true;
+    }
     PolytopeDifference difference(a, a_.pose, b, b_.pose);
     difference.prepare_supports(buffers_.posed);
     const DifferenceVertex first = difference.vertex(s.ids.a, s.ids.b);
@@ -133,6 +139,21 @@ class BeyondQuery {
   [[nodiscard]] double rounding(double reach) const { return 8 * kUnitRoundoff * (beyond_ + margin_ + reach); }
   /// What the cores' distance must exceed.
   [[nodiscard]] double least(double reach) const { return beyond_ + margin_ + rounding(reach); }
+
+  /// Of two boxes that are far enough apart along one of their fifteen axes: next to each other, most are.
+  std::optional<SeparatingPlane> plane_of_boxes(const ConvexPolytope& a, const ConvexPolytope& b, double reach) const {
+    const std::optional<BoxFrame> box_a = box_frame(a);
+    if (!box_a) return std::nullopt;
+    const std::optional<BoxFrame> box_b = box_frame(b);
+    if (!box_b) return std::nullopt;
+    const BoxPairDepth boxes = box_pair_depth(a, *box_a, a_.pose, b, *box_b, b_.pose, {});
+    if (boxes.status != BoxPairStatus::separated || !boxes.nearest) return std::nullopt;
+    // A root, a quotient and the length of the normal come to the bound's own rounding.
+    const double lower = -boxes.upper - 8 * kUnitRoundoff * reach;
+    if (!(lower > least(reach))) return std::nullopt;
+    const VertexPair s = boxes.nearest->v[0];
+    return SeparatingPlane{boxes.normal, lower, {Vec3::Zero(), s.a, s.b}, false};
+  }
 
   void fill(const SeparatingPlane& plane, const BodyPoints& points, double point_error, double reach) {
     const double round = rounding(reach);
