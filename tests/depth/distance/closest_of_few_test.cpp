@@ -21,7 +21,8 @@ namespace detail {
 
 NearestOfFew nearest_of_few_baseline(const FewVertices& bodies, const VertexPair* start, int count,
                                      const NearestGoal& goal);
-NearestOfFew confirm_nearest_of_few_baseline(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count);
+NearestOfFew nearest_on_simplex_baseline(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
+                                         bool with_support);
 SupportOfFew support_of_few_baseline(const FewVerticesInFrames& bodies, const double (&direction)[3]);
 
 namespace {
@@ -135,7 +136,7 @@ TEST_P(FewVerticesApart, BracketsHoldTheTightestDistance) {
 
     std::vector<VertexPair> simplex;
     for (int k = 0; k < found.count; ++k) simplex.push_back({found.simplex[k].a, found.simplex[k].b});
-    const ClosestPoint again = confirm_closest_of_few(difference, simplex, 0, kWidth);
+    const ClosestPoint again = confirm_closest_point(difference, simplex, 0, kWidth);
     if (!again.certified) continue;
     ++confirmed;
     EXPECT_LE(again.lower, truth.distance_upper);
@@ -191,8 +192,8 @@ TEST_P(FewVerticesApart, KernelsGiveTheSameBitsOnEveryInstructionSet) {
     for (int count = 1; count <= 4; ++count) {
       expect_same_bits(nearest_of_few(few, start, count, goal), nearest_of_few_baseline(few, start, count, goal));
       if (count == 4) continue;
-      expect_same_bits(confirm_nearest_of_few(in_frames, start, count),
-                       confirm_nearest_of_few_baseline(in_frames, start, count));
+      expect_same_bits(nearest_on_simplex(in_frames, start, count, true),
+                       nearest_on_simplex_baseline(in_frames, start, count, true));
     }
     const Vec3 d = vector();
     const SupportOfFew x = support_of_few(in_frames, {d.x(), d.y(), d.z()});

@@ -4,6 +4,6 @@
 #define PD_ISA_BASELINE
 #endif
 #define nearest_of_few nearest_of_few_baseline
-#define confirm_nearest_of_few confirm_nearest_of_few_baseline
+#define nearest_on_simplex nearest_on_simplex_baseline
 #define support_of_few support_of_few_baseline
 #include "depth/distance/nearest_of_few.cpp"

@@ -86,11 +86,22 @@ std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, con
                     difference.vertex(found.support.a, found.support.b)};
 }
 
-ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
-                                    double relative, const BracketWidth& width) {
-  return closest_point(difference,
-                       confirm_nearest_of_few(in_frames(difference), simplex.data(), static_cast<int>(simplex.size())),
-                       distance_errors(difference), relative, width);
+ClosestPoint confirm_closest_point(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
+                                   double relative, const BracketWidth& width) {
+  const bool few = !difference.climbs();
+  NearestOfFew found = nearest_on_simplex(in_frames(difference), simplex.data(), static_cast<int>(simplex.size()), few);
+  if (!few) {
+    const Vec3 direction(found.direction[0], found.direction[1], found.direction[2]);
+    DifferenceVertex corners[3];
+    for (int i = 0; i < 3; ++i) {
+      const VertexPair& v = simplex[std::min<std::size_t>(static_cast<std::size_t>(i), simplex.size() - 1)];
+      corners[i] = {Vec3::Zero(), v.a, v.b};
+    }
+    DifferenceVertex s;
+    if (!difference.confirm_support(direction, s, corners)) return {};
+    found.height = -s.x.dot(direction);
+  }
+  return closest_point(difference, found, distance_errors(difference), relative, width);
 }
 
 }  // namespace pd::detail

@@ -26,9 +26,9 @@ struct PlaneOfFew {
 std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, const DifferenceVertex& first,
                                        double least, std::int64_t& support_calls);
 
-/// The same of one to three vertices of P alone, certified where one support shows P no nearer: for bodies that need
-/// not be turned for it.
-ClosestPoint confirm_closest_of_few(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
-                                    double relative, const BracketWidth& width);
+/// The same of one to three vertices of P alone, certified where one support shows P no nearer: by a scan of few
+/// vertices, by the simplex' neighbours of many. The bodies need not be turned for it.
+ClosestPoint confirm_closest_point(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
+                                   double relative, const BracketWidth& width);
 
 }  // namespace pd::detail

@@ -92,7 +92,8 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
   return out;
 }
 
-PD_CLONES NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count) {
+PD_CLONES NearestOfFew nearest_on_simplex(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
+                                          bool with_support) {
   NearestOfFew out;
   NearestLaneFace face{};
   LanePoint p[3];
@@ -100,11 +101,13 @@ PD_CLONES NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies,
   if (count < 3 || !take_triangle(face, p[0], p[1], p[2])) {
     for (int i = 0; i < count; ++i) (void)add_vertex(face, p[i]);
   }
+  put_face(out, face);
   const Direction& d = face.toward;
+  put(out.direction, d.x, d.y, d.z);
+  if (!with_support) return out;
   const VertexPair s = farthest_in_frames(bodies, d);
   out.supports = 1;
   put_plane(out, posed_vertex(bodies, s.a, s.b), d);
-  put_face(out, face);
   return out;
 }
 

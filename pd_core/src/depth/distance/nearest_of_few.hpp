@@ -52,9 +52,11 @@ struct NearestOfFew {
 /// @param start  vertices of P to begin with, one to four.
 NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count, const NearestGoal& goal);
 
-/// What the nearest point of these vertices of P is, one to three, and the support behind it. `height` tells whether it
-/// is P's, too.
-NearestOfFew confirm_nearest_of_few(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count);
+/// The nearest point of one to three vertices of P, `direction` from there to the origin, and with the support there
+/// also `height`, which tells whether the point is P's nearest, too.
+/// @param with_support  for bodies of few vertices; the rest is for any.
+NearestOfFew nearest_on_simplex(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
+                                bool with_support);
 
 /// The vertices of A and B farthest in a direction of P, of any length: turned, but not moved.
 struct SupportOfFew {

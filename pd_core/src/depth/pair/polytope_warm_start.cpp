@@ -51,32 +51,6 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   return true;
 }
 
-/// The closest point on these vertices of P, certified where those next to them show that P reaches no farther: for
-/// bodies of many vertices.
-ClosestPoint confirmed_closest_point(const PolytopeQuery& query, std::span<const DifferenceVertex> vertices) {
-  const PolytopeDifference& difference = query.difference;
-  ClosestPoint r;
-  double largest = difference.centre().cwiseAbs().maxCoeff();
-  for (const DifferenceVertex& v : vertices) {
-    r.simplex[r.count++] = v;
-    largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
-  }
-  r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
-  const DistanceErrors error = distance_errors(difference);
-  const double length = r.point.norm();
-  if (!(length > 4 * error.lower)) return r;
-  r.normal = search_direction(r.simplex, r.count, r.point, length, 6 * error.upper);
-  DifferenceVertex s;
-  const DifferenceVertex corners[3] = {r.simplex[0], r.simplex[std::min(1, r.count - 1)], r.simplex[r.count - 1]};
-  if (!difference.confirm_support(r.normal, s, corners)) return r;
-  r.upper = length + error.upper;
-  r.lower = -s.x.dot(r.normal) - error.lower;
-  const auto narrow_for = [&](double size) { return r.upper - r.lower <= query.width().limit(size); };
-  r.certified = r.lower > 0 && (narrow_for(largest) || narrow_for(difference.coordinate_of_ends()) ||
-                                query.width().is_within(relative_of_distance(query), r.lower, r.upper));
-  return r;
-}
-
 }  // namespace
 
 bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
@@ -111,16 +85,11 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   if (!is_of_pair(state, query.pair)) return false;
   out.statistics.support_calls += 1;
   const auto ids = std::span(state.apart).first(static_cast<std::size_t>(count));
-  ClosestPoint nearest;
-  if (!query.difference.climbs()) {
-    nearest = confirm_closest_of_few(query.difference, ids, relative_of_distance(query), query.width());
-  }
+  ClosestPoint nearest = confirm_closest_point(query.difference, ids, relative_of_distance(query), query.width());
   if (!nearest.certified) {
     DifferenceVertex vertices[3];
     query.difference.posed_vertices(ids.data(), count, vertices);
-    const auto start = std::span(vertices).first(ids.size());
-    if (query.difference.climbs()) nearest = confirmed_closest_point(query, start);
-    if (!nearest.certified) nearest = closest_point(query, start, out.statistics);
+    nearest = closest_point(query, std::span(vertices).first(ids.size()), out.statistics);
   }
   if (!answer_apart(query, nearest, out)) return false;
   out.method = Method::expansion;

@@ -14,7 +14,7 @@ namespace {
 
 /// Facets with more vertices are left to a search, of bodies of up to so many vertices to a scan.
 constexpr int kMostLevelVertices = 16;
-constexpr int kMostScanned = 256;
+constexpr int kMostScanned = 1024;
 
 int scan(const ConvexPolytope& p, const Vec3& d) { return farthest_vertex(arrays_of(p), d.x(), d.y(), d.z()); }
 
