@@ -98,7 +98,11 @@ PD_CLONES NearestOfFew nearest_on_simplex(const FewVerticesInFrames& bodies, con
   NearestLaneFace face{};
   LanePoint p[3];
   for (int i = 0; i < count; ++i) p[i] = posed_vertex(bodies, simplex[i].a, simplex[i].b);
-  if (count < 3 || !take_triangle(face, p[0], p[1], p[2])) {
+  // What most frames find again, else from the start.
+  const bool inside = count == 3   ? take_triangle(face, p[0], p[1], p[2])
+                      : count == 2 ? take_edge(face, p[0], p[1])
+                                   : false;
+  if (!inside) {
     for (int i = 0; i < count; ++i) (void)add_vertex(face, p[i]);
   }
   put_face(out, face);

@@ -149,6 +149,22 @@ PD_INLINE bool add_vertex(NearestLaneFace& face, const LanePoint& s) {
   return true;
 }
 
+/// The two of an edge, where the nearest point lies inside of it. False, and nothing done, where it does not.
+PD_INLINE bool take_edge(NearestLaneFace& face, const LanePoint& p, const LanePoint& s) {
+  const Direction e{p.x - s.x, p.y - s.y, p.z - s.z};
+  const double along = -dot(s, e), ee = e.x * e.x + e.y * e.y + e.z * e.z;
+  if (!(along > 0 && along < ee)) return false;
+  face.count = 2;
+  face.corners[0] = p;
+  face.corners[1] = s;
+  face.weights[0] = along / ee;
+  face.weights[1] = 1 - face.weights[0];
+  // (e x s) x e, as above
+  const Direction c{e.y * s.z - e.z * s.y, e.z * s.x - e.x * s.z, e.x * s.y - e.y * s.x};
+  look_back(face, {c.y * e.z - c.z * e.y, c.z * e.x - c.x * e.z, c.x * e.y - c.y * e.x});
+  return true;
+}
+
 /// The three of a triangle, where the nearest point lies inside of it. False, and nothing done, where it does not.
 PD_INLINE bool take_triangle(NearestLaneFace& face, const LanePoint& p, const LanePoint& q, const LanePoint& s) {
   const Direction e{p.x - s.x, p.y - s.y, p.z - s.z}, f{q.x - s.x, q.y - s.y, q.z - s.z};
