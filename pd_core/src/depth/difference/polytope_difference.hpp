@@ -50,8 +50,8 @@ class PolytopeDifference {
   /// difference and serve no other.
   void prepare_supports(PosedVerticesPair& posed) {
     if (climbs_ || posed_a_.count > 0) return;
-    posed_a_ = posed.a.transform(a_, -rotation_a_);
-    posed_b_ = posed.b.transform(b_, rotation_b_);
+    posed_a_ = posed.a.transform(a_, rotation_a_, -1);
+    posed_b_ = posed.b.transform(b_, rotation_b_, 1);
   }
 
   /// A point of P that maximises <x, direction>, found from a vertex already at hand (`near`, or nullptr).
@@ -163,15 +163,25 @@ class PolytopeDifference {
 
   /// A point inside P, rounded.
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
+  /// A |coordinate| of P that is about the largest, of the vertices that come first and last: of most bodies two ends.
+  [[nodiscard]] double coordinate_of_ends() const {
+    const int last_a = a_.num_vertices() - 1, last_b = b_.num_vertices() - 1;
+    const Vec3 a0 = turned_a(0), a1 = turned_a(last_a), b0 = turned_b(0), b1 = turned_b(last_b);
+    const Vec3 most = b0.cwiseMax(b1) - a0.cwiseMin(a1) + offset_;
+    const Vec3 least = b0.cwiseMin(b1) - a0.cwiseMax(a1) + offset_;
+    return most.cwiseAbs().cwiseMax(least.cwiseAbs()).maxCoeff();
+  }
   /// At least |x| for every point of P.
   [[nodiscard]] double reach() const { return reach_; }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
   /// each body (4u of its radius), then two sums and the offset (2u of the reach): 6u reach; times sqrt(3).
-  [[nodiscard]] double point_error() const { return 10.5 * kUnitRoundoff * reach_; }
+  [[nodiscard]] double point_error() const { return kPointError * reach_; }
   /// h_P(n) / |n| exceeds <s, n> / |n| of a certified support s by at most this: twice the error of comparing two
   /// vertices, in a body's frame, where the rotated direction errs by 4u |n| and the product by 3u |n| |v|, or posed,
   /// where a vertex errs by 4u sqrt(3) |v| instead.
-  [[nodiscard]] double support_error() const { return 20 * kUnitRoundoff * reach_; }
+  [[nodiscard]] double support_error() const { return kSupportError * reach_; }
+  static constexpr double kPointError = 10.5 * kUnitRoundoff;
+  static constexpr double kSupportError = 20 * kUnitRoundoff;
 
  private:
   /// `x` without its mantissa: a factor that rounds nothing.
@@ -181,6 +191,16 @@ class PolytopeDifference {
   [[nodiscard]] static int search(const ConvexPolytope& body, const Vec3& scaled) {
     return body.num_vertices() > kScanLimit ? farthest_in_table(body.storage(), scaled)
                                             : support_vertex(body, scaled, -1);
+  }
+
+  /// A vertex as it is turned, but not moved.
+  [[nodiscard]] Vec3 turned_a(int v) const {
+    if (posed_a_.count > 0) return -Vec3(posed_a_.x[v], posed_a_.y[v], posed_a_.z[v]);
+    return rotation_a_ * a_.vertex(v);
+  }
+  [[nodiscard]] Vec3 turned_b(int v) const {
+    if (posed_b_.count > 0) return {posed_b_.x[v], posed_b_.y[v], posed_b_.z[v]};
+    return rotation_b_ * b_.vertex(v);
   }
 
   const ConvexPolytope& a_;

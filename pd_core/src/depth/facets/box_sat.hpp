@@ -41,6 +41,8 @@ struct BoxPairDepth {
   double lower = 0;
   double upper = 0;
   Vec3 normal = Vec3::UnitX();  ///< unit; separating when status says so
+  /// Of boxes that one of the fifteen axes separates: corners of the facet of P across it.
+  std::optional<SurfaceCorners> nearest;
   Feature feature_a;
   Feature feature_b;
   Vec3 point_a = Vec3::Zero();  ///< witness on A, relative to A's translation

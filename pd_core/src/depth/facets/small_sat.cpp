@@ -57,11 +57,15 @@ class SmallPair {
     NearFacets& nearest = out.nearest;
     nearest.normal = unit;
     nearest.upper = height + kUpperError * reach;
-    if (nearest.upper < 0) out.status = SmallSatStatus::separated;
+    name_piece(found, s, nearest);
+    if (nearest.upper < 0) {
+      out.status = SmallSatStatus::separated;
+      return out;
+    }
     if (!(found.key > 0 && found.possible_key > 0)) return out;
     nearest.lower = std::sqrt(std::min(found.key, found.possible_key)) - kLowerError * reach;
     if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
-    if (!(found.edge_a >= 0 ? below_edges(found, height, nearest) : below_facet(found, s, height, nearest))) return out;
+    if (!(found.edge_a >= 0 ? below_edges(found, height, nearest) : below_facet(s, height, nearest))) return out;
     const double others = std::min(found.others_key, found.possible_key);
     if (others > 0) nearest.beyond = std::sqrt(others) - kLowerError * reach;
     nearest.certified = true;
@@ -89,6 +93,23 @@ class SmallPair {
   }
   [[nodiscard]] static Vec3 point(const VertexArrays& v, int i) { return {v.x[i], v.y[i], v.z[i]}; }
 
+  /// The features of the bodies that make the facet of P, s being its support.
+  void name_piece(const SmallSatNearest& found, const DifferenceVertex& s, NearFacets& out) const {
+    if (found.edge_a >= 0) {
+      const int a = found.edge_a, b = found.edge_b;
+      out.kind = NearFacetsBuffers::Kind::edges;
+      out.edge_a[0] = map_a_.from[a];
+      out.edge_a[1] = map_a_.to[a];
+      out.edge_b[0] = map_b_.from[b];
+      out.edge_b[1] = map_b_.to[b];
+      return;
+    }
+    const bool of_a = found.facet_a >= 0;
+    out.kind = of_a ? NearFacetsBuffers::Kind::facet_of_a : NearFacetsBuffers::Kind::facet_of_b;
+    out.facet = of_a ? found.facet_a : found.facet_b;
+    out.vertex = of_a ? s.b : s.a;
+  }
+
   /// Whether the parallelogram holds the point below the origin, and where.
   bool below_edges(const SmallSatNearest& found, double height, NearFacets& out) const {
     const int a = found.edge_a, b = found.edge_b;
@@ -104,28 +125,22 @@ class SmallPair {
     const bool inside_a = beyond_a <= 0 || beyond_a * beyond_a * e.squaredNorm() <= slack * slack;
     const bool inside_b = beyond_b <= 0 || beyond_b * beyond_b * f.squaredNorm() <= slack * slack;
     if (!(inside_a && inside_b)) return false;
-    out.kind = NearFacetsBuffers::Kind::edges;
-    out.edge_a[0] = map_a_.from[a];
-    out.edge_a[1] = map_a_.to[a];
-    out.edge_b[0] = map_b_.from[b];
-    out.edge_b[1] = map_b_.to[b];
     out.along_a = std::clamp(s, 0.0, 1.0);
     out.along_b = std::clamp(t, 0.0, 1.0);
     return true;
   }
 
   /// The other body's vertex, moved by the translation, must lie inside the facet.
-  bool below_facet(const SmallSatNearest& found, const DifferenceVertex& s, double height, NearFacets& out) const {
-    const bool of_a = found.facet_a >= 0;
-    const int facet = of_a ? found.facet_a : found.facet_b;
-    const auto loop = (of_a ? difference_.a() : difference_.b()).facet_vertices(facet);
-    const Vec3 projection = height * out.normal;
+  bool below_facet(const DifferenceVertex& s, double height, const NearFacets& piece) const {
+    const bool of_a = piece.kind == NearFacetsBuffers::Kind::facet_of_a;
+    const auto loop = (of_a ? difference_.a() : difference_.b()).facet_vertices(piece.facet);
+    const Vec3 projection = height * piece.normal;
     const auto corner = [&](std::int32_t v) {
       return (of_a ? difference_.vertex(v, s.b) : difference_.vertex(s.a, v)).x;
     };
     const double slack = kInside * difference_.reach();
     // Seen from outside P, the corners of -A run clockwise.
-    const Vec3 inwards = of_a ? Vec3(-out.normal) : out.normal;
+    const Vec3 inwards = of_a ? Vec3(-piece.normal) : piece.normal;
     Vec3 last = corner(loop.back());
     for (const std::int32_t v : loop) {
       const Vec3 next = corner(v);
@@ -134,9 +149,6 @@ class SmallPair {
       if (left < 0 && left * left > slack * slack * side.squaredNorm()) return false;
       last = next;
     }
-    out.kind = of_a ? NearFacetsBuffers::Kind::facet_of_a : NearFacetsBuffers::Kind::facet_of_b;
-    out.facet = facet;
-    out.vertex = of_a ? s.b : s.a;
     return true;
   }
 

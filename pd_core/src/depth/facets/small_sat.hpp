@@ -19,8 +19,9 @@ enum class SmallSatStatus : std::uint8_t { certified, separated, undecided };
 
 struct SmallSatDepth {
   SmallSatStatus status = SmallSatStatus::undecided;
-  NearFacets nearest;  ///< certified ones; of separated bodies the normal alone, the separating direction
-  int pieces = 0;      ///< measured
+  NearFacets
+      nearest;  ///< certified ones; of separated bodies the normal, the separating direction, and the piece across it
+  int pieces = 0;  ///< measured
 };
 
 /// Whether both bodies are solids of so few vertices.

@@ -59,6 +59,7 @@ constexpr StageBeforeSearch kBeforeSearch[] = {
     answer_apart_from_cached_simplex,  // warm: from the last closest point
     answer_boxes,                      // two boxes by their fifteen axes
     prove_boxes,                       // the same on the stored numbers: the tightest bracket
+    answer_few_vertices_apart,         // a support shows bodies of few vertices apart: their closest points
     answer_small_solids,               // two solids of few vertices by all facets of P
 };
 

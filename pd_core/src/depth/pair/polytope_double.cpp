@@ -5,6 +5,7 @@
 
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
+#include "depth/distance/closest_of_few.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/facets/small_sat.hpp"
@@ -17,6 +18,10 @@
 namespace pd::detail {
 
 namespace {
+
+/// A support towards P's centre shows bodies apart only if that is no nearer to the origin than this share of the
+/// reach: measured on boxes, prisms, needles and round hulls.
+constexpr double kLeastWayShown = 0.3;
 
 /// Whether the upper bound comes from the side of the nearest face: two facets on opposite sides of the origin may be
 /// as far from it to within the bracket.
@@ -83,6 +88,22 @@ void set_answer(const PolytopeQuery& query, const NearFacets& found, Penetration
   } else {
     set_contact_of_facet(query.pair, found, out);
   }
+}
+
+/// Up to four corners of a facet of P.
+std::size_t corners_of_piece(const PolytopeQuery& query, const NearFacets& piece, DifferenceVertex (&corners)[4]) {
+  const PolytopeDifference& difference = query.difference;
+  if (piece.kind == NearFacetsBuffers::Kind::edges) {
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = difference.vertex(piece.edge_a[i % 2], piece.edge_b[i / 2]);
+    return 4;
+  }
+  const bool of_a = piece.kind == NearFacetsBuffers::Kind::facet_of_a;
+  const auto loop = (of_a ? query.pair.a : query.pair.b)->facet_vertices(piece.facet);
+  const std::size_t count = std::min<std::size_t>(loop.size(), 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    corners[i] = of_a ? difference.vertex(loop[i], piece.vertex) : difference.vertex(piece.vertex, loop[i]);
+  }
+  return count;
 }
 
 /// Whether a solid of few vertices has facets across all three of its axes.
@@ -176,8 +197,15 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   out.method = Method::overlay;
   out.statistics.facets_visited += kBoxAxes;
   if (boxes.status == BoxPairStatus::separated) {
-    const DifferenceVertex first = query.with_supports().support(boxes.normal, nullptr);
-    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+    const PolytopeDifference& difference = query.with_supports();
+    DifferenceVertex first[3];
+    std::size_t count = 0;
+    if (boxes.nearest) {
+      for (const VertexPair& corner : boxes.nearest->v) first[count++] = difference.vertex(corner.a, corner.b);
+    } else {
+      first[count++] = difference.support(boxes.normal, nullptr);
+    }
+    return answer_apart(query, closest_point(query, std::span(first).first(count), out.statistics), out);
   }
   if (boxes.status == BoxPairStatus::undecided) return false;
   set_depth(pair, boxes.lower, boxes.upper, boxes.normal, out);
@@ -185,6 +213,20 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   out.witness_b = out.witness_a + out.translation;
   out.feature_a = boxes.feature_a;
   out.feature_b = boxes.feature_b;
+  return true;
+}
+
+bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
+  if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
+  if (query.difference.climbs() || !query.within_range() || remembers_surface(query)) return false;
+  const Vec3 back = -query.difference.centre();
+  const double reach = query.difference.reach();
+  if (!(back.squaredNorm() > kLeastWayShown * kLeastWayShown * reach * reach)) return false;
+  const DifferenceVertex first = query.with_supports().support(back, nullptr);
+  ++out.statistics.support_calls;
+  if (!(first.x.dot(back) < 0)) return false;
+  if (!answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out)) return false;
+  out.method = Method::expansion;
   return true;
 }
 
@@ -202,8 +244,9 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
     return found.status == SmallSatStatus::certified && prove_near_facet(query, found.nearest, out);
   }
   if (found.status == SmallSatStatus::separated) {
-    const DifferenceVertex first = query.difference.support(found.nearest.normal, nullptr);
-    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+    DifferenceVertex corners[4];
+    const std::size_t count = corners_of_piece(query, found.nearest, corners);
+    return answer_apart(query, closest_point(query, std::span(corners).first(count), out.statistics), out);
   }
   if (found.status == SmallSatStatus::undecided) return false;
   set_answer(query, found.nearest, out);
@@ -294,6 +337,12 @@ double relative_of_distance(const PolytopeQuery& query) {
 }
 
 ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
+  // The tightest bracket's bits are those of the simplex, so that its search stays what it was.
+  if (query.bracket != Bracket::tightest && !query.difference.climbs()) {
+    const ClosestPoint found = closest_of_few(query.with_supports(), start, relative_of_distance(query), query.width(),
+                                              statistics.support_calls);
+    if (found.certified) return found;
+  }
   return closest_point(query.with_supports(), start, relative_of_distance(query), query.width(), query.buffers.stack,
                        statistics.support_calls);
 }

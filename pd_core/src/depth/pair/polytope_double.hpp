@@ -17,6 +17,9 @@ namespace pd::detail {
 /// Two boxes by their fifteen axes of separation (facets/box_sat.hpp).
 bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
 
+/// Bodies of few vertices that a support towards P's centre shows apart, by the closest points at once.
+bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out);
+
 /// Two solids of few vertices by all facets of P (facets/small_sat.hpp); for the tightest bracket the nearest one is
 /// proved.
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out);

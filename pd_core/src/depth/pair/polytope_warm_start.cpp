@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "depth/distance/closest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
@@ -50,35 +51,6 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   return true;
 }
 
-/// The closest point on these vertices of P, certified where P reaches no farther: for one support the bodies need not
-/// be turned, and of many vertices those next to the contact tell.
-ClosestPoint confirmed_closest_point(const PolytopeQuery& query, std::span<const DifferenceVertex> vertices) {
-  const PolytopeDifference& difference = query.difference;
-  ClosestPoint r;
-  double largest = difference.centre().cwiseAbs().maxCoeff();
-  for (const DifferenceVertex& v : vertices) {
-    r.simplex[r.count++] = v;
-    largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
-  }
-  r.point = closest_point_on_simplex(r.simplex, r.count, r.weights);
-  const DistanceErrors error = distance_errors(difference);
-  const double length = r.point.norm();
-  if (!(length > 4 * error.lower)) return r;
-  r.normal = search_direction(r.simplex, r.count, r.point, length, 6 * error.upper);
-  DifferenceVertex s;
-  if (difference.climbs()) {
-    const DifferenceVertex corners[3] = {r.simplex[0], r.simplex[std::min(1, r.count - 1)], r.simplex[r.count - 1]};
-    if (!difference.confirm_support(r.normal, s, corners)) return r;
-  } else {
-    s = difference.support_in_bodies(r.normal);
-  }
-  r.upper = length + error.upper;
-  r.lower = -s.x.dot(r.normal) - error.lower;
-  r.certified = r.lower > 0 && (r.upper - r.lower <= query.width().limit(largest) ||
-                                query.width().is_within(relative_of_distance(query), r.lower, r.upper));
-  return r;
-}
-
 }  // namespace
 
 bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
@@ -111,18 +83,21 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   if (state.apart_count == 0 || !query.within_range()) return false;
   const int count = std::exchange(state.apart_count, 0);
   if (!is_of_pair(state, query.pair)) return false;
-  DifferenceVertex vertices[3];
-  query.difference.posed_vertices(state.apart, count, vertices);
-  const auto start = std::span(vertices).first(static_cast<std::size_t>(count));
-  ClosestPoint nearest = confirmed_closest_point(query, start);
   out.statistics.support_calls += 1;
-  if (!nearest.certified) nearest = closest_point(query, start, out.statistics);
+  const auto ids = std::span(state.apart).first(static_cast<std::size_t>(count));
+  ClosestPoint nearest = confirm_closest_point(query.difference, ids, relative_of_distance(query), query.width());
+  if (!nearest.certified) {
+    DifferenceVertex vertices[3];
+    query.difference.posed_vertices(ids.data(), count, vertices);
+    nearest = closest_point(query, std::span(vertices).first(ids.size()), out.statistics);
+  }
   if (!answer_apart(query, nearest, out)) return false;
   out.method = Method::expansion;
   out.warm = true;
-  state.direction = out.normal;
   return true;
 }
+
+bool remembers_surface(const PolytopeQuery& query) { return query.warm && !query.warm->state().faces.empty(); }
 
 bool restore_surface(PolytopeQuery& query) {
   if (!is_of_pair(query.warm->state(), query.pair)) query.warm->clear();
@@ -188,6 +163,7 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest) {
   if (!query.warm) return;
   WarmState& state = bind_to_pair(*query.warm, query.pair);
+  state.direction = nearest.normal;
   state.apart_count = nearest.count;
   for (int i = 0; i < nearest.count; ++i) state.apart[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
 }

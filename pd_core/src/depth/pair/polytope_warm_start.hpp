@@ -18,6 +18,8 @@ bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out);
 /// Bodies that were apart: the closest point of P is looked for from the vertices around the last one.
 bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& out);
 
+/// Whether a surface has been saved, of whatever pair: the bodies overlapped in the last frame.
+[[nodiscard]] bool remembers_surface(const PolytopeQuery& query);
 /// Puts the saved surface at the present poses, into the scratch. False when there is none for this pair.
 [[nodiscard]] bool restore_surface(PolytopeQuery& query);
 /// Whether the restored surface answers as it stands.
@@ -29,7 +31,7 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
 void save_surface(PolytopeQuery& query, const ExpansionResult& result);
 /// The restored surface held as it was: saves how far its planes are now, for `answer_from_cached_faces`.
 void save_reference(PolytopeQuery& query, const ExpansionResult& result);
-/// The simplex of P that holds its closest point.
+/// The simplex of P that holds its closest point, and the direction from there.
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest);
 
 }  // namespace pd::detail

@@ -12,8 +12,9 @@ namespace pd::detail {
 
 namespace {
 
-/// Facets with more vertices are left to a search.
+/// Facets with more vertices are left to a search, of bodies of up to so many vertices to a scan.
 constexpr int kMostLevelVertices = 16;
+constexpr int kMostScanned = 1024;
 
 int scan(const ConvexPolytope& p, const Vec3& d) { return farthest_vertex(arrays_of(p), d.x(), d.y(), d.z()); }
 
@@ -64,7 +65,8 @@ int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int
   int best = v;
   double best_value = p.vertex(v).dot(direction);
   for (std::size_t i = 0; i < stack.size(); ++i) {
-    if (stack.size() > kScanLimit) return scan(p, direction);
+    const int most = p.num_vertices() <= kMostScanned ? kMostLevelVertices : kScanLimit;
+    if (stack.size() > static_cast<std::size_t>(most)) return scan(p, direction);
     const Vec3 from = p.vertex(stack[i]);
     for (const std::int32_t w : p.neighbours(stack[i])) {
       const Vec3 edge = p.vertex(w) - from;
@@ -104,7 +106,8 @@ int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, con
       const double other = x[w] * dx + y[w] * dy + z[w] * dz;
       if (other < value - doubt || is_listed(w)) continue;
       // Another vertex of the facet that the three lie on, or a higher one.
-      if (other > value + doubt || count == kMostLevelVertices) return -1;
+      if (other > value + doubt) return -1;
+      if (count == kMostLevelVertices) return p.num_vertices() <= kMostScanned ? scan(p, direction) : -1;
       level[count++] = w;
     }
     if (best >= 0 && value <= best_value) continue;

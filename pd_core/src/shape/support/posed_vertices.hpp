@@ -12,14 +12,12 @@ namespace pd::detail {
 /// A buffer; grows to the largest body that it has held.
 class PosedVertices {
  public:
-  /// matrix * vertex for every vertex; valid until the next call.
-  VertexArrays transform(const ConvexPolytope& p, const Mat3& matrix) {
+  /// sign * rotation * vertex for every vertex; valid until the next call.
+  VertexArrays transform(const ConvexPolytope& p, const Mat3& rotation, double sign) {
     const std::size_t size = static_cast<std::size_t>(p.padded_size());
     if (coordinates_.size() < 3 * size) coordinates_.resize(3 * size);
     double* const x = coordinates_.data();
-    const double rows[9] = {matrix(0, 0), matrix(0, 1), matrix(0, 2), matrix(1, 0), matrix(1, 1),
-                            matrix(1, 2), matrix(2, 0), matrix(2, 1), matrix(2, 2)};
-    transform_vertices(arrays_of(p), rows, x, x + size, x + 2 * size);
+    transform_vertices(arrays_of(p), rotation.data(), sign, x, x + size, x + 2 * size);
     return {x, x + size, x + 2 * size, p.num_vertices()};
   }
 

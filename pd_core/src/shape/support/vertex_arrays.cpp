@@ -4,24 +4,11 @@
 #include <cstdint>
 
 #include "numeric/lanes.hpp"
+#include "shape/support/scan_lanes.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-static_assert(2 * kLanes == kVertexBlock);
-
-struct Direction {
-  double x, y, z;
-};
-
-PD_INLINE void heights(Lanes& to, const VertexArrays& v, int i, const Direction& d) {
-  Lanes x, y, z;
-  load(x, v.x + i);
-  load(y, v.y + i);
-  load(z, v.z + i);
-  to = x * d.x + y * d.y + z * d.z;
-}
 
 struct Best {
   Lanes value;
@@ -61,41 +48,6 @@ PD_INLINE void farthest_in_four(Lanes& ids, const VertexArrays& v, const double 
   // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
   const Lanes zero = {0, 0, 0, 0};
   ids = best[0].id < zero + static_cast<double>(v.count) ? best[0].id : zero;
-}
-
-PD_INLINE int farthest(const VertexArrays& v, const Direction& d) {
-  // Two rows of lanes, so that comparisons do not wait for each other. Ids are counted in doubles: one kind of
-  // register.
-  const Lanes row = {0, 1, 2, 3};
-  Lanes best, other;
-  heights(best, v, 0, d);
-  heights(other, v, kLanes, d);
-  const Lanes zero = {0, 0, 0, 0};
-  if (v.count <= kVertexBlock) {
-    const Lanes tops = zero + greatest(other > best ? other : best);
-    const unsigned winners = mask_of_four(best == tops) | mask_of_four(other == tops) << kLanes;
-    // The padding repeats vertex 0, which comes first. Nobody wins where products overflowed.
-    const int winner = __builtin_ctz(winners | 1U << kVertexBlock);
-    return winner < v.count ? winner : 0;
-  }
-  Lanes best_id = row, other_id = row + kLanes, id = other_id;
-  for (int i = kVertexBlock; i < v.count; i += kVertexBlock) {
-    Lanes next, after;
-    heights(next, v, i, d);
-    heights(after, v, i + kLanes, d);
-    id += kLanes;
-    best_id = next > best ? id : best_id;
-    best = next > best ? next : best;
-    id += kLanes;
-    other_id = after > other ? id : other_id;
-    other = after > other ? after : other;
-  }
-  const Lanes tops = zero + greatest(other > best ? other : best);
-  const Lanes none = zero + 0x1p40;
-  const Lanes from_best = best == tops ? best_id : none;
-  const Lanes from_other = other == tops ? other_id : none;
-  const double winner = least(from_other < from_best ? from_other : from_best);
-  return winner < v.count ? static_cast<int>(winner) : 0;
 }
 
 /// Four values by their ids.
@@ -184,16 +136,20 @@ PD_CLONES int farthest_of_blocks(const ConvexPolytope::VertexBlock& first, const
   return right < left ? right : left;
 }
 
-PD_CLONES void transform_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y,
-                                  double* z) {
+PD_CLONES void transform_vertices(const VertexArrays& vertices, const double* rotation, double sign, double* x,
+                                  double* y, double* z) {
+  const double* const r = rotation;
+  const Direction rows[3] = {{sign * r[0], sign * r[3], sign * r[6]},
+                             {sign * r[1], sign * r[4], sign * r[7]},
+                             {sign * r[2], sign * r[5], sign * r[8]}};
   const int padded = (vertices.count + kVertexBlock - 1) / kVertexBlock * kVertexBlock;
   for (int i = 0; i < padded; i += kLanes) {
     Lanes turned;
-    heights(turned, vertices, i, {matrix[0], matrix[1], matrix[2]});
+    heights(turned, vertices, i, rows[0]);
     store(x + i, turned);
-    heights(turned, vertices, i, {matrix[3], matrix[4], matrix[5]});
+    heights(turned, vertices, i, rows[1]);
     store(y + i, turned);
-    heights(turned, vertices, i, {matrix[6], matrix[7], matrix[8]});
+    heights(turned, vertices, i, rows[2]);
     store(z + i, turned);
   }
 }

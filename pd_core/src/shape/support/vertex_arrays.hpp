@@ -39,8 +39,9 @@ void farthest_in_four_directions(const VertexArrays& a, const VertexArrays& b, c
 int farthest_of_blocks(const ConvexPolytope::VertexBlock& first, const ConvexPolytope::VertexBlock* more, int count,
                        float dx, float dy, float dz);
 
-/// Writes matrix * vertex for every vertex and its padding; `matrix` is row by row.
-void transform_vertices(const VertexArrays& vertices, const double (&matrix)[9], double* x, double* y, double* z);
+/// Writes sign * rotation * vertex for every vertex and its padding; `rotation` is column by column.
+void transform_vertices(const VertexArrays& vertices, const double* rotation, double sign, double* x, double* y,
+                        double* z);
 
 /// Vertices of two bodies by their ids, and where they meet: row i of `out`, four doubles wide, is
 /// B's matrix * b - A's matrix * a + offset for the pair (a, b) = ids[2 i], ids[2 i + 1], followed by these two ids.

@@ -1,0 +1,107 @@
+#include "depth/distance/closest_of_few.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "depth/distance/nearest_of_few.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// What a plane by a scan of all posed vertices may lie too far, in units of the reach: vertices err by 4 sqrt(3) u of
+/// their body's radius, two compared products by 3u each, the offset by u, the sum of a vertex of P by 2u, its product
+/// by 3u and the normal's length by 4u.
+constexpr double kScannedPlaneError = 24 * kUnitRoundoff;
+
+/// Of a nearest point behind its plane, in units of the reach: nothing but rounding lies between them.
+constexpr double kSearchGap = 4 * kUnitRoundoff;
+
+FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
+  return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
+          difference.rotation_b().data(), difference.offset().data()};
+}
+
+FewVertices posed(const PolytopeDifference& difference) {
+  const Vec3& t = difference.offset();
+  return {difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}};
+}
+
+/// Whether the bracket is narrow for L, of which the simplex tells something at once.
+bool is_narrow(const PolytopeDifference& difference, const ClosestPoint& r, double relative,
+               const BracketWidth& width) {
+  double largest = 0;
+  for (int i = 0; i < r.count; ++i) largest = std::max(largest, r.simplex[i].x.cwiseAbs().maxCoeff());
+  const double found = r.upper - r.lower;
+  return found <= width.limit(largest) || width.is_within(relative, r.lower, r.upper) ||
+         found <= width.limit(difference.coordinate_of_ends());
+}
+
+/// The bracket of what a search has ended with.
+ClosestPoint closest_point(const PolytopeDifference& difference, const NearestOfFew& found, const DistanceErrors& error,
+                           double relative, const BracketWidth& width) {
+  ClosestPoint r;
+  r.normal = {found.direction[0], found.direction[1], found.direction[2]};
+  r.lower = found.height - error.lower;
+  if (found.status != NearestOfFew::Status::nearest) return r;
+  r.count = found.count;
+  for (int i = 0; i < found.count; ++i) {
+    const double* const x = found.points[i];
+    r.simplex[i] = {{x[0], x[1], x[2]}, found.simplex[i].a, found.simplex[i].b};
+    r.weights[i] = found.weights[i];
+    r.point += found.weights[i] * r.simplex[i].x;
+  }
+  const double length = r.point.norm();
+  r.upper = length + error.upper;
+  // Witnesses along the normal, which is across the last edge or triangle whatever rounding did to the weights.
+  const bool along = (r.point + length * r.normal).squaredNorm() <= 36 * error.upper * error.upper;
+  r.certified = along && r.lower > 0 && is_narrow(difference, r, relative, width);
+  return r;
+}
+
+}  // namespace
+
+ClosestPoint closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
+                            double relative, const BracketWidth& width, std::int64_t& support_calls) {
+  VertexPair first[4];
+  for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
+  const NearestOfFew found =
+      nearest_of_few(posed(difference), first, static_cast<int>(start.size()),
+                     {kSearchGap * difference.reach(), std::numeric_limits<double>::infinity(), 0});
+  support_calls += found.supports;
+  return closest_point(difference, found, {distance_errors(difference).upper, kScannedPlaneError * difference.reach()},
+                       relative, width);
+}
+
+std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, const DifferenceVertex& first,
+                                       double least, std::int64_t& support_calls) {
+  const double error = kScannedPlaneError * difference.reach();
+  const VertexPair start{first.a, first.b};
+  const NearestOfFew found =
+      nearest_of_few(posed(difference), &start, 1, {kSearchGap * difference.reach(), least + error, least});
+  support_calls += found.supports;
+  if (found.status != NearestOfFew::Status::beyond) return std::nullopt;
+  return PlaneOfFew{{found.direction[0], found.direction[1], found.direction[2]},
+                    found.height - error,
+                    difference.vertex(found.support.a, found.support.b)};
+}
+
+ClosestPoint confirm_closest_point(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
+                                   double relative, const BracketWidth& width) {
+  const bool few = !difference.climbs();
+  NearestOfFew found = nearest_on_simplex(in_frames(difference), simplex.data(), static_cast<int>(simplex.size()), few);
+  if (!few) {
+    const Vec3 direction(found.direction[0], found.direction[1], found.direction[2]);
+    DifferenceVertex corners[3];
+    for (int i = 0; i < 3; ++i) {
+      const VertexPair& v = simplex[std::min<std::size_t>(static_cast<std::size_t>(i), simplex.size() - 1)];
+      corners[i] = {Vec3::Zero(), v.a, v.b};
+    }
+    DifferenceVertex s;
+    if (!difference.confirm_support(direction, s, corners)) return {};
+    found.height = -s.x.dot(direction);
+  }
+  return closest_point(difference, found, distance_errors(difference), relative, width);
+}
+
+}  // namespace pd::detail
