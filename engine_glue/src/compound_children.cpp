@@ -36,13 +36,12 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
     child.box = box_of(*child.shape, child.pose);
     if (!apart(child.box, world, reach)) children.push_back(child);
   };
-  if (const btDbvt* tree = compound.getDynamicAabbTree()) {
-    const btVector3 extra(reach, reach, reach);
-    for_each_leaf(*tree, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
-    // The tree's order depends on its history.
-    std::sort(children.begin(), children.end(), [](const Child& x, const Child& y) { return x.index < y.index; });
-  } else {
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) visit(i);
+  const btVector3 extra(reach, reach, reach);
+  for_each_child_meeting(compound, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
+  // The tree's order depends on its history.
+  const auto by_number = [](const Child& x, const Child& y) { return x.index < y.index; };
+  if (!std::is_sorted(children.begin(), children.end(), by_number)) {
+    std::sort(children.begin(), children.end(), by_number);
   }
 }
 

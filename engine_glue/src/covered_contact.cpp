@@ -402,6 +402,13 @@ class SideRule {
   Cover cover_;
 };
 
+/// How far from a contact a union is looked at: as far as the bodies may move before contacts are found again.
+double window_of(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double depth, double threshold,
+                 double seconds) {
+  const Vec3 way = seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject()));
+  return threshold + std::abs(depth) + way.norm();
+}
+
 }  // namespace
 
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
@@ -410,9 +417,7 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
   if (points.count == 0) return;
   const double slack = seam_slack(answer.a, answer.b);
   double depth = -answer.depth.signed_distance();
-  const double window =
-      threshold + std::abs(depth) +
-      seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject())).norm();
+  const double window = window_of(a, b, depth, threshold, seconds);
   Vec3 witness_b = answer.depth.witness_b;
   if (is_piece(b)) {
     SideRule rule({b, answer.b, answer.a, true, front}, threshold, window, slack, stamp, core, buffers);
@@ -428,6 +433,25 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
   if (is_piece(a)) {
     SideRule rule({a, answer.a, answer.b, false}, threshold, window, slack, stamp, core, buffers);
     if (rule.apply(depth, witness_b - depth * points.normal, points)) buffers.counters.covered.add();
+  }
+}
+
+void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
+                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                  ContactManifold& points) {
+  const Vec3 n = -points.normal;
+  const double margin = body.shape->margin();
+  const double slack = seam_slack(body, body);
+  const Side side{a, body, body, false};
+  for (int i = points.count - 1; i >= 0; --i) {
+    const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
+    const Vec3 foot = point.position_a - margin * n;
+    Cover cover(side, slack, window_of(a, b, point.depth, threshold, seconds), stamp, core, buffers.cover);
+    if (!cover.look_round(foot, margin, n)) continue;
+    cover.take_own();
+    if (buffers.cover.own->planes.empty() || cover.covered(foot, n) <= kDecided) continue;
+    drop(points, i);
+    buffers.counters.covered.add();
   }
 }
 

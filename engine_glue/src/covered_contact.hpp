@@ -51,6 +51,13 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
                     const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
                     ThreadBuffers& buffers, ContactManifold& points);
 
+/// Drops the points of piece A's contact with a plane of B that lie inside of other pieces of A's union which lead on
+/// into the plane: those are deeper in it.
+/// @param body  what A is taken as
+void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
+                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                  ContactManifold& points);
+
 /// The contact of a body A that stands through or behind triangle B and is to leave by B's side `front`: points over
 /// the triangle, each as deep as A lies behind its plane.
 [[nodiscard]] ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer,

@@ -24,12 +24,14 @@ void for_each_convex_pair(Visit&& visit) {
   }
 }
 
-/// Convex bodies against meshes and planes, in both orders.
+/// Convex bodies against meshes and planes and compounds against meshes, in both orders.
 template <class Visit>
 void for_each_ground_pair(Visit&& visit) {
   for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
     for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
-      if (btBroadphaseProxy::isConvex(i) && (detail::takes_mesh(j) || j == STATIC_PLANE_PROXYTYPE)) {
+      const bool convex = btBroadphaseProxy::isConvex(i);
+      const bool on_mesh = (convex || btBroadphaseProxy::isCompound(i)) && detail::takes_mesh(j);
+      if (on_mesh || (convex && j == STATIC_PLANE_PROXYTYPE)) {
         visit(i, j, false);
         visit(j, i, true);
       }

@@ -34,7 +34,7 @@ class Installation {
 
   /// For the table of contacts (`closest` false) or that of closest points.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
-  /// For the table of contacts: convex against mesh, or (`swapped`) mesh against convex.
+  /// For the table of contacts: a convex body or compound against a mesh, or (`swapped`) the other way round.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
   /// For the table of contacts: pairs with a compound, of compounds and convex bodies.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -15,36 +16,10 @@ namespace pd::detail {
 
 namespace {
 
-/// Of so few children each is compared; of more, Bullet's tree is asked.
-constexpr int kFewChildren = 32;
 /// Of so few, each is looked at where it is.
 constexpr int kVeryFewChildren = 4;
 /// Compounds of one step that are kept at a time.
 constexpr std::size_t kMostPosedCompounds = 64;
-
-bool meets(const btDbvtVolume& volume, const btVector3& lower, const btVector3& upper) {
-  for (int i = 0; i < 3; ++i) {
-    if (volume.Mins()[i] > upper[i] || volume.Maxs()[i] < lower[i]) return false;
-  }
-  return true;
-}
-
-/// Calls `visit(number)` for the children whose boxes come near a point of the compound's frame.
-template <class Visit>
-void for_each_child_near(const btCompoundShape& compound, const btVector3& centre, btScalar reach, const Visit& visit) {
-  const btDbvt* tree = compound.getDynamicAabbTree();
-  const int count = compound.getNumChildShapes();
-  if (tree != nullptr && count > kFewChildren) {
-    for_each_leaf(*tree, btDbvtVolume::FromCR(centre, reach), visit);
-    return;
-  }
-  const btVector3 extent(reach, reach, reach);
-  // Bullet offers no children to a reader of a constant compound.
-  const btCompoundShapeChild* children = const_cast<btCompoundShape&>(compound).getChildList();
-  for (int i = 0; i < count; ++i) {
-    if (tree == nullptr || meets(children[i].m_node->volume, centre - extent, centre + extent)) visit(i);
-  }
-}
 
 }  // namespace
 
@@ -95,7 +70,15 @@ void NearPieces::begin_pair(std::uint64_t stamp) {
   if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostPosedCompounds) num_compounds_ = 0;
   stamp_ = stamp;
   recent_ = {};
+  around_ = nullptr;
   facts_.begin_pair(stamp);
+}
+
+void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh) {
+  around_ = &around;
+  around_pose_ = mesh.getWorldTransform();
+  known_made_.assign(around.triangles().size(), false);
+  if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
 
 NearPieces::PosedCompound& NearPieces::compound_of(const btCollisionObject& body, const btCompoundShape& shape,
@@ -171,7 +154,7 @@ void NearPieces::collect_children(const btCompoundShape& compound, const btTrans
   if (among != nullptr) {
     for (const int i : *among) visit(i);
   } else {
-    for_each_child_near(compound, pose.invXform(search.centre), search.reach, visit);
+    for_each_child_meeting(compound, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), visit);
   }
 }
 
@@ -187,6 +170,29 @@ bool NearPieces::within(const Child& child, const Search& search) {
   return far.sum() > search.beyond->level;
 }
 
+void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                               const btVector3& upper) {
+  const std::span<const MeshTriangle> triangles = around_->triangles();
+  const auto margin = static_cast<double>(except.m_parent->getCollisionShape()->getMargin());
+  const Pose pose = to_pd(around_pose_);
+  const Vec3 n = search.beyond != nullptr ? Vec3(pose.rotation().transpose() * search.beyond->n) : Vec3(Vec3::Zero());
+  const double level = search.beyond != nullptr ? search.beyond->level - search.beyond->n.dot(pose.translation()) : -1;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const MeshTriangle& triangle = triangles[i];
+    if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) continue;
+    if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
+    const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
+    if (std::max({height(0), height(1), height(2)}) + margin <= level) continue;
+    if (!known_made_[i]) {
+      known_made_[i] = true;
+      set_triangle({to_pd(around_pose_(triangle.corners[0])), to_pd(around_pose_(triangle.corners[1])),
+                    to_pd(around_pose_(triangle.corners[2]))},
+                   margin, known_[i]);
+    }
+    if (!known_[i].planes.empty()) search.found.push_back(&known_[i]);
+  }
+}
+
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                          Search& search) {
   if (shape.isCompound()) {
@@ -195,6 +201,11 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
     const btVector3 extent(search.reach, search.reach, search.reach);
+    if (except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
+        around_->cover(concave, local - extent, local + extent)) {
+      collect_known(*except, search, local - extent, local + extent);
+      return;
+    }
     TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {
