@@ -243,7 +243,7 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   memory.met = answer.depth.signed_distance() <= threshold;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
-                 points);
+                 AnswerPoints::made, points);
   const auto [i, j] = pairs_.back();
   const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
   const int piece_b = children_b_[static_cast<std::size_t>(j)].index;

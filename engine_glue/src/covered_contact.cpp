@@ -105,10 +105,10 @@ class Cover {
 
   /// Sets the piece at hand: one that is kept, or made anew.
   void take_own() {
-    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, core_) : nullptr;
-    const bool solid = kept != nullptr && !kept->planes.empty();
-    buffers_.own = solid ? kept : &buffers_.made;
-    if (!solid) set_piece(own_, buffers_.made);
+    UnionPiece* const kept = buffers_.near.kept(wrapper_, core_);
+    const bool known = kept != nullptr && !kept->planes.empty();
+    buffers_.own = known ? kept : &buffers_.made;
+    if (!known) set_piece(own_, buffers_.made);
   }
 
   /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
@@ -265,6 +265,40 @@ ContactManifold along_facet(const Side& side, const Plane& facet, double depth, 
   return points;
 }
 
+/// The points of an answer, made when they are asked for.
+class LazyPoints {
+ public:
+  LazyPoints(const PairAnswer& answer, double threshold, ManifoldScratch& scratch, AnswerPoints given,
+             ContactManifold& points)
+      : answer_(answer), threshold_(threshold), scratch_(scratch), made_(given == AnswerPoints::made), points_(points) {
+    if (made_) return;
+    points_.normal = answer.depth.normal;
+    points_.count = 0;
+    made_ = answer.depth.signed_distance() > threshold;
+  }
+  [[nodiscard]] const Vec3& normal() const { return points_.normal; }
+  /// Whether there are none.
+  [[nodiscard]] bool none() const { return made_ && points_.count == 0; }
+  ContactManifold& get() {
+    if (!made_) {
+      points_ = contact_manifold(answer_.a, answer_.b, answer_.depth, threshold_, scratch_, DeepestPoint::as_lifted);
+      made_ = true;
+    }
+    return points_;
+  }
+  void set(const ContactManifold& points) {
+    points_ = points;
+    made_ = true;
+  }
+
+ private:
+  const PairAnswer& answer_;
+  double threshold_;
+  ManifoldScratch& scratch_;
+  bool made_;
+  ContactManifold& points_;
+};
+
 /// What one side's piece does to the manifold.
 class SideRule {
  public:
@@ -278,8 +312,8 @@ class SideRule {
         cover_(side_, slack, window, stamp, core, buffers.cover) {}
 
   /// @return whether `points` was changed
-  bool apply(double depth, const Vec3& witness, ContactManifold& points) {
-    const Vec3 n = side_.outward(points.normal);
+  bool apply(double depth, const Vec3& witness, LazyPoints& points) {
+    const Vec3 n = side_.outward(points.normal());
     if (pushes_from_triangle(n)) return false;
     const double margin = side_.own.shape->margin();
     const Vec3 foot = witness - margin * n;
@@ -295,15 +329,15 @@ class SideRule {
     const double cosine = best->normal.dot(n);
     const bool facet = cosine >= 1 - kSameNormal;
     if (facet && cover_.is_sealed(static_cast<std::size_t>(best - own.planes.begin()))) {
-      points = nearest_free(n, depth, foot);
+      points.set(nearest_free(n, depth, foot));
       return true;
     }
     if (seals && !cover_.look_round(foot, margin, n)) return false;
-    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points);
+    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points.get());
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;
     if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(n))) return false;
-    points = own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot);
+    points.set(own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot));
     return true;
   }
 
@@ -413,15 +447,16 @@ double window_of(const btCollisionObjectWrapper& a, const btCollisionObjectWrapp
 
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
                     const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
-                    ThreadBuffers& buffers, ContactManifold& points) {
-  if (points.count == 0) return;
+                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points) {
+  LazyPoints lazy(answer, threshold, buffers.manifold, given, points);
+  if (lazy.none()) return;
   const double slack = seam_slack(answer.a, answer.b);
   double depth = -answer.depth.signed_distance();
   const double window = window_of(a, b, depth, threshold, seconds);
   Vec3 witness_b = answer.depth.witness_b;
   if (is_piece(b)) {
     SideRule rule({b, answer.b, answer.a, true, front}, threshold, window, slack, stamp, core, buffers);
-    if (rule.apply(depth, witness_b, points)) {
+    if (rule.apply(depth, witness_b, lazy)) {
       buffers.counters.covered.add();
       if (points.count == 0) return;
       const auto deepest = std::max_element(points.points.begin(), points.points.begin() + points.count,
@@ -432,8 +467,9 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
   }
   if (is_piece(a)) {
     SideRule rule({a, answer.a, answer.b, false}, threshold, window, slack, stamp, core, buffers);
-    if (rule.apply(depth, witness_b - depth * points.normal, points)) buffers.counters.covered.add();
+    if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) buffers.counters.covered.add();
   }
+  lazy.get();
 }
 
 void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,

@@ -239,10 +239,9 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
     const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
-    ContactManifold points =
-        contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers.manifold, DeepestPoint::as_lifted);
+    ContactManifold points;
     keep_uncovered(a, triangle.wrapper(), answer, front, threshold, question.seconds, question.stamp, core, buffers,
-                   points);
+                   AnswerPoints::to_be_made, points);
     patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
   }
   if (one_sided) add_fronts(a, question, core, buffers, patches);

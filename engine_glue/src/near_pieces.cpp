@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
 #include <array>
@@ -76,7 +77,8 @@ void NearPieces::begin_pair(std::uint64_t stamp) {
 
 void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh) {
   around_ = &around;
-  around_pose_ = mesh.getWorldTransform();
+  around_pose_ = to_pd(mesh.getWorldTransform());
+  around_margin_ = static_cast<double>(mesh.getCollisionShape()->getMargin());
   known_made_.assign(around.triangles().size(), false);
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
@@ -126,7 +128,9 @@ void NearPieces::make(const CachedShape* shape, std::uint64_t visit, Child& chil
 
 UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& core) {
   const btCollisionObjectWrapper* parent = piece.m_parent;
-  if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return nullptr;
+  if (parent == nullptr || parent->m_parent != nullptr) return nullptr;
+  if (parent->getCollisionShape()->isConcave()) return known_piece(piece);
+  if (!parent->getCollisionShape()->isCompound()) return nullptr;
   PosedCompound& compound =
       compound_of(*parent->getCollisionObject(), static_cast<const btCompoundShape&>(*parent->getCollisionShape()),
                   parent->getWorldTransform());
@@ -134,6 +138,18 @@ UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& 
   Child& child = posed_child(compound, piece.m_index);
   make(facts_.shape_of(*compound.shape, piece.m_index, core), compound.visit, child);
   return &child.piece;
+}
+
+UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
+  if (around_ == nullptr || !around_->are_of(*triangle.m_parent->getCollisionShape())) return nullptr;
+  const auto triangles = around_->triangles();
+  // A host may give several triangles one number.
+  const btVector3* corners = static_cast<const btTriangleShape&>(*triangle.getCollisionShape()).m_vertices1;
+  const auto found = std::find_if(triangles.begin(), triangles.end(), [&](const MeshTriangle& each) {
+    return each.index == triangle.m_index && each.part == triangle.m_partId &&
+           std::equal(each.corners, each.corners + 3, corners);
+  });
+  return found != triangles.end() ? &known_triangle(static_cast<std::size_t>(found - triangles.begin())) : nullptr;
 }
 
 void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
@@ -173,24 +189,32 @@ bool NearPieces::within(const Child& child, const Search& search) {
 void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
                                const btVector3& upper) {
   const std::span<const MeshTriangle> triangles = around_->triangles();
-  const auto margin = static_cast<double>(except.m_parent->getCollisionShape()->getMargin());
-  const Pose pose = to_pd(around_pose_);
-  const Vec3 n = search.beyond != nullptr ? Vec3(pose.rotation().transpose() * search.beyond->n) : Vec3(Vec3::Zero());
-  const double level = search.beyond != nullptr ? search.beyond->level - search.beyond->n.dot(pose.translation()) : -1;
+  Vec3 n = Vec3::Zero();
+  double level = -1;
+  if (const Beyond* beyond = search.beyond) {
+    n = around_pose_.rotation().transpose() * beyond->n;
+    level = beyond->level - beyond->n.dot(around_pose_.translation());
+  }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const MeshTriangle& triangle = triangles[i];
     if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) continue;
     if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
     const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
-    if (std::max({height(0), height(1), height(2)}) + margin <= level) continue;
-    if (!known_made_[i]) {
-      known_made_[i] = true;
-      set_triangle({to_pd(around_pose_(triangle.corners[0])), to_pd(around_pose_(triangle.corners[1])),
-                    to_pd(around_pose_(triangle.corners[2]))},
-                   margin, known_[i]);
-    }
-    if (!known_[i].planes.empty()) search.found.push_back(&known_[i]);
+    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
+    const UnionPiece& piece = known_triangle(i);
+    if (!piece.planes.empty()) search.found.push_back(&piece);
   }
+}
+
+UnionPiece& NearPieces::known_triangle(std::size_t i) {
+  if (!known_made_[i]) {
+    known_made_[i] = true;
+    const MeshTriangle& triangle = around_->triangles()[i];
+    set_triangle({around_pose_.apply(to_pd(triangle.corners[0])), around_pose_.apply(to_pd(triangle.corners[1])),
+                  around_pose_.apply(to_pd(triangle.corners[2]))},
+                 around_margin_, known_[i]);
+  }
+  return known_[i];
 }
 
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,

@@ -49,7 +49,8 @@ class NearPieces {
   /// Makes room: what was found may go.
   void forget_made() { num_made_ = 0; }
 
-  /// The piece itself, where it is kept: a child of a compound that is all of its body; else nullptr.
+  /// The piece itself, where it is kept: a child of a compound that is all of its body, or a triangle that is known;
+  /// else nullptr.
   [[nodiscard]] UnionPiece* kept(const btCollisionObjectWrapper& piece, SolverCore& core);
 
  private:
@@ -74,6 +75,10 @@ class NearPieces {
   /// Those of the triangles that are known. Requires: they cover what is searched.
   void collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
                      const btVector3& upper);
+  /// The piece of one of them, which is made when it is first asked for.
+  UnionPiece& known_triangle(std::size_t i);
+  /// Of this triangle, or null.
+  UnionPiece* known_piece(const btCollisionObjectWrapper& triangle);
   /// @param except  a piece of this shape, or null
   void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                Search& search);
@@ -97,7 +102,8 @@ class NearPieces {
   std::size_t num_compounds_ = 0;
   std::array<PosedCompound*, 2> recent_{};  ///< those of the pair at hand
   const TrianglesAround* around_ = nullptr;
-  btTransform around_pose_;
+  Pose around_pose_;
+  double around_margin_ = 0;
   std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
   std::vector<bool> known_made_;
   std::uint64_t stamp_ = 0;

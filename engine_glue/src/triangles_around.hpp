@@ -52,6 +52,7 @@ class TrianglesAround {
 
   /// By Bullet's numbers, so that their order does not depend on the mesh's tree.
   [[nodiscard]] std::span<const MeshTriangle> triangles() const { return triangles_; }
+  [[nodiscard]] bool are_of(const btCollisionShape& mesh) const { return mesh_ == &mesh; }
   /// Whether all triangles of this mesh that meet a box are among them.
   [[nodiscard]] bool cover(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) const;
 
