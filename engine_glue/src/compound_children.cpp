@@ -1,5 +1,6 @@
 #include "compound_children.hpp"
 
+#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
@@ -43,6 +44,25 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
   if (!std::is_sorted(children.begin(), children.end(), by_number)) {
     std::sort(children.begin(), children.end(), by_number);
   }
+}
+
+bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShape& other,
+                  std::vector<Child>& children) {
+  children.clear();
+  const btCollisionShape& shape = *wrapper.getCollisionShape();
+  const btTransform& pose = wrapper.getWorldTransform();
+  if (!shape.isCompound()) {
+    children.push_back({&shape, pose, -1, {}});
+    return true;
+  }
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+    const btCollisionShape& child = *compound.getChildShape(i);
+    if (!child.isConvex()) return false;
+    if (gCompoundChildShapePairCallback != nullptr && !gCompoundChildShapePairCallback(&other, &child)) continue;
+    children.push_back({&child, pose * compound.getChildTransform(i), i, {}});
+  }
+  return true;
 }
 
 }  // namespace pd::detail

@@ -2,7 +2,6 @@
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
@@ -79,9 +78,7 @@ class MeshContacts final : public UnionContacts {
   }
 
  private:
-  /// The children of question.a, or itself. @return whether all of them are convex
-  bool collect_children(const UnionQuestion& question);
-  /// Reads the mesh around them.
+  /// Reads the mesh around the children.
   void read_mesh(const UnionQuestion& question, ThreadBuffers& buffers);
   /// The contacts of one of them. @return false where a piece has no exact form
   bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
@@ -93,7 +90,7 @@ class MeshContacts final : public UnionContacts {
   void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
                   ThreadBuffers& buffers, Patches& patches);
 
-  std::vector<Child> children_;
+  std::vector<Child> children_;         ///< of question.a, or itself
   std::vector<BodyReach> reaches_;      ///< of the children
   std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
   FlatGround flat_;
@@ -106,27 +103,6 @@ Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
   const Vec3 across = (to_pd(triangle.corners[1]) - to_pd(triangle.corners[0]))
                           .cross(to_pd(triangle.corners[2]) - to_pd(triangle.corners[0]));
   return (to_pd(pose).rotation() * across).normalized();
-}
-
-bool MeshContacts::collect_children(const UnionQuestion& question) {
-  const btCollisionShape& shape = *question.a.getCollisionShape();
-  const btTransform& pose = question.a.getWorldTransform();
-  children_.clear();
-  if (!shape.isCompound()) {
-    children_.push_back({&shape, pose, -1, {}});
-    return true;
-  }
-  const auto& compound = static_cast<const btCompoundShape&>(shape);
-  for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-    const btCollisionShape& child = *compound.getChildShape(i);
-    if (!child.isConvex()) return false;
-    if (gCompoundChildShapePairCallback != nullptr &&
-        !gCompoundChildShapePairCallback(question.b.getCollisionShape(), &child)) {
-      continue;
-    }
-    children_.push_back({&child, pose * compound.getChildTransform(i), i, {}});
-  }
-  return true;
 }
 
 void MeshContacts::read_mesh(const UnionQuestion& question, ThreadBuffers& buffers) {
@@ -192,7 +168,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   triangles_.clear();
   memories_.begin();
   if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
-  if (!collect_children(question)) return false;
+  if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
   read_mesh(question, *buffers);
   buffers->cover.near.begin_pair(question.stamp);
@@ -219,10 +195,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const ChildInResult piece(question.result, question.a, child);
   const btCollisionObjectWrapper& a = piece.wrapper();
   const auto threshold = static_cast<double>(question.threshold);
-  std::vector<ChildMotion>& known = memory.children[0];
-  const auto number = static_cast<std::size_t>(child.index + 1);
-  if (number >= known.size()) known.resize(number + 1);
-  const FlatGround::Body standing{a, known[number].shape};
+  const FlatGround::Body standing{a, memory.shape_of_child(0, child.index)};
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
   if (flat_.find(standing, question, met_of_child, first, core, buffers, patches)) return true;
   const bool one_sided = core.settings.one_sided_meshes;
