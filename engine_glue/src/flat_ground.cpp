@@ -83,10 +83,14 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
   const std::array<Vec3, 3> local = corners_of(triangles[plane.seed]);
   const Vec3 corner = mesh_pose.apply(local[0]);
   Vec3 normal = (mesh_pose.apply(local[1]) - corner).cross(mesh_pose.apply(local[2]) - corner).normalized();
-  const bool behind = normal.dot(to_pd(body_pose.getOrigin()) - corner) < 0;
-  if (behind) normal = -normal;
+  const auto turn_to = [&](const Vec3& place) {
+    if (normal.dot(place - corner) < 0) normal = -normal;
+  };
+  const Vec3 front = normal;
+  turn_to(to_pd(body_pose.getOrigin()));
   if (core.settings.one_sided_meshes) {
     // Fronts are where corners run counter-clockwise.
+    const bool behind = normal.dot(front) < 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       if (plane_of_[i] == number && (across_[i].dot(across_[plane.seed]) < 0) != behind) return false;
     }
@@ -95,15 +99,22 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
   // 2. The body on it.
   HalfspaceContact found;
   const auto threshold = static_cast<double>(question.threshold);
-  const bool sharp_box = is_part(body.wrapper);
-  const Halfspace3 ground{normal, normal.dot(corner) + margin};
-  const GroundQuestion asked{shape, body_pose, ground, question.stamp, body.known, threshold, sharp_box};
-  if (core.stand_on(asked, buffers, found) != SolverCore::Outcome::answered) return false;
+  const bool part = is_part(body.wrapper);
+  const auto stand = [&] {
+    const Halfspace3 ground{normal, normal.dot(corner) + margin};
+    const GroundQuestion asked{shape, body_pose, ground, question.stamp, body.known, threshold, part};
+    return core.stand_on(asked, buffers, found) == SolverCore::Outcome::answered;
+  };
+  if (!stand()) return false;
+  if (found.manifold.count > 0 && -found.lower > kShallow * (found.highest - found.lower)) {
+    // Children that a sheet cuts leave it where the whole is, or some would push one way and some the other for good.
+    if (!part || core.settings.one_sided_meshes) return false;
+    turn_to(to_pd(question.a.getWorldTransform().getOrigin()));
+    if (!stand() || -found.lower - margin > (1 - kShallow) * (found.highest - found.lower)) return false;
+  }
   plane.points = found.manifold;
   if (found.manifold.count == 0) return true;
-  if (-found.lower > kShallow * (found.highest - found.lower)) return false;
-  const PosedShape posed{(sharp_box && body.known->sharp ? body.known->sharp : body.known->body).get(),
-                         to_pd(body_pose)};
+  const PosedShape posed{(part && body.known->sharp ? body.known->sharp : body.known->body).get(), to_pd(body_pose)};
   if (is_piece(body.wrapper)) {
     drop_covered(body.wrapper, posed, question.b, threshold, question.seconds, question.stamp, core, buffers,
                  plane.points);

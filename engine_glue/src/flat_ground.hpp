@@ -6,8 +6,9 @@
 /// the plane all lie over triangles of it, they are the contacts of that surface: no triangle has another (a contact
 /// that leads off one over an edge to the next is covered by that, covered_contact.hpp), and what a triangle's own side
 /// says nothing covers. Of a child of a compound, the points inside of other children that lead on into the plane do
-/// not count. Where one lies over an edge of the mesh, a hole or a triangle of another plane, or the body is
-/// so far in that another way out may be shorter, the triangles are asked one by one.
+/// not count, and a child that is in by more than a quarter leaves to the side where the compound is. Where one lies
+/// over an edge of the mesh, a hole or a triangle of another plane, or the body is so far in that another way out may
+/// be shorter, the triangles are asked one by one.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>

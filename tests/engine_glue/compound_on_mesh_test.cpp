@@ -123,6 +123,18 @@ TEST(CompoundOnMesh, WhatLiesInsideOfAnotherChildHasNoPoints) {
   EXPECT_EQ(children_with_points(world), (std::multiset<int>{0, 0}));
 }
 
+TEST(CompoundOnMesh, WhatASheetCutsLeavesWhereTheWholeIs) {
+  // Upside down: the upright bar stands through the sheet by two thirds, so that its own way out is down, the other
+  // bar lies on it.
+  UnionWorld world;
+  world.fixed(ground(world, 0))->setFriction(btScalar(.5));
+  const btQuaternion over(vector(1, 0, 0), SIMD_PI);
+  const btRigidBody* body = world.moving(crossed_bars(world), btTransform(over, vector(.1, .1, .1)), vector(0, 0, 0));
+  world.step(180);
+  EXPECT_GT(world.bullet.least_distance(), -2e-3);
+  EXPECT_GT(height_of(*body), .05);
+}
+
 bool only_balls(const btCollisionShape*, const btCollisionShape* child) {
   return child->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
 }
