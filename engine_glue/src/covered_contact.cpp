@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lazy_points.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
@@ -264,40 +265,6 @@ ContactManifold along_facet(const Side& side, const Plane& facet, double depth, 
   }
   return points;
 }
-
-/// The points of an answer, made when they are asked for.
-class LazyPoints {
- public:
-  LazyPoints(const PairAnswer& answer, double threshold, ManifoldScratch& scratch, AnswerPoints given,
-             ContactManifold& points)
-      : answer_(answer), threshold_(threshold), scratch_(scratch), made_(given == AnswerPoints::made), points_(points) {
-    if (made_) return;
-    points_.normal = answer.depth.normal;
-    points_.count = 0;
-    made_ = answer.depth.signed_distance() > threshold;
-  }
-  [[nodiscard]] const Vec3& normal() const { return points_.normal; }
-  /// Whether there are none.
-  [[nodiscard]] bool none() const { return made_ && points_.count == 0; }
-  ContactManifold& get() {
-    if (!made_) {
-      points_ = contact_manifold(answer_.a, answer_.b, answer_.depth, threshold_, scratch_, DeepestPoint::as_lifted);
-      made_ = true;
-    }
-    return points_;
-  }
-  void set(const ContactManifold& points) {
-    points_ = points;
-    made_ = true;
-  }
-
- private:
-  const PairAnswer& answer_;
-  double threshold_;
-  ManifoldScratch& scratch_;
-  bool made_;
-  ContactManifold& points_;
-};
 
 /// What one side's piece does to the manifold.
 class SideRule {
