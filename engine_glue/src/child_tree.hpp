@@ -3,6 +3,7 @@
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 namespace pd::detail {
 
@@ -15,6 +16,25 @@ void for_each_leaf(const btDbvt& tree, const btDbvtVolume& volume, const Visit& 
     const Visit& each;
   } leaves(visit);
   tree.collideTV(tree.m_root, volume, leaves);
+}
+
+/// Calls `visit(number)` for the children whose boxes meet a volume in the compound's frame, in no order. Those of a
+/// compound without a tree are visited all.
+template <class Visit>
+void for_each_child_meeting(const btCompoundShape& compound, const btDbvtVolume& volume, const Visit& visit) {
+  /// Of so few children each is compared; of more, Bullet's tree is asked.
+  constexpr int kFewChildren = 32;
+  const btDbvt* tree = compound.getDynamicAabbTree();
+  const int count = compound.getNumChildShapes();
+  if (tree != nullptr && count > kFewChildren) {
+    for_each_leaf(*tree, volume, visit);
+    return;
+  }
+  // Bullet offers no children to a reader of a constant compound.
+  const btCompoundShapeChild* children = const_cast<btCompoundShape&>(compound).getChildList();
+  for (int i = 0; i < count; ++i) {
+    if (tree == nullptr || Intersect(children[i].m_node->volume, volume)) visit(i);
+  }
 }
 
 }  // namespace pd::detail

@@ -1,5 +1,6 @@
 #include "compound_children.hpp"
 
+#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
@@ -36,14 +37,32 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
     child.box = box_of(*child.shape, child.pose);
     if (!apart(child.box, world, reach)) children.push_back(child);
   };
-  if (const btDbvt* tree = compound.getDynamicAabbTree()) {
-    const btVector3 extra(reach, reach, reach);
-    for_each_leaf(*tree, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
-    // The tree's order depends on its history.
-    std::sort(children.begin(), children.end(), [](const Child& x, const Child& y) { return x.index < y.index; });
-  } else {
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) visit(i);
+  const btVector3 extra(reach, reach, reach);
+  for_each_child_meeting(compound, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
+  // The tree's order depends on its history.
+  const auto by_number = [](const Child& x, const Child& y) { return x.index < y.index; };
+  if (!std::is_sorted(children.begin(), children.end(), by_number)) {
+    std::sort(children.begin(), children.end(), by_number);
   }
+}
+
+bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShape& other,
+                  std::vector<Child>& children) {
+  children.clear();
+  const btCollisionShape& shape = *wrapper.getCollisionShape();
+  const btTransform& pose = wrapper.getWorldTransform();
+  if (!shape.isCompound()) {
+    children.push_back({&shape, pose, -1, {}});
+    return true;
+  }
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+    const btCollisionShape& child = *compound.getChildShape(i);
+    if (!child.isConvex()) return false;
+    if (gCompoundChildShapePairCallback != nullptr && !gCompoundChildShapePairCallback(&other, &child)) continue;
+    children.push_back({&child, pose * compound.getChildTransform(i), i, {}});
+  }
+  return true;
 }
 
 }  // namespace pd::detail

@@ -32,4 +32,9 @@ bool apart(const Box& a, const Box& b, btScalar reach);
 void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
                    std::vector<Child>& children);
 
+/// The children that the host lets meet `other` (`gCompoundChildShapePairCallback`), wherever they are and without
+/// their boxes. Of a shape that is no compound: itself.
+/// @return whether all children are convex
+bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShape& other, std::vector<Child>& children);
+
 }  // namespace pd::detail

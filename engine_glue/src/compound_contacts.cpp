@@ -14,59 +14,25 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "piece_memories.hpp"
+#include "pieces_in_result.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-/// Two children in place of their bodies in the result, as Bullet's own algorithms do, and back.
+/// Two children in place of their bodies in the result.
 class ChildrenInResult {
  public:
   ChildrenInResult(btManifoldResult& result, const btCollisionObjectWrapper& a, const Child& child_a,
                    const btCollisionObjectWrapper& b, const Child& child_b)
-      : result_(result), before_0_(result.getBody0Wrap()), before_1_(result.getBody1Wrap()) {
-    wrap(a, child_a, wrapper_a_);
-    wrap(b, child_b, wrapper_b_);
-    const bool swapped = result.getBody0Internal() != a.getCollisionObject();
-    place(swapped ? b : a, swapped ? child_b : child_a, swapped ? *wrapper_b_ : *wrapper_a_, true);
-    place(swapped ? a : b, swapped ? child_a : child_b, swapped ? *wrapper_a_ : *wrapper_b_, false);
-  }
-  ~ChildrenInResult() {
-    result_.setBody0Wrap(before_0_);
-    result_.setBody1Wrap(before_1_);
-  }
-  ChildrenInResult(const ChildrenInResult&) = delete;
-  ChildrenInResult& operator=(const ChildrenInResult&) = delete;
-
-  [[nodiscard]] const btCollisionObjectWrapper& a() const { return *wrapper_a_; }
-  [[nodiscard]] const btCollisionObjectWrapper& b() const { return *wrapper_b_; }
+      : a_(result, a, child_a), b_(result, b, child_b) {}
+  [[nodiscard]] const btCollisionObjectWrapper& a() const { return a_.wrapper(); }
+  [[nodiscard]] const btCollisionObjectWrapper& b() const { return b_.wrapper(); }
 
  private:
-  static void wrap(const btCollisionObjectWrapper& body, const Child& child,
-                   std::optional<btCollisionObjectWrapper>& wrapper) {
-    const bool whole = child.index < 0;
-    wrapper.emplace(whole ? body.m_parent : &body, child.shape, body.getCollisionObject(), child.pose,
-                    whole ? body.m_partId : -1, whole ? body.m_index : child.index);
-  }
-  void place(const btCollisionObjectWrapper& body, const Child& child, const btCollisionObjectWrapper& wrapper,
-             bool first) {
-    const int part = child.index < 0 ? body.m_partId : -1;
-    const int index = child.index < 0 ? body.m_index : child.index;
-    if (first) {
-      result_.setBody0Wrap(&wrapper);
-      result_.setShapeIdentifiersA(part, index);
-    } else {
-      result_.setBody1Wrap(&wrapper);
-      result_.setShapeIdentifiersB(part, index);
-    }
-  }
-
-  btManifoldResult& result_;
-  const btCollisionObjectWrapper* before_0_;
-  const btCollisionObjectWrapper* before_1_;
-  std::optional<btCollisionObjectWrapper> wrapper_a_;
-  std::optional<btCollisionObjectWrapper> wrapper_b_;
+  ChildInResult a_;
+  ChildInResult b_;
 };
 
 /// What was over the budget is asked again after 1, 3, 7, ... steps, 31 at the most: it costs the budget each time.
@@ -179,10 +145,15 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   const btTransform& pose_a = a.getWorldTransform();
   const btTransform& pose_b = b.getWorldTransform();
   if (!is_finite(pose_a) || !is_finite(pose_b)) return true;
-  const Box world_a = box_of(*a.getCollisionShape(), pose_a);
-  const Box world_b = box_of(*b.getCollisionShape(), pose_b);
-  children_near(a, box_of(*b.getCollisionShape(), pose_a.inverseTimes(pose_b)), world_b, threshold, children_a_);
-  children_near(b, box_of(*a.getCollisionShape(), pose_b.inverseTimes(pose_a)), world_a, threshold, children_b_);
+  const btCollisionShape& shape_a = *a.getCollisionShape();
+  const btCollisionShape& shape_b = *b.getCollisionShape();
+  children_near(a, box_of(shape_b, pose_a.inverseTimes(pose_b)), box_of(shape_b, pose_b), threshold, children_a_);
+  children_b_.clear();
+  if (!children_a_.empty()) {
+    children_near(b, box_of(shape_a, pose_b.inverseTimes(pose_a)), box_of(shape_a, pose_a), threshold, children_b_);
+  }
+  // Most pairs of boxes that overlap end here.
+  if (children_b_.empty()) children_a_.clear();
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair(stamp);
@@ -272,7 +243,7 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   memory.met = answer.depth.signed_distance() <= threshold;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
-                 points);
+                 AnswerPoints::made, points);
   const auto [i, j] = pairs_.back();
   const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
   const int piece_b = children_b_[static_cast<std::size_t>(j)].index;

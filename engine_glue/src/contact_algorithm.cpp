@@ -155,7 +155,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       if (of_union) {
         buffers->cover.near.begin_pair(stamp);
         keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold),
-                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, points);
+                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, AnswerPoints::made, points);
       }
       fresh = fresh_points(points);
     }

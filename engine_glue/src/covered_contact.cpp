@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lazy_points.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
@@ -105,10 +106,10 @@ class Cover {
 
   /// Sets the piece at hand: one that is kept, or made anew.
   void take_own() {
-    UnionPiece* const kept = is_part(wrapper_) ? buffers_.near.kept(wrapper_, core_) : nullptr;
-    const bool solid = kept != nullptr && !kept->planes.empty();
-    buffers_.own = solid ? kept : &buffers_.made;
-    if (!solid) set_piece(own_, buffers_.made);
+    UnionPiece* const kept = buffers_.near.kept(wrapper_, core_);
+    const bool known = kept != nullptr && !kept->planes.empty();
+    buffers_.own = known ? kept : &buffers_.made;
+    if (!known) set_piece(own_, buffers_.made);
   }
 
   /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
@@ -278,8 +279,8 @@ class SideRule {
         cover_(side_, slack, window, stamp, core, buffers.cover) {}
 
   /// @return whether `points` was changed
-  bool apply(double depth, const Vec3& witness, ContactManifold& points) {
-    const Vec3 n = side_.outward(points.normal);
+  bool apply(double depth, const Vec3& witness, LazyPoints& points) {
+    const Vec3 n = side_.outward(points.normal());
     if (pushes_from_triangle(n)) return false;
     const double margin = side_.own.shape->margin();
     const Vec3 foot = witness - margin * n;
@@ -295,15 +296,15 @@ class SideRule {
     const double cosine = best->normal.dot(n);
     const bool facet = cosine >= 1 - kSameNormal;
     if (facet && cover_.is_sealed(static_cast<std::size_t>(best - own.planes.begin()))) {
-      points = nearest_free(n, depth, foot);
+      points.set(nearest_free(n, depth, foot));
       return true;
     }
     if (seals && !cover_.look_round(foot, margin, n)) return false;
-    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points);
+    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points.get());
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;
     if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(n))) return false;
-    points = own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot);
+    points.set(own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot));
     return true;
   }
 
@@ -402,21 +403,27 @@ class SideRule {
   Cover cover_;
 };
 
+/// How far from a contact a union is looked at: as far as the bodies may move before contacts are found again.
+double window_of(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double depth, double threshold,
+                 double seconds) {
+  const Vec3 way = seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject()));
+  return threshold + std::abs(depth) + way.norm();
+}
+
 }  // namespace
 
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
                     const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
-                    ThreadBuffers& buffers, ContactManifold& points) {
-  if (points.count == 0) return;
+                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points) {
+  LazyPoints lazy(answer, threshold, buffers.manifold, given, points);
+  if (lazy.none()) return;
   const double slack = seam_slack(answer.a, answer.b);
   double depth = -answer.depth.signed_distance();
-  const double window =
-      threshold + std::abs(depth) +
-      seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject())).norm();
+  const double window = window_of(a, b, depth, threshold, seconds);
   Vec3 witness_b = answer.depth.witness_b;
   if (is_piece(b)) {
     SideRule rule({b, answer.b, answer.a, true, front}, threshold, window, slack, stamp, core, buffers);
-    if (rule.apply(depth, witness_b, points)) {
+    if (rule.apply(depth, witness_b, lazy)) {
       buffers.counters.covered.add();
       if (points.count == 0) return;
       const auto deepest = std::max_element(points.points.begin(), points.points.begin() + points.count,
@@ -427,7 +434,27 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
   }
   if (is_piece(a)) {
     SideRule rule({a, answer.a, answer.b, false}, threshold, window, slack, stamp, core, buffers);
-    if (rule.apply(depth, witness_b - depth * points.normal, points)) buffers.counters.covered.add();
+    if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) buffers.counters.covered.add();
+  }
+  lazy.get();
+}
+
+void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
+                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                  ContactManifold& points) {
+  const Vec3 n = -points.normal;
+  const double margin = body.shape->margin();
+  const double slack = seam_slack(body, body);
+  const Side side{a, body, body, false};
+  for (int i = points.count - 1; i >= 0; --i) {
+    const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
+    const Vec3 foot = point.position_a - margin * n;
+    Cover cover(side, slack, window_of(a, b, point.depth, threshold, seconds), stamp, core, buffers.cover);
+    if (!cover.look_round(foot, margin, n)) continue;
+    cover.take_own();
+    if (buffers.cover.own->planes.empty() || cover.covered(foot, n) <= kDecided) continue;
+    drop(points, i);
+    buffers.counters.covered.add();
   }
 }
 

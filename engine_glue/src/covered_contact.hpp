@@ -40,7 +40,12 @@ struct CoverBuffers {
   std::vector<std::pair<double, int>> facets;
 };
 
+/// Whether `keep_uncovered` is handed the answer's points, or makes them where it needs them: what is turned or dropped
+/// for what lies round it needs none.
+enum class AnswerPoints : std::uint8_t { made, to_be_made };
+
 /// Changes `points`, the manifold of `answer`, to what holds for the unions that a and b are pieces of.
+/// @param given  to_be_made: whatever `points` are, they become those of the answer (as lifted), or what holds
 ///
 /// @param front  zero, or: b is a triangle that has this side only (unit, in the world)
 /// @param threshold  up to which gap a pair of points is a contact
@@ -49,7 +54,14 @@ struct CoverBuffers {
 /// their f facets.
 void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
                     const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
-                    ThreadBuffers& buffers, ContactManifold& points);
+                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points);
+
+/// Drops the points of piece A's contact with a plane of B that lie inside of other pieces of A's union which lead on
+/// into the plane: those are deeper in it.
+/// @param body  what A is taken as
+void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
+                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                  ContactManifold& points);
 
 /// The contact of a body A that stands through or behind triangle B and is to leave by B's side `front`: points over
 /// the triangle, each as deep as A lies behind its plane.

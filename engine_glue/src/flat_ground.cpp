@@ -1,10 +1,10 @@
 #include "flat_ground.hpp"
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
 #include <algorithm>
 
+#include "covered_contact.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "solver_core.hpp"
@@ -36,7 +36,7 @@ bool holds(const MetTriangle& triangle, const Vec3& across, const Vec3& point, d
 
 }  // namespace
 
-bool FlatGround::sort_by_plane(const std::vector<MetTriangle>& triangles) {
+bool FlatGround::sort_by_plane(std::span<const MetTriangle> triangles) {
   across_.clear();
   farthest_ = 0;
   for (const MetTriangle& triangle : triangles) {
@@ -72,10 +72,10 @@ bool FlatGround::sort_by_plane(const std::vector<MetTriangle>& triangles) {
   return true;
 }
 
-bool FlatGround::ask(const UnionQuestion& question, const std::vector<MetTriangle>& triangles, SolverCore& core,
-                     ThreadBuffers& buffers, PairMemory& memory, Plane& plane, int number) {
-  const auto& body = static_cast<const btConvexShape&>(*question.a.getCollisionShape());
-  const btTransform& body_pose = question.a.getWorldTransform();
+bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<const MetTriangle> triangles,
+                     SolverCore& core, ThreadBuffers& buffers, Plane& plane, int number) {
+  const auto& shape = static_cast<const btConvexShape&>(*body.wrapper.getCollisionShape());
+  const btTransform& body_pose = body.wrapper.getWorldTransform();
   const Pose mesh_pose = to_pd(question.b.getWorldTransform());
   const auto margin = static_cast<double>(question.b.getCollisionShape()->getMargin());
 
@@ -83,10 +83,14 @@ bool FlatGround::ask(const UnionQuestion& question, const std::vector<MetTriangl
   const std::array<Vec3, 3> local = corners_of(triangles[plane.seed]);
   const Vec3 corner = mesh_pose.apply(local[0]);
   Vec3 normal = (mesh_pose.apply(local[1]) - corner).cross(mesh_pose.apply(local[2]) - corner).normalized();
-  const bool behind = normal.dot(to_pd(body_pose.getOrigin()) - corner) < 0;
-  if (behind) normal = -normal;
+  const auto turn_to = [&](const Vec3& place) {
+    if (normal.dot(place - corner) < 0) normal = -normal;
+  };
+  const Vec3 front = normal;
+  turn_to(to_pd(body_pose.getOrigin()));
   if (core.settings.one_sided_meshes) {
     // Fronts are where corners run counter-clockwise.
+    const bool behind = normal.dot(front) < 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       if (plane_of_[i] == number && (across_[i].dot(across_[plane.seed]) < 0) != behind) return false;
     }
@@ -94,15 +98,30 @@ bool FlatGround::ask(const UnionQuestion& question, const std::vector<MetTriangl
 
   // 2. The body on it.
   HalfspaceContact found;
-  const GroundQuestion asked{body,           body_pose,        {normal, normal.dot(corner) + margin},
-                             question.stamp, memory.shapes[0], static_cast<double>(question.threshold)};
-  if (core.stand_on(asked, buffers, found) != SolverCore::Outcome::answered) return false;
+  const auto threshold = static_cast<double>(question.threshold);
+  const bool part = is_part(body.wrapper);
+  const auto stand = [&] {
+    const Halfspace3 ground{normal, normal.dot(corner) + margin};
+    const GroundQuestion asked{shape, body_pose, ground, question.stamp, body.known, threshold, part};
+    return core.stand_on(asked, buffers, found) == SolverCore::Outcome::answered;
+  };
+  if (!stand()) return false;
+  if (found.manifold.count > 0 && -found.lower > kShallow * (found.highest - found.lower)) {
+    // Children that a sheet cuts leave it where the whole is, or some would push one way and some the other for good.
+    if (!part || core.settings.one_sided_meshes) return false;
+    turn_to(to_pd(question.a.getWorldTransform().getOrigin()));
+    if (!stand() || -found.lower - margin > (1 - kShallow) * (found.highest - found.lower)) return false;
+  }
   plane.points = found.manifold;
   if (found.manifold.count == 0) return true;
-  if (-found.lower > kShallow * (found.highest - found.lower)) return false;
+  const PosedShape posed{(part && body.known->sharp ? body.known->sharp : body.known->body).get(), to_pd(body_pose)};
+  if (is_piece(body.wrapper)) {
+    drop_covered(body.wrapper, posed, question.b, threshold, question.seconds, question.stamp, core, buffers,
+                 plane.points);
+  }
 
   // 3. What is under its points.
-  const double slack = seam_slack(bounding_radius(*memory.shapes[0]->body),
+  const double slack = seam_slack(bounding_radius(*posed.shape),
                                   std::max(farthest_, to_pd(body_pose.getOrigin()).cwiseAbs().maxCoeff()));
   for (int k = 0; k < plane.points.count; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -119,19 +138,22 @@ bool FlatGround::ask(const UnionQuestion& question, const std::vector<MetTriangl
   return true;
 }
 
-bool FlatGround::find(const UnionQuestion& question, const std::vector<MetTriangle>& triangles, SolverCore& core,
-                      ThreadBuffers& buffers, PairMemory& memory, Patches& patches) {
-  if (triangles.empty() || is_piece(question.a) || !sort_by_plane(triangles)) return false;
+bool FlatGround::find(const Body& body, const UnionQuestion& question, std::span<const MetTriangle> triangles,
+                      std::size_t first, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
+  if (!sort_by_plane(triangles)) return false;
+  // Planes of one triangle each are asked as triangles, which do not have to be asked again where a point lies aside.
+  if (planes_.size() > 1 && planes_.size() == triangles.size()) return false;
   for (std::size_t p = 0; p < planes_.size(); ++p) {
-    if (!ask(question, triangles, core, buffers, memory, planes_[p], static_cast<int>(p))) return false;
+    if (!ask(body, question, triangles, core, buffers, planes_[p], static_cast<int>(p))) return false;
   }
+  const int child = is_part(body.wrapper) ? body.wrapper.m_index : -1;
   for (const Plane& plane : planes_) {
     for (int k = 0; k < plane.points.count; ++k) {
       ContactManifold point = plane.points;
       point.points[0] = plane.points.points[static_cast<std::size_t>(k)];
       point.count = 1;
       // Features are the body's alone, and go on from triangle to triangle.
-      patches.add(point, plane.triangles[static_cast<std::size_t>(k)], -1, -1);
+      patches.add(point, static_cast<int>(first) + plane.triangles[static_cast<std::size_t>(k)], child, -1);
     }
   }
   return true;

@@ -24,12 +24,13 @@ void for_each_convex_pair(Visit&& visit) {
   }
 }
 
-/// Convex bodies against meshes and planes, in both orders.
+/// Convex bodies and compounds against meshes and planes, in both orders.
 template <class Visit>
 void for_each_ground_pair(Visit&& visit) {
   for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
     for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
-      if (btBroadphaseProxy::isConvex(i) && (detail::takes_mesh(j) || j == STATIC_PLANE_PROXYTYPE)) {
+      const bool body = btBroadphaseProxy::isConvex(i) || btBroadphaseProxy::isCompound(i);
+      if (body && (detail::takes_mesh(j) || j == STATIC_PLANE_PROXYTYPE)) {
         visit(i, j, false);
         visit(j, i, true);
       }
@@ -70,7 +71,10 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
   btCollisionConfiguration* configuration = dispatcher.getCollisionConfiguration();
   for_each_ground_pair([&](int i, int j, bool swapped) {
     const bool plane = (swapped ? i : j) == STATIC_PLANE_PROXYTYPE;
-    btCollisionAlgorithmCreateFunc* ours = plane ? installation.plane(swapped) : installation.mesh(swapped);
+    const bool compound = btBroadphaseProxy::isCompound(swapped ? j : i);
+    btCollisionAlgorithmCreateFunc* ours = !plane     ? installation.mesh(swapped)
+                                           : compound ? installation.compound_on_plane(swapped)
+                                                      : installation.plane(swapped);
     dispatcher.registerCollisionCreateFunc(i, j, whole ? ours : configuration->getCollisionAlgorithmCreateFunc(i, j));
   });
   for_each_compound_pair([&](int i, int j) {

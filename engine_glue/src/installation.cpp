@@ -6,6 +6,7 @@
 
 #include "compound_contacts.hpp"
 #include "mesh_contacts.hpp"
+#include "plane_contacts.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -20,6 +21,8 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       mesh_(*this, mesh_contacts, false),
       swapped_mesh_(*this, mesh_contacts, true),
       compound_(*this, compound_contacts, false),
+      compound_on_plane_(*this, plane_contacts, false),
+      swapped_compound_on_plane_(*this, plane_contacts, true),
       plane_(*this, false),
       swapped_plane_(*this, true),
       persistent_(&depth_solver_) {}

@@ -34,12 +34,16 @@ class Installation {
 
   /// For the table of contacts (`closest` false) or that of closest points.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
-  /// For the table of contacts: convex against mesh, or (`swapped`) mesh against convex.
+  /// For the table of contacts: a convex body or compound against a mesh, or (`swapped`) the other way round.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
   /// For the table of contacts: pairs with a compound, of compounds and convex bodies.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }
   /// For the table of contacts: convex against plane, or (`swapped`) plane against convex.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* plane(bool swapped) { return swapped ? &swapped_plane_ : &plane_; }
+  /// For the table of contacts: compound against plane, or (`swapped`) plane against compound.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* compound_on_plane(bool swapped) {
+    return swapped ? &swapped_compound_on_plane_ : &compound_on_plane_;
+  }
   /// Whether the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
   [[nodiscard]] bool takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const;
   /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a dispatcher.
@@ -84,6 +88,8 @@ class Installation {
   UnionAlgorithm::CreateFunc mesh_;
   UnionAlgorithm::CreateFunc swapped_mesh_;
   UnionAlgorithm::CreateFunc compound_;
+  UnionAlgorithm::CreateFunc compound_on_plane_;
+  UnionAlgorithm::CreateFunc swapped_compound_on_plane_;
   PlaneAlgorithm::CreateFunc plane_;
   PlaneAlgorithm::CreateFunc swapped_plane_;
   btConvexConvexAlgorithm::CreateFunc persistent_;

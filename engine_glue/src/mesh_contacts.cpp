@@ -3,22 +3,23 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "compound_children.hpp"
 #include "covered_contact.hpp"
 #include "flat_ground.hpp"
 #include "met_triangle.hpp"
 #include "one_sided.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "piece_memories.hpp"
-#include "rounded_box.hpp"
+#include "pieces_in_result.hpp"
 #include "solver_core.hpp"
+#include "triangles_around.hpp"
 
 namespace pd::detail {
 
@@ -27,131 +28,71 @@ namespace {
 /// Of a way out of a triangle: so much farther, a body that follows it is off the triangle beyond rounding.
 constexpr double kClear = 1 + 0x1p-6;
 
-/// Triangles of one step that a pair remembers, some 2 KB each; those met after them begin anew each step.
+/// Triangles of one step that a body or child remembers, some 2 KB each; those met after them begin anew each step.
 constexpr std::size_t kMostRemembered = 128;
 
-std::uint64_t number_of(const MetTriangle& triangle) {
-  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) |
+/// Of the threshold: so much farther than contacts reach the mesh is read, since what lies round a contact is asked
+/// for, too. Where bodies are fast it may lie farther, and is read from the mesh again.
+constexpr btScalar kRoom = 3;
+
+/// Of a child and a triangle; unlike those of any other two, of up to 65,535 children and parts.
+std::uint64_t number_of(const Child& child, const MetTriangle& triangle) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child.index + 1)) << 48U) ^
+         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) ^
          static_cast<std::uint32_t>(triangle.index);
 }
 
-/// Collects the triangles within reach of a body, but for those without area, which have no surface, and those whose
-/// corners are no numbers.
-class TrianglesInReach : public btTriangleCallback {
+/// Of the same two in place of the triangle's part: Bullet's number of that for a body that is no compound.
+int part_of(const Child& child, const MetTriangle& triangle) { return triangle.part ^ ((child.index + 1) << 16); }
+
+/// The child and the triangle that a point lies between.
+class PiecesOfPoint : public PointSurroundings {
  public:
-  /// @param pose  of the body in the mesh's frame
-  /// @param reach  how far from the body triangles count
-  TrianglesInReach(const btConvexShape& body, const btTransform& pose, btScalar reach, std::vector<MetTriangle>& met)
-      : box_(rounded_box(body, pose)), met_(met) {
-    body.getAabb(pose, lower_, upper_);
-    lower_ -= btVector3(reach, reach, reach);
-    upper_ += btVector3(reach, reach, reach);
-    // What rounding of the boxes may add.
-    reach_ = 1.001 * static_cast<double>(reach) + kRounding * (to_pd(lower_).norm() + to_pd(upper_).norm());
+  PiecesOfPoint(const UnionQuestion& question, const std::vector<Child>& children,
+                const std::vector<MetTriangle>& triangles)
+      : question_(question), children_(children), triangles_(triangles) {}
+  void enter(int place) override {
+    const MetTriangle& triangle = triangles_[static_cast<std::size_t>(place)];
+    child_.emplace(question_.result, question_.a, children_[static_cast<std::size_t>(triangle.child)]);
+    triangle_.emplace(question_.result, question_.b, triangle);
   }
-
-  void processTriangle(btVector3* corners, int part, int index) override {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-      if (low > upper_[axis] || high < lower_[axis]) return;
-    }
-    const Vec3 points[3] = {to_pd(corners[0]), to_pd(corners[1]), to_pd(corners[2])};
-    const Vec3 across = (points[1] - points[0]).cross(points[2] - points[0]);
-    if (!across.allFinite() || across.isZero(0)) {
-      ++skipped;
-      return;
-    }
-    if (out_of_reach(box_, points, across, reach_, kRounding)) return;
-    met_.push_back({{corners[0], corners[1], corners[2]}, part, index});
+  void leave() override {
+    triangle_.reset();
+    child_.reset();
   }
-
-  [[nodiscard]] const btVector3& lower() const { return lower_; }
-  [[nodiscard]] const btVector3& upper() const { return upper_; }
-
-  int skipped = 0;
 
  private:
-  static constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-20 : 0x1p-48;
-
-  RoundedBox box_;
-  btVector3 lower_;
-  btVector3 upper_;
-  double reach_;
-  std::vector<MetTriangle>& met_;
-};
-
-/// Puts the triangle in place of the mesh in the result, as Bullet's own algorithm does, and back.
-class TriangleInResult {
- public:
-  TriangleInResult(btManifoldResult& result, const btCollisionObjectWrapper& mesh, const MetTriangle& triangle,
-                   btScalar margin)
-      : result_(result),
-        shape_(triangle.corners[0], triangle.corners[1], triangle.corners[2]),
-        wrapper_(&mesh, &shape_, mesh.getCollisionObject(), mesh.getWorldTransform(), triangle.part, triangle.index),
-        mesh_is_a_(result.getBody0Internal() == mesh.getCollisionObject()),
-        before_(mesh_is_a_ ? result.getBody0Wrap() : result.getBody1Wrap()) {
-    shape_.setMargin(margin);
-    if (mesh_is_a_) {
-      result.setBody0Wrap(&wrapper_);
-      result.setShapeIdentifiersA(triangle.part, triangle.index);
-    } else {
-      result.setBody1Wrap(&wrapper_);
-      result.setShapeIdentifiersB(triangle.part, triangle.index);
-    }
-  }
-  ~TriangleInResult() {
-    if (mesh_is_a_) {
-      result_.setBody0Wrap(before_);
-    } else {
-      result_.setBody1Wrap(before_);
-    }
-  }
-  TriangleInResult(const TriangleInResult&) = delete;
-  TriangleInResult& operator=(const TriangleInResult&) = delete;
-
-  [[nodiscard]] const btTriangleShape& shape() const { return shape_; }
-  [[nodiscard]] const btCollisionObjectWrapper& wrapper() const { return wrapper_; }
-
- private:
-  btManifoldResult& result_;
-  btTriangleShape shape_;
-  btCollisionObjectWrapper wrapper_;
-  bool mesh_is_a_;
-  const btCollisionObjectWrapper* before_;
-};
-
-class TriangleOfPoint : public PointSurroundings {
- public:
-  TriangleOfPoint(const btCollisionObjectWrapper& mesh, btManifoldResult& result,
-                  const std::vector<MetTriangle>& triangles)
-      : mesh_(mesh), result_(result), triangles_(triangles) {}
-  void enter(int triangle) override {
-    inside_.emplace(result_, mesh_, triangles_[static_cast<std::size_t>(triangle)],
-                    mesh_.getCollisionShape()->getMargin());
-  }
-  void leave() override { inside_.reset(); }
-
- private:
-  const btCollisionObjectWrapper& mesh_;
-  btManifoldResult& result_;
+  const UnionQuestion& question_;
+  const std::vector<Child>& children_;
   const std::vector<MetTriangle>& triangles_;
-  std::optional<TriangleInResult> inside_;
+  std::optional<ChildInResult> child_;
+  std::optional<TriangleInResult> triangle_;
 };
 
 class MeshContacts final : public UnionContacts {
  public:
   bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
-    TriangleOfPoint around(question.b, question.result, triangles_);
+    PiecesOfPoint around(question, children_, triangles_);
     manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
   }
 
  private:
-  SolverCore::Outcome ask(const UnionQuestion& question, const TriangleInResult& triangle, const btTransform& pose_a,
-                          PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers, PairAnswer& answer) const;
-  void add_fronts(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+  /// Reads the mesh around the children.
+  void read_mesh(const UnionQuestion& question, ThreadBuffers& buffers);
+  /// The contacts of one of them. @return false where a piece has no exact form
+  bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+               Patches& patches);
+  /// @param a  the wrapper of the child
+  SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,
+                          const TriangleInResult& triangle, PieceMemory* memory, SolverCore& core,
+                          ThreadBuffers& buffers, PairAnswer& answer) const;
+  void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
+                  ThreadBuffers& buffers, Patches& patches);
 
-  std::vector<MetTriangle> triangles_;
+  std::vector<Child> children_;         ///< of question.a, or itself
+  std::vector<BodyReach> reaches_;      ///< of the children
+  std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
   FlatGround flat_;
   PieceMemories memories_;
   OneSided one_sided_;
@@ -164,16 +105,34 @@ Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
   return (to_pd(pose).rotation() * across).normalized();
 }
 
-SolverCore::Outcome MeshContacts::ask(const UnionQuestion& question, const TriangleInResult& triangle,
-                                      const btTransform& pose_a, PieceMemory* memory, SolverCore& core,
-                                      ThreadBuffers& buffers, PairAnswer& answer) const {
-  const auto& body = static_cast<const btConvexShape&>(*question.a.getCollisionShape());
+void MeshContacts::read_mesh(const UnionQuestion& question, ThreadBuffers& buffers) {
+  const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
+  const btTransform into_mesh = question.b.getWorldTransform().inverse();
+  reaches_.clear();
+  btVector3 lower(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  btVector3 upper = -lower;
+  for (const Child& child : children_) {
+    reaches_.emplace_back(static_cast<const btConvexShape&>(*child.shape), into_mesh * child.pose,
+                          mesh.getMargin() + question.threshold);
+    lower.setMin(reaches_.back().lower());
+    upper.setMax(reaches_.back().upper());
+  }
+  const btScalar room = kRoom * question.threshold;
+  const btVector3 extra(room, room, room);
+  const int skipped = buffers.around.read(mesh, lower - extra, upper + extra);
+  if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
+}
+
+SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
+                                      const UnionQuestion& question, const TriangleInResult& triangle,
+                                      PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers,
+                                      PairAnswer& answer) const {
   const bool met = memory != nullptr && memory->met;
-  const PairQuestion asked{body,
+  const PairQuestion asked{static_cast<const btConvexShape&>(*a.getCollisionShape()),
                            pose_a,
                            triangle.shape(),
                            question.b.getWorldTransform(),
-                           {true, is_part(question.a), false},
+                           {true, is_part(a), false},
                            met ? kAnyDistance : static_cast<double>(question.threshold),
                            question.stamp,
                            memory != nullptr ? memory->shapes : buffers.recent,
@@ -182,69 +141,83 @@ SolverCore::Outcome MeshContacts::ask(const UnionQuestion& question, const Trian
 }
 
 /// The contacts along the fronts of triangles that the body stands through, where none of the others leads off them.
-void MeshContacts::add_fronts(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
-                              Patches& patches) {
-  const btTransform& pose = question.a.getWorldTransform();
+void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
+                              ThreadBuffers& buffers, Patches& patches) {
+  const btTransform& pose = a.getWorldTransform();
   for (const OneSided::Behind& behind : one_sided_.behind()) {
     const MetTriangle& met = triangles_[static_cast<std::size_t>(behind.triangle)];
-    const TriangleInResult triangle(question.result, question.b, met, question.b.getCollisionShape()->getMargin());
+    const TriangleInResult triangle(question.result, question.b, met);
     PairAnswer answer;
     const std::vector<Vec3>& ways = one_sided_.ways_out();
     const bool left = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
       // A little farther than touching, which rounding would decide.
       const btTransform moved(pose.getBasis(), pose.getOrigin() + to_bullet(Vec3(kClear * way)));
-      return ask(question, triangle, moved, nullptr, core, buffers, answer) == SolverCore::Outcome::answered &&
+      return ask(a, moved, question, triangle, nullptr, core, buffers, answer) == SolverCore::Outcome::answered &&
              answer.depth.contact != ContactClass::overlapping;
     });
-    if (left || ask(question, triangle, pose, nullptr, core, buffers, answer) != SolverCore::Outcome::answered)
+    if (left || ask(a, pose, question, triangle, nullptr, core, buffers, answer) != SolverCore::Outcome::answered) {
       continue;
+    }
     const ContactManifold points =
         along_front(triangle.wrapper(), answer, behind.front, static_cast<double>(question.threshold), buffers);
-    patches.add(points, behind.triangle, met.part, met.index);
+    patches.add(points, behind.triangle, part_of(children_[static_cast<std::size_t>(met.child)], met), met.index);
   }
 }
 
 bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
-  const btCollisionObjectWrapper& convex = question.a;
-  const btCollisionObjectWrapper& mesh = question.b;
-  const auto& body = static_cast<const btConvexShape&>(*convex.getCollisionShape());
-  const auto& concave = static_cast<const btConcaveShape&>(*mesh.getCollisionShape());
-  const btTransform& pose = mesh.getWorldTransform();
-  const auto threshold = static_cast<double>(question.threshold);
-  const bool one_sided = core.settings.one_sided_meshes;
   triangles_.clear();
-  one_sided_.clear();
   memories_.begin();
-  if (!is_finite(convex.getWorldTransform()) || !is_finite(pose)) return true;
-  TrianglesInReach collector(body, pose.inverseTimes(convex.getWorldTransform()),
-                             concave.getMargin() + question.threshold, triangles_);
-  concave.processAllTriangles(&collector, collector.lower(), collector.upper());
+  if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
+  if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
+  read_mesh(question, *buffers);
   buffers->cover.near.begin_pair(question.stamp);
-  if (collector.skipped > 0) buffers->counters.skipped_triangles.add(collector.skipped);
-  if (flat_.find(question, triangles_, core, *buffers, memory, patches)) {
-    memories_.end(memory.pieces);
-    return true;
+  buffers->cover.near.know(buffers->around, question.b);
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    if (!find_of(question, static_cast<int>(i), core, *buffers, memory, patches)) return false;
   }
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    const TriangleInResult triangle(question.result, mesh, triangles_[i], concave.getMargin());
+  memories_.end(memory.pieces);
+  return true;
+}
+
+bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers,
+                           PairMemory& memory, Patches& patches) {
+  const Child& child = children_[static_cast<std::size_t>(place)];
+  const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
+  const btCollisionObjectWrapper& mesh = question.b;
+  const btTransform& pose = mesh.getWorldTransform();
+  const std::size_t first = triangles_.size();
+  for (const MeshTriangle& near : buffers.around.triangles()) {
+    if (!reach.meets(near)) continue;
+    triangles_.push_back({{near.corners[0], near.corners[1], near.corners[2]}, near.part, near.index, place});
+  }
+  if (triangles_.size() == first) return true;
+  const ChildInResult piece(question.result, question.a, child);
+  const btCollisionObjectWrapper& a = piece.wrapper();
+  const auto threshold = static_cast<double>(question.threshold);
+  const FlatGround::Body standing{a, memory.shape_of_child(0, child.index)};
+  const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
+  if (flat_.find(standing, question, met_of_child, first, core, buffers, patches)) return true;
+  const bool one_sided = core.settings.one_sided_meshes;
+  one_sided_.clear();
+  for (std::size_t i = first; i < triangles_.size(); ++i) {
+    const MetTriangle& met = triangles_[i];
+    const TriangleInResult triangle(question.result, mesh, met);
     PairAnswer answer;
     PieceMemory* const remembered =
-        i < kMostRemembered ? &memories_.take(memory.pieces, number_of(triangles_[i])) : nullptr;
-    const auto outcome = ask(question, triangle, convex.getWorldTransform(), remembered, core, *buffers, answer);
+        i - first < kMostRemembered ? &memories_.take(memory.pieces, number_of(child, met)) : nullptr;
+    const auto outcome = ask(a, child.pose, question, triangle, remembered, core, buffers, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;
     if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
-    const Vec3 front = one_sided ? front_of(triangles_[i], pose) : Vec3(Vec3::Zero());
+    const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
-    ContactManifold points =
-        contact_manifold(answer.a, answer.b, answer.depth, threshold, buffers->manifold, DeepestPoint::as_lifted);
-    keep_uncovered(convex, triangle.wrapper(), answer, front, threshold, question.seconds, question.stamp, core,
-                   *buffers, points);
-    patches.add(points, static_cast<int>(i), triangles_[i].part, triangles_[i].index);
+    ContactManifold points;
+    keep_uncovered(a, triangle.wrapper(), answer, front, threshold, question.seconds, question.stamp, core, buffers,
+                   AnswerPoints::to_be_made, points);
+    patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
   }
-  memories_.end(memory.pieces);
-  if (one_sided) add_fronts(question, core, *buffers, patches);
+  if (one_sided) add_fronts(a, question, core, buffers, patches);
   return true;
 }
 

@@ -1,5 +1,5 @@
 /// @file
-/// The contacts of a convex body with the triangles of a mesh or heightfield.
+/// The contacts of a convex body, or of the convex children of a compound, with the triangles of a mesh or heightfield.
 #pragma once
 
 #include <memory>

@@ -13,6 +13,7 @@ struct MetTriangle {
   btVector3 corners[3];
   int part;
   int index;
+  int child;  ///< of the body, by its place among those that were asked
 };
 
 }  // namespace pd::detail

@@ -3,9 +3,11 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -15,36 +17,10 @@ namespace pd::detail {
 
 namespace {
 
-/// Of so few children each is compared; of more, Bullet's tree is asked.
-constexpr int kFewChildren = 32;
 /// Of so few, each is looked at where it is.
 constexpr int kVeryFewChildren = 4;
 /// Compounds of one step that are kept at a time.
 constexpr std::size_t kMostPosedCompounds = 64;
-
-bool meets(const btDbvtVolume& volume, const btVector3& lower, const btVector3& upper) {
-  for (int i = 0; i < 3; ++i) {
-    if (volume.Mins()[i] > upper[i] || volume.Maxs()[i] < lower[i]) return false;
-  }
-  return true;
-}
-
-/// Calls `visit(number)` for the children whose boxes come near a point of the compound's frame.
-template <class Visit>
-void for_each_child_near(const btCompoundShape& compound, const btVector3& centre, btScalar reach, const Visit& visit) {
-  const btDbvt* tree = compound.getDynamicAabbTree();
-  const int count = compound.getNumChildShapes();
-  if (tree != nullptr && count > kFewChildren) {
-    for_each_leaf(*tree, btDbvtVolume::FromCR(centre, reach), visit);
-    return;
-  }
-  const btVector3 extent(reach, reach, reach);
-  // Bullet offers no children to a reader of a constant compound.
-  const btCompoundShapeChild* children = const_cast<btCompoundShape&>(compound).getChildList();
-  for (int i = 0; i < count; ++i) {
-    if (tree == nullptr || meets(children[i].m_node->volume, centre - extent, centre + extent)) visit(i);
-  }
-}
 
 }  // namespace
 
@@ -95,7 +71,16 @@ void NearPieces::begin_pair(std::uint64_t stamp) {
   if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostPosedCompounds) num_compounds_ = 0;
   stamp_ = stamp;
   recent_ = {};
+  around_ = nullptr;
   facts_.begin_pair(stamp);
+}
+
+void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh) {
+  around_ = &around;
+  around_pose_ = to_pd(mesh.getWorldTransform());
+  around_margin_ = static_cast<double>(mesh.getCollisionShape()->getMargin());
+  known_made_.assign(around.triangles().size(), false);
+  if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
 
 NearPieces::PosedCompound& NearPieces::compound_of(const btCollisionObject& body, const btCompoundShape& shape,
@@ -143,7 +128,9 @@ void NearPieces::make(const CachedShape* shape, std::uint64_t visit, Child& chil
 
 UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& core) {
   const btCollisionObjectWrapper* parent = piece.m_parent;
-  if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return nullptr;
+  if (parent == nullptr || parent->m_parent != nullptr) return nullptr;
+  if (parent->getCollisionShape()->isConcave()) return known_piece(piece);
+  if (!parent->getCollisionShape()->isCompound()) return nullptr;
   PosedCompound& compound =
       compound_of(*parent->getCollisionObject(), static_cast<const btCompoundShape&>(*parent->getCollisionShape()),
                   parent->getWorldTransform());
@@ -151,6 +138,18 @@ UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& 
   Child& child = posed_child(compound, piece.m_index);
   make(facts_.shape_of(*compound.shape, piece.m_index, core), compound.visit, child);
   return &child.piece;
+}
+
+UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
+  if (around_ == nullptr || !around_->are_of(*triangle.m_parent->getCollisionShape())) return nullptr;
+  const auto triangles = around_->triangles();
+  // A host may give several triangles one number.
+  const btVector3* corners = static_cast<const btTriangleShape&>(*triangle.getCollisionShape()).m_vertices1;
+  const auto found = std::find_if(triangles.begin(), triangles.end(), [&](const MeshTriangle& each) {
+    return each.index == triangle.m_index && each.part == triangle.m_partId &&
+           std::equal(each.corners, each.corners + 3, corners);
+  });
+  return found != triangles.end() ? &known_triangle(static_cast<std::size_t>(found - triangles.begin())) : nullptr;
 }
 
 void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
@@ -171,7 +170,7 @@ void NearPieces::collect_children(const btCompoundShape& compound, const btTrans
   if (among != nullptr) {
     for (const int i : *among) visit(i);
   } else {
-    for_each_child_near(compound, pose.invXform(search.centre), search.reach, visit);
+    for_each_child_meeting(compound, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), visit);
   }
 }
 
@@ -187,6 +186,37 @@ bool NearPieces::within(const Child& child, const Search& search) {
   return far.sum() > search.beyond->level;
 }
 
+void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                               const btVector3& upper) {
+  const std::span<const MeshTriangle> triangles = around_->triangles();
+  Vec3 n = Vec3::Zero();
+  double level = -1;
+  if (const Beyond* beyond = search.beyond) {
+    n = around_pose_.rotation().transpose() * beyond->n;
+    level = beyond->level - beyond->n.dot(around_pose_.translation());
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const MeshTriangle& triangle = triangles[i];
+    if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) continue;
+    if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
+    const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
+    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
+    const UnionPiece& piece = known_triangle(i);
+    if (!piece.planes.empty()) search.found.push_back(&piece);
+  }
+}
+
+UnionPiece& NearPieces::known_triangle(std::size_t i) {
+  if (!known_made_[i]) {
+    known_made_[i] = true;
+    const MeshTriangle& triangle = around_->triangles()[i];
+    set_triangle({around_pose_.apply(to_pd(triangle.corners[0])), around_pose_.apply(to_pd(triangle.corners[1])),
+                  around_pose_.apply(to_pd(triangle.corners[2]))},
+                 around_margin_, known_[i]);
+  }
+  return known_[i];
+}
+
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                          Search& search) {
   if (shape.isCompound()) {
@@ -195,6 +225,11 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
     const btVector3 extent(search.reach, search.reach, search.reach);
+    if (except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
+        around_->cover(concave, local - extent, local + extent)) {
+      collect_known(*except, search, local - extent, local + extent);
+      return;
+    }
     TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compound_facts.hpp"
+#include "triangles_around.hpp"
 #include "union_piece.hpp"
 
 class btConvexShape;
@@ -32,6 +33,8 @@ class NearPieces {
   /// To be called for each pair in each step: what belongs to another step is forgotten, and what has moved since.
   /// @param stamp  of this step, 0: unknown, so that nothing is kept
   void begin_pair(std::uint64_t stamp);
+  /// The triangles of a mesh that were read for the pair at hand: those near are taken from them where they are enough.
+  void know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh);
 
   /// The other pieces of the union that come within `reach` of a point of this piece, in world coordinates, and within
   /// `slack` of the piece itself, which is not looked at closely. Compounds in compounds
@@ -46,7 +49,8 @@ class NearPieces {
   /// Makes room: what was found may go.
   void forget_made() { num_made_ = 0; }
 
-  /// The piece itself, where it is kept: a child of a compound that is all of its body; else nullptr.
+  /// The piece itself, where it is kept: a child of a compound that is all of its body, or a triangle that is known;
+  /// else nullptr.
   [[nodiscard]] UnionPiece* kept(const btCollisionObjectWrapper& piece, SolverCore& core);
 
  private:
@@ -68,6 +72,14 @@ class NearPieces {
     std::vector<Child> children;
   };
 
+  /// Those of the triangles that are known. Requires: they cover what is searched.
+  void collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                     const btVector3& upper);
+  /// The piece of one of them, which is made when it is first asked for.
+  UnionPiece& known_triangle(std::size_t i);
+  /// Of this triangle, or null.
+  UnionPiece* known_piece(const btCollisionObjectWrapper& triangle);
+  /// @param except  a piece of this shape, or null
   void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                Search& search);
   /// @param body   of which the compound is the whole, or null
@@ -89,6 +101,11 @@ class NearPieces {
   std::deque<PosedCompound> compounds_;
   std::size_t num_compounds_ = 0;
   std::array<PosedCompound*, 2> recent_{};  ///< those of the pair at hand
+  const TrianglesAround* around_ = nullptr;
+  Pose around_pose_;
+  double around_margin_ = 0;
+  std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
+  std::vector<bool> known_made_;
   std::uint64_t stamp_ = 0;
   std::uint64_t visits_ = 0;
 };

@@ -62,6 +62,13 @@ struct PairMemory {
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
 
+  /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
+  [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
+    const auto place = static_cast<std::size_t>(child + 1);
+    if (place >= children[body].size()) children[body].resize(place + 1);
+    return children[body][place].shape;
+  }
+
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
     return patch < 0 && num_points == 0 && pieces.empty() && union_refusals == 0 && warm.memory_bytes() == sizeof(warm);

@@ -54,7 +54,9 @@ PatchManifolds::Kept& PatchManifolds::at(std::size_t i, const btCollisionObject&
 }
 
 void PatchManifolds::clear() {
-  for (const auto& kept : manifolds_) kept->manifold->clearManifold();
+  for (const auto& kept : manifolds_) {
+    if (kept->manifold->getNumContacts() > 0) kept->manifold->clearManifold();
+  }
 }
 
 void PatchManifolds::append_to(btManifoldArray& manifolds) const {
@@ -84,6 +86,10 @@ std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& 
 void PatchManifolds::replace(Patches& patches, btScalar seconds, btManifoldResult& result,
                              PointSurroundings& surroundings) {
   btPersistentManifold& first = *manifolds_[0]->manifold;
+  if (patches.empty()) {
+    clear();
+    return;
+  }
   const btCollisionObject& a = *first.getBody0();
   const btCollisionObject& b = *first.getBody1();
   std::array<int, kMost> of{};

@@ -33,6 +33,8 @@ class Patches {
   /// @param i, j  numbers of the piece that do not change from step to step: features are told apart by them
   void add(const ContactManifold& manifold, int piece, int i, int j);
 
+  /// Whether no points were added.
+  [[nodiscard]] bool empty() const { return points_.empty(); }
   /// Drops the points whose normals are more than 60 degrees off `normal`.
   void keep_along(const Vec3& normal);
 

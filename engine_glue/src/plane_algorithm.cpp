@@ -2,33 +2,16 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
-#include <BulletCollision/CollisionShapes/btConvexShape.h>
-#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
 #include "bullets_stand_in.hpp"
 #include "installation.hpp"
-#include "pd/bullet/scalar.hpp"
+#include "plane_ground.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
 
 // Bullet's pool of algorithms holds no larger ones.
 static_assert(sizeof(PlaneAlgorithm) <= sizeof(btConvexConvexAlgorithm));
-
-namespace {
-
-/// Whether the body's bounding box is farther above the plane than contacts reach: so are most bodies of a pile, each
-/// of which meets the plane's endless box.
-bool box_above(const btConvexShape& body, const btTransform& pose, const Halfspace3& ground, double reach) {
-  btVector3 lower;
-  btVector3 upper;
-  body.getAabb(pose, lower, upper);
-  const Vec3 low = to_pd(lower), high = to_pd(upper);
-  const Vec3 least = ground.normal.cwiseProduct(low).cwiseMin(ground.normal.cwiseProduct(high));
-  return least.sum() > ground.offset + reach;
-}
-
-}  // namespace
 
 PlaneAlgorithm::PlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                                const btCollisionObjectWrapper* b, const Installation& installation, bool swapped)
@@ -57,13 +40,8 @@ bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisio
                           btManifoldResult& result, FreshPoints& fresh) {
   SolverCore& core = installation_.core();
   if (core.closed()) return false;
-  const auto& shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());
-  const Pose pose = to_pd(plane.getWorldTransform());
   if (!is_finite(plane.getWorldTransform())) return true;
-  const Vec3 local = to_pd(shape.getPlaneNormal());
-  const Vec3 normal = (pose.rotation() * local).normalized();
-  const Vec3 point = pose.apply(static_cast<double>(shape.getPlaneConstant()) * local);
-  const Halfspace3 ground{normal, normal.dot(point)};
+  const Halfspace3 ground = ground_of(plane);
   const auto threshold =
       static_cast<double>(manifold_.get().getContactBreakingThreshold() + result.m_closestPointDistanceThreshold);
   const auto& convex = static_cast<const btConvexShape&>(*body.getCollisionShape());

@@ -12,6 +12,7 @@
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/scratch.hpp"
 #include "triangle_cache.hpp"
+#include "triangles_around.hpp"
 
 namespace pd::detail {
 
@@ -44,6 +45,7 @@ struct ThreadBuffers {
   ManifoldScratch manifold;
   CoverBuffers cover;
   TriangleCache triangles;
+  TrianglesAround around;  ///< the body of the pair at hand
   SolverCounters counters;
   unsigned queries = 0;  ///< for sampling the clock
   /// The shapes of the last pair without a memory of its own: a hull on a mesh meets one triangle after another.

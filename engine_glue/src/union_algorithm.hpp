@@ -18,7 +18,7 @@ namespace pd::detail {
 class Installation;
 class SolverCore;
 
-/// What a step asks of a pair; of a convex body and a mesh, a is the convex body.
+/// What a step asks of a pair; of a mesh and another body, a is the other one.
 struct UnionQuestion {
   const btCollisionObjectWrapper& a;
   const btCollisionObjectWrapper& b;

@@ -166,8 +166,10 @@ TEST(FlatGround, ARidgeIsNoPlane) {
   UnionWorld world;
   std::vector<UnionWorld::Triangle> triangles;
   const auto at = [](double x, double y, double z) { return btVector3(btScalar(x), btScalar(y), btScalar(z)); };
-  add_rectangle(triangles, at(-2, -1, -2), at(-2, -1, 2), at(0, 0, 2), at(0, 0, -2));
-  add_rectangle(triangles, at(0, 0, -2), at(0, 0, 2), at(2, -1, 2), at(2, -1, -2));
+  for (double z = -2; z < 2; z += .25) {
+    add_rectangle(triangles, at(-2, -1, z), at(-2, -1, z + .25), at(0, 0, z + .25), at(0, 0, z));
+    add_rectangle(triangles, at(0, 0, z), at(0, 0, z + .25), at(2, -1, z + .25), at(2, -1, z));
+  }
   world.fixed(world.mesh(triangles, kMargin));
   auto* ball = world.moving(world.bullet.shape<btSphereShape>(btScalar(.3)), btVector3(0, btScalar(.339), 0),
                             btVector3(0, 0, 0));

@@ -25,7 +25,7 @@ struct Slide {
 };
 
 /// A box of half a metre, 3 m/s along x, six seconds, without friction and restitution.
-Slide slide(UnionWorld& world, const Ground& ground, btConvexShape* shape, double half, double yaw, double x = -9,
+Slide slide(UnionWorld& world, const Ground& ground, btCollisionShape* shape, double half, double yaw, double x = -9,
             double z = .13) {
   world.fixed(ground.make(world));
   const btVector3 at{btScalar(x), btScalar(half + ground.top), btScalar(z)};
@@ -106,6 +106,16 @@ TEST_P(GhostSlide, BoxKeepsItsSpeed) {
 TEST_P(GhostSlide, HullKeepsItsSpeed) {
   UnionWorld world;
   expect_kept(slide(world, GetParam(), box_hull(world.bullet, btVector3(.4F, .4F, .4F), 0), 0.4, 0));
+}
+
+TEST_P(GhostSlide, CompoundKeepsItsSpeed) {
+  UnionWorld world;
+  auto* halves = world.bullet.shape<btCompoundShape>();
+  for (const btScalar x : {btScalar(-.2), btScalar(.2)}) {
+    halves->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(x, 0, 0)),
+                          world.bullet.shape<btBoxShape>(btVector3(.2F, .4F, .4F)));
+  }
+  expect_kept(slide(world, GetParam(), halves, 0.4, 0));
 }
 
 TEST_P(GhostSlide, FromAnyStart) {

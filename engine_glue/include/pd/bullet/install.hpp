@@ -16,10 +16,10 @@ enum class BulletContacts {
 };
 
 /// Every pair of convex shapes of the world, in both of the dispatcher's tables, and (one_shot) in that of contacts
-/// every convex shape against a mesh or heightfield: box/box, sphere and capsule pairs, the convex children of
-/// compounds, and the triangles of meshes and heightfields included; and against a `btStaticPlaneShape`, all of whose
-/// contact points are there from the first step. Works at any time, also between steps: pairs that
-/// have an algorithm already lose it and get a new one (with their contact points) at the next step.
+/// every convex shape and compound against a mesh or heightfield: box/box, sphere and capsule pairs, the convex
+/// children of compounds, and the triangles of meshes and heightfields included; and against a `btStaticPlaneShape`,
+/// all of whose contact points are there from the first step. Works at any time, also between steps: pairs that have an
+/// algorithm already lose it and get a new one (with their contact points) at the next step.
 ///
 /// Not covered, because Bullet decides without asking the tables: soft bodies, ray and sweep queries
 /// (`convexSweepTest`; use `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the

@@ -1,0 +1,88 @@
+#include "triangles_around.hpp"
+
+#include <algorithm>
+
+namespace pd::detail {
+
+namespace {
+
+constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-20 : 0x1p-48;
+
+/// By Bullet's numbers, and by place where a host gave several triangles one number.
+bool comes_before(const MeshTriangle& x, const MeshTriangle& y) {
+  if (x.part != y.part) return x.part < y.part;
+  if (x.index != y.index) return x.index < y.index;
+  for (int i = 0; i < 9; ++i) {
+    const btScalar here = x.corners[i / 3][i % 3], there = y.corners[i / 3][i % 3];
+    if (here != there) return here < there;
+  }
+  return false;
+}
+
+}  // namespace
+
+BodyReach::BodyReach(const btConvexShape& body, const btTransform& pose, btScalar reach)
+    : box_(rounded_box(body, pose)) {
+  body.getAabb(pose, lower_, upper_);
+  lower_ -= btVector3(reach, reach, reach);
+  upper_ += btVector3(reach, reach, reach);
+  // What rounding of the boxes may add.
+  reach_ = 1.001 * static_cast<double>(reach) + kRounding * (to_pd(lower_).norm() + to_pd(upper_).norm());
+}
+
+bool BodyReach::meets(const MeshTriangle& triangle) const {
+  if (!boxes_meet(triangle.lower, triangle.upper, lower_, upper_)) return false;
+  const Vec3 corners[3] = {to_pd(triangle.corners[0]), to_pd(triangle.corners[1]), to_pd(triangle.corners[2])};
+  return !out_of_reach(box_, corners, triangle.across, reach_, kRounding);
+}
+
+class TrianglesAround::Reader : public btTriangleCallback {
+ public:
+  Reader(const btVector3& lower, const btVector3& upper, std::vector<MeshTriangle>& triangles)
+      : lower_(lower), upper_(upper), triangles_(triangles) {}
+
+  void processTriangle(btVector3* corners, int part, int index) override {
+    MeshTriangle triangle{{corners[0], corners[1], corners[2]}, corners[0], corners[0], {}, part, index};
+    for (int i = 1; i < 3; ++i) {
+      triangle.lower.setMin(corners[i]);
+      triangle.upper.setMax(corners[i]);
+    }
+    // Trees of quantised boxes, and heightfields, offer more than what the box meets.
+    if (!boxes_meet(triangle.lower, triangle.upper, lower_, upper_)) return;
+    const Vec3 first = to_pd(corners[0]);
+    triangle.across = (to_pd(corners[1]) - first).cross(to_pd(corners[2]) - first);
+    if (!triangle.across.allFinite() || triangle.across.isZero(0)) {
+      ++skipped;
+      return;
+    }
+    triangles_.push_back(triangle);
+  }
+
+  int skipped = 0;
+
+ private:
+  const btVector3& lower_;
+  const btVector3& upper_;
+  std::vector<MeshTriangle>& triangles_;
+};
+
+int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) {
+  mesh_ = &mesh;
+  lower_ = lower;
+  upper_ = upper;
+  triangles_.clear();
+  Reader reader(lower_, upper_, triangles_);
+  mesh.processAllTriangles(&reader, lower, upper);
+  std::sort(triangles_.begin(), triangles_.end(), comes_before);
+  return reader.skipped;
+}
+
+bool TrianglesAround::cover(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) const {
+  if (mesh_ != &mesh) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (lower[axis] < lower_[axis] || upper[axis] > upper_[axis]) return false;
+  }
+  return true;
+}
+
+}  // namespace pd::detail
