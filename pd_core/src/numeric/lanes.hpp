@@ -47,7 +47,7 @@ PD_INLINE unsigned half_mask(const HalfIds& flags) {
   __builtin_memcpy(&signs, &flags, sizeof(signs));
   return static_cast<unsigned>(__builtin_ia32_movmskps(signs));
 #else
-  const HalfIds bits = flags & HalfIds{1, 2, 4, 8};
+  const HalfIds bits = (flags >> 31) & HalfIds{1, 2, 4, 8};
   return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
 #endif
 }
