@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "child_tree.hpp"
+#include "pd/bullet/scalar.hpp"
 
 namespace pd::detail {
 
@@ -60,7 +61,8 @@ bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShap
     const btCollisionShape& child = *compound.getChildShape(i);
     if (!child.isConvex()) return false;
     if (gCompoundChildShapePairCallback != nullptr && !gCompoundChildShapePairCallback(&other, &child)) continue;
-    children.push_back({&child, pose * compound.getChildTransform(i), i, {}});
+    const btTransform place = pose * compound.getChildTransform(i);
+    if (is_finite(place)) children.push_back({&child, place, i, {}});
   }
   return true;
 }

@@ -33,7 +33,7 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
                    std::vector<Child>& children);
 
 /// The children that the host lets meet `other` (`gCompoundChildShapePairCallback`), wherever they are and without
-/// their boxes. Of a shape that is no compound: itself.
+/// their boxes, but those whose place is no number. Of a shape that is no compound: itself.
 /// @return whether all children are convex
 bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShape& other, std::vector<Child>& children);
 

@@ -35,6 +35,16 @@ constexpr std::size_t kMostRemembered = 128;
 /// for, too. Where bodies are fast it may lie farther, and is read from the mesh again.
 constexpr btScalar kRoom = 3;
 
+/// Children whose boxes have less than this share of the surface of the box around all of them read the mesh one by
+/// one: between them lie triangles that none of them meets.
+constexpr btScalar kCloseTogether = btScalar(.5);
+
+/// Half the surface of a box.
+btScalar surface(const btVector3& lower, const btVector3& upper) {
+  const btVector3 extent = upper - lower;
+  return extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x();
+}
+
 /// Of a child and a triangle; unlike those of any other two, of up to 65,535 children and parts.
 std::uint64_t number_of(const Child& child, const MetTriangle& triangle) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child.index + 1)) << 48U) ^
@@ -78,8 +88,10 @@ class MeshContacts final : public UnionContacts {
   }
 
  private:
-  /// Reads the mesh around the children.
-  void read_mesh(const UnionQuestion& question, ThreadBuffers& buffers);
+  /// Sets how far the children reach.
+  void reach_out(const UnionQuestion& question);
+  /// Reads the mesh around one of them, or all.
+  void read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper, ThreadBuffers& buffers);
   /// The contacts of one of them. @return false where a piece has no exact form
   bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
                Patches& patches);
@@ -92,6 +104,8 @@ class MeshContacts final : public UnionContacts {
 
   std::vector<Child> children_;         ///< of question.a, or itself
   std::vector<BodyReach> reaches_;      ///< of the children
+  btVector3 lower_, upper_;             ///< of the box around all of them
+  bool together_ = true;                ///< so close that the mesh is read once for all
   std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
   FlatGround flat_;
   PieceMemories memories_;
@@ -105,22 +119,30 @@ Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
   return (to_pd(pose).rotation() * across).normalized();
 }
 
-void MeshContacts::read_mesh(const UnionQuestion& question, ThreadBuffers& buffers) {
-  const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
+void MeshContacts::reach_out(const UnionQuestion& question) {
   const btTransform into_mesh = question.b.getWorldTransform().inverse();
+  const btScalar reach = question.b.getCollisionShape()->getMargin() + question.threshold;
   reaches_.clear();
-  btVector3 lower(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
-  btVector3 upper = -lower;
+  lower_.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  upper_ = -lower_;
+  btScalar of_children = 0;
   for (const Child& child : children_) {
-    reaches_.emplace_back(static_cast<const btConvexShape&>(*child.shape), into_mesh * child.pose,
-                          mesh.getMargin() + question.threshold);
-    lower.setMin(reaches_.back().lower());
-    upper.setMax(reaches_.back().upper());
+    reaches_.emplace_back(static_cast<const btConvexShape&>(*child.shape), into_mesh * child.pose, reach);
+    lower_.setMin(reaches_.back().lower());
+    upper_.setMax(reaches_.back().upper());
+    of_children += surface(reaches_.back().lower(), reaches_.back().upper());
   }
+  together_ = children_.size() == 1 || of_children >= kCloseTogether * surface(lower_, upper_);
+}
+
+void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper,
+                             ThreadBuffers& buffers) {
+  const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
   const btScalar room = kRoom * question.threshold;
   const btVector3 extra(room, room, room);
   const int skipped = buffers.around.read(mesh, lower - extra, upper + extra);
   if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
+  buffers.cover.near.know(buffers.around, question.b);
 }
 
 SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
@@ -170,9 +192,9 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
-  read_mesh(question, *buffers);
   buffers->cover.near.begin_pair(question.stamp);
-  buffers->cover.near.know(buffers->around, question.b);
+  reach_out(question);
+  if (together_ && !children_.empty()) read_mesh(question, lower_, upper_, *buffers);
   for (std::size_t i = 0; i < children_.size(); ++i) {
     if (!find_of(question, static_cast<int>(i), core, *buffers, memory, patches)) return false;
   }
@@ -186,6 +208,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
   const btCollisionObjectWrapper& mesh = question.b;
   const btTransform& pose = mesh.getWorldTransform();
+  if (!together_) read_mesh(question, reach.lower(), reach.upper(), buffers);
   const std::size_t first = triangles_.size();
   for (const MeshTriangle& near : buffers.around.triangles()) {
     if (!reach.meets(near)) continue;

@@ -19,6 +19,9 @@ namespace {
 
 /// Of so few, each is looked at where it is.
 constexpr int kVeryFewChildren = 4;
+/// Of so few triangles each is compared; of more, the mesh's tree is asked, or a large body on a fine mesh would
+/// compare every triangle that it meets with every other.
+constexpr std::size_t kFewTriangles = 256;
 /// Compounds of one step that are kept at a time.
 constexpr std::size_t kMostPosedCompounds = 64;
 
@@ -36,15 +39,28 @@ struct NearPieces::Search {
 
 class NearPieces::TrianglesOf : public btTriangleCallback {
  public:
-  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Search& search,
-              NearPieces& list)
-      : pose_(pose), margin_(margin), except_(except), beyond_(search.beyond), found_(search.found), list_(list) {}
+  /// @param known  whether the triangles are those of `know`
+  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, bool known,
+              const Search& search, NearPieces& list)
+      : pose_(pose),
+        margin_(margin),
+        except_(except),
+        known_(known),
+        beyond_(search.beyond),
+        found_(search.found),
+        list_(list) {}
   void processTriangle(btVector3* corners, int part, int index) override {
     if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
     const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
     if (beyond_ != nullptr) {
       const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
       if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
+    }
+    if (known_) {
+      const std::size_t i = list_.around_->find(part, index, corners);
+      // Those without area are not among them.
+      if (i < list_.around_->triangles().size()) list_.add_known(i, found_);
+      return;
     }
     UnionPiece& piece = list_.next_made().piece;
     set_triangle(points, margin_, piece);
@@ -57,6 +73,7 @@ class NearPieces::TrianglesOf : public btTriangleCallback {
   const btTransform& pose_;
   double margin_;
   const btCollisionObjectWrapper* except_;
+  bool known_;
   const Beyond* beyond_;
   std::vector<const UnionPiece*>& found_;
   NearPieces& list_;
@@ -142,14 +159,9 @@ UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& 
 
 UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
   if (around_ == nullptr || !around_->are_of(*triangle.m_parent->getCollisionShape())) return nullptr;
-  const auto triangles = around_->triangles();
-  // A host may give several triangles one number.
-  const btVector3* corners = static_cast<const btTriangleShape&>(*triangle.getCollisionShape()).m_vertices1;
-  const auto found = std::find_if(triangles.begin(), triangles.end(), [&](const MeshTriangle& each) {
-    return each.index == triangle.m_index && each.part == triangle.m_partId &&
-           std::equal(each.corners, each.corners + 3, corners);
-  });
-  return found != triangles.end() ? &known_triangle(static_cast<std::size_t>(found - triangles.begin())) : nullptr;
+  const auto& shape = static_cast<const btTriangleShape&>(*triangle.getCollisionShape());
+  const std::size_t i = around_->find(triangle.m_partId, triangle.m_index, shape.m_vertices1);
+  return i < around_->triangles().size() ? &known_triangle(i) : nullptr;
 }
 
 void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
@@ -201,9 +213,13 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
     if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
     const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
     if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
-    const UnionPiece& piece = known_triangle(i);
-    if (!piece.planes.empty()) search.found.push_back(&piece);
+    add_known(i, search.found);
   }
+}
+
+void NearPieces::add_known(std::size_t i, std::vector<const UnionPiece*>& found) {
+  const UnionPiece& piece = known_triangle(i);
+  if (!piece.planes.empty()) found.push_back(&piece);
 }
 
 UnionPiece& NearPieces::known_triangle(std::size_t i) {
@@ -225,12 +241,13 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
     const btVector3 extent(search.reach, search.reach, search.reach);
-    if (except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
-        around_->cover(concave, local - extent, local + extent)) {
+    const bool known = except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
+                       around_->cover(concave, local - extent, local + extent);
+    if (known && around_->triangles().size() <= kFewTriangles) {
       collect_known(*except, search, local - extent, local + extent);
       return;
     }
-    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
+    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, known, search, *this);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {
     Child& child = next_made();

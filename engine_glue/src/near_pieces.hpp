@@ -77,6 +77,8 @@ class NearPieces {
                      const btVector3& upper);
   /// The piece of one of them, which is made when it is first asked for.
   UnionPiece& known_triangle(std::size_t i);
+  /// Adds it, unless it has no planes.
+  void add_known(std::size_t i, std::vector<const UnionPiece*>& found);
   /// Of this triangle, or null.
   UnionPiece* known_piece(const btCollisionObjectWrapper& triangle);
   /// @param except  a piece of this shape, or null

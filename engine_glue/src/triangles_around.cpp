@@ -1,6 +1,7 @@
 #include "triangles_around.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pd::detail {
 
@@ -75,6 +76,18 @@ int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, co
   mesh.processAllTriangles(&reader, lower, upper);
   std::sort(triangles_.begin(), triangles_.end(), comes_before);
   return reader.skipped;
+}
+
+std::size_t TrianglesAround::find(int part, int index, const btVector3* corners) const {
+  const auto numbers = std::pair(part, index);
+  const auto before = [](const MeshTriangle& x, const std::pair<int, int>& y) {
+    return std::pair(x.part, x.index) < y;
+  };
+  for (auto at = std::lower_bound(triangles_.begin(), triangles_.end(), numbers, before);
+       at != triangles_.end() && std::pair(at->part, at->index) == numbers; ++at) {
+    if (std::equal(at->corners, at->corners + 3, corners)) return static_cast<std::size_t>(at - triangles_.begin());
+  }
+  return triangles_.size();
 }
 
 bool TrianglesAround::cover(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) const {

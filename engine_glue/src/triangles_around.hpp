@@ -7,6 +7,7 @@
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,8 @@ class TrianglesAround {
   /// By Bullet's numbers, so that their order does not depend on the mesh's tree.
   [[nodiscard]] std::span<const MeshTriangle> triangles() const { return triangles_; }
   [[nodiscard]] bool are_of(const btCollisionShape& mesh) const { return mesh_ == &mesh; }
+  /// The place of one of them, or their number. Time O(log k), where a host gives each a number of its own.
+  [[nodiscard]] std::size_t find(int part, int index, const btVector3* corners) const;
   /// Whether all triangles of this mesh that meet a box are among them.
   [[nodiscard]] bool cover(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) const;
 

@@ -1,9 +1,11 @@
 // Compounds on meshes are one pair: their children share the mesh around them, flat ground and one choice of points.
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "engine_glue/union_worlds.hpp"
@@ -210,6 +212,95 @@ TEST(CompoundOnMesh, AChildWithoutExactFormLeavesThePairToBullet) {
   world.step(120);
   EXPECT_GT(height_of(*body), .1);
   EXPECT_GT(world.bullet.num_contacts(), 0);
+}
+
+/// Counts the triangles that it offers.
+class CountingMesh : public btBvhTriangleMeshShape {
+ public:
+  using btBvhTriangleMeshShape::btBvhTriangleMeshShape;
+  void processAllTriangles(btTriangleCallback* callback, const btVector3& lower,
+                           const btVector3& upper) const override {
+    struct Counter : btTriangleCallback {
+      Counter(btTriangleCallback& to, int& count) : to_(to), count_(count) {}
+      void processTriangle(btVector3* corners, int part, int index) override {
+        ++count_;
+        to_.processTriangle(corners, part, index);
+      }
+      btTriangleCallback& to_;
+      int& count_;
+    } counter(*callback, offered);
+    btBvhTriangleMeshShape::processAllTriangles(&counter, lower, upper);
+  }
+  mutable int offered = 0;
+};
+
+/// Children at three corners of 20,000 triangles: between them lie triangles that none of them meets.
+TEST(CompoundOnMesh, ChildrenFarApartReadTheMeshRoundThemselves) {
+  UnionWorld world;
+  std::vector<UnionWorld::Triangle> triangles;
+  add_floor(triangles, -50, 50, -50, 50, 100, 100);
+  world.mesh(triangles, kMargin);
+  auto* mesh = world.bullet.shape<CountingMesh>(world.meshes.back().get(), true);
+  mesh->setMargin(kMargin);
+  world.fixed(mesh);
+  auto* shape = world.bullet.shape<btCompoundShape>();
+  auto* end = world.bullet.shape<btBoxShape>(vector(.2, .2, .2));
+  for (const auto& [x, z] : {std::pair{-40, -40}, std::pair{40, -40}, std::pair{0, 40}}) {
+    shape->addChildShape(at(x, 0, z), end);
+  }
+  world.moving(shape, vector(.5, .239, .5), vector(0, 0, 0));
+  world.step(1);
+  // Bullet lets contacts reach 1.1 m where a body has a radius of 57.
+  EXPECT_LT(mesh->offered, 1000);
+  const std::multiset<int> children = children_with_points(world);
+  for (int child = 0; child < 3; ++child) EXPECT_GE(children.count(child), 1U) << child;
+}
+
+/// More triangles round a body than are compared one by one: what lies round a contact comes from the mesh's tree.
+TEST(CompoundOnMesh, AFineMeshHoldsASlabAsACoarseOneDoes) {
+  UnionWorld world;
+  std::vector<UnionWorld::Triangle> triangles;
+  const auto corner = [](int i, int k) {
+    const double x = .1 * i - 3, z = .1 * k - 3;
+    return vector(x, .02 * std::sin(4 * x) * std::cos(4 * z), z);
+  };
+  for (int i = 0; i < 60; ++i) {
+    for (int k = 0; k < 60; ++k) {
+      add_rectangle(triangles, corner(i, k), corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k));
+    }
+  }
+  world.fixed(world.mesh(triangles, kMargin));
+  auto* shape = world.bullet.shape<btCompoundShape>();
+  shape->addChildShape(at(0, 0, 0), world.bullet.shape<btBoxShape>(vector(1, .1, 1)));
+  shape->addChildShape(at(0, .3, 0), world.bullet.shape<btBoxShape>(vector(.2, .2, .2)));
+  const btRigidBody* body = world.moving(shape, vector(0, .17, 0), vector(.5, 0, 0));
+  world.step(60);
+  // It slides over the crests: no edge between triangles holds it.
+  EXPECT_NEAR(static_cast<double>(body->getLinearVelocity().x()), .5, .05);
+  EXPECT_NEAR(height_of(*body), .16, .01);
+}
+
+TEST(CompoundOnMesh, AChildWhosePlaceIsNoNumberIsLeftOut) {
+  for (const bool plane : {false, true}) {
+    for (const int broken : {0, 1, 2}) {
+      UnionWorld world;
+      world.fixed(plane ? static_cast<btCollisionShape*>(
+                              world.bullet.shape<btStaticPlaneShape>(vector(0, 1, 0), btScalar(kMargin)))
+                        : ground(world, 0));
+      auto* shape = world.bullet.shape<btCompoundShape>(false);
+      auto* box = world.bullet.shape<btBoxShape>(vector(.2, .2, .2));
+      for (int i = 0; i < 3; ++i) shape->addChildShape(at(.6 * i - .6, i == broken ? std::nan("") : 0, 0), box);
+      btRigidBody* body = world.moving(dumbbell(world), vector(0, .239, 0), vector(0, 0, 0));
+      // Broadphase boxes are those of the sound shape.
+      world.bullet.world().updateAabbs();
+      body->setCollisionShape(shape);
+      world.bullet.world().performDiscreteCollisionDetection();
+      const std::multiset<int> children = children_with_points(world);
+      for (int child = 0; child < 3; ++child) {
+        EXPECT_EQ(children.count(child) > 0, child != broken) << plane << ' ' << broken << ' ' << child;
+      }
+    }
+  }
 }
 
 }  // namespace

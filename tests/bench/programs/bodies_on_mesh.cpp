@@ -20,7 +20,6 @@
 namespace {
 
 constexpr double kExtent = 6;
-constexpr int kCells = 32;
 constexpr int kSide = 6;
 
 /// In [-1/2, 1/2), the same numbers on every platform.
@@ -68,16 +67,16 @@ btCollisionShape* shape_of(const std::string& kind, pd::test::BulletWorld& world
   return world.shape<btMultiSphereShape>(centres, radii, 3);
 }
 
-void run(const std::string& kind, const std::string& ground, bool ours, int layers, int settle, int steps) {
+void run(const std::string& kind, const std::string& ground, bool ours, int layers, int cells, int settle, int steps) {
   pd::test::UnionWorld world(ours);
   const auto corner = [&](int i, int k) {
-    const double x = kExtent * (2.0 * i / kCells - 1), z = kExtent * (2.0 * k / kCells - 1);
+    const double x = kExtent * (2.0 * i / cells - 1), z = kExtent * (2.0 * k / cells - 1);
     const double height = ground == "flat" ? 0 : 0.1 * (x * x + z * z) + 0.15 * std::sin(2 * x) * std::cos(2 * z);
     return btVector3(static_cast<btScalar>(x), static_cast<btScalar>(height), static_cast<btScalar>(z));
   };
   std::vector<pd::test::UnionWorld::Triangle> triangles;
-  for (int i = 0; i < kCells; ++i) {
-    for (int k = 0; k < kCells; ++k) {
+  for (int i = 0; i < cells; ++i) {
+    for (int k = 0; k < cells; ++k) {
       pd::test::add_rectangle(triangles, corner(i, k), corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k));
     }
   }
@@ -125,12 +124,14 @@ int main(int argc, char** argv) {
   std::vector<std::string> grounds{"flat", "waves", "plane"};
   std::vector<std::string> runs{"bullet", "pdepth"};
   int layers = 1;
+  int cells = 32;
   int settle = 240;
   int steps = 120;
   app.add_option("--kinds", kinds)->delimiter(',')->check(CLI::IsMember(kinds));
   app.add_option("--grounds", grounds)->delimiter(',')->check(CLI::IsMember(grounds));
   app.add_option("--runs", runs)->delimiter(',')->check(CLI::IsMember(runs));
   app.add_option("--layers", layers, "of 36 bodies each")->check(CLI::PositiveNumber);
+  app.add_option("--cells", cells, "along each of the 12 m of a mesh")->check(CLI::PositiveNumber);
   app.add_option("--settle", settle, "steps before those that are measured")->check(CLI::NonNegativeNumber);
   app.add_option("--steps", steps)->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
@@ -138,7 +139,7 @@ int main(int argc, char** argv) {
               "contacts", "lost");
   for (const std::string& kind : kinds) {
     for (const std::string& ground : grounds) {
-      for (const std::string& name : runs) run(kind, ground, name == "pdepth", layers, settle, steps);
+      for (const std::string& name : runs) run(kind, ground, name == "pdepth", layers, cells, settle, steps);
     }
   }
   return 0;
