@@ -143,6 +143,16 @@ __attribute__((noinline)) void pdepth_counted_call(const pd::PosedShape* a, cons
 
 namespace {
 
+/// Counts one cold query in the tightest bracket, the library's default.
+int count_tightest(const char* name, const pd::PosedShape& a, const pd::PosedShape& b) {
+  const pd::DepthSettings settings;
+  pd::Scratch scratch;
+  pd::PenetrationDepth answer = pd::penetration_depth(a, b, scratch, settings);
+  pdepth_counted_call(&a, &b, &scratch, nullptr, &answer, &settings);
+  std::printf("%s: depth in [%.17g, %.17g]\n", name, answer.lower, answer.upper);
+  return 0;
+}
+
 /// Three frames, each of B so far turned from the next; the last one from its pose.
 void remember_frames(const pd::PosedShape& a, const pd::PosedShape& b, double radians, pd::Scratch& scratch,
                      pd::WarmCertificate& certificate) {
@@ -196,12 +206,7 @@ int main(int argc, char** argv) {
     const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
     const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
     const pd::PosedShape posed_a{&a, pair.pose_a}, posed_b{&b, pair.pose_b};
-    const pd::DepthSettings settings;
-    pd::Scratch scratch;
-    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, settings);
-    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &settings);
-    std::printf("%s: depth in [%.17g, %.17g]\n", c.name, answer.lower, answer.upper);
-    return 0;
+    return count_tightest(c.name, posed_a, posed_b);
   }
   for (const FixedRest& c : kRests) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
@@ -278,12 +283,7 @@ int main(int argc, char** argv) {
     const double length = std::hypot(c.turn[0], c.turn[3]);
     const std::array<double, 4> turn{c.turn[0] / length, c.turn[1], c.turn[2], c.turn[3] / length};
     const pd::PosedShape posed_a{&a, *pd::Pose::from_quaternion(turn, {0.0, 0.0, c.height})}, posed_b{&b, pd::Pose()};
-    const pd::DepthSettings settings;
-    pd::Scratch scratch;
-    pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, settings);
-    pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &settings);
-    std::printf("%s: depth in [%.17g, %.17g]\n", c.name, answer.lower, answer.upper);
-    return 0;
+    return count_tightest(c.name, posed_a, posed_b);
   }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;

@@ -268,7 +268,8 @@ class BoxSat : public BoxPair {
 
   /// Edges of flush faces cross along the faces' own normal, and those turned by little against each other know it
   /// badly. But a point of P as far along the normal as `foot_lower` keeps every plane that is turned from it by a
-  /// small angle away by that times its cosine.
+  /// small angle away by that times its cosine; and the plane on P's other side, where P's centre is certain to lie
+  /// behind that one: the other is then farther.
   double lower_beside_foot(double foot_lower, const Vec3& normal, double rounding) const {
     constexpr double kSmallAngle = 0x1p-28;  // its cosine rounds to 1
     const double c[3] = {centre_.x(), centre_.y(), centre_.z()};
@@ -283,7 +284,8 @@ class BoxSat : public BoxPair {
       const Vec3 n = u.cross(v);
       const double turn = kBoxTurn * u.norm() * v.norm() / n.norm();
       const Vec3 m = outward(n);
-      if (m.dot(normal) > 0 && m.cross(normal).norm() + 2 * turn < kSmallAngle) continue;
+      const bool sided = -m.dot(centre_) >= 2 * turn * centre_.norm() + 16 * kUnitRoundoff * reach_;
+      if (sided && m.dot(normal) > 0 && m.cross(normal).norm() + 2 * turn < kSmallAngle) continue;
       lower = of_axis;
     }
     return lower;
