@@ -4,13 +4,13 @@
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "compound_children.hpp"
 #include "covered_contact.hpp"
 #include "deep_union.hpp"
+#include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "piece_memories.hpp"
@@ -70,15 +70,6 @@ int place_of(const Child& child, std::vector<Child>& children) {
   const auto place = static_cast<int>(found - children.begin());
   if (found == children.end()) children.push_back(child);
   return place;
-}
-
-/// How far a point within `radius` of the frame's origin has come at the most, turning by the nearest rotations
-/// included.
-double moved_at_most(const btTransform& from, const btTransform& to, double radius) {
-  if (from == to) return 0;
-  double turned = 0;
-  for (int i = 0; i < 3; ++i) turned += (to_pd(to.getBasis()[i]) - to_pd(from.getBasis()[i])).squaredNorm();
-  return (1 + 0x1p-16) * (std::sqrt(turned) * radius + (to_pd(to.getOrigin()) - to_pd(from.getOrigin())).norm());
 }
 
 /// Whether two children cannot have come within reach of each other since they were last asked.

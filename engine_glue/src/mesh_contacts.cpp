@@ -29,7 +29,7 @@ namespace {
 constexpr double kClear = 1 + 0x1p-6;
 
 /// Triangles of one step that a body or child remembers, some 2 KB each; those met after them begin anew each step.
-constexpr std::size_t kMostRemembered = 128;
+constexpr std::size_t kMostRemembered = 256;
 
 /// Of the threshold: so much farther than contacts reach the mesh is read, since what lies round a contact is asked
 /// for, too. Where bodies are fast it may lie farther, and is read from the mesh again.
@@ -85,9 +85,17 @@ class MeshContacts final : public UnionContacts {
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     PiecesOfPoint around(question, children_, triangles_);
     manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+    if (!still_) remember_points(patches, manifolds.memory().standing);
   }
 
  private:
+  /// Compares where the children are with where all triangles were asked about them.
+  /// @return whether only those that made points are to be asked again
+  bool stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory);
+  /// The triangles that one of the children is asked about.
+  void choose_triangles(int place, const TrianglesAround& around, StandingStill& standing);
+  /// Which triangles made points that were chosen.
+  void remember_points(const Patches& patches, StandingStill& standing) const;
   /// Sets how far the children reach.
   void reach_out(const UnionQuestion& question);
   /// Reads the mesh around one of them, or all.
@@ -106,7 +114,12 @@ class MeshContacts final : public UnionContacts {
   std::vector<BodyReach> reaches_;      ///< of the children
   btVector3 lower_, upper_;             ///< of the box around all of them
   bool together_ = true;                ///< so close that the mesh is read once for all
+  bool still_ = false;                  ///< since all triangles were asked
+  std::vector<StandingChild> stand_;    ///< as the children are now
+  std::vector<double> radii_;           ///< of the children, about the origins of their frames
+  std::vector<int> known_;              ///< places of the triangles around among those that were asked
   std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
+  std::vector<std::size_t> places_;     ///< theirs among the triangles around
   FlatGround flat_;
   PieceMemories memories_;
   OneSided one_sided_;
@@ -188,18 +201,74 @@ void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQues
 
 bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
   triangles_.clear();
+  places_.clear();
   memories_.begin();
   if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair(question.stamp);
+  if (children_.empty()) return true;
   reach_out(question);
-  if (together_ && !children_.empty()) read_mesh(question, lower_, upper_, *buffers);
-  for (std::size_t i = 0; i < children_.size(); ++i) {
-    if (!find_of(question, static_cast<int>(i), core, *buffers, memory, patches)) return false;
+  still_ = stand_still(question, core, *buffers, memory);
+  if (together_) read_mesh(question, lower_, upper_, *buffers);
+  if (still_) {
+    memory.standing.find(buffers->around.triangles(), known_);
+  } else if (!stand_.empty()) {
+    memory.standing.begin(stand_, question.threshold, buffers->around.triangles());
+  } else {
+    memory.standing.forget();
   }
-  memories_.end(memory.pieces);
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    if (find_of(question, static_cast<int>(i), core, *buffers, memory, patches)) continue;
+    memory.standing.forget();
+    return false;
+  }
+  if (!still_) memories_.end(memory.pieces);
   return true;
+}
+
+bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
+                               PairMemory& memory) {
+  stand_.clear();
+  radii_.clear();
+  // Children far apart read the mesh one by one; what stands behind a one-sided triangle is asked with all others.
+  if (!together_ || core.settings.one_sided_meshes) return false;
+  const btTransform into_mesh = question.b.getWorldTransform().inverse();
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    const Child& child = children_[i];
+    std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, child.index);
+    core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, buffers);
+    stand_.push_back({child.index, into_mesh * child.pose, shape});
+    const Vec3 origin = to_pd(stand_.back().pose.getOrigin());
+    radii_.push_back((to_pd(reaches_[i].upper()) - origin).cwiseMax(origin - to_pd(reaches_[i].lower())).norm());
+  }
+  return memory.standing.still(stand_, radii_, question.threshold);
+}
+
+void MeshContacts::choose_triangles(int place, const TrianglesAround& around, StandingStill& standing) {
+  using Met = StandingStill::Met;
+  const auto child = static_cast<std::size_t>(place);
+  const BodyReach& reach = reaches_[child];
+  const std::span<const MeshTriangle> all = around.triangles();
+  const Met least = still_ && !standing.flat(child) ? Met::with_points : Met::within_reach;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const MeshTriangle& near = all[i];
+    const bool known = still_ && known_[i] >= 0;
+    if (known ? standing.met(child, static_cast<std::size_t>(known_[i])) < least : !reach.meets(near)) continue;
+    if (!still_ && !standing.empty()) standing.set(child, i, Met::within_reach);
+    triangles_.push_back({{near.corners[0], near.corners[1], near.corners[2]}, near.part, near.index, place});
+    places_.push_back(i);
+  }
+}
+
+void MeshContacts::remember_points(const Patches& patches, StandingStill& standing) const {
+  if (standing.empty()) return;
+  for (int i = 0; i < patches.size(); ++i) {
+    for (int k = 0; k < patches[i].fresh.count; ++k) {
+      const auto piece = static_cast<std::size_t>(patches[i].pieces[static_cast<std::size_t>(k)]);
+      standing.set(static_cast<std::size_t>(triangles_[piece].child), places_[piece], StandingStill::Met::with_points);
+    }
+  }
 }
 
 bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers,
@@ -210,25 +279,30 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const btTransform& pose = mesh.getWorldTransform();
   if (!together_) read_mesh(question, reach.lower(), reach.upper(), buffers);
   const std::size_t first = triangles_.size();
-  for (const MeshTriangle& near : buffers.around.triangles()) {
-    if (!reach.meets(near)) continue;
-    triangles_.push_back({{near.corners[0], near.corners[1], near.corners[2]}, near.part, near.index, place});
-  }
+  choose_triangles(place, buffers.around, memory.standing);
   if (triangles_.size() == first) return true;
   const ChildInResult piece(question.result, question.a, child);
   const btCollisionObjectWrapper& a = piece.wrapper();
   const auto threshold = static_cast<double>(question.threshold);
   const FlatGround::Body standing{a, memory.shape_of_child(0, child.index)};
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
-  if (flat_.find(standing, question, met_of_child, first, core, buffers, patches)) return true;
+  const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
+  if (!asked_one_by_one && flat_.find(standing, question, met_of_child, first, core, buffers, patches)) {
+    if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
+    return true;
+  }
   const bool one_sided = core.settings.one_sided_meshes;
   one_sided_.clear();
   for (std::size_t i = first; i < triangles_.size(); ++i) {
     const MetTriangle& met = triangles_[i];
     const TriangleInResult triangle(question.result, mesh, met);
     PairAnswer answer;
-    PieceMemory* const remembered =
-        i - first < kMostRemembered ? &memories_.take(memory.pieces, number_of(child, met)) : nullptr;
+    PieceMemory* remembered = nullptr;
+    if (still_) {
+      remembered = PieceMemories::find(memory.pieces, number_of(child, met));
+    } else if (i - first < kMostRemembered) {
+      remembered = &memories_.take(memory.pieces, number_of(child, met));
+    }
     const auto outcome = ask(a, child.pose, question, triangle, remembered, core, buffers, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;

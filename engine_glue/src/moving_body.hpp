@@ -6,6 +6,7 @@
 #include <LinearMath/btTransform.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
@@ -20,6 +21,15 @@ inline RigidMotion motion_between(const btTransform& from, const btTransform& to
   const Eigen::AngleAxisd turn(Mat3(to_pd(to.getBasis()) * to_pd(from.getBasis()).transpose()));
   motion.angular_velocity = turn.angle() / duration * turn.axis();
   return motion;
+}
+
+/// How far a point within `radius` of the frame's origin has come at the most, turning by the nearest rotations
+/// included.
+inline double moved_at_most(const btTransform& from, const btTransform& to, double radius) {
+  if (from == to) return 0;
+  double turned = 0;
+  for (int i = 0; i < 3; ++i) turned += (to_pd(to.getBasis()[i]) - to_pd(from.getBasis()[i])).squaredNorm();
+  return (1 + 0x1p-16) * (std::sqrt(turned) * radius + (to_pd(to.getOrigin()) - to_pd(from.getOrigin())).norm());
 }
 
 /// Of its centre of mass; zero where it is no rigid body.

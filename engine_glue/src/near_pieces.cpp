@@ -19,9 +19,10 @@ namespace {
 
 /// Of so few, each is looked at where it is.
 constexpr int kVeryFewChildren = 4;
-/// Of so few triangles each is compared; of more, the mesh's tree is asked, or a large body on a fine mesh would
-/// compare every triangle that it meets with every other.
-constexpr std::size_t kFewTriangles = 256;
+/// Of so few triangles, and for so few contacts, each is compared; of more, groups of them, or a large body on a fine
+/// mesh would compare every triangle that it meets with every other.
+constexpr std::size_t kFewTriangles = 128;
+constexpr int kFewContacts = 12;
 /// Compounds of one step that are kept at a time.
 constexpr std::size_t kMostPosedCompounds = 64;
 
@@ -39,28 +40,15 @@ struct NearPieces::Search {
 
 class NearPieces::TrianglesOf : public btTriangleCallback {
  public:
-  /// @param known  whether the triangles are those of `know`
-  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, bool known,
-              const Search& search, NearPieces& list)
-      : pose_(pose),
-        margin_(margin),
-        except_(except),
-        known_(known),
-        beyond_(search.beyond),
-        found_(search.found),
-        list_(list) {}
+  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Search& search,
+              NearPieces& list)
+      : pose_(pose), margin_(margin), except_(except), beyond_(search.beyond), found_(search.found), list_(list) {}
   void processTriangle(btVector3* corners, int part, int index) override {
     if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
     const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
     if (beyond_ != nullptr) {
       const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
       if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
-    }
-    if (known_) {
-      const std::size_t i = list_.around_->find(part, index, corners);
-      // Those without area are not among them.
-      if (i < list_.around_->triangles().size()) list_.add_known(i, found_);
-      return;
     }
     UnionPiece& piece = list_.next_made().piece;
     set_triangle(points, margin_, piece);
@@ -73,7 +61,6 @@ class NearPieces::TrianglesOf : public btTriangleCallback {
   const btTransform& pose_;
   double margin_;
   const btCollisionObjectWrapper* except_;
-  bool known_;
   const Beyond* beyond_;
   std::vector<const UnionPiece*>& found_;
   NearPieces& list_;
@@ -96,6 +83,7 @@ void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrap
   around_ = &around;
   around_pose_ = to_pd(mesh.getWorldTransform());
   around_margin_ = static_cast<double>(mesh.getCollisionShape()->getMargin());
+  known_searches_ = 0;
   known_made_.assign(around.triangles().size(), false);
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
@@ -207,13 +195,20 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
     n = around_pose_.rotation().transpose() * beyond->n;
     level = beyond->level - beyond->n.dot(around_pose_.translation());
   }
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
+  const auto visit = [&](std::size_t i) {
     const MeshTriangle& triangle = triangles[i];
-    if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) continue;
-    if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
+    if (triangle.part == except.m_partId && triangle.index == except.m_index) return;
     const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
-    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
+    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) return;
     add_known(i, search.found);
+  };
+  if (triangles.size() > kFewTriangles && ++known_searches_ > kFewContacts) {
+    if (known_searches_ == kFewContacts + 1) known_boxes_.make(triangles);
+    known_boxes_.each_meeting(lower, upper, visit);
+    return;
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (boxes_meet(triangles[i].lower, triangles[i].upper, lower, upper)) visit(i);
   }
 }
 
@@ -243,11 +238,11 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     const btVector3 extent(search.reach, search.reach, search.reach);
     const bool known = except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
                        around_->cover(concave, local - extent, local + extent);
-    if (known && around_->triangles().size() <= kFewTriangles) {
+    if (known) {
       collect_known(*except, search, local - extent, local + extent);
       return;
     }
-    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, known, search, *this);
+    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {
     Child& child = next_made();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compound_facts.hpp"
+#include "triangle_boxes.hpp"
 #include "triangles_around.hpp"
 #include "union_piece.hpp"
 
@@ -108,6 +109,8 @@ class NearPieces {
   double around_margin_ = 0;
   std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
   std::vector<bool> known_made_;
+  TriangleBoxes known_boxes_;
+  int known_searches_ = 0;  ///< among these, of the pair at hand
   std::uint64_t stamp_ = 0;
   std::uint64_t visits_ = 0;
 };

@@ -15,6 +15,7 @@
 #include "cached_shape.hpp"
 #include "impulse_trend.hpp"
 #include "pd/depth/warm_certificate.hpp"
+#include "standing_still.hpp"
 
 class btPersistentManifold;
 
@@ -58,6 +59,7 @@ struct PairMemory {
   btScalar seconds = 0;                              ///< of the step that the points' impulses belong to
   std::vector<PieceMemory> pieces;                   ///< sorted by number
   std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
+  StandingStill standing;                            ///< of a body on a mesh
   int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
@@ -71,7 +73,8 @@ struct PairMemory {
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
-    return patch < 0 && num_points == 0 && pieces.empty() && union_refusals == 0 && warm.memory_bytes() == sizeof(warm);
+    return patch < 0 && num_points == 0 && pieces.empty() && standing.empty() && union_refusals == 0 &&
+           warm.memory_bytes() == sizeof(warm);
   }
 };
 

@@ -55,10 +55,19 @@ void Patches::go_on(std::span<const LastPatch> last) {
   }
 }
 
+void Patches::sort_by_depth() {
+  // Points are large: their numbers are sorted, and each is moved once.
+  by_depth_.clear();
+  for (std::size_t i = 0; i < points_.size(); ++i) by_depth_.emplace_back(-points_[i].contact.depth, i);
+  std::sort(by_depth_.begin(), by_depth_.end());
+  sorted_.clear();
+  for (const auto& [depth, i] : by_depth_) sorted_.push_back(points_[i]);
+  points_.swap(sorted_);
+}
+
 void Patches::choose(int most, double breaking_threshold, std::span<const LastPatch> last) {
   go_on(last);
-  std::stable_sort(points_.begin(), points_.end(),
-                   [](const Point& x, const Point& y) { return x.contact.depth > y.contact.depth; });
+  sort_by_depth();
   for (Point& point : points_) {
     double nearest = -2;
     for (std::size_t i = 0; i < patches_.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "manifold_points.hpp"
@@ -69,11 +70,15 @@ class Patches {
   };
   /// The patches of the last step that some point belongs to.
   void go_on(std::span<const LastPatch> last);
+  /// The deepest first, of equal ones that which was added first.
+  void sort_by_depth();
   void choose_in(int patch, double breaking_threshold, std::span<const LastPatch> last);
   /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
   void keep_one_of_each(int patch, double merge);
 
   std::vector<Point> points_;
+  std::vector<Point> sorted_;
+  std::vector<std::pair<double, std::size_t>> by_depth_;
   std::vector<Patch> patches_;
   std::vector<const Point*> left_;
   std::vector<Place> places_;

@@ -40,6 +40,13 @@ class PieceMemories {
     return fresh_.back();
   }
 
+  /// Where few are asked again and all others are to be remembered: in place, without `take` and `end`; null: none.
+  static PieceMemory* find(std::vector<PieceMemory>& all, std::uint64_t number) {
+    const auto found = std::lower_bound(all.begin(), all.end(), number,
+                                        [](const PieceMemory& x, std::uint64_t n) { return x.pieces < n; });
+    return found != all.end() && found->pieces == number ? &*found : nullptr;
+  }
+
   /// Puts the memories that were taken in place of the old ones. Hosts may give several triangles one number: these
   /// keep the order in which they were met.
   void end(std::vector<PieceMemory>& old) {

@@ -34,29 +34,27 @@ RoundedBox rounded_box(const btConvexShape& body, const btTransform& pose) {
 }
 
 bool out_of_reach(const RoundedBox& box, const Vec3 (&corners)[3], const Vec3& across, double reach, double rounding) {
-  const Vec3 from_centre[3] = {corners[0] - box.centre, corners[1] - box.centre, corners[2] - box.centre};
-  double farthest = 0;
-  for (const Vec3& corner : from_centre) farthest = std::max(farthest, corner.cwiseAbs().maxCoeff());
-  reach += rounding * farthest;
-  if (std::abs(across.dot(from_centre[0])) > box.half_width(across) + reach * across.norm()) return true;
-  if (!box.half.isZero(0)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 along = box.axes.col(axis);
-      const auto [low, high] =
-          std::minmax({along.dot(from_centre[0]), along.dot(from_centre[1]), along.dot(from_centre[2])});
-      const double extent = box.half[axis] + box.radius + reach;
-      if (low > extent || high < -extent) return true;
-    }
-  }
-  const auto apart_along = [&](const Vec3& n) {
-    const double nearest = std::min({n.dot(from_centre[0]), n.dot(from_centre[1]), n.dot(from_centre[2])});
-    return nearest > box.half_width(n) + reach * n.norm();
+  // Along the box's axes, from its centre.
+  const Mat3 into = box.axes.transpose();
+  const Vec3 at[3] = {into * (corners[0] - box.centre), into * (corners[1] - box.centre),
+                      into * (corners[2] - box.centre)};
+  const Vec3 low = at[0].cwiseMin(at[1]).cwiseMin(at[2]), high = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
+  reach += box.radius + 2 * rounding * high.cwiseMax(-low).maxCoeff();
+  const Vec3 extent = box.half + Vec3::Constant(reach);
+  if ((low.array() > extent.array()).any() || (high.array() < -extent.array()).any()) return true;
+  // Of the plane at this distance along n, times the length of n.
+  const auto apart = [&](const Vec3& n, double distance) {
+    const double beyond = distance - n.cwiseAbs().dot(box.half);
+    return beyond > 0 && beyond * beyond > reach * reach * n.squaredNorm();
   };
-  const auto shorter = [](const Vec3& x, const Vec3& y) { return x.squaredNorm() < y.squaredNorm(); };
-  if (apart_along(*std::min_element(from_centre, from_centre + 3, shorter))) return true;
+  const Vec3 normal = into * across;
+  if (apart(normal, std::abs(normal.dot(at[0])))) return true;
+  const double squared[3] = {at[0].squaredNorm(), at[1].squaredNorm(), at[2].squaredNorm()};
+  const Vec3& nearest = at[std::min_element(squared, squared + 3) - squared];
+  if (apart(nearest, std::min({nearest.dot(at[0]), nearest.dot(at[1]), nearest.dot(at[2])}))) return true;
   for (int i = 0; i < 3; ++i) {
-    const Vec3 outward = (from_centre[(i + 1) % 3] - from_centre[i]).cross(across);
-    if (-outward.dot(from_centre[i]) > box.half_width(outward) + reach * outward.norm()) return true;
+    const Vec3 outward = (at[(i + 1) % 3] - at[i]).cross(normal);
+    if (apart(outward, -outward.dot(at[i]))) return true;
   }
   return false;
 }

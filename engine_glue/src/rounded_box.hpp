@@ -16,11 +16,6 @@ struct RoundedBox {
   Mat3 axes;  ///< columns: the box's axes, of length 1 but for the rounding of Bullet's matrices
   Vec3 half;
   double radius;
-
-  /// Half the extent along n, times the length of n.
-  [[nodiscard]] double half_width(const Vec3& n) const {
-    return (axes.transpose() * n).cwiseAbs().dot(half) + radius * n.norm();
-  }
 };
 
 /// Round a body, in a frame in which the body has this pose. Includes the body's margin.

@@ -1,6 +1,8 @@
 #include "triangles_around.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace pd::detail {
@@ -9,10 +11,8 @@ namespace {
 
 constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-20 : 0x1p-48;
 
-/// By Bullet's numbers, and by place where a host gave several triangles one number.
+/// By place, where a host gave several triangles one number.
 bool comes_before(const MeshTriangle& x, const MeshTriangle& y) {
-  if (x.part != y.part) return x.part < y.part;
-  if (x.index != y.index) return x.index < y.index;
   for (int i = 0; i < 9; ++i) {
     const btScalar here = x.corners[i / 3][i % 3], there = y.corners[i / 3][i % 3];
     if (here != there) return here < there;
@@ -43,20 +43,22 @@ class TrianglesAround::Reader : public btTriangleCallback {
       : lower_(lower), upper_(upper), triangles_(triangles) {}
 
   void processTriangle(btVector3* corners, int part, int index) override {
-    MeshTriangle triangle{{corners[0], corners[1], corners[2]}, corners[0], corners[0], {}, part, index};
+    btVector3 lower = corners[0], upper = corners[0];
     for (int i = 1; i < 3; ++i) {
-      triangle.lower.setMin(corners[i]);
-      triangle.upper.setMax(corners[i]);
+      lower.setMin(corners[i]);
+      upper.setMax(corners[i]);
     }
     // Trees of quantised boxes, and heightfields, offer more than what the box meets.
-    if (!boxes_meet(triangle.lower, triangle.upper, lower_, upper_)) return;
+    if (!boxes_meet(lower, upper, lower_, upper_)) return;
     const Vec3 first = to_pd(corners[0]);
-    triangle.across = (to_pd(corners[1]) - first).cross(to_pd(corners[2]) - first);
-    if (!triangle.across.allFinite() || triangle.across.isZero(0)) {
+    const Vec3 across = (to_pd(corners[1]) - first).cross(to_pd(corners[2]) - first);
+    const double size = std::abs(across.x()) + std::abs(across.y()) + std::abs(across.z());
+    // Also skips what is not a number.
+    if (!(size > 0 && size < std::numeric_limits<double>::infinity())) {
       ++skipped;
       return;
     }
-    triangles_.push_back(triangle);
+    triangles_.push_back({{corners[0], corners[1], corners[2]}, lower, upper, across, part, index});
   }
 
   int skipped = 0;
@@ -71,10 +73,16 @@ int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, co
   mesh_ = &mesh;
   lower_ = lower;
   upper_ = upper;
-  triangles_.clear();
-  Reader reader(lower_, upper_, triangles_);
+  read_.clear();
+  Reader reader(lower_, upper_, read_);
   mesh.processAllTriangles(&reader, lower, upper);
-  std::sort(triangles_.begin(), triangles_.end(), comes_before);
+  order_.clear();
+  for (std::size_t i = 0; i < read_.size(); ++i) order_.emplace_back(read_[i].number(), i);
+  std::sort(order_.begin(), order_.end(), [&](const auto& x, const auto& y) {
+    return x.first != y.first ? x.first < y.first : comes_before(read_[x.second], read_[y.second]);
+  });
+  triangles_.clear();
+  for (const auto& [number, i] : order_) triangles_.push_back(read_[i]);
   return reader.skipped;
 }
 

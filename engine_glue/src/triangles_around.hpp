@@ -8,7 +8,9 @@
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pd/bullet/scalar.hpp"
@@ -24,6 +26,11 @@ struct MeshTriangle {
   Vec3 across;  ///< (corner 1 - corner 0) x (corner 2 - corner 0)
   int part;     ///< Bullet's numbers for it
   int index;
+  /// One number for both, in the order of parts and of a part's triangles.
+  [[nodiscard]] std::uint64_t number() const {
+    const auto ordered = [](int of) { return static_cast<std::uint32_t>(of) ^ 0x80000000U; };
+    return static_cast<std::uint64_t>(ordered(part)) << 32U | ordered(index);
+  }
 };
 
 /// How far from a convex body triangles count, in the mesh's frame.
@@ -66,6 +73,8 @@ class TrianglesAround {
   btVector3 lower_;
   btVector3 upper_;
   std::vector<MeshTriangle> triangles_;
+  std::vector<MeshTriangle> read_;                            ///< in the order of the mesh's tree
+  std::vector<std::pair<std::uint64_t, std::size_t>> order_;  ///< by Bullet's numbers
 };
 
 /// Whether two boxes may have a point in common: also where a corner is no number.

@@ -100,20 +100,26 @@ void run(const std::string& kind, const std::string& ground, bool ours, int laye
   world.step(settle);
   world.solver.reset_statistics();
   std::vector<double> ms;
+  std::vector<double> speeds;
   for (int i = 0; i < steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
     world.step();
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    for (const auto& body : world.bullet.bodies()) {
+      if (!body->isStaticObject()) speeds.push_back(static_cast<double>(body->getLinearVelocity().length()));
+    }
   }
   std::sort(ms.begin(), ms.end());
+  std::sort(speeds.begin(), speeds.end());
   const auto statistics = world.solver.statistics();
   const auto calls = static_cast<double>(std::max<std::int64_t>(statistics.calls, 1));
   const auto lost = std::count_if(world.bullet.bodies().begin(), world.bullet.bodies().end(),
                                   [](const auto& body) { return body->getWorldTransform().getOrigin().y() < -1; });
-  std::printf("%-12s%-7s%-8s%10.4f%10.1f%8.2f%10.2f%10d%6d\n", kind.c_str(), ground.c_str(), ours ? "pdepth" : "bullet",
-              ms[ms.size() / 2], static_cast<double>(statistics.calls) / steps,
+  std::printf("%-12s%-7s%-8s%10.4f%10.1f%8.2f%10.2f%10d%6d%10.5f%10.5f\n", kind.c_str(), ground.c_str(),
+              ours ? "pdepth" : "bullet", ms[ms.size() / 2], static_cast<double>(statistics.calls) / steps,
               static_cast<double>(statistics.warm) / calls, static_cast<double>(statistics.support_calls) / calls,
-              world.bullet.num_contacts(), static_cast<int>(lost));
+              world.bullet.num_contacts(), static_cast<int>(lost), speeds[speeds.size() / 2],
+              speeds[speeds.size() * 9 / 10]);
 }
 
 }  // namespace
@@ -135,8 +141,8 @@ int main(int argc, char** argv) {
   app.add_option("--settle", settle, "steps before those that are measured")->check(CLI::NonNegativeNumber);
   app.add_option("--steps", steps)->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
-  std::printf("%-12s%-7s%-8s%10s%10s%8s%10s%10s%6s\n", "kind", "ground", "run", "p50 ms", "queries", "warm", "supports",
-              "contacts", "lost");
+  std::printf("%-12s%-7s%-8s%10s%10s%8s%10s%10s%6s%10s%10s\n", "kind", "ground", "run", "p50 ms", "queries", "warm",
+              "supports", "contacts", "lost", "speed p50", "p90");
   for (const std::string& kind : kinds) {
     for (const std::string& ground : grounds) {
       for (const std::string& name : runs) run(kind, ground, name == "pdepth", layers, cells, settle, steps);
