@@ -14,6 +14,8 @@ constexpr double kAlong = 0.5;
 constexpr double kNoise = 1e-3;
 /// Of the breaking threshold: points that near are one. (Bullet merges what lies within the whole of it.)
 constexpr double kMerge = 0.05;
+/// cos 3 degrees: what pushes no farther apart holds a body as one.
+constexpr double kOneWay = 0.9986;
 /// What the squared distances and areas of a point of the last step count.
 constexpr double kLasting = 1.2;
 
@@ -42,6 +44,12 @@ void Patches::add(const ContactManifold& manifold, int piece, int i, int j) {
 
 void Patches::keep_along(const Vec3& normal) {
   std::erase_if(points_, [&](const Point& point) { return point.normal.dot(normal) < kAlong; });
+}
+
+void Patches::add(const Point& point, Patch& patch) {
+  const auto k = static_cast<std::size_t>(patch.fresh.count++);
+  patch.fresh.points[k] = fresh_point(point.normal, point.contact);
+  patch.pieces[k] = point.piece;
 }
 
 void Patches::go_on(std::span<const LastPatch> last) {
@@ -83,7 +91,48 @@ void Patches::choose(int most, double breaking_threshold, std::span<const LastPa
       patches_.back().normal = point.normal;
     }
   }
+  twins_.clear();
   for (std::size_t i = 0; i < patches_.size(); ++i) choose_in(static_cast<int>(i), breaking_threshold, last);
+  add_twins(most, last);
+}
+
+void Patches::find_twins(double breaking_threshold) {
+  const auto beside = [&](const Point* x, const Point* y) {
+    const double squared = (x->contact.position_b - y->contact.position_b).squaredNorm();
+    return squared < breaking_threshold * breaking_threshold;
+  };
+  const auto pushes_as = [](const Point* x, const Point* y) { return x->normal.dot(y->normal) >= kOneWay; };
+  std::vector<const Point*>& twins = chosen_;
+  const std::size_t num_chosen = chosen_.size();
+  for (const Point* point : left_) {
+    if (point->contact.depth < -kNoise * breaking_threshold || twins.size() == num_chosen + 4) break;
+    const auto near = [&](const Point* other) { return beside(point, other); };
+    const auto repeats = [&](const Point* other) { return beside(point, other) && pushes_as(point, other); };
+    if (std::any_of(chosen_.begin(), chosen_.begin() + static_cast<std::ptrdiff_t>(num_chosen), near) &&
+        std::none_of(twins.begin(), twins.end(), repeats)) {
+      twins.push_back(point);
+    }
+  }
+  if (twins.size() == num_chosen) return;
+  Patch& patch = twins_.emplace_back();
+  patch.normal = twins[num_chosen]->normal;
+  for (std::size_t i = num_chosen; i < twins.size(); ++i) add(*twins[i], patch);
+}
+
+void Patches::add_twins(int most, std::span<const LastPatch> last) {
+  for (Patch& twin : twins_) {
+    if (static_cast<int>(patches_.size()) == most) return;
+    double nearest = kOnePatch;
+    for (std::size_t i = 0; i < last.size(); ++i) {
+      const auto number = static_cast<int>(i);
+      const double cosine = last[i].normal.dot(twin.normal);
+      const auto goes_on = [&](const Patch& patch) { return patch.last == number; };
+      if (cosine < nearest || std::any_of(patches_.begin(), patches_.end(), goes_on)) continue;
+      nearest = cosine;
+      twin.last = number;
+    }
+    patches_.push_back(twin);
+  }
 }
 
 void Patches::keep_one_of_each(int patch, double merge) {
@@ -136,10 +185,10 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
     }
   }
   keep_one_of_each(index, kMerge * breaking_threshold);
+  chosen_.clear();
   const auto take = [&](const Point* point) {
-    const auto k = static_cast<std::size_t>(patch.fresh.count++);
-    patch.fresh.points[k] = fresh_point(point->normal, point->contact);
-    patch.pieces[k] = point->piece;
+    add(*point, patch);
+    chosen_.push_back(point);
     left_.erase(std::find(left_.begin(), left_.end(), point));
   };
   const auto best = [&](auto&& score) {
@@ -147,7 +196,10 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
                              [&](const Point* x, const Point* y) { return score(*x) < score(*y); });
   };
   const auto place = [](const Point& point) -> const Vec3& { return point.contact.position_b; };
-  const auto weight = [](const Point& point) { return point.lasting ? kLasting : 1.0; };
+  const auto weight = [&](const Point& point) {
+    const double apart = std::clamp(-point.contact.depth / breaking_threshold, 0.0, 1.0);
+    return (point.lasting ? kLasting : 1.0) * (1 - apart) * (1 - apart);
+  };
   if (left_.size() <= 4) {
     while (!left_.empty()) take(left_.front());
     return;
@@ -168,6 +220,7 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
   const Point* fourth = best([&](const Point& p) { return -weight(p) * (place(p) - place(*first)).dot(across); });
   take(third);
   if (fourth != third) take(fourth);
+  find_twins(breaking_threshold);
 }
 
 }  // namespace pd::detail

@@ -46,8 +46,12 @@ class Patches {
   /// The choice is the same from step to step as far as that goes, since a point that is new has no impulse yet:
   /// patches of the last step go on where points are left for them, points of the last step count as a tenth farther
   /// out, and of points that are as deep up to the noise of a resting contact (a thousandth of the breaking threshold)
-  /// the first is one of the last step, or else the farthest out in a fixed direction. O(p (q + log p)), p points, q
-  /// patches.
+  /// the first is one of the last step, or else the farthest out in a fixed direction.
+  ///
+  /// Of a corner in a valley that is less steep than a patch is wide, two points push, each to its side. One of them
+  /// alone moves the body until the other one is the deeper, and back in the next step; so what touches within the
+  /// breaking threshold of a chosen point, along a normal more than three degrees off, gets a patch of its own. O(p (q
+  /// + log p)), p points, q patches.
   /// @param last  of the last step, at most `most`
   void choose(int most, double breaking_threshold, std::span<const LastPatch> last);
 
@@ -68,11 +72,16 @@ class Patches {
     std::size_t point;
     bool kept;
   };
+  static void add(const Point& point, Patch& patch);
   /// The patches of the last step that some point belongs to.
   void go_on(std::span<const LastPatch> last);
   /// The deepest first, of equal ones that which was added first.
   void sort_by_depth();
   void choose_in(int patch, double breaking_threshold, std::span<const LastPatch> last);
+  /// Of the points that are left: those that touch and push another way than what was chosen beside them.
+  void find_twins(double breaking_threshold);
+  /// As patches of their own.
+  void add_twins(int most, std::span<const LastPatch> last);
   /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
   void keep_one_of_each(int patch, double merge);
 
@@ -81,6 +90,8 @@ class Patches {
   std::vector<std::pair<double, std::size_t>> by_depth_;
   std::vector<Patch> patches_;
   std::vector<const Point*> left_;
+  std::vector<const Point*> chosen_;  ///< of the patch at hand
+  std::vector<Patch> twins_;
   std::vector<Place> places_;
   std::vector<std::size_t> ranks_;
 };

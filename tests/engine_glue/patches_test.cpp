@@ -132,5 +132,70 @@ TEST(Patches, OnesOfTheLastStepGoOnAndEmptyOnesMakeRoom) {
   EXPECT_EQ(patches[1].pieces[0], 0);
 }
 
+void add_point(Patches& patches, const Vec3& normal, const Vec3& place, double depth, int piece) {
+  ContactManifold manifold;
+  manifold.normal = normal;
+  manifold.points[0] = {Vec3::Zero(), place, depth, piece};
+  manifold.count = 1;
+  patches.add(manifold, piece, piece, 0);
+}
+
+TEST(Patches, WhatTouchesIsWorthMoreThanWhatLiesFartherOut) {
+  // A square that touches, and round it one of the double size that is most of the threshold apart.
+  Patches patches;
+  const double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 corner(corners[i][0], 0, corners[i][1]);
+    add_point(patches, Vec3::UnitY(), corner, 1e-4 + 1e-5 * i, i);
+    add_point(patches, Vec3::UnitY(), 2 * corner, -0.7 * kThreshold, 4 + i);
+  }
+  patches.choose(8, kThreshold, {});
+  EXPECT_EQ(pieces_of(patches), (std::vector<std::vector<int>>{{0, 1, 2, 3}}));
+  // As deep as the others, they are the better ones.
+  patches.clear();
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 corner(corners[i][0], 0, corners[i][1]);
+    add_point(patches, Vec3::UnitY(), corner, 1e-4, i);
+    add_point(patches, Vec3::UnitY(), 2 * corner, 1e-4, 4 + i);
+  }
+  patches.choose(8, kThreshold, {});
+  EXPECT_EQ(pieces_of(patches), (std::vector<std::vector<int>>{{4, 5, 6, 7}}));
+}
+
+TEST(Patches, ACornerInAValleyIsHeldFromBothSides) {
+  // Four corners of a square, each touched along two ways 16 degrees apart.
+  const Vec3 left = Vec3(0.14, 1, 0).normalized(), right = Vec3(-0.14, 1, 0).normalized();
+  std::vector<LastPatch> last;
+  for (int step = 0; step < 3; ++step) {
+    Patches patches;
+    const double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 corner(corners[i][0], 0, corners[i][1]);
+      add_point(patches, left, corner, 1e-3, i);
+      add_point(patches, right, corner + Vec3(2e-3, 0, 0), 1e-3, 4 + i);
+    }
+    patches.choose(8, kThreshold, last);
+    ASSERT_EQ(patches.size(), 2);
+    std::vector<int> all;
+    for (const auto& pieces : pieces_of(patches)) all.insert(all.end(), pieces.begin(), pieces.end());
+    std::sort(all.begin(), all.end());
+    EXPECT_EQ(all, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+    // Both go on.
+    if (step > 0) {
+      EXPECT_EQ(std::abs(patches[0].last - patches[1].last), 1);
+    }
+    last = as_last(patches);
+  }
+  // What pushes the same way is one.
+  Patches patches;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner(i % 4 < 2 ? 1 : -1, 0, i % 2 == 0 ? 1 : -1);
+    add_point(patches, i < 4 ? left : Vec3(left + Vec3(0.02, 0, 0)).normalized(), corner + Vec3(2e-3 * (i / 4), 0, 0),
+              1e-3, i);
+  }
+  patches.choose(8, kThreshold, {});
+  EXPECT_EQ(patches.size(), 1);
+}
+
 }  // namespace
 }  // namespace pd::test
