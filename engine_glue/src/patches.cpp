@@ -16,6 +16,8 @@ constexpr double kNoise = 1e-3;
 constexpr double kMerge = 0.05;
 /// cos 3 degrees: what pushes no farther apart holds a body as one.
 constexpr double kOneWay = 0.9986;
+/// Of the breaking threshold: points that are so far apart are worth half of those that touch.
+constexpr double kApart = 1.0 / 16;
 /// What the squared distances and areas of a point of the last step count.
 constexpr double kLasting = 1.2;
 
@@ -197,8 +199,8 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
   };
   const auto place = [](const Point& point) -> const Vec3& { return point.contact.position_b; };
   const auto weight = [&](const Point& point) {
-    const double apart = std::clamp(-point.contact.depth / breaking_threshold, 0.0, 1.0);
-    return (point.lasting ? kLasting : 1.0) * (1 - apart) * (1 - apart);
+    const double gap = std::max(-point.contact.depth, 0.0) / (kApart * breaking_threshold);
+    return (point.lasting ? kLasting : 1.0) / (1 + gap * gap);
   };
   if (left_.size() <= 4) {
     while (!left_.empty()) take(left_.front());
