@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compound_children.hpp"
+#include "compound_facts.hpp"
 #include "covered_contact.hpp"
 #include "deep_union.hpp"
 #include "moving_body.hpp"
@@ -150,6 +151,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   buffers->cover.near.begin_pair(stamp);
   move(children_a_, stamp, core, *buffers, memory.children[0]);
   move(children_b_, stamp, core, *buffers, memory.children[1]);
+  look_at(a, children_a_, buffers->cover.near.facts(), core);
+  look_at(b, children_b_, buffers->cover.near.facts(), core);
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
     for (std::size_t j = 0; j < children_b_.size(); ++j) {

@@ -3,14 +3,17 @@
 /// covers all of them, so that no contact leads out over them.
 #pragma once
 
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "cached_shape.hpp"
+#include "compound_children.hpp"
 #include "union_piece.hpp"
 
 namespace pd::detail {
@@ -18,14 +21,21 @@ namespace pd::detail {
 class SolverCore;
 
 /// One table a thread. What it says follows from the children's shapes and places alone, with a slack of their own, so
-/// that it does not matter when or where it was found out; both are compared once a step.
+/// that it does not matter when or where it was found out. Children near the pair's other body, and those near them,
+/// are compared once a step: a large compound costs no more than what is met of it.
 class CompoundFacts {
  public:
   /// To be called for each pair in each step.
   /// @param stamp  of this step, 0: unknown, so that children are compared again
   void begin_pair(std::uint64_t stamp) {
+    if (stamp == 0 || stamp != stamp_) ++visit_;
     stamp_ = stamp;
-    ++pair_;
+  }
+
+  /// To be called for each child near the other body, before any facts are asked for: one that has changed or come next
+  /// to another is seen here.
+  void look_at(const btCompoundShape& compound, int child, SolverCore& core) {
+    compared(compound, known_of(compound), child, core);
   }
 
   /// Whether another child covers all of a facet, beyond doubt. False where the child is no solid polytope.
@@ -38,12 +48,16 @@ class CompoundFacts {
 
   /// What a child was converted to, of this step; null where it is not convex.
   [[nodiscard]] const CachedShape* shape_of(const btCompoundShape& compound, int child, SolverCore& core) {
-    return known_of(compound, core).children[static_cast<std::size_t>(child)].shape.get();
+    Known& known = known_of(compound);
+    return compared(compound, known, child, core).shape.get();
   }
 
  private:
   enum class Seal : std::uint8_t { unknown, open, sealed };
   struct Child {
+    std::uint64_t compared = 0;    ///< the visit in which it was
+    std::uint64_t surrounded = 0;  ///< the visit in which its neighbours were
+    std::uint64_t facts = 0;       ///< the change of the compound after which `facets` and `neighbours` were begun
     const btCollisionShape* source = nullptr;
     btTransform place;
     std::shared_ptr<CachedShape> shape;
@@ -51,27 +65,33 @@ class CompoundFacts {
     btVector3 lower;
     btVector3 upper;
     std::vector<Seal> facets;
-    double reach = -1;  ///< of `neighbours`; negative: they are not known
-    std::vector<int> neighbours;
+    std::vector<int> neighbours;  ///< by number
   };
   struct Known {
-    std::uint64_t stamp = 0;
-    std::uint64_t pair = 0;
+    std::uint64_t change = 1;  ///< counts those of children
     std::vector<Child> children;
   };
 
-  Known& known_of(const btCompoundShape& compound, SolverCore& core);
-  void compare(const btCompoundShape& compound, SolverCore& core, Known& known) const;
-  bool find_seal(const Known& known, std::size_t child, std::size_t facet);
+  Known& known_of(const btCompoundShape& compound);
+  /// The child as it is in this step.
+  Child& compared(const btCompoundShape& compound, Known& known, int child, SolverCore& core) const;
+  /// The same, with its neighbours as they are in this step, and facts that hold.
+  Child& surrounded(const btCompoundShape& compound, Known& known, int child, SolverCore& core);
+  void find_neighbours(const btCompoundShape& compound, Known& known, int child, SolverCore& core) const;
+  bool find_seal(const btCompoundShape& compound, Known& known, int child, std::size_t facet, SolverCore& core);
 
   std::unordered_map<const btCompoundShape*, Known> compounds_;
   std::vector<Vec3> corners_;
   std::vector<const Plane*> active_;
   std::uint64_t stamp_ = 0;
-  std::uint64_t pair_ = 0;
-  Known* recent_ = nullptr;  ///< asked for last, of pair `recent_pair_`
+  std::uint64_t visit_ = 0;
+  Known* recent_ = nullptr;  ///< asked for last, in visit `recent_visit_`
   const btCompoundShape* recent_of_ = nullptr;
-  std::uint64_t recent_pair_ = 0;
+  std::uint64_t recent_visit_ = 0;
 };
+
+/// `look_at` for a pair's children of a body; of one that is no compound, nothing.
+void look_at(const btCollisionObjectWrapper& body, std::span<const Child> children, CompoundFacts& facts,
+             SolverCore& core);
 
 }  // namespace pd::detail

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compound_children.hpp"
+#include "compound_facts.hpp"
 #include "covered_contact.hpp"
 #include "flat_ground.hpp"
 #include "met_triangle.hpp"
@@ -207,6 +208,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers->cover.near.facts(), core);
   if (children_.empty()) return true;
   reach_out(question);
   still_ = stand_still(question, core, *buffers, memory);

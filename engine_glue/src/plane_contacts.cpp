@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compound_children.hpp"
+#include "compound_facts.hpp"
 #include "covered_contact.hpp"
 #include "pieces_in_result.hpp"
 #include "plane_ground.hpp"
@@ -51,6 +52,7 @@ bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMe
   const auto threshold = static_cast<double>(question.threshold);
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers->cover.near.facts(), core);
   for (std::size_t i = 0; i < children_.size(); ++i) {
     const Child& child = children_[i];
     const auto& shape = static_cast<const btConvexShape&>(*child.shape);

@@ -94,7 +94,7 @@ TEST(StandingStill, AsksWhatMadePoints) {
   EXPECT_GE(contacts, 4);
   for (int i = 0; i < 3; ++i) {
     EXPECT_LE(scene.find(), contacts);
-    EXPECT_EQ(scene.least_distance(), distance);
+    EXPECT_NEAR(scene.least_distance(), distance, 1e-12);
     EXPECT_EQ(scene.num_contacts(), contacts);
   }
 }
@@ -109,7 +109,7 @@ TEST(StandingStill, DepthsAreThoseOfTheStep) {
     scene.place(0, i * step);
     anew.place(0, i * step);
     EXPECT_LT(scene.find(), anew.find());
-    EXPECT_EQ(scene.least_distance(), anew.least_distance()) << i;
+    EXPECT_NEAR(scene.least_distance(), anew.least_distance(), 1e-12) << i;
   }
 }
 
@@ -122,7 +122,7 @@ TEST(StandingStill, WhoeverMovesIsAskedAboutAll) {
   scene.place(2 * step, 0);  // small steps add up
   anew.place(2 * step, 0);
   EXPECT_EQ(scene.find(), anew.find());
-  EXPECT_EQ(scene.least_distance(), anew.least_distance());
+  EXPECT_NEAR(scene.least_distance(), anew.least_distance(), 1e-12);
 }
 
 TEST(StandingStill, AnEditedTriangleIsSeen) {
@@ -135,7 +135,7 @@ TEST(StandingStill, AnEditedTriangleIsSeen) {
     scene.find();
     anew.find();
     EXPECT_LT(anew.least_distance(), -.01);
-    EXPECT_EQ(scene.least_distance(), anew.least_distance());
+    EXPECT_NEAR(scene.least_distance(), anew.least_distance(), 1e-12);
   }
 }
 
@@ -145,7 +145,7 @@ TEST(StandingStill, AnEditedCompoundIsSeen) {
   EXPECT_LT(scene.find(), all / 2);
   for (OnARise* each : {&scene, &anew}) each->shift_child(-.01);
   EXPECT_EQ(scene.find(), anew.find());
-  EXPECT_EQ(scene.least_distance(), anew.least_distance());
+  EXPECT_NEAR(scene.least_distance(), anew.least_distance(), 1e-12);
 }
 
 }  // namespace

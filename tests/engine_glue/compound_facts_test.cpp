@@ -1,0 +1,90 @@
+/// @file
+/// What children of a compound are to each other follows their shapes and places from step to step, and costs no more
+/// than those that are met.
+
+#include "compound_facts.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <vector>
+
+#include "solver_core.hpp"
+
+namespace pd::test {
+namespace {
+
+/// Boxes of a metre, side by side along x.
+class Row {
+ public:
+  explicit Row(int count) {
+    for (int i = 0; i < count; ++i) {
+      shapes_.emplace_back(btVector3(btScalar(.5), btScalar(.5), btScalar(.5)));
+      compound_.addChildShape(at(i), &shapes_.back());
+    }
+  }
+  static btTransform at(double x) { return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), 0, 0)); }
+
+  /// A step in which some children are near another body.
+  void step(const std::vector<int>& near) {
+    facts_.begin_pair(++stamp_);
+    for (const int child : near) facts_.look_at(compound_, child, core_);
+  }
+  /// How many of a child's facets another one covers.
+  int num_sealed(int child) {
+    int count = 0;
+    for (std::size_t facet = 0; facet < 6; ++facet) count += facts_.sealed(compound_, child, facet, core_) ? 1 : 0;
+    return count;
+  }
+  std::vector<int> neighbours(int child) {
+    const std::vector<int>* all = facts_.neighbours(compound_, child, 1e-4, core_);
+    return all != nullptr ? *all : std::vector<int>{-1};
+  }
+  btCompoundShape& compound() { return compound_; }
+  std::size_t num_met() const { return core_.cache.size(); }
+
+ private:
+  std::deque<btBoxShape> shapes_;
+  btCompoundShape compound_;
+  detail::SolverCore core_{BulletSolverSettings()};
+  detail::CompoundFacts facts_;
+  std::uint64_t stamp_ = 0;
+};
+
+TEST(CompoundFacts, FollowChildrenThatComeAndGo) {
+  Row row(3);
+  row.step({0, 1, 2});
+  EXPECT_EQ(row.num_sealed(1), 2);
+  EXPECT_EQ(row.num_sealed(0), 1);
+  EXPECT_EQ(row.neighbours(1), (std::vector<int>{0, 2}));
+  // A neighbour goes, which the other body does not meet.
+  row.compound().updateChildTransform(2, Row::at(5));
+  row.step({1});
+  EXPECT_EQ(row.num_sealed(1), 1);
+  EXPECT_EQ(row.neighbours(1), (std::vector<int>{0}));
+  // It comes back, met.
+  row.compound().updateChildTransform(2, Row::at(2));
+  row.step({1, 2});
+  EXPECT_EQ(row.num_sealed(1), 2);
+  EXPECT_EQ(row.neighbours(1), (std::vector<int>{0, 2}));
+  // The last child takes the place of one that is removed.
+  row.compound().removeChildShapeByIndex(0);
+  row.step({0, 1});
+  EXPECT_EQ(row.num_sealed(0), 1);
+  EXPECT_EQ(row.neighbours(0), (std::vector<int>{1}));
+}
+
+TEST(CompoundFacts, CompareWhatIsMet) {
+  Row row(2000);
+  for (int i = 0; i < 3; ++i) {
+    row.step({1000, 1001});
+    EXPECT_EQ(row.num_sealed(1000), 2);
+    EXPECT_EQ(row.neighbours(1000), (std::vector<int>{999, 1001}));
+  }
+  EXPECT_LE(row.num_met(), 4U);
+}
+
+}  // namespace
+}  // namespace pd::test
