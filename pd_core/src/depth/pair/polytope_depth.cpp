@@ -55,6 +55,7 @@ bool answer_among_many_facets(PolytopeQuery& query, const ExpansionResult& surfa
 using StageBeforeSearch = bool (*)(PolytopeQuery&, PenetrationDepth&);
 constexpr StageBeforeSearch kBeforeSearch[] = {
     answer_by_chosen_overlay,          // all facets of P, where `Method::overlay` is asked for
+    answer_from_remembered_pieces,      // warm: two small solids by the facets that were near
     answer_from_cached_faces,          // warm: a few planes of the last surface
     answer_apart_from_cached_simplex,  // warm: from the last closest point
     answer_boxes,                      // two boxes by their fifteen axes
