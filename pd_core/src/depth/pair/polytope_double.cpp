@@ -59,8 +59,7 @@ void set_contact_of_edges(const PolytopeQuery& query, const NearFacets& found, P
   const DifferenceVertex corners[4] = {difference.vertex(a[0], b[0]), difference.vertex(a[1], b[0]),
                                        difference.vertex(a[0], b[1]), difference.vertex(a[1], b[1])};
   const double weights[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
-  set_witnesses(query.pair, corners, weights, 4, out);
-  out.witness_b = out.witness_a + out.translation;
+  set_witnesses_of_depth(query.pair, corners, weights, 4, out);
   out.feature_a = {Feature::Kind::edge, std::min(a[0], a[1]), std::max(a[0], a[1])};
   out.feature_b = {Feature::Kind::edge, std::min(b[0], b[1]), std::max(b[0], b[1])};
 }
