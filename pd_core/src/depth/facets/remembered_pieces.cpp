@@ -26,7 +26,6 @@ constexpr double kTurnedRadius = 0.9;
 
 constexpr int kVertices = WarmPieces::kMostVertices;
 static_assert(kVertices == 2 * kLanes && kVertices == kVertexBlock);
-static_assert(WarmPieces::kMostPieces == SmallNearPieces::kMost);
 
 /// The square of how much farther than vertex `base` any other has moved.
 PD_INLINE double spread_of(const VertexArrays& now, const double (&then)[3][kVertices], int base) {
@@ -74,6 +73,12 @@ void keep(const VertexArrays& from, double (&to)[3][kVertices]) {
   for (int i = 0; i < 3; ++i) std::memcpy(to[i], by_axis[i], sizeof(to[i]));
 }
 
+/// Of a ball round P's centre that it holds, where the poses are rotations.
+double inner_radius(const PolytopeDifference& difference) {
+  return kTurnedRadius *
+         (small_gauss_map(difference.a()).inner_radius + small_gauss_map(difference.b()).inner_radius);
+}
+
 bool is_rotation(const Mat3& m) {
   return std::abs(m.squaredNorm() - 3) < kNoRotation && std::abs(m.determinant() - 1) < kNoRotation;
 }
@@ -108,9 +113,12 @@ PlaneNow plane_of(const WarmPiece& piece, const SmallPieces& pieces, const Polyt
 
 }  // namespace
 
-double remembered_band(const PolytopeDifference& difference) { return kBand * difference.reach(); }
+double remembered_band(const PolytopeDifference& difference) {
+  // Bodies that have moved by more than the inner ball's radius are looked at anew.
+  return std::min(kBand * difference.reach(), 2 * inner_radius(difference));
+}
 
-bool remember_pieces(const SmallSatDepth& found, const SmallNearPieces& near, const PolytopeDifference& difference,
+bool remember_pieces(const SmallSatDepth& found, SmallNearPieces& near, const PolytopeDifference& difference,
                      WarmPieces& out) {
   if (!near.complete || near.count == 0) return false;
   if (!is_rotation(difference.rotation_a()) || !is_rotation(difference.rotation_b())) return false;
@@ -120,11 +128,18 @@ bool remember_pieces(const SmallSatDepth& found, const SmallNearPieces& near, co
   keep(difference.posed_b(), out.posed_b);
   out.offset = difference.offset();
   const double reach = difference.reach();
-  out.beyond = near.radius - kSlack * reach;
   out.largest = found.largest;
-  out.count = near.count;
+  out.count = std::min(near.count, WarmPieces::kMostPieces);
+  double beyond = near.radius;
+  if (near.count > out.count) {
+    SmallNearPieces::Piece* const first_left_out = near.pieces + out.count;
+    std::nth_element(near.pieces, first_left_out, near.pieces + near.count,
+                     [](const auto& x, const auto& y) { return x.key < y.key; });
+    beyond = std::sqrt(first_left_out->key);
+  }
+  out.beyond = beyond - kSlack * reach;
   out.nearest = 0;
-  for (int i = 0; i < near.count; ++i) {
+  for (int i = 0; i < out.count; ++i) {
     const SmallNearPieces::Piece& from = near.pieces[i];
     out.pieces[i] = {std::sqrt(from.key) - kSmallPieceLowerError * reach,
                      from.facet_a,
@@ -141,7 +156,7 @@ bool remember_pieces(const SmallSatDepth& found, const SmallNearPieces& near, co
   out.base = nearest.edge_a >= 0 ? VertexPair{map_a.from[nearest.edge_a], map_b.from[nearest.edge_b]}
                                  : VertexPair{nearest.vertex_a, nearest.vertex_b};
   // Deep inside, or else the origin itself.
-  const double clearance = kTurnedRadius * (map_a.inner_radius + map_b.inner_radius);
+  const double clearance = inner_radius(difference);
   out.inner = clearance > nearest.distance ? difference.centre() : Vec3::Zero();
   out.clearance = std::max(clearance, nearest.distance) - kSlack * reach;
   return out.clearance > 0;

@@ -22,13 +22,12 @@
 
 namespace pd::detail {
 
-/// How much farther than the bodies' nearest facet is remembered.
+/// How much farther than the bodies' nearest facet is remembered. Both have a Gauss map.
 [[nodiscard]] double remembered_band(const PolytopeDifference& difference);
 
-/// What is remembered of a certified answer. False where there is nothing: `near` is not complete, or the bodies' poses
+/// What is remembered of a certified answer: of `near`, which may be put in another order, those that are nearest. False where there is nothing: `near` is not complete, or the bodies' poses
 /// are no rotations.
-bool remember_pieces(const SmallSatDepth& found, const SmallNearPieces& near, const PolytopeDifference& difference,
-                     WarmPieces& out);
+bool remember_pieces(const SmallSatDepth& found, SmallNearPieces& near, const PolytopeDifference& difference, WarmPieces& out);
 
 /// `certified` false where the bodies have moved too far. Requires `then` to be of the difference's bodies,
 /// supports prepared and a reach between 2^-100 and 2^100. Constant time, no allocation.

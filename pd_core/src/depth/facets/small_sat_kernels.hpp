@@ -49,7 +49,7 @@ struct SmallSatErrors {
 /// The facets of P that are not much farther than the nearest one of either body: what the next frames look at
 /// (remembered_piece.hpp).
 struct SmallNearPieces {
-  static constexpr int kMost = 16;
+  static constexpr int kMost = 64;
   struct Piece {
     double key;  ///< sign * square of the distance
     std::int8_t facet_a, facet_b;    ///< -1: none

@@ -232,13 +232,13 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.for_contact() || query.settings.method != Method::automatic) return false;
+  if (query.settings.method != Method::automatic || (query.for_contact() && !query.warm)) return false;
   if (!small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
   if (query.warm && !query.doubles_suffice()) return false;  // the surface has a memory
   if (many_flush_facets(query.pair, query.difference) || pauses_small_solids(query)) return false;
   if (query.bracket == Bracket::tightest && apart_between_places(query.with_supports())) return false;
   SmallNearPieces near;
-  near.band = remembered_band(query.difference);
+  if (query.warm) near.band = remembered_band(query.difference);
   const SmallSatDepth found = small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(),
                                               query.width(), query.warm ? &near : nullptr);
   out.method = Method::overlay;
@@ -259,7 +259,7 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.for_contact() || !remembers_pieces(query) || !query.doubles_suffice() || !query.within_range()) return false;
+  if (!remembers_pieces(query) || !query.doubles_suffice() || !query.within_range()) return false;
   int looked_at = 0;
   const NearFacets found = certify_remembered_pieces(query.warm->state().small.pieces[0], *query.pair.pose_a,
                                                      *query.pair.pose_b, query.with_supports(), query.width(), looked_at);

@@ -179,7 +179,7 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
   }
 }
 
-void save_pieces(PolytopeQuery& query, const SmallSatDepth& found, const SmallNearPieces& near) {
+void save_pieces(PolytopeQuery& query, const SmallSatDepth& found, SmallNearPieces& near) {
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   WarmSmallSolids& small = state.small;
   small.known = false;
