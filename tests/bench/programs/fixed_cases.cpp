@@ -108,8 +108,9 @@ struct FixedFrames {
   int vertices;
   double radians;
 };
-constexpr FixedFrames kFrames[] = {{"frames_8_slow", 8, 0.002},   {"frames_8", 8, 0.01},   {"frames_8_fast", 8, 0.05},
-                                   {"frames_32_slow", 32, 0.002}, {"frames_32", 32, 0.01}, {"frames_32_fast", 32, 0.05}};
+constexpr FixedFrames kFrames[] = {{"frames_8_slow", 8, 0.002}, {"frames_8", 8, 0.01},
+                                   {"frames_8_fast", 8, 0.05},  {"frames_32_slow", 32, 0.002},
+                                   {"frames_32", 32, 0.01},     {"frames_32_fast", 32, 0.05}};
 
 /// A cylinder in a box, a cone in a hull of 32 vertices, cold.
 struct FixedCurved {

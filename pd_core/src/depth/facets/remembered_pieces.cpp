@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <tuple>
 
 #include "depth/facets/small_piece.hpp"
 #include "numeric/lanes.hpp"
@@ -75,8 +75,13 @@ void keep(const VertexArrays& from, double (&to)[3][kVertices]) {
 
 /// Of a ball round P's centre that it holds, where the poses are rotations.
 double inner_radius(const PolytopeDifference& difference) {
-  return kTurnedRadius *
-         (small_gauss_map(difference.a()).inner_radius + small_gauss_map(difference.b()).inner_radius);
+  return kTurnedRadius * (small_gauss_map(difference.a()).inner_radius + small_gauss_map(difference.b()).inner_radius);
+}
+
+/// A total order: the same pieces are kept by every library.
+bool is_nearer(const SmallNearPieces::Piece& x, const SmallNearPieces::Piece& y) {
+  return std::tie(x.key, x.facet_a, x.facet_b, x.edge_a, x.edge_b) <
+         std::tie(y.key, y.facet_a, y.facet_b, y.edge_a, y.edge_b);
 }
 
 bool is_rotation(const Mat3& m) {
@@ -99,14 +104,15 @@ PlaneNow plane_of(const WarmPiece& piece, const SmallPieces& pieces, const Polyt
                   const Vec3& inner) {
   const bool of_edges = piece.edge_a >= 0;
   const Vec3 normal = pieces.normal(piece_of(piece));
-  const Vec3 corner = of_edges ? difference.vertex(pieces.map_a().from[piece.edge_a], pieces.map_b().from[piece.edge_b]).x
-                               : difference.vertex(piece.vertex_a, piece.vertex_b).x;
+  const Vec3 corner = of_edges
+                          ? difference.vertex(pieces.map_a().from[piece.edge_a], pieces.map_b().from[piece.edge_b]).x
+                          : difference.vertex(piece.vertex_a, piece.vertex_b).x;
   const double share = 1 / normal.norm();
   double height = normal.dot(corner);
   // The other corners, which rounding moves off the plane.
   if (of_edges) {
-    height += std::min(0.0, normal.dot(pieces.edge_b(piece.edge_b))) -
-              std::max(0.0, normal.dot(pieces.edge_a(piece.edge_a)));
+    height +=
+        std::min(0.0, normal.dot(pieces.edge_b(piece.edge_b))) - std::max(0.0, normal.dot(pieces.edge_a(piece.edge_a)));
   }
   return {share * normal, share * height, share * (height - normal.dot(inner))};
 }
@@ -132,10 +138,8 @@ bool remember_pieces(const SmallSatDepth& found, SmallNearPieces& near, const Po
   out.count = std::min(near.count, WarmPieces::kMostPieces);
   double beyond = near.radius;
   if (near.count > out.count) {
-    SmallNearPieces::Piece* const first_left_out = near.pieces + out.count;
-    std::nth_element(near.pieces, first_left_out, near.pieces + near.count,
-                     [](const auto& x, const auto& y) { return x.key < y.key; });
-    beyond = std::sqrt(first_left_out->key);
+    std::sort(near.pieces, near.pieces + near.count, is_nearer);
+    beyond = std::sqrt(near.pieces[out.count].key);
   }
   out.beyond = beyond - kSlack * reach;
   out.nearest = 0;

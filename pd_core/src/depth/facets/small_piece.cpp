@@ -59,7 +59,9 @@ bool SmallPieces::below_facet(const DifferenceVertex& s, double height, const Ne
   const bool of_a = piece.kind == NearFacetsBuffers::Kind::facet_of_a;
   const auto loop = (of_a ? difference_.a() : difference_.b()).facet_vertices(piece.facet);
   const Vec3 projection = height * piece.normal;
-  const auto corner = [&](std::int32_t v) { return (of_a ? difference_.vertex(v, s.b) : difference_.vertex(s.a, v)).x; };
+  const auto corner = [&](std::int32_t v) {
+    return (of_a ? difference_.vertex(v, s.b) : difference_.vertex(s.a, v)).x;
+  };
   const double slack = kInside * difference_.reach();
   // Seen from outside P, the corners of -A run clockwise.
   const Vec3 inwards = of_a ? Vec3(-piece.normal) : piece.normal;

@@ -1,6 +1,6 @@
 /// @file
-/// A facet of P = B + (-A) for two solids of at most eight vertices: of a facet of one body and a vertex of the other, or
-/// of two edges.
+/// A facet of P = B + (-A) for two solids of at most eight vertices: of a facet of one body and a vertex of the other,
+/// or of two edges.
 #pragma once
 
 #include "depth/difference/polytope_difference.hpp"

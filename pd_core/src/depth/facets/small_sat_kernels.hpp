@@ -51,14 +51,14 @@ struct SmallSatErrors {
 struct SmallNearPieces {
   static constexpr int kMost = 64;
   struct Piece {
-    double key;  ///< sign * square of the distance
+    double key;                      ///< sign * square of the distance
     std::int8_t facet_a, facet_b;    ///< -1: none
     std::int8_t vertex_a, vertex_b;  ///< of a facet: where it lies, and the other body's vertex
     std::int8_t edge_a, edge_b;      ///< -1: none
     std::int8_t sign;                ///< of edge of B x edge of A
   };
-  double band = 0;      ///< asked for: how much farther
-  double radius = 0;    ///< all facets of P that are no farther are listed, if `complete`
+  double band = 0;        ///< asked for: how much farther
+  double radius = 0;      ///< all facets of P that are no farther are listed, if `complete`
   bool complete = false;  ///< they fit, and no side of an edge near them is open
   int count = 0;
   Piece pieces[kMost + 1];

@@ -261,8 +261,9 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out) {
   if (!remembers_pieces(query) || !query.doubles_suffice() || !query.within_range()) return false;
   int looked_at = 0;
-  const NearFacets found = certify_remembered_pieces(query.warm->state().small.pieces[0], *query.pair.pose_a,
-                                                     *query.pair.pose_b, query.with_supports(), query.width(), looked_at);
+  const NearFacets found =
+      certify_remembered_pieces(query.warm->state().small.pieces[0], *query.pair.pose_a, *query.pair.pose_b,
+                                query.with_supports(), query.width(), looked_at);
   out.statistics.facets_visited += looked_at;
   if (!found.certified) return false;
   out.method = Method::overlay;

@@ -47,8 +47,8 @@ PD_INLINE Rises rises_of(double x, double y, double z, const Corners& corners, d
   return {(up2[0] & up2[1]) != 0, (level2[0] | level2[1]) != 0};
 }
 
-/// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on, which is farthest
-/// in one of its directions. `open` and `list` have room for all vertices and one. @return how many
+/// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on, which is
+/// farthest in one of its directions. `open` and `list` have room for all vertices and one. @return how many
 PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, std::int32_t first, std::int32_t cell,
                                      std::int32_t* seen, std::int32_t* open, std::int32_t* list) {
   const double level = kLevel * p.radius;
