@@ -24,7 +24,9 @@ struct SmallGaussMap {
   std::uint64_t edges_of_facets[kMostFacets / kFacetGroup][1 << kFacetGroup];
   std::uint8_t from[kMostEdges], to[kMostEdges];     ///< an edge's vertices
   std::uint8_t left[kMostEdges], right[kMostEdges];  ///< its facets, as seen along it from outside
+  std::uint8_t on_facet[kMostFacets];                ///< a vertex of it
   std::uint8_t facets, edges;
+  double inner_radius;  ///< of a ball round the body's centre that it holds, rounded down
 };
 
 /// What the hull builder lays out for solids of at most `kMostVertices` vertices.

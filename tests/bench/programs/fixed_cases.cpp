@@ -102,6 +102,16 @@ constexpr FixedDistance kDistances[] = {{"distance_8_near", PairFamily::sphere, 
                                         {"distance_8_far_warm", PairFamily::sphere, 8, 1, true},
                                         {"distance_128_near_warm", PairFamily::sphere, 128, 0.01, true}};
 
+/// Sixty frames with memory, B turned by so much from each to the next: all of them counted, the first one cold.
+struct FixedFrames {
+  const char* name;
+  int vertices;
+  double radians;
+};
+constexpr FixedFrames kFrames[] = {{"frames_8_slow", 8, 0.002}, {"frames_8", 8, 0.01},
+                                   {"frames_8_fast", 8, 0.05},  {"frames_32_slow", 32, 0.002},
+                                   {"frames_32", 32, 0.01},     {"frames_32_fast", 32, 0.05}};
+
 /// A cylinder in a box, a cone in a hull of 32 vertices, cold.
 struct FixedCurved {
   const char* name;
@@ -164,6 +174,47 @@ void remember_frames(const pd::PosedShape& a, const pd::PosedShape& b, double ra
     const pd::PosedShape before{b.shape, pd::Pose::from_trusted_matrix(turn * b.pose.rotation(), b.pose.translation())};
     (void)pd::penetration_depth(a, before, scratch, kHotPath, &certificate);
   }
+}
+
+/// The vertex of a body that is farthest along a direction, turned.
+pd::Vec3 farthest(const pd::ConvexPolytope& body, const pd::Mat3& turn, const pd::Vec3& direction) {
+  pd::Vec3 best = turn * body.vertex(0);
+  for (int v = 1; v < body.num_vertices(); ++v) {
+    const pd::Vec3 x = turn * body.vertex(v);
+    if (x.dot(direction) > best.dot(direction)) best = x;
+  }
+  return best;
+}
+
+/// Four pairs, the first two mid, the others shallow. B stays as deep along the first normal as it was.
+int count_frames(const FixedFrames& c) {
+  constexpr int kCount = 60;
+  const pd::DepthSettings settings = kHotPath;  // an address that no clone of the counted call is made for
+  pd::Scratch scratch;
+  int warm = 0;
+  double depth = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const DepthClass depth_class = seed <= 2 ? DepthClass::mid : DepthClass::shallow;
+    const pd::scenes::PointPair pair = pd::scenes::make_pair(PairFamily::sphere, c.vertices, depth_class, seed);
+    const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
+    const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
+    const pd::PosedShape posed_a{&a, pair.pose_a};
+    pd::WarmCertificate certificate;
+    const pd::Vec3 out = pd::penetration_depth(posed_a, {&b, pair.pose_b}, scratch, kHotPath).translation;
+    const pd::Vec3 foot = farthest(*a.polytope(), pair.pose_a.rotation(), -out) + pair.pose_a.translation() + out;
+    for (int frame = 0; frame < kCount; ++frame) {
+      const double angle = frame * c.radians;
+      const pd::Mat3 about_z{{std::cos(angle), -std::sin(angle), 0}, {std::sin(angle), std::cos(angle), 0}, {0, 0, 1}};
+      const pd::Mat3 turn = about_z * pair.pose_b.rotation();
+      const pd::PosedShape posed_b{&b, pd::Pose::from_trusted_matrix(turn, foot - farthest(*b.polytope(), turn, out))};
+      pd::PenetrationDepth answer;
+      pdepth_counted_call(&posed_a, &posed_b, &scratch, &certificate, &answer, &settings);
+      warm += answer.warm ? 1 : 0;
+      depth += answer.depth;
+    }
+  }
+  std::printf("%s: %d of %zu warm, sum of depths %.17g\n", c.name, warm, std::size_t{4} * kCount, depth);
+  return 0;
 }
 
 pd::ConvexShape curved_body(bool cone, pd::scenes::Random& random) {
@@ -263,6 +314,10 @@ int main(int argc, char** argv) {
                 static_cast<long long>(answer.statistics.support_calls));
     return 0;
   }
+  for (const FixedFrames& c : kFrames) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    return count_frames(c);
+  }
   for (const FixedCurved& c : kCurved) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     pd::scenes::Random random(c.seed);
@@ -302,6 +357,7 @@ int main(int argc, char** argv) {
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
   for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
   for (const FixedDistance& c : kDistances) std::fprintf(stderr, " %s", c.name);
+  for (const FixedFrames& c : kFrames) std::fprintf(stderr, " %s", c.name);
   for (const FixedCurved& c : kCurved) std::fprintf(stderr, " %s", c.name);
   for (const FixedTie& c : kTies) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);

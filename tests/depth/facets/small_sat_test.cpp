@@ -20,7 +20,7 @@ namespace pd {
 namespace detail {
 
 SmallSatNearest nearest_of_small_baseline(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
-                                          const SmallSatErrors& errors);
+                                          const SmallSatErrors& errors, SmallNearPieces* near);
 
 namespace {
 
@@ -124,7 +124,7 @@ TEST_P(SmallSolids, TheKernelFindsTheLeastHeightOfAllCandidates) {
     SCOPED_TRACE(i);
     const Solids s = draw();
     const KernelInput in(s);
-    const SmallSatNearest found = nearest_of_small(in.a, in.b, in.offset, in.errors);
+    const SmallSatNearest found = nearest_of_small(in.a, in.b, in.offset, in.errors, nullptr);
     const double expected = least_height(s, in.difference);
     if (expected <= 0) {
       EXPECT_LT(found.key, 1e-24);
@@ -146,8 +146,14 @@ TEST_P(SmallSolids, TheSameBitsOnEveryInstructionSet) {
     SCOPED_TRACE(i);
     const Solids s = draw();
     const KernelInput in(s);
-    const SmallSatNearest x = nearest_of_small(in.a, in.b, in.offset, in.errors);
-    const SmallSatNearest y = nearest_of_small_baseline(in.a, in.b, in.offset, in.errors);
+    SmallNearPieces near_x, near_y;
+    near_x.band = near_y.band = 0.2;
+    const SmallSatNearest x = nearest_of_small(in.a, in.b, in.offset, in.errors, &near_x);
+    const SmallSatNearest y = nearest_of_small_baseline(in.a, in.b, in.offset, in.errors, &near_y);
+    EXPECT_EQ(near_x.complete, near_y.complete);
+    ASSERT_EQ(near_x.count, near_y.count);
+    EXPECT_EQ(bits(near_x.radius), bits(near_y.radius));
+    for (int k = 0; k < near_x.count; ++k) EXPECT_EQ(bits(near_x.pieces[k].key), bits(near_y.pieces[k].key));
     EXPECT_EQ(bits(x.key), bits(y.key));
     EXPECT_EQ(bits(x.sign), bits(y.sign));
     EXPECT_EQ(bits(x.largest), bits(y.largest));
@@ -171,8 +177,8 @@ TEST_P(SmallSolids, PairsWithOpenSidesAreNoFartherThanTheDepth) {
     KernelInput in(s);
     for (const float error : {1e-3F, 0.02F, 0.3F}) {
       in.errors.side_a = in.errors.side_b = error;
-      const SmallSatNearest found = nearest_of_small(in.a, in.b, in.offset, in.errors);
-      const SmallSatNearest again = nearest_of_small_baseline(in.a, in.b, in.offset, in.errors);
+      const SmallSatNearest found = nearest_of_small(in.a, in.b, in.offset, in.errors, nullptr);
+      const SmallSatNearest again = nearest_of_small_baseline(in.a, in.b, in.offset, in.errors, nullptr);
       EXPECT_EQ(std::bit_cast<std::uint64_t>(found.key), std::bit_cast<std::uint64_t>(again.key));
       EXPECT_EQ(std::bit_cast<std::uint64_t>(found.possible_key), std::bit_cast<std::uint64_t>(again.possible_key));
       EXPECT_EQ(found.possible, again.possible);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "depth/expansion/cached_surface.hpp"
 #include "oracle/judged_pair.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -70,6 +72,12 @@ TEST(Warm, KeepsEveryPromiseFrameByFrameAndRepeatsItself) {
   std::printf("%d of %d frames answered warm\n", warm_answers, frames);
 }
 
+/// Rides of each kind of small solids; PD_SMALL_RIDES asks for more.
+std::uint64_t small_seeds() {
+  const char* const asked = std::getenv("PD_SMALL_RIDES");
+  return asked ? std::strtoull(asked, nullptr, 10) : 2;
+}
+
 /// Frames of the same two bodies, each judged and compared with a second memory that took the same way.
 struct Ride {
   int frames = 0;
@@ -120,6 +128,31 @@ TEST(Warm, LooksAtAFewFacesWhileBodiesMoveSlowly) {
       EXPECT_LE(fast.supports, 6 * fast.frames) << to_string(family);
     }
   }
+}
+
+TEST(Warm, SmallSolidsGoOnFromFacetsThatWereNear) {
+  int frames = 0, warm = 0;
+  for (const PairFamily family : {PairFamily::sphere, PairFamily::needle, PairFamily::slivers, PairFamily::clouds,
+                                  PairFamily::prism, PairFamily::tilted_roofs, PairFamily::roofs, PairFamily::grid,
+                                  PairFamily::parallel_edges, PairFamily::equal_bodies, PairFamily::single_precision,
+                                  PairFamily::near_kissing, PairFamily::near_equal_bodies, PairFamily::ulp_noise}) {
+    for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid, DepthClass::deep}) {
+      for (const double angle : {0.001, 0.01, 0.06}) {
+        for (std::uint64_t seed = 1; seed <= small_seeds(); ++seed) {
+          const Ride of = ride(family, 8, depth, seed, angle, angle / 20, 24);
+          frames += of.frames;
+          warm += of.warm;
+          if (family != PairFamily::sphere || angle > 0.002 || seed > 2) continue;
+          EXPECT_GE(of.warm, of.frames - 4);
+          // One support a frame, and far fewer planes than P has facets.
+          EXPECT_LE(of.supports, of.frames + 8);
+          EXPECT_LE(of.facets, 12 * of.frames);
+        }
+      }
+    }
+  }
+  EXPECT_GT(10 * warm, 5 * frames);
+  std::printf("%d of %d frames answered warm\n", warm, frames);
 }
 
 TEST(Warm, BodiesApartAreMetWhereTheyWere) {

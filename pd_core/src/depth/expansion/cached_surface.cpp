@@ -134,7 +134,7 @@ void pose_near(const WarmState& state, const PolytopeDifference& difference, Nea
     near.r[i] = place(face.vertex[2]);
   }
   difference.posed_vertices(pairs, vertex_count, vertices);
-  for (int i = near.count; i < kMaxNear; ++i) near.p[i] = near.q[i] = near.r[i] = 0;
+  for (int i = near.count; i < padded_to_lanes(near.count); ++i) near.p[i] = near.q[i] = near.r[i] = 0;
   triangle_planes(vertices[0].x.data(), {near.p, near.q, near.r}, 0, near.count,
                   {near.nx, near.ny, near.nz, near.levels, near.keys});
 }

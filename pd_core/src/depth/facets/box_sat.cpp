@@ -331,8 +331,8 @@ Two two(const double* x, int pair) { return Two{x[2 * pair], x[2 * pair + 1]}; }
 }  // namespace
 
 std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
-  if (p.num_vertices() != 8) return std::nullopt;
-  // Vertices are in lexicographic order: z changes fastest.
+  // Vertices are in lexicographic order: z changes fastest. Most hulls differ from a box in the first two already.
+  if (p.num_vertices() != 8 || p.x()[0] != p.x()[1]) return std::nullopt;
   const Two x0 = both(p.x()[0]), x1 = both(p.x()[7]), y0 = both(p.y()[0]), y1 = both(p.y()[7]);
   const Two z = {p.z()[0], p.z()[7]};
   const TwoFlags as_box = (two(p.x(), 0) == x0) & (two(p.x(), 1) == x0) & (two(p.x(), 2) == x1) &

@@ -12,6 +12,7 @@
 
 #include "depth/difference/bracket_width.hpp"
 #include "depth/facets/near_facets.hpp"
+#include "depth/facets/small_sat_kernels.hpp"
 
 namespace pd::detail {
 
@@ -21,7 +22,8 @@ struct SmallSatDepth {
   SmallSatStatus status = SmallSatStatus::undecided;
   NearFacets
       nearest;  ///< certified ones; of separated bodies the normal, the separating direction, and the piece across it
-  int pieces = 0;  ///< measured
+  int pieces = 0;      ///< measured
+  double largest = 0;  ///< |coordinate| of P; certified ones only
 };
 
 /// Whether both bodies are solids of so few vertices.
@@ -29,7 +31,9 @@ struct SmallSatDepth {
 
 /// Requires `small_sat_applies`, and of the difference `prepare_supports` and a reach between 2^-100 and 2^100.
 /// Constant time, no allocation.
+/// @param near  asks for the facets that are not much farther; nullptr where the nearest one is enough.
 [[nodiscard]] SmallSatDepth small_sat_depth(const Pose& pose_a, const Pose& pose_b,
-                                            const PolytopeDifference& difference, const BracketWidth& width);
+                                            const PolytopeDifference& difference, const BracketWidth& width,
+                                            SmallNearPieces* near);
 
 }  // namespace pd::detail

@@ -42,7 +42,7 @@ PD_INLINE void take_nearest(NearestLane& best, const Lanes& found, const Lanes& 
 
 /// By facet of one body: where its plane lies but for the other body, and the square of its normal's length.
 struct FacetPlanes {
-  Lanes own[kBlocks], squared[kBlocks];
+  Lanes own[kBlocks], squared[kBlocks], key[kBlocks];
 };
 
 PD_INLINE void nearest_facets(NearestLane& best, FacetPlanes& planes, const TurnedNormals& normals,
@@ -55,9 +55,8 @@ PD_INLINE void nearest_facets(NearestLane& best, FacetPlanes& planes, const Turn
     load(own, body.map.height + kLanes * k);
     planes.own[k] = own * body.growth + (n.x * offset[0] + n.y * offset[1] + n.z * offset[2]);
     planes.squared[k] = n.x * n.x + n.y * n.y + n.z * n.z;
-    Lanes key;
-    key_of(key, planes.own[k] + top[k], planes.squared[k]);
-    take_nearest(best, key, id, first_id + body.map.facets);
+    key_of(planes.key[k], planes.own[k] + top[k], planes.squared[k]);
+    take_nearest(best, planes.key[k], id, first_id + body.map.facets);
     id += kLanes;
   }
 }
@@ -205,8 +204,27 @@ PD_INLINE void list_crossings(const std::uint32_t (&sides_a)[kFacets], const std
   out.count = count;
 }
 
+/// Lists the facets of one body that are near, each with the vertex of the other that is farthest along it.
+PD_INLINE void list_near_facets(SmallNearPieces& near, const FacetPlanes& planes, const SmallGaussMap& map, bool of_a,
+                                const HeightRows& other, int other_count) {
+  double keys[kFacets];
+  __builtin_memcpy(keys, planes.key, sizeof(keys));
+  for (int f = 0; f < map.facets; ++f) {
+    if (!(keys[f] <= near.radius * near.radius)) continue;
+    int top = 0;
+    for (int v = 1; v < other_count; ++v) top = other.row[v][f] > other.row[top][f] ? v : top;
+    const auto facet = static_cast<std::int8_t>(f), on = static_cast<std::int8_t>(map.on_facet[f]),
+               far = static_cast<std::int8_t>(top);
+    if (of_a) {
+      near.add({keys[f], facet, -1, on, far, -1, -1, 1});
+    } else {
+      near.add({keys[f], -1, facet, far, on, -1, -1, 1});
+    }
+  }
+}
+
 PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const SmallSatBody& b, Crossings& pairs,
-                                const double (&offset)[3]) {
+                                const double (&offset)[3], SmallNearPieces* near) {
   const Lanes zero = {0, 0, 0, 0};
   for (int k = pairs.count; k % kLanes != 0; ++k) {
     pairs.pair[k] = pairs.pair[0];
@@ -247,6 +265,14 @@ PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const 
     key_of(key, lowest, n.x * n.x + n.y * n.y + n.z * n.z);
     take_nearest(best, key, id, pairs.count);
     id += kLanes;
+    if (near == nullptr) continue;
+    const unsigned close = mask_of_four(key <= zero + near->radius * near->radius);
+    for (unsigned bits = close; bits != 0; bits &= bits - 1) {
+      const int lane = std::countr_zero(bits);
+      if (k + lane >= pairs.count) break;
+      near->add({key[lane], -1, -1, -1, -1, static_cast<std::int8_t>(pairs.edge_a(k + lane)),
+                 static_cast<std::int8_t>(pairs.edge_b(k + lane)), static_cast<std::int8_t>(sign[lane])});
+    }
   }
 }
 
@@ -301,7 +327,7 @@ PD_INLINE int winner(const NearestLane& best, double& key, double& others) {
 }  // namespace small_sat
 
 PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
-                                           const SmallSatErrors& errors) {
+                                           const SmallSatErrors& errors, SmallNearPieces* near) {
   using namespace small_sat;
   const Lanes none = Lanes{0, 0, 0, 0} + std::numeric_limits<double>::infinity();
   SmallSatNearest out;
@@ -324,7 +350,7 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
     out.facet_b = nearest_facet - kFacets;
   }
   if (out.key < 0) return out;
-  const double radius = __builtin_sqrt(out.key);
+  const double radius = __builtin_sqrt(out.key) + (near != nullptr ? near->band : 0);
   KeptEdges kept_a, kept_b;
   keep_near_edges(a.map, planes_a, of_b, b.posed.count, radius, errors.height, kept_a);
   keep_near_edges(b.map, planes_b, of_a, a.posed.count, radius, errors.height, kept_b);
@@ -333,13 +359,20 @@ PD_CLONES SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSat
   const float least_side_b = facets_by_edge(b.map, kept_b, of_b, facets_b);
   out.largest = largest_coordinate(a.posed, b.posed, offset);
   Crossings pairs;
-  if (least_side_a > errors.side_a && least_side_b > errors.side_b) {
+  const bool certain = least_side_a > errors.side_a && least_side_b > errors.side_b;
+  if (near != nullptr) {
+    near->radius = radius;
+    list_near_facets(*near, planes_a, a.map, true, of_b, b.posed.count);
+    list_near_facets(*near, planes_b, b.map, false, of_a, a.posed.count);
+  }
+  if (certain) {
     list_crossings(sides_a, facets_b, a.map, b.map, kept_b, pairs);
   } else {
     try_open_sides({a, b, offset, errors}, {of_a, of_b, kept_a, kept_b, sides_a, facets_b}, pairs, out);
   }
   out.crossings = pairs.count;
-  nearest_crossing(crossing, a, b, pairs, offset);
+  nearest_crossing(crossing, a, b, pairs, offset, near);
+  if (near != nullptr) near->complete = certain && near->count < SmallNearPieces::kMost;
   if (pairs.count == 0) return out;
   double key = 0, others = 0;
   const int nearest_pair = winner(crossing, key, others);

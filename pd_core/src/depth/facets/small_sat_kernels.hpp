@@ -31,7 +31,8 @@ struct SmallSatNearest {
   int edge_a = -1;
   int edge_b = -1;
   double sign = 1;          ///< of edge of B x edge of A, to point outwards
-  double others_key = 0;    ///< no other facet, of edges that certainly cross, has a lesser key
+  double others_key = 0;    ///< no other facet, of edges that certainly cross, has a lesser key; of those that are
+                            ///< farther than the bodies' nearest facet only some are looked at
   double largest = 0;       ///< |coordinate| of P
   double possible_key = 0;  ///< no pair of edges whose sides are not all certain has a facet with a lesser key
   int possible = 0;         ///< such pairs
@@ -45,8 +46,31 @@ struct SmallSatErrors {
   float side_b;
 };
 
+/// The facets of P that are not much farther than the nearest one of either body: what the next frames look at
+/// (remembered_piece.hpp).
+struct SmallNearPieces {
+  static constexpr int kMost = 64;
+  struct Piece {
+    double key;                      ///< sign * square of the distance
+    std::int8_t facet_a, facet_b;    ///< -1: none
+    std::int8_t vertex_a, vertex_b;  ///< of a facet: where it lies, and the other body's vertex
+    std::int8_t edge_a, edge_b;      ///< -1: none
+    std::int8_t sign;                ///< of edge of B x edge of A
+  };
+  double band = 0;        ///< asked for: how much farther
+  double radius = 0;      ///< all facets of P that are no farther are listed, if `complete`
+  bool complete = false;  ///< they fit, and no side of an edge near them is open
+  int count = 0;
+  Piece pieces[kMost + 1];
+
+  void add(const Piece& piece) {
+    pieces[count] = piece;
+    count += static_cast<int>(count < kMost);
+  }
+};
+
 /// `key` is negative as soon as a facet has the origin beyond it; edges are tried otherwise.
 SmallSatNearest nearest_of_small(const SmallSatBody& a, const SmallSatBody& b, const double (&offset)[3],
-                                 const SmallSatErrors& errors);
+                                 const SmallSatErrors& errors, SmallNearPieces* near);
 
 }  // namespace pd::detail

@@ -87,6 +87,19 @@ void set_witnesses(const PolytopePair& pair, const DifferenceVertex* corners, co
   out.witness_b = pair.pose_b->apply(share * b) + pair.margins.b * out.normal;
 }
 
+void set_witnesses_of_depth(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,
+                            PenetrationDepth& out) {
+  Vec3 a = Vec3::Zero();
+  double total = 0;
+  for (int i = 0; i < count; ++i) {
+    const double w = std::max(0.0, weights[i]);
+    a += w * pair.a->vertex(corners[i].a);
+    total += w;
+  }
+  out.witness_a = pair.pose_a->apply(1 / total * a) - pair.margins.a * out.normal;
+  out.witness_b = out.witness_a + out.translation;
+}
+
 void set_features(const PolytopePair& pair, const DifferenceVertex (&corners)[3], PenetrationDepth& out) {
   out.feature_a = feature(*pair.a, corners, &DifferenceVertex::a);
   out.feature_b = feature(*pair.b, corners, &DifferenceVertex::b);
@@ -99,8 +112,7 @@ void set_features(const PolytopePair& pair, const DifferenceVertex (&corners)[3]
 
 void set_contact(const PolytopePair& pair, const DifferenceVertex (&corners)[3], const double (&weights)[3],
                  PenetrationDepth& out) {
-  set_witnesses(pair, corners, weights, 3, out);
-  out.witness_b = out.witness_a + out.translation;
+  set_witnesses_of_depth(pair, corners, weights, 3, out);
   set_features(pair, corners, out);
 }
 

@@ -28,6 +28,10 @@ void set_signed_distance(double margin, double core_lower, double core_upper, Pe
 void set_witnesses(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,
                    PenetrationDepth& out);
 
+/// The same where B's point is A's, moved by `out.translation`.
+void set_witnesses_of_depth(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,
+                            PenetrationDepth& out);
+
 /// The features that the corners' vertices span. A facet's partner is a vertex, also where two facets are parallel.
 void set_features(const PolytopePair& pair, const DifferenceVertex (&corners)[3], PenetrationDepth& out);
 

@@ -53,14 +53,17 @@ bool answer_among_many_facets(PolytopeQuery& query, const ExpansionResult& surfa
 // The order of methods. Each stage looks for itself whether it applies, and answers or passes on.
 
 using StageBeforeSearch = bool (*)(PolytopeQuery&, PenetrationDepth&);
+// With a warm certificate:
+constexpr StageBeforeSearch kFromMemory[] = {
+    answer_from_remembered_pieces,     // two small solids by the facets that were near
+    answer_from_cached_faces,          // a few planes of the last surface
+    answer_apart_from_cached_simplex,  // from the last closest point
+};
 constexpr StageBeforeSearch kBeforeSearch[] = {
-    answer_by_chosen_overlay,          // all facets of P, where `Method::overlay` is asked for
-    answer_from_cached_faces,          // warm: a few planes of the last surface
-    answer_apart_from_cached_simplex,  // warm: from the last closest point
-    answer_boxes,                      // two boxes by their fifteen axes
-    prove_boxes,                       // the same on the stored numbers: the tightest bracket
-    answer_few_vertices_apart,         // a support shows bodies of few vertices apart: their closest points
-    answer_small_solids,               // two solids of few vertices by all facets of P
+    answer_boxes,               // two boxes by their fifteen axes
+    prove_boxes,                // the same on the stored numbers: the tightest bracket
+    answer_few_vertices_apart,  // a support shows bodies of few vertices apart: their closest points
+    answer_small_solids,        // two solids of few vertices by all facets of P
 };
 
 // Then the expansion (EPA) grows a surface inside P, from the last one where that serves (`grow_surface`).
@@ -77,6 +80,12 @@ constexpr StageAfterSearch kAfterSearch[] = {
 };
 
 void answer(PolytopeQuery& query, PenetrationDepth& out) {
+  if (answer_by_chosen_overlay(query, out)) return;  // all facets of P, where `Method::overlay` is asked for
+  if (query.warm != nullptr) {
+    for (const StageBeforeSearch stage : kFromMemory) {
+      if (stage(query, out)) return;
+    }
+  }
   for (const StageBeforeSearch stage : kBeforeSearch) {
     if (stage(query, out)) return;
   }

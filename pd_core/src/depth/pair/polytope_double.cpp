@@ -8,11 +8,13 @@
 #include "depth/distance/closest_of_few.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/near_facets.hpp"
+#include "depth/facets/remembered_pieces.hpp"
 #include "depth/facets/small_sat.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
 #include "numeric/unit_roundoff.hpp"
+#include "pd/depth/warm_certificate.hpp"
 #include "shape/small_gauss_map.hpp"
 
 namespace pd::detail {
@@ -57,8 +59,7 @@ void set_contact_of_edges(const PolytopeQuery& query, const NearFacets& found, P
   const DifferenceVertex corners[4] = {difference.vertex(a[0], b[0]), difference.vertex(a[1], b[0]),
                                        difference.vertex(a[0], b[1]), difference.vertex(a[1], b[1])};
   const double weights[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
-  set_witnesses(query.pair, corners, weights, 4, out);
-  out.witness_b = out.witness_a + out.translation;
+  set_witnesses_of_depth(query.pair, corners, weights, 4, out);
   out.feature_a = {Feature::Kind::edge, std::min(a[0], a[1]), std::max(a[0], a[1])};
   out.feature_b = {Feature::Kind::edge, std::min(b[0], b[1]), std::max(b[0], b[1])};
 }
@@ -218,7 +219,7 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
 
 bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
-  if (query.difference.climbs() || !query.within_range() || remembers_surface(query)) return false;
+  if (query.difference.climbs() || !query.within_range() || remembers_overlap(query)) return false;
   const Vec3 back = -query.difference.centre();
   const double reach = query.difference.reach();
   if (!(back.squaredNorm() > kLeastWayShown * kLeastWayShown * reach * reach)) return false;
@@ -231,12 +232,15 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.for_contact() || query.settings.method != Method::automatic) return false;
-  if (query.warm || !small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
-  if (many_flush_facets(query.pair, query.difference)) return false;
+  if (query.settings.method != Method::automatic || (query.for_contact() && !query.warm)) return false;
+  if (!small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
+  if (query.warm && !query.doubles_suffice()) return false;  // the surface has a memory
+  if (many_flush_facets(query.pair, query.difference) || pauses_small_solids(query)) return false;
   if (query.bracket == Bracket::tightest && apart_between_places(query.with_supports())) return false;
-  const SmallSatDepth found =
-      small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
+  SmallNearPieces near;
+  if (query.warm) near.band = remembered_band(query.difference);
+  const SmallSatDepth found = small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(),
+                                              query.width(), query.warm ? &near : nullptr);
   out.method = Method::overlay;
   out.statistics.facets_visited += found.pieces;
   ++out.statistics.support_calls;
@@ -248,8 +252,24 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
     const std::size_t count = corners_of_piece(query, found.nearest, corners);
     return answer_apart(query, closest_point(query, std::span(corners).first(count), out.statistics), out);
   }
+  if (query.warm) save_pieces(query, found, near);
   if (found.status == SmallSatStatus::undecided) return false;
   set_answer(query, found.nearest, out);
+  return true;
+}
+
+bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out) {
+  if (!remembers_pieces(query) || !query.doubles_suffice() || !query.within_range()) return false;
+  int looked_at = 0;
+  const NearFacets found =
+      certify_remembered_pieces(query.warm->state().small.pieces[0], *query.pair.pose_a, *query.pair.pose_b,
+                                query.with_supports(), query.width(), looked_at);
+  out.statistics.facets_visited += looked_at;
+  if (!found.certified) return false;
+  out.method = Method::overlay;
+  out.warm = true;
+  ++out.statistics.support_calls;
+  set_answer(query, found, out);
   return true;
 }
 

@@ -24,6 +24,9 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out);
 /// proved.
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out);
 
+/// The same from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
+bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);
+
 /// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start
 /// from. The faces are left in the scratch (`buffers.surface`). Sizes out of range give `undecided` without a face.
 [[nodiscard]] ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out);

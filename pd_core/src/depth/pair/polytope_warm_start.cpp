@@ -7,6 +7,7 @@
 
 #include "depth/distance/closest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
+#include "depth/facets/remembered_pieces.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -97,7 +98,24 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   return true;
 }
 
-bool remembers_surface(const PolytopeQuery& query) { return query.warm && !query.warm->state().faces.empty(); }
+bool remembers_overlap(const PolytopeQuery& query) {
+  return query.warm && (!query.warm->state().faces.empty() || query.warm->state().small.known);
+}
+
+bool remembers_pieces(const PolytopeQuery& query) {
+  if (!query.warm) return false;
+  const WarmSmallSolids& small = query.warm->state().small;
+  return small.known && small.pieces[0].a->same_storage(*query.pair.a) &&
+         small.pieces[0].b->same_storage(*query.pair.b);
+}
+
+bool pauses_small_solids(PolytopeQuery& query) {
+  if (!query.warm) return false;
+  WarmSmallSolids& small = query.warm->state().small;
+  if (small.pause == 0) return false;
+  --small.pause;
+  return true;
+}
 
 bool restore_surface(PolytopeQuery& query) {
   if (!is_of_pair(query.warm->state(), query.pair)) query.warm->clear();
@@ -136,6 +154,7 @@ void save_surface(PolytopeQuery& query, const ExpansionResult& result) {
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.direction = result.normal;
   state.reference.clearance = 0;
+  state.small.known = false;
   state.vertices.clear();
   state.faces.clear();
   state.vertices.reserve(kMaxRememberedVertices);
@@ -160,10 +179,32 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
   }
 }
 
+void save_pieces(PolytopeQuery& query, const SmallSatDepth& found, SmallNearPieces& near) {
+  WarmState& state = bind_to_pair(*query.warm, query.pair);
+  WarmSmallSolids& small = state.small;
+  small.known = false;
+  if (found.status == SmallSatStatus::certified) {
+    state.direction = found.nearest.normal;
+    state.vertices.clear();
+    state.faces.clear();
+    state.reference.clearance = 0;
+    if (small.pieces.empty()) small.pieces.emplace_back();
+    small.known = remember_pieces(found, near, query.difference, small.pieces[0]);
+  }
+  if (small.known) {
+    small.pause_length = 0;
+  } else {
+    // Nothing to start from: the next frames do better with a surface.
+    small.pause_length = std::min(2 * small.pause_length + 1, kLongestPause);
+    small.pause = small.pause_length;
+  }
+}
+
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest) {
   if (!query.warm) return;
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.direction = nearest.normal;
+  state.small.known = false;
   state.apart_count = nearest.count;
   for (int i = 0; i < nearest.count; ++i) state.apart[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
 }

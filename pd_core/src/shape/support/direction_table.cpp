@@ -30,24 +30,28 @@ struct Corners {
 };
 
 struct Rises {
-  bool everywhere;  ///< more than 0 in all four corners
+  bool everywhere;  ///< by more than rounding in all four corners
   bool somewhere;   ///< not less than 0 in one of them
 };
 
+/// A rise of less than this, in units of the radius, may be rounding.
+constexpr double kLevel = 0x1p-40;
+
 /// How an edge rises in the directions of the corners.
-PD_INLINE Rises rises_of(double x, double y, double z, const Corners& corners) {
+PD_INLINE Rises rises_of(double x, double y, double z, const Corners& corners, double level_rise) {
   const Lanes rise = x * corners.x + (y * corners.y + z * corners.z);
   // The lanes' masks folded in halves: without extracting each of them.
-  const auto up = rise > 0.0, level = rise >= 0.0;
+  const auto up = rise > level_rise, level = rise >= 0.0;
   const auto up2 = up & __builtin_shufflevector(up, up, 2, 3, 0, 1);
   const auto level2 = level | __builtin_shufflevector(level, level, 2, 3, 0, 1);
   return {(up2[0] & up2[1]) != 0, (level2[0] | level2[1]) != 0};
 }
 
-/// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on. `open` and
-/// `list` have room for all vertices. @return how many
+/// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on, which is
+/// farthest in one of its directions. `open` and `list` have room for all vertices and one. @return how many
 PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, std::int32_t first, std::int32_t cell,
                                      std::int32_t* seen, std::int32_t* open, std::int32_t* list) {
+  const double level = kLevel * p.radius;
   std::int32_t opened = 1, listed = 0;
   open[0] = first;
   seen[first] = cell;
@@ -55,16 +59,19 @@ PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, s
     const std::int32_t v = open[k];
     const double x = p.x[v], y = p.y[v], z = p.z[v];
     bool beaten = false;
+    // Its neighbours are written behind the others, and stay where it is not beaten.
+    std::int32_t next = opened;
     for (std::int32_t i = p.neighbour_offsets[v]; i < p.neighbour_offsets[v + 1]; ++i) {
       const std::int32_t w = p.neighbours[i];
-      if (beaten && seen[w] == cell) continue;  // nothing more to learn
-      const Rises rises = rises_of(p.x[w] - x, p.y[w] - y, p.z[w] - z, corners);
-      beaten |= rises.everywhere;
-      if (!rises.somewhere || seen[w] == cell) continue;
-      seen[w] = cell;
-      open[opened++] = w;
+      const Rises rises = rises_of(p.x[w] - x, p.y[w] - y, p.z[w] - z, corners, level);
+      beaten = rises.everywhere;
+      if (beaten) break;
+      open[next] = w;
+      next += static_cast<std::int32_t>(rises.somewhere && seen[w] != cell);
     }
-    if (!beaten) list[listed++] = v;
+    if (beaten) continue;
+    list[listed++] = v;
+    for (; opened < next; ++opened) seen[open[opened]] = cell;
   }
   return listed;
 }
@@ -74,12 +81,14 @@ class TableBuilder {
   explicit TableBuilder(const Storage& polytope)
       : p_(polytope),
         seen_(static_cast<std::size_t>(polytope.num_vertices), -1),
-        open_(seen_.size()),
+        open_(seen_.size() + 1),
         list_(seen_.size()),
         scaled_(seen_.size()) {
     int exponent = 0;
     std::frexp(p_.radius, &exponent);
-    const auto scaled = [&](double value) { return static_cast<float>(std::ldexp(value, -exponent)); };
+    // In two steps, neither of which is out of range.
+    const double first = std::ldexp(1.0, -exponent / 2), second = std::ldexp(1.0, -exponent - -exponent / 2);
+    const auto scaled = [&](double value) { return static_cast<float>(value * first * second); };
     for (int v = 0; v < p_.num_vertices; ++v) {
       scaled_[static_cast<std::size_t>(v)] = {scaled(p_.x[v]), scaled(p_.y[v]), scaled(p_.z[v])};
     }

@@ -6,9 +6,10 @@
 /// a support reads one short list. Cells are about as many as vertices, up to 24,576, so that lists stay short; fewer
 /// where slender normal cones cross many cells.
 ///
-/// Found as follows: vertices are visited from the one farthest at the cell's middle, on along every edge whose end is
-/// as far as its start at some corner of the cell. A hill climb in any direction of the cell goes along such edges, so
-/// its summit is visited. A vertex is left out if a neighbour is farther at all four corners.
+/// Found as follows. A vertex is left out if a neighbour is farther at all four corners of the cell, and so in all its
+/// directions. Those farthest somewhere are none of these, and hang together: where the farthest vertex changes as a
+/// direction moves through the cell, it does along an edge. So vertices are visited from the one farthest at the cell's
+/// middle, on along the edges of those that stay.
 #pragma once
 
 #include <bit>

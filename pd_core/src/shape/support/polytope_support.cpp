@@ -85,6 +85,7 @@ int certified_support_vertex(const ConvexPolytope& p, const Vec3& direction, int
 }
 
 int confirmed_support_vertex(const ConvexPolytope& p, const Vec3& direction, const std::array<int, 3>& vertices) {
+  if (p.num_vertices() <= kScanLimit) return scan(p, direction);
   const double* const x = p.x();
   const double* const y = p.y();
   const double* const z = p.z();
