@@ -137,17 +137,20 @@ int facing_facet(const ConvexPolytope& body, const SupportFace& vertices, const 
   return (rotation * body.facet_normal(facet)).dot(outward) > 0 ? facet : 1 - facet;
 }
 
+FacetOfDifference facet_of_faces(const PosedPair& pair, const SupportFace& on_a, const SupportFace& on_b,
+                                 const Vec3& outward) {
+  if (on_b.size() >= 3) {
+    const int facet = facing_facet(pair.b(), on_b, pair.pose_b().rotation(), outward);
+    return FacetOfDifference::from_facet_of_b(pair.b(), facet, on_a.front());
+  }
+  const int facet = facing_facet(pair.a(), on_a, pair.pose_a().rotation(), -outward);
+  return FacetOfDifference::from_facet_of_a(pair.a(), facet, on_b.front());
+}
+
 FacetOfDifference facet_of_direction(const PosedPair& pair, const ExactDirection& normal) {
   const SupportFace on_a = support_face_a(pair, normal);
   const SupportFace on_b = support_face_b(pair, normal);
-  if (on_b.size() >= 3) {
-    const int facet = facing_facet(pair.b(), on_b, pair.pose_b().rotation(), normal.unit);
-    return FacetOfDifference::from_facet_of_b(pair.b(), facet, on_a.front());
-  }
-  if (on_a.size() >= 3) {
-    const int facet = facing_facet(pair.a(), on_a, pair.pose_a().rotation(), -normal.unit);
-    return FacetOfDifference::from_facet_of_a(pair.a(), facet, on_b.front());
-  }
+  if (on_a.size() >= 3 || on_b.size() >= 3) return facet_of_faces(pair, on_a, on_b, normal.unit);
   assert(on_a.size() == 2 && on_b.size() == 2);
   const Dyadic3 u = pair.exact(PairVector::edge_b(on_b[0], on_b[1]));
   const Dyadic3 v = pair.exact(PairVector::edge_a(on_a[0], on_a[1]));
