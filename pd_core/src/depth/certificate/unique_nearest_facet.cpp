@@ -122,10 +122,15 @@ class Search {
             farthest(pair_.b(), pair_.in_frame_of_b(direction), scale_)};
   }
 
+  /// A vertex of P that is farthest, exactly.
   VertexPair exact_support(int f) {
     ++out_.support_calls;
-    const ExactDirection direction(hull_.exact_normal(f));
-    return {support_face_a(pair_, direction).front(), support_face_b(pair_, direction).front()};
+    const Face& face = hull_.face(f);
+    const PairVector u = hull_.edge(face.v[0], face.v[1]), v = hull_.edge(face.v[0], face.v[2]);
+    const RoundedDirection rounded =
+        rounded_cross(pair_.approximate(u), pair_.vector_error(u), pair_.approximate(v), pair_.vector_error(v));
+    return support_exactly(pair_, rounded, hull_.vertex(face.v[0]),
+                           [&](const PairVector& edge) { return pair_.sign_determinant(edge, u, v); });
   }
 
   /// Whether the vertex of P lies beyond the face, and was inserted.
