@@ -68,6 +68,7 @@ class PosedPair {
   [[nodiscard]] double vector_error() const { return vector_error_; }
   /// The same for this vector: of one body alone, its size counts and not the pair's.
   [[nodiscard]] double vector_error(const PairVector& v) const { return error_of(v).rounded; }
+  [[nodiscard]] double vector_error_dd(const PairVector& v) const { return error_of(v).fine; }
 
   /// In double-double (scaled). |error| per coordinate <= vector_error_dd().
   [[nodiscard]] Vec3DD approximate_dd(const PairVector& v) const {

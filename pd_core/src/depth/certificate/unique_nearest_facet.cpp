@@ -22,14 +22,15 @@ double norm1(const Vec3& v) { return v.cwiseAbs().sum(); }
 /// In doubles; the bounds as in `PairHull::measure_finely`, with u in the place of double-double's unit.
 void measure_roughly(const PairHull& hull, Face& f) {
   const PosedPair& pair = hull.pair();
+  const PairVector to_q = hull.edge(f.v[0], f.v[1]), to_r = hull.edge(f.v[0], f.v[2]);
   const Vec3 p = pair.approximate(hull.point(f.v[0]));
-  const Vec3 u = pair.approximate(hull.edge(f.v[0], f.v[1]));
-  const Vec3 v = pair.approximate(hull.edge(f.v[0], f.v[2]));
+  const Vec3 u = pair.approximate(to_q);
+  const Vec3 v = pair.approximate(to_r);
   const Vec3 n = u.cross(v);
-  const double e = pair.vector_error();
-  const double a = norm1(p) + 3 * e, b = norm1(u) + 3 * e, c = norm1(v) + 3 * e;
-  const double volume_error = 16 * kUnitRoundoff * a * b * c + 2 * e * (b * c + a * c + a * b) + 0x1p-900;
-  const double normal_error = 16 * kUnitRoundoff * b * c + 4 * e * (b + c) + 0x1p-900;
+  const double ep = pair.vector_error(), eu = pair.vector_error(to_q), ev = pair.vector_error(to_r);
+  const double a = norm1(p) + 3 * ep, b = norm1(u) + 3 * eu, c = norm1(v) + 3 * ev;
+  const double volume_error = 16 * kUnitRoundoff * a * b * c + 2 * (ep * b * c + eu * a * c + ev * a * b) + 0x1p-900;
+  const double normal_error = 16 * kUnitRoundoff * b * c + 4 * (eu * c + ev * b) + 0x1p-900;
   const double length = n.norm();
   if (!(length > 1e3 * normal_error)) return;
   f.distance.hi = p.dot(n) / length;
@@ -96,6 +97,7 @@ class Search {
       }
       if (expand(nearest, support(normal_of(face))) || refine(face)) continue;
       // Nothing lies beyond the nearest face, as far as double-double tells.
+      if (!(to_double(face.distance) > face.error)) return;
       if (proven_) {
         const int order = compare_with_proven(nearest);
         face.farther = order > 0;
@@ -265,7 +267,7 @@ class Search {
     const int known = hull_.num_vertices();
     if (known == 0) return true;
     const PairVector d = PairHull::edge(hull_.vertex(0), id);
-    if (known == 1) return norm1(pair_.approximate(d)) > 8 * pair_.vector_error();
+    if (known == 1) return norm1(pair_.approximate(d)) > 8 * pair_.vector_error(d);
     if (known == 2) return !pair_.parallel(d, hull_.edge(0, 1));
     return pair_.sign_determinant_rounded(d, hull_.edge(0, 1), hull_.edge(0, 2)).value_or(0) != 0;
   }

@@ -52,6 +52,23 @@ int sign_by_double_double(const ConvexPolytope& body, const Vec3DD& local, doubl
   return value > 0 ? 1 : -1;
 }
 
+bool in_loop(const ConvexPolytope& body, int facet, std::int32_t v) {
+  const auto loop = body.facet_vertices(facet);
+  return std::find(loop.begin(), loop.end(), v) != loop.end();
+}
+
+/// The facet of a solid that holds the three vertices, -1 where there is none: no three vertices lie on a line, so what
+/// is level with them is all of it.
+int facet_through(const ConvexPolytope& body, const SupportFace& three) {
+  if (body.affine_dimension() != 3) return -1;
+  const int first = body.first_half_edge(three[0]);
+  for (std::size_t k = 0; k < body.neighbours(three[0]).size(); ++k) {
+    const int f = body.half_edge(first + static_cast<int>(k)).facet;
+    if (in_loop(body, f, three[1]) && in_loop(body, f, three[2])) return f;
+  }
+  return -1;
+}
+
 /// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the rotated difference.
 /// @param turned_back  R^T x in double-double.
 template <class Edge>
@@ -85,15 +102,20 @@ SupportFace extremal(const PosedPair& pair, const ConvexPolytope& body, const Ma
   double best = -std::numeric_limits<double>::infinity();
   for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
   SupportFace face;
+  int level_facet = -1;  // that all of the face lies in, once three of its vertices are known
   for (int v = 0; v < n; ++v) {
     if (body.vertex(v).dot(local) < best - slack) continue;
-    if (face.empty()) {
+    if (face.empty() || (level_facet >= 0 && in_loop(body, level_facet, v))) {
       face.push_back(v);
       continue;
     }
     const int compared = exactly(face.front(), v);
-    if (compared > 0) face.clear();
+    if (compared > 0) {
+      face.clear();
+      level_facet = -1;
+    }
     if (compared >= 0) face.push_back(v);
+    if (compared == 0 && face.size() == 3) level_facet = facet_through(body, face);
   }
   return face;
 }

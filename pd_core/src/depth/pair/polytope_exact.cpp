@@ -291,9 +291,8 @@ bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surfac
     SupportFaces& faces = query.buffers.faces;
     const auto proof = prove_separation(posed, std::span(start).first(count), faces);
     if (proof && answer_separated(posed, *proof, faces, margins, query.bracket, out)) return true;
-  } else if (answer_from_unique_facet(query, std::span(start).first(count), out)) {
-    return true;
   }
+  if (answer_from_unique_facet(query, std::span(start).first(count), out)) return true;
   const ExactClosestPoint nearest = exact_closest_point(posed, start.data(), static_cast<int>(count));
   if (nearest.apart) {
     answer_separated(posed, nearest, margins, out);
