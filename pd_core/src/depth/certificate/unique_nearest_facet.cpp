@@ -22,8 +22,16 @@ double norm1(const Vec3& v) { return v.cwiseAbs().sum(); }
 /// In doubles; the bounds as in `PairHull::measure_finely`, with u in the place of double-double's unit.
 void measure_roughly(const PairHull& hull, Face& f) {
   const PosedPair& pair = hull.pair();
-  const PairVector to_q = hull.edge(f.v[0], f.v[1]), to_r = hull.edge(f.v[0], f.v[2]);
-  const Vec3 p = pair.approximate(hull.point(f.v[0]));
+  // From an end of the shortest edge: where one body is tiny, two long edges of a sliver drown what tells them apart.
+  double shortest = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const double length = pair.approximate(hull.edge(f.v[k], f.v[(k + 1) % 3])).squaredNorm();
+    if (!(length < shortest)) continue;
+    shortest = length;
+    f.first = k;
+  }
+  const PairVector to_q = hull.first_edge(f), to_r = hull.second_edge(f);
+  const Vec3 p = pair.approximate(hull.point(PairHull::corner(f, 0)));
   const Vec3 u = pair.approximate(to_q);
   const Vec3 v = pair.approximate(to_r);
   const Vec3 n = u.cross(v);
@@ -112,7 +120,7 @@ class Search {
  private:
   /// Of the outward normal: doubles for a face measured in doubles.
   [[nodiscard]] Vec3DD normal_of(const Face& f) const {
-    const PairVector u = hull_.edge(f.v[0], f.v[1]), v = hull_.edge(f.v[0], f.v[2]);
+    const PairVector u = hull_.first_edge(f), v = hull_.second_edge(f);
     if (!f.fine) return widened(pair_.approximate(u).cross(pair_.approximate(v)).normalized());
     const Vec3DD n = cross(pair_.approximate_dd(u), pair_.approximate_dd(v));
     return scaled(n, {1 / high(n).norm(), 0});
@@ -128,10 +136,10 @@ class Search {
   VertexPair exact_support(int f) {
     ++out_.support_calls;
     const Face& face = hull_.face(f);
-    const PairVector u = hull_.edge(face.v[0], face.v[1]), v = hull_.edge(face.v[0], face.v[2]);
+    const PairVector u = hull_.first_edge(face), v = hull_.second_edge(face);
     const RoundedDirection rounded =
         rounded_cross(pair_.approximate(u), pair_.vector_error(u), pair_.approximate(v), pair_.vector_error(v));
-    return support_exactly(pair_, rounded, hull_.vertex(face.v[0]),
+    return support_exactly(pair_, rounded, hull_.vertex(PairHull::corner(face, 0)),
                            [&](const PairVector& edge) { return pair_.sign_determinant(edge, u, v); });
   }
 
@@ -203,7 +211,7 @@ class Search {
     ++out_.facets_visited;
     least_.reset();
     SurfaceCorners corners;
-    for (int i = 0; i < 3; ++i) corners.v[i] = hull_.vertex(f.v[i]);
+    for (int i = 0; i < 3; ++i) corners.v[i] = hull_.vertex(PairHull::corner(f, i));
     proven_ = prove_nearest_facet(pair_, std::span(&corners, 1), kInfinity, false, faces_);
     return proven_.has_value();
   }

@@ -46,7 +46,7 @@ int PairHull::side(int f, int v) {
     return 0;
   }
   const std::optional<int> rounded =
-      pair_.sign_determinant_rounded(edge(face.v[0], v), edge(face.v[0], face.v[1]), edge(face.v[0], face.v[2]));
+      pair_.sign_determinant_rounded(edge(corner(face, 0), v), first_edge(face), second_edge(face));
   return rounded ? *rounded : dot(exact_normal(f), exact_point(v) - exact_point(face.v[0])).sign();
 }
 
@@ -84,8 +84,8 @@ void PairHull::remove_below(int from, int v) {
 }
 
 void PairHull::measure_finely(Face& f) const {
-  const PairVector to_q = edge(f.v[0], f.v[1]), to_r = edge(f.v[0], f.v[2]);
-  const Vec3DD p = pair_.approximate_dd(point(f.v[0]));
+  const PairVector to_q = first_edge(f), to_r = second_edge(f);
+  const Vec3DD p = pair_.approximate_dd(point(corner(f, 0)));
   const Vec3DD u = pair_.approximate_dd(to_q);
   const Vec3DD v = pair_.approximate_dd(to_r);
   const Vec3DD n = cross(u, v);

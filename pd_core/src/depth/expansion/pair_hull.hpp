@@ -26,6 +26,7 @@ class PairHull {
   struct Face {
     std::int32_t v[3] = {-1, -1, -1};
     std::int32_t adj[3] = {-1, -1, -1};
+    std::int32_t first = 0;  ///< index in `v` of the corner from which its plane is measured
     /// Signed distance of the plane from the origin, positive where the origin lies behind it (scaled lengths), within
     /// `error`; infinite: the normal drowned in rounding.
     DoubleDouble distance;
@@ -55,6 +56,11 @@ class PairHull {
   /// From one vertex to another; of one body alone where they share the other's vertex.
   [[nodiscard]] PairVector edge(int from, int to) const { return edge(vertices_[from], vertices_[to]); }
   [[nodiscard]] static PairVector edge(const VertexPair& from, const VertexPair& to);
+  /// The corners in their order, the one first from which the plane is measured.
+  [[nodiscard]] static std::int32_t corner(const Face& f, int i) { return f.v[(f.first + i) % 3]; }
+  /// The two edges there.
+  [[nodiscard]] PairVector first_edge(const Face& f) const { return edge(corner(f, 0), corner(f, 1)); }
+  [[nodiscard]] PairVector second_edge(const Face& f) const { return edge(corner(f, 0), corner(f, 2)); }
   [[nodiscard]] PairVector point(int v) const { return PairVector::point(vertices_[v].a, vertices_[v].b); }
 
   /// Times the pair's homogeneous factor.
