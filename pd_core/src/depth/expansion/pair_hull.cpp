@@ -91,25 +91,29 @@ void PairHull::measure_finely(Face& f) const {
   const Vec3DD n = cross(u, v);
   const DoubleDouble squared = dot(n, n);
   const double length = std::sqrt(squared.hi);
-  // The determinant <p, u x v> and the normal, each with the errors of its arguments and of double-double products.
-  double normal_error = 0;
-  const auto error = [&](double ep, double eu, double ev) {
-    const double a = norm1(p) + 3 * ep, b = norm1(u) + 3 * eu, c = norm1(v) + 3 * ev;
-    const double volume_error = 64 * 0x1p-104 * a * b * c + 2 * (ep * b * c + eu * a * c + ev * a * b) + 0x1p-900;
-    normal_error = 64 * 0x1p-104 * b * c + 4 * (eu * c + ev * b) + 0x1p-900;
-    return 2 * (volume_error + std::abs(f.distance.hi) * normal_error) / length;
-  };
   f.fine = true;
   f.distance = squared.hi > 0 ? dot(p, n) / sqrt(squared) : DoubleDouble{};
-  const double e = pair_.vector_error_dd();
-  f.error = error(e, pair_.vector_error_dd(to_q), pair_.vector_error_dd(to_r)) + 0x1p-96 * std::abs(f.distance.hi);
-  if (!(length > 1e6 * normal_error)) f.error = std::numeric_limits<double>::infinity();
-  // The bounds by which the exact search orders faces: which of equal facets it meets first hangs on them.
   const double value = to_double(f.distance);
-  const double slack = error(e, e, e) + std::abs(value) * 0x1p-52;
-  const bool known = length > 1e6 * normal_error;
-  f.lower = known ? value - slack : -std::numeric_limits<double>::infinity();
-  f.upper = known ? value + slack : std::numeric_limits<double>::infinity();
+  // The determinant <p, u x v> and the normal, each with the errors of its arguments and of double-double products.
+  const double e = pair_.vector_error_dd();
+  {
+    // The bounds by which the exact search orders faces: which of equal facets it meets first hangs on their last bits.
+    const double a = norm1(p) + 3 * e, b = norm1(u) + 3 * e, c = norm1(v) + 3 * e;
+    const double volume_error = 64 * 0x1p-104 * a * b * c + 2 * e * (b * c + a * c + a * b) + 0x1p-900;
+    const double normal_error = 64 * 0x1p-104 * b * c + 4 * e * (b + c) + 0x1p-900;
+    const double error = 2 * (volume_error + std::abs(f.distance.hi) * normal_error) / length;
+    const double slack = error + std::abs(value) * 0x1p-52;
+    const bool known = length > 1e6 * normal_error;
+    f.lower = known ? value - slack : -std::numeric_limits<double>::infinity();
+    f.upper = known ? value + slack : std::numeric_limits<double>::infinity();
+  }
+  const double eu = pair_.vector_error_dd(to_q), ev = pair_.vector_error_dd(to_r);
+  const double a = norm1(p) + 3 * e, b = norm1(u) + 3 * eu, c = norm1(v) + 3 * ev;
+  const double volume_error = 64 * 0x1p-104 * a * b * c + 2 * (e * b * c + eu * a * c + ev * a * b) + 0x1p-900;
+  const double normal_error = 64 * 0x1p-104 * b * c + 4 * (eu * c + ev * b) + 0x1p-900;
+  f.error = length > 1e6 * normal_error
+                ? 2 * (volume_error + std::abs(value) * normal_error) / length + 0x1p-96 * std::abs(value)
+                : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace pd::detail
