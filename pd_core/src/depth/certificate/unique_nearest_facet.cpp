@@ -93,12 +93,12 @@ class Search {
     // Each pass adds a vertex, measures a face more finely or proves one to be a facet.
     while (out_.support_calls < budget) {
       const int nearest = nearest_face();
-      if (nearest < 0) return;
-      Face& face = hull_.face(nearest);
-      if (proven_ && certainly_beyond(face)) {
+      if (proven_ && (nearest < 0 || certainly_beyond(hull_.face(nearest)))) {
         out_.found = named();
         return;
       }
+      if (nearest < 0) return;
+      Face& face = hull_.face(nearest);
       if (!(face.error < kInfinity) || contested_) {
         if (refine(face)) continue;
         if (!(face.error < kInfinity)) return;
