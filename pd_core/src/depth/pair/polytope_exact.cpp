@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "depth/certificate/nearest_facet_proof.hpp"
-#include "depth/certificate/unique_nearest_facet.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
 #include "depth/facets/aligned_boxes.hpp"
 #include "depth/facets/box_sat.hpp"
+#include "depth/facets/unique_nearest_facet.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
 

@@ -1,4 +1,4 @@
-#include "depth/certificate/unique_nearest_facet.hpp"
+#include "depth/facets/unique_nearest_facet.hpp"
 
 #include <algorithm>
 #include <array>

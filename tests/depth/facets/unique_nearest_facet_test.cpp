@@ -2,7 +2,7 @@
 /// The nearest facet by double-double: the one that the exact expansion ends with, or none; none where facets tie
 /// exactly, and where the origin does not lie inside.
 
-#include "depth/certificate/unique_nearest_facet.hpp"
+#include "depth/facets/unique_nearest_facet.hpp"
 
 #include <gtest/gtest.h>
 
