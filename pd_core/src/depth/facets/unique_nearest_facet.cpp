@@ -14,16 +14,15 @@ namespace pd::detail {
 
 namespace {
 
-using Face = PairHull::Face;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-double norm1(const Vec3& v) { return v.cwiseAbs().sum(); }
+double sum_of(const Vec3& v) { return v.cwiseAbs().sum(); }
 
 /// In doubles; the bounds as in `PairHull::measure_finely`, with u in the place of double-double's unit.
-void measure_roughly(const PairHull& hull, Face& f) {
+void measure_roughly(const PairHull& hull, PairHull::Face& f) {
   const PosedPair& pair = hull.pair();
   // From an end of the shortest edge: where one body is tiny, two long edges of a sliver drown what tells them apart.
-  double shortest = kInfinity;
+  double shortest = kUnbounded;
   for (int k = 0; k < 3; ++k) {
     const double length = pair.approximate(hull.edge(f.v[k], f.v[(k + 1) % 3])).squaredNorm();
     if (!(length < shortest)) continue;
@@ -36,7 +35,7 @@ void measure_roughly(const PairHull& hull, Face& f) {
   const Vec3 v = pair.approximate(to_r);
   const Vec3 n = u.cross(v);
   const double ep = pair.vector_error(), eu = pair.vector_error(to_q), ev = pair.vector_error(to_r);
-  const double a = norm1(p) + 3 * ep, b = norm1(u) + 3 * eu, c = norm1(v) + 3 * ev;
+  const double a = sum_of(p) + 3 * ep, b = sum_of(u) + 3 * eu, c = sum_of(v) + 3 * ev;
   const double volume_error = 16 * kUnitRoundoff * a * b * c + 2 * (ep * b * c + eu * a * c + ev * a * b) + 0x1p-900;
   const double normal_error = 16 * kUnitRoundoff * b * c + 4 * (eu * c + ev * b) + 0x1p-900;
   const double length = n.norm();
@@ -46,14 +45,14 @@ void measure_roughly(const PairHull& hull, Face& f) {
 }
 
 /// Lower bound of x's distance less y's lower bound.
-bool before(const Face& x, const Face& y) {
-  if (!(x.error < kInfinity) || !(y.error < kInfinity)) return x.error > y.error;
+bool bounded_before(const PairHull::Face& x, const PairHull::Face& y) {
+  if (!(x.error < kUnbounded) || !(y.error < kUnbounded)) return x.error > y.error;
   return to_double(x.distance - y.distance) < x.error - y.error;
 }
 
 /// A vertex of the body among the farthest in a direction of its own frame, as far as double-double tells.
 /// @param local  about a unit vector.
-int farthest(const ConvexPolytope& body, const Vec3DD& local, double scale) {
+int farthest_in_double_double(const ConvexPolytope& body, const Vec3DD& local, double scale) {
   const Vec3 rounded = high(local);
   const auto height = [&](int v) {
     const Vec3DD x{{body.x()[v] * scale, 0}, {body.y()[v] * scale, 0}, {body.z()[v] * scale, 0}};
@@ -67,7 +66,7 @@ int farthest(const ConvexPolytope& body, const Vec3DD& local, double scale) {
     });
   }
   const int n = body.num_vertices();
-  double most = -kInfinity;
+  double most = -kUnbounded;
   for (int v = 0; v < n; ++v) most = std::max(most, body.vertex(v).dot(rounded));
   const double slack = 16 * kUnitRoundoff * body.radius() + 0x1p-1070;
   int best = -1;
@@ -82,14 +81,14 @@ int farthest(const ConvexPolytope& body, const Vec3DD& local, double scale) {
   return best;
 }
 
-class Search {
+class UniqueFacetSearch {
  public:
-  Search(const PosedPair& pair, SupportFaces& faces, UniqueNearestFacet& out)
+  UniqueFacetSearch(const PosedPair& pair, SupportFaces& faces, UniqueNearestFacet& out)
       : pair_(pair), faces_(faces), out_(out), hull_(pair), scale_(pair.inwards()) {}
 
   void run(std::span<const VertexPair> start, int budget) {
     if (!begin(start)) return;
-    hull_.start([&](Face& f) { measure_roughly(hull_, f); });
+    hull_.start([&](PairHull::Face& f) { measure_roughly(hull_, f); });
     // Each pass adds a vertex, measures a face more finely or proves one to be a facet.
     while (out_.support_calls < budget) {
       const int nearest = nearest_face();
@@ -98,10 +97,10 @@ class Search {
         return;
       }
       if (nearest < 0) return;
-      Face& face = hull_.face(nearest);
-      if (!(face.error < kInfinity) || contested_) {
+      PairHull::Face& face = hull_.face(nearest);
+      if (!(face.error < kUnbounded) || contested_) {
         if (refine(face)) continue;
-        if (!(face.error < kInfinity)) return;
+        if (!(face.error < kUnbounded)) return;
       }
       if (expand(nearest, support(normal_of(face))) || refine(face)) continue;
       // Nothing lies beyond the nearest face, as far as double-double tells.
@@ -119,7 +118,7 @@ class Search {
 
  private:
   /// Of the outward normal: doubles for a face measured in doubles.
-  [[nodiscard]] Vec3DD normal_of(const Face& f) const {
+  [[nodiscard]] Vec3DD normal_of(const PairHull::Face& f) const {
     const PairVector u = hull_.first_edge(f), v = hull_.second_edge(f);
     if (!f.fine) return widened(pair_.approximate(u).cross(pair_.approximate(v)).normalized());
     const Vec3DD n = cross(pair_.approximate_dd(u), pair_.approximate_dd(v));
@@ -128,14 +127,14 @@ class Search {
 
   VertexPair support(const Vec3DD& direction) {
     ++out_.support_calls;
-    return {farthest(pair_.a(), pair_.in_frame_of_a(scaled(direction, {-1, 0})), scale_),
-            farthest(pair_.b(), pair_.in_frame_of_b(direction), scale_)};
+    return {farthest_in_double_double(pair_.a(), pair_.in_frame_of_a(scaled(direction, {-1, 0})), scale_),
+            farthest_in_double_double(pair_.b(), pair_.in_frame_of_b(direction), scale_)};
   }
 
   /// A vertex of P that is farthest, exactly.
   VertexPair exact_support(int f) {
     ++out_.support_calls;
-    const Face& face = hull_.face(f);
+    const PairHull::Face& face = hull_.face(f);
     const PairVector u = hull_.first_edge(face), v = hull_.second_edge(face);
     const RoundedDirection rounded =
         rounded_cross(pair_.approximate(u), pair_.vector_error(u), pair_.approximate(v), pair_.vector_error(v));
@@ -145,7 +144,7 @@ class Search {
 
   /// Whether the vertex of P lies beyond the face, and was inserted.
   bool expand(int f, const VertexPair& s) {
-    const Face& face = hull_.face(f);
+    const PairHull::Face& face = hull_.face(f);
     for (const std::int32_t v : face.v) {
       if (hull_.vertex(v).a == s.a && hull_.vertex(v).b == s.b) return false;
     }
@@ -154,12 +153,12 @@ class Search {
       hull_.drop_last_vertex();
       return false;
     }
-    hull_.insert(f, v, [&](Face& made) { measure_roughly(hull_, made); });
+    hull_.insert(f, v, [&](PairHull::Face& made) { measure_roughly(hull_, made); });
     return true;
   }
 
   /// False where double-double has measured it already.
-  bool refine(Face& f) const {
+  bool refine(PairHull::Face& f) const {
     if (f.fine) return false;
     hull_.measure_finely(f);
     return true;
@@ -170,21 +169,21 @@ class Search {
   [[nodiscard]] int nearest_face() {
     int nearest = -1, next = -1;
     for (int f = 0; f < static_cast<int>(hull_.faces().size()); ++f) {
-      const Face& face = hull_.face(f);
-      if (!face.alive || (next >= 0 && !before(face, hull_.face(next)))) continue;
+      const PairHull::Face& face = hull_.face(f);
+      if (!face.alive || (next >= 0 && !bounded_before(face, hull_.face(next)))) continue;
       if (proven_ && (face.farther || lies_in_plane(face))) continue;
       next = f;
-      if (nearest < 0 || before(face, hull_.face(nearest))) std::swap(nearest, next);
+      if (nearest < 0 || bounded_before(face, hull_.face(nearest))) std::swap(nearest, next);
     }
     contested_ = false;
     if (next >= 0) {
-      const Face &x = hull_.face(nearest), &y = hull_.face(next);
+      const PairHull::Face &x = hull_.face(nearest), &y = hull_.face(next);
       contested_ = !(to_double(y.distance - x.distance) > x.error + y.error);
     }
     return nearest;
   }
 
-  [[nodiscard]] bool lies_in_plane(const Face& f) const {
+  [[nodiscard]] bool lies_in_plane(const PairHull::Face& f) const {
     return std::all_of(std::begin(f.v), std::end(f.v), [&](std::int32_t v) {
       const VertexPair& p = hull_.vertex(v);
       return std::binary_search(faces_.on_a.begin(), faces_.on_a.end(), p.a) &&
@@ -192,9 +191,9 @@ class Search {
     });
   }
 
-  [[nodiscard]] bool certainly_beyond(const Face& f) const {
+  [[nodiscard]] bool certainly_beyond(const PairHull::Face& f) const {
     const FacetPlane& plane = proven_->plane;
-    return f.error < kInfinity &&
+    return f.error < kUnbounded &&
            to_double(f.distance - plane.distance) > (f.error + plane.distance_error) * (1 + 0x1p-40);
   }
 
@@ -207,12 +206,12 @@ class Search {
     return compare(SquaredFacetDistance{height * height, dot(normal, normal)}, *least_);
   }
 
-  bool prove(const Face& f) {
+  bool prove(const PairHull::Face& f) {
     ++out_.facets_visited;
     least_.reset();
     SurfaceCorners corners;
     for (int i = 0; i < 3; ++i) corners.v[i] = hull_.vertex(PairHull::corner(f, i));
-    proven_ = prove_nearest_facet(pair_, std::span(&corners, 1), kInfinity, false, faces_);
+    proven_ = prove_nearest_facet(pair_, std::span(&corners, 1), kUnbounded, false, faces_);
     return proven_.has_value();
   }
 
@@ -275,7 +274,7 @@ class Search {
     const int known = hull_.num_vertices();
     if (known == 0) return true;
     const PairVector d = PairHull::edge(hull_.vertex(0), id);
-    if (known == 1) return norm1(pair_.approximate(d)) > 8 * pair_.vector_error(d);
+    if (known == 1) return sum_of(pair_.approximate(d)) > 8 * pair_.vector_error(d);
     if (known == 2) return !pair_.parallel(d, hull_.edge(0, 1));
     return pair_.sign_determinant_rounded(d, hull_.edge(0, 1), hull_.edge(0, 2)).value_or(0) != 0;
   }
@@ -295,7 +294,7 @@ class Search {
 UniqueNearestFacet unique_nearest_facet(const PosedPair& pair, std::span<const VertexPair> start, int budget,
                                         SupportFaces& faces) {
   UniqueNearestFacet out;
-  Search(pair, faces, out).run(start, budget);
+  UniqueFacetSearch(pair, faces, out).run(start, budget);
   return out;
 }
 
