@@ -120,11 +120,9 @@ FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet) 
   with_products([&](auto products)
                     __attribute__((always_inline)) { measure_plane<decltype(products)>(of_u, of_v, of_p, found); });
   const double e = pair.vector_error_dd();
-  const double eu = pair.vector_error_dd(facet.u), ev = pair.vector_error_dd(facet.v);
   const double su = found.of_u, sv = found.of_v, sp = found.of_p, sn = found.of_n;
   // Each coordinate of n: the errors of its two factors, then of two products and a difference.
-  const double normal_error =
-      (eu * sv + ev * su + 2 * eu * ev + 8 * kUdd * su * sv) * (1 + 16 * kUnitRoundoff) + 0x1p-900;
+  const double normal_error = (e * (su + sv + 2 * e) + 8 * kUdd * su * sv) * (1 + 16 * kUnitRoundoff) + 0x1p-900;
   const double length = std::sqrt(found.squared);
   if (!(length > 4 * normal_error)) return plane;
   plane.unit = vector_of(found.over_length);
