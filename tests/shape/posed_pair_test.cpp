@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -212,6 +213,49 @@ TEST(PosedPair, TiesOfExchangedAxesTakeNoBigNumbers) {
       }
     }
   }
+}
+
+/// A body 1e-20 or 1e-40 times as large as the other: edges of either alone know no other size than their own.
+TEST(PosedPair, TinyBodiesAreFilteredByTheirOwnSize) {
+  for (const double ratio : {1e-20, 1e-40}) {
+    const ConvexPolytope a = box(ratio, 2 * ratio, 3 * ratio), b = box(0.5, 0.7, 0.9);
+    const Pose pa = quaternion(1, 0.2, 0.3, 0.4, Vec3(0.1, 0.2, 0.3)),
+               pb = quaternion(1, -0.5, 0.25, 0.1, Vec3::Zero());
+    const PosedPair pair(a, pa, b, pb);
+    for (const int k : {1, 2, 4}) {
+      const PairVector u = PairVector::edge_a(0, k), v = PairVector::edge_b(0, k), w = PairVector::edge_b(0, 7);
+      EXPECT_NE(pair.sign_determinant(u, v, w), 0);
+      EXPECT_NE(pair.sign_dot(u, v), 0);
+      EXPECT_FALSE(pair.parallel(u, v));
+    }
+    EXPECT_EQ(pair.stages().filtered, 9);
+    EXPECT_EQ(pair.stages().double_double + pair.stages().exact, 0);
+    expect_exact_signs(pair, 200);
+  }
+}
+
+/// Coordinates off by the least double, both bodies turned by one rotation: signs of edges, told without it.
+TEST(PosedPair, OneRotationForBothIsLeftOut) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  std::vector<Vec3> points;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      for (const double z : {0.0, 1.0}) points.emplace_back(x, y, z == 0 ? (x + 2 * y) * least : z);
+    }
+  }
+  const ConvexPolytope a = box(1, 1, 1), b = *ConvexPolytope::from_points(points);
+  const Pose pose = quaternion(1, 0.2, 0.3, 0.4, Vec3(0.1, 0.2, 0.3));
+  const PosedPair pair(a, pose, b, pose);
+  expect_exact_signs(pair, 400);
+  const PosedPair asked(a, pose, b, pose);
+  // Two edges of B's bottom against one of A's: flat but for the noise.
+  const PairVector u = PairVector::edge_b(0, 2), v = PairVector::edge_b(0, 4), w = PairVector::edge_a(0, 2);
+  const int sign = asked.sign_determinant(u, v, w);
+  EXPECT_EQ(asked.stages().exact, 1);
+  const std::int64_t work = asked.exact_work();
+  EXPECT_EQ(sign, determinant(asked.exact(u), asked.exact(v), asked.exact(w)).sign());
+  EXPECT_NE(sign, 0);
+  EXPECT_LT(2 * work, asked.exact_work() - work);  // as products cost: shorter numbers
 }
 
 /// A matrix is taken as it stands, one that mirrors, too: signs are those of the turned vectors.

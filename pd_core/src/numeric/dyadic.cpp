@@ -1,5 +1,6 @@
 #include "numeric/dyadic.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace pd::detail {
@@ -8,6 +9,7 @@ namespace {
 
 static_assert(sizeof(boost::multiprecision::limb_type) == sizeof(std::uint64_t));
 __extension__ typedef __int128 Wide;
+__extension__ typedef unsigned __int128 UnsignedWide;
 
 /// A mantissa of one limb, times a small power of two.
 Wide widened(const Dyadic::Integer& x, int shift) {
@@ -16,6 +18,31 @@ Wide widened(const Dyadic::Integer& x, int shift) {
 }
 
 }  // namespace
+
+void Dyadic::multiply(const Integer& a, const Integer& b, Integer& product) {
+  const auto& x = a.backend();
+  const auto& y = b.backend();
+  const unsigned n = x.size(), m = y.size();
+  auto& out = product.backend();
+  out.resize(n + m, n + m);
+  const auto *p = x.limbs(), *q = y.limbs();
+  auto* const r = out.limbs();
+  std::fill_n(r, n + m, 0);
+  // Sums of numbers hundreds of powers apart are zeros for the most part: word by word, without these.
+  for (unsigned i = 0; i < n; ++i) {
+    if (p[i] == 0) continue;
+    std::uint64_t carry = 0;
+    for (unsigned j = 0; j < m; ++j) {
+      if (q[j] == 0 && carry == 0) continue;
+      const UnsignedWide t = static_cast<UnsignedWide>(p[i]) * q[j] + r[i + j] + carry;
+      r[i + j] = static_cast<std::uint64_t>(t);
+      carry = static_cast<std::uint64_t>(t >> 64);
+    }
+    r[i + m] = carry;
+  }
+  out.normalize();
+  out.sign(x.sign() != y.sign());
+}
 
 Dyadic Dyadic::sum(const Dyadic& a, const Dyadic& b, bool subtract) {
   if (b.sign() == 0) return a;

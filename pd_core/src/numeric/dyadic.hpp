@@ -56,7 +56,7 @@ class Dyadic {
   friend Dyadic operator*(const Dyadic& a, const Dyadic& b) {
     Dyadic r;
     if (a.sign() == 0 || b.sign() == 0) return r;
-    r.mantissa_ = a.mantissa_ * b.mantissa_;
+    multiply(a.mantissa_, b.mantissa_, r.mantissa_);
     r.exponent_ = a.exponent_ + b.exponent_;
     return r;
   }
@@ -79,6 +79,8 @@ class Dyadic {
 
  private:
   static Dyadic sum(const Dyadic& a, const Dyadic& b, bool subtract);
+  /// Neither is 0.
+  static void multiply(const Integer& a, const Integer& b, Integer& product);
 
   Integer mantissa_ = 0;
   int exponent_ = 0;

@@ -205,9 +205,15 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
   // 5u^2). Largest error / bound that `bound_ratios` found: 0.237 in doubles, 0.006 in double-double.
-  const double size = 2 * reach(a, body_a_.columns, scale) + 2 * reach(b, body_b_.columns, scale) + offset_size;
-  vector_error_ = 8 * kUnitRoundoff * size + kUnderflow;
-  vector_error_dd_ = 32 * 0x1p-103 * size + kUnderflow;
+  const auto error_of_size = [](double size) {
+    return VectorError{8 * kUnitRoundoff * size + kUnderflow, 32 * 0x1p-103 * size + kUnderflow};
+  };
+  const double size_a = 2 * reach(a, body_a_.columns, scale), size_b = 2 * reach(b, body_b_.columns, scale);
+  body_a_.error = error_of_size(size_a);
+  body_b_.error = error_of_size(size_b);
+  const VectorError error = error_of_size(size_a + size_b + offset_size);
+  vector_error_ = error.rounded;
+  vector_error_dd_ = error.fine;
 }
 
 Vec3 PosedPair::approximate(const PairVector& v) const {
@@ -327,14 +333,14 @@ Dyadic3 PosedPair::exact(const PairVector& v) const {
 
 namespace {
 
-/// Error of det(u, v, w) when each coordinate of the three errs by `e` and the evaluation by `relative` of the
+/// Error of det(u, v, w) when each coordinate of the three errs by its `e` and the evaluation by `relative` of the
 /// permanent, which is at most the product of the 1-norms. Multilinear, so telescoping over the three arguments bounds
 /// it.
-double determinant_error(double u, double v, double w, double e, double relative) {
-  u += 3 * e;
-  v += 3 * e;
-  w += 3 * e;
-  return (relative * u * v * w + e * (v * w + u * w + u * v)) * (1 + 16 * kUnitRoundoff) + kUnderflow;
+double determinant_error(double u, double v, double w, double eu, double ev, double ew, double relative) {
+  u += 3 * eu;
+  v += 3 * ev;
+  w += 3 * ew;
+  return (relative * u * v * w + (eu * v * w + ev * u * w + ew * u * v)) * (1 + 16 * kUnitRoundoff) + kUnderflow;
 }
 
 double norm1(const Vec3& v) { return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z()); }
@@ -350,10 +356,12 @@ int PosedPair::sign_determinant(const PairVector& u, const PairVector& v, const 
 
 std::optional<int> PosedPair::sign_determinant_rounded(const PairVector& u, const PairVector& v,
                                                        const PairVector& w) const {
+  const VectorError eu = error_of(u), ev = error_of(v), ew = error_of(w);
   {
     const Vec3 x = approximate(u), y = approximate(v), z = approximate(w);
     const double value = x.dot(y.cross(z));
-    if (std::abs(value) > determinant_error(norm1(x), norm1(y), norm1(z), vector_error_, 8 * kUnitRoundoff)) {
+    if (std::abs(value) >
+        determinant_error(norm1(x), norm1(y), norm1(z), eu.rounded, ev.rounded, ew.rounded, 8 * kUnitRoundoff)) {
       ++stages_.filtered;
       return sign(value);
     }
@@ -371,13 +379,40 @@ std::optional<int> PosedPair::sign_determinant_rounded(const PairVector& u, cons
     const Vec3DD x = approximate_dd(u), y = approximate_dd(v), z = approximate_dd(w);
     const double value = dot(x, cross(y, z)).hi;
     if (std::abs(value) >
-        determinant_error(norm1(high(x)), norm1(high(y)), norm1(high(z)), vector_error_dd_, 32 * 0x1p-104)) {
+        determinant_error(norm1(high(x)), norm1(high(y)), norm1(high(z)), eu.fine, ev.fine, ew.fine, 32 * 0x1p-104)) {
       ++stages_.double_double;
       return sign(value);
     }
   }
   ++stages_.exact;
-  return sign_by_differences({&u, &v, &w});
+  const std::optional<int> told = sign_by_differences({&u, &v, &w});
+  return told ? told : sign_in_one_frame({&u, &v, &w});
+}
+
+std::optional<int> PosedPair::sign_in_one_frame(const PairVector* const (&vectors)[3]) const {
+  bool of_a = false, of_b = false;
+  for (const PairVector* const v : vectors) {
+    if (v->translated) return std::nullopt;
+    of_a = of_a || v->a_to >= 0 || v->a_from >= 0;
+    of_b = of_b || v->b_to >= 0 || v->b_from >= 0;
+  }
+  if (of_a && of_b && !same_rotation_) return std::nullopt;
+  const Vec3 zero = Vec3::Zero();
+  const auto place = [&](const ConvexPolytope& p, int v) { return to_dyadic(v >= 0 ? p.vertex(v) : zero); };
+  Dyadic3 whole[3];
+  for (int i = 0; i < 3; ++i) {
+    const PairVector& v = *vectors[i];
+    whole[i] = (place(*b_, v.b_to) - place(*b_, v.b_from)) - (place(*a_, v.a_to) - place(*a_, v.a_from));
+    std::int64_t words = 0;
+    for (const Dyadic* x : {&whole[i].x, &whole[i].y, &whole[i].z}) {
+      words = std::max<std::int64_t>(words, x->mantissa().backend().size());
+    }
+    exact_work_ += words * words;
+  }
+  const int sign = determinant(whole[0], whole[1], whole[2]).sign();
+  // A matrix that is taken as it stands may turn the order of three vectors.
+  const bool turned = of_a ? pose_a_->is_quaternion() : pose_b_->is_quaternion();
+  return sign == 0 || turned ? std::optional(sign) : std::nullopt;
 }
 
 std::optional<int> PosedPair::sign_by_differences(const PairVector* const (&vectors)[3]) const {
@@ -409,22 +444,23 @@ std::optional<int> PosedPair::sign_by_differences(const PairVector* const (&vect
 }
 
 int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {
+  const VectorError eu = error_of(u), ev = error_of(v);
   {
     const Vec3 x = approximate(u), y = approximate(v);
-    const double a = norm1(x) + 3 * vector_error_, b = norm1(y) + 3 * vector_error_;
+    const double a = norm1(x) + 3 * eu.rounded, b = norm1(y) + 3 * ev.rounded;
     const double value = x.dot(y);
     if (std::abs(value) >
-        (4 * kUnitRoundoff * a * b + vector_error_ * (a + b)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
+        (4 * kUnitRoundoff * a * b + (eu.rounded * b + ev.rounded * a)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
       ++stages_.filtered;
       return sign(value);
     }
   }
   {
     const Vec3DD x = approximate_dd(u), y = approximate_dd(v);
-    const double a = norm1(high(x)) + 3 * vector_error_dd_, b = norm1(high(y)) + 3 * vector_error_dd_;
+    const double a = norm1(high(x)) + 3 * eu.fine, b = norm1(high(y)) + 3 * ev.fine;
     const double value = dot(x, y).hi;
     if (std::abs(value) >
-        (16 * 0x1p-104 * a * b + vector_error_dd_ * (a + b)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
+        (16 * 0x1p-104 * a * b + (eu.fine * b + ev.fine * a)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
       ++stages_.double_double;
       return sign(value);
     }
@@ -435,10 +471,11 @@ int PosedPair::sign_dot(const PairVector& u, const PairVector& v) const {
 
 bool PosedPair::parallel(const PairVector& u, const PairVector& v) const {
   const Vec3 x = approximate(u), y = approximate(v);
-  const double a = norm1(x) + 3 * vector_error_, b = norm1(y) + 3 * vector_error_;
+  const double eu = error_of(u).rounded, ev = error_of(v).rounded;
+  const double a = norm1(x) + 3 * eu, b = norm1(y) + 3 * ev;
   const Vec3 c = x.cross(y);
   if (c.cwiseAbs().maxCoeff() >
-      (4 * kUnitRoundoff * a * b + vector_error_ * (a + b)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
+      (4 * kUnitRoundoff * a * b + (eu * b + ev * a)) * (1 + 16 * kUnitRoundoff) + kUnderflow) {
     ++stages_.filtered;
     return false;
   }

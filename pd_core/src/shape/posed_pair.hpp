@@ -66,6 +66,9 @@ class PosedPair {
   /// The vector in doubles (scaled). |error| per coordinate <= vector_error().
   [[nodiscard]] Vec3 approximate(const PairVector& v) const;
   [[nodiscard]] double vector_error() const { return vector_error_; }
+  /// The same for this vector: of one body alone, its size counts and not the pair's.
+  [[nodiscard]] double vector_error(const PairVector& v) const { return error_of(v).rounded; }
+  [[nodiscard]] double vector_error_dd(const PairVector& v) const { return error_of(v).fine; }
 
   /// In double-double (scaled). |error| per coordinate <= vector_error_dd().
   [[nodiscard]] Vec3DD approximate_dd(const PairVector& v) const {
@@ -118,7 +121,7 @@ class PosedPair {
 
   /// Sign of det(u, v, w) = <u, v x w>, exact.
   [[nodiscard]] int sign_determinant(const PairVector& u, const PairVector& v, const PairVector& w) const;
-  /// The same where stages 1 and 2 tell it; none: stage 3 must, for callers that have exact vectors at hand.
+  /// The same where it is told without `exact`; none: stage 3 must, for callers that have exact vectors at hand.
   [[nodiscard]] std::optional<int> sign_determinant_rounded(const PairVector& u, const PairVector& v,
                                                             const PairVector& w) const;
   /// Sign of <u, v>, exact.
@@ -138,10 +141,21 @@ class PosedPair {
   [[nodiscard]] std::int64_t exact_work() const { return exact_work_; }
 
  private:
+  /// |error| of each coordinate of a vector in doubles and in double-double.
+  struct VectorError {
+    double rounded = 0;
+    double fine = 0;
+  };
   struct Body {
     double rotation[9];  ///< R row by row, rounded from the exact rational when a quaternion
     ColumnsDD columns;   ///< of R, in double-double
+    VectorError error;   ///< of vectors of this body alone
   };
+  [[nodiscard]] VectorError error_of(const PairVector& v) const {
+    if (!v.translated && v.b_to < 0 && v.b_from < 0) return body_a_.error;
+    if (!v.translated && v.a_to < 0 && v.a_from < 0) return body_b_.error;
+    return {vector_error_, vector_error_dd_};
+  }
   /// Exact numbers, which most pairs never ask for.
   struct ExactPlacing {
     Dyadic rotation_a[9];  ///< numerators over the common denominator of the pair
@@ -160,6 +174,9 @@ class PosedPair {
   /// The sign of the determinant of three vectors of one body each, as differences of stored coordinates: in the frame
   /// of a rotation that all share, or where both rotations do no more than exchange and reverse axes.
   [[nodiscard]] std::optional<int> sign_by_differences(const PairVector* const (&vectors)[3]) const;
+  /// The same in dyadic numbers, of vectors of either body or both, where one rotation turns them all: without it they
+  /// are short.
+  [[nodiscard]] std::optional<int> sign_in_one_frame(const PairVector* const (&vectors)[3]) const;
 
   const ConvexPolytope* a_;
   const ConvexPolytope* b_;

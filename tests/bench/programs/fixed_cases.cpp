@@ -57,6 +57,32 @@ constexpr FixedTightest kTightest[] = {
     {"tightest_near_ties_64", PairFamily::near_equal_bodies, 64, DepthClass::mid, 7},  // ties but for noise
 };
 
+/// What `slowest_pairs` found dear in one of all families: cold, facets that doubles cannot find or tell apart.
+struct FixedDear {
+  const char* name;
+  PairFamily family;
+  int vertices;
+  DepthClass depth;
+  std::uint64_t seed;
+  pd::DepthSettings settings;
+};
+constexpr pd::DepthSettings kTightestBracket{};
+constexpr pd::DepthSettings kOverlay{.method = pd::Method::overlay};
+constexpr FixedDear kDear[] = {
+    // Products of coordinates leave the range of doubles.
+    {"dear_scales_8", PairFamily::scales, 8, DepthClass::shallow, 1000011, kHotPath},
+    {"dear_scales_64", PairFamily::scales, 64, DepthClass::deep, 1000007, kHotPath},
+    {"dear_scales_apart_32", PairFamily::scales, 32, DepthClass::gap, 1000007, kHotPath},
+    {"dear_far_translations_32", PairFamily::far_translations, 32, DepthClass::deep, 1000006, kHotPath},
+    {"dear_equal_bodies_64", PairFamily::equal_bodies, 64, DepthClass::mid, 1000003, kHotPath},  // facets tie exactly
+    // A body 1e-40 times as large as the other.
+    {"dear_mixed_scales_32", PairFamily::mixed_scales, 32, DepthClass::deep, 1000011, kTightestBracket},
+    {"dear_mixed_scales_overlay_8", PairFamily::mixed_scales, 8, DepthClass::mid, 1000003, kOverlay},
+    // Planes that differ by 1e-31 of their distance, and by the least double.
+    {"dear_near_equal_64", PairFamily::near_equal_bodies, 64, DepthClass::mid, 1000008, kTightestBracket},
+    {"dear_ulp_noise_8", PairFamily::ulp_noise, 8, DepthClass::mid, 1000010, kTightestBracket},
+};
+
 /// Bodies at rest, warm, for contacts.
 struct FixedRest {
   const char* name;
@@ -153,9 +179,9 @@ __attribute__((noinline)) void pdepth_counted_call(const pd::PosedShape* a, cons
 
 namespace {
 
-/// Counts one cold query in the tightest bracket, the library's default.
-int count_tightest(const char* name, const pd::PosedShape& a, const pd::PosedShape& b) {
-  const pd::DepthSettings settings;
+/// Counts one cold query, by default in the tightest bracket, as the library's is.
+int count_cold(const char* name, const pd::PosedShape& a, const pd::PosedShape& b,
+               const pd::DepthSettings& settings = {}) {
   pd::Scratch scratch;
   pd::PenetrationDepth answer = pd::penetration_depth(a, b, scratch, settings);
   pdepth_counted_call(&a, &b, &scratch, nullptr, &answer, &settings);
@@ -257,7 +283,14 @@ int main(int argc, char** argv) {
     const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
     const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
     const pd::PosedShape posed_a{&a, pair.pose_a}, posed_b{&b, pair.pose_b};
-    return count_tightest(c.name, posed_a, posed_b);
+    return count_cold(c.name, posed_a, posed_b);
+  }
+  for (const FixedDear& c : kDear) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    const pd::scenes::PointPair pair = pd::scenes::make_pair(c.family, c.vertices, c.depth, c.seed);
+    const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
+    const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
+    return count_cold(c.name, {&a, pair.pose_a}, {&b, pair.pose_b}, c.settings);
   }
   for (const FixedRest& c : kRests) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
@@ -338,7 +371,7 @@ int main(int argc, char** argv) {
     const double length = std::hypot(c.turn[0], c.turn[3]);
     const std::array<double, 4> turn{c.turn[0] / length, c.turn[1], c.turn[2], c.turn[3] / length};
     const pd::PosedShape posed_a{&a, *pd::Pose::from_quaternion(turn, {0.0, 0.0, c.height})}, posed_b{&b, pd::Pose()};
-    return count_tightest(c.name, posed_a, posed_b);
+    return count_cold(c.name, posed_a, posed_b);
   }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
@@ -354,6 +387,7 @@ int main(int argc, char** argv) {
   std::fprintf(stderr, "fixed_cases NAME, one of:");
   for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
   for (const FixedTightest& c : kTightest) std::fprintf(stderr, " %s", c.name);
+  for (const FixedDear& c : kDear) std::fprintf(stderr, " %s", c.name);
   for (const FixedRest& c : kRests) std::fprintf(stderr, " %s", c.name);
   for (const FixedGap& c : kGaps) std::fprintf(stderr, " %s", c.name);
   for (const FixedDistance& c : kDistances) std::fprintf(stderr, " %s", c.name);

@@ -160,6 +160,9 @@ using Json = nlohmann::ordered_json;
 Json json_of(const pd::Pose& pose) {
   const pd::Mat3& r = pose.rotation();
   const Vec3& t = pose.translation();
+  // A quaternion is turned into a matrix exactly, as a fraction: rounded to one it would be another pair.
+  if (pose.is_quaternion())
+    return {{"quaternion_wxyz", pose.quaternion_wxyz()}, {"translation", {t.x(), t.y(), t.z()}}};
   return {{"rotation_row_major", {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
           {"translation", {t.x(), t.y(), t.z()}}};
 }

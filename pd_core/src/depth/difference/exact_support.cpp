@@ -52,6 +52,23 @@ int sign_by_double_double(const ConvexPolytope& body, const Vec3DD& local, doubl
   return value > 0 ? 1 : -1;
 }
 
+bool in_loop(const ConvexPolytope& body, int facet, std::int32_t v) {
+  const auto loop = body.facet_vertices(facet);
+  return std::find(loop.begin(), loop.end(), v) != loop.end();
+}
+
+/// The facet of a solid that holds the three vertices, -1 where there is none: no three vertices lie on a line, so what
+/// is level with them is all of it.
+int facet_through(const ConvexPolytope& body, const SupportFace& three) {
+  if (body.affine_dimension() != 3) return -1;
+  const int first = body.first_half_edge(three[0]);
+  for (std::size_t k = 0; k < body.neighbours(three[0]).size(); ++k) {
+    const int f = body.half_edge(first + static_cast<int>(k)).facet;
+    if (in_loop(body, f, three[1]) && in_loop(body, f, three[2])) return f;
+  }
+  return -1;
+}
+
 /// Vertices that maximise `sign` times <R v, direction>, where `edge(from, to)` is the rotated difference.
 /// @param turned_back  R^T x in double-double.
 template <class Edge>
@@ -85,15 +102,20 @@ SupportFace extremal(const PosedPair& pair, const ConvexPolytope& body, const Ma
   double best = -std::numeric_limits<double>::infinity();
   for (int v = 0; v < n; ++v) best = std::max(best, body.vertex(v).dot(local));
   SupportFace face;
+  int level_facet = -1;  // that all of the face lies in, once three of its vertices are known
   for (int v = 0; v < n; ++v) {
     if (body.vertex(v).dot(local) < best - slack) continue;
-    if (face.empty()) {
+    if (face.empty() || (level_facet >= 0 && in_loop(body, level_facet, v))) {
       face.push_back(v);
       continue;
     }
     const int compared = exactly(face.front(), v);
-    if (compared > 0) face.clear();
+    if (compared > 0) {
+      face.clear();
+      level_facet = -1;
+    }
     if (compared >= 0) face.push_back(v);
+    if (compared == 0 && face.size() == 3) level_facet = facet_through(body, face);
   }
   return face;
 }
@@ -137,17 +159,20 @@ int facing_facet(const ConvexPolytope& body, const SupportFace& vertices, const 
   return (rotation * body.facet_normal(facet)).dot(outward) > 0 ? facet : 1 - facet;
 }
 
+FacetOfDifference facet_of_faces(const PosedPair& pair, const SupportFace& on_a, const SupportFace& on_b,
+                                 const Vec3& outward) {
+  if (on_b.size() >= 3) {
+    const int facet = facing_facet(pair.b(), on_b, pair.pose_b().rotation(), outward);
+    return FacetOfDifference::from_facet_of_b(pair.b(), facet, on_a.front());
+  }
+  const int facet = facing_facet(pair.a(), on_a, pair.pose_a().rotation(), -outward);
+  return FacetOfDifference::from_facet_of_a(pair.a(), facet, on_b.front());
+}
+
 FacetOfDifference facet_of_direction(const PosedPair& pair, const ExactDirection& normal) {
   const SupportFace on_a = support_face_a(pair, normal);
   const SupportFace on_b = support_face_b(pair, normal);
-  if (on_b.size() >= 3) {
-    const int facet = facing_facet(pair.b(), on_b, pair.pose_b().rotation(), normal.unit);
-    return FacetOfDifference::from_facet_of_b(pair.b(), facet, on_a.front());
-  }
-  if (on_a.size() >= 3) {
-    const int facet = facing_facet(pair.a(), on_a, pair.pose_a().rotation(), -normal.unit);
-    return FacetOfDifference::from_facet_of_a(pair.a(), facet, on_b.front());
-  }
+  if (on_a.size() >= 3 || on_b.size() >= 3) return facet_of_faces(pair, on_a, on_b, normal.unit);
   assert(on_a.size() == 2 && on_b.size() == 2);
   const Dyadic3 u = pair.exact(PairVector::edge_b(on_b[0], on_b[1]));
   const Dyadic3 v = pair.exact(PairVector::edge_a(on_a[0], on_a[1]));

@@ -44,6 +44,10 @@ using SupportFace = std::vector<std::int32_t>;
 /// edges. Requires that the two support faces span a plane (the direction is a facet normal of P).
 [[nodiscard]] FacetOfDifference facet_of_direction(const PosedPair& pair, const ExactDirection& normal);
 
+/// The same from its two support faces, one of which has three vertices.
+[[nodiscard]] FacetOfDifference facet_of_faces(const PosedPair& pair, const SupportFace& on_a, const SupportFace& on_b,
+                                               const Vec3& outward);
+
 /// A direction in doubles (common frame) and a bound of each coordinate's error.
 struct RoundedDirection {
   Vec3 vector;

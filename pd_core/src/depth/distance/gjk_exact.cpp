@@ -62,7 +62,9 @@ class ExactSimplex {
       if (ids_[i].a == id.a && ids_[i].b == id.b) return;
     }
     ids_[size_] = id;
-    points_[size_] = pair_.exact(PairVector::point(id.a, id.b));
+    const PairVector v = PairVector::point(id.a, id.b);
+    points_[size_] = pair_.exact(v);
+    rounded_[size_] = pair_.approximate(v);
     ++size_;
   }
 
@@ -74,20 +76,24 @@ class ExactSimplex {
   };
 
   /// The face whose closest point is that of the whole hull: no other point lies before the plane across it.
-  [[nodiscard]] Face closest_face() const {
+  /// @param with  points that it has for certain, as bits: a point nearer than all the others together, say.
+  [[nodiscard]] Face closest_face(unsigned with) const {
     for (int wanted = 1; wanted <= 4; ++wanted) {
       for (unsigned mask = 1; mask < (1U << size_); ++mask) {
-        if (std::popcount(mask) != wanted) continue;
+        if (std::popcount(mask) != wanted || (mask & with) != with || certainly_elsewhere(mask)) continue;
         if (std::optional<Face> face = closest_in(mask)) return *std::move(face);
       }
     }
     return {};
   }
 
+  [[nodiscard]] unsigned last() const { return 1U << (size_ - 1); }
+
   void reduce_to(const Face& face) {
     // Members ascend, so that no point is overwritten before it is moved.
     for (std::size_t i = 0; i < face.count; ++i) {
       ids_[i] = ids_[face.members[i]];
+      rounded_[i] = rounded_[face.members[i]];
       if (i != face.members[i]) points_[i] = std::move(points_[face.members[i]]);
     }
     size_ = face.count;
@@ -97,6 +103,30 @@ class ExactSimplex {
   [[nodiscard]] const Dyadic3& point(std::size_t i) const { return points_[i]; }
 
  private:
+  /// Whether a weight of the face's closest point is certainly negative, as doubles tell.
+  [[nodiscard]] bool certainly_elsewhere(unsigned mask) const {
+    Vec3 p[4];
+    int count = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if ((mask >> i & 1U) != 0) p[count++] = rounded_[i];
+    }
+    // Points err by 8u of the pair's size and are no larger. A weight is a sum of products of as many of them and of
+    // their differences; its error is below 2^-40 of that power of the size.
+    const double size = pair_.vector_error() * 0x1p50;
+    if (count == 2) {
+      const Vec3 e = p[1] - p[0];
+      const double least = -0x1p-36 * size * size;
+      return p[1].dot(e) < least || -p[0].dot(e) < least;
+    }
+    if (count != 3) return false;
+    const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
+    const double least = -0x1p-36 * size * size * size * size;
+    for (int i = 0; i < 3; ++i) {
+      if (n.dot(p[(i + 1) % 3].cross(p[(i + 2) % 3])) < least) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] std::optional<Face> closest_in(unsigned mask) const {
     Face face;
     const Dyadic3* chosen[4] = {};
@@ -117,6 +147,7 @@ class ExactSimplex {
   const PosedPair& pair_;
   std::array<VertexPair, 5> ids_{};
   std::array<Dyadic3, 5> points_;
+  std::array<Vec3, 5> rounded_;  ///< scaled
   std::size_t size_ = 0;
 };
 
@@ -140,9 +171,10 @@ ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* s
   ExactSimplex simplex(pair);
   for (int i = 0; i < count; ++i) simplex.add(start[i]);
   // The distance falls strictly at each step among finitely many simplices, so this ends.
-  for (;;) {
-    // 1. The closest point of the simplex, and the face that holds it.
-    const ExactSimplex::Face face = simplex.closest_face();
+  for (unsigned with = 0;; with = simplex.last()) {
+    // 1. The closest point of the simplex, and the face that holds it: the last vertex among it, which lies before the
+    // plane through the closest point so far.
+    const ExactSimplex::Face face = simplex.closest_face(with);
     const Dyadic3& y = face.closest.point;
     if (y.x.sign() == 0 && y.y.sign() == 0 && y.z.sign() == 0) return result_of(simplex, face);
 

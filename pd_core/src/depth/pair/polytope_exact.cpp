@@ -10,6 +10,7 @@
 #include "depth/expansion/exact_expanding_polytope.hpp"
 #include "depth/facets/aligned_boxes.hpp"
 #include "depth/facets/box_sat.hpp"
+#include "depth/facets/unique_nearest_facet.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
 
@@ -95,6 +96,17 @@ FacetOfDifference facet_of(const PolytopePair& pair, const PosedPair& posed, con
   const FacetOfDifference facet = FacetOfDifference::from_edges(a0, a1, b0, b1);
   const Vec3 n = posed.approximate(facet.u).cross(posed.approximate(facet.v));
   return n.dot(found.normal) > 0 ? facet : FacetOfDifference::from_edges(a1, a0, b0, b1);
+}
+
+/// An exact search that is not observed, where no other facet is as near: the same facet without big numbers.
+bool answer_from_unique_facet(PolytopeQuery& query, std::span<const VertexPair> start, PenetrationDepth& out) {
+  if (query.buffers.surface.watch) return false;
+  const PosedPair& posed = query.exact();
+  const UniqueNearestFacet nearest =
+      unique_nearest_facet(posed, start, 4 * ExpansionBudget::min_steps(query.vertices()), query.buffers.faces);
+  out.statistics.support_calls += nearest.support_calls;
+  out.statistics.facets_visited += nearest.facets_visited;
+  return answer_from_proof(query, nearest.found, out);
 }
 
 /// The origin is known to lie in P: in its interior, or `nearest` says where.
@@ -250,7 +262,8 @@ bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, Penetration
 
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   if (surface.status != ExpansionStatus::certified) return false;
-  expand_exactly(query, corners_of(query.buffers.surface, surface.face).v, nullptr, out);
+  const SurfaceCorners start = corners_of(query.buffers.surface, surface.face);
+  if (!answer_from_unique_facet(query, start.v, out)) expand_exactly(query, start.v, nullptr, out);
   return true;
 }
 
@@ -279,6 +292,7 @@ bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surfac
     const auto proof = prove_separation(posed, std::span(start).first(count), faces);
     if (proof && answer_separated(posed, *proof, faces, margins, query.bracket, out)) return true;
   }
+  if (answer_from_unique_facet(query, std::span(start).first(count), out)) return true;
   const ExactClosestPoint nearest = exact_closest_point(posed, start.data(), static_cast<int>(count));
   if (nearest.apart) {
     answer_separated(posed, nearest, margins, out);
