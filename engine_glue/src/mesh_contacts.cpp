@@ -216,7 +216,8 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   if (still_) {
     memory.standing.find(buffers->around.triangles(), known_);
   } else if (!stand_.empty()) {
-    memory.standing.begin(stand_, question.threshold, buffers->around.triangles());
+    memory.standing.begin(stand_, question.threshold, question.b.getCollisionShape()->getMargin(),
+                          buffers->around.triangles());
   } else {
     memory.standing.forget();
   }
@@ -244,7 +245,7 @@ bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, 
     const Vec3 origin = to_pd(stand_.back().pose.getOrigin());
     radii_.push_back((to_pd(reaches_[i].upper()) - origin).cwiseMax(origin - to_pd(reaches_[i].lower())).norm());
   }
-  return memory.standing.still(stand_, radii_, question.threshold);
+  return memory.standing.still(stand_, radii_, question.threshold, question.b.getCollisionShape()->getMargin());
 }
 
 void MeshContacts::choose_triangles(int place, const TrianglesAround& around, StandingStill& standing) {
@@ -293,6 +294,8 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
     return true;
   }
+  // What stood on flat ground stands over an edge of it now: all are asked again in the next step.
+  if (still_ && !asked_one_by_one) memory.standing.forget();
   const bool one_sided = core.settings.one_sided_meshes;
   one_sided_.clear();
   for (std::size_t i = first; i < triangles_.size(); ++i) {

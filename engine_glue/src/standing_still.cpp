@@ -19,9 +19,9 @@ StandingStill::Known StandingStill::known(const MeshTriangle& triangle) {
   return known;
 }
 
-bool StandingStill::still(std::span<const StandingChild> children, std::span<const double> radii,
-                          btScalar threshold) const {
-  if (threshold_ != threshold || children.size() != children_.size()) return false;
+bool StandingStill::still(std::span<const StandingChild> children, std::span<const double> radii, btScalar threshold,
+                          btScalar margin) const {
+  if (threshold_ != threshold || margin_ != margin || children.size() != children_.size()) return false;
   const double hardly = kHardly * static_cast<double>(threshold);
   for (std::size_t i = 0; i < children.size(); ++i) {
     const StandingChild& was = children_[i];
@@ -32,9 +32,10 @@ bool StandingStill::still(std::span<const StandingChild> children, std::span<con
   return true;
 }
 
-void StandingStill::begin(std::span<const StandingChild> children, btScalar threshold,
+void StandingStill::begin(std::span<const StandingChild> children, btScalar threshold, btScalar margin,
                           std::span<const MeshTriangle> triangles) {
   threshold_ = threshold;
+  margin_ = margin;
   children_.assign(children.begin(), children.end());
   known_.clear();
   for (const MeshTriangle& triangle : triangles) known_.push_back(known(triangle));

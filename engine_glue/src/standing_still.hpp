@@ -40,14 +40,15 @@ class StandingStill {
   [[nodiscard]] bool empty() const { return threshold_ < 0; }
   void forget() { threshold_ = -1; }
 
-  /// Whether these are the children that stood there, with contacts up to the same gap, none of them moved since by
-  /// more than a small share of it.
+  /// Whether these are the children that stood there, with contacts up to the same gap of a mesh of the same margin,
+  /// none of them moved since by more than a small share of the gap.
   /// @param radii  of the children, about their frames' origins
-  [[nodiscard]] bool still(std::span<const StandingChild> children, std::span<const double> radii,
-                           btScalar threshold) const;
+  [[nodiscard]] bool still(std::span<const StandingChild> children, std::span<const double> radii, btScalar threshold,
+                           btScalar margin) const;
 
   /// In place of what was known: none of the triangles is within reach of any child.
-  void begin(std::span<const StandingChild> children, btScalar threshold, std::span<const MeshTriangle> triangles);
+  void begin(std::span<const StandingChild> children, btScalar threshold, btScalar margin,
+             std::span<const MeshTriangle> triangles);
   /// The place of each of these triangles among those that were known, -1: it was edited or is new. Time O(k).
   void find(std::span<const MeshTriangle> triangles, std::vector<int>& places) const;
 
@@ -68,6 +69,7 @@ class StandingStill {
   static Known known(const MeshTriangle& triangle);
 
   btScalar threshold_ = -1;
+  btScalar margin_ = 0;
   std::vector<StandingChild> children_;
   std::vector<Known> known_;
   std::vector<Met> met_;  ///< of each child all triangles
