@@ -1,7 +1,9 @@
 /// @file
 /// `bodies_on_mesh`: 36 bodies of one kind, or piles of them, that came to rest on a flat or wavy triangle mesh or on a
 /// plane, a step under Bullet's algorithms and under ours in one run: milliseconds, queries, those that a memory
-/// answered, contact points, bodies that fell through or off. For instructions, one side alone under callgrind:
+/// answered, contact points, bodies that fell through or off, the speed of half, of nine tenths and of all of the
+/// bodies, and the deepest point of a world, nine tenths of them (`--alone`: a world for each body). For instructions,
+/// one side alone under callgrind:
 ///
 ///     valgrind --tool=callgrind --toggle-collect='btDiscreteDynamicsWorld::stepSimulation*'
 ///       bodies_on_mesh --kinds cylinder --grounds waves --runs pdepth --settle 0 --steps 20
@@ -67,8 +69,29 @@ btCollisionShape* shape_of(const std::string& kind, pd::test::BulletWorld& world
   return world.shape<btMultiSphereShape>(centres, radii, 3);
 }
 
-void run(const std::string& kind, const std::string& ground, bool ours, int layers, int cells, int settle, int steps) {
+struct Question {
+  int layers = 1;
+  int cells = 32;
+  int settle = 240;
+  int steps = 120;
+  bool alone = false;
+};
+
+/// Of all worlds of a run.
+struct Measured {
+  std::vector<double> ms;
+  std::vector<double> speeds;  ///< of each body, the mean of the steps
+  std::vector<double> deepest;
+  pd::BulletSolverStatistics queries;
+  int contacts = 0;
+  int lost = 0;
+};
+
+/// @param only  a body's number, the others are left out; -1: all bodies
+void add_world(const std::string& kind, const std::string& ground, bool ours, const Question& question, int only,
+               Measured& out) {
   pd::test::UnionWorld world(ours);
+  const int cells = question.cells;
   const auto corner = [&](int i, int k) {
     const double x = kExtent * (2.0 * i / cells - 1), z = kExtent * (2.0 * k / cells - 1);
     const double height = ground == "flat" ? 0 : 0.1 * (x * x + z * z) + 0.15 * std::sin(2 * x) * std::cos(2 * z);
@@ -86,40 +109,61 @@ void run(const std::string& kind, const std::string& ground, bool ours, int laye
           : world.mesh(triangles, CONVEX_DISTANCE_MARGIN);
   world.fixed(under)->setFriction(.7F);
   Random random;
-  for (int i = 0; i < layers * kSide * kSide; ++i) {
+  std::vector<const btRigidBody*> bodies;
+  for (int i = 0; i < question.layers * kSide * kSide; ++i) {
     const auto across = [&](int place) { return 1.2F * (static_cast<btScalar>(place) - 2.5F) + .1F * random.next(); };
     const auto above = static_cast<btScalar>(i / (kSide * kSide));
     const btVector3 at(across(i % kSide), 3 + above + .3F * random.next(), across(i / kSide % kSide));
     btQuaternion turn(random.next(), random.next(), random.next(), random.next());
+    if (only >= 0 && i != only) continue;
     btRigidBody* body =
         world.moving(shape_of(kind, world.bullet), btTransform(turn.normalized(), at), btVector3(0, 0, 0));
     body->setFriction(.7F);
     body->setRollingFriction(.02F);
     body->setSpinningFriction(.02F);
+    bodies.push_back(body);
   }
-  world.step(settle);
+  world.step(question.settle);
   world.solver.reset_statistics();
-  std::vector<double> ms;
-  std::vector<double> speeds;
-  for (int i = 0; i < steps; ++i) {
+  std::vector<double> speeds(bodies.size(), 0.0);
+  double deepest = 0;
+  for (int i = 0; i < question.steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
     world.step();
-    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    for (const auto& body : world.bullet.bodies()) {
-      if (!body->isStaticObject()) speeds.push_back(static_cast<double>(body->getLinearVelocity().length()));
+    out.ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      speeds[b] += static_cast<double>(bodies[b]->getLinearVelocity().length()) / question.steps;
     }
+    deepest = std::max(deepest, -world.bullet.least_distance());
   }
-  std::sort(ms.begin(), ms.end());
-  std::sort(speeds.begin(), speeds.end());
+  out.speeds.insert(out.speeds.end(), speeds.begin(), speeds.end());
+  out.deepest.push_back(deepest);
   const auto statistics = world.solver.statistics();
-  const auto calls = static_cast<double>(std::max<std::int64_t>(statistics.calls, 1));
-  const auto lost = std::count_if(world.bullet.bodies().begin(), world.bullet.bodies().end(),
-                                  [](const auto& body) { return body->getWorldTransform().getOrigin().y() < -1; });
-  std::printf("%-12s%-7s%-8s%10.4f%10.1f%8.2f%10.2f%10d%6d%10.5f%10.5f\n", kind.c_str(), ground.c_str(),
-              ours ? "pdepth" : "bullet", ms[ms.size() / 2], static_cast<double>(statistics.calls) / steps,
-              static_cast<double>(statistics.warm) / calls, static_cast<double>(statistics.support_calls) / calls,
-              world.bullet.num_contacts(), static_cast<int>(lost), speeds[speeds.size() / 2],
-              speeds[speeds.size() * 9 / 10]);
+  out.queries.calls += statistics.calls;
+  out.queries.warm += statistics.warm;
+  out.queries.support_calls += statistics.support_calls;
+  out.contacts += world.bullet.num_contacts();
+  out.lost += static_cast<int>(std::count_if(bodies.begin(), bodies.end(), [](const btRigidBody* body) {
+    return body->getWorldTransform().getOrigin().y() < -1;
+  }));
+}
+
+void run(const std::string& kind, const std::string& ground, bool ours, const Question& question) {
+  Measured measured;
+  const int worlds = question.alone ? question.layers * kSide * kSide : 1;
+  for (int i = 0; i < worlds; ++i) add_world(kind, ground, ours, question, question.alone ? i : -1, measured);
+  const auto quantile = [](std::vector<double>& of, double share) {
+    std::sort(of.begin(), of.end());
+    return of[std::min(of.size() - 1, static_cast<std::size_t>(share * static_cast<double>(of.size())))];
+  };
+  const auto calls = static_cast<double>(std::max<std::int64_t>(measured.queries.calls, 1));
+  std::printf("%-12s%-7s%-8s%10.4f%10.1f%8.2f%10.2f%10d%6d%10.5f%10.5f%10.5f%10.5f\n", kind.c_str(), ground.c_str(),
+              ours ? "pdepth" : "bullet", quantile(measured.ms, .5),
+              static_cast<double>(measured.queries.calls) / question.steps,
+              static_cast<double>(measured.queries.warm) / calls,
+              static_cast<double>(measured.queries.support_calls) / calls, measured.contacts, measured.lost,
+              quantile(measured.speeds, .5), quantile(measured.speeds, .9), quantile(measured.speeds, 1),
+              quantile(measured.deepest, .9));
 }
 
 }  // namespace
@@ -129,23 +173,21 @@ int main(int argc, char** argv) {
   std::vector<std::string> kinds{"cylinder", "cone", "multisphere", "capsule", "box", "sphere", "hull", "compound"};
   std::vector<std::string> grounds{"flat", "waves", "plane"};
   std::vector<std::string> runs{"bullet", "pdepth"};
-  int layers = 1;
-  int cells = 32;
-  int settle = 240;
-  int steps = 120;
+  Question question;
   app.add_option("--kinds", kinds)->delimiter(',')->check(CLI::IsMember(kinds));
   app.add_option("--grounds", grounds)->delimiter(',')->check(CLI::IsMember(grounds));
   app.add_option("--runs", runs)->delimiter(',')->check(CLI::IsMember(runs));
-  app.add_option("--layers", layers, "of 36 bodies each")->check(CLI::PositiveNumber);
-  app.add_option("--cells", cells, "along each of the 12 m of a mesh")->check(CLI::PositiveNumber);
-  app.add_option("--settle", settle, "steps before those that are measured")->check(CLI::NonNegativeNumber);
-  app.add_option("--steps", steps)->check(CLI::PositiveNumber);
+  app.add_option("--layers", question.layers, "of 36 bodies each")->check(CLI::PositiveNumber);
+  app.add_option("--cells", question.cells, "along each of the 12 m of a mesh")->check(CLI::PositiveNumber);
+  app.add_option("--settle", question.settle, "steps before those that are measured")->check(CLI::NonNegativeNumber);
+  app.add_option("--steps", question.steps)->check(CLI::PositiveNumber);
+  app.add_flag("--alone", question.alone, "each body in a world of its own");
   CLI11_PARSE(app, argc, argv);
-  std::printf("%-12s%-7s%-8s%10s%10s%8s%10s%10s%6s%10s%10s\n", "kind", "ground", "run", "p50 ms", "queries", "warm",
-              "supports", "contacts", "lost", "speed p50", "p90");
+  std::printf("%-12s%-7s%-8s%10s%10s%8s%10s%10s%6s%10s%10s%10s%10s\n", "kind", "ground", "run", "p50 ms", "queries",
+              "warm", "supports", "contacts", "lost", "speed p50", "p90", "max", "deepest");
   for (const std::string& kind : kinds) {
     for (const std::string& ground : grounds) {
-      for (const std::string& name : runs) run(kind, ground, name == "pdepth", layers, cells, settle, steps);
+      for (const std::string& name : runs) run(kind, ground, name == "pdepth", question);
     }
   }
   return 0;
