@@ -33,7 +33,8 @@ class CompoundFacts {
   }
 
   /// To be called for each child near the other body, before any facts are asked for: one that has changed or come next
-  /// to another is seen here.
+  /// to another is seen here. (Where Bullet hands over the children one by one, that is when they are asked
+  /// themselves.)
   void look_at(const btCompoundShape& compound, int child, SolverCore& core) {
     compared(compound, known_of(compound), child, core);
   }

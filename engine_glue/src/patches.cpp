@@ -103,22 +103,23 @@ void Patches::find_twins(double breaking_threshold) {
     const double squared = (x->contact.position_b - y->contact.position_b).squaredNorm();
     return squared < breaking_threshold * breaking_threshold;
   };
-  const auto pushes_as = [](const Point* x, const Point* y) { return x->normal.dot(y->normal) >= kOneWay; };
-  std::vector<const Point*>& twins = chosen_;
-  const std::size_t num_chosen = chosen_.size();
+  // The twins come after the four.
+  const auto num_chosen = static_cast<std::ptrdiff_t>(chosen_.size());
   for (const Point* point : left_) {
-    if (point->contact.depth < -kNoise * breaking_threshold || twins.size() == num_chosen + 4) break;
+    if (point->contact.depth < -kNoise * breaking_threshold) break;
+    if (static_cast<std::ptrdiff_t>(chosen_.size()) == num_chosen + 4) break;
     const auto near = [&](const Point* other) { return beside(point, other); };
-    const auto repeats = [&](const Point* other) { return beside(point, other) && pushes_as(point, other); };
-    if (std::any_of(chosen_.begin(), chosen_.begin() + static_cast<std::ptrdiff_t>(num_chosen), near) &&
-        std::none_of(twins.begin(), twins.end(), repeats)) {
-      twins.push_back(point);
+    const auto repeats = [&](const Point* other) { return near(other) && point->normal.dot(other->normal) >= kOneWay; };
+    if (std::any_of(chosen_.begin(), chosen_.begin() + num_chosen, near) &&
+        std::none_of(chosen_.begin(), chosen_.end(), repeats)) {
+      chosen_.push_back(point);
     }
   }
-  if (twins.size() == num_chosen) return;
+  const std::span<const Point* const> twins = std::span(chosen_).subspan(static_cast<std::size_t>(num_chosen));
+  if (twins.empty()) return;
   Patch& patch = twins_.emplace_back();
-  patch.normal = twins[num_chosen]->normal;
-  for (std::size_t i = num_chosen; i < twins.size(); ++i) add(*twins[i], patch);
+  patch.normal = twins.front()->normal;
+  for (const Point* twin : twins) add(*twin, patch);
 }
 
 void Patches::add_twins(int most, std::span<const LastPatch> last) {

@@ -87,12 +87,10 @@ int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, co
 }
 
 std::size_t TrianglesAround::find(int part, int index, const btVector3* corners) const {
-  const auto numbers = std::pair(part, index);
-  const auto before = [](const MeshTriangle& x, const std::pair<int, int>& y) {
-    return std::pair(x.part, x.index) < y;
-  };
-  for (auto at = std::lower_bound(triangles_.begin(), triangles_.end(), numbers, before);
-       at != triangles_.end() && std::pair(at->part, at->index) == numbers; ++at) {
+  const std::uint64_t number = MeshTriangle::number_of(part, index);
+  auto at = std::lower_bound(triangles_.begin(), triangles_.end(), number,
+                             [](const MeshTriangle& x, std::uint64_t n) { return x.number() < n; });
+  for (; at != triangles_.end() && at->number() == number; ++at) {
     if (std::equal(at->corners, at->corners + 3, corners)) return static_cast<std::size_t>(at - triangles_.begin());
   }
   return triangles_.size();

@@ -27,7 +27,8 @@ struct MeshTriangle {
   int part;     ///< Bullet's numbers for it
   int index;
   /// One number for both, in the order of parts and of a part's triangles.
-  [[nodiscard]] std::uint64_t number() const {
+  [[nodiscard]] std::uint64_t number() const { return number_of(part, index); }
+  [[nodiscard]] static std::uint64_t number_of(int part, int index) {
     const auto ordered = [](int of) { return static_cast<std::uint32_t>(of) ^ 0x80000000U; };
     return static_cast<std::uint64_t>(ordered(part)) << 32U | ordered(index);
   }
