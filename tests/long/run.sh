@@ -25,8 +25,13 @@ mkdir -p "$findings"
     "$build/fuzz_$target" --seconds "$seconds" --seed 1 --keep "$findings/$target" "tests/fuzz/corpus/$target"
   done
   if [[ -x $build/oracle_pairs ]]; then
-    printf 'oracle_pairs: '
-    (cd "$findings" && "../oracle_pairs" --pairs "$oracle_pairs" --seed 2 --threads "$(nproc)" | tail -1)
+    # Half of them with each bracket, other pairs for each.
+    seed=2
+    for bracket in tightest certified; do
+      printf 'oracle_pairs --bracket %s --seed %s: ' "$bracket" "$seed"
+      (cd "$findings" && "../oracle_pairs" --pairs $((oracle_pairs / 2)) --seed "$seed" --bracket "$bracket" --threads "$(nproc)" | tail -1)
+      seed=$((seed + 1))
+    done
   fi
   if [[ -x $build/grid_pairs ]]; then
     printf 'grid_pairs: %s pairs\n' "$grid_pairs"

@@ -75,6 +75,9 @@ constexpr FixedDear kDear[] = {
     {"dear_scales_apart_32", PairFamily::scales, 32, DepthClass::gap, 1000007, kHotPath},
     {"dear_far_translations_32", PairFamily::far_translations, 32, DepthClass::deep, 1000006, kHotPath},
     {"dear_equal_bodies_64", PairFamily::equal_bodies, 64, DepthClass::mid, 1000003, kHotPath},  // facets tie exactly
+    // The origin on the boundary of P, and next to it.
+    {"dear_kissing_32", PairFamily::kissing, 32, DepthClass::deep, 1000006, kHotPath},
+    {"dear_near_kissing_8", PairFamily::near_kissing, 8, DepthClass::gap, 1000003, kHotPath},
     // A body 1e-40 times as large as the other.
     {"dear_mixed_scales_32", PairFamily::mixed_scales, 32, DepthClass::deep, 1000011, kTightestBracket},
     {"dear_mixed_scales_overlay_8", PairFamily::mixed_scales, 8, DepthClass::mid, 1000003, kOverlay},

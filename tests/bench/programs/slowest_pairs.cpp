@@ -5,10 +5,12 @@
 /// query dearer.
 ///
 /// Cost is the least processor time of several runs, warm caches, on a thread of its own: shared cores disturb it
-/// upwards only. What is found is written as lines of the protocol, for callgrind to count under `pdepth query`, which
-/// answers depths `tightest`: finds of `certified` and `contact` have no line.
+/// upwards only. What is found is written as lines of the protocol; `--replay` asks such lines again, once each, for
+/// callgrind to count. `pdepth query` answers depths `tightest` and refuses the lines of `certified` and `contact` by
+/// the field that names these.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -39,7 +41,7 @@ struct Workplace {
 };
 struct Query {
   const char* name;
-  nlohmann::ordered_json fields;  ///< of its line; null where the protocol cannot ask it
+  nlohmann::ordered_json fields;  ///< of its line
   std::function<void(const pd::PosedShape&, const pd::PosedShape&, Workplace&)> ask;
 };
 
@@ -49,9 +51,9 @@ std::vector<Query> queries() {
       (void)pd::penetration_depth(a, b, place.scratch, settings);
     };
   };
-  return {{"certified", nullptr, depth({.bracket = pd::Bracket::certified})},
+  return {{"certified", {{"query", "depth"}, {"bracket", "certified"}}, depth({.bracket = pd::Bracket::certified})},
           {"tightest", {{"query", "depth"}}, depth({.bracket = pd::Bracket::tightest})},
-          {"contact", nullptr, depth({.bracket = pd::Bracket::contact})},
+          {"contact", {{"query", "depth"}, {"bracket", "contact"}}, depth({.bracket = pd::Bracket::contact})},
           {"overlay", {{"query", "depth"}, {"method", "overlay"}}, depth({.method = pd::Method::overlay})},
           {"directional",
            {{"query", "directional_depth"}, {"direction", {1, 2, 3}}},
@@ -182,11 +184,54 @@ std::string line_of(const Query& query, const PointPair& pair) {
   return line.dump();
 }
 
+Vec3 vector_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+pd::Pose pose_of(const Json& json) {
+  const Vec3 translation = vector_of(json.at("translation"));
+  if (json.contains("quaternion_wxyz")) {
+    return pd::Pose::from_quaternion(json["quaternion_wxyz"].get<std::array<double, 4>>(), translation).value();
+  }
+  pd::Mat3 rotation;
+  for (int k = 0; k < 9; ++k)
+    rotation(k / 3, k % 3) = json.at("rotation_row_major").at(static_cast<std::size_t>(k)).get<double>();
+  return pd::Pose::from_trusted_matrix(rotation, translation);
+}
+
+pd::scenes::Points points_of(const Json& json) {
+  pd::scenes::Points points;
+  for (const Json& vertex : json.at("vertices")) points.push_back(vector_of(vertex));
+  return points;
+}
+
+/// Asks every line that a search wrote, by the query whose fields it has.
+void replay(const std::string& file) {
+  std::ifstream lines(file);
+  std::string text;
+  Workplace place;
+  const std::vector<Query> known = queries();
+  while (std::getline(lines, text)) {
+    const Json line = Json::parse(text);
+    const PointPair pair{points_of(line.at("a")), points_of(line.at("b")), pose_of(line.at("pose_a")),
+                         pose_of(line.at("pose_b"))};
+    for (const Query& query : known) {
+      Json fields = line;
+      for (const char* body : {"a", "pose_a", "b", "pose_b"}) fields.erase(body);
+      if (fields != query.fields) continue;
+      std::printf("%-12s %9.2f us\n", query.name, 1e6 * cost(query, pair, place, 1).value());
+    }
+  }
+}
+
 struct Found {
   PointPair pair;
   double seconds = 0;
   std::string from;
 };
+
+/// Dearer pairs than so many times the median are counted.
+constexpr double kMostMedians = 50;
 
 struct Settings {
   std::vector<int> sizes = {4, 8, 16, 32, 64};
@@ -196,6 +241,7 @@ struct Settings {
   double seconds = 10;
   std::uint64_t seed = 1;
   std::string lines;
+  std::string replayed;
 };
 
 /// One query at one size: the median of what the families draw, then the climb.
@@ -217,6 +263,8 @@ void search(const Query& query, int size, const Settings& settings, std::ofstrea
   std::sort(starts.begin(), starts.end(), [](const Found& x, const Found& y) { return x.seconds > y.seconds; });
   const double median = starts[starts.size() / 2].seconds;
   const double slowest = starts.front().seconds;
+  const auto above = std::count_if(starts.begin(), starts.end(),
+                                   [&](const Found& found) { return found.seconds > kMostMedians * median; });
   starts.resize(std::min(starts.size(), static_cast<std::size_t>(settings.climbers)));
   Random random(settings.seed + 77 * static_cast<std::uint64_t>(size));
   const double start = pd::bench::processor_seconds();
@@ -237,10 +285,10 @@ void search(const Query& query, int size, const Settings& settings, std::ofstrea
   Found& worst = *std::max_element(starts.begin(), starts.end(),
                                    [](const Found& x, const Found& y) { return x.seconds < y.seconds; });
   worst.seconds = *cost(query, worst.pair, place, 9);
-  std::printf("%-12s %5d %9.2f %9.2f %9.2f %8.1f  %-20s %d\n", query.name, size, 1e6 * median, 1e6 * slowest,
-              1e6 * worst.seconds, worst.seconds / median, worst.from.c_str(), tried);
+  std::printf("%-12s %5d %9.2f %9.2f %6d %9.2f %8.1f  %-20s %d\n", query.name, size, 1e6 * median, 1e6 * slowest,
+              static_cast<int>(above), 1e6 * worst.seconds, worst.seconds / median, worst.from.c_str(), tried);
   std::fflush(stdout);
-  if (lines.is_open() && !query.fields.is_null()) lines << line_of(query, worst.pair) << '\n';
+  if (lines.is_open()) lines << line_of(query, worst.pair) << '\n';
 }
 
 }  // namespace
@@ -256,7 +304,13 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", settings.seconds, "of climbing, a query and size")->capture_default_str();
   app.add_option("--seed", settings.seed)->capture_default_str();
   app.add_option("--lines", settings.lines, "file that takes the finds as lines of the protocol");
+  app.add_option("--replay", settings.replayed, "file of such lines: asks each once and searches nothing")
+      ->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
+  if (!settings.replayed.empty()) {
+    replay(settings.replayed);
+    return 0;
+  }
   std::ofstream lines;
   if (!settings.lines.empty()) {
     lines.open(settings.lines);
@@ -265,8 +319,8 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  std::printf("seed %llu; microseconds\n%-12s %5s %9s %9s %9s %8s  %-20s %s\n",
-              static_cast<unsigned long long>(settings.seed), "query", "size", "median", "families", "climbed",
+  std::printf("seed %llu; microseconds\n%-12s %5s %9s %9s %6s %9s %8s  %-20s %s\n",
+              static_cast<unsigned long long>(settings.seed), "query", "size", "median", "families", "> 50", "climbed",
               "/ median", "climbed from", "tried");
   for (const Query& query : queries()) {
     const auto named = [&](const std::string& name) { return name == query.name; };

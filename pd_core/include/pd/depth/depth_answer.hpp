@@ -49,7 +49,7 @@ enum class Bracket : std::uint8_t {
   /// upper * normal leaves no more overlap than rounding; no translation is searched on the grid of doubles. Normal,
   /// witnesses and features are those of an answer within the bracket. `bracket_reached` is false where the interval is
   /// wider than promised, but certified still. Holds for Method::automatic and expansion, and where |b - a| stays
-  /// within 2^-100 to 2^100; the others take it for `certified`.
+  /// within 2^-100 to 2^100 or a power of two brings the pair there exactly; the others take it for `certified`.
   contact,
 };
 

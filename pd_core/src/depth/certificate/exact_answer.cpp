@@ -36,11 +36,11 @@ RootSum root_of(const NearestPlane& plane, const Dyadic& r) {
 
 /// The overlapping part of an answer, from the exact value.
 void fill_exactly(const PosedPair& pair, Separation& separation, const RootSum& value, const Margins& margins,
-                  PenetrationDepth& out) {
+                  Bracket bracket, PenetrationDepth& out) {
   out.contact = ContactClass::overlapping;
   out.lower = value.round_down();
   out.upper = shortest_translation(pair, separation, value.approximate(), value.round_up(out.lower), margins.both(),
-                                   out.translation);
+                                   bracket, out.translation);
   out.depth = out.upper;
 }
 
@@ -62,7 +62,7 @@ void finish(const PosedPair& pair, const NearestPlane& plane, const Margins& mar
     out.distance_upper = distance.round_up(out.distance_lower);
     out.distance = out.distance_upper;
   } else {
-    fill_exactly(pair, separation, value, margins, out);
+    fill_exactly(pair, separation, value, margins, Bracket::tightest, out);
   }
 }
 
@@ -120,7 +120,7 @@ bool fill_overlapping_margins(const PosedPair& pair, const ProvenSeparation& pro
   double up = 0;
   if (!round_certainly(separation.depth(), separation.depth_error(), out.lower, up)) return false;
   out.contact = ContactClass::overlapping;
-  out.upper = shortest_translation(pair, separation, separation.depth(), up, margins.both(), out.translation);
+  out.upper = shortest_translation(pair, separation, separation.depth(), up, margins.both(), bracket, out.translation);
   out.depth = out.upper;
   return true;
 }
@@ -167,16 +167,17 @@ void answer_overlapping(const PosedPair& pair, const FacetOfDifference& facet, c
       // done
     } else if (round_certainly(separation.depth(), separation.depth_error(), out.lower, up)) {
       out.contact = ContactClass::overlapping;
-      out.upper = shortest_translation(pair, separation, separation.depth(), up, margins.both(), out.translation);
+      out.upper =
+          shortest_translation(pair, separation, separation.depth(), up, margins.both(), bracket, out.translation);
       out.depth = out.upper;
     } else {
-      fill_exactly(pair, separation, root_of(separation.plane(), separation.radius()), margins, out);
+      fill_exactly(pair, separation, root_of(separation.plane(), separation.radius()), margins, bracket, out);
     }
   } else {
     const Dyadic r = Dyadic(margins.a) + Dyadic(margins.b);
     Separation separation(exact_plane(pair, facet), r);
     out.normal = high(separation.unit());
-    fill_exactly(pair, separation, root_of(separation.plane(), r), margins, out);
+    fill_exactly(pair, separation, root_of(separation.plane(), r), margins, bracket, out);
   }
   const FacetFeatures features = features_of(pair, faces, out.normal);
   out.feature_a = features.on_a;

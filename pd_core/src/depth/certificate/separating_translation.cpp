@@ -168,7 +168,8 @@ class TranslationSearch {
   }
 
   /// Within 4 ulp of L, a coordinate, of the exact translation.
-  bool near_base() {
+  /// @param widely  else the steps of other coordinates than the one solved for are left out.
+  bool near_base(bool widely) {
     int order[3] = {0, 1, 2};
     std::sort(order, order + 3, [&](int i, int j) { return std::abs(base_[i]) > std::abs(base_[j]); });
     const double scale = std::abs(base_[order[0]]);
@@ -185,7 +186,7 @@ class TranslationSearch {
       if (solve(bare)) return true;
     }
     if (solve(base_)) return true;
-    if (live == 1) return false;
+    if (live == 1 || !widely) return false;
     // An exact depth that is a double leaves a cap of no height: only the exact translation itself could do.
     if (!(height_ > 0)) return false;
     return walk(order, live);
@@ -455,16 +456,17 @@ double largest_coordinate(const PosedPair& pair) {
 }
 
 double shortest_translation(const PosedPair& pair, Separation& separation, const DoubleDouble& depth, double upper,
-                            double margin, Vec3& translation) {
+                            double margin, Bracket bracket, Vec3& translation) {
+  const bool widely = bracket == Bracket::tightest;
   Extent extent(pair, margin);
   TranslationSearch nearest(separation, extent, depth, upper);
-  if (nearest.at_base() || nearest.near_base()) {
+  if (nearest.at_base() || nearest.near_base(widely)) {
     translation = nearest.translation();
     return upper;
   }
   upper = std::nextafter(upper, HUGE_VAL);
   TranslationSearch next(separation, extent, depth, upper);
-  if (next.at_base() || next.near_base()) {
+  if (next.at_base() || next.near_base(widely)) {
     translation = next.translation();
     return upper;
   }

@@ -1,9 +1,9 @@
 #include "depth/distance/gjk_double_double.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "depth/distance/simplex_double_double.hpp"
 #include "numeric/vector_double_double.hpp"
 
 namespace pd::detail {
@@ -11,91 +11,6 @@ namespace pd::detail {
 namespace {
 
 Vec3 rounded(const Vec3DD& v) { return {to_double(v.x), to_double(v.y), to_double(v.z)}; }
-bool less(const DoubleDouble& a, const DoubleDouble& b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
-
-/// The nearest point of a simplex' affine hull, where it lies in the relative interior.
-struct ClosestOfFace {
-  DoubleDouble squared{std::numeric_limits<double>::infinity(), 0};
-  Vec3DD point;
-  int members[4] = {0, 0, 0, 0};
-  double weights[4] = {0, 0, 0, 0};
-  int count = 0;
-};
-
-class Simplex {
- public:
-  explicit Simplex(const DifferenceVertex& first) {
-    vertices_[0] = first;
-    closest_.count = 1;
-    closest_.weights[0] = 1;
-    closest_.point = widened(first.x);
-    closest_.squared = dot(closest_.point, closest_.point);
-  }
-
-  [[nodiscard]] const ClosestOfFace& closest() const { return closest_; }
-  [[nodiscard]] const DifferenceVertex& vertex(int i) const { return vertices_[i]; }
-
-  /// Adds a vertex and keeps the face nearest to the origin. False when none with the new vertex is nearer.
-  bool add(const DifferenceVertex& s) {
-    const int count = closest_.count;
-    vertices_[count] = s;
-    for (int i = 0; i <= count; ++i) x_[i] = widened(vertices_[i].x);
-    ClosestOfFace best;
-    best.squared = closest_.squared;
-    consider_vertex(best, count);
-    for (int i = 0; i < count; ++i) {
-      consider_edge(best, i, count);
-      for (int j = i + 1; j < count; ++j) consider_triangle(best, i, j, count);
-    }
-    if (count == 3) consider_inside(best);
-    if (best.count == 0) return false;
-    for (int i = 0; i < best.count; ++i) vertices_[i] = vertices_[best.members[i]];
-    closest_ = best;
-    return true;
-  }
-
- private:
-  void take(ClosestOfFace& best, const ClosestOfFace& closest) const {
-    if (less(closest.squared, best.squared)) best = closest;
-  }
-  void consider_vertex(ClosestOfFace& best, int i) const { take(best, {dot(x_[i], x_[i]), x_[i], {i}, {1}, 1}); }
-  void consider_edge(ClosestOfFace& best, int i, int j) const {
-    const Vec3DD e = x_[j] - x_[i];
-    const DoubleDouble squared = dot(e, e);
-    if (!(squared.hi > 0)) return;
-    const double wi = to_double(dot(x_[j], e) / squared), wj = -to_double(dot(x_[i], e) / squared);
-    if (!(wi > 0 && wj > 0)) return;
-    const Vec3DD closest = scaled(cross(e, cross(x_[i], e)), DoubleDouble{1, 0} / squared);
-    take(best, {dot(closest, closest), closest, {i, j}, {wi, wj}, 2});
-  }
-  void consider_triangle(ClosestOfFace& best, int i, int j, int k) const {
-    const Vec3DD n = cross(x_[j] - x_[i], x_[k] - x_[i]);
-    const DoubleDouble squared = dot(n, n);
-    if (!(squared.hi > 0)) return;
-    const double wi = to_double(dot(n, cross(x_[j], x_[k])) / squared);
-    const double wj = to_double(dot(n, cross(x_[k], x_[i])) / squared);
-    const double wk = to_double(dot(n, cross(x_[i], x_[j])) / squared);
-    if (!(wi > 0 && wj > 0 && wk > 0)) return;
-    const Vec3DD closest = scaled(n, dot(n, x_[i]) / squared);
-    take(best, {dot(closest, closest), closest, {i, j, k}, {wi, wj, wk}, 3});
-  }
-  /// The origin in the tetrahedron: its weights are the volumes that it spans with the faces, all of one sign.
-  void consider_inside(ClosestOfFace& best) const {
-    const DoubleDouble volumes[4] = {dot(x_[1], cross(x_[2], x_[3])), -dot(x_[0], cross(x_[2], x_[3])),
-                                     dot(x_[0], cross(x_[1], x_[3])), -dot(x_[0], cross(x_[1], x_[2]))};
-    ClosestOfFace inside{{0, 0}, widened(Vec3::Zero()), {0, 1, 2, 3}, {}, 4};
-    for (int i = 0; i < 4; ++i) {
-      inside.weights[i] = std::abs(to_double(volumes[i]));
-      if (!(inside.weights[i] > 0) || (volumes[i].hi > 0) != (volumes[0].hi > 0)) return;
-    }
-    take(best, inside);
-  }
-
-  DifferenceVertex vertices_[4];
-  Vec3DD x_[4];
-  ClosestOfFace closest_;
-};
-
 }  // namespace
 
 template <class Difference>
@@ -108,7 +23,7 @@ ClosestPointWithNormal closest_point_double_double(const Difference& difference,
   const DifferenceVertex far = difference.support(difference.centre(), nullptr);
   ++support_calls;
   double largest = std::max(first.x.cwiseAbs().maxCoeff(), far.x.cwiseAbs().maxCoeff());
-  Simplex simplex(first);
+  SimplexDoubleDouble<DifferenceVertex> simplex(first, widened(first.x));
   ClosestPointWithNormal out;
   ClosestPoint& r = out.nearest;
   r.upper = std::numeric_limits<double>::infinity();
@@ -140,7 +55,9 @@ ClosestPointWithNormal closest_point_double_double(const Difference& difference,
     r.certified =
         r.lower > 0 && (r.upper - r.lower <= width.limit(largest) || width.is_within(relative, r.lower, r.upper));
     // What the formula's own rounding makes of a support on the simplex is no progress.
-    if (r.certified || length - height <= 0.5 * rounding || step >= max_steps || !simplex.add(s)) return out;
+    if (r.certified || length - height <= 0.5 * rounding || step >= max_steps || !simplex.add(s, widened(s.x))) {
+      return out;
+    }
   }
 }
 

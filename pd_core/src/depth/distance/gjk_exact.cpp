@@ -2,7 +2,10 @@
 
 #include <bit>
 #include <optional>
+#include <span>
 #include <utility>
+
+#include "depth/distance/closest_simplex.hpp"
 
 namespace pd::detail {
 
@@ -78,8 +81,13 @@ class ExactSimplex {
   /// The face whose closest point is that of the whole hull: no other point lies before the plane across it.
   /// @param with  points that it has for certain, as bits: a point nearer than all the others together, say.
   [[nodiscard]] Face closest_face(unsigned with) const {
+    // An inexact search mostly leaves no vertex too many.
+    const unsigned all = (1U << size_) - 1;
+    if (with == 0) {
+      if (std::optional<Face> face = closest_in(all)) return *std::move(face);
+    }
     for (int wanted = 1; wanted <= 4; ++wanted) {
-      for (unsigned mask = 1; mask < (1U << size_); ++mask) {
+      for (unsigned mask = 1; mask <= all; ++mask) {
         if (std::popcount(mask) != wanted || (mask & with) != with || certainly_elsewhere(mask)) continue;
         if (std::optional<Face> face = closest_in(mask)) return *std::move(face);
       }
@@ -168,8 +176,9 @@ ExactClosestPoint result_of(const ExactSimplex& simplex, const ExactSimplex::Fac
 }  // namespace
 
 ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start, int count) {
+  const ClosestSimplex begin = closest_simplex(pair, std::span(start, static_cast<std::size_t>(count)));
   ExactSimplex simplex(pair);
-  for (int i = 0; i < count; ++i) simplex.add(start[i]);
+  for (int i = 0; i < begin.count; ++i) simplex.add(begin.vertices[static_cast<std::size_t>(i)]);
   // The distance falls strictly at each step among finitely many simplices, so this ends.
   for (unsigned with = 0;; with = simplex.last()) {
     // 1. The closest point of the simplex, and the face that holds it: the last vertex among it, which lies before the

@@ -4,11 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "depth/difference/support_double_double.hpp"
 #include "depth/expansion/pair_hull.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "numeric/vector_double_double.hpp"
-#include "shape/support/polytope_support.hpp"
-#include "structure/exact_climb.hpp"
 
 namespace pd::detail {
 
@@ -50,41 +49,10 @@ bool bounded_before(const PairHull::Face& x, const PairHull::Face& y) {
   return to_double(x.distance - y.distance) < x.error - y.error;
 }
 
-/// A vertex of the body among the farthest in a direction of its own frame, as far as double-double tells.
-/// @param local  about a unit vector.
-int farthest_in_double_double(const ConvexPolytope& body, const Vec3DD& local, double scale) {
-  const Vec3 rounded = high(local);
-  const auto height = [&](int v) {
-    const Vec3DD x{{body.x()[v] * scale, 0}, {body.y()[v] * scale, 0}, {body.z()[v] * scale, 0}};
-    return dot(local, x);
-  };
-  constexpr int kScannedVertices = 96;
-  if (body.num_vertices() > kScannedVertices && body.affine_dimension() == 3) {
-    return climb_exactly(body, support_vertex(body, rounded, -1), [&](int from, int to) {
-      const double rise = to_double(height(to) - height(from));
-      return (rise > 0) - (rise < 0);
-    });
-  }
-  const int n = body.num_vertices();
-  double most = -kUnbounded;
-  for (int v = 0; v < n; ++v) most = std::max(most, body.vertex(v).dot(rounded));
-  const double slack = 16 * kUnitRoundoff * body.radius() + 0x1p-1070;
-  int best = -1;
-  DoubleDouble highest;
-  for (int v = 0; v < n; ++v) {
-    if (body.vertex(v).dot(rounded) < most - slack) continue;
-    const DoubleDouble h = height(v);
-    if (best >= 0 && !(to_double(h - highest) > 0)) continue;
-    best = v;
-    highest = h;
-  }
-  return best;
-}
-
 class UniqueFacetSearch {
  public:
   UniqueFacetSearch(const PosedPair& pair, SupportFaces& faces, UniqueNearestFacet& out)
-      : pair_(pair), faces_(faces), out_(out), hull_(pair), scale_(pair.inwards()) {}
+      : pair_(pair), faces_(faces), out_(out), hull_(pair) {}
 
   void run(std::span<const VertexPair> start, int budget) {
     if (!begin(start)) return;
@@ -98,6 +66,7 @@ class UniqueFacetSearch {
       }
       if (nearest < 0) return;
       PairHull::Face& face = hull_.face(nearest);
+      out_.ended = corners_of(face);
       if (!(face.error < kUnbounded) || contested_) {
         if (refine(face)) continue;
         if (!(face.error < kUnbounded)) return;
@@ -127,8 +96,7 @@ class UniqueFacetSearch {
 
   VertexPair support(const Vec3DD& direction) {
     ++out_.support_calls;
-    return {farthest_in_double_double(pair_.a(), pair_.in_frame_of_a(scaled(direction, {-1, 0})), scale_),
-            farthest_in_double_double(pair_.b(), pair_.in_frame_of_b(direction), scale_)};
+    return support_double_double(pair_, direction);
   }
 
   /// A vertex of P that is farthest, exactly.
@@ -206,11 +174,16 @@ class UniqueFacetSearch {
     return compare(SquaredFacetDistance{height * height, dot(normal, normal)}, *least_);
   }
 
+  [[nodiscard]] SurfaceCorners corners_of(const PairHull::Face& f) const {
+    SurfaceCorners corners;
+    for (int i = 0; i < 3; ++i) corners.v[i] = hull_.vertex(PairHull::corner(f, i));
+    return corners;
+  }
+
   bool prove(const PairHull::Face& f) {
     ++out_.facets_visited;
     least_.reset();
-    SurfaceCorners corners;
-    for (int i = 0; i < 3; ++i) corners.v[i] = hull_.vertex(PairHull::corner(f, i));
+    const SurfaceCorners corners = corners_of(f);
     proven_ = prove_nearest_facet(pair_, std::span(&corners, 1), kUnbounded, false, faces_);
     return proven_.has_value();
   }
@@ -247,13 +220,15 @@ class UniqueFacetSearch {
   bool grow() {
     const int known = hull_.num_vertices();
     const Vec3 p = pair_.approximate(hull_.point(0));
-    std::array<Vec3, 4> directions{-p, Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+    // Each about as long as a unit vector, or none.
+    std::array<Vec3, 4> directions{-p.stableNormalized(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
     std::size_t count = 4;
     if (known == 2) {
       const Vec3 e = pair_.approximate(hull_.edge(0, 1)).normalized();
       for (Vec3& d : directions) d -= d.dot(e) * e;
     } else if (known == 3) {
-      const Vec3 n = pair_.approximate(hull_.edge(0, 1)).cross(pair_.approximate(hull_.edge(0, 2)));
+      const Vec3 n =
+          pair_.approximate(hull_.edge(0, 1)).normalized().cross(pair_.approximate(hull_.edge(0, 2)).normalized());
       directions[0] = n.dot(p) > 0 ? Vec3(-n) : n;
       count = 1;
     }
@@ -283,7 +258,6 @@ class UniqueFacetSearch {
   SupportFaces& faces_;
   UniqueNearestFacet& out_;
   PairHull hull_;
-  const double scale_;
   std::optional<ProvenFacet> proven_;
   std::optional<SquaredFacetDistance> least_;  ///< of the proven facet, once it was asked for
   bool contested_ = false;

@@ -19,6 +19,9 @@ struct UniqueNearestFacet {
   /// As `facet_of_direction` gives it; nothing where the origin does not lie in the interior of P, where other facets
   /// are as near as double-double can tell, or where the budget ran out: an exact search must.
   std::optional<ProvenFacet> found;
+  /// Else the corners of the face that the search ended with, if it came to one: next to the closest point of P where
+  /// that holds the origin not, or hardly.
+  std::optional<SurfaceCorners> ended;
   std::int64_t support_calls = 0;
   std::int64_t facets_visited = 0;
 };

@@ -7,6 +7,7 @@
 #include "depth/pair/polytope_contact.hpp"
 #include "depth/pair/polytope_double.hpp"
 #include "depth/pair/polytope_exact.hpp"
+#include "depth/pair/polytope_rescaled.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
 #include "depth/pair/slender_near_box.hpp"
 #include "depth/pair/slender_on_box.hpp"
@@ -111,6 +112,7 @@ void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, Scr
                     WarmCertificate* warm, PenetrationDepth& out) {
   if (std::min(pair.a->num_vertices(), pair.b->num_vertices()) <= 2 && answer_slender(pair, settings, out)) return;
   PolytopeQuery query(pair, settings, buffers, warm);
+  if (!query.within_range() && answer_at_size_one(query, out)) return;
   if (answer_from_contact_facet(query, out)) return;
   answer(query, out);
   // What the next frame may try, where it will try.

@@ -58,6 +58,12 @@ std::span<const DifferenceVertex> first_simplex(PolytopeQuery& query, const Expa
   return std::span(vertices).first(count);
 }
 
+/// The bits of what follows are those of the simplex, however the search came to it.
+void sort_simplex(std::span<VertexPair> simplex) {
+  std::sort(simplex.begin(), simplex.end(),
+            [](const VertexPair& p, const VertexPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+}
+
 bool answer_from_proof(PolytopeQuery& query, const std::optional<ProvenFacet>& proven, PenetrationDepth& out) {
   if (!proven) return false;
   answer_overlapping(query.exact(), proven->facet, proven->plane, query.buffers.faces, query.pair.margins,
@@ -99,13 +105,16 @@ FacetOfDifference facet_of(const PolytopePair& pair, const PosedPair& posed, con
 }
 
 /// An exact search that is not observed, where no other facet is as near: the same facet without big numbers.
-bool answer_from_unique_facet(PolytopeQuery& query, std::span<const VertexPair> start, PenetrationDepth& out) {
+/// @param ended  where it is none: see UniqueNearestFacet::ended.
+bool answer_from_unique_facet(PolytopeQuery& query, std::span<const VertexPair> start,
+                              std::optional<SurfaceCorners>& ended, PenetrationDepth& out) {
   if (query.buffers.surface.watch) return false;
   const PosedPair& posed = query.exact();
   const UniqueNearestFacet nearest =
       unique_nearest_facet(posed, start, 4 * ExpansionBudget::min_steps(query.vertices()), query.buffers.faces);
   out.statistics.support_calls += nearest.support_calls;
   out.statistics.facets_visited += nearest.facets_visited;
+  ended = nearest.ended;
   return answer_from_proof(query, nearest.found, out);
 }
 
@@ -263,7 +272,8 @@ bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, Penetration
 bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   if (surface.status != ExpansionStatus::certified) return false;
   const SurfaceCorners start = corners_of(query.buffers.surface, surface.face);
-  if (!answer_from_unique_facet(query, start.v, out)) expand_exactly(query, start.v, nullptr, out);
+  std::optional<SurfaceCorners> ended;
+  if (!answer_from_unique_facet(query, start.v, ended, out)) expand_exactly(query, start.v, nullptr, out);
   return true;
 }
 
@@ -279,9 +289,7 @@ bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surfac
     for (; count < static_cast<std::size_t>(nearest.count); ++count) {
       start[count] = {nearest.simplex[count].a, nearest.simplex[count].b};
     }
-    // The bits of what follows are those of the simplex, however the search came to it.
-    std::sort(start.begin(), start.begin() + count,
-              [](const VertexPair& p, const VertexPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+    sort_simplex(std::span(start).first(count));
   } else {
     start[count++] = any_vertex(query, surface);
   }
@@ -292,7 +300,16 @@ bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surfac
     const auto proof = prove_separation(posed, std::span(start).first(count), faces);
     if (proof && answer_separated(posed, *proof, faces, margins, query.bracket, out)) return true;
   }
-  if (answer_from_unique_facet(query, std::span(start).first(count), out)) return true;
+  std::optional<SurfaceCorners> ended;
+  if (answer_from_unique_facet(query, std::span(start).first(count), ended, out)) return true;
+  if (ended) {
+    count = std::size(ended->v);
+    std::copy_n(ended->v, count, start.begin());
+    sort_simplex(std::span(start).first(count));
+    SupportFaces& faces = query.buffers.faces;
+    const auto proof = prove_separation(posed, std::span(start).first(count), faces);
+    if (proof && answer_separated(posed, *proof, faces, margins, query.bracket, out)) return true;
+  }
   const ExactClosestPoint nearest = exact_closest_point(posed, start.data(), static_cast<int>(count));
   if (nearest.apart) {
     answer_separated(posed, nearest, margins, out);

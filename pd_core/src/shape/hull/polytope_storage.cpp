@@ -203,23 +203,37 @@ void write_triangle(const Arrays& out) {
   for (std::int32_t f = 0; f < 2; ++f) out.facet_half_edges[f] = f;
 }
 
-/// Adds the table of directions, in memory of its own: its size shows only when it is made.
-void add_table(Storage& s) {
-  const DirectionTable table = direction_table(s);
-  const std::size_t blocks = sizeof(ConvexPolytope::VertexBlock) * table.blocks.size();
-  const std::size_t more = sizeof(std::int32_t) * table.more.size();
-  auto* const memory = static_cast<std::byte*>(::operator new (blocks + more, std::align_val_t{kAlignment}));
-  std::memcpy(memory, table.blocks.data(), blocks);
-  std::memcpy(memory + blocks, table.more.data(), more);
+/// Adds a table of directions, in memory of its own: its size shows only when it is made.
+void add_table(std::span<const ConvexPolytope::VertexBlock> blocks, std::span<const std::int32_t> more, int cells,
+               Storage& s) {
+  const std::size_t bytes = blocks.size_bytes() + more.size_bytes();
+  auto* const memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kAlignment}));
+  std::memcpy(memory, blocks.data(), blocks.size_bytes());
+  std::memcpy(memory + blocks.size_bytes(), more.data(), more.size_bytes());
   s.table_blocks = reinterpret_cast<const ConvexPolytope::VertexBlock*>(memory);
-  s.table_more = reinterpret_cast<const std::int32_t*>(memory + blocks);
-  s.table_cells = table.cells;
-  s.memory_bytes += blocks + more;
+  s.table_more = reinterpret_cast<const std::int32_t*>(memory + blocks.size_bytes());
+  s.table_cells = cells;
+  s.memory_bytes += bytes;
 }
 
 void release(const Storage* storage) {
   ::operator delete (const_cast<ConvexPolytope::VertexBlock*>(storage->table_blocks), std::align_val_t{kAlignment});
   ::operator delete (const_cast<Storage*>(storage), std::align_val_t{kAlignment});
+}
+
+struct Allocated {
+  Arrays arrays;
+  std::shared_ptr<const Storage> shared;
+  std::size_t bytes;
+};
+
+Allocated allocate(const Counts& n) {
+  MemoryBlock measure(nullptr);
+  take_arrays(measure, n);
+  auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
+  MemoryBlock block(memory);
+  const Arrays arrays = take_arrays(block, n);
+  return {arrays, {arrays.storage, release}, block.used()};
 }
 
 /// The vertices in the order of their coordinates, padded with the first. @return each one's place in that order
@@ -315,19 +329,58 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   n.facets = loops.size();
   n.has_gauss_map = has_small_gauss_map(affine_dimension, n.vertices);
 
-  MemoryBlock measure(nullptr);
-  take_arrays(measure, n);
-  auto* memory = static_cast<std::byte*>(::operator new (measure.used(), std::align_val_t{kAlignment}));
-  MemoryBlock block(memory);
-  const Arrays out = take_arrays(block, n);
-  std::shared_ptr<const Storage> shared(out.storage, release);
-
+  const Allocated made = allocate(n);
+  const Arrays& out = made.arrays;
   place_facets(loops, place_vertices(vertices, out, n), affine_dimension, out, n);
   publish(out, n, affine_dimension);
-  out.storage->memory_bytes = block.used();
+  out.storage->memory_bytes = made.bytes;
   if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
-  if (n.vertices > kScanLimit) add_table(*out.storage);
-  return shared;
+  if (n.vertices > kScanLimit) {
+    const DirectionTable table = direction_table(*out.storage);
+    add_table(table.blocks, table.more, table.cells, *out.storage);
+  }
+  return made.shared;
+}
+
+std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent) {
+  Counts n{};
+  n.vertices = body.num_vertices;
+  n.padded = body.padded_size;
+  n.half_edges = body.num_half_edges;
+  n.facets = body.num_facets;
+  n.facet_vertices = body.facet_offsets[body.num_facets];
+  n.has_gauss_map = has_small_gauss_map(body.affine_dimension, body.num_vertices);
+  const Allocated made = allocate(n);
+  const Arrays& out = made.arrays;
+  const auto scale = [&](const double* from, double* to) {
+    for (int i = 0; i < n.padded; ++i) {
+      to[i] = std::ldexp(from[i], exponent);
+      if (std::ldexp(to[i], -exponent) != from[i]) return false;
+    }
+    return true;
+  };
+  if (!scale(body.x, out.x) || !scale(body.y, out.y) || !scale(body.z, out.z)) return nullptr;
+  out.storage->max_abs_coordinates =
+      body.max_abs_coordinates.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+  out.storage->max_abs_coordinate = std::ldexp(body.max_abs_coordinate, exponent);
+  std::copy_n(body.facet_normals, n.facets, out.facet_normals);
+  std::copy_n(body.half_edges, n.half_edges, out.half_edges);
+  std::copy_n(body.caller_ids, n.vertices, out.caller_ids);
+  std::copy_n(body.neighbour_offsets, n.vertices + 1, out.neighbour_offsets);
+  std::copy_n(body.neighbours, n.half_edges, out.neighbours);
+  std::copy_n(body.facet_offsets, n.facets + 1, out.facet_offsets);
+  std::copy_n(body.facet_vertices, n.facet_vertices, out.facet_vertices);
+  std::copy_n(body.facet_half_edges, n.facets, out.facet_half_edges);
+  publish(out, n, body.affine_dimension);
+  out.storage->memory_bytes = made.bytes;
+  if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
+  if (body.table_cells > 0) {
+    // Its points are divided by the size of the body.
+    const int lists = 6 * body.table_cells * body.table_cells;
+    add_table({body.table_blocks, static_cast<std::size_t>(body.table_more[lists])},
+              {body.table_more, static_cast<std::size_t>(lists) + 1}, body.table_cells, *out.storage);
+  }
+  return made.shared;
 }
 
 }  // namespace pd::detail

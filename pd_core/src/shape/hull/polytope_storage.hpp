@@ -25,6 +25,11 @@ struct HullVertex {
 [[nodiscard]] std::shared_ptr<const ConvexPolytope::Storage> lay_out(std::span<const HullVertex> vertices,
                                                                      const FacetLoops& loops, int affine_dimension);
 
+/// The same body times 2^exponent: connectivity, normals and the table of directions are copied. Null where a
+/// coordinate would be rounded. Time O(n).
+[[nodiscard]] std::shared_ptr<const ConvexPolytope::Storage> scaled_exactly(const ConvexPolytope::Storage& body,
+                                                                            int exponent);
+
 /// The outward unit normal of the plane of three points in counter-clockwise order: relative error a few ulp however
 /// flat the triangle, at any magnitude. Requires that they are not collinear.
 [[nodiscard]] Vec3 plane_normal(const Vec3& a, const Vec3& b, const Vec3& c);
