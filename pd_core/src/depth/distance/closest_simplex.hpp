@@ -1,6 +1,6 @@
 /// @file
 /// Where an exact search for the closest point begins: Gilbert, Johnson, Keerthi 1988 in double-double, ended where
-/// that tells no more. A step costs a fiftieth of an exact one.
+/// that tells no more. A step costs a tenth of an exact one.
 #pragma once
 
 #include <array>
