@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "shape/hull/second_moments.hpp"
 #include "shape/small_gauss_map.hpp"
 #include "shape/support/direction_table.hpp"
 #include "shape/support/polytope_support.hpp"
@@ -324,6 +325,8 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
 
   place_facets(loops, place_vertices(vertices, out, n), affine_dimension, out, n);
   publish(out, n, affine_dimension);
+  out.storage->second_moments = second_moments(*out.storage);
+  out.storage->elongated = is_elongated(out.storage->second_moments);
   out.storage->memory_bytes = block.used();
   if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
   if (n.vertices > kScanLimit) add_table(*out.storage);
