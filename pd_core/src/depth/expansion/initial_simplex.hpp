@@ -53,12 +53,17 @@ enum class FirstDirections : std::uint8_t {
   by_shape  ///< in the frame of the bodies' moments where one is elongated, and round the origin where they fail
 };
 
+/// Bodies of so few vertices are through in little more time than the frame takes.
+inline constexpr int kFewestForFrame = 17;
+
 /// Four directions (unit) for bodies one of which is elongated, laid out as `surrounding_directions` does in the frame
-/// of P's moments (moment_frame.hpp). False where neither is.
+/// of P's moments (moment_frame.hpp). False where neither is, or there is little to gain.
 /// @param expected  the direction in which the depth is expected, or zero: from the bodies' places and moments.
 inline bool directions_by_shape(const PolytopeDifference& difference, const Vec3& expected, double sine,
                                 Vec3 (&out)[4]) {
-  if (!difference.a().storage().elongated && !difference.b().storage().elongated) return false;
+  const ConvexPolytope &a = difference.a(), &b = difference.b();
+  if (!a.storage().elongated && !b.storage().elongated) return false;
+  if (a.num_vertices() + b.num_vertices() < kFewestForFrame) return false;
   const MomentFrame frame(difference);
   const Vec3 w = expected.squaredNorm() > 0 ? frame.into(expected) : frame.expected(difference.centre());
   const double squared = w.squaredNorm();

@@ -23,26 +23,28 @@ class MomentFrame {
     // are taken for that thick, and none for thinner than rounding.
     const double least = kLeastShare * c.trace() + kLeastShare * kLeastShare * difference.reach() * difference.reach();
     c = 2 * c;
-    inverse_[0] = 1 / std::sqrt(c(0, 0) + least);
+    // Quotients first, so that no root waits for another.
+    const double share_0 = 1 / (c(0, 0) + least);
+    const double part_10 = c(1, 0) * share_0, part_20 = c(2, 0) * share_0;
+    const double share_1 = 1 / (c(1, 1) + least - part_10 * c(1, 0));
+    const double rest_21 = c(2, 1) - part_20 * c(1, 0);
+    const double rest_22 = c(2, 2) + least - part_20 * c(2, 0) - rest_21 * rest_21 * share_1;
+    inverse_[0] = std::sqrt(share_0);
+    inverse_[1] = std::sqrt(share_1);
+    inverse_[2] = std::sqrt(1 / rest_22);
     l10_ = c(1, 0) * inverse_[0];
     l20_ = c(2, 0) * inverse_[0];
-    inverse_[1] = 1 / std::sqrt(c(1, 1) + least - l10_ * l10_);
-    l21_ = (c(2, 1) - l20_ * l10_) * inverse_[1];
-    inverse_[2] = 1 / std::sqrt(c(2, 2) + least - l20_ * l20_ - l21_ * l21_);
+    l21_ = rest_21 * inverse_[1];
   }
 
   /// Where the depth of the ellipsoid about P's centre is expected, as the frame has it, any length. The direction u of
   /// its least height k sqrt(u^T C u) + <centre, u> for |u| = 1 solves (k C / sqrt(u^T C u) - depth) u = -centre: near
   /// C^-1 of the way back to the centre where the depth is little beside the ellipsoid's least semi-axis, and with more
-  /// of that axis the deeper. The better of one and two times C^-1 is nearly as good as that solution (performance.md).
+  /// of that axis the deeper. Two times C^-1 where the origin lies deep, which is within one root of the moments of the
+  /// centre (a surface of an ellipsoid is sqrt(5) of them away), is as good as that solution (performance.md).
   [[nodiscard]] Vec3 expected(const Vec3& centre) const {
-    constexpr double kSemiAxis = 2.2360679774997897;  // sqrt(5): of an ellipsoid, in roots of its moments
-    const Vec3 frame_once = against(-centre), once = out_of(frame_once);
-    const Vec3 frame_twice = against(once), twice = out_of(frame_twice);
-    const double back = frame_once.squaredNorm(), once_squared = once.squaredNorm();
-    const double height_once = (kSemiAxis * std::sqrt(back) - back) / std::sqrt(once_squared);
-    const double height_twice = (kSemiAxis * frame_twice.norm() - once_squared) / twice.norm();
-    return height_twice < height_once ? frame_twice : frame_once;
+    const Vec3 once = against(-centre);
+    return once.squaredNorm() < 1 ? against(out_of(once)) : once;
   }
 
   /// L^T u: a direction as the frame has it.
