@@ -10,11 +10,14 @@
 #include <bit>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "depth/distance/nearest_of_few.hpp"
+#include "depth/distance/simplex_lanes.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "scenes/shape_families.hpp"
 
 namespace pd {
 namespace detail {
@@ -24,6 +27,8 @@ NearestOfFew nearest_of_few_baseline(const FewVertices& bodies, const VertexPair
 NearestOfFew nearest_on_simplex_baseline(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
                                          bool with_support);
 SupportOfFew support_of_few_baseline(const FewVerticesInFrames& bodies, const double (&direction)[3]);
+bool add_to_face_baseline(NearestLaneFace& face, const LanePoint& s);
+NearestOfFew found_on_baseline(const NearestLaneFace& face);
 
 namespace {
 
@@ -95,6 +100,7 @@ void expect_same_bits(const NearestOfFew& x, const NearestOfFew& y) {
   for (int i = 0; i < x.count; ++i) {
     EXPECT_EQ(x.simplex[i].a, y.simplex[i].a);
     EXPECT_EQ(x.simplex[i].b, y.simplex[i].b);
+    if (x.status != NearestOfFew::Status::nearest) continue;
     EXPECT_EQ(bits(x.weights[i]), bits(y.weights[i]));
     for (int k = 0; k < 3; ++k) EXPECT_EQ(bits(x.points[i][k]), bits(y.points[i][k]));
   }
@@ -219,6 +225,52 @@ TEST_P(FewVerticesApart, WhatHoldsTheOriginIsLeftToOthers) {
     std::int64_t calls = 0;
     EXPECT_FALSE(closest_of_few(difference, {&first, 1}, 0, kWidth, calls).certified);
     EXPECT_FALSE(plane_of_few(difference, first, 0, calls));
+  }
+}
+
+TEST(ManyVerticesApart, BracketsHoldTheTightestDistance) {
+  using scenes::PairFamily;
+  Scratch scratch;
+  int pairs = 0, certified = 0;
+  for (const PairFamily family : {PairFamily::sphere, PairFamily::needle, PairFamily::prism, PairFamily::grid}) {
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+      SCOPED_TRACE(std::string(scenes::to_string(family)) + " " + std::to_string(seed));
+      const scenes::PointPair pair =
+          scenes::make_pair(family, seed % 2 == 0 ? 100 : 600, scenes::DepthClass::gap, seed);
+      const ConvexPolytope a = *ConvexPolytope::from_points(pair.a), b = *ConvexPolytope::from_points(pair.b);
+      const ConvexShape shape_a(a), shape_b(b);
+      const PenetrationDepth truth = penetration_depth({&shape_a, pair.pose_a}, {&shape_b, pair.pose_b}, scratch);
+      ASSERT_EQ(truth.contact, ContactClass::separated);
+      const PolytopeDifference difference(a, pair.pose_a, b, pair.pose_b);
+      const DifferenceVertex first = difference.vertex(0, b.num_vertices() - 1);
+      std::vector<std::int32_t> stack;
+      std::int64_t calls = 0;
+      const ClosestPoint found = closest_of_many(difference, {&first, 1}, 0, kWidth, stack, calls);
+      ++pairs;
+      if (!found.certified) continue;
+      ++certified;
+      EXPECT_LE(found.lower, truth.distance_upper);
+      EXPECT_GE(found.upper, truth.distance_lower);
+      EXPECT_LE(found.upper - found.lower, 1.8e-14 * difference.reach());
+    }
+  }
+  EXPECT_GT(certified, pairs * 9 / 10);
+}
+
+TEST(ManyVerticesApart, FacesAreTheSameBitsOnEachInstructionSet) {
+  scenes::Random random(41);
+  for (int search = 0; search < 200; ++search) {
+    NearestLaneFace face{}, baseline{};
+    const Vec3 away = 1.2 * random.direction();
+    for (std::int32_t id = 0; id < 8; ++id) {
+      const Vec3 x = away + random.direction();
+      const LanePoint s{x.x(), x.y(), x.z(), id, id};
+      const bool outside = add_to_face(face, s);
+      ASSERT_EQ(outside, add_to_face_baseline(baseline, s));
+      if (!outside) break;
+      EXPECT_EQ(bits(face.length), bits(baseline.length));
+      expect_same_bits(found_on(face), found_on_baseline(baseline));
+    }
   }
 }
 

@@ -125,6 +125,10 @@ class ConvexPolytope {
     Vec3 max_abs_coordinates = Vec3::Zero();
     double radius = 0;           ///< >= every |vertex|
     Vec3 centre = Vec3::Zero();  ///< mean of the vertices
+    /// How the solid is spread about its centroid, per volume, and whether it is far from round
+    /// (src/shape/hull/second_moments.hpp).
+    Mat3 second_moments = Mat3::Zero();
+    bool elongated = false;
     std::size_t memory_bytes = 0;
     const double* x = nullptr;
     const double* y = nullptr;

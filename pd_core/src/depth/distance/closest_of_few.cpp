@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "depth/distance/nearest_of_few.hpp"
+#include "depth/distance/simplex_lanes.hpp"
 
 namespace pd::detail {
 
@@ -14,17 +15,13 @@ namespace {
 /// by 3u and the normal's length by 4u.
 constexpr double kScannedPlaneError = 24 * kUnitRoundoff;
 
-/// Of a nearest point behind its plane, in units of the reach: nothing but rounding lies between them.
-constexpr double kSearchGap = 4 * kUnitRoundoff;
+/// Of a search over many vertices: below it single precision cannot tell.
+constexpr double kSeenGap = 0x1p-20;
+constexpr int kMostSupports = 64;
 
 FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
   return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
           difference.rotation_b().data(), difference.offset().data()};
-}
-
-FewVertices posed(const PolytopeDifference& difference) {
-  const Vec3& t = difference.offset();
-  return {difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}};
 }
 
 /// Whether the bracket is narrow for L, of which the simplex tells something at once.
@@ -61,16 +58,54 @@ ClosestPoint closest_point(const PolytopeDifference& difference, const NearestOf
 
 }  // namespace
 
+FewVertices posed_few(const PolytopeDifference& difference) {
+  const Vec3& t = difference.offset();
+  return {difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}};
+}
+
 ClosestPoint closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
                             double relative, const BracketWidth& width, std::int64_t& support_calls) {
   VertexPair first[4];
   for (std::size_t i = 0; i < start.size(); ++i) first[i] = {start[i].a, start[i].b};
   const NearestOfFew found =
-      nearest_of_few(posed(difference), first, static_cast<int>(start.size()),
+      nearest_of_few(posed_few(difference), first, static_cast<int>(start.size()),
                      {kSearchGap * difference.reach(), std::numeric_limits<double>::infinity(), 0});
   support_calls += found.supports;
   return closest_point(difference, found, {distance_errors(difference).upper, kScannedPlaneError * difference.reach()},
                        relative, width);
+}
+
+ClosestPoint closest_of_many(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
+                             double relative, const BracketWidth& width, std::vector<std::int32_t>& stack,
+                             std::int64_t& support_calls) {
+  NearestLaneFace face{};
+  for (const DifferenceVertex& v : start) {
+    if (!add_to_face(face, {v.x.x(), v.x.y(), v.x.z(), v.a, v.b})) return {};
+  }
+  const auto is_corner = [&](const DifferenceVertex& s) {
+    return std::any_of(face.corners, face.corners + face.count,
+                       [&](const LanePoint& corner) { return corner.a == s.a && corner.b == s.b; });
+  };
+  for (int step = 0; step < kMostSupports; ++step) {
+    const Vec3 toward(face.toward.x, face.toward.y, face.toward.z);
+    DifferenceVertex s = difference.search_support_along(toward);
+    ++support_calls;
+    double height = -s.x.dot(toward);
+    // What single precision sees no farther out may be the end.
+    if (face.length - height <= kSeenGap * difference.reach() || is_corner(s)) {
+      s = difference.certified_support(toward, s, stack);
+      height = -s.x.dot(toward);
+      if (face.length - height <= kSearchGap * difference.reach() || is_corner(s)) {
+        NearestOfFew found = found_on(face);
+        found.height = height;
+        return closest_point(difference, found, distance_errors(difference), relative, width);
+      }
+    }
+    const double length = face.length;
+    if (!add_to_face(face, {s.x.x(), s.x.y(), s.x.z(), s.a, s.b})) return {};
+    if (!(face.length < length)) return {};
+  }
+  return {};
 }
 
 std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, const DifferenceVertex& first,
@@ -78,7 +113,7 @@ std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, con
   const double error = kScannedPlaneError * difference.reach();
   const VertexPair start{first.a, first.b};
   const NearestOfFew found =
-      nearest_of_few(posed(difference), &start, 1, {kSearchGap * difference.reach(), least + error, least});
+      nearest_of_few(posed_few(difference), &start, 1, {kSearchGap * difference.reach(), least + error, least});
   support_calls += found.supports;
   if (found.status != NearestOfFew::Status::beyond) return std::nullopt;
   return PlaneOfFew{{found.direction[0], found.direction[1], found.direction[2]},

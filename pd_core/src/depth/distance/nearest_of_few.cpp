@@ -50,6 +50,10 @@ PD_INLINE void put_plane(NearestOfFew& out, const LanePoint& s, const Direction&
   out.height = -dot(s, d);
   out.support = {s.a, s.b};
 }
+PD_INLINE void put_ids(NearestOfFew& out, const NearestLaneFace& face) {
+  out.count = face.count;
+  for (int i = 0; i < face.count; ++i) out.simplex[i] = {face.corners[i].a, face.corners[i].b};
+}
 PD_INLINE void put_face(NearestOfFew& out, const NearestLaneFace& face) {
   out.status = NearestOfFew::Status::nearest;
   out.count = face.count;
@@ -78,17 +82,32 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
       put_plane(out, s, d);
       if (out.height > goal.beyond) {
         out.status = NearestOfFew::Status::beyond;
+        put_ids(out, face);
         return out;
       }
       if (face.length - out.height <= goal.gap || is_corner(face, s)) break;
     }
     const double length = face.length;
-    if (!add_vertex(face, s)) return out;
+    if (!add_vertex(face, s)) {
+      out.status = NearestOfFew::Status::enclosed;
+      put_ids(out, face);
+      out.simplex[out.count++] = {s.a, s.b};
+      return out;
+    }
     // Supports that rounding takes for farther ones.
     if (step >= count && !(face.length < length)) break;
     if (!(face.length > goal.within)) return out;
   }
   put_face(out, face);
+  return out;
+}
+
+PD_CLONES bool add_to_face(NearestLaneFace& face, const LanePoint& s) { return add_vertex(face, s); }
+
+NearestOfFew found_on(const NearestLaneFace& face) {
+  NearestOfFew out;
+  put_face(out, face);
+  put(out.direction, face.toward.x, face.toward.y, face.toward.z);
   return out;
 }
 

@@ -36,6 +36,7 @@ struct NearestOfFew {
   enum class Status : std::uint8_t {
     nearest,   ///< no support lies farther: of the simplex the nearest point is known as well as rounding lets it
     beyond,    ///< the plane is farther than asked
+    enclosed,  ///< the simplex is a tetrahedron that holds the origin, up to rounding
     undecided  ///< the origin may lie in P
   };
   Status status = Status::undecided;
@@ -44,13 +45,20 @@ struct NearestOfFew {
   double height = 0;                ///< of the plane there: <x, direction> <= -height in P
   VertexPair support{0, 0};
   int count = 0;
-  VertexPair simplex[3];
-  double points[3][3];  ///< of P, by the simplex' vertices
-  double weights[3];    ///< of the nearest point; they sum to 1 up to rounding
+  VertexPair simplex[4];
+  double points[3][3];  ///< nearest: of P, by the simplex' vertices
+  double weights[3];    ///< nearest: of that point; they sum to 1 up to rounding
 };
 
 /// @param start  vertices of P to begin with, one to four.
 NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, int count, const NearestGoal& goal);
+
+struct NearestLaneFace;
+struct LanePoint;
+/// `add_vertex` (simplex_lanes.hpp) for a search over bodies of many vertices, whose supports come from elsewhere, and
+/// what it has found when it ends.
+bool add_to_face(NearestLaneFace& face, const LanePoint& s);
+NearestOfFew found_on(const NearestLaneFace& face);
 
 /// The nearest point of one to three vertices of P, `direction` from there to the origin, and with the support there
 /// also `height`, which tells whether the point is P's nearest, too.

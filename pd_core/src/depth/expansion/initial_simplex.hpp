@@ -6,12 +6,16 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "depth/difference/polytope_difference.hpp"
 #include "depth/difference/smooth_difference.hpp"
 #include "depth/expansion/inner_surface.hpp"
+#include "depth/expansion/moment_frame.hpp"
 
 namespace pd::detail {
+
+enum class InitialSimplexOutcome : std::uint8_t { found, separated, flat };
 
 /// Two directions that span the plane across d (unit) with it, without a root (Duff et al. 2017).
 inline void frame_across(const Vec3& d, Vec3& u, Vec3& w) {
@@ -43,25 +47,54 @@ inline double initial_cone_sine(const PolytopeDifference& difference) {
 }
 inline double initial_cone_sine(const SmoothDifference& /*difference*/) { return 0.5; }
 
+/// How a search begins.
+enum class FirstDirections : std::uint8_t {
+  plain,    ///< whatever the bodies are like: which of equally near facets a search ends at hangs on it
+  by_shape  ///< in the frame of the bodies' moments where one is elongated, and round the origin where they fail
+};
+
+/// Bodies of so few vertices are through in little more time than the frame takes.
+inline constexpr int kFewestForFrame = 17;
+
+/// Four directions (unit) for bodies one of which is elongated, laid out as `surrounding_directions` does in the frame
+/// of P's moments (moment_frame.hpp). False where neither is, or there is little to gain.
+/// @param expected  the direction in which the depth is expected, or zero: from the bodies' places and moments.
+inline bool directions_by_shape(const PolytopeDifference& difference, const Vec3& expected, double sine,
+                                Vec3 (&out)[4]) {
+  const ConvexPolytope &a = difference.a(), &b = difference.b();
+  if (!a.storage().elongated && !b.storage().elongated) return false;
+  if (a.num_vertices() + b.num_vertices() < kFewestForFrame) return false;
+  const MomentFrame frame(difference);
+  const Vec3 w = expected.squaredNorm() > 0 ? frame.into(expected) : frame.expected(difference.centre());
+  const double squared = w.squaredNorm();
+  if (!(squared > 0 && squared < std::numeric_limits<double>::infinity())) return false;
+  surrounding_directions(w / std::sqrt(squared), sine, out);
+  for (Vec3& direction : out) direction = frame.out_of(direction).normalized();
+  return true;
+}
+inline bool directions_by_shape(const SmoothDifference&, const Vec3&, double, Vec3 (&)[4]) { return false; }
+
 /// The searches for the first tetrahedron, the cheapest first. `Probe` offers `add_support`, for one direction and for
 /// four, and `add_both_supports`; each adds vertices to the surface and says false where a support shows the bodies
-/// separated.
+/// separated. Its `search_around_origin` begins from four vertices that are there and puts others in their place.
 ///
-/// Most pairs are done after the first four supports; at most 20 are asked for.
+/// Most pairs are done after the first four supports; at most 20 are asked for, and what the way round the origin
+/// takes.
 template <class Probe>
 class InitialSimplex {
  public:
-  enum class Outcome : std::uint8_t { found, separated, flat };
+  using Outcome = InitialSimplexOutcome;
 
   /// @param flat  error bound of six volumes.
   InitialSimplex(InnerSurface& surface, double flat, Probe& probe) : surface_(surface), flat_(flat), probe_(probe) {}
 
-  /// @param direction  unit, where the depth is expected. @param sine  see initial_cone_sine.
-  Outcome find(const Vec3& direction, double sine) {
-    Vec3 directions[4];
-    surrounding_directions(direction, sine, directions);
+  /// @param directions  unit, the first ones to ask.
+  /// @param direction   unit, where the depth is expected. @param sine  see initial_cone_sine.
+  Outcome find(const Vec3 (&directions)[4], const Vec3& direction, double sine) {
     if (!probe_.add_support(directions)) return Outcome::separated;
     if (surface_.start_tetrahedron(flat_)) return Outcome::found;
+    const Outcome around = probe_.search_around_origin();
+    if (around != Outcome::flat) return around;
     return search_farther(direction, sine);
   }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "shape/hull/second_moments.hpp"
 #include "shape/small_gauss_map.hpp"
 #include "shape/support/direction_table.hpp"
 #include "shape/support/polytope_support.hpp"
@@ -333,6 +334,8 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   const Arrays& out = made.arrays;
   place_facets(loops, place_vertices(vertices, out, n), affine_dimension, out, n);
   publish(out, n, affine_dimension);
+  out.storage->second_moments = second_moments(*out.storage);
+  out.storage->elongated = is_elongated(out.storage->second_moments);
   out.storage->memory_bytes = made.bytes;
   if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
   if (n.vertices > kScanLimit) {
@@ -372,6 +375,9 @@ std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent)
   std::copy_n(body.facet_vertices, n.facet_vertices, out.facet_vertices);
   std::copy_n(body.facet_half_edges, n.facets, out.facet_half_edges);
   publish(out, n, body.affine_dimension);
+  // Anew: where the body is extreme its moments are none.
+  out.storage->second_moments = second_moments(*out.storage);
+  out.storage->elongated = is_elongated(out.storage->second_moments);
   out.storage->memory_bytes = made.bytes;
   if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
   if (body.table_cells > 0) {
