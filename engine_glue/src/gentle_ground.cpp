@@ -47,7 +47,6 @@ bool GentleGround::begin(const PosedShape& body, const BodyReach& reach, const P
 }
 
 bool GentleGround::is_gentle(const MeshTriangle& triangle, std::size_t place, double side, SharedEdges& edges) const {
-  const double squared = triangle.across.squaredNorm();
   for (std::size_t i = 0; i < 3; ++i) {
     const btVector3& begin = triangle.corners[i];
     const btVector3& end = triangle.corners[i < 2 ? i + 1 : 0];
@@ -66,7 +65,7 @@ bool GentleGround::is_gentle(const MeshTriangle& triangle, std::size_t place, do
     const double rise = side * triangle.across.dot(way);
     const double out = along.cross(triangle.across).dot(way);
     if (out <= 0) return false;  // it folds back
-    if (rise < 0 && rise * rise * along.squaredNorm() * squared > kGentle * kGentle * out * out) return false;
+    if (rise < 0 && rise * rise * along.squaredNorm() > kGentle * kGentle * out * out) return false;
   }
   return true;
 }

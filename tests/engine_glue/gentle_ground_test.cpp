@@ -94,22 +94,30 @@ TEST(GentleGround, TheNearestTriangleSaysWhatAQuerySays) {
   }
 }
 
-/// A box slides over a step that falls away: what is not gentle is asked as ever.
+/// On the ridge of a roof, of triangles of any size: what is not gentle is asked as ever.
 TEST(GentleGround, ASteepEdgeIsAskedByQueries) {
-  UnionWorld world;
-  std::vector<UnionWorld::Triangle> triangles;
   const auto at = [](double x, double y, double z) {
     return btVector3(static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z));
   };
-  add_rectangle(triangles, at(-2, -2, -2), at(-2, -2, 2), at(0, 0, 2), at(0, 0, -2));
-  add_rectangle(triangles, at(0, 0, -2), at(0, 0, 2), at(2, -2, 2), at(2, -2, -2));
-  world.fixed(world.mesh(triangles, kMargin));
-  auto* box = world.bullet.shape<btBoxShape>(at(.3, .2, .25));
-  world.moving(box, at(0, .2 + .01 + .004, 0), at(0, 0, 0));
-  world.bullet.world().performDiscreteCollisionDetection();
-  world.bullet.world().performDiscreteCollisionDetection();
-  EXPECT_GT(world.solver.statistics().warm, 0);
-  EXPECT_NEAR(world.bullet.least_distance(), .004, 1e-6);
+  for (const double slope : {.1, .5}) {
+    for (const double cell : {2.0, .1}) {
+      UnionWorld world;
+      std::vector<UnionWorld::Triangle> triangles;
+      for (double z = -1; z < .99; z += cell) {
+        add_rectangle(triangles, at(-cell, -slope * cell, z), at(-cell, -slope * cell, z + cell), at(0, 0, z + cell),
+                      at(0, 0, z));
+        add_rectangle(triangles, at(0, 0, z), at(0, 0, z + cell), at(cell, -slope * cell, z + cell),
+                      at(cell, -slope * cell, z));
+      }
+      world.fixed(world.mesh(triangles, kMargin));
+      auto* box = world.bullet.shape<btBoxShape>(at(.05, .2, .05));
+      world.moving(box, at(0, .2 + .01 + .001, .02), at(0, 0, 0));
+      world.bullet.world().performDiscreteCollisionDetection();
+      world.bullet.world().performDiscreteCollisionDetection();
+      EXPECT_EQ(world.solver.statistics().warm > 0, slope > .3) << slope << ' ' << cell;
+      EXPECT_NEAR(world.bullet.least_distance(), .001, 1e-6) << slope << ' ' << cell;
+    }
+  }
 }
 
 detail::MeshTriangle triangle_of(const btVector3& a, const btVector3& b, const btVector3& c) {
