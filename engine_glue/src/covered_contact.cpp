@@ -16,11 +16,10 @@ namespace {
 
 /// A normal nearer to a facet's than this (1 - cosine, about 1e-5 rad) is that facet's.
 constexpr double kSameNormal = 1e-10;
-/// A way that leads less than this (as a sine) against a normal covers nothing: a contact that is off by so much gives
-/// a body that rests on it 1e-4 m/s a second aside.
-constexpr double kLevel = 1e-5;
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
+/// A sine that is more than kDecided also where it was found another way.
+constexpr double kLedOn = (1 + 1e-6) * kDecided;
 /// From so many on, what a facet inside of them is known for spares a search.
 constexpr int kManyChildren = 4;
 /// Facets tried in place of a covered one.
@@ -141,6 +140,11 @@ class Cover {
       if (least <= (touched.facet >= 0 ? kDecided : 0)) break;
     }
     return least;
+  }
+
+  /// Whether the feature of the triangle at hand at `foot` is covered beyond doubt by the triangle next to it.
+  [[nodiscard]] bool led_on_by_neighbour(const Vec3& foot, const Vec3& n) const {
+    return buffers_.near.neighbour_leads_on(*buffers_.own, foot, n, kLedOn, 2 * slack_);
   }
 
   /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
@@ -334,6 +338,7 @@ class SideRule {
     if (own.flat) {
       const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
       if (own_sine > kDecided) return own_sine;
+      if (cover_.led_on_by_neighbour(foot, n)) return kLedOn;
       cover_.look_round(foot, own.margin, n);
     }
     return cover_.covered(foot, n);

@@ -18,6 +18,8 @@ namespace {
 constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
 /// Of the body's thickness: so deep, its shortest way out is back to where most of it is, over edges or not.
 constexpr double kShallow = 0.25;
+/// Sine of two normals that are not one plane's.
+constexpr double kTurned = 1e-3;
 
 std::array<Vec3, 3> corners_of(const MetTriangle& triangle) {
   return {to_pd(triangle.corners[0]), to_pd(triangle.corners[1]), to_pd(triangle.corners[2])};
@@ -34,6 +36,29 @@ bool holds(const MetTriangle& triangle, const Vec3& across, const Vec3& point, d
   return true;
 }
 
+/// Whether four of the triangles are in four planes for certain, which few of them tell where the ground is uneven.
+bool are_of_many_planes(std::span<const MetTriangle> triangles, const std::vector<Vec3>& across, double rounding) {
+  std::array<const Vec3*, FlatGround::kMostPlanes> found;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Vec3& n = across[i];
+    const double squared = n.squaredNorm();
+    const bool repeated =
+        std::any_of(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), [&](const Vec3* other) {
+          return n.cross(*other).squaredNorm() <= kTurned * kTurned * squared * other->squaredNorm();
+        });
+    if (repeated) continue;
+    const std::array<Vec3, 3> at = corners_of(triangles[i]);
+    const double longest =
+        std::max({(at[1] - at[0]).squaredNorm(), (at[2] - at[1]).squaredNorm(), (at[0] - at[2]).squaredNorm()});
+    // So narrow that rounding of its corners may turn it.
+    if (kTurned * kTurned * squared <= 64 * rounding * rounding * longest) continue;
+    if (count == found.size()) return true;
+    found[count++] = &n;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool FlatGround::sort_by_plane(std::span<const MetTriangle> triangles) {
@@ -44,9 +69,10 @@ bool FlatGround::sort_by_plane(std::span<const MetTriangle> triangles) {
     across_.push_back((corners[1] - corners[0]).cross(corners[2] - corners[0]));
     for (const Vec3& corner : corners) farthest_ = std::max(farthest_, corner.cwiseAbs().maxCoeff());
   }
+  const double rounding = kFlat * farthest_;
+  if (are_of_many_planes(triangles, across_, rounding)) return false;
   plane_of_.assign(triangles.size(), -1);
   planes_.clear();
-  const double rounding = kFlat * farthest_;
   for (std::size_t left = triangles.size(); left > 0;) {
     if (planes_.size() == kMostPlanes) return false;
     std::size_t seed = triangles.size();

@@ -32,6 +32,9 @@ struct UnionQuestion;
 /// Keeps its memory from step to step, and nothing that an answer could depend on.
 class FlatGround {
  public:
+  /// Floor and two walls.
+  static constexpr int kMostPlanes = 3;
+
   /// A convex body or child, and what it was converted to in an earlier step, or null.
   struct Body {
     const btCollisionObjectWrapper& wrapper;
@@ -47,9 +50,6 @@ class FlatGround {
             SolverCore& core, ThreadBuffers& buffers, Patches& patches);
 
  private:
-  /// Floor and two walls.
-  static constexpr int kMostPlanes = 3;
-
   struct Plane {
     std::size_t seed;  ///< the largest of its triangles, which gives the plane
     ContactManifold points;

@@ -14,7 +14,9 @@
 #include "compound_facts.hpp"
 #include "covered_contact.hpp"
 #include "flat_ground.hpp"
+#include "gentle_ground.hpp"
 #include "met_triangle.hpp"
+#include "moving_body.hpp"
 #include "one_sided.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "piece_memories.hpp"
@@ -31,10 +33,6 @@ constexpr double kClear = 1 + 0x1p-6;
 
 /// Triangles of one step that a body or child remembers, some 2 KB each; those met after them begin anew each step.
 constexpr std::size_t kMostRemembered = 256;
-
-/// Of the threshold: so much farther than contacts reach the mesh is read, since what lies round a contact is asked
-/// for, too. Where bodies are fast it may lie farther, and is read from the mesh again.
-constexpr btScalar kRoom = 3;
 
 /// Children whose boxes have less than this share of the surface of the box around all of them read the mesh one by
 /// one: between them lie triangles that none of them meets.
@@ -93,6 +91,8 @@ class MeshContacts final : public UnionContacts {
   /// Compares where the children are with where all triangles were asked about them.
   /// @return whether only those that made points are to be asked again
   bool stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory);
+  /// False: in the next step the body will not be where it is.
+  static bool may_come_to_rest(const UnionQuestion& question);
   /// The triangles that one of the children is asked about.
   void choose_triangles(int place, const TrianglesAround& around, StandingStill& standing);
   /// Which triangles made points that were chosen.
@@ -105,6 +105,12 @@ class MeshContacts final : public UnionContacts {
   bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
                Patches& patches);
   /// @param a  the wrapper of the child
+  /// Whether the body can be asked along the normals of gentle triangles.
+  bool begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place, SolverCore& core,
+                    PairMemory& memory);
+  /// The contacts with one of the triangles that were chosen, if it is gentle. @return false: it is not
+  bool find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, std::size_t triangle,
+                      SolverCore& core, ThreadBuffers& buffers, Patches& patches);
   SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,
                           const TriangleInResult& triangle, PieceMemory* memory, SolverCore& core,
                           ThreadBuffers& buffers, PairAnswer& answer) const;
@@ -122,6 +128,8 @@ class MeshContacts final : public UnionContacts {
   std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
   std::vector<std::size_t> places_;     ///< theirs among the triangles around
   FlatGround flat_;
+  GentleGround gentle_;
+  PosedShape body_{};  ///< the child at hand
   PieceMemories memories_;
   OneSided one_sided_;
 };
@@ -152,9 +160,7 @@ void MeshContacts::reach_out(const UnionQuestion& question) {
 void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper,
                              ThreadBuffers& buffers) {
   const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
-  const btScalar room = kRoom * question.threshold;
-  const btVector3 extra(room, room, room);
-  const int skipped = buffers.around.read(mesh, lower - extra, upper + extra);
+  const int skipped = buffers.around.read(mesh, lower, upper);
   if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
   buffers.cover.near.know(buffers.around, question.b);
 }
@@ -215,7 +221,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   if (together_) read_mesh(question, lower_, upper_, *buffers);
   if (still_) {
     memory.standing.find(buffers->around.triangles(), known_);
-  } else if (!stand_.empty()) {
+  } else if (!stand_.empty() && may_come_to_rest(question)) {
     memory.standing.begin(stand_, question.threshold, question.b.getCollisionShape()->getMargin(),
                           buffers->around.triangles());
   } else {
@@ -248,6 +254,12 @@ bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, 
   return memory.standing.still(stand_, radii_, question.threshold, question.b.getCollisionShape()->getMargin());
 }
 
+bool MeshContacts::may_come_to_rest(const UnionQuestion& question) {
+  const Vec3 way = question.seconds * (linear_velocity(*question.a.getCollisionObject()) -
+                                       linear_velocity(*question.b.getCollisionObject()));
+  return way.squaredNorm() <= static_cast<double>(question.threshold) * static_cast<double>(question.threshold);
+}
+
 void MeshContacts::choose_triangles(int place, const TrianglesAround& around, StandingStill& standing) {
   using Met = StandingStill::Met;
   const auto child = static_cast<std::size_t>(place);
@@ -274,6 +286,42 @@ void MeshContacts::remember_points(const Patches& patches, StandingStill& standi
   }
 }
 
+bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place,
+                                SolverCore& core, PairMemory& memory) {
+  const btTransform& pose = a.getWorldTransform();
+  if (!in_range(pose) || !in_range(question.b.getWorldTransform())) return false;
+  std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, children_[static_cast<std::size_t>(place)].index);
+  core.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()), question.stamp, shape);
+  if (!shape->body) return false;
+  body_ = {(is_part(a) && shape->sharp ? shape->sharp : shape->body).get(), to_pd(pose)};
+  return gentle_.begin(body_, reaches_[static_cast<std::size_t>(place)], to_pd(question.b.getWorldTransform()),
+                       static_cast<double>(question.b.getCollisionShape()->getMargin()),
+                       static_cast<double>(question.threshold), core.settings.one_sided_meshes);
+}
+
+bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question,
+                                  std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
+  const std::size_t place = places_[triangle];
+  if (!gentle_.ask(buffers.around.triangles()[place], place, buffers.cover.near.shared_edges())) return false;
+  buffers.counters.calls.add();
+  buffers.counters.support_calls.add();
+  const MetTriangle& met = triangles_[triangle];
+  const Child& child = children_[static_cast<std::size_t>(met.child)];
+  for (const ContactManifold& found : gentle_.manifolds()) {
+    ContactManifold points = found;
+    for (int k = 0; k < points.count && core.settings.one_sided_meshes; ++k) {
+      const double depth = points.points[static_cast<std::size_t>(k)].depth;
+      if (depth > 0) one_sided_.add_way(depth * points.normal);
+    }
+    if (is_piece(a)) {
+      drop_covered(a, body_, question.b, static_cast<double>(question.threshold), question.seconds, question.stamp,
+                   core, buffers, points);
+    }
+    patches.add(points, static_cast<int>(triangle), part_of(child, met), met.index);
+  }
+  return true;
+}
+
 bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers,
                            PairMemory& memory, Patches& patches) {
   const Child& child = children_[static_cast<std::size_t>(place)];
@@ -298,8 +346,10 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   if (still_ && !asked_one_by_one) memory.standing.forget();
   const bool one_sided = core.settings.one_sided_meshes;
   one_sided_.clear();
+  const bool gentle = begin_gentle(a, question, place, core, memory);
   for (std::size_t i = first; i < triangles_.size(); ++i) {
     const MetTriangle& met = triangles_[i];
+    if (gentle && find_on_gentle(a, question, i, core, buffers, patches)) continue;
     const TriangleInResult triangle(question.result, mesh, met);
     PairAnswer answer;
     PieceMemory* remembered = nullptr;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compound_facts.hpp"
+#include "shared_edges.hpp"
 #include "triangle_boxes.hpp"
 #include "triangles_around.hpp"
 #include "union_piece.hpp"
@@ -45,6 +46,13 @@ class NearPieces {
   /// @param found  valid until `forget_made` or the next pair
   void find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, double slack, const Beyond* beyond,
             std::uint64_t stamp, SolverCore& core, std::vector<const UnionPiece*>& found);
+  /// Whether a triangle that shares an edge with this one, on which `foot` lies, leads on against n by a sine of `sine`
+  /// and more: from there and, unless foot is a corner, from all of the edge. No search; false may be either.
+  /// @param slack  up to which a point lies on an edge
+  [[nodiscard]] bool neighbour_leads_on(const UnionPiece& triangle, const Vec3& foot, const Vec3& n, double sine,
+                                        double slack);
+  /// Of the triangles that are known.
+  [[nodiscard]] SharedEdges& shared_edges() { return known_edges_; }
   [[nodiscard]] CompoundFacts& facts() { return facts_; }
 
   /// Makes room: what was found may go.
@@ -110,6 +118,7 @@ class NearPieces {
   std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
   std::vector<bool> known_made_;
   TriangleBoxes known_boxes_;
+  SharedEdges known_edges_;
   int known_searches_ = 0;  ///< among these, of the pair at hand
   std::uint64_t stamp_ = 0;
   std::uint64_t visits_ = 0;

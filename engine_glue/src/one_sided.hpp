@@ -22,6 +22,9 @@ class OneSided {
   /// @return whether the answer's own contact counts
   bool admit(const PairAnswer& answer, const Vec3& front, int triangle);
 
+  /// Of a contact with the front of a triangle, found another way: by this translation of A it ends.
+  void add_way(const Vec3& way) { ways_.push_back(way); }
+
   struct Behind {
     int triangle;
     Vec3 front;

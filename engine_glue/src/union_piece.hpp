@@ -28,9 +28,13 @@ struct Plane {
 struct UnionPiece {
   std::vector<Plane> planes;  ///< the piece is where all heights are <= 0
   double margin = 0;
-  bool flat = false;  ///< a triangle: its first two planes are its two sides
+  bool flat = false;  ///< a triangle: its first two planes are its two sides, the others its edges, corner to next
+  int around = -1;    ///< its place among the triangles around a body; -1: none of them
 };
 
+/// A way that leads less than this (as a sine) against a normal covers nothing: a contact that is off by so much gives
+/// a body that rests on it 1e-4 m/s a second aside.
+inline constexpr double kLevel = 1e-5;
 /// A sine from which on a contact is covered beyond doubt; below, it is one of the facet's own if its normal is near.
 inline constexpr double kDecided = 0.02;
 /// More than this is not told apart.
