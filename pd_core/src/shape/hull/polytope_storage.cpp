@@ -375,9 +375,14 @@ std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent)
   std::copy_n(body.facet_vertices, n.facet_vertices, out.facet_vertices);
   std::copy_n(body.facet_half_edges, n.facets, out.facet_half_edges);
   publish(out, n, body.affine_dimension);
-  // Anew: where the body is extreme its moments are none.
-  out.storage->second_moments = second_moments(*out.storage);
-  out.storage->elongated = is_elongated(out.storage->second_moments);
+  const double spread = body.second_moments.trace();
+  if (spread > 0 && std::isfinite(spread)) {
+    out.storage->second_moments = body.second_moments.unaryExpr([&](double x) { return std::ldexp(x, 2 * exponent); });
+    out.storage->elongated = body.elongated;
+  } else {  // no squares of lengths at the body's size
+    out.storage->second_moments = second_moments(*out.storage);
+    out.storage->elongated = is_elongated(out.storage->second_moments);
+  }
   out.storage->memory_bytes = made.bytes;
   if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
   if (body.table_cells > 0) {
