@@ -9,7 +9,7 @@ namespace pd::detail {
 namespace {
 
 /// More supports than slender bodies were seen to need.
-constexpr int kMostSupports = 32;
+constexpr int kMostAround = 32;
 
 EnclosingSimplex among_few(const PolytopeDifference& difference, std::span<const DifferenceVertex, 4> start,
                            std::int64_t& support_calls) {
@@ -49,7 +49,7 @@ EnclosingSimplex among_many(const PolytopeDifference& difference, std::span<cons
   for (const DifferenceVertex& v : start) {
     if (!add_to_face(face, lane_point(v))) return out;
   }
-  for (int step = 0; step < kMostSupports && face.length > 4 * error; ++step) {
+  for (int step = 0; step < kMostAround && face.length > 4 * error; ++step) {
     const Vec3 toward(face.toward.x, face.toward.y, face.toward.z);
     DifferenceVertex s = difference.search_support_along(toward);
     ++support_calls;
