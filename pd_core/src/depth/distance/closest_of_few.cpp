@@ -17,7 +17,7 @@ constexpr double kScannedPlaneError = 24 * kUnitRoundoff;
 
 /// Of a search over many vertices: below it single precision cannot tell.
 constexpr double kSeenGap = 0x1p-20;
-constexpr int kMostSupports = 64;
+constexpr int kMostOfMany = 64;
 
 FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
   return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
@@ -86,7 +86,7 @@ ClosestPoint closest_of_many(const PolytopeDifference& difference, std::span<con
     return std::any_of(face.corners, face.corners + face.count,
                        [&](const LanePoint& corner) { return corner.a == s.a && corner.b == s.b; });
   };
-  for (int step = 0; step < kMostSupports; ++step) {
+  for (int step = 0; step < kMostOfMany; ++step) {
     const Vec3 toward(face.toward.x, face.toward.y, face.toward.z);
     DifferenceVertex s = difference.search_support_along(toward);
     ++support_calls;
