@@ -16,8 +16,6 @@ namespace {
 
 /// Of coordinates: corners of a plane that its author rounded to Bullet's scalar.
 constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
-/// Of the body's thickness: so deep, its shortest way out is back to where most of it is, over edges or not.
-constexpr double kShallow = 0.25;
 /// Sine of two normals that are not one plane's.
 constexpr double kTurned = 1e-3;
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "met_triangle.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "union_piece.hpp"
 
@@ -19,8 +20,6 @@ constexpr double kGentle = 0.36;
 constexpr double kOneFacet = 0.9;
 /// cos 60 degrees: a facet that is steeper says little about the contact (as for every contact_manifold).
 constexpr double kFacing = 0.5;
-/// Of the body's thickness: so deep, its shortest way out may be another (as on flat ground).
-constexpr double kShallow = 0.25;
 
 }  // namespace
 

@@ -16,4 +16,8 @@ struct MetTriangle {
   int child;  ///< of the body, by its place among those that were asked
 };
 
+/// Of a body's thickness. Deeper in a sheet than this, its shortest way out is back to where most of it is, over edges
+/// or not, and no longer the triangle's own side.
+inline constexpr double kShallow = 0.25;
+
 }  // namespace pd::detail
