@@ -29,7 +29,7 @@ mkdir -p "$findings"
     seed=2
     for bracket in tightest certified; do
       printf 'oracle_pairs --bracket %s --seed %s: ' "$bracket" "$seed"
-      (cd "$findings" && "../oracle_pairs" --pairs $((oracle_pairs / 2)) --seed "$seed" --bracket "$bracket" --threads "$(nproc)" | tail -1)
+      (cd "$findings" && "../oracle_pairs" --pairs $((oracle_pairs / 2)) --seed "$seed" --bracket "$bracket" --threads "$(nproc)" | tail -2)
       seed=$((seed + 1))
     done
   fi
