@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
+
+#include "pd/numeric/vector.hpp"
 
 namespace pd::detail {
 
@@ -45,6 +48,34 @@ TEST(Length, ScalesByPowersOfTwo) {
       ASSERT_EQ(length(std::ldexp(x, exponent), std::ldexp(y, exponent)), std::ldexp(unscaled, exponent)) << x << y;
     }
   }
+}
+
+/// Of three coordinates: the same bits wherever the vector lies (Eigen's stableNorm has others where its address is odd
+/// to a packet's), and at every size.
+TEST(Length, OfAVectorHasTheBitsOfItsCoordinatesAlone) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> mantissa(-2, 2);
+  alignas(64) double memory[4];
+  for (int i = 0; i < 20000; ++i) {
+    const double at[3] = {mantissa(random), std::ldexp(mantissa(random), -(i % 60)), mantissa(random)};
+    const Vec3 v(at[0], at[1], at[2]);
+    const double found = length(v);
+    for (int shift = 0; shift < 2; ++shift) {
+      std::copy(std::begin(at), std::end(at), memory + shift);
+      ASSERT_EQ(length(Eigen::Map<const Vec3>(memory + shift)), found);
+    }
+    const long double exact =
+        std::sqrt(static_cast<long double>(at[0]) * at[0] + static_cast<long double>(at[1]) * at[1] +
+                  static_cast<long double>(at[2]) * at[2]);
+    ASSERT_NEAR(static_cast<double>(found - exact), 0, static_cast<double>(exact) * 0x1p-51);
+    for (const int exponent : {-700, -399, 399, 900}) {
+      ASSERT_EQ(length(Vec3(std::ldexp(at[0], exponent), std::ldexp(at[1], exponent), std::ldexp(at[2], exponent))),
+                std::ldexp(found, exponent));
+    }
+  }
+  EXPECT_EQ(length(Vec3(Vec3::Zero())), 0);
+  EXPECT_EQ(length(Vec3(0, -std::numeric_limits<double>::infinity(), 1)), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(length(Vec3(0, std::numeric_limits<double>::quiet_NaN(), 1))));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "compound/union_memory.hpp"
 #include "depth/pair/canonical_order.hpp"
+#include "numeric/length.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shape/core_radius.hpp"
 
@@ -29,7 +30,7 @@ Box whole(const std::vector<Box>& boxes) {
 double box_gap(const Box& a, const Box& b) {
   const Vec3 gap = (b.low - a.high).cwiseMax(a.low - b.high);
   const double largest = gap.maxCoeff();
-  return largest <= 0 ? largest : gap.cwiseMax(Vec3::Zero()).stableNorm() * (1 - 0x1p-40);
+  return largest <= 0 ? largest : length(Vec3(gap.cwiseMax(Vec3::Zero()))) * (1 - 0x1p-40);
 }
 
 /// The parts ordered by content; `order` tells which of the given ones each is, the first of equals first.

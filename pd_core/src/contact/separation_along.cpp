@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "depth/difference/smooth_difference.hpp"
+#include "numeric/length.hpp"
 #include "numeric/turn.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "shape/core_radius.hpp"
@@ -21,17 +22,17 @@ MovingSupport::MovingSupport(const MovingShape& body)
     : body_(body),
       rotation_(body.start.shape->polytope() ? body.start.pose.rotation() : body.start.pose.nearest_rotation()),
       pivot_(body.start.pose.translation() - body.arm),
-      speed_(body.motion.angular_velocity.stableNorm()) {
+      speed_(length(body.motion.angular_velocity)) {
   if (speed_ > 0) axis_ = body.motion.angular_velocity / speed_;
   double from_axis = 0;
   if (const ConvexPolytope* polytope = body.start.shape->polytope()) {
     for (int v = 0; v < polytope->num_vertices(); ++v) {
       const Vec3 r = body.arm + rotation_ * polytope->vertex(v);
-      radius_ = std::max(radius_, r.stableNorm());
-      from_axis = std::max(from_axis, axis_.cross(r).stableNorm());
+      radius_ = std::max(radius_, length(r));
+      from_axis = std::max(from_axis, length(Vec3(axis_.cross(r))));
     }
   } else {
-    radius_ = body.arm.stableNorm() + core_radius(body.start.shape->core());
+    radius_ = length(body.arm) + core_radius(body.start.shape->core());
     from_axis = radius_;
   }
   radius_ *= kRoundedUp;
@@ -58,8 +59,7 @@ MovingSeparation::MovingSeparation(const MovingShape& a, const MovingShape& b, d
   // Pivots: two products, three sums of lengths below `way`. Supports: the turned direction is off by 8u and by the
   // angle's own rounding, 2u of it; two products with matrices; sums of three terms: 40u of the radius.
   const auto way = [&](const MovingShape& body) {
-    return body.start.pose.translation().stableNorm() + body.arm.stableNorm() +
-           duration * body.motion.linear_velocity.stableNorm();
+    return length(body.start.pose.translation()) + length(body.arm) + duration * length(body.motion.linear_velocity);
   };
   const auto turn = [&](const MovingSupport& body) {
     return (40 + 2 * body.angular_speed() * duration) * body.radius();
@@ -74,9 +74,9 @@ double MovingSeparation::at(const Vec3& n, double time) {
 
 double MovingSeparation::closing_bound(const Vec3& n) const {
   const double bound = (motion_b_.motion.linear_velocity - motion_a_.motion.linear_velocity).dot(n) +
-                       n.cross(motion_a_.motion.angular_velocity).stableNorm() * a_.radius() +
-                       n.cross(motion_b_.motion.angular_velocity).stableNorm() * b_.radius();
-  const double speeds = motion_a_.motion.linear_velocity.stableNorm() + motion_b_.motion.linear_velocity.stableNorm() +
+                       length(Vec3(n.cross(motion_a_.motion.angular_velocity))) * a_.radius() +
+                       length(Vec3(n.cross(motion_b_.motion.angular_velocity))) * b_.radius();
+  const double speeds = length(motion_a_.motion.linear_velocity) + length(motion_b_.motion.linear_velocity) +
                         a_.angular_speed() * a_.radius() + b_.angular_speed() * b_.radius();
   return bound + 16 * kUnitRoundoff * speeds;
 }

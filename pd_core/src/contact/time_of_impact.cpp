@@ -5,6 +5,7 @@
 
 #include "contact/separation_along.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/length.hpp"
 #include "numeric/turn.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shape/core_radius.hpp"
@@ -114,7 +115,7 @@ Pose moved(const Pose& pose, const Vec3& translation) {
 Pose pose_at(const MovingShape& body, double time) {
   if (time == 0) return body.start.pose;
   const Vec3 way = time * body.motion.linear_velocity;
-  const double speed = body.motion.angular_velocity.stableNorm();
+  const double speed = detail::length(body.motion.angular_velocity);
   const double angle = speed * time;
   if (angle == 0) return moved(body.start.pose, body.start.pose.translation() + way);
   const Mat3 turn = detail::rotation_about(body.motion.angular_velocity / speed, angle);

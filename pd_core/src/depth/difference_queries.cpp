@@ -14,6 +14,7 @@
 #include "depth/rays/portal.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/length.hpp"
 #include "numeric/root_sum.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/scratch.hpp"
@@ -45,7 +46,7 @@ DifferenceSupport polytope_support(const ConvexPolytope& a, const Pose& pose_a, 
   const detail::DoubleDouble product = x.x * d.x() + x.y * d.y() + x.z * d.z();
   const int exponent = std::ilogb(direction.cwiseAbs().maxCoeff());
   support.value = std::ldexp(detail::to_double(product), exponent + pair.scale_exponent());
-  if (margin > 0) support.value += margin * direction.stableNorm();
+  if (margin > 0) support.value += margin * detail::length(direction);
   return support;
 }
 
@@ -170,7 +171,7 @@ Expected<LineCrossing> line_in_difference(const PosedShape& a, const PosedShape&
   }
   // Relative to the point, so that the line passes through the origin.
   const PosedPair pair(*polytope_a, a.pose, *polytope_b, b.pose, point);
-  const double length = direction.stableNorm();
+  const double length = detail::length(direction);
   LineCrossing crossing;
   Dyadic levels[2], slopes[2];
   for (const double sense : {1.0, -1.0}) {

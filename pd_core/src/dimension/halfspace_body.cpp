@@ -12,6 +12,7 @@
 #include "dimension/linear_program.hpp"
 #include "dimension/validate.hpp"
 #include "dimension/weighted_ellipsoid.hpp"
+#include "numeric/length.hpp"
 #include "pd/dimension/enclosing_ellipsoid.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
 
@@ -73,12 +74,13 @@ template <typename Scalar, int D>
 class Program {
  public:
   explicit Program(std::span<const Halfspace<D>> halfspaces) {
-    for (const Halfspace<D>& h : halfspaces) scale_ = std::max(scale_, std::abs(h.offset) / h.normal.stableNorm());
+    for (const Halfspace<D>& h : halfspaces)
+      scale_ = std::max(scale_, std::abs(h.offset) / pd::detail::length(h.normal));
     if (!(scale_ > 0)) scale_ = 1;
     rows_.reserve(halfspaces.size());
     for (const std::size_t i : shuffled(halfspaces.size())) {
       // By a power of two near its length first, so that squares neither overflow nor vanish.
-      const double power = std::exp2(std::round(std::log2(halfspaces[i].normal.stableNorm())));
+      const double power = std::exp2(std::round(std::log2(pd::detail::length(halfspaces[i].normal))));
       ProgramRow<Scalar, D> row{};
       for (std::size_t k = 0; k < D; ++k) row.a[k] = Scalar{halfspaces[i].normal[Eigen::Index(k)] / power};
       const Scalar length = root(dot(row.a, row.a));

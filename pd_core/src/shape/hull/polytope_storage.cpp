@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "numeric/length.hpp"
 #include "shape/hull/second_moments.hpp"
 #include "shape/small_gauss_map.hpp"
 #include "shape/support/direction_table.hpp"
@@ -303,7 +304,7 @@ void publish(const Arrays& out, const Counts& n, int affine_dimension) {
   for (int v = 0; v < n.vertices; ++v) {
     const Vec3 point(out.x[v], out.y[v], out.z[v]);
     s.centre += point / n.vertices;  // divided first: a sum could overflow
-    s.radius = std::max(s.radius, point.stableNorm() * (1 + 0x1p-48));
+    s.radius = std::max(s.radius, length(point) * (1 + 0x1p-48));
   }
   s.x = out.x;
   s.y = out.y;
