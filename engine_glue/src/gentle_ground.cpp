@@ -226,6 +226,7 @@ bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed
     const double length = std::sqrt(least);
     depth = margin_ + mesh_margin_ - length;
     if (depth < -threshold_) return true;
+    if (!(length > 0)) return false;  // on the edge, as far as rounding tells: no way off it is known
     n = (centre - foot) / length;
 
     // 2. Where the mesh goes on against that, the contact is another triangle's: turned to this one's normal it would

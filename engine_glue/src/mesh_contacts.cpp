@@ -104,13 +104,13 @@ class MeshContacts final : public UnionContacts {
   /// The contacts of one of them. @return false where a piece has no exact form
   bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
                Patches& patches);
-  /// @param a  the wrapper of the child
-  /// Whether the body can be asked along the normals of gentle triangles.
+  /// Whether the body can be asked along the normals of gentle triangles. @param a  the wrapper of the child
   bool begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place, SolverCore& core,
                     PairMemory& memory);
   /// The contacts with one of the triangles that were chosen, if it is gentle. @return false: it is not
   bool find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, std::size_t triangle,
                       SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+  /// Asks a triangle by itself.
   SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,
                           const TriangleInResult& triangle, PieceMemory* memory, SolverCore& core,
                           ThreadBuffers& buffers, PairAnswer& answer) const;
