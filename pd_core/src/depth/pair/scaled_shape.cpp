@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "shape/core_radius.hpp"
+#include "shape/hull/polytope_storage.hpp"
 
 namespace pd::detail {
 
@@ -27,6 +29,7 @@ struct Scaled {
   int exponent;
 
   ConvexShape operator()(const ConvexPolytope& p) const {
+    if (auto exact = scaled_exactly(p.storage(), exponent)) return ConvexPolytope(std::move(exact));
     std::vector<Vec3> points;
     for (int v = 0; v < p.num_vertices(); ++v) {
       const Vec3 x = p.vertex(v);
