@@ -205,23 +205,39 @@ pd::scenes::Points points_of(const Json& json) {
   return points;
 }
 
-/// Asks every line that a search wrote, by the query whose fields it has.
-void replay(const std::string& file) {
+/// Asks every line that a search wrote, by the query whose fields it has. @return whether all lines could be asked
+bool replay(const std::string& file) {
   std::ifstream lines(file);
   std::string text;
   Workplace place;
   const std::vector<Query> known = queries();
-  while (std::getline(lines, text)) {
-    const Json line = Json::parse(text);
-    const PointPair pair{points_of(line.at("a")), points_of(line.at("b")), pose_of(line.at("pose_a")),
-                         pose_of(line.at("pose_b"))};
-    for (const Query& query : known) {
-      Json fields = line;
-      for (const char* body : {"a", "pose_a", "b", "pose_b"}) fields.erase(body);
-      if (fields != query.fields) continue;
-      std::printf("%-12s %9.2f us\n", query.name, 1e6 * cost(query, pair, place, 1).value());
+  bool all = true;
+  for (int number = 1; std::getline(lines, text); ++number) {
+    const auto refused = [&](const std::string& why) {
+      std::fprintf(stderr, "%s, line %d: %s\n", file.c_str(), number, why.c_str());
+      all = false;
+    };
+    try {
+      Json line = Json::parse(text);
+      const PointPair pair{points_of(line.at("a")), points_of(line.at("b")), pose_of(line.at("pose_a")),
+                           pose_of(line.at("pose_b"))};
+      for (const char* body : {"a", "pose_a", "b", "pose_b"}) line.erase(body);
+      const auto query = std::find_if(known.begin(), known.end(), [&](const Query& q) { return line == q.fields; });
+      if (query == known.end()) {
+        refused("no query of these fields: " + line.dump());
+        continue;
+      }
+      const auto seconds = cost(*query, pair, place, 1);
+      if (!seconds) {
+        refused("a body was refused");
+        continue;
+      }
+      std::printf("%-12s %9.2f us\n", query->name, 1e6 * *seconds);
+    } catch (const Json::exception& error) {
+      refused(error.what());
     }
   }
+  return all;
 }
 
 struct Found {
@@ -307,10 +323,7 @@ int main(int argc, char** argv) {
   app.add_option("--replay", settings.replayed, "file of such lines: asks each once and searches nothing")
       ->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
-  if (!settings.replayed.empty()) {
-    replay(settings.replayed);
-    return 0;
-  }
+  if (!settings.replayed.empty()) return replay(settings.replayed) ? 0 : 2;
   std::ofstream lines;
   if (!settings.lines.empty()) {
     lines.open(settings.lines);
