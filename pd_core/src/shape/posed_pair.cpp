@@ -8,7 +8,6 @@
 #include "numeric/unit_roundoff.hpp"
 #include "numeric/unrounded.hpp"
 #include "pd/numeric/predicates.hpp"
-#include "shape/zero_pattern.hpp"
 
 namespace pd::detail {
 
@@ -366,7 +365,7 @@ std::optional<int> PosedPair::sign_determinant_rounded(const PairVector& u, cons
       return sign(value);
     }
   }
-  if (vanishes_term_by_term(zero_coordinates(u), zero_coordinates(v), zero_coordinates(w))) {
+  if (vanishes_term_by_term(u, v, w)) {
     ++stages_.exact;
     return 0;
   }

@@ -18,6 +18,7 @@
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/posed_rotation.hpp"
+#include "shape/zero_pattern.hpp"
 
 namespace pd::detail {
 
@@ -124,6 +125,10 @@ class PosedPair {
   /// The same where it is told without `exact`; none: stage 3 must, for callers that have exact vectors at hand.
   [[nodiscard]] std::optional<int> sign_determinant_rounded(const PairVector& u, const PairVector& v,
                                                             const PairVector& w) const;
+  /// Whether det(u, v, w) = 0 by the zeros among the stored numbers alone (`zero_pattern.hpp`).
+  [[nodiscard]] bool vanishes_term_by_term(const PairVector& u, const PairVector& v, const PairVector& w) const {
+    return detail::vanishes_term_by_term(zero_coordinates(u), zero_coordinates(v), zero_coordinates(w));
+  }
   /// Sign of <u, v>, exact.
   [[nodiscard]] int sign_dot(const PairVector& u, const PairVector& v) const;
   /// True when u x v = 0 exactly.

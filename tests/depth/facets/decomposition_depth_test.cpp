@@ -110,6 +110,56 @@ TEST(DecompositionDepth, LooksAtFewOfTheFacetsOfSmoothBodies) {
   }
 }
 
+/// Prisms of n sides that share the plane of their ends: n^2 pieces of edges lie in it, all as near as the ends are.
+ConvexPolytope prism_of(int n, double radius) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / n;
+    for (const double z : {-1.0, 1.0}) points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  return *ConvexPolytope::from_points(points);
+}
+
+TEST(DecompositionDepth, FindsTheOverlaysFacetOfPrismsWithSharedEnds) {
+  Engines engines;
+  const ConvexPolytope b = prism_of(24, 1);
+  const Pose still;
+  std::vector<Pose> poses(1);
+  for (const std::array<double, 4>& q : std::vector<std::array<double, 4>>{
+           {1, 0, 0, 0x1p-5}, {1, 0, 0, 1}, {0, 1, 0, 0}, {0, 3, 4, 0}, {1, 0x1p-40, 0, 0}, {1, 1, 0, 0}}) {
+    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    poses.push_back(*Pose::from_quaternion({q[0] / length, q[1] / length, q[2] / length, q[3] / length}, Vec3::Zero()));
+    poses.push_back(
+        *Pose::from_quaternion({q[0] / length, q[1] / length, q[2] / length, q[3] / length}, Vec3(0.25, 0.5, 0.125)));
+  }
+  for (const double radius : {1.0, 1 + 0x1p-30, 0.75, 3.0}) {
+    const ConvexPolytope a = prism_of(20, radius);
+    for (const Pose& pose : poses) {
+      engines.compare(a, pose, b, still);
+      engines.compare(b, pose, b, still);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(engines.compared, 500);
+}
+
+TEST(DecompositionDepth, LooksAtFewPairsOfTheEdgesOfSharedEnds) {
+  OverlayDepthBuffers overlay;
+  DecompositionBuffers buffers;
+  const Pose still;
+  std::vector<std::int64_t> tried;
+  for (const int n : {128, 256, 512}) {
+    // Deeper across than along by n^-2, so that no bound on a distance tells the ends' pairs from the nearest facet.
+    const ConvexPolytope prism = prism_of(n, 1);
+    const PosedPair pair(prism, still, prism, still);
+    const DecompositionDepth found = decomposition_depth(pair, {}, overlay, buffers);
+    ASSERT_FALSE(found.enumerated);
+    EXPECT_EQ(buffers.shared.count, 2);
+    tried.push_back(found.lines.pair_evaluations);
+  }
+  for (std::size_t k = 1; k < tried.size(); ++k) EXPECT_LT(tried[k], 3 * tried[k - 1]);
+}
+
 TEST(DecompositionDepth, TheFrontDoorAnswersTheSameBitsAsTheOverlay) {
   Scratch scratch;
   int overlapping = 0;

@@ -65,9 +65,7 @@ class DualTree {
   void handle(const Block& block) {
     const LineTree::Node& x = b_.node(block.b);
     const LineTree::Node& y = a_.node(block.a);
-    for (std::size_t k = 0; k < LineTree::kSlabs; ++k) {
-      if (x.slabs.low[k] > y.slabs.high[k] || y.slabs.low[k] > x.slabs.high[k]) return;
-    }
+    if (x.slabs.apart_from(y.slabs) || in_one_facet(x.facets, y.facets)) return;
     if (x.size() * y.size() <= kLeafPairs || (x.is_leaf() && y.is_leaf())) {
       try_pairs(x, y);
       return;
@@ -101,6 +99,7 @@ class DualTree {
         const double t = cosine(u, v);
         const double most = r * r * (std::max(0.0, 1 - t * t) + 4 * rounding_);
         if (least > 0 && least * least > most * (1 + 8 * kUnitRoundoff)) continue;
+        if (b_.slabs(i).apart_from(a_.slabs(j)) || in_one_facet(b_.facets(i), a_.facets(j))) continue;
         const Range distance = measure(i, j);
         if (distance.lower > r) continue;
         const std::optional<OverlayPiece> piece = edge_crossing(walk_, a_.half_edge(j), b_.half_edge(i));

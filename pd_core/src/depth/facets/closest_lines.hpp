@@ -7,8 +7,9 @@
 /// parameters: nothing that can be built. What is kept is its frame, a minimum that falls as blocks of lines come in
 /// random order, each asked only whether it holds a pair closer than the least distance r so far. The test is replaced
 /// by bounds on pairs of nodes of two trees, and the decomposition by the same descent: a pair of nodes is dropped when
-/// no arc of one can meet one of the other, or when no two of their lines can be as close as r; the rest is split, and
-/// what is left at the leaves is tried pair by pair, exactly.
+/// no arc of one can meet one of the other, when they meet in one known facet only (shared_facets.hpp), or when no two
+/// of their lines can be as close as r; the rest is split, and what is left at the leaves is tried pair by pair,
+/// exactly.
 ///
 /// The bound. N = |d x d'| dist is bilinear in the two lines (line_tree.hpp). As sqrt(1 - t^2) is concave, dist >= r
 /// holds over a block where s N + (r t0 / D0) t - r (D0 + t0^2 / D0) >= 0 for one sign s, with t = <d, d'> and D0 =
@@ -51,7 +52,7 @@ struct ClosestLinesCounts {
 
 /// Offers to `search` every edge-edge facet that may be as near as `search.upper()`, which falls on the way. The trees
 /// hold the lines in lengths divided by `unit`, all points of P within 1 of the origin then.
-/// Requires that the origin lies in P (boundary included).
+/// Requires that the origin lies in P (boundary included), and that the facets that the trees were told of are offered.
 /// @param seed  of the order in which blocks are tried; the answer does not depend on it.
 void offer_closest_lines(const OverlayWalk& walk, double unit, std::uint64_t seed, ClosestLinesBuffers& buffers,
                          PlaneSearch& search, ClosestLinesCounts& counts);

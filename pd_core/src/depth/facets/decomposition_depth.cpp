@@ -49,8 +49,9 @@ class DecompositionSearch {
     frame.offset = offset_;
     frame.origin = overlay_.overlay.a.points.front();
     frame.scale = 1 / reach_;
-    buffers_.lines.a.build(pair_, overlay_.overlay, true, buffers_.edges_a, frame);
-    buffers_.lines.b.build(pair_, overlay_.overlay, false, buffers_.edges_b, frame);
+    find_shared_facets(walk_, buffers_.shared);
+    buffers_.lines.a.build(pair_, overlay_.overlay, true, buffers_.edges_a, buffers_.shared.of_a, frame);
+    buffers_.lines.b.build(pair_, overlay_.overlay, false, buffers_.edges_b, buffers_.shared.of_b, frame);
     offer_closest_lines(walk_, reach_, settings_.seed, buffers_.lines, search_, result.lines);
 
     const std::optional<OverlayPiece> piece = search_.piece(settings_.exactly);

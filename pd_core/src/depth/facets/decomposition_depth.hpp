@@ -16,6 +16,7 @@
 #include "depth/distance/gjk_exact.hpp"
 #include "depth/facets/closest_lines.hpp"
 #include "depth/facets/overlay_depth.hpp"
+#include "depth/facets/shared_facets.hpp"
 
 namespace pd::detail {
 
@@ -31,6 +32,7 @@ struct DecompositionBuffers {
   std::vector<std::int32_t> far_from_b;
   std::vector<std::int32_t> edges_a;  ///< that no test point shows too far, as half-edges
   std::vector<std::int32_t> edges_b;
+  SharedFacets shared;
   ClosestLinesBuffers lines;
 };
 

@@ -60,11 +60,13 @@ void LineTree::clear() {
   middles_.clear();
   slabs_.clear();
   half_edges_.clear();
+  facets_.clear();
   largest_ = 0;
 }
 
 void LineTree::build(const PosedPair& pair, const OverlayBuffers& overlay, bool of_a,
-                     const std::vector<std::int32_t>& edges, const Frame& frame) {
+                     const std::vector<std::int32_t>& edges, const std::vector<std::int32_t>& shared_facets,
+                     const Frame& frame) {
   clear();
   if (edges.empty()) return;
   const ConvexPolytope& body = of_a ? pair.a() : pair.b();
@@ -79,6 +81,7 @@ void LineTree::build(const PosedPair& pair, const OverlayBuffers& overlay, bool 
         pair.approximate(of_a ? PairVector::edge_a(e.origin, target) : PairVector::edge_b(e.origin, target));
     Vec3 d = vector.stableNormalized();
     Slabs slabs;
+    facets_.push_back({-1, -1});
     if (e.facet < 0) {
       const Vec3 u = d.unitOrthogonal();
       slabs = slabs_of(u, u, d, true);
@@ -91,6 +94,8 @@ void LineTree::build(const PosedPair& pair, const OverlayBuffers& overlay, bool 
       const Vec3 q = to * (mirror / to.norm());
       slabs = slabs_of(p, q, d, false);
       middles_.emplace_back(0.5 * (p + q));
+      facets_.back() = {shared_facets[static_cast<std::size_t>(e.facet)],
+                        shared_facets[static_cast<std::size_t>(body.half_edge(e.twin).facet)]};
     }
     slabs_.push_back(slabs);
     // One sense for each line, so that parallel ones lie together.
@@ -166,6 +171,7 @@ void LineTree::bound(Node& node) const {
   node.slabs.low.fill(4);
   node.slabs.high.fill(-4);
   node.centre = {};
+  node.facets = facets(node.first);
   for (std::int32_t i = node.first; i < node.last; ++i) {
     const Slabs& slabs = slabs_[order(i)];
     for (std::size_t k = 0; k < kSlabs; ++k) {
@@ -173,6 +179,9 @@ void LineTree::bound(Node& node) const {
       node.slabs.high[k] = std::max(node.slabs.high[k], slabs.high[k]);
     }
     for (std::size_t k = 0; k < 6; ++k) node.centre[k] += line(i)[k];
+    for (std::int32_t& facet : node.facets) {
+      if (facet != facets(i)[0] && facet != facets(i)[1]) facet = -1;
+    }
   }
   const double inverse = 1.0 / (node.last - node.first);
   for (double& c : node.centre) c *= inverse;

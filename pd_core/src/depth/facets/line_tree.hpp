@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "depth/facets/shared_facets.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "structure/overlay/overlay_walk.hpp"
 
@@ -34,6 +35,13 @@ class LineTree {
   struct Slabs {
     std::array<double, kSlabs> low;
     std::array<double, kSlabs> high;
+
+    [[nodiscard]] bool apart_from(const Slabs& other) const {
+      for (std::size_t k = 0; k < kSlabs; ++k) {
+        if (low[k] > other.high[k] || other.low[k] > high[k]) return true;
+      }
+      return false;
+    }
   };
 
   struct Node {
@@ -46,6 +54,7 @@ class LineTree {
     double high;
     double residual;  ///< >= |line - centre - chord <line - centre, chord>|
     Slabs slabs;
+    EdgeFacets facets{-1, -1};  ///< to which all its edges belong
 
     [[nodiscard]] std::int64_t size() const { return last - first; }
     [[nodiscard]] bool is_leaf() const { return last - first <= kLeaf; }
@@ -66,9 +75,10 @@ class LineTree {
   static constexpr double kPointError = 16 * kUnitRoundoff;
 
   void clear();
-  /// The edges are half-edges, one for each edge. Time O(k).
+  /// The edges are half-edges, one for each edge; the facets shared with the other body are numbered facet by facet.
+  /// Time O(k).
   void build(const PosedPair& pair, const OverlayBuffers& overlay, bool of_a, const std::vector<std::int32_t>& edges,
-             const Frame& frame);
+             const std::vector<std::int32_t>& shared_facets, const Frame& frame);
 
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
   [[nodiscard]] const Node& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
@@ -77,6 +87,9 @@ class LineTree {
   int children(int node);
 
   [[nodiscard]] std::int32_t half_edge(int line) const { return half_edges_[order(line)]; }
+  /// Those round its arc.
+  [[nodiscard]] const Slabs& slabs(int line) const { return slabs_[order(line)]; }
+  [[nodiscard]] const EdgeFacets& facets(int line) const { return facets_[order(line)]; }
   /// A node's lines lie one behind the other.
   [[nodiscard]] const Line6& line(int i) const { return lines_[static_cast<std::size_t>(i)]; }
   /// The point of a line that its moment is taken from.
@@ -104,6 +117,7 @@ class LineTree {
   std::vector<Vec3> middles_;  ///< of the arcs
   std::vector<Slabs> slabs_;
   std::vector<std::int32_t> half_edges_;
+  std::vector<EdgeFacets> facets_;
   double largest_ = 0;
 };
 

@@ -80,7 +80,8 @@ int OverlayWalk::decide_exactly(bool edge_of_a, int half_edge, int facet, bool s
   const auto corner = FacetOfDifference::corners(facet_body, facet);
   const PairVector u = edge_vector(!edge_of_a, corner[0], corner[1]);
   const PairVector v = edge_vector(!edge_of_a, corner[0], corner[2]);
-  const int sign = pair_->sign_determinant(e, u, v);
+  // First what is read off the stored numbers: the edges along a prism lie in each of its sides.
+  const int sign = pair_->vanishes_term_by_term(e, u, v) ? 0 : pair_->sign_determinant(e, u, v);
   if (sign != 0 || !symbolic) return sign;
 
   // <e, n> = 0. Turning A moves <e, n> by <omega, e x n> when e is of A, and by -<omega, e x n> when n is.
