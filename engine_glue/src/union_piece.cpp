@@ -66,8 +66,8 @@ double largest_along(const std::vector<const Plane*>& active, const Vec3& n, dou
 }  // namespace
 
 double seam_slack(double size, double farthest) {
-  constexpr double kRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
-  return 0x1p-18 * size + kRounding * farthest;
+  constexpr double kPoseRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
+  return 0x1p-18 * size + kPoseRounding * farthest;
 }
 
 double seam_slack(const PosedShape& a, const PosedShape& b) {

@@ -5,6 +5,8 @@
 #   1. The top level holds the rooms, the files that tools expect there, dotfiles, and nothing else (what git ignores aside).
 #   2. No source, script or build file is longer than 500 lines.
 #   3. Every header says #pragma once and describes itself with @file.
+#   4. A constant of a source has no namesake in another source of its folder: compiled as one they clash, or one hides the
+#      other.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
@@ -52,6 +54,35 @@ foreach(file ${files})
     if(NOT text MATCHES "/// @file")
       report("${file}: no /// @file comment")
     endif()
+  endif()
+endforeach()
+
+# Where a source declares constants, outermost or in functions: the names kConstant that follow `pattern`.
+function(constants_of text pattern out)
+  string(REGEX MATCHALL "\n${pattern}constexpr [^\n;=({]* k[A-Z][A-Za-z0-9]*" found "\n${text}")
+  list(TRANSFORM found REPLACE "^.* " "")
+  list(REMOVE_DUPLICATES found)
+  set(${out} "${found}" PARENT_SCOPE)
+endfunction()
+
+# In the order in which one unit would hold them.
+list(SORT files)
+foreach(file ${files})
+  # What is compiled for several dimensions stays alone (pd_core/CMakeLists.txt).
+  if(file MATCHES "^(pd_core/src|engine_glue/src|render/src|demos)/.*\\.cpp$" AND NOT file MATCHES "^pd_core/src/dimension/")
+    get_filename_component(folder ${file} DIRECTORY)
+    file(READ ${ROOT}/${file} text)
+    string(REPLACE ";" " " text "${text}")
+    constants_of("${text}" "(inline |static )*" outermost)
+    constants_of("${text}" " +" inner)
+    foreach(constant ${outermost} ${inner})
+      if(DEFINED "first_${folder}_${constant}")
+        report("${file}: ${constant} is one of ${first_${folder}_${constant}}, too")
+      endif()
+    endforeach()
+    foreach(constant ${outermost})
+      set("first_${folder}_${constant}" ${file})
+    endforeach()
   endif()
 endforeach()
 

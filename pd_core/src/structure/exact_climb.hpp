@@ -11,6 +11,9 @@
 
 namespace pd::detail {
 
+/// Above this a face is walked to along edges; below, a scan of all vertices is faster.
+inline constexpr int kScannedVertices = 96;
+
 /// Climbs from `at` along edges whose `sign(from, to)` is positive. An exact local maximum over a convex body is the
 /// maximum.
 template <class Sign>

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "numeric/unit_roundoff.hpp"
+#include "structure/exact_climb.hpp"
 
 namespace pd::detail {
 
@@ -26,9 +27,6 @@ Vec3DD leading_digits(const Dyadic3& v) {
   };
   return {digits(v.x), digits(v.y), digits(v.z)};
 }
-
-/// Above this a face is walked to along edges; below, a scan of all vertices is faster.
-constexpr int kScannedVertices = 96;
 
 /// `extremal` of a solid in time of the climb and of the face.
 template <class Sign>

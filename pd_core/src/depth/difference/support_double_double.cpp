@@ -20,7 +20,6 @@ int farthest_in_double_double(const ConvexPolytope& body, const Vec3DD& local, d
     const Vec3DD x{{body.x()[v] * scale, 0}, {body.y()[v] * scale, 0}, {body.z()[v] * scale, 0}};
     return dot(local, x);
   };
-  constexpr int kScannedVertices = 96;
   if (body.num_vertices() > kScannedVertices && body.affine_dimension() == 3) {
     return climb_exactly(body, support_vertex(body, rounded, -1), [&](int from, int to) {
       const double rise = to_double(height(to) - height(from));
