@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depth/facets/flush_faces.hpp"
 #include "depth/facets/small_piece.hpp"
 #include "depth/facets/small_sat_kernels.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -57,7 +58,10 @@ SmallSatDepth solve(const SmallPieces& pieces, const PolytopeDifference& differe
   if (!(found.key > 0 && found.possible_key > 0)) return out;
   nearest.lower = std::sqrt(std::min(found.key, found.possible_key)) - kSmallPieceLowerError * reach;
   if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
-  if (!pieces.holds_foot(piece, s, height, nearest)) return out;
+  if (!pieces.holds_foot(piece, s, height, nearest)) {
+    if (nearest.kind != NearFacetsBuffers::Kind::edges) out.meeting = meeting_point(difference, unit, height);
+    if (!out.meeting) return out;
+  }
   const double others = std::min(found.others_key, found.possible_key);
   if (others > 0) nearest.beyond = std::sqrt(others) - kSmallPieceLowerError * reach;
   nearest.certified = true;

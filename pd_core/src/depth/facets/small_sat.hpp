@@ -6,9 +6,12 @@
 /// edges whose arcs cross. A facet's plane supports P, and h_P changes by at most the turn of its normal times the
 /// reach. A parallelogram lies above its lowest corner along any unit vector. Signs decide which arcs cross; where one
 /// of them is less than its error, as where edges or facets are parallel, a pair that may cross counts by its lowest
-/// corner alone. Where that leaves the bracket too wide, where the point below the origin is not inside the winner, and
-/// where the class is in doubt, the answer is `undecided`, and the caller grows a surface.
+/// corner alone. Where that leaves the bracket too wide, where the point below the origin is neither inside the winner
+/// nor where faces of both bodies meet in its plane, and where the class is in doubt, the answer is `undecided`, and
+/// the caller grows a surface.
 #pragma once
+
+#include <optional>
 
 #include "depth/difference/bracket_width.hpp"
 #include "depth/facets/near_facets.hpp"
@@ -24,6 +27,9 @@ struct SmallSatDepth {
       nearest;  ///< certified ones; of separated bodies the normal, the separating direction, and the piece across it
   int pieces = 0;      ///< measured
   double largest = 0;  ///< |coordinate| of P; certified ones only
+  /// Where faces of both bodies meet that lie in one plane, relative to B's translation: where the point below the
+  /// origin does not lie inside of the winner alone (flush_faces.hpp).
+  std::optional<Vec3> meeting;
 };
 
 /// Whether both bodies are solids of so few vertices.

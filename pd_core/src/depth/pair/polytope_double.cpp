@@ -245,7 +245,7 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   out.statistics.facets_visited += found.pieces;
   ++out.statistics.support_calls;
   if (query.bracket == Bracket::tightest) {
-    return found.status == SmallSatStatus::certified && prove_near_facet(query, found.nearest, out);
+    return found.status == SmallSatStatus::certified && !found.meeting && prove_near_facet(query, found.nearest, out);
   }
   if (found.status == SmallSatStatus::separated) {
     DifferenceVertex corners[4];
@@ -255,6 +255,10 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
   if (query.warm) save_pieces(query, found, near);
   if (found.status == SmallSatStatus::undecided) return false;
   set_answer(query, found.nearest, out);
+  if (found.meeting) {
+    out.witness_b = *found.meeting + query.pair.pose_b->translation() + query.pair.margins.b * out.normal;
+    out.witness_a = out.witness_b - out.translation;
+  }
   return true;
 }
 
