@@ -154,6 +154,41 @@ TEST(Hull, BoxIdsAreBits) {
   for (int f = 0; f < 6; ++f) EXPECT_EQ(box->facet_normal(f).cwiseAbs().sum(), 1);
 }
 
+TEST(Hull, OfTheCornersOfABox) {
+  std::uint64_t state = 5;
+  for (const Vec3& size : {Vec3(1, 2, 3), Vec3(0.1, 0.1, 0.1), Vec3(5e-324, 1, 1e300), Vec3(1e-310, 2e-310, 3e-310),
+                           Vec3(1e300, 1e300, 1e300), Vec3(0.3f, 0.7f, 19.96f)}) {
+    for (const double from : {-1.0, 0.0, -0.0}) {
+      Points corners;
+      for (unsigned i = 0; i < 8; ++i) {
+        corners.emplace_back((i & 1) != 0 ? size.x() : from * size.x(), (i & 2) != 0 ? size.y() : from * size.y(),
+                             (i & 4) != 0 ? size.z() : from * size.z());
+      }
+      for (std::size_t i = 8; i > 1; --i) {
+        state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+        std::swap(corners[i - 1], corners[(state >> 33) % i]);
+      }
+      const ConvexPolytope box = hull(corners);
+      ASSERT_EQ(box.num_vertices(), 8);
+      // With a corner twice it goes by way of the search.
+      corners.push_back(corners[state % 8]);
+      const ConvexPolytope searched = hull(corners);
+      EXPECT_TRUE(same_bits(box, searched));
+      EXPECT_EQ(box.storage().second_moments, searched.storage().second_moments);
+      for (int v = 0; v < 8; ++v) {
+        EXPECT_EQ(corners[static_cast<std::size_t>(box.caller_id(v))], box.vertex(v));
+        EXPECT_FALSE(std::signbit(box.vertex(v).x()) && box.vertex(v).x() == 0);
+      }
+    }
+  }
+  // Eight points of which two are one, and seven corners beside a point on an edge.
+  EXPECT_EQ(
+      hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 1, 1}}).num_vertices(), 7);
+  EXPECT_EQ(
+      hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0.5, 0, 0}}).num_vertices(),
+      7);
+}
+
 TEST(Hull, BoxRefusals) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ConvexPolytope::box({1, nan, 1}).error().code, ErrorCode::non_finite);

@@ -50,6 +50,42 @@ std::optional<ConvexPolytope> build_triangle(std::span<const Vec3> source, std::
   return ConvexPolytope(lay_out(vertices, loops, 2));
 }
 
+/// The loops of a box, whose corner i is on the upper side of axis k where bit k of i is set.
+FacetLoops sides_of_box() {
+  FacetLoops loops;
+  loops.vertices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+  loops.offsets = {0, 4, 8, 12, 16, 20, 24};
+  return loops;
+}
+
+/// Of the eight corners of a box along the axes, in any order, what the search would end with: most worlds are full of
+/// them.
+std::optional<ConvexPolytope> build_aligned_box(std::span<const Vec3> source,
+                                                std::span<const std::int32_t> caller_ids) {
+  Vec3 low = source.front(), high = source.front();
+  for (const Vec3& p : source) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  HullVertex vertices[8];
+  unsigned found = 0;
+  for (std::int32_t i = 0; i < 8; ++i) {
+    const Vec3& p = source[static_cast<std::size_t>(i)];
+    unsigned corner = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (!(low[k] < high[k]) || (p[k] != low[k] && p[k] != high[k])) return std::nullopt;
+      corner |= static_cast<unsigned>(p[k] == high[k]) << k;
+    }
+    found |= 1U << corner;
+    // Of two zeros the positive one.
+    vertices[corner] = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0,
+                        caller_ids.empty() ? i : caller_ids[static_cast<std::size_t>(i)]};
+  }
+  if (found != 0xFF) return std::nullopt;
+  static const FacetLoops loops = sides_of_box();
+  return ConvexPolytope(lay_out(vertices, loops, 3));
+}
+
 }  // namespace
 
 std::optional<Error> refuse_points(std::span<const Vec3> points) {
@@ -83,6 +119,9 @@ ConvexPolytope build_hull(std::span<const Vec3> source, std::span<const std::int
   for (const Vec3& p : source) max_abs = std::max(max_abs, p.cwiseAbs().maxCoeff());
   if (source.size() == 3) {
     if (std::optional<ConvexPolytope> triangle = build_triangle(source, caller_ids, max_abs)) return *triangle;
+  }
+  if (source.size() == 8) {
+    if (std::optional<ConvexPolytope> box = build_aligned_box(source, caller_ids)) return *box;
   }
   HullPoints points(source, max_abs);
 
