@@ -41,17 +41,19 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
     ++count;
   }
   out.edges = static_cast<std::uint8_t>(count);
+  std::uint64_t edges_of[SmallGaussMap::kMostFacets] = {};
+  for (int e = 0; e < count; ++e) {
+    edges_of[out.left[e]] |= std::uint64_t{1} << e;
+    edges_of[out.right[e]] |= std::uint64_t{1} << (32 + e);
+  }
   for (int g = 0; g < SmallGaussMap::kMostFacets / SmallGaussMap::kFacetGroup; ++g) {
-    for (unsigned set = 0; set < 1U << SmallGaussMap::kFacetGroup; ++set) {
-      std::uint64_t found = 0;
-      for (int e = 0; e < count; ++e) {
-        const auto holds = [&](int facet) {
-          return facet / SmallGaussMap::kFacetGroup == g && (set >> facet % SmallGaussMap::kFacetGroup & 1) != 0;
-        };
-        if (holds(out.left[e])) found |= std::uint64_t{1} << e;
-        if (holds(out.right[e])) found |= std::uint64_t{1} << (32 + e);
+    std::uint64_t* const of_set = out.edges_of_facets[g];
+    of_set[0] = 0;
+    for (unsigned facet = 0; facet < SmallGaussMap::kFacetGroup; ++facet) {
+      const unsigned sets = 1U << facet;  // those of the facets before
+      for (unsigned set = 0; set < sets; ++set) {
+        of_set[sets + set] = of_set[set] | edges_of[SmallGaussMap::kFacetGroup * static_cast<unsigned>(g) + facet];
       }
-      out.edges_of_facets[g][set] = found;
     }
   }
 }
