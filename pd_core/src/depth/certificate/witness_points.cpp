@@ -113,7 +113,8 @@ Vec3 point_on_edge_of_a(const PosedPair& pair, const SupportFaces& faces, const 
   const double squared = n.squaredNorm();
   double s = squared > 0 ? std::clamp(gap.cross(f).dot(n) / squared, 0.0, 1.0) : 0.5;
   const double t = (s * e - gap).dot(f) / f.squaredNorm();
-  if (t < 0 || t > 1) s = std::clamp((gap + (t > 1 ? f : Vec3(Vec3::Zero()))).dot(e) / e.squaredNorm(), 0.0, 1.0);
+  const double along = e.squaredNorm();  // 0 where an edge is too short for its square
+  if ((t < 0 || t > 1) && along > 0) s = std::clamp((gap + (t > 1 ? f : Vec3(Vec3::Zero()))).dot(e) / along, 0.0, 1.0);
   const double weights[2] = {1 - s, s};
   return point_of_a(pair, ids, weights, 2, negated_vertex_a(pair, ids[0].a));
 }

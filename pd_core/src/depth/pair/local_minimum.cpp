@@ -306,16 +306,18 @@ class LocalSearch {
     return inside > 0 ? kSafety * std::min(1.0, 2 * inside / highest()) : 0;
   }
 
-  /// Its distance from the edges, negative outside.
+  /// Its distance from the edges, negative outside; 0 where two corners are one, and there is no triangle.
   double foot_in_triangle(double (&weights)[3]) const {
     share_triangle(weights);
     double inside = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) {
       const Vec3& from = pieces_[i].x;
       const Vec3 along = pieces_[(i + 1) % 3].x - from;
+      const double length = along.norm();
+      if (!(length > 0)) return 0;
       const double area = from.cross(along).dot(unit_);
       const double opposite = along.cross(pieces_[(i + 2) % 3].x - from).dot(unit_);
-      inside = std::min(inside, (opposite < 0 ? -area : area) / along.norm());
+      inside = std::min(inside, (opposite < 0 ? -area : area) / length);
     }
     return inside;
   }

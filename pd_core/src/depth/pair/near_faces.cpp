@@ -115,7 +115,8 @@ struct LocalCurvature {
       second = &s;
     }
     const Vec3 line = second->centre + second->radius * unit - first.centre - first.radius * unit;
-    const double share = (point - first.centre - first.radius * unit).dot(line) / line.squaredNorm();
+    const double squared = line.squaredNorm();
+    const double share = squared > 0 ? (point - first.centre - first.radius * unit).dot(line) / squared : 0;
     const Vec3 tangent = unit.cross(line).normalized();
     return (first.radius + share * (second->radius - first.radius)) * tangent * tangent.transpose();
   }

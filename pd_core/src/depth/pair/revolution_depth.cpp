@@ -330,6 +330,7 @@ class RevolutionSearch {
     const Vec3 left = foot - from - on_core;
     const double ee = edge.squaredNorm(), el = edge.dot(line), ll = line.squaredNorm();
     const double fe = left.dot(edge), fl = left.dot(line);
+    if (!(ee > 0)) return std::nullopt;  // too short for its square
     // A disc flush on the edge: foot_on_facet and foot_on_disc have what is common.
     if (on_core.cross(core_.axis).isZero(0)) return std::nullopt;
     const double outside_edge = outside() / std::sqrt(ee), outside_line = outside() / std::sqrt(ll);
@@ -362,8 +363,9 @@ class RevolutionSearch {
     if (to_vertex.norm() <= most) return middle + to_vertex;
     for (const std::int32_t next : polytope_.neighbours(index_)) {
       const Vec3 edge = point(next) - point(index_);
-      if (std::abs(edge.dot(normal)) > outside()) continue;
-      const Vec3 nearest = to_vertex - std::clamp(to_vertex.dot(edge) / edge.squaredNorm(), 0.0, 1.0) * edge;
+      const double squared = edge.squaredNorm();
+      if (std::abs(edge.dot(normal)) > outside() || !(squared > 0)) continue;
+      const Vec3 nearest = to_vertex - std::clamp(to_vertex.dot(edge) / squared, 0.0, 1.0) * edge;
       if (nearest.norm() <= most) return middle + nearest;
     }
     return std::nullopt;
