@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The thread sanitizer over the whole suite, core included: the preset tsan without what draws, every test program at once, its
-# races counted. Bullet is the system's, without instrumentation; races that are its own are left out by name (threads_bullet.txt).
+# The thread sanitizer over the whole suite, core included: the preset tsan, every test program at once, its races counted.
+# Bullet is the system's, without instrumentation; races that are its own are left out by name (threads_bullet.txt). Mesa, which
+# is neither, draws on the caller's thread.
 # One world on several threads needs a Bullet built for that: threads.sh.
 #
 #   tests/long/tsan.sh [BUILD_FOLDER [TEST...]]        build/tsan, all of them; an hour and a half on two cores, most of it tests
@@ -16,10 +17,11 @@ shift $(($# < 1 ? $# : 1))
 tests=("$@")
 ((${#tests[@]} > 0)) || tests=(test_numeric test_shape test_structure test_planar test_dimension test_contact test_compound
                                test_engine_glue test_audit test_scenes test_oracle test_cli test_demos test_depth)
-cmake --preset tsan -B "${build}" --log-level=ERROR "${pd_launcher[@]}" -DPD_WITH_RENDER=OFF -DPD_PRECOMPILED_HEADERS=OFF
+cmake --preset tsan -B "${build}" --log-level=ERROR "${pd_launcher[@]}" -DPD_PRECOMPILED_HEADERS=OFF
 cmake --build "${build}" --target "${tests[@]}"
 
 failed=0
+export LP_NUM_THREADS=0
 export TSAN_OPTIONS="suppressions=${PWD}/tests/long/threads_bullet.txt exitcode=66"
 {
   printf 'date %s, commit %s\n' "$(date -u +%F)" "$(git rev-parse --short HEAD)"
