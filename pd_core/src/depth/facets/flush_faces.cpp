@@ -16,7 +16,8 @@ constexpr double kFlush = 64 * kUnitRoundoff;
 
 /// A convex polygon, a segment or a point.
 struct FlatFace {
-  /// Each side that clips a convex polygon adds one corner at most.
+  /// A facet has seven corners, and each side that clips a convex polygon adds one. Where rounding adds more, the last
+  /// ones are left out: any corner is a point that the faces have in common.
   static constexpr int kMost = 2 * SmallGaussMap::kMostVertices;
   Vec3 corners[kMost];
   int count = 0;
