@@ -6,7 +6,7 @@
 #
 # Some 450 sources are compiled at first. BULLET_SOURCE names an unpacked source tree instead of the package; else the
 # package's source comes from the mirrors of /etc/apt, whether or not they list sources. Races that are Bullet's own are
-# left out by name (threads_bullet.txt). The last run stands in last_threads.txt.
+# left out by name (threads_of_libraries.txt). The last run stands in last_threads.txt.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source pd_core/cmake/debian_packages.sh
@@ -49,6 +49,6 @@ cmake --build "${place}/project" --target test_threads
 
 {
   printf 'date %s, commit %s, sanitizer %s\n' "$(date -u +%F)" "$(git rev-parse --short HEAD)" "${sanitizer}"
-  TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/long/threads_bullet.txt" \
+  TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/long/threads_of_libraries.txt" \
     "${place}/project/test_threads"
 } 2>&1 | tee tests/long/last_threads.txt

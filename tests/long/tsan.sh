@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The thread sanitizer over the whole suite, core included: the preset tsan, every test program at once, its races counted.
-# Bullet is the system's, without instrumentation; races that are its own are left out by name (threads_bullet.txt). Mesa, which
-# is neither, draws on the caller's thread.
+# Bullet and Pango are the system's, without instrumentation; races that are their own are left out by name
+# (threads_of_libraries.txt). Mesa, which is neither, draws on the caller's thread.
 # One world on several threads needs a Bullet built for that: threads.sh.
 #
 #   tests/long/tsan.sh [BUILD_FOLDER [TEST...]]        build/tsan, all of them; an hour and a half on two cores, most of it tests
@@ -22,7 +22,7 @@ cmake --build "${build}" --target "${tests[@]}"
 
 failed=0
 export LP_NUM_THREADS=0
-export TSAN_OPTIONS="suppressions=${PWD}/tests/long/threads_bullet.txt exitcode=66"
+export TSAN_OPTIONS="suppressions=${PWD}/tests/long/threads_of_libraries.txt exitcode=66"
 {
   printf 'date %s, commit %s\n' "$(date -u +%F)" "$(git rev-parse --short HEAD)"
   for test in "${tests[@]}"; do
