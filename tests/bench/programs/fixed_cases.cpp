@@ -170,6 +170,16 @@ struct FixedFlush {
 };
 constexpr FixedFlush kFlush[] = {{"flush_boxes_deep", -1e-3}, {"flush_boxes_apart", 1e-3}};
 
+/// Prisms, cold and certified: on themselves, where all edges of both ends are as near as the sides but for n^-2; and
+/// one that stands on a floor by a face, which the point below the origin misses by each corner.
+struct FixedPrism {
+  const char* name;
+  int vertices;
+  bool on_floor;
+};
+constexpr FixedPrism kPrisms[] = {
+    {"prism_500_on_itself", 1000, false}, {"prism_2000_on_itself", 4000, false}, {"prism_3_on_floor", 6, true}};
+
 }  // namespace
 
 extern "C" {
@@ -252,6 +262,16 @@ pd::ConvexShape curved_body(bool cone, pd::scenes::Random& random) {
   const double radius = random.uniform(0.5, 1), half_height = random.uniform(0.5, 1);
   return cone ? *pd::ConvexShape::cone(radius, half_height, 2) : *pd::ConvexShape::cylinder(radius, half_height, 2);
 }
+int count_prism(const FixedPrism& c) {
+  pd::scenes::Points points = pd::scenes::prism(c.vertices);
+  for (pd::Vec3& p : points) p.z() *= 2;
+  const pd::ConvexShape prism(*pd::ConvexPolytope::from_points(points));
+  const pd::ConvexShape floor(*pd::ConvexPolytope::box({3, 3, 1}));
+  const pd::Pose above = *pd::Pose::from_quaternion({0.96, 0, 0, 0.28}, {0.3, 0.2, 2 - 0x1p-8});
+  if (c.on_floor) return count_cold(c.name, {&prism, above}, {&floor, pd::Pose()}, kHotPath);
+  return count_cold(c.name, {&prism, pd::Pose()}, {&prism, pd::Pose()}, kHotPath);
+}
+
 pd::ConvexShape ground_body(bool hull, pd::scenes::Random& random) {
   if (hull) return *pd::ConvexPolytope::from_points(pd::scenes::sphere_hull(32, random));
   return *pd::ConvexPolytope::box({random.uniform(0.5, 1), random.uniform(0.5, 1), random.uniform(0.5, 1)});
@@ -389,6 +409,10 @@ int main(int argc, char** argv) {
                 answer.distance_upper - answer.lower);
     return 0;
   }
+  for (const FixedPrism& c : kPrisms) {
+    if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
+    return count_prism(c);
+  }
   std::fprintf(stderr, "fixed_cases NAME, one of:");
   for (const FixedCase& c : kCases) std::fprintf(stderr, " %s", c.name);
   for (const FixedTightest& c : kTightest) std::fprintf(stderr, " %s", c.name);
@@ -400,6 +424,7 @@ int main(int argc, char** argv) {
   for (const FixedCurved& c : kCurved) std::fprintf(stderr, " %s", c.name);
   for (const FixedTie& c : kTies) std::fprintf(stderr, " %s", c.name);
   for (const FixedFlush& c : kFlush) std::fprintf(stderr, " %s", c.name);
+  for (const FixedPrism& c : kPrisms) std::fprintf(stderr, " %s", c.name);
   std::fprintf(stderr, "\n");
   return 2;
 }

@@ -52,7 +52,8 @@ struct ClosestLinesCounts {
 
 /// Offers to `search` every edge-edge facet that may be as near as `search.upper()`, which falls on the way. The trees
 /// hold the lines in lengths divided by `unit`, all points of P within 1 of the origin then.
-/// Requires that the origin lies in P (boundary included), and that the facets that the trees were told of are offered.
+/// Requires that the origin lies in P (boundary included), and that the facets that the trees were told of are offered
+/// or certainly farther.
 /// @param seed  of the order in which blocks are tried; the answer does not depend on it.
 void offer_closest_lines(const OverlayWalk& walk, double unit, std::uint64_t seed, ClosestLinesBuffers& buffers,
                          PlaneSearch& search, ClosestLinesCounts& counts);

@@ -3,8 +3,9 @@
 ///
 /// All pieces of an edge of the one and an edge of the other that the overlay cuts such a facet into lie in one plane,
 /// which step 1 of [A] section 2 measures: the arcs of both edges begin at its normal, and two great circles that are
-/// not one meet nowhere else but opposite to it, where an arc of less than half a circle does not come. Two aligned
-/// prisms of n sides have n^2 of them on either end, all as near as their ends are.
+/// not one meet nowhere else but opposite to it, where an arc of less than half a circle does not come (a flat body's
+/// arcs do, and meet no other there). Two aligned prisms of n sides have n^2 of them on either end, all as near as
+/// their ends are.
 #pragma once
 
 #include <array>
