@@ -35,6 +35,7 @@ struct FixedCase {
 constexpr FixedCase kCases[] = {
     {"box_mid", PairFamily::box, 8, DepthClass::mid, 0},
     {"sphere_8_deep", PairFamily::sphere, 8, DepthClass::deep, 0},
+    {"sphere_32_deep", PairFamily::sphere, 32, DepthClass::deep, 0},
     {"sphere_128_mid", PairFamily::sphere, 128, DepthClass::mid, 0},
     {"sphere_128_deep", PairFamily::sphere, 128, DepthClass::deep, 0},
     {"sphere_2048_shallow", PairFamily::sphere, 2048, DepthClass::shallow, 0},

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "depth/facets/foot_in_piece.hpp"
 #include "depth/facets/small_piece.hpp"
 #include "numeric/lanes.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -197,7 +198,7 @@ NearFacets certify_remembered_pieces(const WarmPieces& then, const Pose& pose_a,
   if (!(out.lower > 0 && out.upper - out.lower <= width.limit(then.largest - moved))) return out;
   const SmallPiece piece = piece_of(then.pieces[winner]);
   pieces.name(piece, s, out);
-  out.certified = pieces.holds_foot(piece, s, height, out);
+  out.certified = holds_foot(difference, s, height, out);
   return out;
 }
 

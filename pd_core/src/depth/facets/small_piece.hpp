@@ -54,16 +54,9 @@ class SmallPieces {
 
   /// The features of the bodies that make the piece, s being its support.
   void name(const SmallPiece& piece, const DifferenceVertex& s, NearFacets& out) const;
-  /// Whether the piece, whose unit normal `out` has, holds the point below the origin; of edges, where.
-  [[nodiscard]] bool holds_foot(const SmallPiece& piece, const DifferenceVertex& s, double height,
-                                NearFacets& out) const {
-    return piece.edge_a >= 0 ? below_edges(piece, height, out) : below_facet(s, height, out);
-  }
 
  private:
   [[nodiscard]] static Vec3 point(const VertexArrays& v, int i) { return {v.x[i], v.y[i], v.z[i]}; }
-  [[nodiscard]] bool below_edges(const SmallPiece& piece, double height, NearFacets& out) const;
-  [[nodiscard]] bool below_facet(const DifferenceVertex& s, double height, const NearFacets& piece) const;
 
   const PolytopeDifference& difference_;
   const SmallGaussMap& map_a_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depth/facets/flush_faces.hpp"
+#include "depth/facets/foot_in_piece.hpp"
 #include "depth/facets/small_piece.hpp"
 #include "depth/facets/small_sat_kernels.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -58,7 +59,7 @@ SmallSatDepth solve(const SmallPieces& pieces, const PolytopeDifference& differe
   if (!(found.key > 0 && found.possible_key > 0)) return out;
   nearest.lower = std::sqrt(std::min(found.key, found.possible_key)) - kSmallPieceLowerError * reach;
   if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
-  if (!pieces.holds_foot(piece, s, height, nearest)) {
+  if (!holds_foot(difference, s, height, nearest)) {
     if (nearest.kind != NearFacetsBuffers::Kind::edges) out.meeting = meeting_point(difference, unit, height);
     if (!out.meeting) return out;
   }

@@ -6,6 +6,7 @@
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
 #include "depth/distance/closest_of_few.hpp"
+#include "depth/facets/all_facets.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/facets/remembered_pieces.hpp"
@@ -259,6 +260,25 @@ bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
     out.witness_b = *found.meeting + query.pair.pose_b->translation() + query.pair.margins.b * out.normal;
     out.witness_a = out.witness_b - out.translation;
   }
+  return true;
+}
+
+bool answer_deep_solids(PolytopeQuery& query, PenetrationDepth& out) {
+  // The surface has a memory, and a budget for contacts.
+  if (query.settings.method != Method::automatic || query.warm != nullptr || query.for_contact()) return false;
+  if (!all_facets_apply(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
+  const PolytopeDifference& difference = query.difference;
+  if (!all_facets_pay(difference)) return false;
+  // Edges that are parallel, or run along facets, leave signs open.
+  if (along_same_axes(difference.rotation_a(), difference.rotation_b())) return false;
+  const NearFacets found =
+      nearest_of_all_facets(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
+  out.statistics.support_calls += found.support_calls;
+  out.statistics.facets_visited += found.facets;
+  if (!found.certified) return false;
+  out.method = Method::overlay;
+  if (query.bracket == Bracket::tightest) return prove_near_facet(query, found, out);
+  set_answer(query, found, out);
   return true;
 }
 

@@ -24,7 +24,10 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out);
 /// proved.
 bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out);
 
-/// The same from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
+/// The same of two solids of some more vertices that lie deep in each other (facets/all_facets.hpp).
+bool answer_deep_solids(PolytopeQuery& query, PenetrationDepth& out);
+
+/// The same of small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start
