@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -259,6 +261,38 @@ TEST(PosedPair, OneRotationForBothIsLeftOut) {
 }
 
 /// A matrix is taken as it stands, one that mirrors, too: signs are those of the turned vectors.
+/// Bodies built along common axes and turned as a whole: all 48 exchanges of matrices, the half turns of quaternions.
+TEST(PosedPair, ExchangedAxesOfOneRotationAreLeftOut) {
+  const ConvexPolytope a = box(0.5, 0.25, 1), b = box(0.25, 0.75, 0.5);
+  const Pose turn = quaternion(1, -0.5, 0.25, 0.1, Vec3(0.1, 0.2, 0.3));
+  int matrices = 0;
+  std::array<int, 3> axes{0, 1, 2};
+  do {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Mat3 exchange = Mat3::Zero();
+      for (int k = 0; k < 3; ++k) exchange(k, axes[static_cast<std::size_t>(k)]) = (signs >> k & 1U) != 0 ? -1 : 1;
+      const Pose pa = Pose::from_trusted_matrix(turn.rotation(), Vec3(0.1, 0.2, 0.3));
+      const Pose pb = Pose::from_trusted_matrix(turn.rotation() * exchange, Vec3(1, 0.5, 0.25));
+      const PosedPair pair(a, pa, b, pb);
+      ASSERT_TRUE(pair.in_one_frame());
+      EXPECT_EQ(pair.same_rotation(), exchange == Mat3::Identity());
+      expect_exact_signs(pair, 100);
+      ++matrices;
+    }
+  } while (std::next_permutation(axes.begin(), axes.end()));
+  EXPECT_EQ(matrices, 48);
+  const auto [w, x, y, z] = turn.quaternion_wxyz();
+  for (const std::array<double, 4>& q :
+       {std::array{-w, -x, -y, -z}, std::array{-x, w, z, -y}, std::array{y, z, -w, -x}, std::array{-z, y, -x, w}}) {
+    const Pose pb = *Pose::from_quaternion(q, Vec3(1, 0.5, 0.25));
+    const PosedPair pair(a, turn, b, pb);
+    EXPECT_TRUE(pair.in_one_frame());
+    expect_exact_signs(pair, 200);
+  }
+  const Pose quarter = quaternion(1, 1, 0, 0, Vec3::Zero());
+  EXPECT_FALSE(PosedPair(a, turn, b, quarter).in_one_frame());
+}
+
 TEST(PosedPair, MirroredAxesKeepTheirSigns) {
   const ConvexPolytope a = box(0.1, 0.7, 1.3), b = box(0.3, 0.2, 0.9);
   const Mat3 mirror{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};

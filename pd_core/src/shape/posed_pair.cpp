@@ -69,21 +69,28 @@ Vec3 rotate(const ConvexPolytope& p, const double (&r)[9], double scale, int to,
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
-/// to - from, with its axes as R exchanges and reverses them (or as they are: null). False where a coordinate is too
-/// large or small.
-bool difference_of(const ConvexPolytope& p, const ColumnsDD* turn, int to, int from, DifferenceVector& out) {
+/// What R, which does no more, exchanges and reverses.
+AxisExchange exchange_of(const ColumnsDD& r) {
+  AxisExchange out;
+  for (int j = 0; j < 3; ++j) {
+    const FourDoubleDoubles& column = r[j];
+    const std::size_t i = column.hi[0] != 0 ? 0 : column.hi[1] != 0 ? 1 : 2;
+    out.axis[i] = static_cast<std::int8_t>(j);
+    out.sign[i] = column.hi[i] < 0 ? -1 : 1;
+  }
+  return out;
+}
+
+/// Q (to - from). False where a coordinate is too large or small.
+bool difference_of(const ConvexPolytope& p, const AxisExchange& exchange, int to, int from, DifferenceVector& out) {
   const double* const coordinates[3] = {p.x(), p.y(), p.z()};
   Expansion<2>* const turned[3] = {&out.x, &out.y, &out.z};
-  for (int j = 0; j < 3; ++j) {
-    double t = to >= 0 ? coordinates[j][to] : 0, f = from >= 0 ? coordinates[j][from] : 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double* const x = coordinates[exchange.axis[k]];
+    double t = to >= 0 ? x[to] : 0, f = from >= 0 ? x[from] : 0;
     if (!fits_expansions(t) || !fits_expansions(f)) return false;
-    int i = j;
-    if (turn != nullptr) {
-      const FourDoubleDoubles& column = (*turn)[j];
-      i = column.hi[0] != 0 ? 0 : column.hi[1] != 0 ? 1 : 2;
-      if (column.hi[i] < 0) std::swap(t, f);
-    }
-    *turned[i] = difference(t, f);
+    if (exchange.sign[k] < 0) std::swap(t, f);
+    *turned[k] = difference(t, f);
   }
   return true;
 }
@@ -187,9 +194,9 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
   }
   offset_dd_.set(3, {});
   offset_ = Vec3(offset_scaled[0], offset_scaled[1], offset_scaled[2]);
-  same_rotation_ = detail::same_rotation(pose_a, pose_b);
+  exchange_ = relative_exchange(pose_a, pose_b);
   zeros_a_ = zero_entries(pose_a);
-  zeros_b_ = same_rotation_ ? zeros_a_ : zero_entries(pose_b);
+  zeros_b_ = same_rotation() ? zeros_a_ : zero_entries(pose_b);
   doubles_rotate_ = scale_exponent_ == 0 && origin.isZero(0) && stored_in_doubles(pose_a, body_a_.columns) &&
                     stored_in_doubles(pose_b, body_b_.columns) && offset_exact[0].lo == 0 && offset_exact[1].lo == 0 &&
                     offset_exact[2].lo == 0;
@@ -199,7 +206,11 @@ PosedPair::PosedPair(const ConvexPolytope& a, const Pose& pose_a, const ConvexPo
     const bool all_b = find_own_coordinates(b, pose_b, zeros_b_, body_b_.rotation, own_b_);
     all_own_coordinates_ = doubles_rotate_ && all_a && all_b;
   }
-  if (same_rotation_) zeros_a_ = zeros_b_ = kZerosOfNoRotation;
+  if (exchange_) {
+    zeros_a_ = zero_entries(AxisExchange{});
+    zeros_b_ = zero_entries(*exchange_);
+    if (!exchange_->is_identity()) std::ranges::copy(exchange_->matrix(), exchange_matrix_);
+  }
 
   // Each body's term: difference, rotation entry, product and two sums of a vector of at most twice the reach: 5u; then
   // two sums of at most the total. The double-double count is the same with 2^-104 (its basic operations err by <
@@ -267,10 +278,9 @@ const PosedPair::ExactPlacing& PosedPair::exact_placing() const {
 
 const Dyadic& PosedPair::homogeneous_factor() const { return exact_placing().homogeneous_factor; }
 
-bool PosedPair::unrounded(const PairVector& v, bool rotated, Vec3& out) const {
+bool PosedPair::unrounded(const PairVector& v, const double* turn_a, const double* turn_b, Vec3& out) const {
   UnroundedSum sums[3];
-  if (!add_rotated(*b_, rotated ? body_b_.rotation : nullptr, 1, v.b_to, v.b_from, sums) ||
-      !add_rotated(*a_, rotated ? body_a_.rotation : nullptr, -1, v.a_to, v.a_from, sums)) {
+  if (!add_rotated(*b_, turn_b, 1, v.b_to, v.b_from, sums) || !add_rotated(*a_, turn_a, -1, v.a_to, v.a_from, sums)) {
     return false;
   }
   for (int i = 0; i < 3; ++i) {
@@ -307,10 +317,12 @@ bool PosedPair::unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N])
     of_a = of_a || v->a_to >= 0 || v->a_from >= 0;
     of_b = of_b || v->b_to >= 0 || v->b_from >= 0;
   }
-  const bool one_frame = !shifted && (same_rotation_ || !of_a || !of_b);
+  const bool one_frame = !shifted && (exchange_ || !of_a || !of_b);
   if (!one_frame && !doubles_rotate_) return false;
+  const double* const turn_a = one_frame ? nullptr : body_a_.rotation;
+  const double* const turn_b = !one_frame ? body_b_.rotation : of_a ? turn_into_frame_of_a() : nullptr;
   for (int i = 0; i < N; ++i) {
-    if (!unrounded(*vectors[i], !one_frame, out[i])) return false;
+    if (!unrounded(*vectors[i], turn_a, turn_b, out[i])) return false;
   }
   return true;
 }
@@ -318,7 +330,7 @@ bool PosedPair::unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N])
 Dyadic3 PosedPair::exact(const PairVector& v) const {
   const ExactPlacing& placing = exact_placing();
   Vec3 whole;
-  if (doubles_rotate_ && unrounded(v, true, whole)) {
+  if (doubles_rotate_ && unrounded(v, body_a_.rotation, body_b_.rotation, whole)) {
     const Dyadic3 x = to_dyadic(whole);
     return pose_a_->is_quaternion() || pose_b_->is_quaternion() ? x * placing.homogeneous_factor : x;
   }
@@ -395,13 +407,22 @@ std::optional<int> PosedPair::sign_in_one_frame(const PairVector* const (&vector
     of_a = of_a || v->a_to >= 0 || v->a_from >= 0;
     of_b = of_b || v->b_to >= 0 || v->b_from >= 0;
   }
-  if (of_a && of_b && !same_rotation_) return std::nullopt;
-  const Vec3 zero = Vec3::Zero();
-  const auto place = [&](const ConvexPolytope& p, int v) { return to_dyadic(v >= 0 ? p.vertex(v) : zero); };
+  if (of_a && of_b && !exchange_) return std::nullopt;
+  const auto place = [&](const ConvexPolytope& p, int v) {
+    return to_dyadic(v >= 0 ? p.vertex(v) : Vec3(Vec3::Zero()));
+  };
+  const AxisExchange exchange = of_a && of_b ? *exchange_ : AxisExchange{};
+  const auto exchanged = [&](const Vec3& x) {
+    Vec3 out;
+    for (int k = 0; k < 3; ++k)
+      out[k] = exchange.sign[static_cast<std::size_t>(k)] * x[exchange.axis[static_cast<std::size_t>(k)]];
+    return out;
+  };
+  const auto place_b = [&](int v) { return to_dyadic(v >= 0 ? exchanged(b_->vertex(v)) : Vec3(Vec3::Zero())); };
   Dyadic3 whole[3];
   for (int i = 0; i < 3; ++i) {
     const PairVector& v = *vectors[i];
-    whole[i] = (place(*b_, v.b_to) - place(*b_, v.b_from)) - (place(*a_, v.a_to) - place(*a_, v.a_from));
+    whole[i] = (place_b(v.b_to) - place_b(v.b_from)) - (place(*a_, v.a_to) - place(*a_, v.a_from));
     std::int64_t words = 0;
     for (const Dyadic* x : {&whole[i].x, &whole[i].y, &whole[i].z}) {
       words = std::max<std::int64_t>(words, x->mantissa().backend().size());
@@ -422,17 +443,21 @@ std::optional<int> PosedPair::sign_by_differences(const PairVector* const (&vect
     of_a = of_a || has_a;
     of_b = of_b || has_b;
   }
-  const bool one_frame = same_rotation_ || !of_a || !of_b;
-  if (!one_frame && !(exchanges_axes(*pose_a_, body_a_.columns) && exchanges_axes(*pose_b_, body_b_.columns))) {
-    return std::nullopt;
+  const bool one_frame = exchange_ || !of_a || !of_b;
+  AxisExchange exchange_a, exchange_b;
+  if (!one_frame) {
+    if (!exchanges_axes(*pose_a_, body_a_.columns) || !exchanges_axes(*pose_b_, body_b_.columns)) return std::nullopt;
+    exchange_a = exchange_of(body_a_.columns);
+    exchange_b = exchange_of(body_b_.columns);
+  } else if (of_a && of_b) {
+    exchange_b = *exchange_;
   }
   DifferenceVector differences[3];
   for (int i = 0; i < 3; ++i) {
     const PairVector& v = *vectors[i];
     const bool is_b = v.b_to >= 0 || v.b_from >= 0;
-    const ColumnsDD* const turn = one_frame ? nullptr : is_b ? &body_b_.columns : &body_a_.columns;
-    if (!(is_b ? difference_of(*b_, turn, v.b_to, v.b_from, differences[i])
-               : difference_of(*a_, turn, v.a_from, v.a_to, differences[i]))) {
+    if (!(is_b ? difference_of(*b_, exchange_b, v.b_to, v.b_from, differences[i])
+               : difference_of(*a_, exchange_a, v.a_from, v.a_to, differences[i]))) {
       return std::nullopt;
     }
   }

@@ -17,6 +17,7 @@
 #include "numeric/dyadic.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
+#include "shape/common_frame.hpp"
 #include "shape/posed_rotation.hpp"
 #include "shape/zero_pattern.hpp"
 
@@ -112,8 +113,10 @@ class PosedPair {
   [[nodiscard]] bool at_one_place() const {
     return origin_.isZero(0) && pose_a_->translation() == pose_b_->translation();
   }
+  /// Whether R_B = R_A Q for a Q that exchanges and reverses axes, exactly.
+  [[nodiscard]] bool in_one_frame() const { return exchange_.has_value(); }
   /// Whether R_A = R_B, exactly.
-  [[nodiscard]] bool same_rotation() const { return same_rotation_; }
+  [[nodiscard]] bool same_rotation() const { return exchange_ && exchange_->is_identity(); }
 
   /// The exact vector times homogeneous_factor() > 0, unscaled.
   [[nodiscard]] Dyadic3 exact(const PairVector& v) const;
@@ -173,7 +176,12 @@ class PosedPair {
   /// rounds.
   template <int N>
   [[nodiscard]] bool unrounded(const PairVector* const (&vectors)[N], Vec3 (&out)[N]) const;
-  [[nodiscard]] bool unrounded(const PairVector& v, bool rotated, Vec3& out) const;
+  /// @param turn_a, turn_b  row by row; null for none.
+  [[nodiscard]] bool unrounded(const PairVector& v, const double* turn_a, const double* turn_b, Vec3& out) const;
+  /// What B's vectors are turned by in A's frame; null for none.
+  [[nodiscard]] const double* turn_into_frame_of_a() const {
+    return exchange_ && !exchange_->is_identity() ? exchange_matrix_ : nullptr;
+  }
   /// Bit k: coordinate k is zero, read off the stored numbers; in the common frame, where there is one.
   [[nodiscard]] std::uint32_t zero_coordinates(const PairVector& v) const;
   /// The sign of the determinant of three vectors of one body each, as differences of stored coordinates: in the frame
@@ -200,9 +208,10 @@ class PosedPair {
   bool doubles_rotate_ = false;  ///< both rotations, and the offset, are stored as doubles, exactly
   OwnCoordinate own_a_[3];
   OwnCoordinate own_b_[3];
-  bool all_own_coordinates_ = false;  ///< of both bodies, and `doubles_rotate_`
-  bool same_rotation_ = false;        ///< of A and B, exactly
-  std::uint32_t zeros_a_ = 0;  ///< entries of the rotations that are zero (`zero_entries`); of none, where both are one
+  bool all_own_coordinates_ = false;      ///< of both bodies, and `doubles_rotate_`
+  std::optional<AxisExchange> exchange_;  ///< R_B = R_A Q, exactly: A's frame is that of both
+  double exchange_matrix_[9];             ///< Q, where it is no identity
+  std::uint32_t zeros_a_ = 0;  ///< entries of the rotations that are zero (`zero_entries`), in the frame of both
   std::uint32_t zeros_b_ = 0;
   mutable std::optional<ExactPlacing> exact_;
   mutable StageCounts stages_;

@@ -9,6 +9,7 @@
 
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
+#include "shape/common_frame.hpp"
 
 namespace pd::detail {
 
@@ -33,13 +34,11 @@ inline std::uint32_t zero_entries(const Pose& pose) {
   return mask;
 }
 
-/// Those of the identity.
-inline constexpr std::uint32_t kZerosOfNoRotation = 0b011'101'110;
-
-/// Whether the two rotations are one, on the stored numbers.
-inline bool same_rotation(const Pose& a, const Pose& b) {
-  if (a.is_quaternion() != b.is_quaternion()) return false;
-  return a.is_quaternion() ? a.quaternion_wxyz() == b.quaternion_wxyz() : a.rotation() == b.rotation();
+/// Those of no rotation but for axes that are exchanged.
+inline std::uint32_t zero_entries(const AxisExchange& exchange) {
+  std::uint32_t mask = 0b111'111'111;
+  for (unsigned k = 0; k < 3; ++k) mask &= ~(1u << (3 * k + static_cast<unsigned>(exchange.axis[k])));
+  return mask;
 }
 
 /// Bit i: coordinate i of R (to - from) is exactly zero because each of its three products is. -1 stands for the origin

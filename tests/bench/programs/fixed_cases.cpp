@@ -51,11 +51,13 @@ struct FixedTightest {
   int vertices;
   DepthClass depth;
   std::uint64_t seed;
+  bool turned = false;  ///< both bodies as a whole
 };
 constexpr FixedTightest kTightest[] = {
     {"tightest_sphere_8", PairFamily::sphere, 8, DepthClass::shallow, 1},
-    {"tightest_cubes_deep", PairFamily::cubes, 8, DepthClass::deep, 1},    // facets tied exactly
-    {"tightest_grid_128", PairFamily::grid, 128, DepthClass::mid, 1},      // edges in the facet's plane
+    {"tightest_cubes_deep", PairFamily::cubes, 8, DepthClass::deep, 1},  // facets tied exactly
+    {"tightest_grid_128", PairFamily::grid, 128, DepthClass::mid, 1},    // edges in the facet's plane
+    {"tightest_grid_32_turned", PairFamily::grid, 32, DepthClass::mid, 2, true},
     {"tightest_no_translation", PairFamily::box, 8, DepthClass::mid, 33},  // none as short as the depth rounded up
     {"tightest_near_ties_64", PairFamily::near_equal_bodies, 64, DepthClass::mid, 7},  // ties but for noise
 };
@@ -154,15 +156,17 @@ constexpr FixedCurved kCurved[] = {{"cylinder_box_edge", false, 10},   // a rim 
                                    {"cylinder_box_facet", false, 14},  // a rim on a facet
                                    {"cone_hull_32", true, 10}};
 
-/// Two boxes cold, in the tightest bracket, that need no search: at rest, one turned about the vertical, and at one
-/// place, turned a little.
+/// Two boxes cold, in the tightest bracket, that need no search: at rest, one turned about the vertical, also with both
+/// turned as a whole, and at one place, turned a little.
 struct FixedTie {
   const char* name;
   std::array<double, 4> turn;
   double height;
+  bool turned;
 };
-constexpr FixedTie kTies[] = {{"tightest_boxes_at_rest", {1, 0, 0, 0.3}, 0.299},
-                              {"tightest_boxes_at_one_place", {1, 1e-8, 2e-8, 3e-8}, 0}};
+constexpr FixedTie kTies[] = {{"tightest_boxes_at_rest", {1, 0, 0, 0.3}, 0.299, false},
+                              {"tightest_boxes_at_rest_turned", {1, 0, 0, 0.3}, 0.299, true},
+                              {"tightest_boxes_at_one_place", {1, 1e-8, 2e-8, 3e-8}, 0, false}};
 
 /// Two bricks flush on each other, cold, for contacts.
 struct FixedFlush {
@@ -259,6 +263,12 @@ int count_frames(const FixedFrames& c) {
   return 0;
 }
 
+/// With all that stands beside it.
+pd::Pose turned(const pd::Pose& pose) {
+  const pd::Mat3 whole = pd::Pose::from_quaternion({0.5, 0.1, 0.7, 0.5}, pd::Vec3::Zero())->rotation();
+  return pd::Pose::from_trusted_matrix(whole * pose.rotation(), whole * pose.translation());
+}
+
 pd::ConvexShape curved_body(bool cone, pd::scenes::Random& random) {
   const double radius = random.uniform(0.5, 1), half_height = random.uniform(0.5, 1);
   return cone ? *pd::ConvexShape::cone(radius, half_height, 2) : *pd::ConvexShape::cylinder(radius, half_height, 2);
@@ -308,8 +318,8 @@ int main(int argc, char** argv) {
     const pd::scenes::PointPair pair = pd::scenes::make_pair(c.family, c.vertices, c.depth, c.seed);
     const pd::ConvexShape a(*pd::ConvexPolytope::from_points(pair.a));
     const pd::ConvexShape b(*pd::ConvexPolytope::from_points(pair.b));
-    const pd::PosedShape posed_a{&a, pair.pose_a}, posed_b{&b, pair.pose_b};
-    return count_cold(c.name, posed_a, posed_b);
+    if (!c.turned) return count_cold(c.name, {&a, pair.pose_a}, {&b, pair.pose_b});
+    return count_cold(c.name, {&a, turned(pair.pose_a)}, {&b, turned(pair.pose_b)});
   }
   for (const FixedDear& c : kDear) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
@@ -396,8 +406,9 @@ int main(int argc, char** argv) {
     const pd::ConvexShape b(*pd::ConvexPolytope::box(pd::Vec3(1, 0.6, 0.2)));
     const double length = std::hypot(c.turn[0], c.turn[3]);
     const std::array<double, 4> turn{c.turn[0] / length, c.turn[1], c.turn[2], c.turn[3] / length};
-    const pd::PosedShape posed_a{&a, *pd::Pose::from_quaternion(turn, {0.0, 0.0, c.height})}, posed_b{&b, pd::Pose()};
-    return count_cold(c.name, posed_a, posed_b);
+    const pd::Pose upright = *pd::Pose::from_quaternion(turn, {0.0, 0.0, c.height});
+    if (!c.turned) return count_cold(c.name, {&a, upright}, {&b, pd::Pose()});
+    return count_cold(c.name, {&a, turned(upright)}, {&b, turned(pd::Pose())});
   }
   for (const FixedFlush& c : kFlush) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;

@@ -34,6 +34,9 @@ bool is_compact(const ConvexPolytope& p) {
          p.num_facets() <= AllFacetsBody::kMostFacets;
 }
 
+/// Neither elongated nor so far from its frame's origin that its size is lost in the reach.
+bool is_round(const ConvexPolytope& p) { return !p.storage().elongated && 2 * p.centre().norm() < p.radius(); }
+
 /// Outward, of any length.
 Vec3 normal_of(const NearestOfAllFacets& found, const PolytopeDifference& difference, const Mat3& turn_a,
                const Mat3& turn_b) {
@@ -66,7 +69,7 @@ bool all_facets_apply(const ConvexPolytope& a, const ConvexPolytope& b) {
 }
 
 bool all_facets_pay(const PolytopeDifference& difference) {
-  if (difference.a().storage().elongated || difference.b().storage().elongated) return false;
+  if (!is_round(difference.a()) || !is_round(difference.b())) return false;
   const double close = kCloseCentres * difference.reach();
   return difference.centre().squaredNorm() < close * close;
 }

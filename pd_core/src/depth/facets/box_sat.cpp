@@ -86,7 +86,8 @@ class BoxSat : public BoxPair {
       if (key > far_key && !left_out) {
         out.beyond = upper;
       } else if (left_out && axis >= 8) {
-        out.parallel |= 1U << (3 * (axis / 4 - 2) + axis % 4);
+        const int i = axis / 4 - 2, j = axis % 4;
+        if (!slivers_lie_far(i, j, keys, farther)) out.parallel |= 1U << (3 * i + j);
       } else if (left_out || !add_near(axis, keys, upper, out)) {
         out.count = 0;
         return out;
@@ -142,6 +143,21 @@ class BoxSat : public BoxPair {
     return height < centre_.squaredNorm();
   }
 
+  /// Edges that are parallel up to rounding but not exactly span slivers, no wider than that rounding: along each long
+  /// side lies a facet that one of the two spans with another edge. Where all of those lie far, the slivers do.
+  bool slivers_lie_far(int i, int j, const BoxAxisKeys& keys, double limit) const {
+    const double least = limit + 64 * kUnitRoundoff * reach_;
+    for (int axis = 0; axis < kBoxAxisSlots; ++axis) {
+      const int block = axis / 4, lane = axis % 4;
+      if (lane == 3 || (block == i + 2 && lane == j)) continue;
+      const auto spans = [lane](int k) { return lane == k || (lane + 1) % 3 == k; };
+      const bool involved = block == 0 ? spans(i) : block == 1 ? spans(j) : block == i + 2 || lane == j;
+      const double key = keys.lower_key[axis];
+      if (involved && !(key > least * least && key < std::numeric_limits<double>::infinity())) return false;
+    }
+    return true;
+  }
+
   /// Adds the two facets of an axis, but those certainly farther than `upper`. False where the origin may lie beyond
   /// one of them, or where there is no room.
   bool add_near(int axis, const BoxAxisKeys& keys, double upper, BoxNearFacets& out) const {
@@ -151,7 +167,7 @@ class BoxSat : public BoxPair {
     Vec3 u, v;
     spanning(of_a_, of_b_, axis, u, v);
     const Vec3 n = outward(u.cross(v));
-    out.near[out.count++] = triangle(axis, n);
+    add(axis, n, out);
     // The other side lies farther by twice the height of P's centre.
     const double turned = std::sqrt(keys.key[axis]) + rounding - lower;
     if (lower + 2 * (std::abs(n.dot(centre_)) - turned) > upper) {
@@ -159,8 +175,13 @@ class BoxSat : public BoxPair {
       return true;
     }
     if (out.count == BoxNearFacets::kMost) return false;
-    out.near[out.count++] = triangle(axis, -n);
+    add(axis, -n, out);
     return true;
+  }
+  void add(int axis, const Vec3& n, BoxNearFacets& out) const {
+    const auto i = static_cast<std::size_t>(out.count++);
+    out.near[i] = triangle(axis, n);
+    out.axis[i] = static_cast<std::int8_t>(axis);
   }
   /// Three corners of the facet of an axis with the outward normal n.
   SurfaceCorners triangle(int axis, const Vec3& n) const {

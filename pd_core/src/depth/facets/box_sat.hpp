@@ -81,10 +81,11 @@ struct BoxNearFacets {
   static constexpr int kMost = 16;
   int count = 0;                           ///< 0: the class is in doubt, or there are more
   std::array<SurfaceCorners, kMost> near;  ///< a triangle in each, the nearest first
+  std::array<std::int8_t, kMost> axis;     ///< slots of `box_axis_keys`
   double beyond = 0;                       ///< what no other facet is nearer than, for certain
   std::optional<FacetOfDifference> only;   ///< the one facet of `near`, where its plane supports P for certain
   /// Bit 3 i + j: edge i of A and edge j of B are parallel up to rounding. If they are not exactly, their facets are
-  /// not among the above.
+  /// not among the above, and may be as near.
   unsigned parallel = 0;
 };
 

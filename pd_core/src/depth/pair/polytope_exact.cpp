@@ -9,6 +9,7 @@
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
 #include "depth/facets/aligned_boxes.hpp"
+#include "depth/facets/box_near_ties.hpp"
 #include "depth/facets/box_sat.hpp"
 #include "depth/facets/unique_nearest_facet.hpp"
 #include "depth/pair/double_answer.hpp"
@@ -236,7 +237,16 @@ bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out) {
     if (!posed.parallel(PairVector::edge_a(0, 4 >> i / 3), PairVector::edge_b(0, 4 >> i % 3))) return false;
   }
   const auto near = std::span(found.near).first(static_cast<std::size_t>(found.count));
-  return answer_boxes_from_proof(query, prove_nearest(query, near, found.beyond, false), out);
+  const auto among_coplanar = [&] {
+    return answer_boxes_from_proof(query, prove_nearest(query, near, found.beyond, false), out);
+  };
+  const auto one_by_one = [&] {
+    return answer_boxes_from_proof(query, nearest_of_box_facets(posed, found, faces), out);
+  };
+  // Flush faces lie in one plane where rotations are one but for axes, or leave an axis as it is; others round. Bodies
+  // at one place tie with their images, exactly.
+  if (posed.in_one_frame() || posed.at_one_place()) return among_coplanar();
+  return posed.has_an_own_coordinate() ? among_coplanar() || one_by_one() : one_by_one() || among_coplanar();
 }
 
 bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
