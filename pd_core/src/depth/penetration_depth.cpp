@@ -7,6 +7,7 @@
 #include "depth/pair/grid_depth.hpp"
 #include "depth/pair/polytope_depth.hpp"
 #include "depth/pair/shallow_depth.hpp"
+#include "depth/pair/slender_pair.hpp"
 #include "depth/pair/smooth_depth.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
@@ -45,6 +46,10 @@ PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scr
                                    const DepthSettings& settings, WarmCertificate* warm) {
   const detail::FloatingPointGuard guard;
   PenetrationDepth out;
+  if (detail::answer_spheres(a, b, settings, out)) {
+    detail::clear_negative_zeros(out);
+    return out;
+  }
   const bool in_order = detail::compare_bodies(a, b) <= 0;
   scratch.buffers().surface.watch.mirrored = !in_order;
   if (in_order) {

@@ -20,6 +20,9 @@ struct AxisExchange {
   [[nodiscard]] bool is_identity() const {
     return axis == std::array<std::int8_t, 3>{0, 1, 2} && sign == std::array<double, 3>{1, 1, 1};
   }
+  [[nodiscard]] Vec3 of(const Vec3& v) const {
+    return {sign[0] * v[axis[0]], sign[1] * v[axis[1]], sign[2] * v[axis[2]]};
+  }
   /// Row by row.
   [[nodiscard]] std::array<double, 9> matrix() const {
     std::array<double, 9> out{};

@@ -69,18 +69,6 @@ Vec3 rotate(const ConvexPolytope& p, const double (&r)[9], double scale, int to,
           r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
-/// What R, which does no more, exchanges and reverses.
-AxisExchange exchange_of(const ColumnsDD& r) {
-  AxisExchange out;
-  for (int j = 0; j < 3; ++j) {
-    const FourDoubleDoubles& column = r[j];
-    const std::size_t i = column.hi[0] != 0 ? 0 : column.hi[1] != 0 ? 1 : 2;
-    out.axis[i] = static_cast<std::int8_t>(j);
-    out.sign[i] = column.hi[i] < 0 ? -1 : 1;
-  }
-  return out;
-}
-
 /// Q (to - from). False where a coordinate is too large or small.
 bool difference_of(const ConvexPolytope& p, const AxisExchange& exchange, int to, int from, DifferenceVector& out) {
   const double* const coordinates[3] = {p.x(), p.y(), p.z()};
@@ -412,13 +400,7 @@ std::optional<int> PosedPair::sign_in_one_frame(const PairVector* const (&vector
     return to_dyadic(v >= 0 ? p.vertex(v) : Vec3(Vec3::Zero()));
   };
   const AxisExchange exchange = of_a && of_b ? *exchange_ : AxisExchange{};
-  const auto exchanged = [&](const Vec3& x) {
-    Vec3 out;
-    for (int k = 0; k < 3; ++k)
-      out[k] = exchange.sign[static_cast<std::size_t>(k)] * x[exchange.axis[static_cast<std::size_t>(k)]];
-    return out;
-  };
-  const auto place_b = [&](int v) { return to_dyadic(v >= 0 ? exchanged(b_->vertex(v)) : Vec3(Vec3::Zero())); };
+  const auto place_b = [&](int v) { return to_dyadic(v >= 0 ? exchange.of(b_->vertex(v)) : Vec3(Vec3::Zero())); };
   Dyadic3 whole[3];
   for (int i = 0; i < 3; ++i) {
     const PairVector& v = *vectors[i];

@@ -162,4 +162,15 @@ Vec3DD turned_back(const ColumnsDD& r, const Vec3DD& x) {
   return {along(r[0]), along(r[1]), along(r[2])};
 }
 
+AxisExchange exchange_of(const ColumnsDD& columns) {
+  AxisExchange out;
+  for (int j = 0; j < 3; ++j) {
+    const FourDoubleDoubles& column = columns[j];
+    const std::size_t i = column.hi[0] != 0 ? 0 : column.hi[1] != 0 ? 1 : 2;
+    out.axis[i] = static_cast<std::int8_t>(j);
+    out.sign[i] = column.hi[i] < 0 ? -1 : 1;
+  }
+  return out;
+}
+
 }  // namespace pd::detail

@@ -7,6 +7,7 @@
 #include "numeric/double_double_lanes.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
+#include "shape/common_frame.hpp"
 
 namespace pd::detail {
 
@@ -21,6 +22,8 @@ void rotations_in_double_double(const Pose& pose_a, const Pose& pose_b, ColumnsD
 [[nodiscard]] bool stored_in_doubles(const Pose& pose, const ColumnsDD& columns);
 /// Whether R does no more than exchange and reverse axes, exactly.
 [[nodiscard]] bool exchanges_axes(const Pose& pose, const ColumnsDD& columns);
+/// What R exchanges and reverses, where it does no more.
+[[nodiscard]] AxisExchange exchange_of(const ColumnsDD& columns);
 
 /// factor * (to - from) in a body's frame, for R to turn; an absent index (-1) stands for the local origin.
 struct LocalVector {

@@ -16,7 +16,7 @@ namespace {
 
 /// Of a body's radius: a height in single precision errs by 2^-24 of it for a coordinate of the vertex, one of the
 /// normal, a product and two sums; the rise of an edge by twice that and its own rounding.
-constexpr double kSideError = 0x1p-20;
+constexpr double kRiseError = 0x1p-20;
 /// Of the reach, with the normal's length.
 constexpr double kHeightError = 0x1p-19;
 
@@ -83,8 +83,8 @@ NearFacets nearest_of_all_facets(const Pose& pose_a, const Pose& pose_b, const P
   const NearestOfAllFacets found =
       nearest_of_all_facets(body_of(difference.a(), difference.posed_a(), turn_a),
                             body_of(difference.b(), difference.posed_b(), turn_b), {t.x(), t.y(), t.z()},
-                            {kHeightError * reach, static_cast<float>(kSideError * difference.a().radius()),
-                             static_cast<float>(kSideError * difference.b().radius())});
+                            {kHeightError * reach, static_cast<float>(kRiseError * difference.a().radius()),
+                             static_cast<float>(kRiseError * difference.b().radius())});
   out.facets = found.pieces;
   if (found.outcome != NearestOfAllFacets::Outcome::found || !(found.key > 0)) return out;
   const Vec3 normal = normal_of(found, difference, turn_a, turn_b);

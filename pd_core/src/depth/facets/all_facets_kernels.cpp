@@ -13,11 +13,11 @@ namespace {
 typedef std::uint32_t Bits __attribute__((vector_size(32)));
 
 constexpr int kFacets = AllFacetsBody::kMostFacets;
-constexpr int kVertices = AllFacetsBody::kMostVertices;
+constexpr int kHeightRows = AllFacetsBody::kMostVertices;
 constexpr int kKept = 64;  ///< edges of a body, by bits of a word
 constexpr int kHalf = kKept / 2;
-constexpr int kRoom = 3 * kVertices;  ///< Euler: 3 V - 6 edges
-static_assert(kVertices == 32);
+constexpr int kRoom = 3 * kHeightRows;  ///< Euler: 3 V - 6 edges
+static_assert(kHeightRows == 32);
 
 /// The planes of a body's facets. Entries beyond the last facet, up to whole blocks, repeat the first.
 struct Planes {
@@ -32,7 +32,7 @@ struct Planes {
 /// Where the vertices of one body lie along the facets' normals of the other, in single precision; rows beyond the last
 /// vertex lie below all.
 struct Heights {
-  alignas(32) float row[kVertices][kFacets];
+  alignas(32) float row[kHeightRows][kFacets];
 };
 
 PD_INLINE void place_planes(Planes& out, const AllFacetsBody& body, const double (&offset)[3]) {
@@ -80,7 +80,7 @@ PD_INLINE void narrow(Floats& out, const double* from) {
 }
 
 PD_INLINE void take_heights(Heights& heights, Planes& planes, const VertexArrays& other) {
-  alignas(32) float x[kVertices], y[kVertices], z[kVertices];
+  alignas(32) float x[kHeightRows], y[kHeightRows], z[kHeightRows];
   for (int v = 0; v < other.count; v += kFloats) {
     Floats of_x, of_y, of_z;
     narrow(of_x, other.x + v);
@@ -107,7 +107,7 @@ PD_INLINE void take_heights(Heights& heights, Planes& planes, const VertexArrays
     }
     __builtin_memcpy(planes.top + f, &top, sizeof(top));
     const Floats none = Floats{} - std::numeric_limits<float>::max();
-    for (int v = other.count; v < kVertices; ++v) {
+    for (int v = other.count; v < kHeightRows; ++v) {
       for (int i = 0; i < 2; ++i) __builtin_memcpy(heights.row[v] + f + kFloats * i, &none, sizeof(none));
     }
   }
@@ -204,7 +204,7 @@ PD_INLINE void take_sign(Bits& bits, const Floats& value) {
 PD_INLINE void mark_far_facets(std::uint32_t (&far)[kFacets], const Planes& planes, const Heights& other, double radius,
                                double slack) {
   // Four chains of bits, as each waits for itself: two blocks of facets, and two halves of the vertices.
-  constexpr int kTogether = 2, kHalfway = kVertices / 2;
+  constexpr int kTogether = 2, kHalfway = kHeightRows / 2;
   for (int f = 0; f < kFloats * planes.blocks; f += kTogether * kFloats) {
     Floats level[kTogether], height;
     Bits first[kTogether] = {}, second[kTogether] = {};

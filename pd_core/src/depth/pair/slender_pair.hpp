@@ -12,6 +12,10 @@
 
 namespace pd::detail {
 
+/// Two spheres, whose cores are points: Bracket::certified and contact, method automatic. Every step is the same from
+/// either side, so that no order of the bodies is asked for. Passes on as below.
+bool answer_spheres(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, PenetrationDepth& out);
+
 /// Bracket::certified and contact. Passes on where the cores meet, or nearly, and where bracket or class stay in doubt.
 bool answer_slender_pair(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
                          PenetrationDepth& out);
