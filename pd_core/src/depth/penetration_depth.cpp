@@ -46,7 +46,8 @@ PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scr
                                    const DepthSettings& settings, WarmCertificate* warm) {
   const detail::FloatingPointGuard guard;
   PenetrationDepth out;
-  if (detail::answer_spheres(a, b, settings, out)) {
+  const bool spheres = detail::is_sphere(*a.shape) && detail::is_sphere(*b.shape);
+  if (spheres && detail::answer_spheres(a, b, settings, out)) {
     detail::clear_negative_zeros(out);
     return out;
   }

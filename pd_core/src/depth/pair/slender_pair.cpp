@@ -77,7 +77,7 @@ bool answer_spheres(const PosedShape& a, const PosedShape& b, const DepthSetting
   const Bracket bracket = PolytopeQuery::bracket_of(settings);
   if (settings.method != Method::automatic || bracket == Bracket::tightest) return false;
   const Margins margins{a.shape->margin(), b.shape->margin()};
-  return answer_points({core_a, core_b, &a.pose, &b.pose, margins}, settings, bracket, out);
+  return answer_points({a.shape->polytope(), b.shape->polytope(), &a.pose, &b.pose, margins}, settings, bracket, out);
 }
 
 bool answer_slender_pair(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,

@@ -9,11 +9,17 @@
 #include "depth/pair/nearest_of_segments.hpp"
 #include "depth/pair/polytope_depth.hpp"
 #include "pd/depth/depth_answer.hpp"
+#include "pd/shape/convex_shape.hpp"
 
 namespace pd::detail {
 
-/// Two spheres, whose cores are points: Bracket::certified and contact, method automatic. Every step is the same from
-/// either side, so that no order of the bodies is asked for. Passes on as below.
+/// Whether a shape is a sphere or a point.
+inline bool is_sphere(const ConvexShape& shape) {
+  const ConvexPolytope* const core = shape.polytope();
+  return core != nullptr && core->num_vertices() == 1;
+}
+/// Two spheres: Bracket::certified and contact, method automatic. Every step is the same from either side, so that no
+/// order of the bodies is asked for. Passes on as below.
 bool answer_spheres(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, PenetrationDepth& out);
 
 /// Bracket::certified and contact. Passes on where the cores meet, or nearly, and where bracket or class stay in doubt.
