@@ -34,8 +34,16 @@ bool is_compact(const ConvexPolytope& p) {
          p.num_facets() <= AllFacetsBody::kMostFacets;
 }
 
-/// Neither elongated nor so far from its frame's origin that its size is lost in the reach.
-bool is_round(const ConvexPolytope& p) { return !p.storage().elongated && 2 * p.centre().norm() < p.radius(); }
+/// Of the product of a body's squared semi-axes to that of a ball of their sum: an ellipsoid of semi-axes 1, 1/2 and
+/// 1/4 has .19, a box of these extents, too, one of 1, 1 and 1/8 .05.
+constexpr double kLeastRoundness = 0.1;
+
+/// Neither long or flat, nor so far from its frame's origin that its size is lost in the reach.
+bool is_round(const ConvexPolytope& p) {
+  const Mat3& moments = p.storage().second_moments;
+  const double mean = moments.trace() / 3;
+  return moments.determinant() > kLeastRoundness * mean * mean * mean && 2 * p.centre().norm() < p.radius();
+}
 
 /// Outward, of any length.
 Vec3 normal_of(const NearestOfAllFacets& found, const PolytopeDifference& difference, const Mat3& turn_a,

@@ -16,7 +16,7 @@ namespace pd::detail {
 [[nodiscard]] bool all_facets_apply(const ConvexPolytope& a, const ConvexPolytope& b);
 
 /// Whether it is worth it, measured on hulls of 9 to 32 vertices: the bodies' centres are close to each other, and
-/// neither is elongated, nor far from its frame's origin. A surface needs 15 supports or more then, against 10 where
+/// neither is long or flat, nor far from its frame's origin. A surface needs 15 supports or more then, against 10 where
 /// bodies meet by their rims.
 [[nodiscard]] bool all_facets_pay(const PolytopeDifference& difference);
 

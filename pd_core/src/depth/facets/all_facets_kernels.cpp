@@ -230,24 +230,33 @@ PD_INLINE void keep_near_edges(KeptEdges& out, const AllFacetsBody& body, const 
                                double radius, double slack) {
   alignas(32) std::uint32_t far[kFacets];
   mark_far_facets(far, planes, other, radius, slack);
-  // Written in any case and counted where it stays: no branch to guess.
-  const HalfEdge* const half_edges = body.storage.half_edges;
+  // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
+  const ConvexPolytope::Storage& s = body.storage;
   std::uint8_t kept[2 * kRoom + 1];
+  int both_ways = 0;
+  for (int v = 0; v < s.num_vertices; ++v) {
+    const int end = s.neighbour_offsets[v + 1];
+    std::uint32_t right = far[s.half_edges[end - 1].facet];
+    for (int h = s.neighbour_offsets[v]; h < end; ++h) {
+      const std::uint32_t left = far[s.half_edges[h].facet];
+      // Written in any case and counted where it stays: no branch to guess.
+      kept[both_ways] = static_cast<std::uint8_t>(h);
+      both_ways += static_cast<int>((left & right) == 0);
+      right = left;
+    }
+  }
   int count = 0;
-  for (int h = 0; h < body.storage.num_half_edges; ++h) {
-    const HalfEdge& e = half_edges[h];
-    kept[count] = static_cast<std::uint8_t>(h);
-    count += static_cast<int>(e.twin > h) & static_cast<int>((far[e.facet] & far[half_edges[e.twin].facet]) == 0);
+  for (int k = 0; k < both_ways; ++k) {
+    const HalfEdge& e = s.half_edges[kept[k]];
+    if (e.twin < kept[k]) continue;
+    const HalfEdge& back = s.half_edges[e.twin];
+    out.from[count] = static_cast<std::uint8_t>(e.origin);
+    out.to[count] = static_cast<std::uint8_t>(back.origin);
+    out.left[count] = static_cast<std::uint8_t>(e.facet);
+    out.right[count] = static_cast<std::uint8_t>(back.facet);
+    ++count;
   }
   out.count = count;
-  for (int k = 0; k < count; ++k) {
-    const HalfEdge& e = half_edges[kept[k]];
-    const HalfEdge& back = half_edges[e.twin];
-    out.from[k] = static_cast<std::uint8_t>(e.origin);
-    out.to[k] = static_cast<std::uint8_t>(back.origin);
-    out.left[k] = static_cast<std::uint8_t>(e.facet);
-    out.right[k] = static_cast<std::uint8_t>(back.facet);
-  }
 }
 
 /// By facet of one body: a set of kept edges of the other, which descend along it; two words of 32 each.
