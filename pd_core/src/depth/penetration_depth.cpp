@@ -47,7 +47,10 @@ PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scr
   const detail::FloatingPointGuard guard;
   PenetrationDepth out;
   const bool spheres = detail::is_sphere(*a.shape) && detail::is_sphere(*b.shape);
-  if (spheres && detail::answer_spheres(a, b, settings, out)) {
+  const bool asks_beyond = settings.beyond < std::numeric_limits<double>::infinity();
+  if ((spheres && detail::answer_spheres(a, b, settings, out)) ||
+      (asks_beyond && detail::balls_may_lie_beyond(a, b, settings.beyond) &&
+       detail::answer_balls_beyond(a, b, settings.beyond, out))) {
     detail::clear_negative_zeros(out);
     return out;
   }

@@ -12,6 +12,18 @@ class WarmCertificate;
 
 namespace pd::detail {
 
+/// Whether the balls round the origins of two polytopes' frames lie more than that apart: what a product, or a host's
+/// matrix that is a rotation up to single precision, may change is left to `answer_balls_beyond`.
+inline bool balls_may_lie_beyond(const PosedShape& a, const PosedShape& b, double beyond) {
+  const ConvexPolytope *const core_a = a.shape->polytope(), *const core_b = b.shape->polytope();
+  if (core_a == nullptr || core_b == nullptr) return false;
+  const double most = beyond + (a.shape->margin() + b.shape->margin()) + (core_a->radius() + core_b->radius());
+  return (b.pose.translation() - a.pose.translation()).squaredNorm() > (1 + 0x1p-8) * most * most;
+}
+/// The same as below by these balls. Every step is the same from either side, so that no order of the bodies is asked
+/// for; no memory is read or written.
+[[nodiscard]] bool answer_balls_beyond(const PosedShape& a, const PosedShape& b, double beyond, PenetrationDepth& out);
+
 /// Answers and returns true where a certified plane shows more than `settings.beyond` between the bodies; else leaves
 /// `out` alone but for its statistics, and nothing is known.
 ///
