@@ -47,7 +47,9 @@ void expect_as_searched(const Pair& pair, const Quaternion& whole, Stored stored
   EXPECT_EQ(found.upper, searched.upper);
   EXPECT_EQ(found.lower, of_all.lower);
   EXPECT_EQ(found.upper, of_all.upper);
-  EXPECT_EQ(found.translation, searched.translation);
+  // Of a plane that two facets share either one may be measured.
+  EXPECT_LE((found.translation - searched.translation).norm(), 0x1p-44 * found.upper);
+  EXPECT_LE(found.translation.norm(), found.upper * (1 + 0x1p-50));
   EXPECT_EQ(found.normal, searched.normal);
   EXPECT_EQ(found.feature_a.kind, searched.feature_a.kind);
   EXPECT_EQ(found.feature_a.first, searched.feature_a.first);
@@ -56,16 +58,20 @@ void expect_as_searched(const Pair& pair, const Quaternion& whole, Stored stored
   overlapping += found.contact == ContactClass::overlapping ? 1 : 0;
 }
 
-/// The upper box turned about the vertical, each a millionth to a hundredth in the other.
+/// The upper box turned about the vertical, a millionth to a hundredth of its size in the other.
 TEST(TurnedTogether, BoxesFaceOnFace) {
   scenes::Random random(3);
   Scratch scratch;
   int overlapping = 0;
-  constexpr int kPairs = 200;
+  constexpr int kPairs = 400;
   for (int i = 0; i < kPairs; ++i) {
     SCOPED_TRACE(i);
-    const Vec3 a = random.point(0.1, 1), b = random.point(0.1, 1);
-    const double sunk = i % 3 == 0 ? 1e-6 : i % 3 == 1 ? 1e-4 : 1e-2;
+    Vec3 a = random.point(0.1, 1), b = random.point(0.1, 1);
+    // Planks and plates, and crumbs on large floors.
+    if (i % 5 == 0) a.x() *= 1e-3;
+    if (i % 7 == 0) b *= 1e3;
+    if (i % 11 == 0) a *= 1e-5;
+    const double sunk = a.minCoeff() * (i % 3 == 0 ? 1e-6 : i % 3 == 1 ? 1e-4 : 1e-2);
     const double half = i % 4 == 0 ? 0 : random.uniform(-1, 1), length = std::hypot(1, half);
     const double x = random.uniform(-0.9, 0.9) * b.x(), y = random.uniform(-0.9, 0.9) * b.y();
     const Pair pair{*ConvexPolytope::box(a),
@@ -77,7 +83,7 @@ TEST(TurnedTogether, BoxesFaceOnFace) {
     expect_as_searched(pair, whole, Stored::matrix, scratch, overlapping);
     expect_as_searched(pair, whole, Stored::quaternion, scratch, overlapping);
   }
-  EXPECT_EQ(overlapping, 2 * kPairs);
+  EXPECT_GE(overlapping, 2 * kPairs - 8);  // crumbs are lifted by rounding
 }
 
 /// Boxes and prisms by right angles and half turns of each other, and hulls of integer points: all edges that can be
