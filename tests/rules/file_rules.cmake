@@ -57,10 +57,10 @@ foreach(file ${files})
   endif()
 endforeach()
 
-# Where a source declares constants, outermost or in functions: the names kConstant that follow `pattern`.
+# Where a source or header of its folder declares constants, outermost or in functions: the names kConstant that follow `pattern`.
 function(constants_of text pattern out)
-  string(REGEX MATCHALL "\n${pattern}constexpr [^\n;=({]* k[A-Z][A-Za-z0-9]*" found "\n${text}")
-  list(TRANSFORM found REPLACE "^.* " "")
+  string(REGEX MATCHALL "\n${pattern}constexpr [^\n;=({]* k[A-Z][A-Za-z0-9]*( =|{)" found "\n${text}")
+  list(TRANSFORM found REPLACE "^.* (k[A-Za-z0-9]+)( =|{)$" "\\1")
   list(REMOVE_DUPLICATES found)
   set(${out} "${found}" PARENT_SCOPE)
 endfunction()
@@ -69,7 +69,7 @@ endfunction()
 list(SORT files)
 foreach(file ${files})
   # What is compiled for several dimensions stays alone (pd_core/CMakeLists.txt).
-  if(file MATCHES "^(pd_core/src|engine_glue/src|render/src|demos)/.*\\.cpp$" AND NOT file MATCHES "^pd_core/src/dimension/")
+  if(file MATCHES "^(pd_core/src|engine_glue/src|render/src|demos)/.*\\.(cpp|hpp)$" AND NOT file MATCHES "^pd_core/src/dimension/")
     get_filename_component(folder ${file} DIRECTORY)
     file(READ ${ROOT}/${file} text)
     string(REPLACE ";" " " text "${text}")

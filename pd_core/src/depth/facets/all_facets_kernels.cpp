@@ -8,11 +8,12 @@
 
 namespace pd::detail {
 
+namespace all_facets {
 namespace {
 
 typedef std::uint32_t Bits __attribute__((vector_size(32)));
 
-constexpr int kFacets = AllFacetsBody::kMostFacets;
+constexpr int kFacetSlots = AllFacetsBody::kMostFacets;
 constexpr int kHeightRows = AllFacetsBody::kMostVertices;
 constexpr int kKept = 64;  ///< edges of a body, by bits of a word
 constexpr int kHalf = kKept / 2;
@@ -21,25 +22,25 @@ static_assert(kHeightRows == 32);
 
 /// The planes of a body's facets. Entries beyond the last facet, up to whole blocks, repeat the first.
 struct Planes {
-  alignas(32) double nx[kFacets], ny[kFacets], nz[kFacets];
-  alignas(32) double own[kFacets];      ///< height of the plane of P but for the other body
-  alignas(32) double squared[kFacets];  ///< length of the normal
-  alignas(32) double rough[kFacets];    ///< height of the plane of P, by single precision
-  alignas(32) float top[kFacets];       ///< of the other body along it
-  int blocks;                           ///< of kFloats; an even number
+  alignas(32) double nx[kFacetSlots], ny[kFacetSlots], nz[kFacetSlots];
+  alignas(32) double own[kFacetSlots];      ///< height of the plane of P but for the other body
+  alignas(32) double squared[kFacetSlots];  ///< length of the normal
+  alignas(32) double rough[kFacetSlots];    ///< height of the plane of P, by single precision
+  alignas(32) float top[kFacetSlots];       ///< of the other body along it
+  int blocks;                               ///< of kFloats; an even number
 };
 
 /// Where the vertices of one body lie along the facets' normals of the other, in single precision; rows beyond the last
 /// vertex lie below all.
 struct Heights {
-  alignas(32) float row[kHeightRows][kFacets];
+  alignas(32) float row[kHeightRows][kFacetSlots];
 };
 
 PD_INLINE void place_planes(Planes& out, const AllFacetsBody& body, const double (&offset)[3]) {
   const ConvexPolytope::Storage& s = body.storage;
   out.blocks = (s.num_facets + 2 * kFloats - 1) / (2 * kFloats) * 2;
   const int end = kFloats * out.blocks;
-  alignas(32) double x[kFacets], y[kFacets], z[kFacets];
+  alignas(32) double x[kFacetSlots], y[kFacetSlots], z[kFacetSlots];
   for (int f = 0; f < end; ++f) {
     const int i = f < s.num_facets ? f : 0;
     const double* const n = s.facet_normals[i].data();
@@ -201,8 +202,8 @@ PD_INLINE void take_sign(Bits& bits, const Floats& value) {
 }
 
 /// By facet: the vertices of the other body, as bits, that show it too far.
-PD_INLINE void mark_far_facets(std::uint32_t (&far)[kFacets], const Planes& planes, const Heights& other, double radius,
-                               double slack) {
+PD_INLINE void mark_far_facets(std::uint32_t (&far)[kFacetSlots], const Planes& planes, const Heights& other,
+                               double radius, double slack) {
   // Four chains of bits, as each waits for itself: two blocks of facets, and two halves of the vertices.
   constexpr int kTogether = 2, kHalfway = kHeightRows / 2;
   for (int f = 0; f < kFloats * planes.blocks; f += kTogether * kFloats) {
@@ -228,7 +229,7 @@ PD_INLINE void mark_far_facets(std::uint32_t (&far)[kFacets], const Planes& plan
 /// of an edge too far, it does for all directions of its arc.
 PD_INLINE void keep_near_edges(KeptEdges& out, const AllFacetsBody& body, const Planes& planes, const Heights& other,
                                double radius, double slack) {
-  alignas(32) std::uint32_t far[kFacets];
+  alignas(32) std::uint32_t far[kFacetSlots];
   mark_far_facets(far, planes, other, radius, slack);
   // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
   const ConvexPolytope::Storage& s = body.storage;
@@ -261,12 +262,12 @@ PD_INLINE void keep_near_edges(KeptEdges& out, const AllFacetsBody& body, const 
 
 /// By facet of one body: a set of kept edges of the other, which descend along it; two words of 32 each.
 struct Sides {
-  alignas(32) std::uint32_t low[kFacets], high[kFacets];
+  alignas(32) std::uint32_t low[kFacetSlots], high[kFacetSlots];
 
   [[nodiscard]] PD_INLINE std::uint64_t of(int facet) const { return low[facet] | std::uint64_t{high[facet]} << kHalf; }
 };
 
-PD_INLINE void tell_half(std::uint32_t (&out)[kFacets], float& least, const KeptEdges& kept, int first,
+PD_INLINE void tell_half(std::uint32_t (&out)[kFacetSlots], float& least, const KeptEdges& kept, int first,
                          const Heights& heights, int blocks, bool backwards) {
   const int end = kept.count < first + kHalf ? kept.count : first + kHalf;
   Floats least_size = Floats{} + std::numeric_limits<float>::max();
@@ -425,9 +426,11 @@ PD_INLINE double largest_coordinate(const VertexArrays& a, const VertexArrays& b
 }
 
 }  // namespace
+}  // namespace all_facets
 
 PD_CLONES NearestOfAllFacets nearest_of_all_facets(const AllFacetsBody& a, const AllFacetsBody& b,
                                                    const double (&offset)[3], const AllFacetsErrors& errors) {
+  using namespace all_facets;
   NearestOfAllFacets out;
   Planes planes_a, planes_b;
   Heights of_b, of_a;  // along the facets of the other body
@@ -443,13 +446,13 @@ PD_CLONES NearestOfAllFacets nearest_of_all_facets(const AllFacetsBody& a, const
   NearestFacet facet{none, none, 0};
   const int facets_a = a.storage.num_facets, facets_b = b.storage.num_facets;
   nearest_facet(facet, planes_a, of_b, facets_a, b.posed, level, errors.height, 0, out.pieces);
-  nearest_facet(facet, planes_b, of_a, facets_b, a.posed, level, errors.height, kFacets, out.pieces);
+  nearest_facet(facet, planes_b, of_a, facets_b, a.posed, level, errors.height, kFacetSlots, out.pieces);
   out.key = facet.key;
   out.others_key = facet.others;
-  if (facet.facet < kFacets) {
+  if (facet.facet < kFacetSlots) {
     out.facet_a = facet.facet;
   } else {
-    out.facet_b = facet.facet - kFacets;
+    out.facet_b = facet.facet - kFacetSlots;
   }
   if (!(out.key > 0)) {
     out.outcome = NearestOfAllFacets::Outcome::beyond;

@@ -13,7 +13,7 @@ namespace {
 typedef double Lanes __attribute__((vector_size(32)));
 typedef std::int64_t Flags __attribute__((vector_size(32)));
 constexpr int kLanes = 4;
-constexpr int kBlocks = 5;
+constexpr int kAxisBlocks = 5;
 
 PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
 
@@ -93,7 +93,7 @@ PD_CLONES void box_axis_keys(const BoxEdges& a, const BoxEdges& b, const double 
                              BoxAxisKeys& out) {
   const Lanes zero = {0, 0, 0, 0};
   const Lanes none = zero + std::numeric_limits<double>::infinity();
-  for (int block = 0; block < kBlocks; ++block) {
+  for (int block = 0; block < kAxisBlocks; ++block) {
     BlockKeys found;
     keys_of_block(found, block, a, b, c, errors);
     const Lanes key = found.parallel ? none : found.key;
@@ -109,7 +109,7 @@ PD_CLONES NearestBoxAxis nearest_box_axis(const BoxEdges& edges_a, const BoxEdge
   const Lanes none = zero + std::numeric_limits<double>::infinity();
   const Flags first_three = {-1, -1, -1, 0};
   Lanes best = none, lower = none, slivers = zero, best_axis = zero;
-  for (int block = 0; block < kBlocks; ++block) {
+  for (int block = 0; block < kAxisBlocks; ++block) {
     BlockKeys found;
     keys_of_block(found, block, edges_a, edges_b, c, errors);
     const Flags counts = first_three & ~found.parallel;
