@@ -6,6 +6,7 @@
 
 #include "box_contacts.hpp"
 #include "installation.hpp"
+#include "lane_transform.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "query_meter.hpp"
@@ -19,9 +20,16 @@ double contact_tolerance(const Pose& a, const Pose& b, double smaller_radius) {
 }
 
 bool in_range(const btTransform& pose) {
+  // As `is_finite`, four numbers at a time; nobody sets the fourth.
+  Lanes sum = {0, 0, 0, 0};
+  for (int i = 0; i < 4; ++i) {
+    Lanes row;
+    load_lanes(i < 3 ? pose.getBasis()[i] : pose.getOrigin(), row);
+    sum += row * btScalar(0);
+  }
+  if (!(sum[0] + sum[1] + sum[2] == 0)) return false;
   // Single precision ends before the core does.
-  if (sizeof(btScalar) == sizeof(float)) return is_finite(pose);
-  return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
+  return sizeof(btScalar) == sizeof(float) || to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
 SolverCore::SolverCore(const BulletSolverSettings& chosen) : settings(chosen), cache(chosen.cache_capacity) {}

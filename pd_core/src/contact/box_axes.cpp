@@ -1,86 +1,83 @@
 #include "contact/box_axes.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <limits>
-
-#include "numeric/instruction_sets.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-typedef double Lanes __attribute__((vector_size(32)));
-typedef std::int64_t Flags __attribute__((vector_size(32)));
-constexpr int kLanes = 4;
 /// |column of R| <= 1 + 1e-6 (Pose).
-constexpr double kLongest = 1 + 0x1p-19;
+constexpr double kLongestAxis = 1 + 0x1p-19;
 
-struct LaneVectors {
-  Lanes x, y, z;
+struct AxisVectors {
+  FourDoubles x, y, z;
 };
 
-PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
-PD_INLINE void load(LaneVectors& axes, LaneVectors& edges, Lanes& half, const BoxLanes& from) {
-  load(axes.x, from.x);
-  load(axes.y, from.y);
-  load(axes.z, from.z);
-  load(half, from.half);
+PD_INLINE void load_box(AxisVectors& axes, AxisVectors& edges, FourDoubles& half, const BoxLanes& from) {
+  load_four(axes.x, from.x);
+  load_four(axes.y, from.y);
+  load_four(axes.z, from.z);
+  load_four(half, from.half);
   edges.x = axes.x * half;
   edges.y = axes.y * half;
   edges.z = axes.z * half;
 }
 /// To the next axis: (x, y, z) -> (y, z, x).
-PD_INLINE Lanes turned(const Lanes& v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
-PD_INLINE LaneVectors turned(const LaneVectors& v) { return {turned(v.x), turned(v.y), turned(v.z)}; }
-PD_INLINE LaneVectors all_lanes(const LaneVectors& v, int i) {
-  const Lanes zero = {0, 0, 0, 0};
-  return {zero + v.x[i], zero + v.y[i], zero + v.z[i]};
+PD_INLINE FourDoubles turned(const FourDoubles& v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
+PD_INLINE AxisVectors turned(const AxisVectors& v) { return {turned(v.x), turned(v.y), turned(v.z)}; }
+/// An axis, and its half edge, in all lanes.
+PD_INLINE AxisVectors axis_of(const BoxLanes& box, int i) {
+  const FourDoubles zero = {0, 0, 0, 0};
+  return {zero + box.x[i], zero + box.y[i], zero + box.z[i]};
 }
-PD_INLINE void cross(LaneVectors& n, const LaneVectors& u, const LaneVectors& v) {
+PD_INLINE AxisVectors edge_of(const BoxLanes& box, int i) {
+  const FourDoubles zero = {0, 0, 0, 0};
+  const double half = box.half[i];
+  return {zero + box.x[i] * half, zero + box.y[i] * half, zero + box.z[i] * half};
+}
+PD_INLINE void axes_product(AxisVectors& n, const AxisVectors& u, const AxisVectors& v) {
   n.x = u.y * v.z - u.z * v.y;
   n.y = u.z * v.x - u.x * v.z;
   n.z = u.x * v.y - u.y * v.x;
 }
 /// |<n, v>|
-PD_INLINE Lanes height(const LaneVectors& n, const LaneVectors& v) {
-  const Lanes signed_height = n.x * v.x + n.y * v.y + n.z * v.z;
-  constexpr std::int64_t kMagnitude = std::numeric_limits<std::int64_t>::max();  // all bits but the sign's
-  return (Lanes)((Flags)signed_height & Flags{kMagnitude, kMagnitude, kMagnitude, kMagnitude});
+PD_INLINE FourDoubles height(const AxisVectors& n, const AxisVectors& v) {
+  return magnitude(n.x * v.x + n.y * v.y + n.z * v.z);
 }
 
 /// The nearest axes so far, lane by lane.
-struct Nearest {
-  Lanes key, lower_key, slivers, axis;
-  LaneVectors n;
+struct NearestAxes {
+  FourDoubles key, lower_key, slivers, axis;
+  AxisVectors n;
 };
 
-struct Errors {
+struct AxisErrors {
   double turn;      ///< of an axis' height
   double parallel;  ///< squared lengths of products up to this are rounding
 };
 
+/// @param exact   there are no errors
 /// @param height  of P, along n as it is
-PD_INLINE void consider(Nearest& best, int block, const LaneVectors& n, const Lanes& height, const Lanes& shorter,
-                        const Errors& errors) {
-  const Lanes zero = {0, 0, 0, 0};
-  const Lanes squared = n.x * n.x + n.y * n.y + n.z * n.z;
-  const Flags parallel = squared <= errors.parallel;
-  const Lanes key = height * (height < zero ? -height : height) / squared;
-  Lanes lower_key = key;
-  if (errors.turn != 0) {
-    const Lanes lowered = height - errors.turn;
-    lower_key = lowered * (lowered < zero ? -lowered : lowered) / squared;
-    best.slivers += parallel ? shorter : zero;
-  }
-  const Flags nearer = ~parallel & (key < best.key);
-  const Flags lowers = ~parallel & (lower_key < best.lower_key);
+template <bool exact>
+PD_INLINE void consider(NearestAxes& best, int block, const AxisVectors& n, const FourDoubles& height,
+                        const FourDoubles& half_u, const FourDoubles& half_v, const AxisErrors& errors) {
+  const FourDoubles zero = {0, 0, 0, 0};
+  const FourDoubles squared = n.x * n.x + n.y * n.y + n.z * n.z;
+  const FourFlags spans = squared > errors.parallel;
+  const FourDoubles key = height * magnitude(height) / squared;
+  const FourFlags nearer = spans & (key < best.key);
   best.key = nearer ? key : best.key;
-  best.lower_key = lowers ? lower_key : best.lower_key;
-  best.axis = nearer ? Lanes{0, 1, 2, 3} + static_cast<double>(kLanes * block) : best.axis;
+  best.axis = nearer ? FourDoubles{0, 1, 2, 3} + static_cast<double>(4 * block) : best.axis;
   best.n.x = nearer ? n.x : best.n.x;
   best.n.y = nearer ? n.y : best.n.y;
   best.n.z = nearer ? n.z : best.n.z;
+  if (exact) return;
+  const FourDoubles lowered = height - errors.turn;
+  const FourDoubles lower_key = lowered * magnitude(lowered) / squared;
+  best.lower_key = (spans & (lower_key < best.lower_key)) ? lower_key : best.lower_key;
+  const FourDoubles shorter = half_u < half_v ? half_u : half_v;
+  best.slivers += spans ? zero : shorter;
 }
 
 struct NearestAxis {
@@ -89,37 +86,37 @@ struct NearestAxis {
   double n[3];
 };
 
-PD_CLONES void nearest_axis(const BoxLanes& a, const BoxLanes& b, const double (&c)[3], const Errors& errors,
-                            NearestAxis& out) {
-  const Lanes zero = {0, 0, 0, 0};
-  const Lanes none = zero + std::numeric_limits<double>::infinity();
-  Nearest best{none, none, zero, zero, {zero, zero, zero}};
-  LaneVectors axes_a, edges_a, axes_b, edges_b, n;
-  Lanes half_a, half_b;
-  load(axes_a, edges_a, half_a, a);
-  load(axes_b, edges_b, half_b, b);
-  const LaneVectors centre = {zero + c[0], zero + c[1], zero + c[2]};
-  const LaneVectors edge_a[3] = {all_lanes(edges_a, 0), all_lanes(edges_a, 1), all_lanes(edges_a, 2)};
-  const LaneVectors edges_b_1 = turned(edges_b), edges_b_2 = turned(edges_b_1);
+template <bool exact>
+PD_INLINE void nearest_of_all(const BoxLanes& a, const BoxLanes& b, const double (&c)[3], const AxisErrors& errors,
+                              NearestAxis& out) {
+  const FourDoubles zero = {0, 0, 0, 0};
+  const FourDoubles none = zero + std::numeric_limits<double>::infinity();
+  NearestAxes best{none, none, zero, zero, {zero, zero, zero}};
+  AxisVectors axes_a, edges_a, axes_b, edges_b, n;
+  FourDoubles half_a, half_b;
+  load_box(axes_a, edges_a, half_a, a);
+  load_box(axes_b, edges_b, half_b, b);
+  const AxisVectors centre = {zero + c[0], zero + c[1], zero + c[2]};
+  const AxisVectors edge_a[3] = {edge_of(a, 0), edge_of(a, 1), edge_of(a, 2)};
+  const AxisVectors edges_b_1 = turned(edges_b), edges_b_2 = turned(edges_b_1);
 
   // Facets of A: x x y, y x z, z x x.
-  cross(n, axes_a, turned(axes_a));
-  Lanes of_p = height(n, turned(turned(edges_a))) + height(n, all_lanes(edges_b, 0)) +
-               height(n, all_lanes(edges_b, 1)) + height(n, all_lanes(edges_b, 2)) - height(n, centre);
-  const Lanes next_a = turned(half_a), next_b = turned(half_b);
-  consider(best, 0, n, of_p, half_a < next_a ? half_a : next_a, errors);
+  axes_product(n, axes_a, turned(axes_a));
+  FourDoubles of_p = height(n, turned(turned(edges_a))) + height(n, edge_of(b, 0)) + height(n, edge_of(b, 1)) +
+                     height(n, edge_of(b, 2)) - height(n, centre);
+  consider<exact>(best, 0, n, of_p, half_a, turned(half_a), errors);
   // Of B.
-  cross(n, axes_b, turned(axes_b));
+  axes_product(n, axes_b, turned(axes_b));
   of_p = height(n, edges_b_2) + height(n, edge_a[0]) + height(n, edge_a[1]) + height(n, edge_a[2]) - height(n, centre);
-  consider(best, 1, n, of_p, half_b < next_b ? half_b : next_b, errors);
+  consider<exact>(best, 1, n, of_p, half_b, turned(half_b), errors);
   // An edge of A and one of B.
   for (int i = 0; i < 3; ++i) {
-    cross(n, all_lanes(axes_a, i), axes_b);
+    axes_product(n, axis_of(a, i), axes_b);
     of_p = height(n, edge_a[i == 2 ? 0 : i + 1]) + height(n, edge_a[i == 0 ? 2 : i - 1]) + height(n, edges_b_1) +
            height(n, edges_b_2) - height(n, centre);
-    const Lanes half_i = zero + half_a[i];
-    consider(best, 2 + i, n, of_p, half_i < half_b ? half_i : half_b, errors);
+    consider<exact>(best, 2 + i, n, of_p, zero + a.half[i], half_b, errors);
   }
+  if (exact) best.lower_key = best.key;
 
   // Lane 1 holds the facets across x, lane 2 those across y. Of equal ones the first of them wins: of cubes in one
   // place no axis is nearer than another, and x is no host's way up.
@@ -140,14 +137,23 @@ PD_CLONES void nearest_axis(const BoxLanes& a, const BoxLanes& b, const double (
   out.n[2] = best.n.z[lane];
 }
 
+PD_CLONES void nearest_axis(const BoxLanes& a, const BoxLanes& b, const double (&c)[3], const AxisErrors& errors,
+                            NearestAxis& out) {
+  if (errors.turn == 0) {
+    nearest_of_all<true>(a, b, c, errors, out);
+  } else {
+    nearest_of_all<false>(a, b, c, errors, out);
+  }
+}
+
 }  // namespace
 
 BoxDistance distance_of_boxes(const BoxLanes& a, const BoxLanes& b, const double (&centre)[3], double reach,
                               bool exact_edges) {
-  // Two unit vectors, not of generators: their lengths' product is kLongest^2 at the most.
-  constexpr double kProduct = kLongest * kLongest;
+  // Two unit vectors, not of generators: their lengths' product is kLongestAxis^2 at the most.
+  constexpr double kProduct = kLongestAxis * kLongestAxis;
   constexpr double kParallel = kBoxParallelSine * kProduct;
-  const Errors errors{exact_edges ? 0 : kBoxTurn * reach * kProduct, exact_edges ? 0 : kParallel * kParallel};
+  const AxisErrors errors{exact_edges ? 0 : kBoxTurn * reach * kProduct, exact_edges ? 0 : kParallel * kParallel};
   NearestAxis nearest;
   nearest_axis(a, b, centre, errors, nearest);
   BoxDistance out;
@@ -158,7 +164,7 @@ BoxDistance distance_of_boxes(const BoxLanes& a, const BoxLanes& b, const double
   // As for `box_pair_depth`; the normal errs by 3u more.
   out.rounding = 28 * kUnitRoundoff * reach;
   out.height = std::copysign(std::sqrt(std::abs(nearest.key)), nearest.key);
-  const double slivers = exact_edges ? 0 : kLongest * (kBoxParallelSine + 2 * kBoxTurn) * nearest.slivers;
+  const double slivers = exact_edges ? 0 : kLongestAxis * (kBoxParallelSine + 2 * kBoxTurn) * nearest.slivers;
   out.depth = nearest.lower_key > 0 ? std::sqrt(nearest.lower_key) - out.rounding - slivers : 0;
   return out;
 }

@@ -73,6 +73,14 @@ struct BoxesInLanes {
     return (bits & kBeyond) == 0;
   }
 
+  /// How wide the bracket may be.
+  [[nodiscard]] double limit(double tolerance) const {
+    // A coordinate is at most |c| and, of either box, sqrt(3) times the norm of its half extents.
+    if (tolerance >= 2 * detail::kCertifiedWidth * reach) return tolerance;
+    return detail::BracketWidth{detail::kCertifiedWidth, tolerance}.limit(greatest_coordinate());
+  }
+
+ private:
   /// L, rounded: |c| + sum |g| a coordinate.
   [[nodiscard]] double greatest_coordinate() const {
     const auto extent = [&](const double(&of_a)[4], const double(&of_b)[4], double centre) {
@@ -82,8 +90,6 @@ struct BoxesInLanes {
     };
     return std::max({extent(a.x, b.x, centre_b[0]), extent(a.y, b.y, centre_b[1]), extent(a.z, b.z, centre_b[2])});
   }
-
- private:
   static void set(const PosedBox& box, BoxLanes& out) {
     const Mat3& rotation = box.pose->rotation();
     for (int k = 0; k < 3; ++k) {
@@ -167,7 +173,7 @@ void solve(const PosedBox& a, const PosedBox& b, double tolerance, double breaki
     out.upper = boxes.reach + slack;  // two centres are points of the boxes
     return;
   }
-  const double limit = detail::BracketWidth{detail::kCertifiedWidth, tolerance}.limit(boxes.greatest_coordinate());
+  const double limit = boxes.limit(tolerance);
   if (found.depth > 0 && out.lower < -found.depth - limit) return;
   // 0 at the deepest where the class is in doubt.
   const double signed_depth = found.depth > 0 ? -out.lower : out.lower > 0 ? found.height : 0;
