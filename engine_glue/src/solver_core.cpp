@@ -10,6 +10,7 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "query_meter.hpp"
+#include "warm_up.hpp"
 
 namespace pd::detail {
 
@@ -209,6 +210,7 @@ Installation& SolverCore::installation(btCollisionDispatcher* dispatcher) {
     return *known;
   }
   const std::lock_guard lock(mutex_);
+  if (!installed_) warm_up(*buffers.lease());
   installed_ = true;
   installations_.push_back(std::make_unique<Installation>(*this, dispatcher));
   return *installations_.back();
