@@ -50,6 +50,21 @@ void copy_kind(const btManifoldPoint& from, btManifoldPoint& to) {
   to.m_lateralFrictionDir2 = from.m_lateralFrictionDir2;
 }
 
+/// As `btManifoldResult::addContactPoint` does.
+void set_numbers(const PieceNumbers& numbers, const btPersistentManifold& manifold, const btManifoldResult& result,
+                 btManifoldPoint& out) {
+  const bool swapped = manifold.getBody0() != result.getBody0Internal();
+  out.m_partId0 = swapped ? numbers.part_1 : numbers.part_0;
+  out.m_partId1 = swapped ? numbers.part_0 : numbers.part_1;
+  out.m_index0 = swapped ? numbers.index_1 : numbers.index_0;
+  out.m_index1 = swapped ? numbers.index_0 : numbers.index_1;
+}
+
+void turn_to(const btVector3& normal, btManifoldPoint& out) {
+  out.m_normalWorldOnB = normal;
+  btPlaneSpace1(normal, out.m_lateralFrictionDir1, out.m_lateralFrictionDir2);
+}
+
 }  // namespace
 
 bool may_all_last(const btPersistentManifold& manifold, const PairMemory& memory, const FreshPoints& fresh,
@@ -57,15 +72,13 @@ bool may_all_last(const btPersistentManifold& manifold, const PairMemory& memory
   const int count = fresh.count;
   if (count == 0 || count != memory.num_points || count != manifold.getNumContacts()) return false;
   const btScalar threshold = manifold.getContactBreakingThreshold();
-  Lanes known, is, first_normal, normal;
-  load_lanes(fresh.points[0].normal, first_normal);
+  Lanes known, is;
   LaneFlags same = ~LaneFlags{};
   bool near = true;
   for (int i = 0; i < count; ++i) {
     load_lanes(memory.points[i].local_a, known);
     load_lanes(manifold.getContactPoint(i).m_localPointA, is);
-    load_lanes(fresh.points[i].normal, normal);
-    same &= (known == is) & (normal == first_normal);
+    same &= known == is;
     near &= fresh.points[i].distance <= threshold;
   }
   if (!near || !all(same)) return false;
@@ -91,20 +104,20 @@ bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, PointO
 
 bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
                             const PointOrder& order, PlacesKnown known, btScalar seconds,
-                            const btManifoldResult& result) {
+                            const btManifoldResult& result, const PointSurroundings& surroundings) {
   const int count = fresh.count;
   const auto new_point = [&](int i) -> const FreshPoint& { return fresh.points[order[i < count ? i : 0]]; };
   const auto old_point = [&](int i) { return &manifold.getContactPoint(i < count ? i : 0); };
   const Entries entries{{old_point(0), old_point(1), old_point(2), old_point(3)}};
   const btTransform& pose_a = manifold.getBody0()->getWorldTransform();
   const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
-  const btVector3& normal = fresh.points[0].normal;
   const btScalar threshold = manifold.getContactBreakingThreshold();
   const FreshPoint* const points[4] = {&new_point(0), &new_point(1), &new_point(2), &new_point(3)};
   const LaneVectors world_b =
       gather({&points[0]->point_on_b, &points[1]->point_on_b, &points[2]->point_on_b, &points[3]->point_on_b});
-  const LaneVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
-                                                             points[2]->distance, points[3]->distance});
+  const LaneVectors normal = gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal});
+  const LaneVectors world_a =
+      world_b + normal * Lanes{points[0]->distance, points[1]->distance, points[2]->distance, points[3]->distance};
   const LaneVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
   const LaneVectors old_b = entries.gather(&btManifoldPoint::m_localPointB);
 
@@ -112,19 +125,19 @@ bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, 
   const LaneVectors way_a = apply(pose_a, old_a) - world_a;
   if (known == PlacesKnown::no) {
     Lanes moved;
-    squared(way_a, moved);
+    dot(way_a, way_a, moved);
     if (!all(moved < kSamePlace * threshold * threshold)) return false;
   }
   const LaneVectors way_b = apply(pose_b, old_b) - world_b;
   Lanes height_a, height_b, length_a, length_b, length_slip;
   dot(way_a, normal, height_a);
   dot(way_b, normal, height_b);
-  const LaneVectors lift_a = scaled(normal, height_a), lift_b = scaled(normal, height_b);
+  const LaneVectors lift_a = normal * height_a, lift_b = normal * height_b;
   const LaneVectors along_a = way_a - lift_a, along_b = way_b - lift_b;
   const LaneVectors slip = along_a - along_b;
-  squared(along_a, length_a);
-  squared(along_b, length_b);
-  squared(slip, length_slip);
+  dot(along_a, along_a, length_a);
+  dot(along_b, along_b, length_b);
+  dot(slip, slip, length_slip);
   const btScalar reach = kReachShare * threshold, allowed = kSlipShare * threshold;
   LaneFlags held;
   friction_held(entries, held);
@@ -138,13 +151,17 @@ bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, 
     shown_a = select(held, shown_a, world_a);
   }
 
-  // Of points that stand in different pieces `replace_points` takes after that of the first new one.
+  // Where all stand in the same surroundings, `replace_points` takes after the entry of the first new one.
   std::size_t entry_of_first = 0;
   while (order[entry_of_first] != 0) ++entry_of_first;
-  const btManifoldPoint pattern = pattern_of(result, *entries.at[entry_of_first], normal);
+  const btVector3& first_normal = fresh.points[0].normal;
+  btManifoldPoint pattern = pattern_of(result, *entries.at[entry_of_first], first_normal);
   const bool same_step = seconds == memory.seconds;
+  PieceNumbers numbers;
   for (int k = 0; k < count; ++k) {
     btManifoldPoint& point = manifold.getContactPoint(k);
+    if (surroundings.numbers(order[k], numbers)) set_numbers(numbers, manifold, result, pattern);
+    if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
     copy_kind(pattern, point);
     point.m_distance1 = points[k]->distance;
     point.m_positionWorldOnB = points[k]->point_on_b;

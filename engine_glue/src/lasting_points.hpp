@@ -16,7 +16,7 @@ namespace pd::detail {
 /// Of each entry of the manifold, the new point that it goes on as.
 using PointOrder = std::array<int, 4>;
 
-/// Whether as many points come as there are, all under one normal and near enough, and memory knows the old ones.
+/// Whether as many points come as there are, all near enough, and memory knows the old ones.
 [[nodiscard]] bool may_all_last(const btPersistentManifold& manifold, const PairMemory& memory,
                                 const FreshPoints& fresh, const btManifoldResult& result);
 
@@ -26,10 +26,11 @@ using PointOrder = std::array<int, 4>;
 /// Whether the new points are known to lie within the breaking threshold of the old ones, or not to matter.
 enum class PlacesKnown : std::uint8_t { no, yes };
 
-/// What `replace_points` does to points that go on, bit for bit and all at once. Requires `may_all_last`.
+/// What `replace_points` does to points that go on, bit for bit and all at once. Requires `may_all_last`, and
+/// surroundings that last, or of which each point's numbers are known.
 /// @return false: one may have moved too far to be the same, and nothing has changed.
 bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
                             const PointOrder& order, PlacesKnown known, btScalar seconds,
-                            const btManifoldResult& result);
+                            const btManifoldResult& result, const PointSurroundings& surroundings);
 
 }  // namespace pd::detail

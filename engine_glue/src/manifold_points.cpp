@@ -196,7 +196,7 @@ void replace_any_points(btPersistentManifold& manifold, PairMemory& memory, cons
   Matching matching = match_points(manifold, memory, fresh, local_a);
   const auto goes_on = [](int heir) { return heir >= 0; };
   if (may_last && std::all_of(matching.heir.begin(), matching.heir.begin() + fresh.count, goes_on)) {
-    replace_lasting_points(manifold, memory, fresh, matching.heir, PlacesKnown::yes, seconds, result);
+    replace_lasting_points(manifold, memory, fresh, matching.heir, PlacesKnown::yes, seconds, result, surroundings);
     return;
   }
   Heritage heritage;
@@ -245,10 +245,12 @@ void replace_any_points(btPersistentManifold& manifold, PairMemory& memory, cons
 
 void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
                     btManifoldResult& result, PointSurroundings& surroundings) {
-  const bool may_last = surroundings.lasting() && may_all_last(manifold, memory, fresh, result);
+  PieceNumbers numbers;
+  const bool may_last = fresh.count > 0 && (surroundings.lasting() || surroundings.numbers(0, numbers)) &&
+                        may_all_last(manifold, memory, fresh, result);
   PointOrder order;
   if (!may_last || !order_by_feature(memory, fresh, order) ||
-      !replace_lasting_points(manifold, memory, fresh, order, PlacesKnown::no, seconds, result)) {
+      !replace_lasting_points(manifold, memory, fresh, order, PlacesKnown::no, seconds, result, surroundings)) {
     replace_any_points(manifold, memory, fresh, may_last, seconds, result, surroundings);
   }
   // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.

@@ -40,6 +40,26 @@ struct OneByOne : detail::PointSurroundings {
   [[nodiscard]] bool lasting() const override { return false; }
 };
 
+/// Each point between pieces of its own, as on a mesh or compound: points that go on are known by their numbers, or go
+/// through Bullet.
+struct Pieces : detail::PointSurroundings {
+  Pieces(btManifoldResult& taken, bool all_at_once, int first) : result(taken), at_once(all_at_once), step(first) {}
+  void enter(int k) override {
+    result.setShapeIdentifiersA(step, k);
+    result.setShapeIdentifiersB(7, step + k);
+  }
+  [[nodiscard]] bool same(int i, int k) const override { return i == k; }
+  [[nodiscard]] bool lasting() const override { return false; }
+  [[nodiscard]] bool numbers(int k, detail::PieceNumbers& out) const override {
+    out = {step, k, 7, step + k};
+    return at_once;
+  }
+
+  btManifoldResult& result;
+  bool at_once;
+  int step;
+};
+
 /// All but padding.
 bool same_bits(const btManifoldPoint& x, const btManifoldPoint& y) {
   const auto same = [&](const auto& first, const auto& last) {
@@ -69,7 +89,7 @@ void expect_equal(const Pair& x, const Pair& y) {
 
 /// How many of 20,000 steps, in which bodies creep, slide and jump, points come and go, and orders turn, were taken all
 /// at once.
-void compare(int points, unsigned seed, int& lasting) {
+void compare(int points, bool pieces, unsigned seed, int& lasting) {
   std::mt19937 random(seed);
   const auto within = [&](double size) {
     return static_cast<btScalar>(std::uniform_real_distribution<double>(-size, size)(random));
@@ -93,7 +113,8 @@ void compare(int points, unsigned seed, int& lasting) {
     for (int i = 0; i < fresh.count; ++i) {
       const unsigned corner = (static_cast<unsigned>(i) + turn) % 4;
       const btVector3 place(corner % 2 == 0 ? btScalar(1) : btScalar(-1), 1, corner < 2 ? btScalar(1) : btScalar(-1));
-      fresh.points[i] = {normal, pose_b(place), within(0.01), static_cast<int>(corner) + (other_features ? 10 : 0)};
+      const btVector3 own = pieces && random() % 4 == 0 ? (normal + btVector3(within(0.1), 0, 0)).normalized() : normal;
+      fresh.points[i] = {own, pose_b(place), within(0.01), static_cast<int>(corner) + (other_features ? 10 : 0)};
     }
     const btScalar seconds = btScalar(1) / (random() % 10 == 0 ? 120 : 60);
     for (Pair* pair : {&at_once, &one_by_one}) {
@@ -105,10 +126,16 @@ void compare(int points, unsigned seed, int& lasting) {
                        detail::order_by_feature(at_once.memory, fresh, order)
                    ? 1
                    : 0;
-    detail::PointSurroundings whole;
-    OneByOne alone;
-    detail::replace_points(at_once.manifold, at_once.memory, fresh, seconds, at_once.result, whole);
-    detail::replace_points(one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result, alone);
+    if (pieces) {
+      Pieces together(at_once.result, true, step), apart(one_by_one.result, false, step);
+      detail::replace_points(at_once.manifold, at_once.memory, fresh, seconds, at_once.result, together);
+      detail::replace_points(one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result, apart);
+    } else {
+      detail::PointSurroundings whole;
+      OneByOne alone;
+      detail::replace_points(at_once.manifold, at_once.memory, fresh, seconds, at_once.result, whole);
+      detail::replace_points(one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result, alone);
+    }
     expect_equal(at_once, one_by_one);
     if (testing::Test::HasFatalFailure()) FAIL() << "step " << step;
     // What Bullet's solver leaves behind.
@@ -129,14 +156,17 @@ void compare(int points, unsigned seed, int& lasting) {
   }
 }
 
-TEST(LastingPoints, AreThoseOfTheWayPointByPoint) {
+void compare_all(bool pieces) {
   for (int points = 1; points <= 4; ++points) {
     int lasting = 0;
-    compare(points, 7U + static_cast<unsigned>(points), lasting);
+    compare(points, pieces, 7U + static_cast<unsigned>(points), lasting);
     EXPECT_GT(lasting, 5000) << points;
     EXPECT_LT(lasting, 20000) << points;
   }
 }
+
+TEST(LastingPoints, AreThoseOfTheWayPointByPoint) { compare_all(false); }
+TEST(LastingPoints, OfPiecesAreThoseOfTheWayPointByPoint) { compare_all(true); }
 
 TEST(LastingPoints, OrderIsFoundByFeature) {
   PairMemory memory;
