@@ -24,7 +24,9 @@ struct LaneVectors {
 
 inline LaneVectors operator+(const LaneVectors& u, const LaneVectors& v) { return {u.x + v.x, u.y + v.y, u.z + v.z}; }
 inline LaneVectors operator-(const LaneVectors& u, const LaneVectors& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
-inline LaneVectors operator*(const LaneVectors& v, const Lanes& s) { return {v.x * s, v.y * s, v.z * s}; }
+/// v s, a factor for each lane.
+inline LaneVectors scaled(const LaneVectors& v, const Lanes& s) { return {v.x * s, v.y * s, v.z * s}; }
+inline LaneVectors scaled(const btVector3& v, const Lanes& s) { return {v.x() * s, v.y() * s, v.z() * s}; }
 inline void dot(const LaneVectors& u, const LaneVectors& v, Lanes& out) { out = u.x * v.x + u.y * v.y + u.z * v.z; }
 inline void dot(const LaneVectors& u, const btVector3& v, Lanes& out) { out = u.x * v.x() + u.y * v.y() + u.z * v.z(); }
 inline LaneVectors select(const LaneFlags& flags, const LaneVectors& u, const LaneVectors& v) {

@@ -102,9 +102,27 @@ bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, PointO
   return taken + 1 == 1U << fresh.count;  // none twice
 }
 
-bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
-                            const PointOrder& order, PlacesKnown known, btScalar seconds,
-                            const btManifoldResult& result, const PointSurroundings& surroundings) {
+namespace {
+
+/// Of four new points.
+template <bool one>
+struct Normals;
+template <>
+struct Normals<true> {
+  const btVector3& all;
+  explicit Normals(const FreshPoint* const (&points)[4]) : all(points[0]->normal) {}
+};
+template <>
+struct Normals<false> {
+  LaneVectors all;
+  explicit Normals(const FreshPoint* const (&points)[4])
+      : all(gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal})) {}
+};
+
+template <bool one_piece>
+bool replace_lasting(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
+                     const PointOrder& order, PlacesKnown known, btScalar seconds, const btManifoldResult& result,
+                     const PointSurroundings* pieces) {
   const int count = fresh.count;
   const auto new_point = [&](int i) -> const FreshPoint& { return fresh.points[order[i < count ? i : 0]]; };
   const auto old_point = [&](int i) { return &manifold.getContactPoint(i < count ? i : 0); };
@@ -115,9 +133,10 @@ bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, 
   const FreshPoint* const points[4] = {&new_point(0), &new_point(1), &new_point(2), &new_point(3)};
   const LaneVectors world_b =
       gather({&points[0]->point_on_b, &points[1]->point_on_b, &points[2]->point_on_b, &points[3]->point_on_b});
-  const LaneVectors normal = gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal});
-  const LaneVectors world_a =
-      world_b + normal * Lanes{points[0]->distance, points[1]->distance, points[2]->distance, points[3]->distance};
+  const Normals<one_piece> normals(points);
+  const auto& normal = normals.all;
+  const LaneVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
+                                                             points[2]->distance, points[3]->distance});
   const LaneVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
   const LaneVectors old_b = entries.gather(&btManifoldPoint::m_localPointB);
 
@@ -132,7 +151,7 @@ bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, 
   Lanes height_a, height_b, length_a, length_b, length_slip;
   dot(way_a, normal, height_a);
   dot(way_b, normal, height_b);
-  const LaneVectors lift_a = normal * height_a, lift_b = normal * height_b;
+  const LaneVectors lift_a = scaled(normal, height_a), lift_b = scaled(normal, height_b);
   const LaneVectors along_a = way_a - lift_a, along_b = way_b - lift_b;
   const LaneVectors slip = along_a - along_b;
   dot(along_a, along_a, length_a);
@@ -160,8 +179,10 @@ bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, 
   PieceNumbers numbers;
   for (int k = 0; k < count; ++k) {
     btManifoldPoint& point = manifold.getContactPoint(k);
-    if (surroundings.numbers(order[k], numbers)) set_numbers(numbers, manifold, result, pattern);
-    if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
+    if constexpr (!one_piece) {
+      if (pieces->numbers(order[k], numbers)) set_numbers(numbers, manifold, result, pattern);
+      if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
+    }
     copy_kind(pattern, point);
     point.m_distance1 = points[k]->distance;
     point.m_positionWorldOnB = points[k]->point_on_b;
@@ -176,6 +197,15 @@ bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, 
   for (int k = 0; k < count; ++k) memory.points[k].local_a = manifold.getContactPoint(k).m_localPointA;
   memory.seconds = seconds;
   return true;
+}
+
+}  // namespace
+
+bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
+                            const PointOrder& order, PlacesKnown known, btScalar seconds,
+                            const btManifoldResult& result, const PointSurroundings* pieces) {
+  return pieces == nullptr ? replace_lasting<true>(manifold, memory, fresh, order, known, seconds, result, pieces)
+                           : replace_lasting<false>(manifold, memory, fresh, order, known, seconds, result, pieces);
 }
 
 }  // namespace pd::detail

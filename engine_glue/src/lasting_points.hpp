@@ -26,11 +26,11 @@ using PointOrder = std::array<int, 4>;
 /// Whether the new points are known to lie within the breaking threshold of the old ones, or not to matter.
 enum class PlacesKnown : std::uint8_t { no, yes };
 
-/// What `replace_points` does to points that go on, bit for bit and all at once. Requires `may_all_last`, and
-/// surroundings that last, or of which each point's numbers are known.
+/// What `replace_points` does to points that go on, bit for bit and all at once. Requires `may_all_last`.
+/// @param pieces  knows each point's numbers; nullptr: all stand in one piece, under one normal
 /// @return false: one may have moved too far to be the same, and nothing has changed.
 bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
                             const PointOrder& order, PlacesKnown known, btScalar seconds,
-                            const btManifoldResult& result, const PointSurroundings& surroundings);
+                            const btManifoldResult& result, const PointSurroundings* pieces);
 
 }  // namespace pd::detail

@@ -44,7 +44,7 @@ class PointSurroundings {
   [[nodiscard]] virtual bool same(int, int) const { return true; }
   /// What `enter` tells the result. @return false: it does not tell it of both bodies
   [[nodiscard]] virtual bool numbers(int, PieceNumbers&) const { return false; }
-  /// Whether all points do, as those of the last step did.
+  /// Whether all points do, as those of the last step did, and have one normal.
   [[nodiscard]] virtual bool lasting() const { return true; }
 };
 

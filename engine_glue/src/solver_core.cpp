@@ -14,9 +14,9 @@
 
 namespace pd::detail {
 
-double contact_tolerance(const Pose& a, const Pose& b, double smaller_radius) {
+double contact_tolerance(const Vec3& a, const Vec3& b, double smaller_radius) {
   constexpr double kShare = sizeof(btScalar) == sizeof(float) ? 0x1p-30 : 0x1p-46;
-  const double farthest = a.translation().cwiseAbs().cwiseMax(b.translation().cwiseAbs()).maxCoeff();
+  const double farthest = a.cwiseAbs().cwiseMax(b.cwiseAbs()).maxCoeff();
   return kShare * (farthest + smaller_radius);
 }
 
@@ -87,7 +87,8 @@ void SolverCore::measure(const PairQuestion& question, ThreadBuffers& held, Pair
   depth_settings.bracket = Bracket::contact;
   depth_settings.beyond = question.beyond;
   depth_settings.contact_tolerance =
-      contact_tolerance(out.a.pose, out.b.pose, std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
+      contact_tolerance(out.a.pose.translation(), out.b.pose.translation(),
+                        std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
   out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, question.warm);
   SolverCounters& counters = held.counters;
   counters.support_calls.add(out.depth.statistics.support_calls);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/box_lanes.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -14,11 +16,11 @@ struct AxisVectors {
   FourDoubles x, y, z;
 };
 
-PD_INLINE void load_box(AxisVectors& axes, AxisVectors& edges, FourDoubles& half, const BoxLanes& from) {
+PD_INLINE void load_box(AxisVectors& axes, AxisVectors& edges, FourDoubles& half, const BoxInRows& from) {
   load_four(axes.x, from.x);
   load_four(axes.y, from.y);
   load_four(axes.z, from.z);
-  load_four(half, from.half);
+  load_four(half, from.half_extents);
   edges.x = axes.x * half;
   edges.y = axes.y * half;
   edges.z = axes.z * half;
@@ -27,13 +29,13 @@ PD_INLINE void load_box(AxisVectors& axes, AxisVectors& edges, FourDoubles& half
 PD_INLINE FourDoubles turned(const FourDoubles& v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
 PD_INLINE AxisVectors turned(const AxisVectors& v) { return {turned(v.x), turned(v.y), turned(v.z)}; }
 /// An axis, and its half edge, in all lanes.
-PD_INLINE AxisVectors axis_of(const BoxLanes& box, int i) {
+PD_INLINE AxisVectors axis_of(const BoxInRows& box, int i) {
   const FourDoubles zero = {0, 0, 0, 0};
   return {zero + box.x[i], zero + box.y[i], zero + box.z[i]};
 }
-PD_INLINE AxisVectors edge_of(const BoxLanes& box, int i) {
+PD_INLINE AxisVectors edge_of(const BoxInRows& box, int i) {
   const FourDoubles zero = {0, 0, 0, 0};
-  const double half = box.half[i];
+  const double half = box.half_extents[i];
   return {zero + box.x[i] * half, zero + box.y[i] * half, zero + box.z[i] * half};
 }
 PD_INLINE void axes_product(AxisVectors& n, const AxisVectors& u, const AxisVectors& v) {
@@ -87,7 +89,7 @@ struct NearestAxis {
 };
 
 template <bool exact>
-PD_INLINE void nearest_of_all(const BoxLanes& a, const BoxLanes& b, const double (&c)[3], const AxisErrors& errors,
+PD_INLINE void nearest_of_all(const BoxInRows& a, const BoxInRows& b, const double (&c)[3], const AxisErrors& errors,
                               NearestAxis& out) {
   const FourDoubles zero = {0, 0, 0, 0};
   const FourDoubles none = zero + std::numeric_limits<double>::infinity();
@@ -114,7 +116,7 @@ PD_INLINE void nearest_of_all(const BoxLanes& a, const BoxLanes& b, const double
     axes_product(n, axis_of(a, i), axes_b);
     of_p = height(n, edge_a[i == 2 ? 0 : i + 1]) + height(n, edge_a[i == 0 ? 2 : i - 1]) + height(n, edges_b_1) +
            height(n, edges_b_2) - height(n, centre);
-    consider<exact>(best, 2 + i, n, of_p, zero + a.half[i], half_b, errors);
+    consider<exact>(best, 2 + i, n, of_p, zero + a.half_extents[i], half_b, errors);
   }
   if (exact) best.lower_key = best.key;
 
@@ -137,7 +139,7 @@ PD_INLINE void nearest_of_all(const BoxLanes& a, const BoxLanes& b, const double
   out.n[2] = best.n.z[lane];
 }
 
-PD_CLONES void nearest_axis(const BoxLanes& a, const BoxLanes& b, const double (&c)[3], const AxisErrors& errors,
+PD_CLONES void nearest_axis(const BoxInRows& a, const BoxInRows& b, const double (&c)[3], const AxisErrors& errors,
                             NearestAxis& out) {
   if (errors.turn == 0) {
     nearest_of_all<true>(a, b, c, errors, out);
@@ -148,7 +150,7 @@ PD_CLONES void nearest_axis(const BoxLanes& a, const BoxLanes& b, const double (
 
 }  // namespace
 
-BoxDistance distance_of_boxes(const BoxLanes& a, const BoxLanes& b, const double (&centre)[3], double reach,
+BoxDistance distance_of_boxes(const BoxInRows& a, const BoxInRows& b, const double (&centre)[3], double reach,
                               bool exact_edges) {
   // Two unit vectors, not of generators: their lengths' product is kLongestAxis^2 at the most.
   constexpr double kProduct = kLongestAxis * kLongestAxis;

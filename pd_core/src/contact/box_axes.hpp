@@ -6,9 +6,8 @@
 /// Compiled for several instruction sets; every lane on its own: the same bits on each.
 #pragma once
 
-#include "contact/box_lanes.hpp"
 #include "depth/facets/box_pair.hpp"
-#include "pd/numeric/vector.hpp"
+#include "pd/contact/box_contact.hpp"
 
 namespace pd::detail {
 
@@ -17,7 +16,7 @@ namespace pd::detail {
 /// @param reach   at least the distance of any two of the boxes' points
 /// @param exact_edges  all numbers of the axes are of single precision: their products are exact, so that even edges
 /// turned by 1e-7 span a plane known to 2u
-[[nodiscard]] BoxDistance distance_of_boxes(const BoxLanes& a, const BoxLanes& b, const double (&centre)[3],
+[[nodiscard]] BoxDistance distance_of_boxes(const BoxInRows& a, const BoxInRows& b, const double (&centre)[3],
                                             double reach, bool exact_edges);
 
 }  // namespace pd::detail

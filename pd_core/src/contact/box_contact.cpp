@@ -22,7 +22,6 @@ namespace {
 using detail::BoxCorners;
 using detail::BoxDistance;
 using detail::BoxFoot;
-using detail::BoxLanes;
 using detail::IdKind;
 using detail::make_id;
 using detail::Vec2;
@@ -37,23 +36,19 @@ struct Candidate {
   std::int64_t id;
 };
 
-/// Both boxes, about the centre of A.
-struct BoxesInLanes {
-  BoxLanes a, b;
-  double centre_b[3];
-  double origin[3];  ///< the centre of A
-  double reach;      ///< of points of the two from each other, at most
+double norm_of(const double (&v)[4]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-  BoxesInLanes(const PosedBox& box_a, const PosedBox& box_b) {
-    set(box_a, a);
-    set(box_b, b);
-    const Vec3& from = box_a.pose->translation();
-    const Vec3 way = box_b.pose->translation() - from;
-    for (int i = 0; i < 3; ++i) {
-      centre_b[i] = way[i];
-      origin[i] = from[i];
-    }
-    reach = box_a.half_extents.norm() * kRounded + box_b.half_extents.norm() * kRounded + way.norm();
+/// Both boxes, about the centre of A.
+struct BoxPairInRows {
+  const BoxInRows& a;
+  const BoxInRows& b;
+  double centre_b[3];
+  double reach;  ///< of points of the two from each other, at most
+
+  BoxPairInRows(const BoxInRows& box_a, const BoxInRows& box_b) : a(box_a), b(box_b) {
+    const Vec3 way = b.centre - a.centre;
+    for (int i = 0; i < 3; ++i) centre_b[i] = way[i];
+    reach = norm_of(a.half_extents) * kRounded + norm_of(b.half_extents) * kRounded + way.norm();
   }
 
   [[nodiscard]] bool in_range() const {
@@ -65,7 +60,7 @@ struct BoxesInLanes {
   [[nodiscard]] bool has_single_axes() const {
     constexpr std::uint64_t kBeyond = (std::uint64_t{1} << (53 - 24)) - 1;
     std::uint64_t bits = 0;
-    for (const BoxLanes* box : {&a, &b}) {
+    for (const BoxInRows* box : {&a, &b}) {
       for (const auto* row : {&box->x, &box->y, &box->z}) {
         for (const double number : *row) bits |= std::bit_cast<std::uint64_t>(number);
       }
@@ -85,37 +80,40 @@ struct BoxesInLanes {
   [[nodiscard]] double greatest_coordinate() const {
     const auto extent = [&](const double(&of_a)[4], const double(&of_b)[4], double centre) {
       double sum = std::abs(centre);
-      for (int k = 0; k < 3; ++k) sum += std::abs(of_a[k]) * a.half[k] + std::abs(of_b[k]) * b.half[k];
+      for (int k = 0; k < 3; ++k) {
+        sum += std::abs(of_a[k]) * a.half_extents[k] + std::abs(of_b[k]) * b.half_extents[k];
+      }
       return sum;
     };
     return std::max({extent(a.x, b.x, centre_b[0]), extent(a.y, b.y, centre_b[1]), extent(a.z, b.z, centre_b[2])});
   }
-  static void set(const PosedBox& box, BoxLanes& out) {
-    const Mat3& rotation = box.pose->rotation();
-    for (int k = 0; k < 3; ++k) {
-      out.x[k] = rotation(0, k);
-      out.y[k] = rotation(1, k);
-      out.z[k] = rotation(2, k);
-      out.half[k] = box.half_extents[k];
-    }
-    out.x[3] = out.y[3] = out.z[3] = out.half[3] = 0;
+  static double least(const BoxInRows& box) {
+    return std::min({box.half_extents[0], box.half_extents[1], box.half_extents[2]});
   }
-  static double least(const BoxLanes& box) { return std::min({box.half[0], box.half[1], box.half[2]}); }
 };
 
 Vec3 vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 /// The foot of the origin on the plane of the axis.
-BoxFoot foot_of(const PosedBox& a, const PosedBox& b, const BoxDistance& found, double level) {
-  const detail::BoxFrame frame_a{Vec3::Zero(), a.half_extents}, frame_b{Vec3::Zero(), b.half_extents};
-  return detail::BoxPair(frame_a, *a.pose, a.half_extents.norm() * kRounded, frame_b, *b.pose,
-                         b.half_extents.norm() * kRounded)
+BoxFoot foot_of(const BoxInRows& a, const BoxInRows& b, const BoxDistance& found, double level) {
+  const auto half = [](const BoxInRows& box) {
+    return Vec3(box.half_extents[0], box.half_extents[1], box.half_extents[2]);
+  };
+  const auto pose = [](const BoxInRows& box) {
+    Mat3 rotation;
+    rotation << box.x[0], box.x[1], box.x[2], box.y[0], box.y[1], box.y[2], box.z[0], box.z[1], box.z[2];
+    return Pose::from_trusted_matrix(rotation, box.centre);
+  };
+  const Pose pose_a = pose(a), pose_b = pose(b);
+  return detail::BoxPair({Vec3::Zero(), half(a)}, pose_a, norm_of(a.half_extents) * kRounded, {Vec3::Zero(), half(b)},
+                         pose_b, norm_of(b.half_extents) * kRounded)
       .foot(found, level);
 }
 
-void take_all(const BoxesInLanes& boxes, const BoxCorners& corners, const double (&n)[3], ContactManifold& manifold) {
+void take_all(const BoxPairInRows& boxes, const BoxCorners& corners, const double (&n)[3], ContactManifold& manifold) {
+  const double origin[3] = {boxes.a.centre.x(), boxes.a.centre.y(), boxes.a.centre.z()};
   double points[4][8];
-  points_at_corners(corners, n, boxes.origin, points);
+  points_at_corners(corners, n, origin, points);
   manifold.count = corners.count;
   for (int i = 0; i < corners.count; ++i) {
     const double* const from = points[i];
@@ -128,7 +126,7 @@ void take_all(const BoxesInLanes& boxes, const BoxCorners& corners, const double
 }
 
 /// @param witness  joins the corners where they are not as deep as the boxes, else nullptr.
-void keep_four(const BoxesInLanes& boxes, const BoxCorners& corners, const BoxFoot* witness, double signed_depth,
+void keep_four(const BoxPairInRows& boxes, const BoxCorners& corners, const BoxFoot* witness, double signed_depth,
                double noise, ContactManifold& manifold) {
   const Vec3& n = manifold.normal;
   const Vec3 centre = vector_of(corners.centre), first = vector_of(corners.first), second = vector_of(corners.second);
@@ -152,7 +150,7 @@ void keep_four(const BoxesInLanes& boxes, const BoxCorners& corners, const BoxFo
     count = 4;
   }
   manifold.count = count;
-  const Vec3 origin = vector_of(boxes.origin);
+  const Vec3& origin = boxes.a.centre;
   for (int i = 0; i < count; ++i) {
     const Candidate& c = candidates[i];
     const Vec3 on_b = c.place + origin;
@@ -160,11 +158,11 @@ void keep_four(const BoxesInLanes& boxes, const BoxCorners& corners, const BoxFo
   }
 }
 
-void solve(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold, BoxWitness witness,
+void solve(const BoxInRows& a, const BoxInRows& b, double tolerance, double breaking_threshold, BoxWitness witness,
            BoxContact& out) {
-  const BoxesInLanes boxes(a, b);
+  const BoxPairInRows boxes(a, b);
   if (!boxes.in_range()) return;
-  const BoxDistance found = distance_of_boxes(boxes.a, boxes.b, boxes.centre_b, boxes.reach, boxes.has_single_axes());
+  const BoxDistance found = detail::distance_of_boxes(a, b, boxes.centre_b, boxes.reach, boxes.has_single_axes());
   const double slack = 64 * detail::kUnitRoundoff * boxes.reach;  // as of `BoxPair::foot`
   out.manifold.normal = found.normal.array() + 0.0;               // no negative zeros
   out.lower = -found.height - found.rounding;
@@ -179,7 +177,7 @@ void solve(const PosedBox& a, const PosedBox& b, double tolerance, double breaki
   const double signed_depth = found.depth > 0 ? -out.lower : out.lower > 0 ? found.height : 0;
   const double n[3] = {found.normal.x(), found.normal.y(), found.normal.z()};
   BoxCorners corners;
-  box_corners(boxes.a, boxes.b, boxes.centre_b, n, signed_depth, breaking_threshold, corners);
+  detail::box_corners(a, b, boxes.centre_b, n, signed_depth, breaking_threshold, corners);
   const double noise = std::max(detail::kNoiseRatio * breaking_threshold, detail::kMergeRatio * corners.size);
   const bool reached = corners.count > 0 && corners.deepest >= signed_depth - noise;
   // A corner shows how near the boxes are at most; where none is near enough, the foot of the origin does.
@@ -188,8 +186,8 @@ void solve(const PosedBox& a, const PosedBox& b, double tolerance, double breaki
   if (!reached || (found.depth <= 0 && missed > limit) || witness == BoxWitness::placed) {
     at = foot_of(a, b, found, 0.125 * limit);
     if (!reached || at.missed < missed) missed = at.missed;
-    out.witness_a = at.point_a + a.pose->translation();
-    out.witness_b = at.point_b + a.pose->translation();
+    out.witness_a = at.point_a + a.centre;
+    out.witness_b = at.point_b + a.centre;
   }
   if (found.depth > 0) {
     out.upper = -found.depth;
@@ -211,7 +209,26 @@ void solve(const PosedBox& a, const PosedBox& b, double tolerance, double breaki
 
 }  // namespace
 
+BoxInRows in_rows(const PosedBox& box) {
+  const Mat3& rotation = box.pose->rotation();
+  BoxInRows out;
+  for (int k = 0; k < 3; ++k) {
+    out.x[k] = rotation(0, k);
+    out.y[k] = rotation(1, k);
+    out.z[k] = rotation(2, k);
+    out.half_extents[k] = box.half_extents[k];
+  }
+  out.x[3] = out.y[3] = out.z[3] = out.half_extents[3] = 0;
+  out.centre = box.pose->translation();
+  return out;
+}
+
 BoxContact box_contact(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold,
+                       BoxWitness witness) {
+  return box_contact(in_rows(a), in_rows(b), tolerance, breaking_threshold, witness);
+}
+
+BoxContact box_contact(const BoxInRows& a, const BoxInRows& b, double tolerance, double breaking_threshold,
                        BoxWitness witness) {
   const detail::FloatingPointGuard guard;
   BoxContact out;

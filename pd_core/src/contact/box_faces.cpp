@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/box_lanes.hpp"
 #include "contact/manifold_reduce.hpp"
 
 namespace pd::detail {
@@ -37,8 +38,8 @@ struct BoxFace {
   unsigned ids[4];
 };
 
-PD_INLINE PlainVector half_edge(const BoxLanes& box, int axis) {
-  const double half = box.half[axis];
+PD_INLINE PlainVector half_edge(const BoxInRows& box, int axis) {
+  const double half = box.half_extents[axis];
   return {box.x[axis] * half, box.y[axis] * half, box.z[axis] * half};
 }
 
@@ -47,7 +48,7 @@ PD_INLINE unsigned bit(int axis) { return 4U >> axis; }
 
 /// The face that looks along a direction the most; of equals the one across the first axis.
 /// @param turned  of the body that the normal points away from.
-PD_INLINE void face_towards(const BoxLanes& box, const PlainVector& centre, const PlainVector& direction, bool turned,
+PD_INLINE void face_towards(const BoxInRows& box, const PlainVector& centre, const PlainVector& direction, bool turned,
                             BoxFace& out) {
   FourDoubles x, y, z;
   load_four(x, box.x);
@@ -67,8 +68,8 @@ PD_INLINE void face_towards(const BoxLanes& box, const PlainVector& centre, cons
   const int first = swapped ? last : next, second = swapped ? next : last;
   out.first = half_edge(box, first);
   out.second = half_edge(box, second);
-  out.length_first = box.half[first];
-  out.length_second = box.half[second];
+  out.length_first = box.half_extents[first];
+  out.length_second = box.half_extents[second];
   const unsigned base = positive ? bit(axis) : 0;
   out.ids[0] = base;
   out.ids[1] = base | bit(first);
@@ -241,7 +242,7 @@ PD_INLINE void lift_each(const CutCorners& polygon, const BoxFace& face_b, const
 
 }  // namespace
 
-PD_CLONES void box_corners(const BoxLanes& a, const BoxLanes& b, const double (&centre_b)[3], const double (&n)[3],
+PD_CLONES void box_corners(const BoxInRows& a, const BoxInRows& b, const double (&centre_b)[3], const double (&n)[3],
                            double signed_depth, double breaking_threshold, BoxCorners& out) {
   const PlainVector normal = {n[0], n[1], n[2]};
   BoxFace face_a, face_b;

@@ -7,8 +7,8 @@
 
 #include <cstdint>
 
-#include "contact/box_lanes.hpp"
 #include "contact/manifold_clip.hpp"
+#include "pd/contact/box_contact.hpp"
 
 namespace pd::detail {
 
@@ -33,7 +33,7 @@ struct BoxCorners {
 /// @param centre_b  from that of A
 /// @param n  unit, from B to A
 /// @param signed_depth  of the boxes along it
-void box_corners(const BoxLanes& a, const BoxLanes& b, const double (&centre_b)[3], const double (&n)[3],
+void box_corners(const BoxInRows& a, const BoxInRows& b, const double (&centre_b)[3], const double (&n)[3],
                  double signed_depth, double breaking_threshold, BoxCorners& out);
 
 /// The points at the first four corners: on A, on B, depth, and one number that says nothing.

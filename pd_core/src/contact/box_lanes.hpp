@@ -1,6 +1,5 @@
 /// @file
-/// A box in lanes, one an axis, as the kernels of two boxes' contacts read it (box_axes.hpp, box_faces.hpp), and what
-/// both compute with.
+/// What the kernels of two boxes' contacts compute with (box_axes.hpp, box_faces.hpp): one axis a lane.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +8,6 @@
 #include "numeric/instruction_sets.hpp"
 
 namespace pd::detail {
-
-/// The fourth lane is room, and 0.
-struct BoxLanes {
-  double x[4], y[4], z[4];  ///< of its axes
-  double half[4];           ///< extents
-};
 
 typedef double FourDoubles __attribute__((vector_size(32)));
 /// Of comparisons: all bits of a lane, or none.
