@@ -68,8 +68,8 @@ bool same_bits(const btManifoldPoint& x, const btManifoldPoint& y) {
     const auto to = static_cast<std::size_t>(reinterpret_cast<const char*>(&last) - of_x) + sizeof(last);
     return std::memcmp(of_x + from, reinterpret_cast<const char*>(&y) + from, to - from) == 0;
   };
-  return same(x.m_localPointA, x.m_index1) && same(x.m_userPersistentData, x.m_lifeTime) &&
-         same(x.m_lateralFrictionDir1, x.m_lateralFrictionDir2);
+  return same(x.m_localPointA, x.m_index1) && same(x.m_userPersistentData, x.m_contactPointFlags) &&
+         same(x.m_appliedImpulse, x.m_lifeTime) && same(x.m_lateralFrictionDir1, x.m_lateralFrictionDir2);
 }
 
 void expect_equal(const Pair& x, const Pair& y) {
