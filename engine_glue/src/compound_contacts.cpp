@@ -53,6 +53,14 @@ class ChildrenOfPoint : public PointSurroundings {
                     children_b_[static_cast<std::size_t>(j)]);
   }
   void leave() override { inside_.reset(); }
+  [[nodiscard]] bool numbers(int pair, PieceNumbers& out) const override {
+    const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
+    const Child& of_a = children_a_[static_cast<std::size_t>(i)];
+    const Child& of_b = children_b_[static_cast<std::size_t>(j)];
+    out = numbers_in_result(result_, a_, part_of_child(a_, of_a), index_of_child(a_, of_a), part_of_child(b_, of_b),
+                            index_of_child(b_, of_b));
+    return true;
+  }
 
  private:
   btManifoldResult& result_;

@@ -19,6 +19,7 @@
 #include "pd/bullet/scalar.hpp"
 #include "prefetch.hpp"
 #include "solver_core.hpp"
+#include "step_reach.hpp"
 
 namespace pd::detail {
 
@@ -127,9 +128,12 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     process_by_bullet(epa, shape_a, pose_a, shape_b, pose_b, info, result);
     return;
   }
+  const auto this_step = [&] { return StepReach(*result, threshold, info.m_timeStep); };
+  const bool own_boxes = boxes && memory != nullptr;
+  const btScalar reach = own_boxes && !touched ? this_step().of_boxes(shape_a, shape_b) : threshold;
   auto buffers = core.buffers.lease();
   FreshPoints fresh;
-  if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(threshold), *buffers, fresh)) {
+  if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
     // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
     // compared.
     const std::uint64_t stamp = first ? 0 : installation_.stamp();
@@ -160,6 +164,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       fresh = fresh_points(points);
     }
   }
+  if (own_boxes && StepReach::may_be_idle(fresh, threshold)) this_step().leave_out_idle(fresh);
   manifold_.replace(fresh, info.m_timeStep, *result);
 }
 

@@ -10,11 +10,6 @@ namespace {
 /// The share of the friction cone beyond which friction counts as given way: at the limit itself the solver stores
 /// mu * N up to the rounding of its iterations. (.5 to 1 made no difference in any scene.)
 constexpr btScalar kHoldingShare = btScalar(0.998);
-/// A point that left its anchor by more than this share of the breaking threshold rolled or moved on: Bullet drops
-/// points at the whole of it.
-constexpr btScalar kReachShare = btScalar(0.5);
-/// Two anchors further apart than this share of the breaking threshold slid, slowly enough for the cone not to tell.
-constexpr btScalar kSlipShare = btScalar(0.1);
 
 /// Moves the point's local points back to the anchor, and its world point on A by the slip.
 void hold(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPoses& poses, btScalar threshold) {
@@ -104,12 +99,16 @@ int entry_near(const btPersistentManifold& manifold, const btVector3& local_a) {
   return nearest;
 }
 
-FrictionAnchor anchor_of(const btManifoldPoint& point) {
+bool anchor_slid(const btManifoldPoint& point) {
   const btScalar lateral = point.m_appliedImpulseLateral1 * point.m_appliedImpulseLateral1 +
                            point.m_appliedImpulseLateral2 * point.m_appliedImpulseLateral2;
   const btScalar holding = kHoldingShare * point.m_combinedFriction * point.m_appliedImpulse;
+  return lateral > holding * holding;
+}
+
+FrictionAnchor anchor_of(const btManifoldPoint& point) {
   return {point.m_localPointA, point.m_localPointB, point.m_appliedImpulseLateral1, point.m_appliedImpulseLateral2,
-          lateral > holding * holding};
+          anchor_slid(point)};
 }
 
 int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,

@@ -18,6 +18,12 @@
 
 namespace pd::detail {
 
+/// A point that left its anchor by more than this share of the breaking threshold rolled or moved on: Bullet drops
+/// points at the whole of it.
+inline constexpr btScalar kReachShare = btScalar(0.5);
+/// Two anchors further apart than this share of the breaking threshold slid, slowly enough for the cone not to tell.
+inline constexpr btScalar kSlipShare = btScalar(0.1);
+
 /// What one manifold entry knew before this step's points came.
 struct FrictionAnchor {
   btVector3 local_a = btVector3(0, 0, 0);
@@ -30,6 +36,9 @@ struct FrictionAnchor {
 /// The entry of the manifold that Bullet gives to a new point at `local_a`, by the same rule
 /// (`btPersistentManifold::getCacheEntry`): the nearest one within the breaking threshold, -1 without one.
 [[nodiscard]] int entry_near(const btPersistentManifold& manifold, const btVector3& local_a);
+
+/// Whether friction gave way at a point in the last step.
+[[nodiscard]] bool anchor_slid(const btManifoldPoint& point);
 
 /// Reads the anchor of an entry.
 [[nodiscard]] FrictionAnchor anchor_of(const btManifoldPoint& point);

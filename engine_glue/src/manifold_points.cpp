@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "friction_anchor.hpp"
+#include "lasting_points.hpp"
 #include "pd/bullet/scalar.hpp"
 
 namespace pd::detail {
@@ -183,12 +184,23 @@ void keep_matched(btPersistentManifold& manifold, const PairMemory& memory, Matc
 
 }  // namespace
 
-void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
-                    btManifoldResult& result, PointSurroundings& surroundings) {
+namespace {
+
+/// Whatever became of the old points.
+/// @param may_last  `may_all_last`
+/// @param pieces    for `replace_lasting_points`
+void replace_any_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, bool may_last,
+                        const PointSurroundings* pieces, btScalar seconds, btManifoldResult& result,
+                        PointSurroundings& surroundings) {
   const ManifoldPoses poses = poses_of(manifold);
   std::array<btVector3, 4> local_a;
   for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(poses, fresh.points[k]);
   Matching matching = match_points(manifold, memory, fresh, local_a);
+  const auto goes_on = [](int heir) { return heir >= 0; };
+  if (may_last && std::all_of(matching.heir.begin(), matching.heir.begin() + fresh.count, goes_on)) {
+    replace_lasting_points(manifold, memory, fresh, matching.heir, PlacesKnown::yes, seconds, result, pieces);
+    return;
+  }
   Heritage heritage;
   keep_matched(manifold, memory, matching, seconds, local_a, heritage);
   const btScalar threshold = manifold.getContactBreakingThreshold();
@@ -228,6 +240,22 @@ void replace_points(btPersistentManifold& manifold, PairMemory& memory, const Fr
   for (int i = 0; i < memory.num_points; ++i) {
     memory.points[i].local_a = manifold.getContactPoint(i).m_localPointA;
     ++manifold.getContactPoint(i).m_lifeTime;
+  }
+}
+
+}  // namespace
+
+void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
+                    btManifoldResult& result, PointSurroundings& surroundings) {
+  const bool one_piece = surroundings.lasting();
+  const PointSurroundings* const pieces = one_piece ? nullptr : &surroundings;
+  PieceNumbers numbers;
+  const bool may_last = fresh.count > 0 && (one_piece || surroundings.numbers(0, numbers)) &&
+                        may_all_last(manifold, memory, fresh, result);
+  PointOrder order;
+  if (!may_last || !order_by_feature(memory, fresh, order) ||
+      !replace_lasting_points(manifold, memory, fresh, order, PlacesKnown::no, seconds, result, pieces)) {
+    replace_any_points(manifold, memory, fresh, may_last, pieces, seconds, result, surroundings);
   }
   // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.
   if (gContactProcessedCallback != nullptr) {

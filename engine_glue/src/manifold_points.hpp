@@ -28,6 +28,11 @@ struct FreshPoints {
 [[nodiscard]] FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point);
 [[nodiscard]] FreshPoints fresh_points(const ContactManifold& manifold);
 
+/// Of the pieces that a point lies between, as Bullet counts parts and children: of both bodies of the pair's result.
+struct PieceNumbers {
+  int part_0 = -1, index_0 = -1, part_1 = -1, index_1 = -1;
+};
+
 /// What stands round a point while `btManifoldResult` takes it in: the piece that it belongs to, for the host's
 /// callbacks.
 class PointSurroundings {
@@ -37,7 +42,9 @@ class PointSurroundings {
   virtual void leave() {}
   /// Whether two points stand in the same surroundings.
   [[nodiscard]] virtual bool same(int, int) const { return true; }
-  /// Whether all points do, as those of the last step did.
+  /// What `enter` tells the result. @return false: it does not tell it of both bodies
+  [[nodiscard]] virtual bool numbers(int, PieceNumbers&) const { return false; }
+  /// Whether all points do, as those of the last step did, and have one normal.
   [[nodiscard]] virtual bool lasting() const { return true; }
 };
 

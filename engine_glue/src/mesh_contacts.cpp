@@ -69,6 +69,13 @@ class PiecesOfPoint : public PointSurroundings {
     triangle_.reset();
     child_.reset();
   }
+  [[nodiscard]] bool numbers(int place, PieceNumbers& out) const override {
+    const MetTriangle& triangle = triangles_[static_cast<std::size_t>(place)];
+    const Child& child = children_[static_cast<std::size_t>(triangle.child)];
+    out = numbers_in_result(question_.result, question_.a, part_of_child(question_.a, child),
+                            index_of_child(question_.a, child), triangle.part, triangle.index);
+    return true;
+  }
 
  private:
   const UnionQuestion& question_;

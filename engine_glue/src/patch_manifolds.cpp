@@ -18,6 +18,9 @@ class PieceOfPoint : public PointSurroundings {
   [[nodiscard]] bool same(int i, int k) const override {
     return patch_.pieces[static_cast<std::size_t>(i)] == patch_.pieces[static_cast<std::size_t>(k)];
   }
+  [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
+    return pieces_.numbers(patch_.pieces[static_cast<std::size_t>(point)], out);
+  }
   [[nodiscard]] bool lasting() const override { return false; }
 
  private:

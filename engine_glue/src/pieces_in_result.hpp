@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include "compound_children.hpp"
+#include "manifold_points.hpp"
 #include "met_triangle.hpp"
 
 namespace pd::detail {
@@ -44,12 +45,27 @@ class PieceInResult {
   const btCollisionObjectWrapper* before_;
 };
 
+/// The numbers that a child, or the convex body itself, has in the result.
+inline int part_of_child(const btCollisionObjectWrapper& body, const Child& child) {
+  return child.index < 0 ? body.m_partId : -1;
+}
+inline int index_of_child(const btCollisionObjectWrapper& body, const Child& child) {
+  return child.index < 0 ? body.m_index : child.index;
+}
+
+/// The numbers of a piece of each body, in the result's order.
+inline PieceNumbers numbers_in_result(const btManifoldResult& result, const btCollisionObjectWrapper& a, int part_a,
+                                      int index_a, int part_b, int index_b) {
+  if (result.getBody0Internal() == a.getCollisionObject()) return {part_a, index_a, part_b, index_b};
+  return {part_b, index_b, part_a, index_a};
+}
+
 /// A child of a compound, or the convex body itself.
 class ChildInResult {
  public:
   ChildInResult(btManifoldResult& result, const btCollisionObjectWrapper& body, const Child& child)
       : wrapper_(child.index < 0 ? body.m_parent : &body, child.shape, body.getCollisionObject(), child.pose,
-                 child.index < 0 ? body.m_partId : -1, child.index < 0 ? body.m_index : child.index),
+                 part_of_child(body, child), index_of_child(body, child)),
         placed_(result, wrapper_) {}
   [[nodiscard]] const btCollisionObjectWrapper& wrapper() const { return wrapper_; }
 

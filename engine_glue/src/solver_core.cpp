@@ -6,22 +6,31 @@
 
 #include "box_contacts.hpp"
 #include "installation.hpp"
+#include "lane_transform.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "query_meter.hpp"
+#include "warm_up.hpp"
 
 namespace pd::detail {
 
-double contact_tolerance(const Pose& a, const Pose& b, double smaller_radius) {
+double contact_tolerance(const Vec3& a, const Vec3& b, double smaller_radius) {
   constexpr double kShare = sizeof(btScalar) == sizeof(float) ? 0x1p-30 : 0x1p-46;
-  const double farthest = a.translation().cwiseAbs().cwiseMax(b.translation().cwiseAbs()).maxCoeff();
+  const double farthest = a.cwiseAbs().cwiseMax(b.cwiseAbs()).maxCoeff();
   return kShare * (farthest + smaller_radius);
 }
 
 bool in_range(const btTransform& pose) {
+  // As `is_finite`, four numbers at a time; nobody sets the fourth.
+  Lanes sum = {0, 0, 0, 0};
+  for (int i = 0; i < 4; ++i) {
+    Lanes row;
+    load_lanes(i < 3 ? pose.getBasis()[i] : pose.getOrigin(), row);
+    sum += row * btScalar(0);
+  }
+  if (!(sum[0] + sum[1] + sum[2] == 0)) return false;
   // Single precision ends before the core does.
-  if (sizeof(btScalar) == sizeof(float)) return is_finite(pose);
-  return is_finite(pose) && to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
+  return sizeof(btScalar) == sizeof(float) || to_pd(pose.getOrigin()).cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
 SolverCore::SolverCore(const BulletSolverSettings& chosen) : settings(chosen), cache(chosen.cache_capacity) {}
@@ -78,7 +87,8 @@ void SolverCore::measure(const PairQuestion& question, ThreadBuffers& held, Pair
   depth_settings.bracket = Bracket::contact;
   depth_settings.beyond = question.beyond;
   depth_settings.contact_tolerance =
-      contact_tolerance(out.a.pose, out.b.pose, std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
+      contact_tolerance(out.a.pose.translation(), out.b.pose.translation(),
+                        std::min(bounding_radius(*out.a.shape), bounding_radius(*out.b.shape)));
   out.depth = penetration_depth(out.a, out.b, held.scratch, depth_settings, question.warm);
   SolverCounters& counters = held.counters;
   counters.support_calls.add(out.depth.statistics.support_calls);
@@ -201,6 +211,7 @@ Installation& SolverCore::installation(btCollisionDispatcher* dispatcher) {
     return *known;
   }
   const std::lock_guard lock(mutex_);
+  if (!installed_) warm_up(*buffers.lease());
   installed_ = true;
   installations_.push_back(std::make_unique<Installation>(*this, dispatcher));
   return *installations_.back();

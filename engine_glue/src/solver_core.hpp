@@ -75,7 +75,7 @@ struct GroundQuestion {
 /// are to 2^-24 of the distance from the world's origin and of the body's size. In double precision that share, 2^-59,
 /// is below the rounding of the query's own sums, which comes to some 2^-47.
 /// @param smaller_radius  of the smaller of both bodies.
-[[nodiscard]] double contact_tolerance(const Pose& a, const Pose& b, double smaller_radius);
+[[nodiscard]] double contact_tolerance(const Vec3& a, const Vec3& b, double smaller_radius);
 
 /// Whether a pose is one that the core takes: finite, and not too far.
 [[nodiscard]] bool in_range(const btTransform& pose);

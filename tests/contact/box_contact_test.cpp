@@ -262,6 +262,36 @@ TEST(BoxContact, DepthIsThatOfTheGeneralQuery) {
   EXPECT_GE(near, 100);
 }
 
+TEST(BoxContact, BracketsHoldForPosesOfDoublePrecision) {
+  std::mt19937_64 random(71);
+  std::normal_distribution<double> normal;
+  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  int with_points = 0, apart = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Boxes boxes = draw(i % 2 == 0, random);
+    // Products of such columns round; edges of both boxes are parallel but for 1e-9 or 1e-13, or stand anyhow.
+    const double noise = i % 3 == 0 ? 1e-9 : i % 3 == 1 ? 1e-13 : 1e-2;
+    for (Pose* pose : {&boxes.pose_a, &boxes.pose_b}) {
+      const Mat3 turn = Eigen::AngleAxisd(noise * normal(random), vector().normalized()).matrix();
+      *pose = Pose::from_trusted_matrix(turn * pose->rotation(), pose->translation());
+    }
+    const BoxContact found = boxes.contact();
+    if (!found.answered) continue;
+    const pd::PenetrationDepth exact = General(boxes).tightest;
+    const bool overlap = exact.contact == ContactClass::overlapping;
+    ASSERT_LE(found.lower, overlap ? -exact.lower : exact.distance_upper) << i;
+    if (found.manifold.count == 0) {
+      ++apart;
+      continue;
+    }
+    ++with_points;
+    ASSERT_GE(found.upper, overlap ? -exact.upper : exact.distance_lower) << i;
+    ASSERT_LE(found.upper - found.lower, kTolerance) << i;
+  }
+  EXPECT_GT(with_points, 1000);
+  EXPECT_GT(apart, 100);
+}
+
 TEST(BoxContact, LeavesSizesOutOfRangeToTheGeneralQuery) {
   const Pose pose;
   for (const Vec3& half : {Vec3(0, 1, 1), Vec3(1e-40, 1, 1), Vec3(1e40, 1, 1), Vec3(NAN, 1, 1)}) {

@@ -14,15 +14,16 @@ namespace {
 
 using detail::ClipVertex;
 using detail::ContactFrame;
+using detail::LiftedCorner;
 using detail::Vec2;
 
 /// The corners of the intersection, lifted to both faces, that are no farther apart than the threshold.
 /// @return the depth of the deepest of them.
 double lift_corners(const ContactFrame& frame, double margin_a, double margin_b, double signed_depth,
                     double breaking_threshold, double size, detail::ManifoldBuffers& buffers) {
-  auto& points = buffers.points;
+  auto& lifted = buffers.lifted;
   auto& flat = buffers.flat;
-  points.clear();
+  lifted.clear();
   flat.clear();
   double deepest = -breaking_threshold;
   if (buffers.clip.polygon.empty()) return deepest;
@@ -32,12 +33,12 @@ double lift_corners(const ContactFrame& frame, double margin_a, double margin_b,
     const double height_b = heights_b.above(vertex.point) + margin_b;
     // Along n no pair is deeper than the bodies are; what the lifted heights say beyond that is rounding.
     const double depth = std::min(height_b - height_a, signed_depth);
-    const bool repeated = std::any_of(flat.begin(), flat.end(), [&](const Vec2& p) {
+    // Points of a whole rim lie apart.
+    const bool repeated = !buffers.clip.whole_rim && std::any_of(flat.begin(), flat.end(), [&](const Vec2& p) {
       return (p - vertex.point).cwiseAbs().maxCoeff() <= detail::kMergeRatio * size;
     });
     if (depth < -breaking_threshold || repeated) continue;
-    const Vec3 on_b = frame.origin + vertex.point.x() * frame.u + vertex.point.y() * frame.w + height_b * frame.n;
-    points.push_back({on_b - depth * frame.n, on_b, depth, vertex.id});
+    lifted.push_back({height_b, depth, vertex.id});
     flat.push_back(vertex.point);
     deepest = std::max(deepest, depth);
   }
@@ -46,8 +47,9 @@ double lift_corners(const ContactFrame& frame, double margin_a, double margin_b,
 
 /// Gives the deepest point the bodies' depth, which is known: what its lifted corner misses of it is halved between its
 /// two ends. The other points keep their own: a face that lies tilted on another rests on the differences between them.
-void end_at_depth(std::vector<ContactPoint>& points, double signed_depth, const Vec3& n) {
-  const auto deepest = std::max_element(points.begin(), points.end(),
+void end_at_depth(ContactManifold& manifold, double signed_depth) {
+  const Vec3& n = manifold.normal;
+  const auto deepest = std::max_element(manifold.points.begin(), manifold.points.begin() + manifold.count,
                                         [](const ContactPoint& x, const ContactPoint& y) { return x.depth < y.depth; });
   deepest->position_b += 0.5 * (signed_depth - deepest->depth) * n;
   deepest->position_a = deepest->position_b - signed_depth * n;
@@ -74,26 +76,33 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
       lift_corners(frame, a.shape->margin(), b.shape->margin(), signed_depth, breaking_threshold, size, buffers);
 
   // 3. The witnesses join where the corners miss them by more than the noise of a resting contact.
-  auto& points = buffers.points;
+  auto& lifted = buffers.lifted;
   auto& flat = buffers.flat;
   const double noise = std::max(detail::kNoiseRatio * breaking_threshold, detail::kMergeRatio * size);
-  std::size_t first = points.size();
-  if (points.empty() || deepest < signed_depth - noise) {
-    const Vec3 on_b = answer.witness_b;
-    points.push_back({on_b - signed_depth * n, on_b, signed_depth, detail::make_id(detail::IdKind::witness, 0, 0)});
-    flat.push_back(frame.flatten(on_b));
+  constexpr std::int64_t kWitness = detail::make_id(detail::IdKind::witness, 0, 0);
+  std::size_t first = lifted.size();
+  if (lifted.empty() || deepest < signed_depth - noise) {
+    lifted.push_back({0, signed_depth, kWitness});
+    flat.push_back(frame.flatten(answer.witness_b));
   } else {
-    first = detail::deepest_point(std::span<const ContactPoint>(points), flat, deepest, noise);
+    first = detail::deepest_point(std::span<const LiftedCorner>(lifted), flat, deepest, noise);
   }
 
   // 4. Four of them.
-  if (points.size() > 4) {
-    detail::reduce_to_four(std::span<ContactPoint>(points), flat, first);
-    points.resize(4);
+  if (lifted.size() > 4) {
+    detail::reduce_to_four(std::span<LiftedCorner>(lifted), flat, first);
+    lifted.resize(4);
   }
-  if (deepest_point == DeepestPoint::at_depth) end_at_depth(points, signed_depth, n);
-  manifold.count = static_cast<int>(points.size());
-  std::copy(points.begin(), points.end(), manifold.points.begin());
+  manifold.count = static_cast<int>(lifted.size());
+  for (std::size_t i = 0; i < lifted.size(); ++i) {
+    const LiftedCorner& corner = lifted[i];
+    const Vec3 on_b =
+        corner.id == kWitness
+            ? answer.witness_b
+            : Vec3(frame.origin + flat[i].x() * frame.u + flat[i].y() * frame.w + corner.height_b * frame.n);
+    manifold.points[i] = {on_b - corner.depth * n, on_b, corner.depth, corner.id};
+  }
+  if (deepest_point == DeepestPoint::at_depth) end_at_depth(manifold, signed_depth);
   return manifold;
 }
 

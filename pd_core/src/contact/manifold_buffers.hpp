@@ -2,6 +2,7 @@
 /// What a `ManifoldScratch` holds.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "contact/manifold_clip.hpp"
@@ -10,12 +11,20 @@
 
 namespace pd::detail {
 
+/// A corner of the intersection of two faces, lifted to both.
+struct LiftedCorner {
+  double height_b;  ///< of B's surface
+  double depth;
+  std::int64_t id;
+};
+
 struct ManifoldBuffers {
   SupportingFace face_a;
   SupportingFace face_b;
   ClipBuffers clip;
-  std::vector<ContactPoint> points;
-  std::vector<Vec2> flat;  ///< the points across the normal
+  std::vector<LiftedCorner> lifted;  ///< of two faces
+  std::vector<ContactPoint> points;  ///< of a face on a half-space
+  std::vector<Vec2> flat;            ///< either across the normal
 };
 
 }  // namespace pd::detail

@@ -52,12 +52,30 @@ bool find_sides(const std::vector<ClipVertex>& polygon, const Vec2& from, const 
   return all;
 }
 
+/// A circle across n that a disc's rim lies in.
+struct Circle {
+  Vec2 centre = Vec2::Zero();
+  double radius = 0;
+
+  Circle() = default;
+  Circle(const SupportingFace& disc, const ContactFrame& frame) {
+    const Vec3 &start = disc.vertices[0].point, &across = disc.vertices[kRimPoints / 2].point;
+    centre = frame.flatten(0.5 * (start + across));
+    radius = (1 + 0x1p-20) * 0.5 * (start - across).norm();
+  }
+  [[nodiscard]] bool is_left_of(const Vec2& from, const Vec2& to) const {
+    const Vec2 along = to - from;
+    return cross(along, centre - from) >= radius * along.norm();
+  }
+};
+
 /// Sutherland-Hodgman: `polygon` cut to the left of the line from `from` to `to`, which is edge `edge` of the other
 /// loop, whose corners have ids of kind `window`.
 void clip(ClipBuffers& buffers, const Vec2& from, const Vec2& to, std::int32_t edge, IdKind window) {
   std::vector<ClipVertex>& polygon = buffers.polygon;
   std::vector<ClipVertex>& out = buffers.clipped;
   if (find_sides(polygon, from, to, buffers.sides)) return;
+  buffers.whole_rim = false;
   out.clear();
   const std::size_t size = polygon.size();
   for (std::size_t i = 0; i < size; ++i) {
@@ -138,6 +156,7 @@ FaceHeight::FaceHeight(const SupportingFace& face, const ContactFrame& frame)
 void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
                      ClipBuffers& buffers) {
   buffers.polygon.clear();
+  buffers.whole_rim = false;
   if (a.vertices.size() < 2 || b.vertices.size() < 2) {
     return;  // a single point on one side: the witnesses are the contact
   }
@@ -154,8 +173,13 @@ void intersect_faces(const SupportingFace& a, const SupportingFace& b, const Con
   load_polygon(window, frame, of_window, buffers.window);
   const std::vector<ClipVertex>& edges = buffers.window;
   load_polygon(subject, frame, cut_b ? IdKind::vertex_b : IdKind::vertex_a, buffers.polygon);
+  buffers.whole_rim = subject.rim;
+  const Circle circle = subject.rim ? Circle(subject, frame) : Circle();
   for (std::size_t i = 0; i < edges.size() && !buffers.polygon.empty(); ++i) {
-    clip(buffers, edges[i].point, edges[i + 1 < edges.size() ? i + 1 : 0].point, edges[i].edge, of_window);
+    const Vec2 &from = edges[i].point, &to = edges[i + 1 < edges.size() ? i + 1 : 0].point;
+    // Nothing of a disc that lies inside is cut.
+    if (buffers.whole_rim && circle.is_left_of(from, to)) continue;
+    clip(buffers, from, to, edges[i].edge, of_window);
   }
 }
 

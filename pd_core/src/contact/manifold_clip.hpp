@@ -27,7 +27,7 @@ struct ClipVertex {
 /// What a contact point is made of, the highest bits of its id.
 enum class IdKind : std::int64_t { vertex_a = 0, vertex_b = 1, crossing = 2, witness = 3 };
 
-inline std::int64_t make_id(IdKind kind, std::int64_t a, std::int64_t b) {
+constexpr std::int64_t make_id(IdKind kind, std::int64_t a, std::int64_t b) {
   constexpr std::int64_t kMask = (std::int64_t{1} << 25) - 1;
   return (static_cast<std::int64_t>(kind) << 50) | ((a & kMask) << 25) | (b & kMask);
 }
@@ -76,6 +76,7 @@ class FaceHeight {
 /// Grown on first use.
 struct ClipBuffers {
   std::vector<ClipVertex> polygon;  ///< the intersection
+  bool whole_rim = false;           ///< it is all of a disc's rim
   std::vector<ClipVertex> window;
   std::vector<ClipVertex> clipped;
   std::vector<double> sides;  ///< of the polygon's corners, of one edge of the window

@@ -1,6 +1,8 @@
 #include "contact/supporting_face.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "contact/sphere_hull_face.hpp"
 
@@ -13,8 +15,6 @@ namespace {
 constexpr double kFaceCosine = 0.5;
 /// sin 17 degrees.
 constexpr double kEdgeSine = 0.3;
-/// Points of a rim: enough that the four kept of them span 0.9 of the disc's area or more.
-constexpr int kRimPoints = 16;
 
 int support_vertex(const ConvexPolytope& polytope, const Vec3& direction) {
   int best = 0;
@@ -123,24 +123,30 @@ Vec3 radial_direction(const Vec3& direction, int axis) {
   return Vec3::Unit((axis + 1) % 3);
 }
 
-/// The cosine of i sixteenths of a turn. A table: libraries differ in the last bit of std::cos.
-double cosine_of_rim(int i) {
-  static constexpr double kQuarter[] = {1, 0.9238795325112867, 0.7071067811865476, 0.38268343236508977, 0};
+/// The cosines of sixteenths of a turn. A table: libraries differ in the last bit of std::cos.
+constexpr std::array<double, kRimPoints> kRimCosines = [] {
+  constexpr double kQuarter[] = {1, 0.9238795325112867, 0.7071067811865476, 0.38268343236508977, 0};
   static_assert(kRimPoints == 16);
-  const int step = i % kRimPoints;
-  const int folded = step <= 8 ? step : 16 - step;
-  return folded <= 4 ? kQuarter[folded] : -kQuarter[8 - folded];
-}
+  std::array<double, kRimPoints> cosines{};
+  for (int i = 0; i < kRimPoints; ++i) {
+    const int folded = i <= 8 ? i : 16 - i;
+    cosines[static_cast<std::size_t>(i)] = folded <= 4 ? kQuarter[folded] : -kQuarter[8 - folded];
+  }
+  return cosines;
+}();
 
 void push_disc(double radius, double height, int axis, const Pose& pose, const Mat3& rotation, SupportingFace& face) {
-  const Vec3 u = Vec3::Unit((axis + 1) % 3);
-  const Vec3 w = Vec3::Unit((axis + 2) % 3);
-  const Vec3 centre = height * Vec3::Unit(axis);
-  for (int i = 0; i < kRimPoints; ++i) {
-    const Vec3 local = centre + radius * (cosine_of_rim(i) * u + cosine_of_rim(i + 3 * kRimPoints / 4) * w);
-    face.vertices.push_back({rotation * local + pose.translation(), i});
+  constexpr std::size_t kQuarterTurn = kRimPoints / 4;
+  face.vertices.resize(kRimPoints);
+  Vec3 local;
+  local[axis] = height;
+  for (std::size_t i = 0; i < kRimPoints; ++i) {
+    local[(axis + 1) % 3] = radius * kRimCosines[i];
+    local[(axis + 2) % 3] = radius * kRimCosines[(i + 3 * kQuarterTurn) % kRimPoints];
+    face.vertices[i] = {rotation * local + pose.translation(), static_cast<std::int32_t>(i)};
   }
   face.plane_normal = rotation * ((height < 0 ? -1.0 : 1.0) * Vec3::Unit(axis));
+  face.rim = true;
 }
 
 void cylinder_face(const Cylinder& cylinder, const Pose& pose, const Vec3& direction, const Mat3& rotation,
@@ -177,6 +183,7 @@ void cone_face(const Cone& cone, const Pose& pose, const Vec3& direction, const 
 
 void supporting_face(const PosedShape& shape, const Vec3& direction, const Feature& feature, SupportingFace& face) {
   face.vertices.clear();
+  face.rim = false;
   if (const ConvexPolytope* polytope = shape.shape->polytope()) {
     // R^T d maximises <R x, d> over local x, whether or not R is exactly orthogonal.
     polytope_face(*polytope, shape.pose, shape.pose.rotation().transpose() * direction, feature, face);

@@ -9,6 +9,9 @@
 
 namespace pd::detail {
 
+/// Points of a rim: enough that the four kept of them span 0.9 of the disc's area or more.
+inline constexpr int kRimPoints = 16;
+
 struct FaceVertex {
   Vec3 point;       ///< common frame
   std::int32_t id;  ///< vertex of the polytope, or the number of the rim point or sphere
@@ -18,6 +21,7 @@ struct FaceVertex {
 struct SupportingFace {
   std::vector<FaceVertex> vertices;
   Vec3 plane_normal = Vec3::UnitZ();  ///< of a polygon: unit, outward; otherwise without meaning
+  bool rim = false;                   ///< kRimPoints of a disc, one after the other
 };
 
 /// The face of the core of `shape` to which `direction` (unit, common frame) is most nearly normal, among those at the

@@ -16,6 +16,14 @@ namespace pd {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
+/// The same as four numbers, the last one 0.
+inline void to_pd(const btVector3& v, double (&out)[4]) {
+  out[0] = static_cast<double>(v.x());
+  out[1] = static_cast<double>(v.y());
+  out[2] = static_cast<double>(v.z());
+  out[3] = 0;
+}
+
 [[nodiscard]] inline Mat3 to_pd(const btMatrix3x3& m) {
   Mat3 result;
   for (int i = 0; i < 3; ++i) {

@@ -21,6 +21,14 @@ struct PosedBox {
   const Pose* pose = nullptr;  ///< of the caller, never null in a call
 };
 
+/// The same as kernels read it, for engines that have rows of a rotation at hand and no `Pose`.
+struct BoxInRows {
+  double x[4], y[4], z[4];  ///< rows of the rotation, taken as they stand (`Pose::from_trusted_matrix`), and a 0
+  double half_extents[4];   ///< > 0, and a 0
+  Vec3 centre;
+};
+[[nodiscard]] BoxInRows in_rows(const PosedBox& box);
+
 /// Whether the points next to each other are asked for, where the corners of the faces say as much.
 enum class BoxWitness : std::uint8_t { left_out, placed };
 
@@ -43,6 +51,8 @@ struct BoxContact {
 /// @param breaking_threshold  >= 0, as for `contact_manifold`; boxes farther apart than that are `separated` by a
 /// plane, without points, and `upper` is wide. Points are as lifted (`DeepestPoint::as_lifted`): the deepest may miss
 /// the depth by a thousandth of the threshold. Ids are those of `contact_manifold`. Constant time, no allocation.
+[[nodiscard]] BoxContact box_contact(const BoxInRows& a, const BoxInRows& b, double tolerance,
+                                     double breaking_threshold, BoxWitness witness = BoxWitness::left_out);
 [[nodiscard]] BoxContact box_contact(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold,
                                      BoxWitness witness = BoxWitness::left_out);
 

@@ -50,14 +50,6 @@ std::optional<ConvexPolytope> build_triangle(std::span<const Vec3> source, std::
   return ConvexPolytope(lay_out(vertices, loops, 2));
 }
 
-/// The loops of a box, whose corner i is on the upper side of axis k where bit k of i is set.
-FacetLoops sides_of_box() {
-  FacetLoops loops;
-  loops.vertices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
-  loops.offsets = {0, 4, 8, 12, 16, 20, 24};
-  return loops;
-}
-
 /// Of the eight corners of a box along the axes, in any order, what the search would end with: most worlds are full of
 /// them.
 std::optional<ConvexPolytope> build_aligned_box(std::span<const Vec3> source,
@@ -82,8 +74,7 @@ std::optional<ConvexPolytope> build_aligned_box(std::span<const Vec3> source,
                         caller_ids.empty() ? i : caller_ids[static_cast<std::size_t>(i)]};
   }
   if (found != 0xFF) return std::nullopt;
-  static const FacetLoops loops = sides_of_box();
-  return ConvexPolytope(lay_out(vertices, loops, 3));
+  return ConvexPolytope(lay_out_box(vertices));
 }
 
 }  // namespace

@@ -205,6 +205,22 @@ void write_triangle(const Arrays& out) {
   for (std::int32_t f = 0; f < 2; ++f) out.facet_half_edges[f] = f;
 }
 
+/// What a body has in common with one of the same faces: all but coordinates and normals.
+void copy_surface(const Storage& body, const Counts& n, const Arrays& out) {
+  std::copy_n(body.half_edges, n.half_edges, out.half_edges);
+  std::copy_n(body.neighbour_offsets, n.vertices + 1, out.neighbour_offsets);
+  std::copy_n(body.neighbours, n.half_edges, out.neighbours);
+  std::copy_n(body.facet_offsets, n.facets + 1, out.facet_offsets);
+  std::copy_n(body.facet_vertices, n.facet_vertices, out.facet_vertices);
+  std::copy_n(body.facet_half_edges, n.facets, out.facet_half_edges);
+}
+
+Counts counts_of(const Storage& body) {
+  return {body.num_vertices,   body.padded_size,
+          body.num_half_edges, body.facet_offsets[body.num_facets],
+          body.num_facets,     has_small_gauss_map(body.affine_dimension, body.num_vertices)};
+}
+
 /// Adds a table of directions, in memory of its own: its size shows only when it is made.
 void add_table(std::span<const ConvexPolytope::VertexBlock> blocks, std::span<const std::int32_t> more, int cells,
                Storage& s) {
@@ -238,6 +254,14 @@ Allocated allocate(const Counts& n) {
   return {arrays, {arrays.storage, release}, block.used()};
 }
 
+/// After the vertices and the largest coordinate of each axis.
+void pad(const Arrays& out, const Counts& n) {
+  out.storage->max_abs_coordinate = out.storage->max_abs_coordinates.maxCoeff();
+  std::fill(out.x + n.vertices, out.x + n.padded, out.x[0]);
+  std::fill(out.y + n.vertices, out.y + n.padded, out.y[0]);
+  std::fill(out.z + n.vertices, out.z + n.padded, out.z[0]);
+}
+
 /// The vertices in the order of their coordinates, padded with the first. @return each one's place in that order
 std::vector<std::int32_t> place_vertices(std::span<const HullVertex> vertices, const Arrays& out, const Counts& n) {
   std::vector<std::int32_t> order(vertices.size());
@@ -258,10 +282,7 @@ std::vector<std::int32_t> place_vertices(std::span<const HullVertex> vertices, c
     out.caller_ids[i] = p.caller_id;
     out.storage->max_abs_coordinates = out.storage->max_abs_coordinates.cwiseMax(Vec3(p.x, p.y, p.z).cwiseAbs());
   }
-  out.storage->max_abs_coordinate = out.storage->max_abs_coordinates.maxCoeff();
-  std::fill(out.x + n.vertices, out.x + n.padded, out.x[0]);
-  std::fill(out.y + n.vertices, out.y + n.padded, out.y[0]);
-  std::fill(out.z + n.vertices, out.z + n.padded, out.z[0]);
+  pad(out, n);
   return rank;
 }
 
@@ -319,6 +340,24 @@ void publish(const Arrays& out, const Counts& n, int affine_dimension) {
   s.facet_normals = out.facet_normals;
 }
 
+/// The rest, of a body whose vertices and facets are written, but for a table of directions.
+void complete(const Allocated& made, const Counts& n, int affine_dimension) {
+  publish(made.arrays, n, affine_dimension);
+  Storage& s = *made.arrays.storage;
+  s.second_moments = second_moments(s);
+  s.elongated = is_elongated(s.second_moments);
+  s.memory_bytes = made.bytes;
+  if (n.has_gauss_map) fill_small_gauss_map(s, static_cast<SmallBodyStorage&>(s).gauss_map);
+}
+
+/// The loops of a box, whose corner i is on the upper side of axis k where bit k of i is set.
+FacetLoops sides_of_box() {
+  FacetLoops loops;
+  loops.vertices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+  loops.offsets = {0, 4, 8, 12, 16, 20, 24};
+  return loops;
+}
+
 }  // namespace
 
 std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, const FacetLoops& loops,
@@ -334,11 +373,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   const Allocated made = allocate(n);
   const Arrays& out = made.arrays;
   place_facets(loops, place_vertices(vertices, out, n), affine_dimension, out, n);
-  publish(out, n, affine_dimension);
-  out.storage->second_moments = second_moments(*out.storage);
-  out.storage->elongated = is_elongated(out.storage->second_moments);
-  out.storage->memory_bytes = made.bytes;
-  if (n.has_gauss_map) fill_small_gauss_map(*out.storage, static_cast<SmallBodyStorage*>(out.storage)->gauss_map);
+  complete(made, n, affine_dimension);
   if (n.vertices > kScanLimit) {
     const DirectionTable table = direction_table(*out.storage);
     add_table(table.blocks, table.more, table.cells, *out.storage);
@@ -347,13 +382,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
 }
 
 std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent) {
-  Counts n{};
-  n.vertices = body.num_vertices;
-  n.padded = body.padded_size;
-  n.half_edges = body.num_half_edges;
-  n.facets = body.num_facets;
-  n.facet_vertices = body.facet_offsets[body.num_facets];
-  n.has_gauss_map = has_small_gauss_map(body.affine_dimension, body.num_vertices);
+  const Counts n = counts_of(body);
   const Allocated made = allocate(n);
   const Arrays& out = made.arrays;
   const auto scale = [&](const double* from, double* to) {
@@ -368,13 +397,8 @@ std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent)
       body.max_abs_coordinates.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
   out.storage->max_abs_coordinate = std::ldexp(body.max_abs_coordinate, exponent);
   std::copy_n(body.facet_normals, n.facets, out.facet_normals);
-  std::copy_n(body.half_edges, n.half_edges, out.half_edges);
   std::copy_n(body.caller_ids, n.vertices, out.caller_ids);
-  std::copy_n(body.neighbour_offsets, n.vertices + 1, out.neighbour_offsets);
-  std::copy_n(body.neighbours, n.half_edges, out.neighbours);
-  std::copy_n(body.facet_offsets, n.facets + 1, out.facet_offsets);
-  std::copy_n(body.facet_vertices, n.facet_vertices, out.facet_vertices);
-  std::copy_n(body.facet_half_edges, n.facets, out.facet_half_edges);
+  copy_surface(body, n, out);
   publish(out, n, body.affine_dimension);
   const double spread = body.second_moments.trace();
   if (spread > 0 && std::isfinite(spread)) {
@@ -392,6 +416,37 @@ std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent)
     add_table({body.table_blocks, static_cast<std::size_t>(body.table_more[lists])},
               {body.table_more, static_cast<std::size_t>(lists) + 1}, body.table_cells, *out.storage);
   }
+  return made.shared;
+}
+
+std::shared_ptr<const Storage> lay_out_box(std::span<const HullVertex, 8> corners) {
+  // Every box has the faces and normals of this one.
+  static const std::shared_ptr<const Storage> cube = [] {
+    HullVertex vertices[8];
+    for (std::int32_t i = 0; i < 8; ++i) {
+      const auto side = [&](int axis) { return (i >> axis & 1) != 0 ? 1.0 : -1.0; };
+      vertices[i] = {side(0), side(1), side(2), i};
+    }
+    return lay_out(vertices, sides_of_box(), 3);
+  }();
+  const Counts n = counts_of(*cube);
+  const Allocated made = allocate(n);
+  const Arrays& out = made.arrays;
+  for (int v = 0; v < 8; ++v) {
+    // In the order of coordinates x changes last.
+    const HullVertex& corner = corners[static_cast<std::size_t>(cube->caller_ids[v])];
+    out.x[v] = corner.x;
+    out.y[v] = corner.y;
+    out.z[v] = corner.z;
+    out.caller_ids[v] = corner.caller_id;
+  }
+  const HullVertex &low = corners[0], &high = corners[7];
+  out.storage->max_abs_coordinates =
+      Vec3(low.x, low.y, low.z).cwiseAbs().cwiseMax(Vec3(high.x, high.y, high.z).cwiseAbs());
+  pad(out, n);
+  std::copy_n(cube->facet_normals, n.facets, out.facet_normals);
+  copy_surface(*cube, n, out);
+  complete(made, n, 3);
   return made.shared;
 }
 

@@ -25,6 +25,9 @@ struct HullVertex {
 [[nodiscard]] std::shared_ptr<const ConvexPolytope::Storage> lay_out(std::span<const HullVertex> vertices,
                                                                      const FacetLoops& loops, int affine_dimension);
 
+/// The same of a box along the axes, whose corner i is on the upper side of axis k where bit k of i is set.
+[[nodiscard]] std::shared_ptr<const ConvexPolytope::Storage> lay_out_box(std::span<const HullVertex, 8> corners);
+
 /// The same body times 2^exponent: connectivity, normals and the table of directions are copied. Null where a
 /// coordinate would be rounded. Time O(n).
 [[nodiscard]] std::shared_ptr<const ConvexPolytope::Storage> scaled_exactly(const ConvexPolytope::Storage& body,

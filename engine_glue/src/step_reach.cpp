@@ -1,0 +1,69 @@
+#include "step_reach.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+
+#include <algorithm>
+#include <typeinfo>
+
+namespace pd::detail {
+
+namespace {
+
+/// Of the threshold.
+constexpr btScalar kNear = btScalar(0.25);
+constexpr btScalar kClosing = 2;
+
+}  // namespace
+
+StepReach::StepReach(const btManifoldResult& result, btScalar threshold, btScalar seconds)
+    : threshold_(threshold), seconds_(seconds) {
+  const btCollisionObject& a = *result.getBody0Internal();
+  const btCollisionObject& b = *result.getBody1Internal();
+  all_ = !(seconds > 0) || result.m_closestPointDistanceThreshold > 0 || typeid(result) != typeid(btManifoldResult) ||
+         !a.hasContactResponse() || !b.hasContactResponse() || !motion_of(a, seconds, a_) || !motion_of(b, seconds, b_);
+}
+
+bool StepReach::motion_of(const btCollisionObject& object, btScalar seconds, Motion& out) {
+  const btRigidBody* const body = btRigidBody::upcast(&object);
+  if (body == nullptr) return object.isStaticObject();
+  out.velocity = body->getLinearVelocity() + body->getTotalForce() * (body->getInvMass() * seconds);
+  out.turn = body->getAngularVelocity();
+  out.centre = body->getCenterOfMassPosition();
+  return true;
+}
+
+btScalar StepReach::of_boxes(const btConvexShape& a, const btConvexShape& b) const {
+  if (all_) return threshold_;
+  const auto turning = [](const Motion& motion, const btConvexShape& shape) {
+    const btVector3 half = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
+    return btSqrt(motion.turn.length2() * half.length2());
+  };
+  const btScalar speed = (a_.velocity - b_.velocity).length() + turning(a_, a) + turning(b_, b);
+  return std::min(threshold_, kNear * threshold_ + kClosing * seconds_ * speed);
+}
+
+bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
+  for (int k = 0; k < points.count; ++k) {
+    if (points.points[k].distance > kNear * threshold) return true;
+  }
+  return false;
+}
+
+void StepReach::leave_out_idle(FreshPoints& points) const {
+  if (all_) return;
+  int kept = 0;
+  for (int k = 0; k < points.count; ++k) {
+    const FreshPoint& point = points.points[k];
+    bool needed = point.distance <= kNear * threshold_;
+    if (!needed) {
+      const btVector3 of_a = a_.velocity + a_.turn.cross(point.point_on_b - a_.centre);
+      const btVector3 of_b = b_.velocity + b_.turn.cross(point.point_on_b - b_.centre);
+      const btScalar closing = std::max(btScalar(0), (of_b - of_a).dot(point.normal));
+      needed = point.distance <= kNear * threshold_ + kClosing * seconds_ * closing;
+    }
+    if (needed) points.points[kept++] = point;
+  }
+  points.count = kept;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,132 @@
+// Points that are apart are handed to Bullet where the bodies may close their gaps in the step, and not otherwise.
+#include "step_reach.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <btBulletDynamicsCommon.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "pd/bullet/install.hpp"
+
+namespace pd::test {
+namespace {
+
+/// A box of a metre over a floor.
+struct Hovering {
+  explicit Hovering(btScalar gap, int floor_flags = btCollisionObject::CF_STATIC_OBJECT) {
+    world.setGravity(btVector3(0, -10, 0));
+    install(world, solver);
+    floor.setCollisionShape(&ground);
+    floor.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, -1, 0)));
+    floor.setCollisionFlags(floor_flags);
+    world.addCollisionObject(&floor);
+    body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, btScalar(0.5) + gap, 0)));
+    body.setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(&body);
+  }
+  ~Hovering() {
+    world.removeRigidBody(&body);
+    world.removeCollisionObject(&floor);
+  }
+
+  void step() { world.stepSimulation(btScalar(1) / 60, 0); }
+  [[nodiscard]] int points() {
+    int count = 0;
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+      count += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+    }
+    return count;
+  }
+  [[nodiscard]] btScalar gap() const { return body.getCenterOfMassPosition().y() - btScalar(0.5); }
+
+  BulletPenetrationDepthSolver solver;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver constraints;
+  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &constraints, &configuration};
+  btBoxShape ground{btVector3(5, 1, 5)};
+  btBoxShape cube{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
+  btCollisionObject floor;
+  btRigidBody body{btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &cube, btVector3(1, 1, 1))};
+};
+
+/// Of the pair: Bullet's own threshold for a box of a metre.
+btScalar threshold() {
+  const btBoxShape cube(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
+  return cube.getContactBreakingThreshold(gContactBreakingThreshold);
+}
+
+TEST(StepReach, WhatGravityAloneDoesNotCloseHasNoPoints) {
+  Hovering far(btScalar(0.9) * threshold());
+  far.step();
+  EXPECT_EQ(far.points(), 0);
+  Hovering near(btScalar(0.2) * threshold());
+  near.step();
+  EXPECT_EQ(near.points(), 4);
+}
+
+TEST(StepReach, WhatComesFastHasPoints) {
+  Hovering coming(btScalar(0.9) * threshold());
+  coming.body.setLinearVelocity(btVector3(0, -1, 0));
+  coming.step();
+  EXPECT_EQ(coming.points(), 4);
+  Hovering going(btScalar(0.9) * threshold());
+  going.body.setLinearVelocity(btVector3(0, 1, 0));
+  going.step();
+  EXPECT_EQ(going.points(), 0);
+  Hovering pressed(btScalar(0.9) * threshold());
+  pressed.body.applyCentralForce(btVector3(0, -100, 0));
+  pressed.step();
+  EXPECT_EQ(pressed.points(), 4);
+}
+
+/// A box that turns about z comes down on one side only.
+TEST(StepReach, OnlyTheSideThatComesHasPoints) {
+  Hovering turning(btScalar(0.9) * threshold());
+  turning.world.setGravity(btVector3(0, 0, 0));
+  turning.body.setAngularVelocity(btVector3(0, 0, btScalar(2)));
+  turning.step();
+  EXPECT_EQ(turning.points(), 2);
+}
+
+TEST(StepReach, HostsThatReadPointsGetThemAll) {
+  Hovering sensor(btScalar(0.9) * threshold(), btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  sensor.step();
+  EXPECT_EQ(sensor.points(), 4);
+
+  struct Count : btCollisionWorld::ContactResultCallback {
+    int points = 0;
+    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      ++points;
+      return 0;
+    }
+  } asked;
+  asked.m_closestDistanceThreshold = threshold();
+  Hovering tested(btScalar(0.9) * threshold());
+  tested.world.contactPairTest(&tested.body, &tested.floor, asked);
+  EXPECT_EQ(asked.points, 4);
+}
+
+/// A point that was left out is there in the step in which the body arrives.
+TEST(StepReach, NothingFallsThroughTheGap) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    Hovering falling(static_cast<btScalar>(share(random)) * threshold());
+    falling.body.setLinearVelocity(btVector3(0, static_cast<btScalar>(-4 * share(random) * share(random)), 0));
+    btScalar deepest = 0;
+    for (int k = 0; k < 20; ++k) {
+      falling.step();
+      deepest = std::max(deepest, -falling.gap());
+    }
+    EXPECT_LE(deepest, btScalar(1e-4)) << i;
+    EXPECT_NEAR(falling.gap(), 0, 1e-3) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pd::test
