@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "lazy_points.hpp"
 #include "moving_body.hpp"
@@ -17,7 +18,11 @@ namespace {
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
 /// Facets tried in place of a covered one.
-constexpr int kTries = 4;
+constexpr std::size_t kTries = 4;
+/// Of the reach of exits: the other body may stand so far through the plane of one, beside it.
+constexpr double kBeside = 4;
+/// Of the gap up to which there are contacts: what is in each other by less may wait for a step.
+constexpr double kSunk = 1.0 / 16;
 
 /// Least <x, n> over a core.
 Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
@@ -60,31 +65,46 @@ Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
   return rotation * local + shape.pose.translation();
 }
 
+double deepest_of(const ContactManifold& points) {
+  double deepest = points.points[0].depth;
+  for (int i = 1; i < points.count; ++i) deepest = std::max(deepest, points.points[static_cast<std::size_t>(i)].depth);
+  return deepest;
+}
+
 void drop(ContactManifold& points, int i) {
   --points.count;
   points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];
 }
 
-/// The manifold along one facet of the piece, of points that lie on it.
-/// @param frame  of the piece and its facet; the rest is in the world
-ContactManifold along_facet(const Side& side, const UnionFrame& frame, const Plane& facet, double depth,
-                            const Vec3& farthest, double threshold, double slack, const UnionPiece& own,
-                            ManifoldScratch& scratch) {
-  const Vec3 n = frame.turn_back(facet.normal);
-  PenetrationDepth answer;
-  answer.contact = depth > 0 ? ContactClass::overlapping : ContactClass::separated;
-  answer.depth = std::max(depth, 0.0);
-  answer.distance = std::max(-depth, 0.0);
-  answer.normal = side.is_b ? n : Vec3(-n);
+/// A way out for the piece's side of a pair: along a facet of the piece or against one of the other body.
+struct Exit {
+  double depth = 0;
+  Vec3 n = Vec3::UnitX();      ///< unit, from the piece outward, in the world
+  Vec3 on_own = Vec3::Zero();  ///< points of both surfaces, in the world
+  Vec3 on_other = Vec3::Zero();
+};
+
+Exit exit_along(const Side& side, const Vec3& n, double depth, const Vec3& farthest) {
   const Vec3 on_other = farthest - side.other.shape->margin() * n;
-  const Vec3 on_own = on_other + depth * n;
-  answer.witness_a = side.is_b ? on_other : on_own;
-  answer.witness_b = side.is_b ? on_own : on_other;
+  return {depth, n, on_other + depth * n, on_other};
+}
+
+/// The manifold along an exit, of points that lie on the piece.
+/// @param own, frame  the piece
+ContactManifold along(const Exit& exit, const Side& side, const UnionFrame& frame, const UnionPiece& own,
+                      double threshold, double slack, ManifoldScratch& scratch) {
+  PenetrationDepth answer;
+  answer.contact = exit.depth > 0 ? ContactClass::overlapping : ContactClass::separated;
+  answer.depth = std::max(exit.depth, 0.0);
+  answer.distance = std::max(-exit.depth, 0.0);
+  answer.normal = side.is_b ? exit.n : Vec3(-exit.n);
+  answer.witness_a = side.is_b ? exit.on_other : exit.on_own;
+  answer.witness_b = side.is_b ? exit.on_own : exit.on_other;
   ContactManifold points =
       side.is_b ? contact_manifold(side.other, side.own, answer, threshold, scratch, DeepestPoint::as_lifted)
                 : contact_manifold(side.own, side.other, answer, threshold, scratch, DeepestPoint::as_lifted);
   for (int i = points.count - 1; i >= 0; --i) {
-    const Vec3 foot = frame.place(side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * n);
+    const Vec3 foot = frame.place(side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * exit.n);
     const bool outside = std::any_of(own.planes.begin(), own.planes.end(),
                                      [&](const Plane& plane) { return plane.height(foot) > 2 * slack; });
     if (outside) drop(points, i);
@@ -180,49 +200,91 @@ class SideRule {
     return true;
   }
 
-  /// @param farthest  set to the other body's point that is the deepest, in the world
-  double depth_along(const Plane& facet, Vec3& farthest) const {
-    farthest = farthest_against(side_.other, cover_.frame().turn_back(facet.normal));
-    return side_.other.shape->margin() + cover_.own().margin - facet.height(cover_.frame().place(farthest));
+  /// Out along a facet of the piece.
+  [[nodiscard]] Exit exit_over(const Plane& facet) const {
+    const Vec3 n = cover_.frame().turn_back(facet.normal);
+    const Vec3 farthest = farthest_against(side_.other, n);
+    const double depth =
+        side_.other.shape->margin() + cover_.own().margin - facet.height(cover_.frame().place(farthest));
+    return exit_along(side_, n, depth, farthest);
+  }
+
+  /// Out against a facet of the other body, a solid polytope.
+  [[nodiscard]] Exit exit_against(int facet) const {
+    const ConvexPolytope& polytope = *side_.other.shape->polytope();
+    const Vec3 against = side_.other.pose.rotation() * polytope.facet_normal(facet);
+    const Vec3 on_facet = side_.other.pose.apply(polytope.vertex(polytope.facet_vertices(facet)[0]));
+    const Vec3 farthest = farthest_against(side_.own, against);
+    const double depth = side_.other.shape->margin() + side_.own.shape->margin() + against.dot(on_facet - farthest);
+    const Vec3 on_own = farthest - side_.own.shape->margin() * against;
+    return {depth, -against, on_own, on_own + depth * against};
+  }
+
+  ContactManifold manifold_along(const Exit& exit) {
+    return along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, buffers_.manifold);
   }
 
   ContactManifold turned(const Plane& facet) {
-    Vec3 farthest;
-    const double depth = depth_along(facet, farthest);
-    if (depth < -threshold_) return {};
-    return along_facet(side_, cover_.frame(), facet, depth, farthest, threshold_, slack_, cover_.own(),
-                       buffers_.manifold);
+    const Exit exit = exit_over(facet);
+    return exit.depth < -threshold_ ? ContactManifold() : manifold_along(exit);
   }
 
-  /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach.
+  /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach. Of
+  /// solids that are in each other and have none, also along one that the other body reaches through beside it, or
+  /// against one of the other body's.
   ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
     const UnionPiece& own = cover_.own();
     std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
     facets.clear();
     const double limit = std::max(4 * depth, window_);
     const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
-    Vec3 farthest;
     for (int f = 0; f < count; ++f) {
       const Plane& facet = own.planes[static_cast<std::size_t>(f)];
       if (facet.normal.dot(n) >= 1 - kSameNormal || facet.normal.dot(side_.front) < 0) continue;
-      const double along = depth_along(facet, farthest);
-      if (along < -threshold_) return {};  // apart along a facet: nothing of this piece is near
-      if (along <= limit) facets.emplace_back(along, f);
+      const double far = exit_over(facet).depth;
+      if (far < -threshold_) return {};  // apart along a facet: nothing of this piece is near
+      if (far <= kBeside * limit) facets.emplace_back(far, f);
     }
     std::sort(facets.begin(), facets.end());
     bool looked = own.flat;
-    for (int i = 0; i < std::min(kTries, static_cast<int>(facets.size())); ++i) {
-      const auto f = static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second);
-      if (cover_.is_sealed(f)) continue;
-      const Plane& facet = own.planes[f];
-      ContactManifold points = turned(facet);
+    const auto within =
+        std::partition_point(facets.begin(), facets.end(), [&](const auto& facet) { return facet.first <= limit; });
+    ContactManifold points = first_free({facets.begin(), within}, foot, looked);
+    const ConvexPolytope* const other = side_.other.shape->polytope();
+    const bool solids = !own.flat && other != nullptr && other->affine_dimension() == 3;
+    if (points.count > 0 || !solids || depth < kSunk * threshold_) return points;
+    facets.erase(facets.begin(), within);
+    const Vec3 outward = cover_.frame().turn_back(n);
+    for (int f = 0; f < other->num_facets(); ++f) {
+      const Exit exit = exit_against(f);
+      if (exit.depth < -threshold_) return {};
+      if (exit.depth > kBeside * limit || exit.n.dot(outward) >= 1 - kSameNormal) continue;
+      facets.emplace_back(exit.depth, count + f);
+    }
+    std::sort(facets.begin(), facets.end());
+    points = first_free(facets, foot, looked);
+    return points.count > 0 && deepest_of(points) <= limit ? points : ContactManifold();
+  }
+
+  /// The points along the first of these exits, by depth, where any is not covered.
+  /// @param facets  from the piece's number of facets on, those of the other body
+  ContactManifold first_free(std::span<const std::pair<double, int>> facets, const Vec3& foot, bool& looked) {
+    const UnionPiece& own = cover_.own();
+    const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
+    for (std::size_t i = 0; i < std::min(kTries, facets.size()); ++i) {
+      const int f = facets[i].second;
+      if (f < count && cover_.is_sealed(static_cast<std::size_t>(f))) continue;
+      const Exit exit = f < count ? exit_over(own.planes[static_cast<std::size_t>(f)]) : exit_against(f - count);
+      const Vec3 along = f < count ? own.planes[static_cast<std::size_t>(f)].normal : cover_.frame().turn(exit.n);
+      ContactManifold points = manifold_along(exit);
       if (points.count > 0 && !looked) {
         cover_.look_round(foot, Vec3::Zero());
         looked = true;
       }
       for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
-        const Vec3 on_core = foot_of(points.points[static_cast<std::size_t>(k)], facet.normal);
-        if (cover_.covered(on_core, facet.normal) > kDecided) drop(points, k);
+        if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(k)], along), along) > kDecided) {
+          drop(points, k);
+        }
       }
       if (points.count > 0) return points;
     }
@@ -299,8 +361,9 @@ ContactManifold along_front(const btCollisionObjectWrapper& triangle, const Pair
   const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];
   const Vec3 farthest = farthest_against(answer.a, side.normal);
   const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
-  return along_facet({triangle, answer.b, answer.a, true, front}, {}, side, depth, farthest, threshold,
-                     seam_slack(answer.a, answer.b), own, buffers.manifold);
+  const Side sides{triangle, answer.b, answer.a, true, front};
+  return along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, threshold,
+               seam_slack(answer.a, answer.b), buffers.manifold);
 }
 
 }  // namespace pd::detail
