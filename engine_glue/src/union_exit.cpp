@@ -89,16 +89,28 @@ void UnionExit::begin(std::span<const PosedShape> a, std::span<const PosedShape>
   queue_.clear();
   words_ = (a.size() * b.size() + 63) / 64;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const Extent extent_a = extent_of(a[i]);
+    const Extent extent = extent_of(a[i]);
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const Extent extent_b = extent_of(b[j]);
       slack_ = std::max(slack_, seam_slack(a[i], b[j]));
-      const Piece piece{i, j, extent_b.low - extent_a.high, extent_b.high - extent_a.low};
-      const Vec3 nearest = piece.low.cwiseMax(Vec3::Zero()) + piece.high.cwiseMin(Vec3::Zero());
-      push({nearest.norm(), 0, pieces_.size()});
-      pieces_.push_back(piece);
+      pieces_.push_back({i, j, -extent.high, -extent.low});
     }
   }
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    const Extent extent = extent_of(b[j]);
+    for (std::size_t k = j; k < pieces_.size(); k += b.size()) {
+      pieces_[k].low += extent.low;
+      pieces_[k].high += extent.high;
+    }
+  }
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    const Vec3 nearest = pieces_[k].low.cwiseMax(Vec3::Zero()) + pieces_[k].high.cwiseMin(Vec3::Zero());
+    push_piece(nearest.norm(), k);
+  }
+}
+
+void UnionExit::push_piece(double distance, std::size_t number) {
+  // It may cover what is nearer than itself by a seam.
+  push({std::max(distance - kSeam * slack_, 0.0), 0, number});
 }
 
 void UnionExit::measure(std::size_t number) {
@@ -113,8 +125,9 @@ void UnionExit::measure(std::size_t number) {
   const bool apart = depth.contact == ContactClass::separated;
   const double least = margins + (apart ? depth.distance_lower : -depth.upper);
   const double most = margins + (apart ? depth.distance_upper : -depth.lower);
-  inside_one_ = inside_one_ || most < -slack_;
-  push({std::max({least, -most, 0.0}), 0, number});
+  piece.depth = std::max(-most, 0.0);
+  inside_one_ = inside_one_ || piece.depth > slack_;
+  push_piece(std::max(least, -most), number);
 }
 
 bool UnionExit::build(std::size_t number) {
@@ -152,26 +165,13 @@ void UnionExit::push_part(const std::vector<Vec3>& polygon, std::size_t piece, s
   corners_.insert(corners_.end(), polygon.begin(), polygon.end());
 }
 
-double UnionExit::depth_in(const Piece& piece, const Vec3& x, const Vec3& n) const {
-  double least = std::numeric_limits<double>::infinity();
+bool UnionExit::covered_by(const Piece& piece, const Vec3& x, const Vec3& n) const {
   for (std::size_t f = piece.first; f < piece.first + piece.count; ++f) {
-    const Facet& facet = facets_[f];
     // A facet that lies on this one and looks the same way does not lead on; one that faces it does.
-    const double depth = facet.offset - facet.normal.dot(x) + slack_ * (1 - (kSeam - 1) * facet.normal.dot(n));
-    if (depth < 0) return -1;
-    least = std::min(least, depth);
+    const Facet& facet = facets_[f];
+    if (facet.normal.dot(x) > facet.offset + slack_ * (1 - (kSeam - 1) * facet.normal.dot(n))) return false;
   }
-  return piece.count > 0 ? least : -1;
-}
-
-bool UnionExit::may_hold(const Piece& piece, const Vec3& x) const {
-  const PosedShape &a = a_[piece.a], &b = b_[piece.b];
-  DepthSettings settings;
-  settings.bracket = Bracket::contact;
-  settings.contact_tolerance = slack_;
-  settings.beyond = kSeam * slack_;
-  const PosedShape moved{a.shape, Pose::from_trusted_matrix(a.pose.rotation(), a.pose.translation() + x)};
-  return penetration_depth(moved, b, *scratch_, settings).distance_lower <= settings.beyond;
+  return piece.count > 0;
 }
 
 bool UnionExit::find_cover(const Waiting& part, std::optional<std::size_t>& cover) {
@@ -183,21 +183,20 @@ bool UnionExit::find_cover(const Waiting& part, std::optional<std::size_t>& cove
     return (sets_[part.clipped + k / 64] >> (k % 64) & 1) == 0 && (x - piece.high).maxCoeff() <= kSeam * slack_ &&
            (piece.low - x).maxCoeff() <= kSeam * slack_;
   };
-  double deepest = -1;
-  const auto offer = [&](std::size_t k) {
-    const double depth = depth_in(pieces_[k], x, n);
-    if (depth <= deepest) return;
-    deepest = depth;
-    cover = k;
-  };
-  for (const std::size_t k : built_) {
-    if (near(k)) offer(k);
+  const auto covers = [&](std::size_t k) { return near(k) && covered_by(pieces_[k], x, n); };
+  // What covers one facet covers its neighbours.
+  const auto found = std::find_if(built_.begin(), built_.end(), covers);
+  if (found != built_.end()) {
+    cover = *found;
+    std::rotate(built_.begin(), found, found + 1);
+    return true;
   }
-  // Most of what is not built holds nothing that matters.
+  // What is not built yet lies farther than x, or holds the ball to x and beyond.
+  const double far = x.norm();
   for (std::size_t k = 0; k < pieces_.size() && !cover; ++k) {
-    if (pieces_[k].built || !near(k) || !may_hold(pieces_[k], x)) continue;
+    if (pieces_[k].built || pieces_[k].depth <= far || !near(k)) continue;
     if (!build(k)) return false;
-    offer(k);
+    if (covers(k)) cover = k;
   }
   return true;
 }

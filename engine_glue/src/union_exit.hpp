@@ -55,6 +55,7 @@ class UnionExit {
     std::size_t b;
     Vec3 low;  ///< a box that holds it
     Vec3 high;
+    double depth = 0;  ///< once it is measured: it holds the ball of this radius about the origin
     bool measured = false;
     bool built = false;
     std::size_t first = 0;  ///< of its facets
@@ -80,16 +81,15 @@ class UnionExit {
   bool build(std::size_t piece);
   /// Lets a facet's polygon wait.
   void push_part(const std::vector<Vec3>& polygon, std::size_t piece, std::size_t facet, std::size_t clipped);
+  /// Lets a piece wait that is so far away or deep.
+  void push_piece(double distance, std::size_t piece);
   void push(Waiting waiting);
   Waiting pop();
-  /// A piece that holds the part's nearest point, leads on from there and was not cut out, the deepest of those that
-  /// are built; nothing: there is none.
+  /// A piece that holds the part's nearest point, leads on from there and was not cut out; nothing: there is none.
   /// @return false beyond the budget
   bool find_cover(const Waiting& part, std::optional<std::size_t>& cover);
-  /// Whether a piece that is not built holds x, as far as is worth knowing.
-  [[nodiscard]] bool may_hold(const Piece& piece, const Vec3& x) const;
-  /// How far a point of a facet lies in a piece, and would if it went on along the facet's normal; < 0: it does not.
-  [[nodiscard]] double depth_in(const Piece& piece, const Vec3& x, const Vec3& n) const;
+  /// Whether a piece holds a point of a facet and leads on along the facet's normal.
+  [[nodiscard]] bool covered_by(const Piece& piece, const Vec3& x, const Vec3& n) const;
   /// Lets what a piece leaves of the part wait.
   void cut(const Waiting& part, std::size_t piece);
 
@@ -102,7 +102,7 @@ class UnionExit {
   std::int64_t order_ = 0;
   std::size_t words_ = 0;  ///< of a set of pieces
   std::vector<Piece> pieces_;
-  std::vector<std::size_t> built_;
+  std::vector<std::size_t> built_;  ///< what covered last comes first
   std::vector<Facet> facets_;
   std::vector<Vec3> corners_;
   std::vector<std::uint64_t> sets_;
