@@ -4,6 +4,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -62,7 +63,15 @@ CompoundFacts::Child& CompoundFacts::compared(const btCompoundShape& compound, K
   child.place = compound.getChildTransform(number);
   child.piece.planes.clear();
   source.getAabb(child.place, child.lower, child.upper);
-  if (child.shape && child.shape->body) set_solid(*taken_of(*child.shape), to_pd(child.place), child.piece);
+  child.corners.clear();
+  if (!child.shape || !child.shape->body) return child;
+  const ConvexShape& shape = *taken_of(*child.shape);
+  const Pose place = to_pd(child.place);
+  set_solid(shape, place, child.piece);
+  if (child.piece.planes.empty()) return child;
+  for (int v = 0; v < shape.polytope()->num_vertices(); ++v) {
+    child.corners.push_back(place.apply(shape.polytope()->vertex(v)));
+  }
   return child;
 }
 
@@ -100,16 +109,38 @@ bool CompoundFacts::sealed(const btCompoundShape& compound, int number, std::siz
   Known& known = known_of(compound);
   Child& child = surrounded(compound, known, number, core);
   if (facet >= child.facets.size()) return false;
-  if (child.facets[facet] == Seal::unknown) {
-    child.facets[facet] = find_seal(compound, known, number, facet, core) ? Seal::sealed : Seal::open;
-  }
-  return child.facets[facet] == Seal::sealed;
+  Seal& seal = child.facets[facet];
+  if (seal == Seal::unknown) seal = find_seal(compound, known, number, facet, core) ? Seal::sealed : Seal::open;
+  return seal == Seal::sealed;
 }
 
 const std::vector<int>* CompoundFacts::neighbours(const btCompoundShape& compound, int number, double reach,
                                                   SolverCore& core) {
   const Child& own = surrounded(compound, known_of(compound), number, core);
   return reach <= 0.5 * static_cast<double>(reach_of(own.lower, own.upper)) ? &own.neighbours : nullptr;
+}
+
+bool CompoundFacts::rising_near(const btCompoundShape& compound, int number, const Vec3& point, const Vec3& n,
+                                double level, double reach, double slack, SolverCore& core, std::vector<int>& rising) {
+  Known& known = known_of(compound);
+  const Child& own = surrounded(compound, known, number, core);
+  if (slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return false;
+  rising.clear();
+  for (const int i : own.neighbours) {
+    const Child& other = known.children[static_cast<std::size_t>(i)];
+    if (other.piece.planes.empty()) {
+      if (!other.source->isConvex()) rising.push_back(i);
+      continue;
+    }
+    const double level_of_core = level - other.piece.margin;
+    const auto rises = [&](const Vec3& corner) { return n.dot(corner) > level_of_core; };
+    if (std::none_of(other.corners.begin(), other.corners.end(), rises)) continue;
+    // Surfaces lie flush, not cores, where margins differ.
+    const double far = reach + std::abs(own.piece.margin - other.piece.margin);
+    const auto parts = [&](const Plane& plane) { return plane.height(point) > far; };
+    if (std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts)) rising.push_back(i);
+  }
+  return true;
 }
 
 bool CompoundFacts::find_seal(const btCompoundShape& compound, Known& known, int number, std::size_t facet,
@@ -119,15 +150,12 @@ bool CompoundFacts::find_seal(const btCompoundShape& compound, Known& known, int
   const PosedShape posed{&shape, to_pd(own.place)};
   const Vec3& n = own.piece.planes[facet].normal;
   const double slack = 0.5 * seam_slack(posed, posed);
-  corners_.clear();
-  for (const auto v : shape.polytope()->facet_vertices(static_cast<int>(facet))) {
-    corners_.push_back(posed.pose.apply(shape.polytope()->vertex(v)));
-  }
+  const auto corners = shape.polytope()->facet_vertices(static_cast<int>(facet));
   const auto covers = [&](const Child& other) {
     if (other.piece.planes.empty()) return false;
     const double up = own.piece.margin - other.piece.margin;
-    return std::all_of(corners_.begin(), corners_.end(), [&](const Vec3& corner) {
-      const Vec3 level = corner + up * n;
+    return std::all_of(corners.begin(), corners.end(), [&](auto corner) {
+      const Vec3 level = own.corners[static_cast<std::size_t>(corner)] + up * n;
       return covered_sine(other.piece, level, n, slack, kBeyondDoubt, active_) > kDecided;
     });
   };

@@ -1,6 +1,6 @@
 /// @file
-/// What the children of a compound are to each other: which touch, and which facets lie inside, where one other child
-/// covers all of them, so that no contact leads out over them.
+/// What the children of a compound are to each other: which touch, which rise beyond a contact of another one, and
+/// which facets lie inside, where one other child covers all of them, so that no contact leads out over them.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -47,10 +47,18 @@ class CompoundFacts {
   [[nodiscard]] const std::vector<int>* neighbours(const btCompoundShape& compound, int child, double reach,
                                                    SolverCore& core);
 
-  /// What a child was converted to, of this step; null where it is not convex.
-  [[nodiscard]] const CachedShape* shape_of(const btCompoundShape& compound, int child, SolverCore& core) {
-    Known& known = known_of(compound);
-    return compared(compound, known, child, core).shape.get();
+  /// The children that could cover what this one touches another body with: of those as above the ones that come within
+  /// `reach` of a point of its core and rise beyond a level along n. Most contacts have none.
+  /// @param point  in the compound's frame; n: unit, in that frame, outward
+  /// @param slack  as the reach of `neighbours`
+  /// @param rising  set to them, by number
+  /// @return false, and nothing set, where they are not known
+  bool rising_near(const btCompoundShape& compound, int child, const Vec3& point, const Vec3& n, double level,
+                   double reach, double slack, SolverCore& core, std::vector<int>& rising);
+
+  /// A child as planes in the compound's frame, as it is in this step; no planes where it is no solid polytope.
+  [[nodiscard]] const UnionPiece& piece_of(const btCompoundShape& compound, int child, SolverCore& core) {
+    return compared(compound, known_of(compound), child, core).piece;
   }
 
  private:
@@ -62,7 +70,8 @@ class CompoundFacts {
     const btCollisionShape* source = nullptr;
     btTransform place;
     std::shared_ptr<CachedShape> shape;
-    UnionPiece piece;  ///< in the compound's frame
+    UnionPiece piece;           ///< in the compound's frame
+    std::vector<Vec3> corners;  ///< of the piece
     btVector3 lower;
     btVector3 upper;
     std::vector<Seal> facets;
@@ -82,7 +91,6 @@ class CompoundFacts {
   bool find_seal(const btCompoundShape& compound, Known& known, int child, std::size_t facet, SolverCore& core);
 
   std::unordered_map<const btCompoundShape*, Known> compounds_;
-  std::vector<Vec3> corners_;
   std::vector<const Plane*> active_;
   std::uint64_t stamp_ = 0;
   std::uint64_t visit_ = 0;

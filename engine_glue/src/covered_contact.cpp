@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "lazy_points.hpp"
 #include "moving_body.hpp"
@@ -14,35 +15,14 @@ namespace pd::detail {
 
 namespace {
 
-/// A normal nearer to a facet's than this (1 - cosine, about 1e-5 rad) is that facet's.
-constexpr double kSameNormal = 1e-10;
 /// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
 constexpr double kNearNormal = 0.9;
-/// A sine that is more than kDecided also where it was found another way.
-constexpr double kLedOn = (1 + 1e-6) * kDecided;
-/// From so many on, what a facet inside of them is known for spares a search.
-constexpr int kManyChildren = 4;
 /// Facets tried in place of a covered one.
-constexpr int kTries = 4;
-
-/// One of the pair's two bodies as a piece of its union, and the other that touches it.
-struct Side {
-  const btCollisionObjectWrapper& wrapper;
-  PosedShape own;
-  PosedShape other;
-  bool is_b;
-  Vec3 front = Vec3::Zero();  ///< the only side of a triangle, zero: both
-  /// From the piece outward, for the answer's normal.
-  [[nodiscard]] Vec3 outward(const Vec3& normal) const { return is_b ? normal : Vec3(-normal); }
-  [[nodiscard]] const Vec3& on_piece(const ContactPoint& point) const {
-    return is_b ? point.position_b : point.position_a;
-  }
-};
-
-bool is_flat(const PosedShape& body) {
-  const ConvexPolytope* polytope = body.shape->polytope();
-  return polytope != nullptr && polytope->affine_dimension() == 2;
-}
+constexpr std::size_t kTries = 4;
+/// Of the reach of exits: the other body may stand so far through the plane of one, beside it.
+constexpr double kBeside = 4;
+/// Of the gap up to which there are contacts: what is in each other by less may wait for a step.
+constexpr double kSunk = 1.0 / 16;
 
 /// Least <x, n> over a core.
 Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
@@ -85,184 +65,46 @@ Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
   return rotation * local + shape.pose.translation();
 }
 
-class Cover {
- public:
-  Cover(const Side& side, double slack, double window, std::uint64_t stamp, SolverCore& core, CoverBuffers& buffers)
-      : wrapper_(side.wrapper),
-        own_(side.own),
-        slack_(slack),
-        window_(window),
-        stamp_(stamp),
-        core_(core),
-        buffers_(buffers) {}
-
-  /// Whether the piece is one of many children of a body's compound.
-  [[nodiscard]] bool of_many() const {
-    const btCollisionObjectWrapper* parent = wrapper_.m_parent;
-    return parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isCompound() &&
-           static_cast<const btCompoundShape*>(parent->getCollisionShape())->getNumChildShapes() > kManyChildren;
-  }
-
-  /// Sets the piece at hand: one that is kept, or made anew.
-  void take_own() {
-    UnionPiece* const kept = buffers_.near.kept(wrapper_, core_);
-    const bool known = kept != nullptr && !kept->planes.empty();
-    buffers_.own = known ? kept : &buffers_.made;
-    if (!known) set_piece(own_, buffers_.made);
-  }
-
-  /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
-  /// @return whether there is anything
-  bool look_round(const Vec3& foot, double margin, const Vec3& n) {
-    // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
-    const double reach = 1.5 * window_ + slack_;
-    const Beyond beyond{n, n.dot(foot) + margin + 2 * slack_};
-    buffers_.near.forget_made();
-    buffers_.near.find(wrapper_, foot, reach, slack_, n.isZero(0) ? nullptr : &beyond, stamp_, core_, buffers_.found);
-    return !buffers_.found.empty();
-  }
-
-  /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
-  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no
-  /// more is found out than whether it is kDecided.
-  double covered(Vec3 foot, const Vec3& n) {
-    const Touched touched = touched_at(foot, n);
-    if (!touched.any) return -1;
-    double least = kBeyondDoubt;
-    if (touched.facet < 0) {
-      least = std::min(least, most_covered(foot, n, least));
-      if (least <= 0) return least;
-    }
-    set_feature(touched, foot, n);
-    if (buffers_.feature.empty() && touched.facet >= 0) return -1;
-    for (const Vec3& corner : buffers_.feature) {
-      least = std::min(least, most_covered(corner, n, least));
-      if (least <= (touched.facet >= 0 ? kDecided : 0)) break;
-    }
-    return least;
-  }
-
-  /// Whether the feature of the triangle at hand at `foot` is covered beyond doubt by the triangle next to it.
-  [[nodiscard]] bool led_on_by_neighbour(const Vec3& foot, const Vec3& n) const {
-    return buffers_.near.neighbour_leads_on(*buffers_.own, foot, n, kLedOn, 2 * slack_);
-  }
-
-  /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
-  [[nodiscard]] bool is_sealed(std::size_t facet) const {
-    if (buffers_.own == &buffers_.made || !of_many()) return false;
-    return buffers_.near.facts().sealed(static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()),
-                                        wrapper_.m_index, facet, core_);
-  }
-
- private:
-  /// What of the piece touches a point.
-  struct Touched {
-    bool any = false;
-    int facet = -1;  ///< that of the normal asked for
-    const Plane* first = nullptr;
-    const Plane* second = nullptr;
-    int count = 0;
-  };
-
-  /// The largest sine of all pieces near at a point of this one's core, or one that is enough.
-  double most_covered(const Vec3& point, const Vec3& n, double enough) {
-    double most = -1;
-    for (const UnionPiece* near : buffers_.found) {
-      if (most >= enough) break;
-      const UnionPiece& piece = *near;
-      // Surfaces lie flush, not cores, where margins differ.
-      const Vec3 level = point + (buffers_.own->margin - piece.margin) * n;
-      most = std::max(most, covered_sine(piece, level, n, slack_, enough, buffers_.active));
-    }
-    return most;
-  }
-
-  /// @param foot  moved into the piece, and on the facet if there is one
-  Touched touched_at(Vec3& foot, const Vec3& n) const {
-    const std::vector<Plane>& planes = buffers_.own->planes;
-    Touched touched;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const Plane& plane = planes[i];
-      const double height = plane.height(foot);
-      if (height > 2 * slack_) return {};
-      // The edges of a triangle are no facets.
-      if (!buffers_.own->flat && plane.normal.dot(n) >= 1 - kSameNormal) touched.facet = static_cast<int>(i);
-      if (height < -2 * slack_) continue;
-      if (touched.count == 0) touched.first = &plane;
-      if (touched.count == 1) touched.second = &plane;
-      ++touched.count;
-    }
-    touched.any = true;
-    for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
-    if (touched.facet >= 0) {
-      const Plane& facet = planes[static_cast<std::size_t>(touched.facet)];
-      foot -= facet.height(foot) * facet.normal;
-    }
-    return touched;
-  }
-
-  /// The part of the feature within the window, by its corners. They lie in the piece up to half the slack, so that a
-  /// flush neighbour holds them.
-  void set_feature(const Touched& touched, const Vec3& foot, const Vec3& n) {
-    std::vector<Vec3>& feature = buffers_.feature;
-    feature.clear();
-    const bool flat = buffers_.own->flat;
-    if (touched.facet >= 0) {
-      const Vec3 u = n.unitOrthogonal() * window_;
-      const Vec3 w = n.cross(u);
-      feature = {foot + u + w, foot - u + w, foot - u - w, foot + u - w};
-      clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
-      return;
-    }
-    // Of a triangle, its two sides and one edge; of a solid, two facets.
-    if (touched.count != (flat ? 3 : 2)) return;
-    const Plane* second = flat ? edge_of_triangle(foot) : touched.second;
-    Vec3 along = second != nullptr ? Vec3(touched.first->normal.cross(second->normal)) : Vec3(Vec3::Zero());
-    if (along.norm() <= kLevel) return;
-    along *= window_ / along.norm();
-    feature = {foot - along, foot + along};
-    clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
-  }
-
-  const Plane* edge_of_triangle(const Vec3& foot) const {
-    const std::vector<Plane>& planes = buffers_.own->planes;
-    for (std::size_t i = 2; i < planes.size(); ++i) {
-      if (planes[i].height(foot) >= -2 * slack_) return &planes[i];
-    }
-    return nullptr;
-  }
-
-  const btCollisionObjectWrapper& wrapper_;
-  const PosedShape& own_;
-  double slack_;
-  double window_;
-  std::uint64_t stamp_;
-  SolverCore& core_;
-  CoverBuffers& buffers_;
-};
+double deepest_of(const ContactManifold& points) {
+  double deepest = points.points[0].depth;
+  for (int i = 1; i < points.count; ++i) deepest = std::max(deepest, points.points[static_cast<std::size_t>(i)].depth);
+  return deepest;
+}
 
 void drop(ContactManifold& points, int i) {
   --points.count;
   points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];
 }
 
-/// The manifold along one facet of the piece, of points that lie on it.
-ContactManifold along_facet(const Side& side, const Plane& facet, double depth, const Vec3& farthest, double threshold,
-                            double slack, const UnionPiece& own, ManifoldScratch& scratch) {
+/// A way out for the piece's side of a pair: along a facet of the piece or against one of the other body.
+struct Exit {
+  double depth = 0;
+  Vec3 n = Vec3::UnitX();      ///< unit, from the piece outward, in the world
+  Vec3 on_own = Vec3::Zero();  ///< points of both surfaces, in the world
+  Vec3 on_other = Vec3::Zero();
+};
+
+Exit exit_along(const Side& side, const Vec3& n, double depth, const Vec3& farthest) {
+  const Vec3 on_other = farthest - side.other.shape->margin() * n;
+  return {depth, n, on_other + depth * n, on_other};
+}
+
+/// The manifold along an exit, of points that lie on the piece.
+/// @param own, frame  the piece
+ContactManifold along(const Exit& exit, const Side& side, const UnionFrame& frame, const UnionPiece& own,
+                      double threshold, double slack, ManifoldScratch& scratch) {
   PenetrationDepth answer;
-  answer.contact = depth > 0 ? ContactClass::overlapping : ContactClass::separated;
-  answer.depth = std::max(depth, 0.0);
-  answer.distance = std::max(-depth, 0.0);
-  answer.normal = side.is_b ? facet.normal : Vec3(-facet.normal);
-  const Vec3 on_other = farthest - side.other.shape->margin() * facet.normal;
-  const Vec3 on_own = on_other + depth * facet.normal;
-  answer.witness_a = side.is_b ? on_other : on_own;
-  answer.witness_b = side.is_b ? on_own : on_other;
+  answer.contact = exit.depth > 0 ? ContactClass::overlapping : ContactClass::separated;
+  answer.depth = std::max(exit.depth, 0.0);
+  answer.distance = std::max(-exit.depth, 0.0);
+  answer.normal = side.is_b ? exit.n : Vec3(-exit.n);
+  answer.witness_a = side.is_b ? exit.on_other : exit.on_own;
+  answer.witness_b = side.is_b ? exit.on_own : exit.on_other;
   ContactManifold points =
       side.is_b ? contact_manifold(side.other, side.own, answer, threshold, scratch, DeepestPoint::as_lifted)
                 : contact_manifold(side.own, side.other, answer, threshold, scratch, DeepestPoint::as_lifted);
   for (int i = points.count - 1; i >= 0; --i) {
-    const Vec3 foot = side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * facet.normal;
+    const Vec3 foot = frame.place(side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * exit.n);
     const bool outside = std::any_of(own.planes.begin(), own.planes.end(),
                                      [&](const Plane& plane) { return plane.height(foot) > 2 * slack; });
     if (outside) drop(points, i);
@@ -284,16 +126,15 @@ class SideRule {
 
   /// @return whether `points` was changed
   bool apply(double depth, const Vec3& witness, LazyPoints& points) {
-    const Vec3 n = side_.outward(points.normal());
-    if (pushes_from_triangle(n)) return false;
-    const double margin = side_.own.shape->margin();
-    const Vec3 foot = witness - margin * n;
-    // Of few pieces, most have none near that could cover.
-    const bool seals = cover_.of_many();
-    if (!seals && !is_flat(side_.own) && !cover_.look_round(foot, margin, n)) return false;
+    const Vec3 outward = side_.outward(points.normal());
+    if (pushes_from_triangle(outward)) return false;
     cover_.take_own();
-    const UnionPiece& own = *buffers_.cover.own;
+    const UnionPiece& own = cover_.own();
     if (own.planes.empty()) return false;
+    const Vec3 n = cover_.frame().turn(outward);
+    const Vec3 foot = cover_.frame().place(witness - own.margin * outward);
+    // Most have nothing near that could cover.
+    if (!own.flat && !cover_.look_round(foot, n)) return false;
     const auto best =
         std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
                          [&](const Plane& x, const Plane& y) { return x.normal.dot(n) < y.normal.dot(n); });
@@ -303,11 +144,10 @@ class SideRule {
       points.set(nearest_free(n, depth, foot));
       return true;
     }
-    if (seals && !cover_.look_round(foot, margin, n)) return false;
     if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points.get());
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;
-    if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(n))) return false;
+    if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(outward))) return false;
     points.set(own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot));
     return true;
   }
@@ -334,66 +174,117 @@ class SideRule {
   /// A contact in the middle of a triangle that does not push along its normal is the triangle's own: what lies round
   /// it is not looked for.
   double covered_here(const Vec3& foot, const Vec3& n) {
-    const UnionPiece& own = *buffers_.cover.own;
+    const UnionPiece& own = cover_.own();
     if (own.flat) {
       const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
       if (own_sine > kDecided) return own_sine;
       if (cover_.led_on_by_neighbour(foot, n)) return kLedOn;
-      cover_.look_round(foot, own.margin, n);
+      cover_.look_round(foot, n);
     }
     return cover_.covered(foot, n);
   }
 
+  /// A point of the piece's core, in the frame.
+  [[nodiscard]] Vec3 foot_of(const ContactPoint& point, const Vec3& n) const {
+    return cover_.frame().place(side_.on_piece(point)) - cover_.own().margin * n;
+  }
+
   /// A solid's facet: each point by itself.
   bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
-    const double margin = buffers_.cover.own->margin;
     const int before = points.count;
     for (int i = points.count - 1; i >= 0; --i) {
-      const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(i)]) - margin * n;
-      if (cover_.covered(on_core, n) > kDecided) drop(points, i);
+      if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(i)], n), n) > kDecided) drop(points, i);
     }
     if (points.count == before) return false;
     if (points.count == 0) points = nearest_free(n, depth, foot);
     return true;
   }
 
-  double depth_along(const Plane& facet, Vec3& farthest) const {
-    farthest = farthest_against(side_.other, facet.normal);
-    return side_.other.shape->margin() + buffers_.cover.own->margin - facet.height(farthest);
+  /// Out along a facet of the piece.
+  [[nodiscard]] Exit exit_over(const Plane& facet) const {
+    const Vec3 n = cover_.frame().turn_back(facet.normal);
+    const Vec3 farthest = farthest_against(side_.other, n);
+    const double depth =
+        side_.other.shape->margin() + cover_.own().margin - facet.height(cover_.frame().place(farthest));
+    return exit_along(side_, n, depth, farthest);
+  }
+
+  /// Out against a facet of the other body, a solid polytope.
+  [[nodiscard]] Exit exit_against(int facet) const {
+    const ConvexPolytope& polytope = *side_.other.shape->polytope();
+    const Vec3 against = side_.other.pose.rotation() * polytope.facet_normal(facet);
+    const Vec3 on_facet = side_.other.pose.apply(polytope.vertex(polytope.facet_vertices(facet)[0]));
+    const Vec3 farthest = farthest_against(side_.own, against);
+    const double depth = side_.other.shape->margin() + side_.own.shape->margin() + against.dot(on_facet - farthest);
+    const Vec3 on_own = farthest - side_.own.shape->margin() * against;
+    return {depth, -against, on_own, on_own + depth * against};
+  }
+
+  ContactManifold manifold_along(const Exit& exit) {
+    return along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, buffers_.manifold);
   }
 
   ContactManifold turned(const Plane& facet) {
-    Vec3 farthest;
-    const double depth = depth_along(facet, farthest);
-    if (depth < -threshold_) return {};
-    return along_facet(side_, facet, depth, farthest, threshold_, slack_, *buffers_.cover.own, buffers_.manifold);
+    const Exit exit = exit_over(facet);
+    return exit.depth < -threshold_ ? ContactManifold() : manifold_along(exit);
   }
 
-  /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach.
+  /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach. Of
+  /// solids that are in each other and have none, also along one that the other body reaches through beside it, or
+  /// against one of the other body's.
   ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
-    const UnionPiece& own = *buffers_.cover.own;
-    if (!own.flat) cover_.look_round(foot, own.margin, Vec3::Zero());
+    const UnionPiece& own = cover_.own();
     std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
     facets.clear();
     const double limit = std::max(4 * depth, window_);
     const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
-    Vec3 farthest;
     for (int f = 0; f < count; ++f) {
       const Plane& facet = own.planes[static_cast<std::size_t>(f)];
       if (facet.normal.dot(n) >= 1 - kSameNormal || facet.normal.dot(side_.front) < 0) continue;
-      const double along = depth_along(facet, farthest);
-      if (along < -threshold_) return {};  // apart along a facet: nothing of this piece is near
-      if (along <= limit) facets.emplace_back(along, f);
+      const double far = exit_over(facet).depth;
+      if (far < -threshold_) return {};  // apart along a facet: nothing of this piece is near
+      if (far <= kBeside * limit) facets.emplace_back(far, f);
     }
     std::sort(facets.begin(), facets.end());
-    for (int i = 0; i < std::min(kTries, static_cast<int>(facets.size())); ++i) {
-      const auto f = static_cast<std::size_t>(facets[static_cast<std::size_t>(i)].second);
-      if (cover_.is_sealed(f)) continue;
-      const Plane& facet = own.planes[f];
-      ContactManifold points = turned(facet);
+    bool looked = own.flat;
+    const auto within =
+        std::partition_point(facets.begin(), facets.end(), [&](const auto& facet) { return facet.first <= limit; });
+    ContactManifold points = first_free({facets.begin(), within}, foot, looked);
+    const ConvexPolytope* const other = side_.other.shape->polytope();
+    const bool solids = !own.flat && other != nullptr && other->affine_dimension() == 3;
+    if (points.count > 0 || !solids || depth < kSunk * threshold_) return points;
+    facets.erase(facets.begin(), within);
+    const Vec3 outward = cover_.frame().turn_back(n);
+    for (int f = 0; f < other->num_facets(); ++f) {
+      const Exit exit = exit_against(f);
+      if (exit.depth < -threshold_) return {};
+      if (exit.depth > kBeside * limit || exit.n.dot(outward) >= 1 - kSameNormal) continue;
+      facets.emplace_back(exit.depth, count + f);
+    }
+    std::sort(facets.begin(), facets.end());
+    points = first_free(facets, foot, looked);
+    return points.count > 0 && deepest_of(points) <= limit ? points : ContactManifold();
+  }
+
+  /// The points along the first of these exits, by depth, where any is not covered.
+  /// @param facets  from the piece's number of facets on, those of the other body
+  ContactManifold first_free(std::span<const std::pair<double, int>> facets, const Vec3& foot, bool& looked) {
+    const UnionPiece& own = cover_.own();
+    const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
+    for (std::size_t i = 0; i < std::min(kTries, facets.size()); ++i) {
+      const int f = facets[i].second;
+      if (f < count && cover_.is_sealed(static_cast<std::size_t>(f))) continue;
+      const Exit exit = f < count ? exit_over(own.planes[static_cast<std::size_t>(f)]) : exit_against(f - count);
+      const Vec3 along = f < count ? own.planes[static_cast<std::size_t>(f)].normal : cover_.frame().turn(exit.n);
+      ContactManifold points = manifold_along(exit);
+      if (points.count > 0 && !looked) {
+        cover_.look_round(foot, Vec3::Zero());
+        looked = true;
+      }
       for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
-        const Vec3 on_core = side_.on_piece(points.points[static_cast<std::size_t>(k)]) - own.margin * facet.normal;
-        if (cover_.covered(on_core, facet.normal) > kDecided) drop(points, k);
+        if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(k)], along), along) > kDecided) {
+          drop(points, k);
+        }
       }
       if (points.count > 0) return points;
     }
@@ -447,17 +338,16 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
 void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
                   double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
                   ContactManifold& points) {
-  const Vec3 n = -points.normal;
-  const double margin = body.shape->margin();
   const double slack = seam_slack(body, body);
   const Side side{a, body, body, false};
   for (int i = points.count - 1; i >= 0; --i) {
     const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
-    const Vec3 foot = point.position_a - margin * n;
     Cover cover(side, slack, window_of(a, b, point.depth, threshold, seconds), stamp, core, buffers.cover);
-    if (!cover.look_round(foot, margin, n)) continue;
     cover.take_own();
-    if (buffers.cover.own->planes.empty() || cover.covered(foot, n) <= kDecided) continue;
+    if (cover.own().planes.empty()) return;
+    const Vec3 n = cover.frame().turn(-points.normal);
+    const Vec3 foot = cover.frame().place(point.position_a) - cover.own().margin * n;
+    if (!cover.look_round(foot, n) || cover.covered(foot, n) <= kDecided) continue;
     drop(points, i);
     buffers.counters.covered.add();
   }
@@ -471,8 +361,9 @@ ContactManifold along_front(const btCollisionObjectWrapper& triangle, const Pair
   const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];
   const Vec3 farthest = farthest_against(answer.a, side.normal);
   const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
-  return along_facet({triangle, answer.b, answer.a, true, front}, side, depth, farthest, threshold,
-                     seam_slack(answer.a, answer.b), own, buffers.manifold);
+  const Side sides{triangle, answer.b, answer.a, true, front};
+  return along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, threshold,
+               seam_slack(answer.a, answer.b), buffers.manifold);
 }
 
 }  // namespace pd::detail

@@ -15,30 +15,15 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 #include <cstdint>
-#include <utility>
-#include <vector>
 
-#include "near_pieces.hpp"
+#include "cover.hpp"
 #include "pd/contact/manifold.hpp"
-#include "union_piece.hpp"
 
 namespace pd::detail {
 
 class SolverCore;
 struct PairAnswer;
 struct ThreadBuffers;
-
-/// Memory of `keep_uncovered`, one a thread.
-struct CoverBuffers {
-  UnionPiece made;          ///< of a piece that `near` does not keep
-  UnionPiece* own = &made;  ///< the piece at hand
-  NearPieces near;
-  std::vector<const UnionPiece*> found;  ///< near the contact
-  std::vector<const Plane*> active;
-  std::vector<Vec3> feature;
-  std::vector<Vec3> spare;
-  std::vector<std::pair<double, int>> facets;
-};
 
 /// Whether `keep_uncovered` is handed the answer's points, or makes them where it needs them: what is turned or dropped
 /// for what lies round it needs none.

@@ -6,11 +6,11 @@
 
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pd/compound/compound_depth.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "solver_core.hpp"
 #include "union_algorithm.hpp"
+#include "union_exit.hpp"
 #include "union_piece.hpp"
 
 namespace pd::detail {
@@ -32,15 +32,6 @@ constexpr int kMostStops = 12;
 /// What one answer may take.
 constexpr std::size_t kMostPairs = 1 << 10;
 constexpr std::int64_t kMostFacets = 1 << 14;
-
-/// Cores as one body in the world.
-std::optional<Compound> union_of_cores(const std::vector<PosedShape>& posed) {
-  std::vector<Compound::Part> parts;
-  for (const PosedShape& child : posed) parts.push_back({ConvexShape(*child.shape->polytope()), child.pose});
-  auto compound = Compound::from_parts(std::move(parts));
-  if (!compound) return std::nullopt;
-  return std::move(compound).value();
-}
 
 /// The child of this number, which is there.
 const Child& child_of(const std::vector<Child>& children, int number) {
@@ -225,9 +216,6 @@ DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore
     last = exit->along;
     return Outcome::nearly;
   }
-  UnionSettings settings;
-  settings.method = UnionMethod::facets;
-  settings.max_facets = kMostFacets;
   // A way of length d meets no child that is farther than d from the other body now.
   for (double reach = 2 * deepest_;;) {
     if (!collect(question.a, question.b, reach, question, core, a_) ||
@@ -235,31 +223,24 @@ DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore
       return Outcome::unsupported;
     }
     if (a_.posed.size() * b_.posed.size() > kMostPairs) return Outcome::over_budget;
-    const std::optional<Compound> a = union_of_cores(a_.posed);
-    const std::optional<Compound> b = union_of_cores(b_.posed);
-    if (!a || !b) return Outcome::unsupported;
-    const auto found =
-        penetration_depth(PosedCompound{&*a, Pose()}, PosedCompound{&*b, Pose()}, buffers.scratch, settings);
-    if (!found) return found.error().code == ErrorCode::limit_exceeded ? Outcome::over_budget : Outcome::unsupported;
-    const UnionDepth& depth = found.value();
-    if (depth.contact != ContactClass::overlapping) return Outcome::apart;
-    if (depth.depth > reach) {
-      reach = 2 * depth.depth;
+    UnionExit::Way shortest;
+    switch (buffers.union_exit.find(a_.posed, b_.posed, kMostFacets, buffers.scratch, shortest)) {
+      case UnionExit::Outcome::over_budget:
+        return Outcome::over_budget;
+      case UnionExit::Outcome::apart:
+        return Outcome::apart;
+      case UnionExit::Outcome::found:
+        break;
+    }
+    const double length = shortest.by.norm();
+    if (!(length > 0)) return Outcome::apart;
+    if (length > reach) {
+      reach = 2 * length;
       continue;
     }
-    last = depth.normal;
-    const auto i = static_cast<std::size_t>(depth.part_a);
-    const auto j = static_cast<std::size_t>(depth.part_b);
-    const double margin_a = a_.posed[i].shape->margin();
-    const double margin_b = b_.posed[j].shape->margin();
-    PenetrationDepth rounded = depth;
-    rounded.witness_a -= margin_a * depth.normal;
-    rounded.witness_b += margin_b * depth.normal;
-    rounded.depth += margin_a + margin_b;
-    way.points = contact_manifold(a_.posed[i], b_.posed[j], rounded, static_cast<double>(question.threshold),
-                                  buffers.manifold, DeepestPoint::as_lifted);
-    way.a = a_.children[i];
-    way.b = b_.children[j];
+    const double margins = a_.posed[shortest.a].shape->margin() + b_.posed[shortest.b].shape->margin();
+    last = shortest.by / length;
+    if (!lead_out({last, length + margins, shortest.a, shortest.b}, question, buffers, way)) return Outcome::apart;
     return Outcome::found;
   }
 }

@@ -2,8 +2,8 @@
 /// Two unions of convex pieces that are deep in each other: out the shortest way of the whole, not torn between pieces.
 ///
 /// A piece that is far inside another union has no answer of its own that holds for the whole: its nearest exits lead
-/// into other pieces, and pairs of pieces push against each other. There the exact depth of the unions
-/// (pd/compound/compound_depth.hpp) answers, within a budget.
+/// into other pieces, and pairs of pieces push against each other. There the shortest way out of the whole
+/// (union_exit.hpp) answers, within a budget.
 #pragma once
 
 #include <memory>
@@ -44,8 +44,7 @@ class DeepUnion {
     unsupported   ///< a child within reach is smooth
   };
   /// The shortest way out of b's cores for a's, all children that it could meet included, or one that is little longer
-  /// (`nearly`); rounded children go on by their margins. Time as said in compound_depth.hpp for the children within
-  /// reach.
+  /// (`nearly`); rounded children go on by their margins. Time as said in union_exit.hpp for the children within reach.
   /// @param last  unit, along which the pair was led out in the last step, or zero; set to the way found
   Outcome find_way(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, Vec3& last, Way& way);
 

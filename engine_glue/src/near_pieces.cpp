@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 #include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -17,14 +18,10 @@ namespace pd::detail {
 
 namespace {
 
-/// Of so few, each is looked at where it is.
-constexpr int kVeryFewChildren = 4;
 /// Of so few triangles, and for so few contacts, each is compared; of more, groups of them, or a large body on a fine
 /// mesh would compare every triangle that it meets with every other.
 constexpr std::size_t kFewTriangles = 128;
 constexpr int kFewContacts = 12;
-/// Compounds of one step that are kept at a time.
-constexpr std::size_t kMostPosedCompounds = 64;
 
 }  // namespace
 
@@ -50,7 +47,7 @@ class NearPieces::TrianglesOf : public btTriangleCallback {
       const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
       if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
     }
-    UnionPiece& piece = list_.next_made().piece;
+    UnionPiece& piece = list_.next_made();
     set_triangle(points, margin_, piece);
     if (piece.planes.empty()) return;
     found_.push_back(&piece);
@@ -66,15 +63,13 @@ class NearPieces::TrianglesOf : public btTriangleCallback {
   NearPieces& list_;
 };
 
-NearPieces::Child& NearPieces::next_made() {
+UnionPiece& NearPieces::next_made() {
   if (num_made_ == made_.size()) made_.emplace_back();
   return made_[num_made_];
 }
 
 void NearPieces::begin_pair(std::uint64_t stamp) {
-  if (stamp == 0 || stamp != stamp_ || num_compounds_ >= kMostPosedCompounds) num_compounds_ = 0;
-  stamp_ = stamp;
-  recent_ = {};
+  frames_[0].body = frames_[1].body = nullptr;
   around_ = nullptr;
   facts_.begin_pair(stamp);
 }
@@ -89,61 +84,31 @@ void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrap
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
 
-NearPieces::PosedCompound& NearPieces::compound_of(const btCollisionObject& body, const btCompoundShape& shape,
-                                                   const btTransform& pose) {
-  for (PosedCompound* recent : recent_) {
-    if (recent != nullptr && recent->body == &body) return *recent;
-  }
-  const auto end = compounds_.begin() + static_cast<std::ptrdiff_t>(num_compounds_);
-  auto found = std::find_if(compounds_.begin(), end, [&](const PosedCompound& known) { return known.body == &body; });
-  const bool known = found != end;
-  if (!known) {
-    if (num_compounds_ == compounds_.size()) compounds_.emplace_back();
-    found = compounds_.begin() + static_cast<std::ptrdiff_t>(num_compounds_++);
-  }
-  PosedCompound& compound = *found;
-  if (!known || compound.shape != &shape || !(compound.pose == pose)) {
-    compound.body = &body;
-    compound.shape = &shape;
-    compound.pose = pose;
-    compound.visit = ++visits_;
-  }
-  const auto count = static_cast<std::size_t>(shape.getNumChildShapes());
-  if (compound.children.size() < count) compound.children.resize(count);
-  recent_ = {&compound, recent_[0]};
-  return compound;
-}
-
-NearPieces::Child& NearPieces::posed_child(PosedCompound& compound, int i) {
-  Child& child = compound.children[static_cast<std::size_t>(i)];
-  if (child.posed != compound.visit) {
-    child.posed = compound.visit;
-    child.pose = compound.pose * compound.shape->getChildTransform(i);
-    compound.shape->getChildShape(i)->getAabb(child.pose, child.lower, child.upper);
-  }
-  return child;
-}
-
-void NearPieces::make(const CachedShape* shape, std::uint64_t visit, Child& child) {
-  if (child.made == visit) return;
-  child.made = visit;
-  child.piece.planes.clear();
-  if (shape == nullptr || !shape->body) return;
-  set_solid(shape->sharp ? *shape->sharp : *shape->body, to_pd(child.pose), child.piece);
-}
-
-UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, SolverCore& core) {
+const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, SolverCore& core) {
   const btCollisionObjectWrapper* parent = piece.m_parent;
-  if (parent == nullptr || parent->m_parent != nullptr) return nullptr;
-  if (parent->getCollisionShape()->isConcave()) return known_piece(piece);
-  if (!parent->getCollisionShape()->isCompound()) return nullptr;
-  PosedCompound& compound =
-      compound_of(*parent->getCollisionObject(), static_cast<const btCompoundShape&>(*parent->getCollisionShape()),
-                  parent->getWorldTransform());
-  if (compound.shape->getChildShape(piece.m_index) != piece.getCollisionShape()) return nullptr;
-  Child& child = posed_child(compound, piece.m_index);
-  make(facts_.shape_of(*compound.shape, piece.m_index, core), compound.visit, child);
-  return &child.piece;
+  if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return world_;
+  const auto& compound = static_cast<const btCompoundShape&>(*parent->getCollisionShape());
+  if (compound.getChildShape(piece.m_index) != piece.getCollisionShape()) return world_;
+  if (facts_.piece_of(compound, piece.m_index, core).planes.empty()) return world_;
+  const btCollisionObject* const body = parent->getCollisionObject();
+  if (frames_[0].body != body) {
+    std::swap(frames_[0], frames_[1]);
+    if (frames_[0].body != body) {
+      frames_[0].body = body;
+      frames_[0].frame = {false, to_pd(parent->getWorldTransform().getBasis()),
+                          to_pd(parent->getWorldTransform().getOrigin())};
+    }
+  }
+  return frames_[0].frame;
+}
+
+const UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, const UnionFrame& frame, SolverCore& core) {
+  const btCollisionObjectWrapper* parent = piece.m_parent;
+  if (!frame.is_world) {
+    return &facts_.piece_of(static_cast<const btCompoundShape&>(*parent->getCollisionShape()), piece.m_index, core);
+  }
+  const bool of_mesh = parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isConcave();
+  return of_mesh ? known_piece(piece) : nullptr;
 }
 
 UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
@@ -154,36 +119,50 @@ UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
 }
 
 void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
-                                  const btCollisionObject* body, const std::vector<int>* among, Search& search) {
-  PosedCompound* known = body != nullptr ? &compound_of(*body, compound, pose) : nullptr;
-  const auto visit = [&](int i) {
-    if (i == except) return;
+                                  Search& search) {
+  for_each_child_meeting(compound, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), [&](int i) {
+    if (i != except) collect(*compound.getChildShape(i), pose * compound.getChildTransform(i), nullptr, search);
+  });
+}
+
+void NearPieces::collect_in_frame(const btCompoundShape& compound, int except, double slack, Search& search) {
+  const auto add = [&](int i) {
     const btCollisionShape& shape = *compound.getChildShape(i);
-    if (known == nullptr || !shape.isConvex()) {
-      collect(shape, pose * compound.getChildTransform(i), nullptr, search);
+    if (!shape.isConvex()) {
+      collect(shape, compound.getChildTransform(i), nullptr, search);
       return;
     }
-    Child& child = posed_child(*known, i);
-    if (!within(child, search)) return;
-    make(facts_.shape_of(compound, i, search.core), known->visit, child);
-    if (!child.piece.planes.empty()) search.found.push_back(&child.piece);
+    const UnionPiece& piece = facts_.piece_of(compound, i, search.core);
+    if (!piece.planes.empty()) search.found.push_back(&piece);
   };
-  if (among != nullptr) {
-    for (const int i : *among) visit(i);
+  const Vec3 centre = to_pd(search.centre);
+  const auto reach = static_cast<double>(search.reach);
+  const Beyond* const beyond = search.beyond;
+  if (beyond != nullptr &&
+      facts_.rising_near(compound, except, centre, beyond->n, beyond->level, reach, 4 * slack, search.core, near_)) {
+    for (const int i : near_) add(i);
+    return;
+  }
+  const auto visit = [&](int i) {
+    if (i == except) return;
+    const UnionPiece& piece = facts_.piece_of(compound, i, search.core);
+    const auto parts = [&](const Plane& plane) { return plane.height(centre) > reach; };
+    if (std::none_of(piece.planes.begin(), piece.planes.end(), parts)) add(i);
+  };
+  if (const auto* neighbours = facts_.neighbours(compound, except, 4 * slack, search.core)) {
+    for (const int i : *neighbours) visit(i);
   } else {
-    for_each_child_meeting(compound, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), visit);
+    for_each_child_meeting(compound, btDbvtVolume::FromCR(search.centre, search.reach), visit);
   }
 }
 
-bool NearPieces::within(const Child& child, const Search& search) {
+bool NearPieces::within(const btVector3& lower, const btVector3& upper, const Search& search) {
   for (int i = 0; i < 3; ++i) {
-    if (child.lower[i] > search.centre[i] + search.reach || child.upper[i] < search.centre[i] - search.reach) {
-      return false;
-    }
+    if (lower[i] > search.centre[i] + search.reach || upper[i] < search.centre[i] - search.reach) return false;
   }
   if (search.beyond == nullptr) return true;
   const Vec3& n = search.beyond->n;
-  const Vec3 far = n.cwiseProduct(to_pd(child.lower)).cwiseMax(n.cwiseProduct(to_pd(child.upper)));
+  const Vec3 far = n.cwiseProduct(to_pd(lower)).cwiseMax(n.cwiseProduct(to_pd(upper)));
   return far.sum() > search.beyond->level;
 }
 
@@ -266,7 +245,7 @@ bool NearPieces::neighbour_leads_on(const UnionPiece& triangle, const Vec3& foot
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                          Search& search) {
   if (shape.isCompound()) {
-    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, nullptr, nullptr, search);
+    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, search);
   } else if (shape.isConcave()) {
     const auto& concave = static_cast<const btConcaveShape&>(shape);
     const btVector3 local = pose.invXform(search.centre);
@@ -280,34 +259,36 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
     concave.processAllTriangles(&triangles, local - extent, local + extent);
   } else if (shape.isConvex()) {
-    Child& child = next_made();
-    child.pose = pose;
-    shape.getAabb(pose, child.lower, child.upper);
-    if (!within(child, search)) return;
-    make(search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp).get(), ++visits_, child);
-    if (child.piece.planes.empty()) return;
-    search.found.push_back(&child.piece);
+    btVector3 lower, upper;
+    shape.getAabb(pose, lower, upper);
+    if (!within(lower, upper, search)) return;
+    const auto found = search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp);
+    if (!found || !found->body) return;
+    UnionPiece& piece = next_made();
+    set_solid(found->sharp ? *found->sharp : *found->body, to_pd(pose), piece);
+    if (piece.planes.empty()) return;
+    search.found.push_back(&piece);
     ++num_made_;
   }
 }
 
-void NearPieces::find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, double slack,
-                      const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+void NearPieces::find(const btCollisionObjectWrapper& piece, const UnionFrame& frame, const Vec3& point, double reach,
+                      double slack, const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
                       std::vector<const UnionPiece*>& found) {
   found.clear();
   Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, found};
+  if (!frame.is_world) {
+    collect_in_frame(static_cast<const btCompoundShape&>(*piece.m_parent->getCollisionShape()), piece.m_index, slack,
+                     search);
+    return;
+  }
   for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
     const btCollisionObjectWrapper& parent = *child->m_parent;
     const btCollisionShape& shape = *parent.getCollisionShape();
     if (shape.isConcave()) {
       collect(shape, parent.getWorldTransform(), child, search);
     } else if (shape.isCompound()) {
-      const auto& compound = static_cast<const btCompoundShape&>(shape);
-      const bool whole = parent.m_parent == nullptr;
-      const bool known = whole && child == &piece && compound.getNumChildShapes() > kVeryFewChildren;
-      collect_children(compound, parent.getWorldTransform(), child->m_index,
-                       whole ? parent.getCollisionObject() : nullptr,
-                       known ? facts_.neighbours(compound, child->m_index, 4 * slack, core) : nullptr, search);
+      collect_children(static_cast<const btCompoundShape&>(shape), parent.getWorldTransform(), child->m_index, search);
     }
   }
 }

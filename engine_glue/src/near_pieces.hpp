@@ -28,24 +28,43 @@ struct Beyond {
   double level;
 };
 
-/// Finds pieces, and keeps the children of a step's compounds in place once they were looked at: its contacts ask for
-/// the same few, again and again.
+/// Where the pieces of a union are looked at: the children of a body's compound in its frame, in which they stand still
+/// from step to step; all others in the world.
+struct UnionFrame {
+  bool is_world = true;
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();
+  [[nodiscard]] Vec3 place(const Vec3& point) const {
+    return is_world ? point : Vec3(rotation.transpose() * (point - translation));
+  }
+  [[nodiscard]] Vec3 turn(const Vec3& direction) const {
+    return is_world ? direction : Vec3(rotation.transpose() * direction);
+  }
+  [[nodiscard]] Vec3 turn_back(const Vec3& direction) const {
+    return is_world ? direction : Vec3(rotation * direction);
+  }
+};
+
+/// Finds the pieces of a union near one of them.
 class NearPieces {
  public:
-  /// To be called for each pair in each step: what belongs to another step is forgotten, and what has moved since.
-  /// @param stamp  of this step, 0: unknown, so that nothing is kept
+  /// To be called for each pair in each step.
+  /// @param stamp  of this step, 0: unknown, so that what is known of compounds is compared again
   void begin_pair(std::uint64_t stamp);
   /// The triangles of a mesh that were read for the pair at hand: those near are taken from them where they are enough.
   void know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh);
 
-  /// The other pieces of the union that come within `reach` of a point of this piece, in world coordinates, and within
-  /// `slack` of the piece itself, which is not looked at closely. Compounds in compounds
-  /// and meshes in compounds included; curved parts are left out, since contacts inside of them do not arise from
-  /// seams.
+  /// Where the union of a piece is looked at. Valid until the next pair.
+  [[nodiscard]] const UnionFrame& frame_of(const btCollisionObjectWrapper& piece, SolverCore& core);
+
+  /// The other pieces of the union that come within `reach` of a point of this one, and within `slack` of the piece
+  /// itself, which is not looked at closely; all in the piece's frame. Compounds in compounds and meshes in compounds
+  /// included; curved parts are left out, since contacts inside of them do not arise from seams.
   /// @param beyond  null, or: pieces whose surface does not come beyond it are left out
   /// @param found  valid until `forget_made` or the next pair
-  void find(const btCollisionObjectWrapper& piece, const Vec3& point, double reach, double slack, const Beyond* beyond,
-            std::uint64_t stamp, SolverCore& core, std::vector<const UnionPiece*>& found);
+  void find(const btCollisionObjectWrapper& piece, const UnionFrame& frame, const Vec3& point, double reach,
+            double slack, const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+            std::vector<const UnionPiece*>& found);
   /// Whether a triangle that shares an edge with this one, on which `foot` lies, leads on against n by a sine of `sine`
   /// and more: from there and, unless foot is a corner, from all of the edge. No search; false may be either.
   /// @param slack  up to which a point lies on an edge
@@ -58,27 +77,18 @@ class NearPieces {
   /// Makes room: what was found may go.
   void forget_made() { num_made_ = 0; }
 
-  /// The piece itself, where it is kept: a child of a compound that is all of its body, or a triangle that is known;
-  /// else nullptr.
-  [[nodiscard]] UnionPiece* kept(const btCollisionObjectWrapper& piece, SolverCore& core);
+  /// The piece itself in its frame, where it is kept: a child of a compound that is all of its body, or a triangle that
+  /// is known; else nullptr.
+  [[nodiscard]] const UnionPiece* kept(const btCollisionObjectWrapper& piece, const UnionFrame& frame,
+                                       SolverCore& core);
 
  private:
   struct Search;
   class TrianglesOf;
-  struct Child {
-    std::uint64_t posed = 0;  ///< the compound's visit for which this was posed
-    std::uint64_t made = 0;   ///< the visit for which `piece` was made
-    btTransform pose;
-    btVector3 lower;
-    btVector3 upper;
-    UnionPiece piece;
-  };
-  struct PosedCompound {
+  /// That of a body of the pair at hand.
+  struct BodyFrame {
     const btCollisionObject* body = nullptr;
-    const btCompoundShape* shape = nullptr;
-    btTransform pose;
-    std::uint64_t visit = 0;  ///< what is kept under another number is out of date
-    std::vector<Child> children;
+    UnionFrame frame;
   };
 
   /// Those of the triangles that are known. Requires: they cover what is searched.
@@ -93,25 +103,20 @@ class NearPieces {
   /// @param except  a piece of this shape, or null
   void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                Search& search);
-  /// @param body   of which the compound is the whole, or null
-  /// @param among  the children that are looked at; null: all that are near
-  void collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
-                        const btCollisionObject* body, const std::vector<int>* among, Search& search);
-  /// Whether a child's box comes within reach.
-  static bool within(const Child& child, const Search& search);
-  /// The body's, whose shape this is.
-  PosedCompound& compound_of(const btCollisionObject& body, const btCompoundShape& shape, const btTransform& pose);
-  static Child& posed_child(PosedCompound& compound, int i);
-  static void make(const CachedShape* shape, std::uint64_t visit, Child& child);
+  void collect_children(const btCompoundShape& compound, const btTransform& pose, int except, Search& search);
+  /// The children of a whole body's compound, in its frame.
+  void collect_in_frame(const btCompoundShape& compound, int except, double slack, Search& search);
+  /// Whether a box comes within reach.
+  static bool within(const btVector3& lower, const btVector3& upper, const Search& search);
   /// Not taken before `num_made_` grows.
-  Child& next_made();
+  UnionPiece& next_made();
 
   CompoundFacts facts_;
-  std::deque<Child> made_;  ///< for pieces that are no children of a whole body
+  std::vector<int> near_;        ///< numbers of children
+  std::deque<UnionPiece> made_;  ///< for pieces that are no children of a whole body
   std::size_t num_made_ = 0;
-  std::deque<PosedCompound> compounds_;
-  std::size_t num_compounds_ = 0;
-  std::array<PosedCompound*, 2> recent_{};  ///< those of the pair at hand
+  std::array<BodyFrame, 2> frames_;
+  UnionFrame world_;
   const TrianglesAround* around_ = nullptr;
   Pose around_pose_;
   double around_margin_ = 0;
@@ -120,8 +125,6 @@ class NearPieces {
   TriangleBoxes known_boxes_;
   SharedEdges known_edges_;
   int known_searches_ = 0;  ///< among these, of the pair at hand
-  std::uint64_t stamp_ = 0;
-  std::uint64_t visits_ = 0;
 };
 
 }  // namespace pd::detail

@@ -13,6 +13,7 @@
 #include "pd/depth/scratch.hpp"
 #include "triangle_cache.hpp"
 #include "triangles_around.hpp"
+#include "union_exit.hpp"
 
 namespace pd::detail {
 
@@ -44,6 +45,7 @@ struct ThreadBuffers {
   Scratch scratch;
   ManifoldScratch manifold;
   CoverBuffers cover;
+  UnionExit union_exit;
   TriangleCache triangles;
   TrianglesAround around;  ///< the body of the pair at hand
   SolverCounters counters;

@@ -85,6 +85,7 @@ void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece&
   // Also refuses what is not a number.
   if (!(twice_area > 0) || !std::isfinite(twice_area)) return;
   const Vec3 normal = across / twice_area;
+  piece.middle = (corners[0] + corners[1] + corners[2]) / 3;
   piece.planes.push_back({normal, normal.dot(corners[0])});
   piece.planes.push_back({-normal, -normal.dot(corners[0])});
   for (std::size_t i = 0; i < 3; ++i) {
@@ -100,6 +101,9 @@ void set_solid(const ConvexShape& shape, const Pose& pose, UnionPiece& piece) {
   piece.around = -1;
   const ConvexPolytope* polytope = shape.polytope();
   if (polytope == nullptr || polytope->affine_dimension() != 3) return;
+  Vec3 sum = Vec3::Zero();
+  for (int v = 0; v < polytope->num_vertices(); ++v) sum += polytope->vertex(v);
+  piece.middle = pose.apply(sum / polytope->num_vertices());
   for (int f = 0; f < polytope->num_facets(); ++f) {
     const Vec3 normal = (pose.rotation() * polytope->facet_normal(f)).normalized();
     piece.planes.push_back({normal, normal.dot(pose.apply(polytope->vertex(polytope->facet_vertices(f)[0])))});
@@ -150,6 +154,12 @@ double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, d
     const double height = plane.height(point);
     if (height > slack) return -1;
     if (height >= -slack) active.push_back(&plane);
+  }
+  if (active.size() > 1) {
+    // The way to its middle is one.
+    const Vec3 inwards = piece.middle - point;
+    const double rise = n.dot(inwards);
+    if (rise > 0 && rise * rise >= enough * enough * inwards.squaredNorm()) return enough;
   }
   return largest_along(active, n, enough);
 }

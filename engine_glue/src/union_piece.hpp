@@ -26,7 +26,8 @@ struct Plane {
 };
 
 struct UnionPiece {
-  std::vector<Plane> planes;  ///< the piece is where all heights are <= 0
+  std::vector<Plane> planes;   ///< the piece is where all heights are <= 0
+  Vec3 middle = Vec3::Zero();  ///< of its corners
   double margin = 0;
   bool flat = false;  ///< a triangle: its first two planes are its two sides, the others its edges, corner to next
   int around = -1;    ///< its place among the triangles around a body; -1: none of them

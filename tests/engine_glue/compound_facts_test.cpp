@@ -42,6 +42,12 @@ class Row {
     const std::vector<int>* all = facts_.neighbours(compound_, child, 1e-4, core_);
     return all != nullptr ? *all : std::vector<int>{-1};
   }
+  /// Those that rise above the top of a child near a point of it.
+  std::vector<int> rising(int child, double x, double reach) {
+    std::vector<int> found;
+    EXPECT_TRUE(facts_.rising_near(compound_, child, Vec3(x, 0, .5), Vec3::UnitZ(), .5, reach, 1e-4, core_, found));
+    return found;
+  }
   btCompoundShape& compound() { return compound_; }
   std::size_t num_met() const { return core_.cache.size(); }
 
@@ -74,6 +80,17 @@ TEST(CompoundFacts, FollowChildrenThatComeAndGo) {
   row.step({0, 1});
   EXPECT_EQ(row.num_sealed(0), 1);
   EXPECT_EQ(row.neighbours(0), (std::vector<int>{1}));
+}
+
+TEST(CompoundFacts, OnlyWhatRisesBesideAContactCanCoverIt) {
+  Row row(3);
+  row.step({0, 1, 2});
+  EXPECT_TRUE(row.rising(1, 1, 2).empty());  // level, to both sides
+  row.compound().updateChildTransform(2, btTransform(btQuaternion::getIdentity(), btVector3(2, 0, btScalar(.25))));
+  row.step({0, 1, 2});
+  EXPECT_EQ(row.rising(1, 1.25, .3), (std::vector<int>{2}));
+  EXPECT_TRUE(row.rising(1, 1.25, .2).empty());  // out of reach
+  EXPECT_TRUE(row.rising(0, .5, .3).empty());    // no neighbour
 }
 
 TEST(CompoundFacts, CompareWhatIsMet) {
