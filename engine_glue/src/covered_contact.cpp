@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "lazy_points.hpp"
 #include "moving_body.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
+#include "piece_exit.hpp"
 #include "solver_core.hpp"
 
 namespace pd::detail {
@@ -24,92 +24,10 @@ constexpr double kBeside = 4;
 /// Of the gap up to which there are contacts: what is in each other by less may wait for a step.
 constexpr double kSunk = 1.0 / 16;
 
-/// Least <x, n> over a core.
-Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
-  if (const ConvexPolytope* polytope = shape.shape->polytope()) {
-    const Vec3 local = shape.pose.rotation().transpose() * n;
-    int best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (int v = 0; v < polytope->num_vertices(); ++v) {
-      const double value = polytope->vertex(v).dot(local);
-      if (value < least) {
-        least = value;
-        best = v;
-      }
-    }
-    return shape.pose.apply(polytope->vertex(best));
-  }
-  const Mat3 rotation = shape.pose.nearest_rotation();
-  const Vec3 way = -(rotation.transpose() * n);
-  const auto round = [&](int axis, double radius) {
-    Vec3 radial = way;
-    radial[axis] = 0;
-    const double length = radial.norm();
-    return length > 0 ? Vec3(radius / length * radial) : Vec3(Vec3::Zero());
-  };
-  Vec3 local;
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape.shape->core())) {
-    local = round(cylinder->axis, cylinder->radius);
-    local[cylinder->axis] = way[cylinder->axis] > 0 ? cylinder->half_height : -cylinder->half_height;
-  } else if (const auto* cone = std::get_if<Cone>(&shape.shape->core())) {
-    local = round(cone->axis, cone->radius);
-    local[cone->axis] = -cone->half_height;
-    const Vec3 apex = cone->half_height * Vec3::Unit(cone->axis);
-    if (apex.dot(way) > local.dot(way)) local = apex;
-  } else if (const auto* spheres = std::get_if<SphereHull>(&shape.shape->core())) {
-    local = spheres->support(way);
-  } else {
-    const Vec3& radii = std::get<Ellipsoid>(shape.shape->core()).radii;
-    local = radii.cwiseProduct(radii.cwiseProduct(way)) / radii.cwiseProduct(way).norm();
-  }
-  return rotation * local + shape.pose.translation();
-}
-
 double deepest_of(const ContactManifold& points) {
   double deepest = points.points[0].depth;
   for (int i = 1; i < points.count; ++i) deepest = std::max(deepest, points.points[static_cast<std::size_t>(i)].depth);
   return deepest;
-}
-
-void drop(ContactManifold& points, int i) {
-  --points.count;
-  points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];
-}
-
-/// A way out for the piece's side of a pair: along a facet of the piece or against one of the other body.
-struct Exit {
-  double depth = 0;
-  Vec3 n = Vec3::UnitX();      ///< unit, from the piece outward, in the world
-  Vec3 on_own = Vec3::Zero();  ///< points of both surfaces, in the world
-  Vec3 on_other = Vec3::Zero();
-};
-
-Exit exit_along(const Side& side, const Vec3& n, double depth, const Vec3& farthest) {
-  const Vec3 on_other = farthest - side.other.shape->margin() * n;
-  return {depth, n, on_other + depth * n, on_other};
-}
-
-/// The manifold along an exit, of points that lie on the piece.
-/// @param own, frame  the piece
-ContactManifold along(const Exit& exit, const Side& side, const UnionFrame& frame, const UnionPiece& own,
-                      double threshold, double slack, ManifoldScratch& scratch) {
-  PenetrationDepth answer;
-  answer.contact = exit.depth > 0 ? ContactClass::overlapping : ContactClass::separated;
-  answer.depth = std::max(exit.depth, 0.0);
-  answer.distance = std::max(-exit.depth, 0.0);
-  answer.normal = side.is_b ? exit.n : Vec3(-exit.n);
-  answer.witness_a = side.is_b ? exit.on_other : exit.on_own;
-  answer.witness_b = side.is_b ? exit.on_own : exit.on_other;
-  ContactManifold points =
-      side.is_b ? contact_manifold(side.other, side.own, answer, threshold, scratch, DeepestPoint::as_lifted)
-                : contact_manifold(side.own, side.other, answer, threshold, scratch, DeepestPoint::as_lifted);
-  for (int i = points.count - 1; i >= 0; --i) {
-    const Vec3 foot = frame.place(side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * exit.n);
-    const bool outside = std::any_of(own.planes.begin(), own.planes.end(),
-                                     [&](const Plane& plane) { return plane.height(foot) > 2 * slack; });
-    if (outside) drop(points, i);
-  }
-  return points;
 }
 
 /// What one side's piece does to the manifold.
@@ -193,7 +111,7 @@ class SideRule {
   bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
     const int before = points.count;
     for (int i = points.count - 1; i >= 0; --i) {
-      if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(i)], n), n) > kDecided) drop(points, i);
+      if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(i)], n), n) > kDecided) drop_point(points, i);
     }
     if (points.count == before) return false;
     if (points.count == 0) points = nearest_free(n, depth, foot);
@@ -201,7 +119,7 @@ class SideRule {
   }
 
   /// Out along a facet of the piece.
-  [[nodiscard]] Exit exit_over(const Plane& facet) const {
+  [[nodiscard]] PieceExit exit_over(const Plane& facet) const {
     const Vec3 n = cover_.frame().turn_back(facet.normal);
     const Vec3 farthest = farthest_against(side_.other, n);
     const double depth =
@@ -210,7 +128,7 @@ class SideRule {
   }
 
   /// Out against a facet of the other body, a solid polytope.
-  [[nodiscard]] Exit exit_against(int facet) const {
+  [[nodiscard]] PieceExit exit_against(int facet) const {
     const ConvexPolytope& polytope = *side_.other.shape->polytope();
     const Vec3 against = side_.other.pose.rotation() * polytope.facet_normal(facet);
     const Vec3 on_facet = side_.other.pose.apply(polytope.vertex(polytope.facet_vertices(facet)[0]));
@@ -220,12 +138,12 @@ class SideRule {
     return {depth, -against, on_own, on_own + depth * against};
   }
 
-  ContactManifold manifold_along(const Exit& exit) {
-    return along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, buffers_.manifold);
+  ContactManifold manifold_along(const PieceExit& exit) {
+    return points_along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, buffers_.manifold);
   }
 
   ContactManifold turned(const Plane& facet) {
-    const Exit exit = exit_over(facet);
+    const PieceExit exit = exit_over(facet);
     return exit.depth < -threshold_ ? ContactManifold() : manifold_along(exit);
   }
 
@@ -256,7 +174,7 @@ class SideRule {
     facets.erase(facets.begin(), within);
     const Vec3 outward = cover_.frame().turn_back(n);
     for (int f = 0; f < other->num_facets(); ++f) {
-      const Exit exit = exit_against(f);
+      const PieceExit exit = exit_against(f);
       if (exit.depth < -threshold_) return {};
       if (exit.depth > kBeside * limit || exit.n.dot(outward) >= 1 - kSameNormal) continue;
       facets.emplace_back(exit.depth, count + f);
@@ -274,7 +192,7 @@ class SideRule {
     for (std::size_t i = 0; i < std::min(kTries, facets.size()); ++i) {
       const int f = facets[i].second;
       if (f < count && cover_.is_sealed(static_cast<std::size_t>(f))) continue;
-      const Exit exit = f < count ? exit_over(own.planes[static_cast<std::size_t>(f)]) : exit_against(f - count);
+      const PieceExit exit = f < count ? exit_over(own.planes[static_cast<std::size_t>(f)]) : exit_against(f - count);
       const Vec3 along = f < count ? own.planes[static_cast<std::size_t>(f)].normal : cover_.frame().turn(exit.n);
       ContactManifold points = manifold_along(exit);
       if (points.count > 0 && !looked) {
@@ -283,7 +201,7 @@ class SideRule {
       }
       for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
         if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(k)], along), along) > kDecided) {
-          drop(points, k);
+          drop_point(points, k);
         }
       }
       if (points.count > 0) return points;
@@ -348,7 +266,7 @@ void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, con
     const Vec3 n = cover.frame().turn(-points.normal);
     const Vec3 foot = cover.frame().place(point.position_a) - cover.own().margin * n;
     if (!cover.look_round(foot, n) || cover.covered(foot, n) <= kDecided) continue;
-    drop(points, i);
+    drop_point(points, i);
     buffers.counters.covered.add();
   }
 }
@@ -362,8 +280,8 @@ ContactManifold along_front(const btCollisionObjectWrapper& triangle, const Pair
   const Vec3 farthest = farthest_against(answer.a, side.normal);
   const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
   const Side sides{triangle, answer.b, answer.a, true, front};
-  return along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, threshold,
-               seam_slack(answer.a, answer.b), buffers.manifold);
+  return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, threshold,
+                      seam_slack(answer.a, answer.b), buffers.manifold);
 }
 
 }  // namespace pd::detail

@@ -92,13 +92,13 @@ TEST_F(RollbackEnergy, BallsOfRestitutionOneKeepTheirs) {
   RollbackStepper stepper(scene.world(), solver);
   int trials = 0;
   int contacts = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 600; ++i) {
     const RollbackReport report = stepper.step(kStep);
     contacts += report.contacts.size();
     for (const FirstContact& contact : report.contacts) trials += contact.trials;
     EXPECT_FALSE(report.bounded);
   }
-  EXPECT_GT(contacts, 60);
+  EXPECT_GT(contacts, 600);
   EXPECT_EQ(trials, contacts);  // foreseen on the motion itself
   EXPECT_NEAR(kinetic_energy(scene), before, 0.02 * before);
   for (const auto& body : scene.bodies()) {
