@@ -112,14 +112,19 @@ constexpr FixedRest kRests[] = {
     {"rest_box_triangle", RestingBody::box, RestingGround::triangle, 2},
 };
 
-/// Bodies apart by a tenth of their size, asked whether by more than a hundredth.
+/// Bodies apart by a tenth of their size, asked whether by more than a hundredth; of 128 vertices also by more than
+/// their balls, round the origins of their frames, are apart.
 struct FixedGap {
   const char* name;
   int vertices;
   bool warm;
+  double beyond = 0.02;
 };
-constexpr FixedGap kGaps[] = {
-    {"beyond_8", 8, false}, {"beyond_8_warm", 8, true}, {"beyond_128", 128, false}, {"beyond_128_warm", 128, true}};
+constexpr FixedGap kGaps[] = {{"beyond_8", 8, false},
+                              {"beyond_8_warm", 8, true},
+                              {"beyond_128", 128, false, 0.2178},
+                              {"beyond_128_warm", 128, true, 0.2178},
+                              {"beyond_128_balls", 128, false}};
 
 /// Apart by a share of the first body's radius: how far.
 struct FixedDistance {
@@ -356,7 +361,7 @@ int main(int argc, char** argv) {
         &a, pd::Pose::from_trusted_matrix(pair.pose_a.rotation(), pair.pose_a.translation() + 0.2 * near.normal)};
     const pd::PosedShape posed_b{&b, pair.pose_b};
     pd::DepthSettings settings = kHotPath;
-    settings.beyond = 0.02;
+    settings.beyond = c.beyond;
     pd::WarmCertificate* const warm = c.warm ? &certificate : nullptr;
     pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, settings, warm);
     pdepth_counted_call(&posed_a, &posed_b, &scratch, warm, &answer, &settings);
