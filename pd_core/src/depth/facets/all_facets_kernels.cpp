@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "depth/facets/small_sat_lanes.hpp"
 #include "numeric/lanes.hpp"
 
 namespace pd::detail {
@@ -340,9 +341,7 @@ PD_INLINE bool list_crossings(Crossings& out, const Sides& edges_a, const Sides&
   return true;
 }
 
-struct LaneVectors {
-  Lanes x, y, z;
-};
+using small_sat::LaneVectors;
 
 PD_INLINE void gather(LaneVectors& to, const VertexArrays& v, const std::uint8_t* ids, const std::uint8_t* edges) {
   const int i = ids[edges[0]], j = ids[edges[1]], k = ids[edges[2]], l = ids[edges[3]];
@@ -361,30 +360,17 @@ PD_INLINE void nearest_crossing(NearestFacet& best, Crossings& pairs, const Kept
   }
   Lanes id = {0, 1, 2, 3}, best_key = none, best_id = none, others = none;
   for (int k = 0; k < pairs.count; k += kLanes) {
-    LaneVectors p, e, q, f, n;
+    LaneVectors p, e, q, f;
     Lanes sign;
     gather(p, a, kept_a.from, pairs.a + k);
     gather(e, a, kept_a.to, pairs.a + k);
     gather(q, b, kept_b.from, pairs.b + k);
     gather(f, b, kept_b.to, pairs.b + k);
     load(sign, pairs.sign + k);
-    e.x = p.x - e.x;
-    e.y = p.y - e.y;
-    e.z = p.z - e.z;
-    f.x = f.x - q.x;
-    f.y = f.y - q.y;
-    f.z = f.z - q.z;
-    n.x = sign * (f.y * e.z - f.z * e.y);
-    n.y = sign * (f.z * e.x - f.x * e.z);
-    n.z = sign * (f.x * e.y - f.y * e.x);
-    const Lanes height = n.x * (q.x + p.x + offset[0]) + n.y * (q.y + p.y + offset[1]) + n.z * (q.z + p.z + offset[2]);
-    // The other corners, which rounding moves off the plane: the piece of P lies above its lowest corner.
-    const Lanes along_e = n.x * e.x + n.y * e.y + n.z * e.z;
-    const Lanes along_f = n.x * f.x + n.y * f.y + n.z * f.z;
-    const Lanes lowest = height - (along_e > zero ? along_e : zero) + (along_f < zero ? along_f : zero);
-    const Lanes squared = n.x * n.x + n.y * n.y + n.z * n.z;
-    const Lanes size = lowest < zero ? -lowest : lowest;
-    const Lanes found = squared > zero ? lowest * size / squared : zero - std::numeric_limits<double>::max();
+    Lanes lowest, squared;
+    small_sat::lowest_corners(lowest, squared, p, e, q, f, sign, offset);
+    Lanes found;
+    small_sat::key_of(found, lowest, squared);
     const Lanes key = id < static_cast<double>(pairs.count) ? found : none;
     const Lanes lost = key < best_key ? best_key : key;
     best_id = key < best_key ? id : best_id;

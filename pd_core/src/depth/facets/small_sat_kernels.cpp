@@ -240,29 +240,17 @@ PD_INLINE void nearest_crossing(NearestLane& best, const SmallSatBody& a, const 
       from_b[l] = b.map.from[j];
       to_b[l] = b.map.to[j];
     }
-    LaneVectors p, e, q, f, n;
+    LaneVectors p, e, q, f;
     Lanes sign;
     gather(p, a.posed, from_a);
     gather(e, a.posed, to_a);
     gather(q, b.posed, from_b);
     gather(f, b.posed, to_b);
     load(sign, pairs.sign + k);
-    e.x = p.x - e.x;
-    e.y = p.y - e.y;
-    e.z = p.z - e.z;
-    f.x = f.x - q.x;
-    f.y = f.y - q.y;
-    f.z = f.z - q.z;
-    n.x = sign * (f.y * e.z - f.z * e.y);
-    n.y = sign * (f.z * e.x - f.x * e.z);
-    n.z = sign * (f.x * e.y - f.y * e.x);
-    const Lanes height = n.x * (q.x + p.x + offset[0]) + n.y * (q.y + p.y + offset[1]) + n.z * (q.z + p.z + offset[2]);
-    // The other corners, which rounding moves off the plane: the piece of P lies above its lowest corner.
-    const Lanes along_e = n.x * e.x + n.y * e.y + n.z * e.z;
-    const Lanes along_f = n.x * f.x + n.y * f.y + n.z * f.z;
-    const Lanes lowest = height - (along_e > zero ? along_e : zero) + (along_f < zero ? along_f : zero);
+    Lanes lowest, squared;
+    lowest_corners(lowest, squared, p, e, q, f, sign, offset);
     Lanes key;
-    key_of(key, lowest, n.x * n.x + n.y * n.y + n.z * n.z);
+    key_of(key, lowest, squared);
     take_nearest(best, key, id, pairs.count);
     id += kLanes;
     if (near == nullptr) continue;

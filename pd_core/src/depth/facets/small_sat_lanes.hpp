@@ -1,6 +1,7 @@
 /// @file
 /// What the two parts of the kernel for small solids share: small_sat_kernels.cpp, which most pairs of bodies run
-/// alone, and small_sat_open_sides.cpp for edges whose sides single precision leaves open.
+/// alone, and small_sat_open_sides.cpp for edges whose sides single precision leaves open. How pairs of edges are
+/// measured serves all_facets_kernels.cpp, too.
 ///
 /// Everything here becomes a part of the function that uses it (numeric/lanes.hpp).
 #pragma once
@@ -100,6 +101,27 @@ PD_INLINE void gather(LaneVectors& to, const VertexArrays& v, const int (&ids)[k
   to.x = Lanes{v.x[ids[0]], v.x[ids[1]], v.x[ids[2]], v.x[ids[3]]};
   to.y = Lanes{v.y[ids[0]], v.y[ids[1]], v.y[ids[2]], v.y[ids[3]]};
   to.z = Lanes{v.z[ids[0]], v.z[ids[1]], v.z[ids[2]], v.z[ids[3]]};
+}
+
+/// Parallelograms of an edge of -A from p to e and one of B from q to f, which become vectors: the height of the lowest
+/// corner along the normal, sign * b x a, and the square of its length. Rounding moves corners off the plane, and the
+/// piece of P lies above the lowest.
+PD_INLINE void lowest_corners(Lanes& lowest, Lanes& squared, const LaneVectors& p, LaneVectors& e, const LaneVectors& q,
+                              LaneVectors& f, const Lanes& sign, const double (&offset)[3]) {
+  const Lanes zero = {0, 0, 0, 0};
+  e.x = p.x - e.x;
+  e.y = p.y - e.y;
+  e.z = p.z - e.z;
+  f.x = f.x - q.x;
+  f.y = f.y - q.y;
+  f.z = f.z - q.z;
+  const LaneVectors n = {sign * (f.y * e.z - f.z * e.y), sign * (f.z * e.x - f.x * e.z),
+                         sign * (f.x * e.y - f.y * e.x)};
+  const Lanes height = n.x * (q.x + p.x + offset[0]) + n.y * (q.y + p.y + offset[1]) + n.z * (q.z + p.z + offset[2]);
+  const Lanes along_e = n.x * e.x + n.y * e.y + n.z * e.z;
+  const Lanes along_f = n.x * f.x + n.y * f.y + n.z * f.z;
+  lowest = height - (along_e > zero ? along_e : zero) + (along_f < zero ? along_f : zero);
+  squared = n.x * n.x + n.y * n.y + n.z * n.z;
 }
 
 /// What the kernel was asked.
