@@ -16,10 +16,12 @@ namespace pd {
 
 namespace {
 
+/// Whether a certified distance past `beyond` is answer enough.
+bool asks_beyond(const DepthSettings& settings) { return settings.beyond < std::numeric_limits<double>::infinity(); }
+
 void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, detail::ScratchBuffers& buffers,
            WarmCertificate* warm, PenetrationDepth& out) {
-  const bool asks_beyond = settings.beyond < std::numeric_limits<double>::infinity();
-  if (asks_beyond && detail::answer_beyond(a, b, settings, buffers, warm, out)) return;
+  if (asks_beyond(settings) && detail::answer_beyond(a, b, settings, buffers, warm, out)) return;
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};
@@ -37,7 +39,7 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
   } else {
     detail::smooth_depth(a, b, settings, buffers, out, warm);
   }
-  if (asks_beyond && warm != nullptr) detail::remember_plane(out, *warm);
+  if (asks_beyond(settings) && warm != nullptr) detail::remember_plane(out, *warm);
 }
 
 }  // namespace
@@ -47,9 +49,8 @@ PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scr
   const detail::FloatingPointGuard guard;
   PenetrationDepth out;
   const bool spheres = detail::is_sphere(*a.shape) && detail::is_sphere(*b.shape);
-  const bool asks_beyond = settings.beyond < std::numeric_limits<double>::infinity();
   if ((spheres && detail::answer_spheres(a, b, settings, out)) ||
-      (asks_beyond && detail::balls_may_lie_beyond(a, b, settings.beyond) &&
+      (asks_beyond(settings) && detail::balls_may_lie_beyond(a, b, settings.beyond) &&
        detail::answer_balls_beyond(a, b, settings.beyond, out))) {
     detail::clear_negative_zeros(out);
     return out;

@@ -1,6 +1,7 @@
 /// @file
 /// Depth of two solids of at most 32 vertices and 64 facets that lie deep in each other, in doubles with a certificate:
-/// all facets of P by their Gauss maps (all_facets_kernels.hpp), no search.
+/// all facets of P by their Gauss maps (all_facets_kernels.hpp), no search (Gregorius, "The separating axis test
+/// between convex polyhedra", GDC 2013).
 ///
 /// Deep in each other, nearly all facets of P are about as near, and a surface that grows inside P meets most of them,
 /// one after the other: 26 steps for two hulls of 32 vertices. Why it proves anything: as small_sat.hpp, but that an

@@ -25,7 +25,7 @@ static_assert(kHeightRows == 32);
 struct Planes {
   alignas(32) double nx[kFacetSlots], ny[kFacetSlots], nz[kFacetSlots];
   alignas(32) double own[kFacetSlots];      ///< height of the plane of P but for the other body
-  alignas(32) double squared[kFacetSlots];  ///< length of the normal
+  alignas(32) double squared[kFacetSlots];  ///< squared length of the normal
   alignas(32) double rough[kFacetSlots];    ///< height of the plane of P, by single precision
   alignas(32) float top[kFacetSlots];       ///< of the other body along it
   int blocks;                               ///< of kFloats; an even number
