@@ -229,7 +229,7 @@ void add_contact_options(CLI::App& command, ContactOptions& o) {
   command.add_option("--rates", o.rates, "steps a second (default: 60,240; quick 60)")->delimiter(',');
   command.add_option("--settings", o.settings, "of the constraint solver")
       ->delimiter(',')
-      ->check(CLI::IsMember({"default", "recommended"}))
+      ->check(CLI::IsMember({"default", "recommended", "stack"}))
       ->capture_default_str();
   command.add_option("--iterations", o.iterations, "of the constraint solver (default: the settings' own)")
       ->check(CLI::PositiveNumber);

@@ -194,12 +194,14 @@ void BulletScene::add_body(const WorldBody& plan, ContactRun run) {
   world_->addRigidBody(&body);
 }
 
-BulletScene::BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings)
+BulletScene::BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings, bool stacks)
     : plan_(world),
       solver_(settings),
       dispatcher_(&configuration_),
-      world_(
-          std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_, &constraint_solver_, &configuration_)) {
+      constraint_solver_(stacks ? std::make_unique<StackSolver>()
+                                : std::make_unique<btSequentialImpulseConstraintSolver>()),
+      world_(std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_, constraint_solver_.get(),
+                                                       &configuration_)) {
   if (is_ours(run)) {
     install(*world_, solver_, run == ContactRun::persistent ? BulletContacts::persistent : BulletContacts::one_shot);
   }

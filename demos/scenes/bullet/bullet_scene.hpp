@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pd/bullet/penetration_depth_solver.hpp"
+#include "pd/bullet/stack_solver.hpp"
 #include "scenes/worlds.hpp"
 
 namespace pd::scenes {
@@ -41,7 +42,8 @@ inline constexpr ContactRun kContactRuns[] = {
 /// Owns everything of one Bullet world. Sleeping is off; solver settings are Bullet's defaults.
 class BulletScene {
  public:
-  BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings = {});
+  /// @param stacks  whether constraints are solved by `StackSolver`, else by Bullet's sequential impulses
+  BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings = {}, bool stacks = false);
   ~BulletScene();
   BulletScene(const BulletScene&) = delete;
   BulletScene& operator=(const BulletScene&) = delete;
@@ -68,7 +70,7 @@ class BulletScene {
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
-  btSequentialImpulseConstraintSolver constraint_solver_;
+  std::unique_ptr<btSequentialImpulseConstraintSolver> constraint_solver_;
   std::unique_ptr<btDiscreteDynamicsWorld> world_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btTriangleMesh>> meshes_;

@@ -108,7 +108,7 @@ int run_contact(const ContactOptions& options) {
       for (const std::string& setting : options.settings) {
         std::vector<ContactSetting> settings;
         for (const ContactRun run : runs) {
-          settings.push_back({run, rate, setting == "recommended", options.iterations});
+          settings.push_back({run, rate, setting != "default", setting == "stack", options.iterations});
         }
         std::vector<std::vector<ContactStart>> by_run(runs.size());
         for (int start = 0; start < starts; ++start) {

@@ -10,13 +10,14 @@
 namespace pd::bench {
 
 struct ContactOptions {
-  std::vector<std::string> scenes;                              ///< names; none: all (quick: the quick ones)
-  std::vector<std::string> runs;                                ///< names; none: all
-  std::vector<double> rates;                                    ///< steps a second; none: 60 and 240 (quick: 60)
-  std::vector<std::string> settings{"default", "recommended"};  ///< of the constraint solver
-  int iterations = 0;                                           ///< of the constraint solver; 0: as the settings say
-  int starts = 0;                                               ///< perturbed starts a scene; 0: 10, quick 1
-  double seconds = 0;                                           ///< of each run; 0: the scene's own
+  std::vector<std::string> scenes;  ///< names; none: all (quick: the quick ones)
+  std::vector<std::string> runs;    ///< names; none: all
+  std::vector<double> rates;        ///< steps a second; none: 60 and 240 (quick: 60)
+  /// Of the constraint solver: Bullet's, `pd::apply_recommended`, and "stack": those and `pd::StackSolver`.
+  std::vector<std::string> settings{"default", "recommended"};
+  int iterations = 0;  ///< of the constraint solver; 0: as the settings say
+  int starts = 0;      ///< perturbed starts a scene; 0: 10, quick 1
+  double seconds = 0;  ///< of each run; 0: the scene's own
   bool quick = false;
   std::string csv;
   std::string plots;

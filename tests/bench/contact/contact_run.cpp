@@ -30,7 +30,7 @@ class Runner {
       : scene_(scene),
         setting_(setting),
         num_steps_(static_cast<int>(std::lround(seconds * setting.steps_per_second))),
-        bullet_(scene.world, setting.run) {
+        bullet_(scene.world, setting.run, {}, setting.stacks) {
     if (setting.recommended) {
       apply_recommended(bullet_.world().getSolverInfo());
     }

@@ -15,6 +15,7 @@ struct ContactSetting {
   scenes::ContactRun run = scenes::ContactRun::pdepth;
   double steps_per_second = 60;
   bool recommended = false;  ///< `pd::apply_recommended`, else Bullet's defaults
+  bool stacks = false;       ///< `pd::StackSolver`, else Bullet's sequential impulses
   int iterations = 0;        ///< of the constraint solver; 0: as those have it
 };
 

@@ -1,0 +1,48 @@
+/// @file
+/// Cholesky factorisation of sparse symmetric positive definite matrices of blocks of 6 x 6, one row of blocks a body.
+///
+/// Bodies are eliminated by least degree; which blocks fill in and where each product goes is found once a pattern, so
+/// that a factorisation is a straight run through lists. A tower of n bodies takes time O(n), a heap in which a body
+/// meets a bounded number of others about O(n^1.5) to O(n^2).
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+namespace pd::detail {
+
+class BlockCholesky {
+ public:
+  using Block = Eigen::Matrix<double, 6, 6>;
+
+  /// @param pairs  (a, b), a < b, ascending and unique: the blocks off the diagonal that are not 0. Kept if it is the
+  ///               pattern of the last call.
+  void set_pattern(int num_bodies, const std::vector<std::pair<int, int>>& pairs);
+
+  /// @param own     the diagonal's blocks, by body
+  /// @param shared  by pair, rows of b and columns of a
+  void factorise(const std::vector<Block>& own, const std::vector<Block>& shared);
+
+  /// Solves in place, six numbers a body.
+  void solve(Eigen::VectorXd& x) const;
+
+ private:
+  void eliminate();
+  void place_products();
+
+  int num_bodies_ = 0;
+  std::vector<std::pair<int, int>> pairs_;
+  std::vector<int> order_;            ///< the bodies as they are eliminated
+  std::vector<int> rank_;             ///< of a body in `order_`
+  std::vector<int> column_start_;     ///< of each rank in `row_`; one more at the end
+  std::vector<int> row_;              ///< ranks below the diagonal, ascending in each column
+  std::vector<int> place_of_pair_;    ///< in `row_`
+  std::vector<bool> pair_is_turned_;  ///< whether a pair's block stands transposed there
+  std::vector<int>
+      product_place_;            ///< where each product of two blocks of a column goes: in `row_`; -1 - rank: diagonal
+  std::vector<Block> diagonal_;  ///< lower triangles
+  std::vector<Block> below_;     ///< as `row_`
+};
+
+}  // namespace pd::detail
