@@ -23,11 +23,14 @@ class StepReach {
 
   /// How far apart points may be to be needed. Requires two btBoxShapes.
   [[nodiscard]] btScalar of_boxes(const btConvexShape& a, const btConvexShape& b) const;
+  /// The same of points that lie within `radius` of a place.
+  [[nodiscard]] btScalar of_points_near(const btVector3& place, btScalar radius) const;
 
   /// Whether any of a pair's points may not be needed: mostly all touch, and nothing else has to be known.
   [[nodiscard]] static bool may_be_idle(const FreshPoints& points, btScalar threshold);
   /// Takes those that are not needed out.
   void leave_out_idle(FreshPoints& points) const;
+  void leave_out_idle(ContactManifold& points) const;
 
  private:
   /// What a body's velocity will be after this step's forces, at its centre of mass.
@@ -35,6 +38,9 @@ class StepReach {
     btVector3 velocity = btVector3(0, 0, 0), turn = btVector3(0, 0, 0), centre = btVector3(0, 0, 0);
   };
   [[nodiscard]] static bool motion_of(const btCollisionObject& object, btScalar seconds, Motion& out);
+  /// How B's material at a place comes to A's.
+  [[nodiscard]] btVector3 coming_at(const btVector3& place) const;
+  [[nodiscard]] bool is_needed(btScalar distance, const btVector3& place, const btVector3& normal) const;
 
   btScalar threshold_;
   btScalar seconds_;
