@@ -95,7 +95,7 @@ btScalar reach_of(const Box& a, const Box& b, const StepReach& reach, btScalar t
   btVector3 lower = a.lower, upper = a.upper;
   lower.setMax(b.lower);
   upper.setMin(b.upper);
-  return reach.of_points_near(btScalar(0.5) * (lower + upper), btScalar(0.5) * (upper - lower).length() + threshold);
+  return reach.of_pieces_near(btScalar(0.5) * (lower + upper), btScalar(0.5) * (upper - lower).length() + threshold);
 }
 
 bool all_convex(const std::vector<Child>& children) {

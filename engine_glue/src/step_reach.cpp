@@ -12,7 +12,7 @@ namespace pd::detail {
 namespace {
 
 /// Of the threshold.
-constexpr btScalar kNear = btScalar(0.25);
+constexpr btScalar kNear = btScalar(0.25), kNearOfPieces = btScalar(0.5);
 constexpr btScalar kClosing = 2;
 
 }  // namespace
@@ -44,10 +44,10 @@ btScalar StepReach::of_boxes(const btConvexShape& a, const btConvexShape& b) con
   return std::min(threshold_, kNear * threshold_ + kClosing * seconds_ * speed);
 }
 
-btScalar StepReach::of_points_near(const btVector3& place, btScalar radius) const {
+btScalar StepReach::of_pieces_near(const btVector3& place, btScalar radius) const {
   if (all_) return threshold_;
   const btScalar speed = coming_at(place).length() + (a_.turn - b_.turn).length() * radius;
-  return std::min(threshold_, kNear * threshold_ + kClosing * seconds_ * speed);
+  return std::min(threshold_, kNearOfPieces * threshold_ + kClosing * seconds_ * speed);
 }
 
 btVector3 StepReach::coming_at(const btVector3& place) const {
@@ -56,10 +56,10 @@ btVector3 StepReach::coming_at(const btVector3& place) const {
   return of_b - of_a;
 }
 
-bool StepReach::is_needed(btScalar distance, const btVector3& place, const btVector3& normal) const {
-  if (distance <= kNear * threshold_) return true;
+bool StepReach::is_needed(btScalar distance, const btVector3& place, const btVector3& normal, btScalar near) const {
+  if (distance <= near) return true;
   const btScalar closing = std::max(btScalar(0), coming_at(place).dot(normal));
-  return distance <= kNear * threshold_ + kClosing * seconds_ * closing;
+  return distance <= near + kClosing * seconds_ * closing;
 }
 
 bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
@@ -74,7 +74,7 @@ void StepReach::leave_out_idle(FreshPoints& points) const {
   int kept = 0;
   for (int k = 0; k < points.count; ++k) {
     const FreshPoint& point = points.points[k];
-    if (is_needed(point.distance, point.point_on_b, point.normal)) points.points[kept++] = point;
+    if (is_needed(point.distance, point.point_on_b, point.normal, kNear * threshold_)) points.points[kept++] = point;
   }
   points.count = kept;
 }
@@ -85,7 +85,8 @@ void StepReach::leave_out_idle(ContactManifold& points) const {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(points.count); ++k) {
     const ContactPoint& point = points.points[k];
-    if (is_needed(static_cast<btScalar>(-point.depth), to_bullet(point.position_b), normal)) {
+    if (is_needed(static_cast<btScalar>(-point.depth), to_bullet(point.position_b), normal,
+                  kNearOfPieces * threshold_)) {
       points.points[kept++] = point;
     }
   }
