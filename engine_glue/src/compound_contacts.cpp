@@ -17,6 +17,7 @@
 #include "piece_memories.hpp"
 #include "pieces_in_result.hpp"
 #include "solver_core.hpp"
+#include "step_reach.hpp"
 
 namespace pd::detail {
 
@@ -88,6 +89,15 @@ bool still_apart(const PieceMemory& memory, const ChildMotion& a, const ChildMot
          memory.shapes[1] == b.shape;
 }
 
+/// Up to which gap the solver can need points of two children in this step: they lie within the threshold of both
+/// boxes.
+btScalar reach_of(const Box& a, const Box& b, const StepReach& reach, btScalar threshold) {
+  btVector3 lower = a.lower, upper = a.upper;
+  lower.setMax(b.lower);
+  upper.setMin(b.upper);
+  return reach.of_pieces_near(btScalar(0.5) * (lower + upper), btScalar(0.5) * (upper - lower).length() + threshold);
+}
+
 bool all_convex(const std::vector<Child>& children) {
   return std::all_of(children.begin(), children.end(), [](const Child& child) { return child.shape->isConvex(); });
 }
@@ -106,8 +116,9 @@ class CompoundContacts final : public UnionContacts {
                    std::vector<ChildMotion>& motions);
   /// One pair's points. @return false where a child has no exact form
   /// @param way  of both children
-  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
-           PieceMemory& memory, ThreadBuffers& buffers, Patches& patches);
+  /// @param gap  up to which their points can be needed; `reach`: which of them are
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way, double gap,
+           const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers, Patches& patches);
   /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
   void leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory, ThreadBuffers& buffers,
                     Patches& patches);
@@ -161,11 +172,14 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   move(children_b_, stamp, core, *buffers, memory.children[1]);
   look_at(a, children_a_, buffers->cover.near.facts(), core);
   look_at(b, children_b_, buffers->cover.near.facts(), core);
+  const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
     for (std::size_t j = 0; j < children_b_.size(); ++j) {
       const Child& child_b = children_b_[j];
       if (apart(child_a.box, child_b.box, threshold)) continue;
+      const btScalar gap = reach_of(child_a.box, child_b.box, step_reach, threshold);
+      if (gap < threshold && apart(child_a.box, child_b.box, gap)) continue;
       if (gCompoundChildShapePairCallback != nullptr &&
           !gCompoundChildShapePairCallback(child_a.shape, child_b.shape)) {
         continue;
@@ -176,12 +190,14 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
       const ChildMotion& motion_a = memory.children[0][static_cast<std::size_t>(child_a.index + 1)];
       const ChildMotion& motion_b = memory.children[1][static_cast<std::size_t>(child_b.index + 1)];
       const double way = motion_a.way + motion_b.way;
-      if (still_apart(remembered, motion_a, motion_b, way + static_cast<double>(threshold))) continue;
+      if (still_apart(remembered, motion_a, motion_b, way + static_cast<double>(gap))) continue;
       pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
       if (remembered.shapes[0] != motion_a.shape) remembered.shapes[0] = motion_a.shape;
       if (remembered.shapes[1] != motion_b.shape) remembered.shapes[1] = motion_b.shape;
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, question, core, way, remembered, *buffers, patches)) return false;
+      if (!ask(pair, question, core, way, static_cast<double>(gap), step_reach, remembered, *buffers, patches)) {
+        return false;
+      }
     }
   }
   memories_.end(memory.pieces);
@@ -222,7 +238,8 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
 }
 
 bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
-                           PieceMemory& memory, ThreadBuffers& buffers, Patches& patches) {
+                           double gap, const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers,
+                           Patches& patches) {
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
@@ -233,17 +250,18 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
                            shape_b,
                            pair.b().getWorldTransform(),
                            {true, is_part(pair.a()), is_part(pair.b())},
-                           memory.met ? kAnyDistance : threshold,
+                           memory.met ? kAnyDistance : gap,
                            question.stamp,
                            memory.shapes,
                            &memory.warm,
                            false,
                            true};
-  const auto outcome = core.contacts(asked, threshold, buffers, answer, points);
+  const auto outcome = core.contacts(asked, memory.met ? threshold : gap, buffers, answer, points);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
-  memory.met = answer.depth.signed_distance() <= threshold;
+  memory.met = answer.depth.signed_distance() <= gap;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
+  reach.leave_out_idle(points);
   keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
                  AnswerPoints::made, points);
   const auto [i, j] = pairs_.back();

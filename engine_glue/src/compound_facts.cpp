@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "child_tree.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -29,18 +30,24 @@ const ConvexShape* taken_of(const CachedShape& shape) { return shape.sharp ? sha
 }  // namespace
 
 CompoundFacts::Known& CompoundFacts::known_of(const btCompoundShape& compound) {
+  const auto is_recent = [&] { return recent_[0].of == &compound && recent_[0].visit == visit_; };
+  if (!is_recent()) {
+    std::swap(recent_[0], recent_[1]);
+    if (!is_recent()) {
+      if (compounds_.size() >= kMostKnownCompounds && !compounds_.contains(&compound)) {
+        compounds_.clear();
+        recent_ = {};
+      }
+      recent_[0] = {&compounds_[&compound], &compound, visit_};
+    }
+  }
+  Known& known = *recent_[0].known;
   const auto count = static_cast<std::size_t>(compound.getNumChildShapes());
-  if (recent_ == nullptr || recent_visit_ != visit_ || recent_of_ != &compound) {
-    if (compounds_.size() >= kMostKnownCompounds && !compounds_.contains(&compound)) compounds_.clear();
-    recent_ = &compounds_[&compound];
-    recent_of_ = &compound;
-    recent_visit_ = visit_;
+  if (known.children.size() != count) {
+    known.children.resize(count);
+    ++known.change;
   }
-  if (recent_->children.size() != count) {
-    recent_->children.resize(count);
-    ++recent_->change;
-  }
-  return *recent_;
+  return known;
 }
 
 CompoundFacts::Child& CompoundFacts::compared(const btCompoundShape& compound, Known& known, int number,
@@ -92,7 +99,9 @@ void CompoundFacts::find_neighbours(const btCompoundShape& compound, Known& know
 
 CompoundFacts::Child& CompoundFacts::surrounded(const btCompoundShape& compound, Known& known, int number,
                                                 SolverCore& core) {
-  Child& child = compared(compound, known, number, core);
+  Child& child = known.children[static_cast<std::size_t>(number)];
+  if (child.surrounded == visit_ && child.facts == known.change) return child;
+  compared(compound, known, number, core);
   if (child.surrounded != visit_ && child.facts == known.change) {
     for (const int i : child.neighbours) compared(compound, known, i, core);
   }
@@ -100,24 +109,42 @@ CompoundFacts::Child& CompoundFacts::surrounded(const btCompoundShape& compound,
   if (child.facts != known.change) {
     find_neighbours(compound, known, number, core);
     child.facts = known.change;
-    child.facets.assign(child.piece.planes.size(), Seal::unknown);
+    child.facets.assign(child.piece.planes.size(), FacetCover::unknown);
   }
   return child;
 }
 
-bool CompoundFacts::sealed(const btCompoundShape& compound, int number, std::size_t facet, SolverCore& core) {
+FacetCover CompoundFacts::cover_of(const btCompoundShape& compound, int number, std::size_t facet, double slack,
+                                   SolverCore& core) {
   Known& known = known_of(compound);
   Child& child = surrounded(compound, known, number, core);
-  if (facet >= child.facets.size()) return false;
-  Seal& seal = child.facets[facet];
-  if (seal == Seal::unknown) seal = find_seal(compound, known, number, facet, core) ? Seal::sealed : Seal::open;
-  return seal == Seal::sealed;
+  if (facet >= child.facets.size() || slack > 0.5 * static_cast<double>(reach_of(child.lower, child.upper))) {
+    return FacetCover::some;
+  }
+  FacetCover& cover = child.facets[facet];
+  if (cover == FacetCover::unknown) cover = find_cover(compound, known, number, facet, core);
+  return cover;
 }
 
 const std::vector<int>* CompoundFacts::neighbours(const btCompoundShape& compound, int number, double reach,
                                                   SolverCore& core) {
   const Child& own = surrounded(compound, known_of(compound), number, core);
   return reach <= 0.5 * static_cast<double>(reach_of(own.lower, own.upper)) ? &own.neighbours : nullptr;
+}
+
+bool CompoundFacts::may_hold(const btCompoundShape& compound, int number, const Vec3& point, double reach, double slack,
+                             SolverCore& core) {
+  Known& known = known_of(compound);
+  const Child& own = surrounded(compound, known, number, core);
+  if (slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return true;
+  return std::any_of(own.neighbours.begin(), own.neighbours.end(), [&](int i) {
+    const Child& other = known.children[static_cast<std::size_t>(i)];
+    if (other.piece.planes.empty()) return !other.source->isConvex();
+    // Surfaces lie flush, not cores, where margins differ.
+    const double far = reach + std::abs(own.piece.margin - other.piece.margin);
+    const auto parts = [&](const Plane& plane) { return plane.height(point) > far; };
+    return std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts);
+  });
 }
 
 bool CompoundFacts::rising_near(const btCompoundShape& compound, int number, const Vec3& point, const Vec3& n,
@@ -143,24 +170,48 @@ bool CompoundFacts::rising_near(const btCompoundShape& compound, int number, con
   return true;
 }
 
-bool CompoundFacts::find_seal(const btCompoundShape& compound, Known& known, int number, std::size_t facet,
-                              SolverCore& core) {
+FacetCover CompoundFacts::find_cover(const btCompoundShape& compound, Known& known, int number, std::size_t facet,
+                                     SolverCore& core) {
   const Child& own = known.children[static_cast<std::size_t>(number)];
   const ConvexShape& shape = *taken_of(*own.shape);
   const PosedShape posed{&shape, to_pd(own.place)};
   const Vec3& n = own.piece.planes[facet].normal;
   const double slack = 0.5 * seam_slack(posed, posed);
   const auto corners = shape.polytope()->facet_vertices(static_cast<int>(facet));
+  // Surfaces lie flush, not cores, where margins differ.
+  const auto lifted = [&](auto corner, const UnionPiece& other) {
+    return Vec3(own.corners[static_cast<std::size_t>(corner)] + (own.piece.margin - other.margin) * n);
+  };
   const auto covers = [&](const Child& other) {
-    if (other.piece.planes.empty()) return false;
-    const double up = own.piece.margin - other.piece.margin;
-    return std::all_of(corners.begin(), corners.end(), [&](auto corner) {
-      const Vec3 level = own.corners[static_cast<std::size_t>(corner)] + up * n;
-      return covered_sine(other.piece, level, n, slack, kBeyondDoubt, active_) > kDecided;
+    return !other.piece.planes.empty() && std::all_of(corners.begin(), corners.end(), [&](auto corner) {
+      return covered_sine(other.piece, lifted(corner, other.piece), n, slack, kBeyondDoubt, active_) > kDecided;
     });
   };
-  return std::any_of(own.neighbours.begin(), own.neighbours.end(),
-                     [&](int i) { return covers(compared(compound, known, i, core)); });
+  // It does not rise beyond the facet, or all of the facet is on the outer side of one of its planes, and most of it
+  // farther than any contact's slack.
+  const double wide = static_cast<double>(reach_of(own.lower, own.upper));
+  const double level = own.piece.planes[facet].offset + own.piece.margin + slack;
+  const auto leaves_free = [&](const Child& other) {
+    if (other.piece.planes.empty()) return other.source->isConvex();
+    const auto rises = [&](const Vec3& corner) { return n.dot(corner) + other.piece.margin > level; };
+    if (std::none_of(other.corners.begin(), other.corners.end(), rises)) return true;
+    return std::any_of(other.piece.planes.begin(), other.piece.planes.end(), [&](const Plane& plane) {
+      double least = wide, most = 0;
+      for (const auto corner : corners) {
+        const double height = plane.height(lifted(corner, other.piece));
+        least = std::min(least, height);
+        most = std::max(most, height);
+      }
+      return least >= -slack && most >= wide;
+    });
+  };
+  bool free = true;
+  for (const int i : own.neighbours) {
+    const Child& other = compared(compound, known, i, core);
+    if (covers(other)) return FacetCover::all;
+    free = free && leaves_free(other);
+  }
+  return free ? FacetCover::none : FacetCover::some;
 }
 
 void look_at(const btCollisionObjectWrapper& body, std::span<const Child> children, CompoundFacts& facts,

@@ -1,11 +1,13 @@
 /// @file
 /// What the children of a compound are to each other: which touch, which rise beyond a contact of another one, and
-/// which facets lie inside, where one other child covers all of them, so that no contact leads out over them.
+/// which facets lie inside, where one other child covers all of them, so that no contact leads out over them, or
+/// outside, where none covers more than a line.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -19,6 +21,14 @@
 namespace pd::detail {
 
 class SolverCore;
+
+/// What the other children of a compound cover of a child's facet.
+enum class FacetCover : std::uint8_t {
+  unknown,  ///< nobody asked yet
+  some,     ///< perhaps a part, or it is not known
+  none,     ///< no more than lines: every contact that pushes off from it holds
+  all       ///< beyond doubt, and one of them all of it
+};
 
 /// One table a thread. What it says follows from the children's shapes and places alone, with a slack of their own, so
 /// that it does not matter when or where it was found out. Children near the pair's other body, and those near them,
@@ -39,13 +49,21 @@ class CompoundFacts {
     compared(compound, known_of(compound), child, core);
   }
 
-  /// Whether another child covers all of a facet, beyond doubt. False where the child is no solid polytope.
-  [[nodiscard]] bool sealed(const btCompoundShape& compound, int child, std::size_t facet, SolverCore& core);
+  /// @param slack  as the reach of `neighbours`
+  /// @return never `unknown`; `some` where the child is no solid polytope
+  [[nodiscard]] FacetCover cover_of(const btCompoundShape& compound, int child, std::size_t facet, double slack,
+                                    SolverCore& core);
 
   /// The children other than this one whose boxes come within `reach` of its own, and perhaps a few more; nullptr: they
   /// are not known for so large a reach.
   [[nodiscard]] const std::vector<int>* neighbours(const btCompoundShape& compound, int child, double reach,
                                                    SolverCore& core);
+
+  /// Whether a child other than this one comes within `reach` of a point of its core, or might: of most contacts none
+  /// does.
+  /// @param slack  as the reach of `neighbours`
+  [[nodiscard]] bool may_hold(const btCompoundShape& compound, int child, const Vec3& point, double reach, double slack,
+                              SolverCore& core);
 
   /// The children that could cover what this one touches another body with: of those as above the ones that come within
   /// `reach` of a point of its core and rise beyond a level along n. Most contacts have none.
@@ -62,7 +80,6 @@ class CompoundFacts {
   }
 
  private:
-  enum class Seal : std::uint8_t { unknown, open, sealed };
   struct Child {
     std::uint64_t compared = 0;    ///< the visit in which it was
     std::uint64_t surrounded = 0;  ///< the visit in which its neighbours were
@@ -74,7 +91,7 @@ class CompoundFacts {
     std::vector<Vec3> corners;  ///< of the piece
     btVector3 lower;
     btVector3 upper;
-    std::vector<Seal> facets;
+    std::vector<FacetCover> facets;
     std::vector<int> neighbours;  ///< by number
   };
   struct Known {
@@ -88,15 +105,19 @@ class CompoundFacts {
   /// The same, with its neighbours as they are in this step, and facts that hold.
   Child& surrounded(const btCompoundShape& compound, Known& known, int child, SolverCore& core);
   void find_neighbours(const btCompoundShape& compound, Known& known, int child, SolverCore& core) const;
-  bool find_seal(const btCompoundShape& compound, Known& known, int child, std::size_t facet, SolverCore& core);
+  FacetCover find_cover(const btCompoundShape& compound, Known& known, int child, std::size_t facet, SolverCore& core);
 
   std::unordered_map<const btCompoundShape*, Known> compounds_;
   std::vector<const Plane*> active_;
   std::uint64_t stamp_ = 0;
   std::uint64_t visit_ = 0;
-  Known* recent_ = nullptr;  ///< asked for last, in visit `recent_visit_`
-  const btCompoundShape* recent_of_ = nullptr;
-  std::uint64_t recent_visit_ = 0;
+  /// Asked for last.
+  struct Recent {
+    Known* known = nullptr;
+    const btCompoundShape* of = nullptr;
+    std::uint64_t visit = 0;
+  };
+  std::array<Recent, 2> recent_;  ///< a pair asks for the one and the other
 };
 
 /// `look_at` for a pair's children of a body; of one that is no compound, nothing.

@@ -8,20 +8,13 @@
 
 namespace pd::detail {
 
-namespace {
-
-/// From so many on, what a facet inside of them is known for spares a search.
-constexpr int kManyChildren = 4;
-
-}  // namespace
-
 bool is_flat(const PosedShape& body) {
   const ConvexPolytope* polytope = body.shape->polytope();
   return polytope != nullptr && polytope->affine_dimension() == 2;
 }
 
 void Cover::take_own() {
-  const UnionPiece* const kept = buffers_.near.kept(wrapper_, frame_, core_);
+  const UnionPiece* const kept = kept_ != nullptr ? kept_ : buffers_.near.known_triangle_of(wrapper_);
   const bool known = kept != nullptr && !kept->planes.empty();
   buffers_.own = known ? kept : &buffers_.made;
   if (!known) set_piece(own_, buffers_.made);
@@ -35,6 +28,14 @@ bool Cover::look_round(const Vec3& foot, const Vec3& n) {
   buffers_.near.find(wrapper_, frame_, foot, reach, slack_, n.isZero(0) ? nullptr : &beyond, stamp_, core_,
                      buffers_.found);
   return !buffers_.found.empty();
+}
+
+bool Cover::may_be_covered(const Vec3& foot) const {
+  if (frame_.is_world) return true;
+  const auto& compound = static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape());
+  // An edge or vertex is covered only where its foot is, which `touched_at` moves by less than this.
+  const double reach = 8 * slack_;
+  return buffers_.near.facts().may_hold(compound, wrapper_.m_index, foot, reach, 4 * slack_, core_);
 }
 
 double Cover::covered(Vec3 foot, const Vec3& n) {
@@ -60,11 +61,10 @@ bool Cover::led_on_by_neighbour(const Vec3& foot, const Vec3& n) const {
   return buffers_.near.neighbour_leads_on(*buffers_.own, foot, n, kLedOn, 2 * slack_);
 }
 
-bool Cover::is_sealed(std::size_t facet) const {
-  if (frame_.is_world) return false;
+FacetCover Cover::cover_of(std::size_t facet) const {
+  if (frame_.is_world) return FacetCover::some;
   const auto& compound = static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape());
-  return compound.getNumChildShapes() > kManyChildren &&
-         buffers_.near.facts().sealed(compound, wrapper_.m_index, facet, core_);
+  return buffers_.near.facts().cover_of(compound, wrapper_.m_index, facet, 4 * slack_, core_);
 }
 
 double Cover::most_covered(const Vec3& point, const Vec3& n, double enough) {

@@ -39,8 +39,8 @@ inline constexpr double kSameNormal = 1e-10;
 /// One of the pair's two bodies as a piece of its union, and the other that touches it.
 struct Side {
   const btCollisionObjectWrapper& wrapper;
-  PosedShape own;
-  PosedShape other;
+  const PosedShape& own;
+  const PosedShape& other;
   bool is_b;
   Vec3 front = Vec3::Zero();  ///< the only side of a triangle, zero: both
   /// From the piece outward, for the answer's normal.
@@ -64,7 +64,7 @@ class Cover {
         stamp_(stamp),
         core_(core),
         buffers_(buffers),
-        frame_(buffers.near.frame_of(side.wrapper, core)) {}
+        frame_(buffers.near.frame_of(side.wrapper, core, kept_)) {}
 
   /// Sets the piece at hand: one that is kept, or made anew. To be called first.
   void take_own();
@@ -77,6 +77,9 @@ class Cover {
   /// @return whether there is anything
   bool look_round(const Vec3& foot, const Vec3& n);
 
+  /// Whether what is no facet of the piece could be covered at `foot`, by what is known of it without looking round.
+  [[nodiscard]] bool may_be_covered(const Vec3& foot) const;
+
   /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
   /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no
   /// more is found out than whether it is kDecided.
@@ -85,8 +88,8 @@ class Cover {
   /// Whether the feature of the triangle at hand at `foot` is covered beyond doubt by the triangle next to it.
   [[nodiscard]] bool led_on_by_neighbour(const Vec3& foot, const Vec3& n) const;
 
-  /// Whether one other piece covers all of the piece's facet: so it covers every part of it.
-  [[nodiscard]] bool is_sealed(std::size_t facet) const;
+  /// What other pieces cover of all of the piece's facet, and so of every part of it; `some` where that is not known.
+  [[nodiscard]] FacetCover cover_of(std::size_t facet) const;
 
  private:
   /// What of the piece touches a point.
@@ -119,6 +122,7 @@ class Cover {
   std::uint64_t stamp_;
   SolverCore& core_;
   CoverBuffers& buffers_;
+  const UnionPiece* kept_ = nullptr;
   const UnionFrame& frame_;
 };
 

@@ -51,22 +51,30 @@ class SideRule {
     if (own.planes.empty()) return false;
     const Vec3 n = cover_.frame().turn(outward);
     const Vec3 foot = cover_.frame().place(witness - own.margin * outward);
-    // Most have nothing near that could cover.
-    if (!own.flat && !cover_.look_round(foot, n)) return false;
-    const auto best =
-        std::max_element(own.planes.begin(), own.planes.end() - (own.flat ? 3 : 0),
-                         [&](const Plane& x, const Plane& y) { return x.normal.dot(n) < y.normal.dot(n); });
-    const double cosine = best->normal.dot(n);
-    const bool facet = cosine >= 1 - kSameNormal;
-    if (facet && cover_.is_sealed(static_cast<std::size_t>(best - own.planes.begin()))) {
-      points.set(nearest_free(n, depth, foot));
-      return true;
+    std::size_t best = 0;
+    double cosine = own.planes[0].normal.dot(n);
+    for (std::size_t f = 1; f < own.planes.size() - (own.flat ? 3 : 0); ++f) {
+      const double other = own.planes[f].normal.dot(n);
+      if (other <= cosine) continue;
+      best = f;
+      cosine = other;
     }
-    if (facet) return !own.flat && facet_contact(depth, best->normal, foot, points.get());
+    const bool facet = cosine >= 1 - kSameNormal;
+    // Most have nothing near that could cover.
+    if (facet && !own.flat) {
+      const FacetCover known = cover_.cover_of(best);
+      if (known == FacetCover::none) return false;
+      if (known == FacetCover::all) {
+        points.set(nearest_free(n, depth, foot));
+        return true;
+      }
+    }
+    if (!own.flat && ((!facet && !cover_.may_be_covered(foot)) || !cover_.look_round(foot, n))) return false;
+    if (facet) return !own.flat && facet_contact(depth, own.planes[best].normal, foot, points.get());
     const double sine = covered_here(foot, n);
     if (sine <= kLevel) return false;
     if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(outward))) return false;
-    points.set(own.flat && cosine >= kNearNormal ? turned(*best) : nearest_free(n, depth, foot));
+    points.set(own.flat && cosine >= kNearNormal ? turned(own.planes[best]) : nearest_free(n, depth, foot));
     return true;
   }
 
@@ -191,11 +199,14 @@ class SideRule {
     const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
     for (std::size_t i = 0; i < std::min(kTries, facets.size()); ++i) {
       const int f = facets[i].second;
-      if (f < count && cover_.is_sealed(static_cast<std::size_t>(f))) continue;
+      const FacetCover known = f < count ? cover_.cover_of(static_cast<std::size_t>(f)) : FacetCover::some;
+      if (known == FacetCover::all) continue;
       const PieceExit exit = f < count ? exit_over(own.planes[static_cast<std::size_t>(f)]) : exit_against(f - count);
       const Vec3 along = f < count ? own.planes[static_cast<std::size_t>(f)].normal : cover_.frame().turn(exit.n);
       ContactManifold points = manifold_along(exit);
-      if (points.count > 0 && !looked) {
+      if (points.count == 0) continue;
+      if (known == FacetCover::none) return points;
+      if (!looked) {
         cover_.look_round(foot, Vec3::Zero());
         looked = true;
       }
@@ -209,7 +220,7 @@ class SideRule {
     return {};
   }
 
-  Side side_;
+  const Side& side_;
   double threshold_;
   double window_;
   double slack_;
@@ -236,7 +247,8 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
   const double window = window_of(a, b, depth, threshold, seconds);
   Vec3 witness_b = answer.depth.witness_b;
   if (is_piece(b)) {
-    SideRule rule({b, answer.b, answer.a, true, front}, threshold, window, slack, stamp, core, buffers);
+    const Side side{b, answer.b, answer.a, true, front};
+    SideRule rule(side, threshold, window, slack, stamp, core, buffers);
     if (rule.apply(depth, witness_b, lazy)) {
       buffers.counters.covered.add();
       if (points.count == 0) return;
@@ -247,7 +259,8 @@ void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWr
     }
   }
   if (is_piece(a)) {
-    SideRule rule({a, answer.a, answer.b, false}, threshold, window, slack, stamp, core, buffers);
+    const Side side{a, answer.a, answer.b, false};
+    SideRule rule(side, threshold, window, slack, stamp, core, buffers);
     if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) buffers.counters.covered.add();
   }
   lazy.get();

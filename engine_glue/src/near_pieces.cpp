@@ -84,12 +84,16 @@ void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrap
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
 
-const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, SolverCore& core) {
+const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, SolverCore& core,
+                                       const UnionPiece*& kept) {
+  kept = nullptr;
   const btCollisionObjectWrapper* parent = piece.m_parent;
   if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return world_;
   const auto& compound = static_cast<const btCompoundShape&>(*parent->getCollisionShape());
   if (compound.getChildShape(piece.m_index) != piece.getCollisionShape()) return world_;
-  if (facts_.piece_of(compound, piece.m_index, core).planes.empty()) return world_;
+  const UnionPiece& child = facts_.piece_of(compound, piece.m_index, core);
+  if (child.planes.empty()) return world_;
+  kept = &child;
   const btCollisionObject* const body = parent->getCollisionObject();
   if (frames_[0].body != body) {
     std::swap(frames_[0], frames_[1]);
@@ -102,11 +106,8 @@ const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, So
   return frames_[0].frame;
 }
 
-const UnionPiece* NearPieces::kept(const btCollisionObjectWrapper& piece, const UnionFrame& frame, SolverCore& core) {
+const UnionPiece* NearPieces::known_triangle_of(const btCollisionObjectWrapper& piece) {
   const btCollisionObjectWrapper* parent = piece.m_parent;
-  if (!frame.is_world) {
-    return &facts_.piece_of(static_cast<const btCompoundShape&>(*parent->getCollisionShape()), piece.m_index, core);
-  }
   const bool of_mesh = parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isConcave();
   return of_mesh ? known_piece(piece) : nullptr;
 }

@@ -55,7 +55,9 @@ class NearPieces {
   void know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh);
 
   /// Where the union of a piece is looked at. Valid until the next pair.
-  [[nodiscard]] const UnionFrame& frame_of(const btCollisionObjectWrapper& piece, SolverCore& core);
+  /// @param kept  set to the piece in its frame where it is a child that is kept there, else to nullptr
+  [[nodiscard]] const UnionFrame& frame_of(const btCollisionObjectWrapper& piece, SolverCore& core,
+                                           const UnionPiece*& kept);
 
   /// The other pieces of the union that come within `reach` of a point of this one, and within `slack` of the piece
   /// itself, which is not looked at closely; all in the piece's frame. Compounds in compounds and meshes in compounds
@@ -77,10 +79,8 @@ class NearPieces {
   /// Makes room: what was found may go.
   void forget_made() { num_made_ = 0; }
 
-  /// The piece itself in its frame, where it is kept: a child of a compound that is all of its body, or a triangle that
-  /// is known; else nullptr.
-  [[nodiscard]] const UnionPiece* kept(const btCollisionObjectWrapper& piece, const UnionFrame& frame,
-                                       SolverCore& core);
+  /// A triangle that is known, as a piece; nullptr: the piece is none.
+  [[nodiscard]] const UnionPiece* known_triangle_of(const btCollisionObjectWrapper& piece);
 
  private:
   struct Search;

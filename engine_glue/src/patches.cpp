@@ -21,6 +21,9 @@ constexpr double kApart = 1.0 / 16;
 /// What the squared distances and areas of a point of the last step count.
 constexpr double kLasting = 1.2;
 
+/// Of so few points each is compared with those that are kept; more are put in order first.
+constexpr std::size_t kFew = 32;
+
 /// The number of a piece's feature pair among those of all pieces.
 std::int64_t feature_of_piece(std::int64_t feature, int i, int j) {
   const auto number = static_cast<std::uint64_t>(feature) * 0x9E3779B97F4A7C15ULL +
@@ -139,6 +142,19 @@ void Patches::add_twins(int most, std::span<const LastPatch> last) {
 }
 
 void Patches::keep_one_of_each(int patch, double merge) {
+  const auto repeats = [&](const Point& kept, const Point& point) {
+    return (kept.contact.position_b - point.contact.position_b).squaredNorm() < merge * merge &&
+           kept.normal.dot(point.normal) > kOnePatch;
+  };
+  left_.clear();
+  if (points_.size() <= kFew) {
+    for (const Point& point : points_) {
+      if (point.patch != patch) continue;
+      const auto repeated = [&](const Point* kept) { return repeats(*kept, point); };
+      if (std::none_of(left_.begin(), left_.end(), repeated)) left_.push_back(&point);
+    }
+    return;
+  }
   // No edge of a mesh is likely to run across this, so that few points lie level along it.
   const Vec3 way(0.36, 0.48, 0.8);
   places_.clear();
@@ -151,23 +167,18 @@ void Patches::keep_one_of_each(int patch, double merge) {
   ranks_.resize(points_.size());
   for (std::size_t r = 0; r < places_.size(); ++r) ranks_[places_[r].point] = r;
   const double level = 1.01 * merge;
-  left_.clear();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& point = points_[i];
     if (point.patch != patch) continue;
     const std::size_t rank = ranks_[i];
     Place& here = places_[rank];
-    const auto repeats = [&](const Place& other) {
-      const Point& kept = points_[other.point];
-      return other.kept && (kept.contact.position_b - point.contact.position_b).squaredNorm() < merge * merge &&
-             kept.normal.dot(point.normal) > kOnePatch;
-    };
+    const auto repeated_by = [&](const Place& other) { return other.kept && repeats(points_[other.point], point); };
     bool repeated = false;
     for (std::size_t k = rank; !repeated && k-- > 0 && here.along - places_[k].along < level;) {
-      repeated = repeats(places_[k]);
+      repeated = repeated_by(places_[k]);
     }
     for (std::size_t k = rank + 1; !repeated && k < places_.size() && places_[k].along - here.along < level; ++k) {
-      repeated = repeats(places_[k]);
+      repeated = repeated_by(places_[k]);
     }
     if (repeated) continue;
     here.kept = true;
@@ -195,8 +206,15 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
     left_.erase(std::find(left_.begin(), left_.end(), point));
   };
   const auto best = [&](auto&& score) {
-    return *std::max_element(left_.begin(), left_.end(),
-                             [&](const Point* x, const Point* y) { return score(*x) < score(*y); });
+    const Point* first = nullptr;
+    double most = 0;
+    for (const Point* point : left_) {
+      const double worth = score(*point);
+      if (first != nullptr && !(most < worth)) continue;
+      first = point;
+      most = worth;
+    }
+    return first;
   };
   const auto place = [](const Point& point) -> const Vec3& { return point.contact.position_b; };
   const auto weight = [&](const Point& point) {

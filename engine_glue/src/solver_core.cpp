@@ -48,9 +48,12 @@ CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, s
 }
 
 void SolverCore::refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known) {
-  const bool current = stamp != 0 && known && known->source == &shape &&
-                       known->compared.load(std::memory_order_relaxed) == stamp &&
-                       known->signature == shape_signature(shape);
+  // The signature of a box is all that there is to compare.
+  const auto compared = [&] {
+    return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ||
+           (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp);
+  };
+  const bool current = known && known->source == &shape && compared() && known->signature == shape_signature(shape);
   if (!current) {
     known = cache.find(shape, stamp);
   }

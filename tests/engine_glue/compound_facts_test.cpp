@@ -32,12 +32,15 @@ class Row {
     facts_.begin_pair(++stamp_);
     for (const int child : near) facts_.look_at(compound_, child, core_);
   }
-  /// How many of a child's facets another one covers.
-  int num_sealed(int child) {
+  /// How many of a child's facets are covered so.
+  int num_covered(int child, detail::FacetCover cover, double slack = 1e-4) {
     int count = 0;
-    for (std::size_t facet = 0; facet < 6; ++facet) count += facts_.sealed(compound_, child, facet, core_) ? 1 : 0;
+    for (std::size_t facet = 0; facet < 6; ++facet) {
+      count += facts_.cover_of(compound_, child, facet, slack, core_) == cover ? 1 : 0;
+    }
     return count;
   }
+  int num_sealed(int child) { return num_covered(child, detail::FacetCover::all); }
   std::vector<int> neighbours(int child) {
     const std::vector<int>* all = facts_.neighbours(compound_, child, 1e-4, core_);
     return all != nullptr ? *all : std::vector<int>{-1};
@@ -48,6 +51,7 @@ class Row {
     EXPECT_TRUE(facts_.rising_near(compound_, child, Vec3(x, 0, .5), Vec3::UnitZ(), .5, reach, 1e-4, core_, found));
     return found;
   }
+  bool may_hold(int child, const Vec3& point) { return facts_.may_hold(compound_, child, point, 1e-4, 1e-4, core_); }
   btCompoundShape& compound() { return compound_; }
   std::size_t num_met() const { return core_.cache.size(); }
 
@@ -91,6 +95,41 @@ TEST(CompoundFacts, OnlyWhatRisesBesideAContactCanCoverIt) {
   EXPECT_EQ(row.rising(1, 1.25, .3), (std::vector<int>{2}));
   EXPECT_TRUE(row.rising(1, 1.25, .2).empty());  // out of reach
   EXPECT_TRUE(row.rising(0, .5, .3).empty());    // no neighbour
+}
+
+TEST(CompoundFacts, FacetsBesideANeighbourAreFreeAndThoseItStandsOnAreNot) {
+  Row row(2);
+  row.step({0, 1});
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 5);
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 0);
+  // A step of half a height: the neighbour rises beside the top, which is free still.
+  row.compound().updateChildTransform(1, btTransform(btQuaternion::getIdentity(), btVector3(1, 0, btScalar(.5))));
+  row.step({0, 1});
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 5);
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 1);
+  // It stands on the middle of the top and into it.
+  row.compound().updateChildTransform(1, btTransform(btQuaternion::getIdentity(), btVector3(btScalar(.75), 0, 1)));
+  row.step({0, 1});
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 5);
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 1);
+  row.compound().updateChildTransform(1, btTransform(btQuaternion::getIdentity(), btVector3(btScalar(.75), 0, .5)));
+  row.step({0, 1});
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 4);
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 2);
+  // Nothing is said for a slack that is wider than neighbours are looked for.
+  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some, 1), 6);
+}
+
+TEST(CompoundFacts, WhatHoldsAPointTouchesIt) {
+  Row row(3);
+  row.step({0, 1, 2});
+  EXPECT_TRUE(row.may_hold(1, Vec3(.5, 0, .5)));
+  EXPECT_TRUE(row.may_hold(1, Vec3(1.5, 0, .5)));
+  EXPECT_FALSE(row.may_hold(1, Vec3(.51, 0, .5)));
+  EXPECT_FALSE(row.may_hold(0, Vec3(-.5, 0, .5)));
+  row.compound().updateChildTransform(2, Row::at(5));
+  row.step({1});
+  EXPECT_FALSE(row.may_hold(1, Vec3(1.5, 0, .5)));
 }
 
 TEST(CompoundFacts, CompareWhatIsMet) {

@@ -162,6 +162,27 @@ TEST(Patches, WhatTouchesIsWorthMoreThanWhatLiesFartherOut) {
   EXPECT_EQ(pieces_of(patches), (std::vector<std::vector<int>>{{4, 5, 6, 7}}));
 }
 
+/// Few points are compared one by one, many by their order along a line: it makes no difference.
+TEST(Patches, OfManyPointsTheSameOnesRepeatEachOther) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-0.05 * kThreshold, 0.05 * kThreshold);
+  for (int trial = 0; trial < 100; ++trial) {
+    Patches few, many;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 at(place(random), 0, place(random));
+      const double depth = 1e-4 * (8 - i);
+      add_point(few, Vec3::UnitY(), at, depth, i);
+      add_point(many, Vec3::UnitY(), at, depth, i);
+    }
+    for (int i = 0; i < 64; ++i) add_point(many, -Vec3::UnitY(), Vec3(i, 0, 0), 1e-4, 8 + i);
+    few.choose(8, kThreshold, {});
+    many.choose(8, kThreshold, {});
+    ASSERT_EQ(few.size(), 1);
+    const auto all = pieces_of(many);
+    EXPECT_TRUE(std::find(all.begin(), all.end(), pieces_of(few)[0]) != all.end()) << trial;
+  }
+}
+
 TEST(Patches, ACornerInAValleyIsHeldFromBothSides) {
   // Four corners of a square, each touched along two ways 16 degrees apart.
   const Vec3 left = Vec3(0.14, 1, 0).normalized(), right = Vec3(-0.14, 1, 0).normalized();

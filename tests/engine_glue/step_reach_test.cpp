@@ -13,11 +13,19 @@
 namespace pd::test {
 namespace {
 
-/// A box of a metre over a floor.
+enum class Kind { box, compound };
+
+/// A box of a metre over a floor, or four quarters of one.
 struct Hovering {
-  explicit Hovering(btScalar gap, int floor_flags = btCollisionObject::CF_STATIC_OBJECT) {
+  explicit Hovering(btScalar gap, int floor_flags = btCollisionObject::CF_STATIC_OBJECT, Kind kind = Kind::box) {
     world.setGravity(btVector3(0, -10, 0));
     install(world, solver);
+    for (const btScalar x : {btScalar(-0.25), btScalar(0.25)}) {
+      for (const btScalar z : {btScalar(-0.25), btScalar(0.25)}) {
+        quarters.addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(x, 0, z)), &quarter);
+      }
+    }
+    if (kind == Kind::compound) body.setCollisionShape(&quarters);
     floor.setCollisionShape(&ground);
     floor.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, -1, 0)));
     floor.setCollisionFlags(floor_flags);
@@ -39,6 +47,16 @@ struct Hovering {
     }
     return count;
   }
+  [[nodiscard]] btScalar rightmost() {
+    btScalar most = -1;
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+      const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+      for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        most = std::max(most, manifold.getContactPoint(k).getPositionWorldOnB().x());
+      }
+    }
+    return most;
+  }
   [[nodiscard]] btScalar gap() const { return body.getCenterOfMassPosition().y() - btScalar(0.5); }
 
   BulletPenetrationDepthSolver solver;
@@ -49,6 +67,8 @@ struct Hovering {
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &constraints, &configuration};
   btBoxShape ground{btVector3(5, 1, 5)};
   btBoxShape cube{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
+  btBoxShape quarter{btVector3(btScalar(0.25), btScalar(0.5), btScalar(0.25))};
+  btCompoundShape quarters;
   btCollisionObject floor;
   btRigidBody body{btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &cube, btVector3(1, 1, 1))};
 };
@@ -111,12 +131,42 @@ TEST(StepReach, HostsThatReadPointsGetThemAll) {
   EXPECT_EQ(asked.points, 4);
 }
 
+TEST(StepReach, ChildrenOfCompoundsHaveThePointsThatCanBeNeeded) {
+  constexpr int kFixed = btCollisionObject::CF_STATIC_OBJECT;
+  const btScalar far = btScalar(0.9) * threshold();
+  Hovering idle(far, kFixed, Kind::compound);
+  idle.step();
+  EXPECT_EQ(idle.points(), 0);
+  EXPECT_EQ(idle.solver.statistics().calls, 0);
+  Hovering near(btScalar(0.2) * threshold(), kFixed, Kind::compound);
+  near.step();
+  EXPECT_EQ(near.points(), 4);
+  Hovering coming(far, kFixed, Kind::compound);
+  coming.body.setLinearVelocity(btVector3(0, -1, 0));
+  coming.step();
+  EXPECT_EQ(coming.points(), 4);
+  Hovering sliding(far, kFixed, Kind::compound);
+  sliding.body.setLinearVelocity(btVector3(10, 0, 0));
+  sliding.step();
+  EXPECT_EQ(sliding.points(), 0);
+  Hovering turning(far, kFixed, Kind::compound);
+  turning.world.setGravity(btVector3(0, 0, 0));
+  turning.body.setAngularVelocity(btVector3(0, 0, btScalar(2)));
+  turning.step();
+  EXPECT_EQ(turning.points(), 3);
+  EXPECT_LT(turning.rightmost(), btScalar(-0.4));
+  Hovering sensor(far, btCollisionObject::CF_STATIC_OBJECT | btCollisionObject::CF_NO_CONTACT_RESPONSE, Kind::compound);
+  sensor.step();
+  EXPECT_EQ(sensor.points(), 4);
+}
+
 /// A point that was left out is there in the step in which the body arrives.
 TEST(StepReach, NothingFallsThroughTheGap) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(0, 1);
-  for (int i = 0; i < 200; ++i) {
-    Hovering falling(static_cast<btScalar>(share(random)) * threshold());
+  for (int i = 0; i < 400; ++i) {
+    Hovering falling(static_cast<btScalar>(share(random)) * threshold(), btCollisionObject::CF_STATIC_OBJECT,
+                     i % 2 == 0 ? Kind::box : Kind::compound);
     falling.body.setLinearVelocity(btVector3(0, static_cast<btScalar>(-4 * share(random) * share(random)), 0));
     btScalar deepest = 0;
     for (int k = 0; k < 20; ++k) {

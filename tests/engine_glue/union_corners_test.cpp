@@ -187,6 +187,35 @@ TEST(UnionCorners, ALeaningPlankMeetsTheFloorAllAlong) {
   }
 }
 
+/// The end of a ring lies between its two sides, which cover all corners of its inner face and nothing else of it. What
+/// comes so fast that all of the face is within its reach is stopped by it all the same.
+TEST(UnionCorners, ABarBetweenTwoOthersStopsWhatIsFast) {
+  for (const double speed : {1.0, 2.0, 4.0, 6.0, 8.0}) {
+    UnionWorld world;
+    world.bullet.world().setGravity(at(0, 0, 0));
+    auto* ring = world.bullet.shape<btCompoundShape>();
+    const auto add = [&](btCollisionShape* bar, double x, double z) {
+      ring->addChildShape(btTransform(btQuaternion::getIdentity(), at(x, 0, z)), bar);
+    };
+    for (const double side : {-1.0, 1.0}) {
+      add(box(world, .3, .1, .035), 0, .125 * side);
+      add(box(world, .035, .1, .09), .265 * side, 0);
+    }
+    world.fixed(ring);
+    const btRigidBody* body = world.moving(box(world, .05, .05, .05), at(.1, .01, .02), at(speed, 0, 0));
+    double farthest = 0, lifted = 0;
+    for (int i = 0; i < 30; ++i) {
+      world.step();
+      farthest = std::max(farthest, x_of(*body));
+      lifted = std::max(lifted, std::abs(y_of(*body) - .01));
+    }
+    // Half a step's way may be inside when it is seen first.
+    EXPECT_LT(farthest, .18 + speed / 60) << speed;
+    EXPECT_LT(lifted, 1e-3) << speed;
+    EXPECT_LT(std::abs(static_cast<double>(body->getLinearVelocity().x())), 1.0) << speed;
+  }
+}
+
 TEST(UnionCorners, ACrestIsLeftAtFullSpeed) {
   UnionWorld world;
   world.fixed(world.mesh(strip({{-6, 0}, {-2, 0}, {0, 0}, {2, -1}, {8, -4}}, 3), 0));

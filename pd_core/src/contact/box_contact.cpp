@@ -95,19 +95,13 @@ struct BoxPairInRows {
 Vec3 vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 /// The foot of the origin on the plane of the axis.
-BoxFoot foot_of(const BoxInRows& a, const BoxInRows& b, const BoxDistance& found, double level) {
-  const auto half = [](const BoxInRows& box) {
-    return Vec3(box.half_extents[0], box.half_extents[1], box.half_extents[2]);
+BoxFoot foot_of(const BoxPairInRows& boxes, const BoxDistance& found, double level) {
+  const auto edges_of = [](const BoxInRows& box, const Vec3& centre) {
+    const auto edge = [&](int k) { return Vec3(Vec3(box.x[k], box.y[k], box.z[k]) * box.half_extents[k]); };
+    return detail::BoxHalfEdges{{edge(0), edge(1), edge(2)}, centre};
   };
-  const auto pose = [](const BoxInRows& box) {
-    Mat3 rotation;
-    rotation << box.x[0], box.x[1], box.x[2], box.y[0], box.y[1], box.y[2], box.z[0], box.z[1], box.z[2];
-    return Pose::from_trusted_matrix(rotation, box.centre);
-  };
-  const Pose pose_a = pose(a), pose_b = pose(b);
-  return detail::BoxPair({Vec3::Zero(), half(a)}, pose_a, norm_of(a.half_extents) * kRounded, {Vec3::Zero(), half(b)},
-                         pose_b, norm_of(b.half_extents) * kRounded)
-      .foot(found, level);
+  return foot_of_boxes(edges_of(boxes.a, Vec3::Zero()), edges_of(boxes.b, vector_of(boxes.centre_b)), found, level,
+                       boxes.reach);
 }
 
 void take_all(const BoxPairInRows& boxes, const BoxCorners& corners, const double (&n)[3], ContactManifold& manifold) {
@@ -184,7 +178,7 @@ void solve(const BoxInRows& a, const BoxInRows& b, double tolerance, double brea
   double missed = signed_depth - corners.deepest;
   BoxFoot at;
   if (!reached || (found.depth <= 0 && missed > limit) || witness == BoxWitness::placed) {
-    at = foot_of(a, b, found, 0.125 * limit);
+    at = foot_of(boxes, found, 0.125 * limit);
     if (!reached || at.missed < missed) missed = at.missed;
     out.witness_a = at.point_a + a.centre;
     out.witness_b = at.point_b + a.centre;

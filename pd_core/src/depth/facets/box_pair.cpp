@@ -45,6 +45,36 @@ double crossing(const Vec3& edge_a, const Vec3& centre_a, const Vec3& edge_b, co
   return std::clamp(along, -1.0, 1.0);
 }
 
+/// The points of a box farthest along a direction, up to a level: a centre and the half edges that may be added with
+/// any weight from -1 to 1.
+struct Face {
+  Vec3 centre;
+  Vec3 edges[3];
+  int count = 0;
+
+  [[nodiscard]] Vec3 nearest(const Vec3& point) const {
+    Vec3 x = centre;
+    for (int k = 0; k < count; ++k) {
+      x += std::clamp((point - centre).dot(edges[k]) / edges[k].squaredNorm(), -1.0, 1.0) * edges[k];
+    }
+    return x;
+  }
+};
+
+Face face(const BoxHalfEdges& of, const Vec3& along, int spanned, double level) {
+  Face out{of.centre, {}, 0};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& g = of.edges[k];
+    const double height = g.dot(along);
+    if ((spanned & bit_of_box_axis(k)) != 0 || std::abs(height) <= level) {
+      out.edges[out.count++] = g;
+    } else {
+      out.centre += height > 0 ? g : Vec3(-g);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 BoxPair::BoxPair(const BoxFrame& frame_a, const Pose& pose_a, double radius_a, const BoxFrame& frame_b,
@@ -82,53 +112,39 @@ BoxDistance BoxPair::distance() const {
   return out;
 }
 
-BoxFoot BoxPair::foot(const BoxDistance& found, double level) const {
+BoxFoot foot_of_boxes(const BoxHalfEdges& a, const BoxHalfEdges& b, const BoxDistance& found, double level,
+                      double reach) {
   const Vec3 x = found.height * found.normal;
   const int block = found.axis / 4, lane = found.axis % 4;
   const int across = (lane + 2) % 3;
-  const int plane = 7 & ~bit(across);
-  level = std::max(level, 16 * kUnitRoundoff * reach_);
-  const Face of_a = face(of_a_, centre_a_, -found.normal, block == 0 ? plane : block == 1 ? 0 : bit(block - 2), level);
-  const Face of_b = face(of_b_, centre_b_, found.normal, block == 1 ? plane : block == 0 ? 0 : bit(lane), level);
+  const int plane = 7 & ~bit_of_box_axis(across);
+  level = std::max(level, 16 * kUnitRoundoff * reach);
+  const Face of_a = face(a, -found.normal, block == 0 ? plane : block == 1 ? 0 : bit_of_box_axis(block - 2), level);
+  const Face of_b = face(b, found.normal, block == 1 ? plane : block == 0 ? 0 : bit_of_box_axis(lane), level);
   BoxFoot out;
-  Vec3 b = of_b.centre;
+  Vec3 on_b = of_b.centre;
   if (of_a.count == 1 && of_b.count == 1) {
-    b += crossing(of_a.edges[0], of_a.centre, of_b.edges[0], of_b.centre, x) * of_b.edges[0];
+    on_b += crossing(of_a.edges[0], of_a.centre, of_b.edges[0], of_b.centre, x) * of_b.edges[0];
   }
   out.missed = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMaxFootSteps; ++step) {
-    out.point_a = of_a.nearest(b - x);
-    b = of_b.nearest(out.point_a + x);
-    const double last = std::exchange(out.missed, (b - out.point_a - x).norm());
-    if (out.missed <= 32 * kUnitRoundoff * reach_ || !(out.missed < kLeastProgress * last)) break;
+    out.point_a = of_a.nearest(on_b - x);
+    on_b = of_b.nearest(out.point_a + x);
+    const double last = std::exchange(out.missed, (on_b - out.point_a - x).norm());
+    if (out.missed <= 32 * kUnitRoundoff * reach || !(out.missed < kLeastProgress * last)) break;
   }
-  out.point_b = b;
+  out.point_b = on_b;
   return out;
+}
+
+BoxFoot BoxPair::foot(const BoxDistance& found, double level) const {
+  const auto edges_of = [](const BoxGenerators& of, const Vec3& centre) {
+    return BoxHalfEdges{{generator(of, 0), generator(of, 1), generator(of, 2)}, centre};
+  };
+  return foot_of_boxes(edges_of(of_a_, centre_a_), edges_of(of_b_, centre_b_), found, level, reach_);
 }
 
 double BoxPair::slack() const { return 64 * kUnitRoundoff * reach_; }
-
-Vec3 BoxPair::Face::nearest(const Vec3& point) const {
-  Vec3 x = centre;
-  for (int k = 0; k < count; ++k) {
-    x += std::clamp((point - centre).dot(edges[k]) / edges[k].squaredNorm(), -1.0, 1.0) * edges[k];
-  }
-  return x;
-}
-
-BoxPair::Face BoxPair::face(const BoxGenerators& of, const Vec3& centre, const Vec3& along, int spanned, double level) {
-  Face out{centre, {}, 0};
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 g = generator(of, k);
-    const double height = g.dot(along);
-    if ((spanned & bit(k)) != 0 || std::abs(height) <= level) {
-      out.edges[out.count++] = g;
-    } else {
-      out.centre += height > 0 ? g : Vec3(-g);
-    }
-  }
-  return out;
-}
 
 void BoxPair::spanning(const BoxGenerators& a, const BoxGenerators& b, int axis, Vec3& u, Vec3& v) {
   const int block = axis / 4, lane = axis % 4;

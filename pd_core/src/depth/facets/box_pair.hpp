@@ -38,6 +38,23 @@ struct BoxFoot {
   double missed = 0;            ///< how far the difference is from the foot
 };
 
+/// Vertices are numbered lexicographically: 4 for +x, 2 for +y, 1 for +z.
+constexpr int bit_of_box_axis(int axis) { return 4 >> axis; }
+
+/// A box by its half edges, about a centre.
+struct BoxHalfEdges {
+  Vec3 edges[3];
+  Vec3 centre;
+};
+
+/// The foot of the origin on the plane of `found`, met by points of both faces that are found by projecting from one to
+/// the other: of two flush faces that cross, no corner lies on the other.
+/// @param a, b   in the frame of the answer
+/// @param level  heights that count as one
+/// @param reach  at least the distance of any two of the boxes' points
+[[nodiscard]] BoxFoot foot_of_boxes(const BoxHalfEdges& a, const BoxHalfEdges& b, const BoxDistance& found,
+                                    double level, double reach);
+
 class BoxPair {
  public:
   /// @param radius_a, radius_b  upper bounds of the vertices' distance from the frames' origins.
@@ -48,26 +65,14 @@ class BoxPair {
   /// turned by 1e-7 span a plane known to 2u.
   [[nodiscard]] BoxDistance distance() const;
 
-  /// The foot of the origin on the plane of `found`, met by points of both faces that are found by projecting from one
-  /// to the other: of two flush faces that cross, no corner lies on the other.
-  /// @param level  heights that count as one.
+  /// `foot_of_boxes`
   [[nodiscard]] BoxFoot foot(const BoxDistance& found, double level) const;
 
   /// How far the points of a foot may lie beside it by rounding.
   [[nodiscard]] double slack() const;
 
  protected:
-  /// The points of a box farthest along a direction, up to a level: a centre and the generators that may be added with
-  /// any weight from -1 to 1.
-  struct Face {
-    Vec3 centre;
-    Vec3 edges[3];
-    int count = 0;
-
-    [[nodiscard]] Vec3 nearest(const Vec3& point) const;
-  };
-  static Face face(const BoxGenerators& of, const Vec3& centre, const Vec3& along, int spanned, double level);
-
+  static constexpr int bit(int axis) { return bit_of_box_axis(axis); }
   static Vec3 generator(const BoxGenerators& of, int i) { return {of.x[i], of.y[i], of.z[i]}; }
   /// The two generators whose product is the normal of an axis.
   static void spanning(const BoxGenerators& a, const BoxGenerators& b, int axis, Vec3& u, Vec3& v);
@@ -76,8 +81,6 @@ class BoxPair {
   /// L, rounded: |c| + sum |g| a coordinate.
   [[nodiscard]] double greatest_coordinate() const;
 
-  /// Vertices are numbered lexicographically: 4 for +x, 2 for +y, 1 for +z.
-  static constexpr int bit(int axis) { return 4 >> axis; }
   /// The vertex farthest along `sign` * normal; on equal heights the one with the lower id.
   static int farthest(const BoxGenerators& of, const Vec3& normal, double sign);
 
