@@ -226,6 +226,7 @@ void RollbackStepper::State::record(const detail::FoundImpact& impact, const Pen
   result.point_a = to_bullet(contact.witness_a);
   result.point_b = to_bullet(contact.witness_b);
   if (impact.allowed_depth > 0) {
+    parts.expect_deep(impact.a.body, impact.b.body);
     ++report.deepened;
   } else {
     report.contacts.push_back(result);
