@@ -161,8 +161,7 @@ bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpa
   duration_ = duration;
   found = FoundImpact();
   found.time = HUGE_VAL;
-  // What moves by less than the slop can neither pass through nor sink deeper than that.
-  if (farthest_way() <= settings.slop) return false;
+  if (farthest_way() <= settings.searched) return false;
   collect();
   const auto widen = static_cast<btScalar>(settings.gap);
   for (Body& body : bodies_) {
@@ -195,7 +194,7 @@ void ImpactSearch::search_bodies(const Body& a, const Body& b, const Settings& s
     const double turn = body.motion.angular_velocity.norm() * duration_;
     return turn > 0 ? turn * body.radius : 0;
   };
-  if (apart + turning(a) + turning(b) <= settings.slop) return;
+  if (apart + turning(a) + turning(b) <= settings.searched) return;
   for (int i = a.first_piece; i < a.first_piece + a.num_pieces; ++i) {
     for (int j = b.first_piece; j < b.first_piece + b.num_pieces; ++j) {
       const Piece& pa = pieces_[static_cast<std::size_t>(i)];

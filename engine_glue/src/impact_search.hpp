@@ -51,6 +51,7 @@ class ImpactSearch {
   struct Settings {
     double gap = 0;         ///< at which bodies meet
     double in_contact = 0;  ///< pairs no farther apart than this are in contact already
+    double searched = 0;    ///< pairs that move by no more than this are not searched
     double slop = 0;        ///< those may sink by this in a frame, about
   };
   /// The earliest first contact of the motion from the marked poses to the present ones, which takes `duration`.

@@ -88,7 +88,8 @@ void PartContacts::near(btBroadphasePair& pair, btCollisionDispatcher& dispatche
 void PartContacts::drop_of_bouncing(btPersistentManifold& manifold) const {
   for (int k = manifold.getNumContacts() - 1; k >= 0; --k) {
     const btManifoldPoint& point = manifold.getContactPoint(k);
-    if (point.m_combinedRestitution > 0 && point.getDistance() > rule_.farthest) manifold.removeContactPoint(k);
+    if (!(point.m_combinedRestitution > 0 && point.getDistance() > rule_.farthest)) continue;
+    if (approach(manifold, point) > rule_.gentle) manifold.removeContactPoint(k);
   }
 }
 

@@ -14,8 +14,8 @@
 namespace pd::detail {
 
 /// While it lives, the dispatcher's narrow phase
-///   - drops contact points at a distance above `farthest` of pairs that bounce, and of pairs that have no nearer point
-///     and approach faster than `slow`;
+///   - drops contact points at a distance above `farthest` of pairs that bounce, where they approach faster than
+///     `gentle`, and of pairs that have no nearer point and approach faster than `slow`;
 ///   - gives the others the restitution that their impact may have;
 ///   - has the pair that sank in the part before put back, by split impulses, to where bodies touch, by at most the
 ///   slop.
@@ -24,6 +24,7 @@ class PartContacts {
   struct Rule {
     btScalar farthest;
     btScalar slow;
+    btScalar gentle;
     const btCollisionObject* sunk_a;  ///< null: none
     const btCollisionObject* sunk_b;
     btScalar touching;  ///< distance at which bodies touch

@@ -121,12 +121,15 @@ void SubStepper::move_bodies(double from, double step, double gap, double slop) 
   const auto h = static_cast<btScalar>(step);
   const bool whole = from == 0 && step >= frame_ && !driven_;
   const btScalar slow = whole ? BT_LARGE_FLOAT : static_cast<btScalar>(slop / step);
+  // Pairs that come nearer by less than the slop in a whole step are not searched, and bounce off nothing.
+  const btScalar gentle = whole ? static_cast<btScalar>(slop / step) : -BT_LARGE_FLOAT;
   std::optional<PartContacts> contacts;
   if (may_bounce_ || !whole) {
-    contacts.emplace(world_.getDispatcher(),
-                     PartContacts::Rule{static_cast<btScalar>(kInContactGaps * gap), slow, sunk_.first, sunk_.second,
-                                        static_cast<btScalar>(kTouchingGaps * gap), static_cast<btScalar>(slop)},
-                     energy_);
+    contacts.emplace(
+        world_.getDispatcher(),
+        PartContacts::Rule{static_cast<btScalar>(kInContactGaps * gap), slow, gentle, sunk_.first, sunk_.second,
+                           static_cast<btScalar>(kTouchingGaps * gap), static_cast<btScalar>(slop)},
+        energy_);
   }
   if (whole) {
     if (last_cut_) scale_warm_starts(step);

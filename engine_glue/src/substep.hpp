@@ -9,7 +9,8 @@
 ///   - pairs nearer than twice the gap count as touching (`m_linearSlop`), so that an impact at a gap of 1e-5 keeps its
 ///     restitution whatever h is;
 ///   - pairs that bounce and are farther apart than that do not brake each other: Bullet would let them come as near as
-///     their gap in this part, and take the speed that is left over without giving it back. Neither do others that have
+///     their gap in this part, and take the speed that is left over without giving it back (in a whole frame those do
+///     that come nearer by less than the slop, which are not searched). Neither do others that have
 ///     no nearer point and approach by more than the slop in the part: they meet when the search says so, where braked
 ///     ones would come to the end of every part as near as that, and no nearer;
 ///   - warm starts are scaled to h, and never above the force that the pair carried before the frame was cut: an
