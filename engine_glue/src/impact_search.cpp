@@ -19,6 +19,18 @@ namespace {
 
 constexpr DepthSettings kQuick{.bracket = Bracket::certified};
 
+/// What a pair in contact may sink by in a part of a step is the slop less what it has sunk in the step already, and
+/// this share of the slop at the least: a pair that sinks on and on is cut at finite lengths.
+constexpr double kLeastSlop = 0.25;
+/// A pair that sank less than this share of the slop has not come in yet.
+constexpr double kNotIn = 0.02;
+/// Looks at a motion that sinks by the slop, the last of which that finds the pair out is where it came in; none in the
+/// first quarter, so that pairs that sink steadily are not cut there.
+constexpr int kLooks = 8;
+constexpr int kFirstLook = 2;
+/// To 1/2000 of the motion; trials do the rest.
+constexpr int kHalvings = 8;
+
 }  // namespace
 
 const ConvexShape& Piece::shape_beside(const Piece& other) const {
@@ -30,6 +42,7 @@ Pose Piece::with_body_at(const btTransform& pose) const { return to_pd(pose * lo
 
 void ImpactSearch::begin_frame() {
   bodies_.clear();
+  first_depths_.clear();
   collected_ = false;
   const auto& objects = world_.getCollisionObjectArray();
   for (int i = 0; i < objects.size(); ++i) {
@@ -148,8 +161,7 @@ bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpa
   duration_ = duration;
   found = FoundImpact();
   found.time = HUGE_VAL;
-  // What moves by less than the slop can neither pass through nor sink deeper than that.
-  if (farthest_way() <= settings.slop) return false;
+  if (farthest_way() <= settings.searched) return false;
   collect();
   const auto widen = static_cast<btScalar>(settings.gap);
   for (Body& body : bodies_) {
@@ -182,7 +194,7 @@ void ImpactSearch::search_bodies(const Body& a, const Body& b, const Settings& s
     const double turn = body.motion.angular_velocity.norm() * duration_;
     return turn > 0 ? turn * body.radius : 0;
   };
-  if (apart + turning(a) + turning(b) <= settings.slop) return;
+  if (apart + turning(a) + turning(b) <= settings.searched) return;
   for (int i = a.first_piece; i < a.first_piece + a.num_pieces; ++i) {
     for (int j = b.first_piece; j < b.first_piece + b.num_pieces; ++j) {
       const Piece& pa = pieces_[static_cast<std::size_t>(i)];
@@ -216,10 +228,42 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
   impact.depth = kQuick;
-  // From where it is, a pair in contact may sink by the slop; then the step is cut, and Bullet sees it there.
-  impact.allowed_depth = start <= settings.in_contact ? std::max(-start, 0.0) + settings.slop : 0;
+  // From where it is, a pair in contact may sink; then the step is cut, and Bullet sees it there.
+  const double depth = std::max(-start, 0.0);
+  if (start <= settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
   const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
-  if (hit.hit && hit.time < found.time) found = {pa, pb, hit.time, impact.allowed_depth};
+  if (!(hit.hit && hit.time < found.time)) return;
+  found = {pa, pb, hit.time, impact.allowed_depth};
+  if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
+}
+
+double ImpactSearch::allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings) {
+  const auto place = [&](const Piece& piece) { return static_cast<std::size_t>(&piece - pieces_.data()); };
+  const double first = first_depths_.emplace(place(a) * pieces_.size() + place(b), depth).first->second;
+  return depth + std::max(settings.slop - std::max(depth - first, 0.0), kLeastSlop * settings.slop);
+}
+
+void ImpactSearch::end_where_it_came_in(const MovingShape& a, const MovingShape& b, double depth,
+                                        const Settings& settings, FoundImpact& found) {
+  const double allowed = depth + kNotIn * settings.slop;
+  const auto is_out = [&](double time) {
+    const PenetrationDepth answer =
+        penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch_, kQuick);
+    return allowed + answer.signed_distance() > 0;
+  };
+  double low = 0;
+  double high = found.time;
+  for (int k = kLooks - 1; k >= kFirstLook && low == 0; --k) {
+    const double time = found.time * k / kLooks;
+    (is_out(time) ? low : high) = time;
+  }
+  if (low == 0) return;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (is_out(middle) ? low : high) = middle;
+  }
+  found.time = low;
+  found.allowed_depth = allowed;
 }
 
 void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
@@ -264,13 +308,15 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
   impact.depth = kQuick;
-  impact.allowed_depth = deepest >= -settings.in_contact ? std::max(deepest, 0.0) + settings.slop : 0;
+  const double depth = std::max(deepest, 0.0);
+  if (deepest >= -settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
   for (const BoxedTriangle& triangle : triangles) {
     const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
       found.b.triangle = triangle.shape;
+      if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
     }
   }
 }

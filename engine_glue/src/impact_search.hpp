@@ -7,6 +7,7 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "cached_shape.hpp"
@@ -50,7 +51,8 @@ class ImpactSearch {
   struct Settings {
     double gap = 0;         ///< at which bodies meet
     double in_contact = 0;  ///< pairs no farther apart than this are in contact already
-    double slop = 0;        ///< those may sink by this
+    double searched = 0;    ///< pairs that move by no more than this are not searched
+    double slop = 0;        ///< those may sink by this in a frame, about
   };
   /// The earliest first contact of the motion from the marked poses to the present ones, which takes `duration`.
   /// @return whether there is one.
@@ -89,6 +91,12 @@ class ImpactSearch {
   void search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found);
   void search_convex(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
                      FoundImpact& found);
+  /// How deep a pair in contact, at present `depth` deep, may be at the end of the motion.
+  double allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings);
+  /// The found pair was in contact, `depth` deep, and sinks deeper than it may. Where it is out again before (one
+  /// corner leaves, the next comes in), its time becomes that at which it comes in, and Bullet meets it there.
+  void end_where_it_came_in(const MovingShape& a, const MovingShape& b, double depth, const Settings& settings,
+                            FoundImpact& found);
   void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
                       FoundImpact& found);
   /// The box of a convex piece's motion in the frame of a concave one.
@@ -102,6 +110,8 @@ class ImpactSearch {
   std::vector<Piece> pieces_;
   std::vector<Body> bodies_;
   std::vector<int> order_;
+  /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.
+  std::unordered_map<std::size_t, double> first_depths_;
   Scratch scratch_;
 };
 

@@ -58,6 +58,7 @@ struct RollbackStepper::State {
   detail::ImpactSearch search;
   detail::SubStepper parts;
   std::unique_ptr<BulletSnapshot> start;
+  bool is_cut = false;        ///< the present part is not the frame's first
   int unrecorded_trials = 0;  ///< of parts that ended before the contact that they were about
   btScalar owed = 0;          ///< time of fixed steps that is not due yet
 
@@ -73,7 +74,9 @@ struct RollbackStepper::State {
   }
 
   [[nodiscard]] detail::ImpactSearch::Settings search_settings() const {
-    return {settings.gap, detail::kInContactGaps * settings.gap, settings.contact_slop};
+    const double in_contact = detail::kInContactGaps * settings.gap;
+    // In whole steps Bullet brakes what is slower than the slop, and most bodies of most worlds are.
+    return {settings.gap, in_contact, is_cut ? in_contact : settings.contact_slop, settings.contact_slop};
   }
 
   void try_part(double from, double length, RollbackReport& report) {
@@ -226,6 +229,7 @@ void RollbackStepper::State::record(const detail::FoundImpact& impact, const Pen
   result.point_a = to_bullet(contact.witness_a);
   result.point_b = to_bullet(contact.witness_b);
   if (impact.allowed_depth > 0) {
+    parts.expect_deep(impact.a.body, impact.b.body);
     ++report.deepened;
   } else {
     report.contacts.push_back(result);
@@ -243,6 +247,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
   int cuts = 0;
   while (whole - done > kNothingLeft * whole) {
     const double remaining = whole - done;
+    is_cut = cuts > 0;
     detail::WorldStep::pre_tick(world, static_cast<btScalar>(remaining));
     save();
     parts.begin_part();

@@ -1,16 +1,13 @@
 #include "substep.hpp"
 
-#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
 #include <functional>
-#include <map>
-#include <mutex>
 #include <optional>
-#include <shared_mutex>
+#include <utility>
 
+#include "part_contacts.hpp"
 #include "world_step.hpp"
 
 namespace pd::detail {
@@ -28,105 +25,6 @@ btScalar total_impulse(const btPersistentManifold& manifold) {
   for (int k = 0; k < manifold.getNumContacts(); ++k) sum += manifold.getContactPoint(k).m_appliedImpulse;
   return sum;
 }
-
-/// How fast the bodies of a contact approach each other at a point of it, before the step.
-btScalar approach(const btPersistentManifold& manifold, const btManifoldPoint& point) {
-  const auto velocity = [&](const btCollisionObject& object, const btVector3& at) {
-    const btRigidBody* body = btRigidBody::upcast(&object);
-    return body != nullptr ? body->getVelocityInLocalPoint(at - body->getWorldTransform().getOrigin())
-                           : btVector3(0, 0, 0);
-  };
-  return point.m_normalWorldOnB.dot(velocity(*manifold.getBody1(), point.getPositionWorldOnB()) -
-                                    velocity(*manifold.getBody0(), point.getPositionWorldOnA()));
-}
-
-/// While it lives, the dispatcher's narrow phase drops contact points at a distance above `farthest` of pairs that
-/// bounce, and of pairs that have no nearer point and approach faster than `slow`; and gives the others the restitution
-/// that their impact may have.
-class DistantContacts {
- public:
-  DistantContacts(btDispatcher* dispatcher, btScalar farthest, btScalar slow, ImpactEnergy& energy)
-      : dispatcher_(dynamic_cast<btCollisionDispatcher*>(dispatcher)) {
-    if (dispatcher_ == nullptr) return;
-    host_ = dispatcher_->getNearCallback();
-    {
-      const std::unique_lock lock(mutex());
-      active()[dispatcher_] = {host_, farthest, slow, &energy};
-    }
-    dispatcher_->setNearCallback(&DistantContacts::near);
-  }
-  ~DistantContacts() {
-    if (dispatcher_ == nullptr) return;
-    dispatcher_->setNearCallback(host_);
-    const std::unique_lock lock(mutex());
-    active().erase(dispatcher_);
-  }
-  DistantContacts(const DistantContacts&) = delete;
-  DistantContacts& operator=(const DistantContacts&) = delete;
-
- private:
-  struct Rule {
-    btNearCallback host;
-    btScalar farthest;
-    btScalar slow;
-    ImpactEnergy* energy;
-  };
-  /// Bullet's callback has no word of whom it works for but the dispatcher; worlds may step on several threads.
-  static std::map<const btCollisionDispatcher*, Rule>& active() {
-    static std::map<const btCollisionDispatcher*, Rule> rules;
-    return rules;
-  }
-  static std::shared_mutex& mutex() {
-    static std::shared_mutex one;
-    return one;
-  }
-
-  static bool bounces(const btBroadphaseProxy* proxy) {
-    return static_cast<const btCollisionObject*>(proxy->m_clientObject)->getRestitution() > 0;
-  }
-
-  static void near(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
-    Rule rule{};
-    {
-      const std::shared_lock lock(mutex());
-      rule = active().at(&dispatcher);
-    }
-    rule.host(pair, dispatcher, info);
-    if (pair.m_algorithm == nullptr) return;
-    const bool bouncing = bounces(pair.m_pProxy0) && bounces(pair.m_pProxy1);
-    if (!bouncing && rule.slow == BT_LARGE_FLOAT) return;
-    thread_local btManifoldArray manifolds;  // asked for every pair of every step: its memory is kept
-    manifolds.resize(0);
-    pair.m_algorithm->getAllContactManifolds(manifolds);
-    for (int i = 0; i < manifolds.size(); ++i) {
-      if (bouncing) {
-        drop_of_bouncing(*manifolds[i], rule.farthest);
-        if (rule.energy->any()) rule.energy->apply(*manifolds[i]);
-      } else {
-        drop_of_fast(*manifolds[i], rule);
-      }
-    }
-  }
-
-  static void drop_of_bouncing(btPersistentManifold& manifold, btScalar farthest) {
-    for (int k = manifold.getNumContacts() - 1; k >= 0; --k) {
-      const btManifoldPoint& point = manifold.getContactPoint(k);
-      if (point.m_combinedRestitution > 0 && point.getDistance() > farthest) manifold.removeContactPoint(k);
-    }
-  }
-
-  static void drop_of_fast(btPersistentManifold& manifold, const Rule& rule) {
-    for (int k = 0; k < manifold.getNumContacts(); ++k) {
-      if (manifold.getContactPoint(k).getDistance() <= rule.farthest) return;
-    }
-    for (int k = manifold.getNumContacts() - 1; k >= 0; --k) {
-      if (approach(manifold, manifold.getContactPoint(k)) > rule.slow) manifold.removeContactPoint(k);
-    }
-  }
-
-  btCollisionDispatcher* dispatcher_;
-  btNearCallback host_ = nullptr;
-};
 
 }  // namespace
 
@@ -146,6 +44,7 @@ void SubStepper::begin_frame(btScalar frame) {
   frame_ = static_cast<double>(frame);
   last_cut_ = cut_;
   cut_ = false;
+  sinking_ = {};
   forces_.clear();
   kinematics_.clear();
   driven_ = false;
@@ -188,6 +87,7 @@ void SubStepper::begin_part() {
   int bouncing = 0;
   for (int i = 0; i < objects.size(); ++i) bouncing += objects[i]->getRestitution() > 0 ? 1 : 0;
   may_bounce_ = bouncing > 1;
+  sunk_ = std::exchange(sinking_, {});
   energy_.begin_part();
   if (exact_flight_) flight_.begin_part();
 }
@@ -221,9 +121,15 @@ void SubStepper::move_bodies(double from, double step, double gap, double slop) 
   const auto h = static_cast<btScalar>(step);
   const bool whole = from == 0 && step >= frame_ && !driven_;
   const btScalar slow = whole ? BT_LARGE_FLOAT : static_cast<btScalar>(slop / step);
-  std::optional<DistantContacts> distant;
+  // Pairs that come nearer by less than the slop in a whole step are not searched, and bounce off nothing.
+  const btScalar gentle = whole ? static_cast<btScalar>(slop / step) : -BT_LARGE_FLOAT;
+  std::optional<PartContacts> contacts;
   if (may_bounce_ || !whole) {
-    distant.emplace(world_.getDispatcher(), static_cast<btScalar>(kInContactGaps * gap), slow, energy_);
+    contacts.emplace(
+        world_.getDispatcher(),
+        PartContacts::Rule{static_cast<btScalar>(kInContactGaps * gap), slow, gentle, sunk_.first, sunk_.second,
+                           static_cast<btScalar>(kTouchingGaps * gap), static_cast<btScalar>(slop)},
+        energy_);
   }
   if (whole) {
     if (last_cut_) scale_warm_starts(step);
@@ -239,6 +145,7 @@ void SubStepper::move_bodies(double from, double step, double gap, double slop) 
   info.m_erp2 *= share;
   info.m_frictionERP *= share;
   info.m_splitImpulse = true;
+  if (sunk_.first != nullptr) info.m_splitImpulseTurnErp = 1;
   info.m_splitImpulsePenetrationThreshold = 0;
   info.m_linearSlop -= static_cast<btScalar>(kTouchingGaps * gap);
   // Contacts are found where bodies are when a part begins, so there kinematic bodies stand, too.

@@ -9,19 +9,21 @@
 ///   - pairs nearer than twice the gap count as touching (`m_linearSlop`), so that an impact at a gap of 1e-5 keeps its
 ///     restitution whatever h is;
 ///   - pairs that bounce and are farther apart than that do not brake each other: Bullet would let them come as near as
-///     their gap in this part, and take the speed that is left over without giving it back. Neither do others that have
+///     their gap in this part, and take the speed that is left over without giving it back (in a whole frame those do
+///     that come nearer by less than the slop, which are not searched). Neither do others that have
 ///     no nearer point and approach by more than the slop in the part: they meet when the search says so, where braked
 ///     ones would come to the end of every part as near as that, and no nearer;
 ///   - warm starts are scaled to h, and never above the force that the pair carried before the frame was cut: an
 ///     impact's impulse is no force to start the next part with;
+///   - the pair in contact that ended the last part by sinking is put back, by at most the slop;
 ///   - impacts whose restitution would add energy have less of it (`impact_energy.hpp`);
 ///   - bodies that nothing touches fly as such bodies do, after an impact, too (`free_flight.hpp`), in frames that are
-///   not
-///     cut as well.
+///     not cut as well.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <utility>
 #include <vector>
 
 #include "free_flight.hpp"
@@ -60,6 +62,9 @@ class SubStepper {
   }
   /// The part that was accepted last ended just before these met.
   void expect_impact(const btCollisionObject* a, const btCollisionObject* b) { flight_.expect_impact(a, b); }
+  /// The part that was accepted last ended because these, in contact, went deeper than they may: the next part puts
+  /// them back by the slop.
+  void expect_deep(const btCollisionObject* a, const btCollisionObject* b) { sinking_ = {a, b}; }
   /// The state that the last move left is kept: its impulses are of a step of that length, forces begin anew, and the
   /// host's actions are called.
   void accept(double from, double step);
@@ -102,7 +107,9 @@ class SubStepper {
   bool driven_ = false;     ///< a kinematic body moves in this frame
   std::vector<Forces> forces_;
   std::vector<Kinematic> kinematics_;
-  std::vector<PairForce> pair_forces_;  ///< of the last frame that was not cut
+  std::vector<PairForce> pair_forces_;                                     ///< of the last frame that was not cut
+  std::pair<const btCollisionObject*, const btCollisionObject*> sinking_;  ///< that the next part puts back
+  std::pair<const btCollisionObject*, const btCollisionObject*> sunk_;     ///< that this one does
   ImpactEnergy energy_;
   FreeFlight flight_;
   HostActions actions_;

@@ -29,7 +29,8 @@ struct RollbackSettings {
   /// coordinates.
   double gap = 1e-5;
   /// Pairs in contact already may sink by this length before the step is cut there too: after a corner hits, a fast
-  /// body still turns its other corners through the wall. Pairs that move by less in a step are not searched.
+  /// body still turns its other corners through the wall. After it, a quarter of it a part. Pairs that move by less in
+  /// a step that nothing cuts are not searched.
   double contact_slop = 5e-4;
   /// Trials of a shorter step for one contact.
   int max_trials = 24;
@@ -90,12 +91,17 @@ class RollbackStepper {
   /// `stepSimulation(step, 0)`, which it equals bit for bit where nothing meets and nothing is in flight, or
   /// `exact_flight` is off.
   ///
-  /// Pairs that are in contact (nearer than twice the gap) when a part of the step begins are Bullet's, up to
-  /// `contact_slop`. Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken
+  /// After it no pair is deeper than max(1e-6 of the smaller body's diameter, 4 units in the last place of its
+  /// coordinates) that was apart whenever a part of the step began. Pairs in contact then (nearer than 2.25 gaps) are
+  /// Bullet's, and at most 2 `contact_slop` deeper than when the step began, or than 0. Excepted are steps that report
+  /// `least_parts` (up to the relative speed times such a part) or `bounded` (their rest is made in one piece). In
+  /// 180,000 steps of random rooms one of 8.4 million pairs was deeper for another reason, by .00002 m (README.md).
+  ///
+  /// Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken
   /// per unit of time (`src/substep.hpp`), and where friction with restitution would add energy, as Bullet's law of
   /// impact allows, the impact has so much less restitution that it does not (`src/impact_energy.hpp`). Time: Bullet's
   /// own for each simulation step; a snapshot a part; a collision query or more for each pair whose swept boxes meet
-  /// and that moves by more than the slop.
+  /// and that moves by more than the slop (in steps that are cut: 2.25 gaps).
   RollbackReport step(btScalar step);
 
   /// As `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most `max_steps`, and
