@@ -65,6 +65,28 @@ World small_towers(std::uint64_t seed) {
   return world;
 }
 
+World centimetre_tower(std::uint64_t seed) {
+  World world;
+  world.name = "tower";
+  world.title = "Twenty boxes of 1 cm, 60 steps a second, both by StackSolver";
+  world.should_stand = true;
+  world.solved_at_once = true;
+  world.solver_iterations = 10;
+  world.steps_per_second = 60;
+  world.steps = 300;
+  Stream random(seed);
+  world.bodies.push_back(floor_below(1));
+  const double h = 0.005;
+  for (int i = 0; i < 20; ++i) {
+    WorldBody body = box_hull(Vec3(h, h, h), Vec3(2e-4 * random.next(), 2e-4 * random.next(), h + 2 * h * i), i % 3);
+    body.orientation = Eigen::AngleAxisd(0.15 * random.next(), Vec3::UnitZ());
+    world.bodies.push_back(body);
+  }
+  world.view_lower = Vec3(-0.09, -0.05, 0);
+  world.view_upper = Vec3(0.09, 0.05, 0.21);
+  return world;
+}
+
 World deep_pile(std::uint64_t seed) {
   World world;
   world.name = "pile";

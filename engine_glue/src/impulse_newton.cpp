@@ -14,6 +14,7 @@ ImpulseNewton::Outcome ImpulseNewton::solve() {
   find_pattern();
   impulses_.clear();
   for (const Row& row : rows) impulses_.push_back(row.impulse);
+  reached_ = impulses_;
   begin_round();
   guess_holds();
   int rounds = 0;
@@ -30,8 +31,9 @@ ImpulseNewton::Outcome ImpulseNewton::solve() {
     factor_fits = !classify();
     if (!factor_fits || share < 1) continue;
     const bool last = ++rounds == kMostRounds || !round_changed_much();
-    begin_round();
+    reached_ = impulses_;
     if (last) break;
+    begin_round();
     factor_fits = !classify();
   }
   outcome.settled = rounds > 0;
@@ -77,7 +79,6 @@ void ImpulseNewton::find_pattern() {
 
 /// Impulses as they are now are what rows carried before this round, and what bounds friction.
 void ImpulseNewton::begin_round() {
-  reached_ = impulses_;
   targets_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
@@ -99,10 +100,13 @@ bool ImpulseNewton::round_changed_much() const {
 }
 
 void ImpulseNewton::guess_holds() {
-  // Where something carries both bodies already, what carried nothing carries nothing; what a body meets that nothing
-  // carries yet will hold it.
+  // Where something carries both bodies already, what carried nothing carries nothing. What a body meets that nothing
+  // carries yet will hold it: they fall together, until one of them is held and the other comes on at up to the largest
+  // speed that there is to stop.
   carried_.assign(masses.size(), false);
+  double fastest = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].normal < 0) fastest = std::max(fastest, rows[i].target);
     if (rows[i].normal >= 0 || impulses_[i] <= rows[i].lower) continue;
     for (const int body : rows[i].body) {
       if (body >= 0) carried_[static_cast<std::size_t>(body)] = true;
@@ -112,7 +116,7 @@ void ImpulseNewton::guess_holds() {
   holds_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
-    const bool met = row.normal < 0 && targets_[i] > 0 && !(is_carried(row.body[0]) && is_carried(row.body[1]));
+    const bool met = row.normal < 0 && targets_[i] > -fastest && !(is_carried(row.body[0]) && is_carried(row.body[1]));
     Hold hold = Hold::within;
     if (impulses_[i] <= row.lower && !met) hold = Hold::at_lower;
     if (impulses_[i] >= row.upper && row.lower < row.upper) hold = Hold::at_upper;

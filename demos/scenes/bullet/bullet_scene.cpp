@@ -194,12 +194,12 @@ void BulletScene::add_body(const WorldBody& plan, ContactRun run) {
   world_->addRigidBody(&body);
 }
 
-BulletScene::BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings, bool stacks)
+BulletScene::BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings)
     : plan_(world),
       solver_(settings),
       dispatcher_(&configuration_),
-      constraint_solver_(stacks ? std::make_unique<StackSolver>()
-                                : std::make_unique<btSequentialImpulseConstraintSolver>()),
+      constraint_solver_(world.solved_at_once ? std::make_unique<StackSolver>()
+                                              : std::make_unique<btSequentialImpulseConstraintSolver>()),
       world_(std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_, constraint_solver_.get(),
                                                        &configuration_)) {
   if (is_ours(run)) {

@@ -42,8 +42,7 @@ inline constexpr ContactRun kContactRuns[] = {
 /// Owns everything of one Bullet world. Sleeping is off; solver settings are Bullet's defaults.
 class BulletScene {
  public:
-  /// @param stacks  whether constraints are solved by `StackSolver`, else by Bullet's sequential impulses
-  BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings = {}, bool stacks = false);
+  BulletScene(const World& world, ContactRun run, const BulletSolverSettings& settings = {});
   ~BulletScene();
   BulletScene(const BulletScene&) = delete;
   BulletScene& operator=(const BulletScene&) = delete;

@@ -13,7 +13,8 @@ struct ContactOptions {
   std::vector<std::string> scenes;  ///< names; none: all (quick: the quick ones)
   std::vector<std::string> runs;    ///< names; none: all
   std::vector<double> rates;        ///< steps a second; none: 60 and 240 (quick: 60)
-  /// Of the constraint solver: Bullet's, `pd::apply_recommended`, and "stack": those and `pd::StackSolver`.
+  /// Of the constraint solver: Bullet's, `pd::apply_recommended`, and "stack": `pd::StackSolver` with those but for ten
+  /// sweeps.
   std::vector<std::string> settings{"default", "recommended"};
   int iterations = 0;  ///< of the constraint solver; 0: as the settings say
   int starts = 0;      ///< perturbed starts a scene; 0: 10, quick 1

@@ -24,15 +24,23 @@ double quantile_or_zero(const std::vector<double>& values, double q) {
   return values.empty() ? 0 : quantile(values, q);
 }
 
+scenes::World planned(scenes::World world, const ContactSetting& setting) {
+  world.solved_at_once = setting.stacks;
+  return world;
+}
+
 class Runner {
  public:
   Runner(const ContactScene& scene, const ContactSetting& setting, double seconds)
       : scene_(scene),
         setting_(setting),
         num_steps_(static_cast<int>(std::lround(seconds * setting.steps_per_second))),
-        bullet_(scene.world, setting.run, {}, setting.stacks) {
+        bullet_(planned(scene.world, setting), setting.run) {
     if (setting.recommended) {
       apply_recommended(bullet_.world().getSolverInfo());
+    }
+    if (setting.stacks) {
+      bullet_.world().getSolverInfo().m_numIterations = 10;
     }
     if (setting.iterations > 0) {
       bullet_.world().getSolverInfo().m_numIterations = setting.iterations;
