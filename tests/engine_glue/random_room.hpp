@@ -13,6 +13,7 @@
 
 #include "engine_glue/bullet_world.hpp"
 #include "pd/bullet/install.hpp"
+#include "pd/bullet/stack_solver.hpp"
 
 namespace pd::test {
 
@@ -21,8 +22,10 @@ class RandomRoom {
   static constexpr double kGravity = 9.81;
   static constexpr double kHalf = 3;  ///< of the room's edge
 
-  explicit RandomRoom(std::uint64_t seed) : random_(seed) {
+  /// @param solved_at_once  constraints by `StackSolver`, else by Bullet's sequential impulses
+  explicit RandomRoom(std::uint64_t seed, bool solved_at_once = false) : random_(seed) {
     install(scene_.world(), solver_);
+    if (solved_at_once) scene_.world().setConstraintSolver(&stacks_);
     restitution_ = static_cast<btScalar>(uniform(0, 1));
     if (uniform(0, 1) < 0.2) restitution_ = 0;
     walls();
@@ -155,6 +158,7 @@ class RandomRoom {
 
   std::mt19937_64 random_;
   BulletPenetrationDepthSolver solver_;
+  StackSolver stacks_;
   BulletWorld scene_;
   std::vector<btRigidBody*> bodies_;
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   app.add_flag("--drop", drop, "only drops a ball of restitution 1 from 1 m, for 10 s");
   bool bullets_flight = false;
   app.add_flag("--bullets-flight", bullets_flight, "without RollbackSettings::exact_flight");
+  app.add_flag("--solved-at-once", settings.solved_at_once, "constraints by pd::StackSolver");
   bool depths_only = false;
   app.add_flag("--depths-only", depths_only, "the law of energy is not judged, which takes most of the time");
   app.add_flag("--print-each", settings.print_each, "every pair that goes deeper than promised");

@@ -26,7 +26,7 @@ double plain_gain(std::uint64_t seed, int steps, double start, Totals& totals) {
 }  // namespace
 
 Outcome run_room(std::uint64_t seed, int scene, const RoomSettings& settings, Totals& totals) {
-  test::RandomRoom guarded(seed);
+  test::RandomRoom guarded(seed, settings.solved_at_once);
   const double start = guarded.energy();
   const double reference = guarded.kinetic_energy() + guarded.potential_range();
   const double gain = settings.energy ? plain_gain(seed, settings.steps, start, totals) : HUGE_VAL;

@@ -14,8 +14,9 @@ namespace pd::bench {
 struct RoomSettings {
   int steps = 60;  ///< of 1/60 s
   RollbackSettings stepper;
-  bool energy = true;       ///< false: the law of energy is not judged, which takes most of the time
-  bool print_each = false;  ///< every pair that goes deeper than promised
+  bool solved_at_once = false;  ///< constraints by `StackSolver`
+  bool energy = true;           ///< false: the law of energy is not judged, which takes most of the time
+  bool print_each = false;      ///< every pair that goes deeper than promised
 };
 
 /// What all scenes add up to.
