@@ -36,7 +36,9 @@ ImpulseNewton::Outcome ImpulseNewton::solve() {
     begin_round();
     factor_fits = !classify();
   }
-  outcome.settled = rounds > 0;
+  // A body whose pose or velocity is no number must not spoil those that are solved with it.
+  outcome.settled =
+      rounds > 0 && std::all_of(reached_.begin(), reached_.end(), [](double x) { return std::isfinite(x); });
   if (outcome.settled) {
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = reached_[i];
   }

@@ -48,7 +48,7 @@ class ImpulseNewton {
   struct Outcome {
     int factorisations = 0;
     /// At least one round ended: the equations hold, with friction's bounds from the round before. Else `kMostSteps`
-    /// were not enough, and impulses are as they were.
+    /// were not enough, or an impulse is no number, and impulses are as they were.
     bool settled = false;
   };
 

@@ -365,7 +365,7 @@ TEST(RollbackMultiBody, TrialsAreUndone) {
 
 /// The room in which Bullet's sweeps leave the ends of a joint at 26 m/s against each other after an impact, and the
 /// joint then adds .005 of E_ref: scene 3830 of `rollback_law --seed 23112026`.
-TEST(RollbackEnergy, AJointThatIsSolvedAtOnceAddsNoneAfterAnImpact) {
+TEST(RollbackJoint, ThatIsSolvedAtOnceAddsNoneAfterAnImpact) {
   RandomRoom room(std::uint64_t{23112026} * 1000003 + 3830, true);
   ASSERT_TRUE(room.has_joint());
   const double start = room.energy();

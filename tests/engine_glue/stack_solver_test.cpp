@@ -202,6 +202,20 @@ TEST(StackSolver, TheSameBitsTwiceAndAfterASnapshot) {
   }
 }
 
+TEST(StackSolver, ABodyWithoutNumbersSpoilsNoneThatIsSolvedWithIt) {
+  StackWorld scene;
+  for (int i = 0; i < 3; ++i) scene.add(kHalf, 1, btVector3(0, btScalar(0.5 + i), 0));
+  btRigidBody& broken = scene.add(kHalf, 1, btVector3(5, btScalar(0.5), 0));
+  scene.step(5);
+  broken.setLinearVelocity(btVector3(0, btScalar(NAN), 0));
+  scene.step(1);
+  EXPECT_GT(scene.impulses.statistics().unsettled, 0);
+  for (int i = 1; i <= 3; ++i) {
+    const btVector3 at = scene.bodies[static_cast<std::size_t>(i)]->getWorldTransform().getOrigin();
+    EXPECT_NEAR(static_cast<double>(at.y()), i - 0.5, 1e-2) << i;
+  }
+}
+
 TEST(StackSolver, ABallBouncesAsHighAsUnderBullet) {
   const auto fastest_rise = [](bool ours) {
     StackWorld scene;
