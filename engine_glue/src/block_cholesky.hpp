@@ -2,9 +2,9 @@
 /// Cholesky factorisation of sparse symmetric positive definite matrices of blocks of 6 x 6, one row of blocks a body.
 ///
 /// Bodies are eliminated by least degree; which blocks fill in and where each product goes is found once a pattern, so
-/// that a factorisation is a straight run through lists. A factorisation of a tower of n bodies takes time O(n), of a heap
-/// as many products as half the squares of its columns' blocks; a new pattern O(n^2) and more, as each body to eliminate
-/// is looked for among all.
+/// that a factorisation is a straight run through lists. A factorisation of a tower of n bodies takes time O(n), of a
+/// heap as many products as half the squares of its columns' blocks; a new pattern O(n^2) and more, as each body to
+/// eliminate is looked for among all.
 #pragma once
 
 #include <Eigen/Core>
