@@ -28,13 +28,13 @@ ImpulseNewton::Outcome ImpulseNewton::solve() {
     // What is held where may be guessed right at once; only after that is there a point to search from.
     const double share = step == 0 ? 1 : share_of_step();
     move(share);
-    factor_fits = !classify();
+    factor_fits = !classify(share == 1 ? kNegligible : 0);
     if (!factor_fits || share < 1) continue;
     const bool last = ++rounds == kMostRounds || !round_changed_much();
     reached_ = impulses_;
     if (last) break;
     begin_round();
-    factor_fits = !classify();
+    factor_fits = !classify(0);
   }
   // A body whose pose or velocity is no number must not spoil those that are solved with it.
   outcome.settled =
@@ -126,9 +126,12 @@ void ImpulseNewton::guess_holds() {
   }
 }
 
-/// Impulses at `x_`, and which rows are at their bounds. @return whether that changed.
-bool ImpulseNewton::classify() {
-  bool changed = false;
+/// Impulses at `x_`, and which rows are at their bounds. @return whether that changed, by more than a share of the
+/// impulses: of the solution for what is factorised, rows that carry next to nothing come and go by rounding. Elsewhere
+/// a share would leave a direction that does not lead down.
+bool ImpulseNewton::classify(double negligible) {
+  double all = 0, amiss = 0;
+  next_holds_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     const double impulse = (targets_[i] - speeds_[i]) / row.softness;
@@ -136,10 +139,14 @@ bool ImpulseNewton::classify() {
                       : impulse >= row.upper                         ? Hold::at_upper
                                                                      : Hold::within;
     impulses_[i] = std::clamp(impulse, row.lower, row.upper);
-    changed = changed || hold != holds_[i];
-    holds_[i] = hold;
+    const double held = holds_[i] == Hold::within ? impulse : holds_[i] == Hold::at_lower ? row.lower : row.upper;
+    all += std::abs(impulses_[i]);
+    if (hold != holds_[i]) amiss += std::abs(impulses_[i] - held);
+    next_holds_.push_back(hold);
   }
-  return changed;
+  if (!(amiss > negligible * all) && (negligible > 0 || holds_ == next_holds_)) return false;
+  std::swap(holds_, next_holds_);
+  return true;
 }
 
 void ImpulseNewton::factorise() {

@@ -62,12 +62,13 @@ class ImpulseNewton {
   enum class Hold : unsigned char { within, at_lower, at_upper };
   static constexpr int kMostSteps = 32;
   static constexpr int kMostRounds = 3;
-  static constexpr double kMuch = 0.1;  ///< of the sum of the impulses
+  static constexpr double kMuch = 0.1;         ///< of the sum of the impulses
+  static constexpr double kNegligible = 1e-5;  ///< of the same
 
   void find_pattern();
   void begin_round();
   void guess_holds();
-  bool classify();
+  bool classify(double negligible);
   void factorise();
   void solve_held();
   [[nodiscard]] double share_of_step();
@@ -77,7 +78,7 @@ class ImpulseNewton {
 
   std::vector<std::pair<int, int>> pairs_;  ///< (lower, higher) body of each block off the diagonal, ascending
   std::vector<int> block_of_row_;           ///< into `pairs_`, -1: one body only
-  std::vector<Hold> holds_;
+  std::vector<Hold> holds_, next_holds_;    ///< as factorised; as they are
   std::vector<bool> carried_;               ///< bodies that some row pushed before
   std::vector<double> impulses_, reached_;  ///< of rows: at `x_`; at the end of the last round
   std::vector<double> targets_;             ///< r + d lambda'

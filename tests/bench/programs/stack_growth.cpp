@@ -1,7 +1,8 @@
 /// @file
 /// `stack_growth`: what a step under `pd::StackSolver` costs as stacks grow: towers, pyramids, and the same boxes side
 /// by side, at rest under recommended settings, beside Bullet's sweeps on the same contacts. Processor time, its growth
-/// with the number of bodies fitted; factorisations a step, and the dearest of the first steps.
+/// with the number of bodies fitted; factorisations a step, the dearest of the first steps, and how far bodies came
+/// from where they stood (sweeps alone let tall towers fall, which makes steps cheap).
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -22,6 +23,7 @@ struct Cost {
   double first_ms = 0;        ///< the dearest of the first ten
   double factorisations = 0;  ///< a step, at rest
   double unsettled = 0;       ///< share of groups, at rest
+  double drift = 0;           ///< largest way of a body from its start, m
 };
 
 Cost cost_of(pd::scenes::World world, bool solved_at_once, int settle, int steps) {
@@ -40,6 +42,13 @@ Cost cost_of(pd::scenes::World world, bool solved_at_once, int settle, int steps
     if (i >= settle) at_rest.push_back(ms);
   }
   cost.step_ms = pd::bench::quantile(at_rest, 0.5);
+  for (int i = 0; i < scene.num_bodies(); ++i) {
+    const pd::Vec3& start = scene.plan(i).position;
+    const btVector3 from(static_cast<btScalar>(start.x()), static_cast<btScalar>(start.y()),
+                         static_cast<btScalar>(start.z()));
+    const btVector3 way = scene.body(i).getWorldTransform().getOrigin() - from;
+    cost.drift = std::max(cost.drift, static_cast<double>(way.length()));
+  }
   if (stacks != nullptr) {
     const auto& counted = stacks->statistics();
     cost.factorisations = static_cast<double>(counted.factorisations) / steps;
@@ -83,8 +92,8 @@ int main(int argc, char** argv) {
   };
   const Family families[] = {
       {"tower", {5, 10, 20, 40, 80, 160}}, {"pyramid", {4, 6, 9, 14, 20, 29}}, {"apart", {5, 10, 20, 40, 80, 160}}};
-  std::printf("%-9s %7s %12s %12s %14s %10s %12s\n", "stack", "bodies", "step, ms", "sweeps, ms", "factorisations",
-              "unsettled", "first, ms");
+  std::printf("%-9s %7s %10s %11s %15s %10s %10s %9s %9s\n", "stack", "bodies", "step, ms", "sweeps, ms",
+              "factorisations", "unsettled", "first, ms", "drift, m", "sweeps'");
   for (const Family& family : families) {
     std::vector<double> bodies;
     std::vector<double> solved;
@@ -95,8 +104,9 @@ int main(int argc, char** argv) {
                                        [](const pd::scenes::WorldBody& body) { return body.mass > 0; });
       const Cost ours = cost_of(world, true, settle, steps);
       const Cost sweeps = cost_of(world, false, settle, steps);
-      std::printf("%-9s %7ld %12.4f %12.4f %14.2f %10.3f %12.3f\n", family.name.c_str(), static_cast<long>(count),
-                  ours.step_ms, sweeps.step_ms, ours.factorisations, ours.unsettled, ours.first_ms);
+      std::printf("%-9s %7ld %10.4f %11.4f %15.2f %10.3f %10.3f %9.1e %9.1e\n", family.name.c_str(),
+                  static_cast<long>(count), ours.step_ms, sweeps.step_ms, ours.factorisations, ours.unsettled,
+                  ours.first_ms, ours.drift, sweeps.drift);
       bodies.push_back(static_cast<double>(count));
       solved.push_back(ours.step_ms);
       swept.push_back(sweeps.step_ms);
