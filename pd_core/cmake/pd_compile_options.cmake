@@ -36,7 +36,7 @@ function(pd_unity_by_folder target)
 endfunction()
 
 # pd_precompile_headers(<target> [<header>...] | <target> REUSE_FROM <other>): what nearly every source of the target parses, and
-# the headers named, parsed once. Sources include what they use all the same: the test packaging.subproject builds without.
+# the headers named, parsed once. Sources include what they use all the same: tests/long/source_by_source.sh builds without.
 # Targets that share one (REUSE_FROM) must have the same flags; position-independent code for a library and for a program are two.
 function(pd_precompile_headers target)
   if(NOT PD_PRECOMPILED_HEADERS)
