@@ -1,5 +1,5 @@
-# Builds the libraries shared, installs and moves them, looks at what they export, and lets a stranger's programs use them. Their
-# folder and flags are those of consume.cmake's subproject: where ccache is, its objects serve here.
+# Builds the libraries shared within a stranger's project, installs and moves them, looks at what they export, and lets a stranger's
+# programs use them. Folders and flags are those of consume.cmake's subproject: where ccache is, its objects serve here.
 #
 #   cmake -DSOURCE=<source tree> -DWORK=<folder> -DCXX=<compiler> -DLAUNCHER=<launcher or empty> -DBUILD_TYPE=<kind>
 #         -DFLAGS=<compiler flags> -DCOMPONENTS=<list> -DBULLET_DOUBLE=<bool> -DWARNINGS_AS_ERRORS=<bool> -P shared.cmake
@@ -17,17 +17,17 @@ foreach(option "PD_WITH_BULLET engine_glue" "PD_WITH_RENDER render")
     list(APPEND options -D${name}=OFF)
   endif()
 endforeach()
-execute_process(COMMAND ${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${WORK}/build/pdepth -DBUILD_SHARED_LIBS=ON -DPD_WITH_TESTS=OFF
-                        -DPD_WITH_DEMOS=OFF ${options} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
-                        -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_FLAGS=${FLAGS} -DPD_BULLET_DOUBLE=${BULLET_DOUBLE}
-                        -DCMAKE_UNITY_BUILD=ON
+execute_process(COMMAND ${CMAKE_COMMAND} -G Ninja -S ${here}/shared -B ${WORK}/build -DPDEPTH_SOURCE=${SOURCE}
+                        -DBUILD_SHARED_LIBS=ON -DPD_INSTALL=ON ${options} -DCMAKE_CXX_COMPILER=${CXX}
+                        -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_FLAGS=${FLAGS}
+                        -DPD_BULLET_DOUBLE=${BULLET_DOUBLE} -DCMAKE_UNITY_BUILD=ON -DPD_PRECOMPILED_HEADERS=ON
                         -DPD_WARNINGS_AS_ERRORS=${WARNINGS_AS_ERRORS}
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build/pdepth OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "the shared libraries do not build:\n${output}")
 endif()
-execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/build/pdepth --prefix ${WORK}/first OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/build --prefix ${WORK}/first OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${WORK}/first ${WORK}/prefix)
 
 file(GLOB_RECURSE libraries ${WORK}/prefix/*.so)
