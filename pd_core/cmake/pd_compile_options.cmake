@@ -6,12 +6,14 @@
 # -Wno-restrict: GCC 12 reports overlapping copies inside its own std::string (bug 105651) where operator+ is inlined.
 # -Wno-maybe-uninitialized: at -O3 GCC 12 reports the limbs of Boost's fixed-size integers beyond their size; Clang's own
 # analysis of uninitialised variables and the sanitizers watch instead.
+# -Wno-shadow: in a unity build Clang takes a member for a shadow of what another source has in its anonymous namespace.
 # -Wno-subobject-linkage: in a unity build GCC takes every source for a header, where a class must not hold what is anonymous.
 function(pd_compile_options target)
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
                                            -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                                            $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
-                                           $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wno-subobject-linkage>)
+                                           $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wno-subobject-linkage>
+                                           $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wno-shadow>)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
     target_compile_options(${target} PRIVATE -U__ARM_FEATURE_FMA)
   endif()
