@@ -92,7 +92,7 @@ run_python
 # Of the undefined behaviours, null pointers, alignment, object sizes and virtual tables are left out: looked for at every access,
 # they double the time that Eigen's templates take to compile; the address sanitizer stops at null, at accesses beyond an object
 # and in one that is gone, and x86 at a misaligned vector.
-run_preset asan-ubsan --
+run_preset asan-ubsan -- -DPD_UNITY_DEMOS=ON
 # With the same options, so that the objects that do not see Bullet are the release build's.
 run_preset double-bullet --target test_engine_glue -- "$@"
 
