@@ -11,5 +11,5 @@ pd_use_ccache
 
 cmake -S . -B build/source_by_source -G Ninja --log-level=WARNING "${pd_launcher[@]}" -DCMAKE_CXX_COMPILER=clang++-14 \
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DPD_WARNINGS_AS_ERRORS=ON -DPD_PRECOMPILED_HEADERS=OFF \
-  -DPD_WITH_TESTS=OFF
-cmake --build build/source_by_source
+  -DPD_UNITY_DEMOS=ON
+cmake --build build/source_by_source --target pdepth
