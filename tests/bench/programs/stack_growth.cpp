@@ -82,8 +82,10 @@ int main(int argc, char** argv) {
   int settle = 120;
   int steps = 120;
   CLI::App app{"What a step under pd::StackSolver costs as stacks grow."};
-  app.add_option("--settle", settle, "steps before those that are measured")->capture_default_str();
-  app.add_option("--steps", steps, "steps measured")->capture_default_str();
+  app.add_option("--settle", settle, "steps before those that are measured")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--steps", steps, "steps measured")->check(CLI::PositiveNumber)->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
   struct Family {

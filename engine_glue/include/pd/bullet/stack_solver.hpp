@@ -14,7 +14,7 @@ struct StackSolverSettings {
 /// Since construction or `reset_statistics`.
 struct StackSolverStatistics {
   long long groups = 0;          ///< islands, or several small ones together, that were solved
-  long long factorisations = 0;  ///< a group at rest takes one
+  long long factorisations = 0;  ///< a group of up to 40 bodies at rest takes one
   long long unsettled = 0;  ///< of `groups`: not solved in 32, or no numbers, so that Bullet's sweeps began as without
   long long left = 0;       ///< groups of more than `max_bodies`, left to Bullet's sweeps
 };
