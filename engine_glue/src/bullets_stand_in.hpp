@@ -21,7 +21,9 @@ class BulletsStandIn {
   void process(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo& info,
                btManifoldResult* result) {
     if (algorithm_ == nullptr) {
+      // Bullet's constructor leaves the manifold unset, and its compound algorithm hands the manifold on to its children's pairs.
       btCollisionAlgorithmConstructionInfo own(&dispatcher_, 0);
+      own.m_manifold = nullptr;
       algorithm_ = installation_.bullets_algorithm(own, a, b);
     }
     algorithm_->processCollision(a, b, info, result);
