@@ -26,7 +26,6 @@ SHOWN = {
     "pd_core/README.md": "papers.md",
     "pd_core/docs/one_query.md": "one_query.md",
     "pd_core/docs/search_trace.md": "search_trace.md",
-    "pd_core/docs/performance.md": "performance.md",
 }
 # Pages whose file need not be there: a part of the project that was left out.
 OPTIONAL = {"python.md": "demos/python/README.md"}

@@ -1,5 +1,5 @@
 /// @file
-/// A stranger's program on engine_glue: a Bullet world whose contacts come from pdepth. README.md shows it.
+/// A stranger's program on engine_glue: a Bullet world whose contacts come from pdepth. The page on Bullet shows it.
 #include <btBulletDynamicsCommon.h>
 
 #include <cstdio>

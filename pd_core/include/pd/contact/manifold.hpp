@@ -54,7 +54,7 @@ class ManifoldScratch {
 enum class DeepestPoint : std::uint8_t {
   at_depth,  ///< the bodies' own depth: what the lifted corner misses of it (rounding, merged corners) is added
   /// What its corner says, as the others do: an engine lets a face rest on the differences between its points, which
-  /// one point corrected alone would falsify (engine_glue/README.md, "Contact points").
+  /// one point corrected alone would falsify (tests/bench/notebook/2026-11-26-worlds.md, "Contact points").
   as_lifted
 };
 

@@ -41,7 +41,8 @@ class MomentFrame {
   /// its least height k sqrt(u^T C u) + <centre, u> for |u| = 1 solves (k C / sqrt(u^T C u) - depth) u = -centre: near
   /// C^-1 of the way back to the centre where the depth is little beside the ellipsoid's least semi-axis, and with more
   /// of that axis the deeper. Two times C^-1 where the origin lies deep, which is within one root of the moments of the
-  /// centre (a surface of an ellipsoid is sqrt(5) of them away), is as good as that solution (performance.md).
+  /// centre (a surface of an ellipsoid is sqrt(5) of them away), is as good as that solution
+  /// (tests/bench/notebook/2026-11-26-pairs.md).
   [[nodiscard]] Vec3 expected(const Vec3& centre) const {
     const Vec3 once = against(-centre);
     return once.squaredNorm() < 1 ? against(out_of(once)) : once;
