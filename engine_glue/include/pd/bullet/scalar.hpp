@@ -16,7 +16,7 @@ namespace pd {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
-/// The same as four numbers, the last one 0.
+/// The vector as four numbers, the last one 0.
 inline void to_pd(const btVector3& v, double (&out)[4]) {
   out[0] = static_cast<double>(v.x());
   out[1] = static_cast<double>(v.y());
@@ -43,7 +43,7 @@ inline void to_pd(const btVector3& v, double (&out)[4]) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
 
-/// Whether every number of the transform is finite.
+/// True if every number of the transform is finite.
 [[nodiscard]] inline bool is_finite(const btTransform& transform) {
   // A sum of products with 0 is 0 exactly when all are finite: one test instead of twelve.
   btScalar sum = 0;

@@ -3,16 +3,16 @@
 /// star-shaped bodies and compounds alike).
 ///
 /// With A the union of A_i and B that of B_j, P = B + (-A) is the union of the convex P_ij = B_j + (-A_i). The
-/// placements t of A that are not free are int P, the interior of the union of the P_ij that have an interior: where
-/// two P_ij abut, the common wall belongs to int P, so that a slot of zero width is no way out (regularised
-/// complement). The depth is the distance from the origin to the boundary of int P; 0 when the origin lies outside or
-/// on it. Leaving a body through a hole or into a cavity counts: the depth is the shortest move to a place where the
-/// interiors are disjoint.
+/// placements t of A that are not free are int P, the interior of the union of the P_ij that have an interior. Where
+/// two P_ij abut, the common wall belongs to int P, so a slot of zero width is no way out (regularised complement). The
+/// depth is the distance from the origin to the boundary of int P; 0 when the origin lies outside or on it. Leaving a
+/// body through a hole or into a cavity counts: the depth is the shortest move to a place where the interiors are
+/// disjoint.
 ///
 /// Polytopes without margins are answered exactly: facets of the P_ij are cut by the other P_ij in exact arithmetic,
-/// the nearest first, until one is left uncovered (the explicit construction of [A] section 4 takes all of them: O(m^3
-/// n^3) cuts and O(m^3 n^3) pieces; here cubes of translations that one P_ij holds are passed over, nearest first, and
-/// only facets that cross what is left are made exactly). Swept and curved parts are answered
+/// the nearest first, until one is left uncovered. The explicit construction of [A] section 4 takes all of them,
+/// O(m^3 n^3) cuts and pieces. Here cubes of translations that one P_ij holds are passed over, nearest first, and
+/// only facets that cross the rest are made exactly. Swept and curved parts are answered
 /// by an octree over translations, certified to (1 + delta).
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
@@ -69,8 +69,8 @@ struct UnionDepth : PenetrationDepth {
 /// Depth of two unions of convex parts, or their distance when apart (the least over the pairs of parts).
 ///
 /// Classes are exact for polytopes without margins; with margins and curved parts they are those of the pairs, and a
-/// placement that only touches pairs is `touching`. translation, as stored, lies outside int P, which is verified
-/// exactly on polytopes; |translation| <= upper.
+/// placement that only touches pairs is `touching`. The stored translation lies outside int P, which is verified
+/// exactly on polytopes. |translation| <= upper.
 /// Deterministic. @return ErrorCode::out_of_range for poses that compose past the range; limit_exceeded beyond
 /// `max_facets`; bad_value ("delta", "resolution"); unsupported when `facets` is asked for other than polytopes.
 /// Time: one convex query for each pair whose boxes meet, then as said above; measured in tests/bench.
@@ -101,7 +101,7 @@ struct UnionDirectionalDepth {
                                                                 const Vec3& direction, Scratch& scratch,
                                                                 const UnionSettings& settings = {});
 
-/// Where a point lies in P, as the class of the bodies after A was moved by it. Exact on polytopes without margins.
+/// The place of a point in P, as the class of the bodies after A was moved by it. Exact on polytopes without margins.
 /// @return ErrorCode::non_finite or out_of_range ("point").
 [[nodiscard]] Expected<ContactClass> point_in_difference(const PosedCompound& a, const PosedCompound& b,
                                                          const Vec3& point, Scratch& scratch);

@@ -5,8 +5,8 @@
 ///
 /// P = B + (-A) is the union of the convex P_ij = B_j + (-A_i). The boundary of int P is what is left of the facets of
 /// each P_ij when the interiors of the others, and what faces it across walls of zero width, are cut away. Departure
-/// from the paper: no arrangement and no envelope is swept; each facet is cut by the P_ij that meet it, those that
-/// cover it whole first, so that a facet buried in P costs one or two cuts.
+/// from the paper: no arrangement and no envelope is swept. Each facet is cut by the P_ij that meet it, those that
+/// cover it whole first. A facet buried in P then costs one or two cuts.
 ///
 /// A star-shaped body's difference is star-shaped about c_B - c_A, so that this boundary is the radial envelope itself.
 ///

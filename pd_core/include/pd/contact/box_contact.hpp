@@ -21,7 +21,7 @@ struct PosedBox {
   const Pose* pose = nullptr;  ///< of the caller, never null in a call
 };
 
-/// The same as kernels read it, for engines that have rows of a rotation at hand and no `Pose`.
+/// A posed box as kernels read it, for engines that have rows of a rotation at hand and no `Pose`.
 struct BoxInRows {
   double x[4], y[4], z[4];  ///< rows of the rotation, taken as they stand (`Pose::from_trusted_matrix`), and a 0
   double half_extents[4];   ///< > 0, and a 0
@@ -29,7 +29,7 @@ struct BoxInRows {
 };
 [[nodiscard]] BoxInRows in_rows(const PosedBox& box);
 
-/// Whether the points next to each other are asked for, where the corners of the faces say as much.
+/// Says if the closest points are asked for where the corners of the faces already tell them.
 enum class BoxWitness : std::uint8_t { left_out, placed };
 
 struct BoxContact {
@@ -56,7 +56,7 @@ struct BoxContact {
 [[nodiscard]] BoxContact box_contact(const PosedBox& a, const PosedBox& b, double tolerance, double breaking_threshold,
                                      BoxWitness witness = BoxWitness::left_out);
 
-/// What `penetration_depth` says of the two, without features and statistics. Requires `answered`.
+/// The answer of `penetration_depth` for the two boxes, without features and statistics. Requires `answered`.
 [[nodiscard]] PenetrationDepth depth_of(const BoxContact& contact);
 
 }  // namespace pd

@@ -12,8 +12,8 @@ namespace pd {
 
 struct HalfspaceContact {
   ContactClass contact = ContactClass::separated;
-  /// Of the signed distance (minus the depth where the two overlap), certified: the way along the half-space's normal,
-  /// which is the shortest out of it.
+  /// Certified lower end of the signed distance (minus the depth where the two overlap). The way along the
+  /// half-space's normal is the shortest way out.
   double lower = 0;
   double upper = 0;
   ContactManifold manifold;  ///< its normal is the half-space's; no points beyond the threshold

@@ -1,13 +1,13 @@
 /// @file
 /// Where two bodies touch, as at most four pairs of points: the two faces that face each other, intersected.
 ///
-/// With n the answer's normal (A leaves B along n), the face of A that looks along -n and the face of B that looks
-/// along n are projected on the plane across n and intersected there; each corner of the intersection is lifted back to
-/// both faces. The depth of a pair is measured along n, so it is never more than the penetration depth, and the deepest
-/// pair is that of the witnesses. Independent of engines and hosts.
+/// Let n be the answer's normal (A leaves B along n). The face of A that looks along -n and the face of B that looks
+/// along n are projected on the plane across n and intersected there. Each corner of the intersection is lifted back
+/// to both faces. The depth of a pair is measured along n, so it is never more than the penetration depth, and the
+/// deepest pair is that of the witnesses. Independent of engines and hosts.
 ///
 /// Curved bodies offer a flat part where they have one (the disc of a cylinder or cone as 16 points of its rim, the
-/// side as a segment), else the witness point alone; the depth itself is never taken from those points.
+/// side as a segment), else the witness point alone. The depth itself is never taken from those points.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ struct ContactPoint {
   Vec3 position_a = Vec3::Zero();  ///< on A's surface
   Vec3 position_b = Vec3::Zero();  ///< on B's surface; position_b - position_a = depth * normal up to rounding
   double depth = 0;                ///< > 0 inside, < 0 a gap
-  /// The same number while the same two features meet (vertex of A, vertex of B, or a crossing of two edges), so that a
-  /// host can carry impulses from frame to frame. Below 2^53; not ordered.
+  /// Stays the same number while the same two features meet (vertex of A, vertex of B, or a crossing of two edges), so
+  /// that a host can carry impulses from frame to frame. Below 2^53; not ordered.
   std::int64_t feature_id = 0;
 };
 
@@ -50,11 +50,12 @@ class ManifoldScratch {
   std::unique_ptr<detail::ManifoldBuffers> buffers_;
 };
 
-/// What the deepest of the four points says of its depth.
+/// The depth that the deepest of the four points reports.
 enum class DeepestPoint : std::uint8_t {
   at_depth,  ///< the bodies' own depth: what the lifted corner misses of it (rounding, merged corners) is added
-  /// What its corner says, as the others do: an engine lets a face rest on the differences between its points, which
-  /// one point corrected alone would falsify (tests/bench/notebook/2026-11-26-worlds.md, "Contact points").
+  /// The depth of its own corner, like the other points: an engine lets a face rest on the differences between its
+  /// points, which one point corrected alone would falsify (tests/bench/notebook/2026-11-26-worlds.md, "Contact
+  /// points").
   as_lifted
 };
 

@@ -2,17 +2,17 @@
 /// When two moving bodies first touch.
 ///
 /// Each body turns about a point of its own (the origin of its frame, unless said otherwise) at a constant angular
-/// velocity while that point moves at a constant velocity. Time advances by proof only: along a fixed unit direction n
-/// the bodies are apart by s(t) = min_A <p(t), n> - max_B <q(t), n>, which is the least of functions g of single pairs
-/// of points. A point at distance r from its axis has |g''| <= |omega|^2 r, so between two times whose s is known
+/// velocity while that point moves at a constant velocity. Time advances by proof only. Along a fixed unit direction
+/// n the bodies are apart by s(t) = min_A <p(t), n> - max_B <q(t), n>, which is the least of functions g of single
+/// pairs of points. A point at distance r from its axis has |g''| <= |omega|^2 r, so between two times whose s is known
 ///
 ///     s(t) >= linear interpolation - (t - t0) (t1 - t) / 2 * (|omega_a|^2 r_a + |omega_b|^2 r_b),
 ///
-/// two supports a body for a whole span of time; without rotation s is concave and the span may have any length. n is
-/// the normal of the distance at the span's start, s is followed to where it has nearly vanished, and the next distance
-/// gives the next n: as B. Mirtich's conservative advancement ("Impulse-based dynamic simulation", 1996), with a bound
-/// of second order in place of his of first, along E. Catto's separation functions ("Continuous collision", GDC 2013),
-/// with a proof in place of his root finding.
+/// which costs two supports a body for a whole span of time. Without rotation s is concave and the span may have any
+/// length. n is the normal of the distance at the span's start. s is followed to where it has nearly vanished, and
+/// the next distance gives the next n. This is B. Mirtich's conservative advancement ("Impulse-based dynamic
+/// simulation", 1996), with a bound of second order in place of his of first, along E. Catto's separation functions
+/// ("Continuous collision", GDC 2013), with a proof in place of his root finding.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"
@@ -33,7 +33,7 @@ struct MovingShape {
   Vec3 arm = Vec3::Zero();
 };
 
-/// Where the shape is at time t: exp(t [omega]) R and translation - arm + t v + exp(t [omega]) arm. At time 0, and
+/// The pose of the shape at time t: exp(t [omega]) R and translation - arm + t v + exp(t [omega]) arm. At time 0, and
 /// without rotation, the rotation is the start's own, to the bit.
 [[nodiscard]] Pose pose_at(const MovingShape& body, double time);
 
@@ -43,8 +43,8 @@ struct MovingShape {
 struct TimeOfImpactSettings {
   /// The gap at which the bodies count as meeting, > 0, unit of length.
   double distance_tolerance = 1e-9;
-  /// >= 0: looks for the first time at which the bodies are deeper than this in each other, for pairs that are in
-  /// contact from the start. "Apart" below then means: not as deep as this.
+  /// The first time is sought at which the bodies are deeper in each other than this, >= 0; for pairs in contact from
+  /// the start. "Apart" below then means: not as deep as this.
   double allowed_depth = 0;
   /// A cap on the number of distance queries; when it is reached the answer is what is proved by then. Long edges that
   /// are nearly parallel and turn fast against each other take up to 300: a normal serves them for a short while only.
@@ -62,8 +62,8 @@ struct TimeOfImpact {
   /// No contact happens in [0, certified): proved, rounding of times, poses and supports included. With a hit it equals
   /// `time`, without one the duration.
   double certified = 0;
-  /// False: the cap on queries, or the resolution of doubles at these coordinates, left a gap above the tolerance at
-  /// `time`; whether the bodies meet after it is open, and `hit` is true to be on the safe side.
+  /// False if the cap on queries, or the resolution of doubles at these coordinates, left a gap above the tolerance
+  /// at `time`. It is then open if the bodies meet afterwards, and `hit` is true to be on the safe side.
   bool reached = true;
   PenetrationDepth contact;  ///< the answer at `time`
   int queries = 0;           ///< distance queries made

@@ -1,15 +1,15 @@
 /// @file
-/// [A] section 3, algorithm Approx-Separation, as it stands: one ray from the origin to the boundary of P = B + (-A)
-/// for every direction of a grid (Lemma 3.1, Theorem 3.2). `Method::grid` is its adaptive form, which shoots far fewer
-/// rays for a small delta.
+/// [A] section 3, algorithm Approx-Separation, as it stands. One ray goes from the origin to the boundary of P = B +
+/// (-A) for every direction of a grid (Lemma 3.1, Theorem 3.2). `Method::grid` is its adaptive form, which shoots far
+/// fewer rays for a small delta.
 ///
 /// Let Delta(u) be the length of the ray along u, and v the direction of the nearest boundary point. Some grid
 /// direction u makes an angle of at most alpha with v, and Delta(u) u lies in P, which the plane at v supports:
 /// cos(alpha) Delta(u) <= <Delta(u) u, v> <= pi. So cos(alpha) min Delta <= pi. Every ray ends on a plane that supports
 /// P, no farther from the origin than the ray is long: the least distance of such a plane lies in [pi, min Delta].
 ///
-/// Departures: the answer is the translation to the nearest of those planes, never longer than the paper's shortest
-/// ray; the grid's radius is arccos(1 / (1 + delta)), not sqrt(delta) (`direction_grid.hpp`); a shot is a portal
+/// Departures. The answer is the translation to the nearest of those planes, never longer than the paper's shortest
+/// ray. The grid's radius is arccos(1 / (1 + delta)), not sqrt(delta) (`direction_grid.hpp`). A shot is a portal
 /// search (`directional_depth.hpp`), whose O(log^2 (m + n)) with hierarchies is measured, not proved.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.

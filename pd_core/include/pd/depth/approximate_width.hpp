@@ -5,9 +5,9 @@
 /// The paper fattens the points by an affine map, takes an O(1 / delta) approximation of the fat set, and works on
 /// that. Departure: its approximation needs a nearest-point search a sample, or O(1 / delta^2) directions where extreme
 /// points alone are to be guaranteed. Here a pass takes the extreme points of the fattened set along a grid of about
-/// 0.6 / delta directions, the kernel's exact width is the lower bound, and the extents of all points along the
-/// kernel's thinnest normals, a few at a time, the upper one; what those passes meet joins the kernel, until the two
-/// agree. The result is certified whatever the points are; the number of passes is measured, not proved.
+/// 0.6 / delta directions. The kernel's exact width is the lower bound. The extents of all points along the kernel's
+/// thinnest normals, a few at a time, are the upper one. Points that those passes meet join the kernel, until the two
+/// bounds agree. The result is certified whatever the points are; the number of passes is measured, not proved.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once

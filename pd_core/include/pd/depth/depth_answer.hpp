@@ -37,11 +37,11 @@ enum class Method : std::uint8_t {
 enum class Bracket : std::uint8_t {
   certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
   tightest,   ///< lower and upper are the exact depth rounded down and up
-  /// What a physics engine can use, at a bounded cost: no finer than the numbers of its poses deserve
-  /// (`DepthSettings::contact_tolerance`), and never by numbers of unbounded length. Let s be the signed distance: the
-  /// distance of A and B, or minus their depth. Doubles, where they cancel double-double, show s in an interval no
-  /// wider than max(2e-14 L, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance), or delta times s as
-  /// ever.
+  /// An answer that a physics engine can use, at a bounded cost. It is no finer than the numbers of the engine's
+  /// poses deserve (`DepthSettings::contact_tolerance`), and never needs numbers of unbounded length. Let s be the
+  /// signed distance: the distance of A and B, or minus their depth. Doubles, where they cancel double-double, show s
+  /// in an interval no wider than max(2e-14 L, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance),
+  /// or delta times s as ever.
   /// - separated: [distance_lower, distance_upper], above 0;
   /// - overlapping: [-upper, -lower], below 0;
   /// - touching: [-upper, distance_upper], which holds 0; depth, distance, lower and distance_lower are 0.
@@ -58,15 +58,15 @@ struct DepthSettings {
   Bracket bracket = Bracket::tightest;
   /// Relative error (upper <= (1 + delta) lower) where the answer is approximate; in (0, 1]. For polytopes, 0 = exact.
   double delta = 0;
-  /// Of the random order in which the decomposition tries blocks of edges: times depend on it, answers do not.
+  /// Seed of the random order in which the decomposition tries blocks of edges. Times depend on it, answers do not.
   std::uint64_t seed = 0;
-  /// Of Bracket::contact: an interval of this width is narrow enough, in the unit of the input, >= 0. An engine whose
+  /// For Bracket::contact, an interval of this width is narrow enough, in the unit of the input, >= 0. An engine whose
   /// poses are single precision knows them to 2^-24 max(|t_A|, |t_B|).
   double contact_tolerance = 0;
-  /// Bodies farther apart than this (>= 0, in the unit of the input) need not be told apart any further: the answer may
-  /// be `separated` with distance_lower > beyond, certified by the plane across `normal`, and a distance_upper that is
-  /// wide. Witnesses are points of the bodies, then, not the closest ones. What a hit of a broadphase asks; anything
-  /// nearer is answered as ever. Infinity: closest points at any distance.
+  /// Bodies farther apart than this (>= 0, in the unit of the input) need not be told apart any further. The answer
+  /// may then be `separated` with distance_lower > beyond, certified by the plane across `normal`, and with a wide
+  /// distance_upper. Witnesses are then points of the bodies, but not the closest ones. This is the question of a
+  /// broadphase's hit; anything nearer is answered as usual. Infinity: closest points at any distance.
   double beyond = std::numeric_limits<double>::infinity();
 };
 
@@ -112,7 +112,7 @@ struct PenetrationDepth {
   [[nodiscard]] double signed_distance() const { return contact == ContactClass::separated ? distance : -depth; }
 };
 
-/// What [A] section 3.2, Shallow-Penetration, has looked at.
+/// Counts of [A] section 3.2, Shallow-Penetration.
 struct ShallowCounts {
   std::int64_t directions = 0;  ///< rays: O(1 / delta)
   std::int64_t seeds = 0;       ///< different facets hit by the short rays

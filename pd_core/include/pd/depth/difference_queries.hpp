@@ -27,13 +27,13 @@ struct DifferenceSupport {
 [[nodiscard]] Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const PosedShape& b,
                                                                 const Vec3& direction);
 
-/// Where a point lies: `overlapping` inside P, `touching` on its boundary (anywhere in a flat P), `separated` outside.
-/// As exact as the class of `penetration_depth`, for every finite point.
+/// The place of a point: `overlapping` inside P, `touching` on its boundary (anywhere in a flat P), `separated`
+/// outside. The class is as exact as that of `penetration_depth`, for every finite point.
 /// @return ErrorCode::non_finite or out_of_range ("point").
 [[nodiscard]] Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
                                                          Scratch& scratch);
 
-/// Where a line runs through P: its points point + t direction / |direction| with enter <= t <= leave.
+/// The part of a line inside P: its points point + t direction / |direction| with enter <= t <= leave.
 struct LineCrossing {
   bool crosses = false;  ///< the line meets the interior of P
   double enter_lower = 0, enter_upper = 0;

@@ -32,16 +32,17 @@ struct DirectionalHierarchies {
   const PolyhedralHierarchy* b;
 };
 
-/// What a query by portal leaves for the next one of the same two polytopes, in a direction or pose near its own:
+/// The memory that a query by portal leaves for the next one of the same two polytopes, in a direction or pose near
+/// its own:
 /// triangles of vertices of P that the line crossed. Nothing in it is trusted: a warm answer is the cold one bit for
-/// bit, whatever stands here.
+/// bit, with any content here.
 struct DirectionalCertificate {
   static constexpr std::int32_t kMostTriangles = 25;
   std::int32_t triangles = 0;  ///< one behind the origin, then from wide to narrow those before it
   std::array<std::array<std::int32_t, 6>, kMostTriangles> vertices{};  ///< of A and B in turn
 };
 
-/// What a descent of two hierarchies did; zero for other methods.
+/// Counts of a descent of two hierarchies; zero for other methods.
 struct DescentCounts {
   std::int64_t steps = 0;        ///< vertices evaluated and signs asked for, O(log n log m)
   std::int64_t certificate = 0;  ///< edges at the final vertices that were checked: their degrees

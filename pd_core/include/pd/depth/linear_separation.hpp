@@ -2,9 +2,10 @@
 /// Whether two convex polytopes meet, by linear programming: the test that [A] section 2 and [D] section 5 put before
 /// every depth.
 ///
-/// The unknown is a plane {x : <n, x> = c} with <n, a> <= c <= <n, b> for every vertex a of A and b of B: m + n linear
-/// inequalities in (n, c) up to a positive factor, which are three unknowns. The solver is Seidel's incremental one,
-/// its vertices the planes through three of the points, its only predicate the exact orientation of four of them.
+/// The unknown is a plane {x : <n, x> = c} with <n, a> <= c <= <n, b> for every vertex a of A and b of B. These are m
+/// + n linear inequalities in (n, c) up to a positive factor, which are three unknowns. The solver is Seidel's
+/// incremental one, its vertices the planes through three of the points, its only predicate the exact orientation of
+/// four of them.
 ///
 /// Seidel, "Small-dimensional linear programming and convex hulls made easy", 1991.
 ///
@@ -37,8 +38,8 @@ struct LinearSeparation {
 ///
 /// Time: each inequality that the present plane breaks starts a search one dimension lower among those before it. In a
 /// random order (a fixed one, so that results repeat) the i-th breaks it with a probability of O(log i / i), because
-/// the present plane agrees with a random sample; measured 5 to 25 orientations a vertex for bodies apart, fewer than
-/// one for bodies well overlapped. An objective that singles out one plane (Seidel's own form) would remove the
+/// the present plane agrees with a random sample. Measured are 5 to 25 orientations a vertex for bodies apart, fewer
+/// than one for bodies well overlapped. An objective that singles out one plane (Seidel's own form) would remove the
 /// logarithm, and is left out because any plane will do.
 [[nodiscard]] LinearSeparation linear_separation(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
                                                  const Pose& pose_b);

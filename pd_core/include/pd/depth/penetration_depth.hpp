@@ -1,8 +1,9 @@
 /// @file
 /// The main call: penetration depth of two convex bodies in R^3, with a proof.
 ///
-/// P = B + (-A) is the Minkowski difference and pi(A, B) the length of the shortest t after which int(A + t) and B are
-/// disjoint: the distance from the origin to the boundary of P when the origin lies in int P, 0 otherwise. A moves, B
+/// P = B + (-A) is the Minkowski difference, and pi(A, B) the length of the shortest t after which int(A + t) and B
+/// are disjoint. It is the distance from the origin to the boundary of P when the origin lies in int P, and 0
+/// otherwise. A moves, B
 /// stays. Every engine answers with the same type, so that engines are compared by running them.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
@@ -33,7 +34,7 @@ class WarmCertificate;
 [[nodiscard]] PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scratch& scratch,
                                                  const DepthSettings& settings = {}, WarmCertificate* warm = nullptr);
 
-/// Whether an engine answers for these two shapes (the table of methods in the documentation of the line protocol).
+/// True if the engine answers for these two shapes (the table of methods in the documentation of the line protocol).
 [[nodiscard]] bool supports(Method method, const ConvexShape& a, const ConvexShape& b);
 
 }  // namespace pd

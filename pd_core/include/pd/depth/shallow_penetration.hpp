@@ -2,15 +2,15 @@
 /// Exact penetration depth at a cost that follows the number of facets near the origin: [A] section 3.2, algorithm
 /// Shallow-Penetration, with its step 5(i) corrected.
 ///
-/// Rays along a grid of directions bound the depth within (1 + delta / 4); from the facets that the shortest rays hit,
-/// a breadth-first search over the facets of P = B + (-A), never built, visits what lies inside a ball that is little
+/// Rays along a grid of directions bound the depth within (1 + delta / 4). From the facets that the shortest rays
+/// hit, a breadth-first search visits the facets of P = B + (-A), which is never built, inside a ball that is little
 /// larger than the depth.
 ///
 /// Departure: step 5(i) starts from "the face of P supported by the plane orthogonal to u". On the slab [-L, L]^2 x
 /// [-1, 1] that is a corner, at a distance of about 1.4 L and outside the ball, for every u that is not exactly
-/// vertical. The search starts from the facet that the ray u hits: on the great arc from the nearest point's direction
-/// v to u the boundary stays within pi / cos(angle), inside the ball, so that the two facets are connected in it, and
-/// Theorem 3.5 holds. (`tests/depth/shallow_test.cpp` keeps the slab.)
+/// vertical. The search starts from the facet that the ray u hits. On the great arc from the nearest point's
+/// direction v to u the boundary stays within pi / cos(angle), inside the ball. The two facets are therefore
+/// connected in it, and Theorem 3.5 holds. (`tests/depth/shallow_test.cpp` keeps the slab.)
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once

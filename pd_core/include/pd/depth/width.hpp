@@ -30,8 +30,8 @@ struct Width {
 /// r^2). A hull of spheres of unequal radii has no formula: upper <= (1 + delta) lower by `penetration_depth` (delta 0:
 /// 1e-6).
 ///
-/// @param method  automatic or overlay (every facet of P + (-P): O(m + K)), expansion, or grid: upper <= (1 + delta)
-/// lower for polytopes by rays along directions that cover half the sphere, P + (-P) being symmetric ([A]
+/// @param method  automatic or overlay (every facet of P + (-P): O(m + K)), expansion, or grid. Grid gives upper <=
+/// (1 + delta) lower for polytopes by rays along directions that cover half the sphere, P + (-P) being symmetric ([A]
 /// Corollary 3.3, its grid refined where it matters).
 /// @param delta   for Method::grid, in (0, 1]; 0 means 1e-2.
 /// Requires one of those methods.

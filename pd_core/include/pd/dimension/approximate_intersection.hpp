@@ -3,8 +3,8 @@
 ///
 /// K_epsilon is K grown by epsilon / 2 of its width on both sides in every direction. The answer is yes when the bodies
 /// have a common point, no when the grown bodies have none, and either in between. The bodies are preprocessed one by
-/// one and queried as they are, under any affine maps; two of them meet when O lies in A + (-B) (Lemma 12), k of them
-/// when O lies among the differences from the first, a body in R^((k - 1) d).
+/// one and queried as they are, under any affine maps. Two of them meet when O lies in A + (-B) (Lemma 12). k of them
+/// meet when O lies among the differences from the first, a body in R^((k - 1) d).
 #pragma once
 
 #include <cstdint>

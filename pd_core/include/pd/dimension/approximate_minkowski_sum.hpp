@@ -6,8 +6,8 @@
 ///
 /// [M] samples the boundary at the points nearest to a net (Dudley's halfspaces; Bronshteyn and Ivanov's points), each
 /// found by a search for the least ball that meets K. Departure: a polytope grows inside K in the frame of its
-/// fattening ([M] Lemma 10), the facet with the farthest support first, until the support over every facet is certified
-/// to be within 1 + epsilon / 2 of its plane. Points and halfspaces are O(1 / epsilon^((d-1)/2)) as measured
+/// fattening ([M] Lemma 10), the facet with the farthest support first. It ends when the support over every facet is
+/// certified to be within 1 + epsilon / 2 of its plane. Points and halfspaces are O(1 / epsilon^((d-1)/2)) as measured
 /// (`pdepth-bench arya`), the sampling's order, and fewer where K is flat.
 ///
 /// Intersections inside become bodies of halfspaces first, between the supports of polytopes inside their parts and
@@ -30,9 +30,9 @@ struct ApproximateSum {
 };
 
 /// @param sum      `ComposedBody::sum_of`, `hull_of`, `intersection_of`, affine images and their compositions
-/// @param epsilon  in [1e-6, 1), at least 4 times that of every structure inside; with hulls inside 8 (1 + r) times, r
-/// the ratio of the composed sandwich; with intersections inside at least 1e-5 and at least 20 times, and more the
-/// thinner they are beside their parts.
+/// @param epsilon  in [1e-6, 1), at least 4 times that of every structure inside; with hulls inside 8 (1 + r) times,
+/// r the ratio of the composed sandwich. With intersections inside it is at least 1e-5 and at least 20 times, and more
+/// the thinner they are beside their parts.
 /// @return ErrorCode::bad_value ("epsilon"; "" where an intersection is empty); not_full_dimensional for one that has
 /// no interior, or none that doubles tell; limit_exceeded for one too thin beside its parts; out_of_range for bodies
 /// too slender for doubles.

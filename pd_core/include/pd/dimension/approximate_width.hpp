@@ -4,7 +4,7 @@
 /// The width is the distance from the origin to the boundary of K + (-K). [M] takes Dudley's halfspaces of an
 /// epsilon-approximation of K + (-K) and returns the one nearest to the origin. Departure: the halfspaces are those of
 /// the facets of a polytope that grows inside K + (-K), the facet nearest to the origin first, each queried by its
-/// normal; it ends as soon as the least width met and the nearest facet agree, so that most directions are never
+/// normal. It ends as soon as the least width met and the nearest facet agree. Most directions are therefore never
 /// refined where the body is not equally wide everywhere. On a ball it grows to O(1 / epsilon^((d-1)/2)) vertices,
 /// Dudley's number.
 #pragma once
@@ -28,18 +28,18 @@ struct ApproximateWidth {
 
 /// @param epsilon  in (0, 1); at least 1.2e-7 with the kernel backend.
 /// @return ErrorCode::bad_value ("epsilon").
-/// The structure of the backend is built for .9 epsilon / (1 + epsilon), the search ends at the rest; bounds up to
+/// The structure of the backend is built for 0.9 epsilon / (1 + epsilon), the search ends at the rest; bounds up to
 /// rounding (1e-9, relative).
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
                                                               Backend backend = Backend::kernel);
 
-/// Of a body composed of others (sums, hulls of unions, intersections, affine images): the width of a small polytope
-/// inside, which every directional width exceeds by a known factor at most. `structure` and `queries` are those of that
-/// polytope.
+/// The width of a body composed of others (sums, hulls of unions, intersections, affine images). Measured is a small
+/// polytope inside, which every directional width exceeds by a known factor at most. `structure` and `queries` are
+/// those of that polytope.
 ///
 /// @param epsilon  in [2e-6, 1), with an intersection inside [2e-5, 1); the structures inside at least as fine as
-/// `approximate_minkowski_sum` asks at .7 epsilon / (1 + epsilon).
+/// `approximate_minkowski_sum` asks at 0.7 epsilon / (1 + epsilon).
 /// @return those of `approximate_minkowski_sum`.
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const ComposedBody<D>& body, double epsilon);

@@ -2,8 +2,8 @@
 /// Approximate directional width queries ([M] Lemma 5): one interface, three structures behind it.
 ///
 /// width_v(K) = h_K(v) + h_K(-v) over |v|. A query for a direction v returns points p, q of K with
-/// width_v({p, q}) >= (1 - epsilon) width_v(K); so each end, <v, p>, is at most epsilon width_v(K) |v| short of h_K(v)
-/// and never beyond it.
+/// width_v({p, q}) >= (1 - epsilon) width_v(K). Each end, <v, p>, is therefore at most epsilon width_v(K) |v| short of
+/// h_K(v) and never beyond it.
 ///
 /// | backend | structure | query |
 /// |---|---|---|
@@ -47,7 +47,8 @@ struct DirectionalWidthAnswer {
   SupportPoint<D> least;
 };
 
-/// What the algorithms of this module ask of a body: an extreme point, in the sense above, for any nonzero direction.
+/// The only question that the algorithms of this module ask of a body: an extreme point, in the sense above, for any
+/// nonzero direction.
 template <class Oracle, int D>
 concept SupportOracle = requires(const Oracle& oracle, const Vector<D>& direction, QueryCounters& counters) {
   { oracle.support(direction, counters) } -> std::same_as<SupportPoint<D>>;

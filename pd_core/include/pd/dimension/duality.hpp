@@ -1,8 +1,9 @@
 /// @file
 /// The projective duality of [M] section 2.2: points to hyperplanes and back, and width as thickness (Lemma 11).
 ///
-/// p = (p_1, ..., p_d) maps to the hyperplane p*: x_d = p_1 x_1 + ... + p_{d-1} x_{d-1} - p_d, and the hyperplane
-/// x_d = a_1 x_1 + ... + a_{d-1} x_{d-1} - a_d to the point a. The map is an involution, it keeps incidence
+/// p = (p_1, ..., p_d) maps to the hyperplane p*: x_d = p_1 x_1 + ... + p_{d-1} x_{d-1} - p_d. The hyperplane x_d = a_1
+/// x_1 + ... + a_{d-1} x_{d-1}
+/// - a_d maps to the point a. The map is an involution, it keeps incidence
 /// (p on q* exactly when q on p*) and turns above into above: p lies above q* exactly when q lies above p*.
 #pragma once
 

@@ -2,12 +2,12 @@
 /// Epsilon-kernels: few of the points, whose every directional width is at least (1 - epsilon) times that of all
 /// ([M] section 1.1; Agarwal, Har-Peled, Varadarajan 2004).
 ///
-/// Every point is given to the cone (apex: a point inside) over one facet of a growing hull of kernel points, and is
-/// dropped for good once its gauge there is at most 1 / (1 - epsilon): K is in conv(kernel) / (1 - epsilon) about the
+/// Every point is given to the cone (apex: a point inside) over one facet of a growing hull of kernel points. It is
+/// dropped for good once its gauge there is at most 1 / (1 - epsilon). K is in conv(kernel) / (1 - epsilon) about the
 /// apex, which is more than the widths ask for and needs no covering of directions. The point of the largest gauge
-/// enters first. Departure from [M]: its hierarchy finds kernels in O(n log(1/epsilon) + 1/epsilon^((d-1)/2 + alpha));
-/// here sizes and work are measured (`pdepth-bench arya`): the estimate refinement of Kamenev, which has the optimal
-/// order O(1/epsilon^((d-1)/2)) of points on smooth bodies.
+/// enters first. Departure from [M]: its hierarchy finds kernels in O(n log(1/epsilon) + 1/epsilon^((d-1)/2 +
+/// alpha)). Here sizes and work are measured (`pdepth-bench arya`). The method is the estimate refinement of Kamenev,
+/// which has the optimal order O(1/epsilon^((d-1)/2)) of points on smooth bodies.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct EpsilonKernel {
 template <int D>
 [[nodiscard]] Expected<EpsilonKernel<D>> epsilon_kernel(const Body<D>& body, double epsilon);
 
-/// The same over points that are not kept: two passes of chunks in the same order.
+/// A kernel of points that are not kept: two passes of chunks in the same order.
 ///
 /// Memory: the kernel and its hull, and 65536 points; nothing that grows with n.
 template <int D>

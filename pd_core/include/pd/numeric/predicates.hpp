@@ -36,8 +36,8 @@ struct PredicateStages {
 [[nodiscard]] int orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b,
                            const std::array<double, 2>& c, PredicateStages* stages = nullptr);
 
-/// Sign of <(b - a) x (c - a), d - a>: 1 when d lies on the side from which a, b, c turn counter-clockwise (above an
-/// outward facet), -1 on the other, 0 when the four are coplanar. Requires finite numbers.
+/// Sign of <(b - a) x (c - a), d - a>. It is 1 when d lies on the side from which a, b, c turn counter-clockwise
+/// (above an outward facet), -1 on the other side, and 0 when the four are coplanar. Requires finite numbers.
 [[nodiscard]] int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
                            PredicateStages* stages = nullptr);
 

@@ -10,7 +10,7 @@ namespace pd {
 /// A point or vector of the plane.
 using Point2 = std::array<double, 2>;
 
-/// Where a placement of Q lies: in R = P + (-Q), on its boundary, or outside its closure. Exact.
+/// The place of a placement of Q: in R = P + (-Q), on its boundary, or outside its closure. Exact.
 enum class PlanarContact { overlapping, touching, separated };
 [[nodiscard]] std::string_view to_string(PlanarContact contact);
 

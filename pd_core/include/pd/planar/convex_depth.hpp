@@ -1,9 +1,9 @@
 /// @file
 /// How deep two convex polygons stick in each other ([D] section 3). P stays, Q moves (the paper's convention).
 ///
-/// With Q displaced by y, sigma_d is the least t >= 0 for which Q displaced by y + t d / |d| has no interior point in
-/// common with P; sigma is its minimum over all directions. Both are about R = P + (-Q): where the ray from y along d
-/// leaves it ([D] equation (1)), and how far y is from its boundary (equation (2)).
+/// Let Q be displaced by y. sigma_d is the least t >= 0 for which Q displaced by y + t d / |d| has no interior point
+/// in common with P. sigma is its minimum over all directions. Both are about R = P + (-Q): where the ray from y along
+/// d leaves it ([D] equation (1)), and how far y is from its boundary (equation (2)).
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ struct PlanarDepth {
   std::int64_t probes = 0;  ///< edges and vertices looked at
 };
 
-/// sigma_d without building R: the edge of R that the ray leaves through is searched for in both polygons at once. Of
-/// the medians of the two edge sequences that face along d, the one that comes first in slope order loses the half
+/// sigma_d without building R: the edge of R that the ray leaves through is searched for in both polygons at once. Take
+/// the medians of the two edge sequences that face along d. The one that comes first in slope order loses the half
 /// before it, or the other one the half behind it ([D] section 3, after Chazelle and Dobkin). Exact.
 /// @param direction  any finite length but zero.
 /// @return ErrorCode::non_finite or out_of_range ("displacement", "direction"), zero_direction ("direction").
@@ -41,8 +41,8 @@ struct PlanarDepth {
 [[nodiscard]] Expected<PlanarDepth> convex_directional_depth(const ConvexPolygon& p, const ConvexPolygon& q,
                                                              const Point2& displacement, const Point2& direction);
 
-/// The times at which Q, displaced by y + t d / |d| for t from -infinity to infinity, meets P ([D] section 1: depth and
-/// separation along a direction are the two ends of one interval).
+/// The times at which Q, displaced by y + t d / |d| for t from -infinity to infinity, meets P. Depth and separation
+/// along a direction are the two ends of one interval ([D] section 1).
 struct PlanarCrossing {
   bool meets = false;  ///< exact; touching counts
   /// Neighbouring doubles around the exact values, or equal; of either sign.
@@ -54,7 +54,7 @@ struct PlanarCrossing {
 [[nodiscard]] Expected<PlanarCrossing> convex_crossing(const ConvexPolygon& p, const ConvexPolygon& q,
                                                        const Point2& displacement, const Point2& direction);
 
-/// Whether the polygons meet ([D] Lemma 2.1): y inside R, on its boundary, or outside, exact. Time O(log n + log m).
+/// Tells if the polygons meet ([D] Lemma 2.1): y inside R, on its boundary, or outside, exact. Time O(log n + log m).
 [[nodiscard]] Expected<PlanarContact> convex_intersection(const ConvexPolygon& p, const ConvexPolygon& q,
                                                           const Point2& displacement);
 

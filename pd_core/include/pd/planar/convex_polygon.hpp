@@ -46,8 +46,8 @@ class ConvexPolygon {
   std::vector<std::int32_t> first_edges_;
 };
 
-/// R = P + (-Q) as what it is made of, so that nothing is rounded: vertex i is P's vertex `p` minus Q's vertex `q`, and
-/// the edge from it is P's edge from p, -Q's from q, or both, exactly parallel and fused.
+/// R = P + (-Q) in terms of its summands, so that nothing is rounded. Vertex i is P's vertex `p` minus Q's vertex `q`,
+/// and the edge from it is P's edge from p, -Q's from q, or both, exactly parallel and fused.
 struct ConvexDifference {
   struct Corner {
     std::int32_t p;

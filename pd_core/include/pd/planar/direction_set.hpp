@@ -2,7 +2,7 @@
 /// Directional depth of many placements for a fixed set of directions, in logarithmic time each.
 ///
 /// For every direction d the forbidden placements R = P + (-Q) are cut into trapezoids by lines along d, in which a
-/// placement is located; the ray from it along d meets the side ahead. Conventions as in polygon_depth.hpp.
+/// placement is located. The ray from it along d meets the side ahead. Conventions as in polygon_depth.hpp.
 /// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993, section 6.
 #pragma once
 

@@ -27,11 +27,11 @@ class MedialAxis {
     std::array<std::int32_t, 3> links;
   };
 
-  /// Chew's randomised algorithm ("Building Voronoi diagrams for convex polygons in linear expected time", 1990): edges
-  /// are taken off in a fixed random order, each remembering its neighbours, and put back in the reverse order, so that
-  /// each finds its place at one known corner. Expected time O(n + m) for the axis; the tree of its centroids takes
-  /// O((n + m) log(n + m)). Nodes are computed in double-double and their order decided there, not exactly: answers do
-  /// not depend on it (see `depth`).
+  /// Chew's randomised algorithm ("Building Voronoi diagrams for convex polygons in linear expected time", 1990).
+  /// Edges are taken off in a fixed random order, each remembering its neighbours. They are put back in the reverse
+  /// order, so that each finds its place at one known corner. Expected time O(n + m) for the axis; the tree of its
+  /// centroids takes O((n + m) log(n + m)). Nodes are computed in double-double and their order decided there, not
+  /// exactly: answers do not depend on it (see `depth`).
   static MedialAxis build(const ConvexPolygon& p, const ConvexPolygon& q);
 
   [[nodiscard]] std::span<const Node> nodes() const;

@@ -26,7 +26,7 @@ enum class PolygonMethod {
   explicit_sums,  ///< the union of all sums of two triangles, edge by edge
 };
 
-/// What of P and Q holds the answer: a vertex or an edge (from that vertex on), as the caller numbered it.
+/// The feature of P and Q that holds the answer: a vertex or an edge (from that vertex on), as the caller numbered it.
 struct PlanarFeature {
   Polygon::VertexId p, q;
   bool p_edge = false, q_edge = false;
@@ -37,8 +37,8 @@ struct PolygonDepth {
   /// The exact depth lies in [lower, upper], neighbouring doubles or one; depth is upper. All 0 unless overlapping.
   double depth = 0, lower = 0, upper = 0;
   Point2 translation = {0, 0};  ///< of Q, rounded; its length is the depth up to 4 ulp
-  /// Unit: the translation's direction; when touching, a direction in which Q leaves P; {0, 0} when separated and when
-  /// no boundary is in the way.
+  /// Unit vector along the translation. When touching it is a direction in which Q leaves P. It is {0, 0} when
+  /// separated and when no boundary is in the way.
   Point2 normal = {0, 0};
   std::optional<PlanarFeature> feature;
 };
@@ -54,8 +54,8 @@ enum class Leave {
 class PolygonDifference {
  public:
   /// @return ErrorCode::unsupported for the implicit method where neither is convex.
-  /// Time O((n + k) log^2 m) for the implicit method, k the pairs of a part of P's boundary and a triangle of P that Q,
-  /// slid along the one, meets; O(s^2) at worst for s sums of the explicit one. Space O(n + m), and O(s).
+  /// Time O((n + k) log^2 m) for the implicit method. k counts the pairs of a part of P's boundary and a triangle of
+  /// P that Q, slid along the part, meets. O(s^2) at worst for s sums of the explicit one. Space O(n + m), and O(s).
   static Expected<PolygonDifference> of(const Polygon& p, const Polygon& q,
                                         PolygonMethod method = PolygonMethod::automatic);
 

@@ -92,7 +92,7 @@ class ConvexPolytope {
 
   /// Largest |coordinate|.
   [[nodiscard]] double max_abs_coordinate() const { return data_->max_abs_coordinate; }
-  /// The same for each axis.
+  /// One value for each axis.
   [[nodiscard]] const Vec3& max_abs_coordinates() const { return data_->max_abs_coordinates; }
   /// Mean of the vertices, rounded: a point well inside, for choosing directions.
   [[nodiscard]] const Vec3& centre() const { return data_->centre; }

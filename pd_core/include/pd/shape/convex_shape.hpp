@@ -1,7 +1,7 @@
 /// @file
 /// Every convex body of the library: a core (polytope or smooth) swept by a ball.
 ///
-/// A sphere is a point with a margin, a capsule a segment with a margin; they need no code of their own, and their
+/// A sphere is a point with a margin, a capsule a segment with a margin. They need no code of their own, and their
 /// depth is exact: the core's signed distance less the two margins ([A] section 1 on Minkowski sums).
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
@@ -19,7 +19,7 @@
 
 namespace pd {
 
-/// Sizes of ellipsoids, cylinders, cones and hulls of spheres lie between these: queries about them bring a pair to
+/// Sizes of ellipsoids, cylinders, cones and hulls of spheres lie between these. Queries about them bring a pair to
 /// size 1 by a power of two, and give the same bits times that power anywhere in between.
 inline constexpr double kMinCurvedSize = 0x1p-900;
 inline constexpr double kMaxCurvedSize = 0x1p900;
@@ -69,7 +69,7 @@ class ConvexShape {
   /// Time: seldom more than O(k) a sphere, at most O(k + 2^18).
   static Expected<ConvexShape> hull_of_spheres(std::span<const Sphere> spheres);
 
-  /// The same core with `margin` added to the present one; margin >= 0 ("margin").
+  /// This core with `margin` added to the present one; margin >= 0 ("margin").
   [[nodiscard]] Expected<ConvexShape> with_margin(double margin) const;
 
   [[nodiscard]] const Core& core() const { return core_; }

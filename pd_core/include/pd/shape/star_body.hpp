@@ -1,8 +1,8 @@
 /// @file
 /// Star-shaped bodies: closed triangulated surfaces of which every point is seen from a centre.
 ///
-/// The body is {c + s (x - c) : x on the surface, 0 <= s <= 1}: the union of the tetrahedra over its faces with the
-/// apex c, which abut and do not overlap ([A], remark at the end of section 4).
+/// The body is {c + s (x - c) : x on the surface, 0 <= s <= 1}. It is the union of the tetrahedra over its faces with
+/// the apex c, which abut and do not overlap ([A], remark at the end of section 4).
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
@@ -23,9 +23,9 @@ class StarBody {
  public:
   using Triangle = std::array<std::int32_t, 3>;
 
-  /// Checked exactly, not trusted: every edge is met by two faces that run it in opposite ways, every face has the
-  /// centre strictly below it (seen from outside its corners turn counter-clockwise), and a ray from the centre leaves
-  /// through one face only.
+  /// The surface is checked exactly, not trusted. Every edge is met by two faces that run it in opposite ways. Every
+  /// face has the centre strictly below it (seen from outside its corners turn counter-clockwise). A ray from the
+  /// centre leaves through one face only.
   /// @return ErrorCode::non_finite or out_of_range ("vertices[i]", "center"), too_few_points (fewer than four vertices
   /// or faces), bad_faces ("faces[i]": an index out of range, a repeated vertex, a face that does not see the centre
   /// from its inner side), not_closed ("faces[i]"); bad_faces ("faces") when the surface runs round the centre more

@@ -8,10 +8,10 @@
 
 namespace pd {
 
-/// Empty when everything holds, else the first thing that does not. Checked: the order of vertices, neighbours and
-/// facets; half-edges, facet loops and adjacency against each other; Euler's formula; every facet planar, strictly
-/// convex and wound once; every edge strictly convex; and, where that is at most `max_global_tests` tests, every vertex
-/// below every facet. All signs are exact. Time O(n), and O(num_vertices * num_facets) for the last check.
+/// Empty when everything holds, else the first thing that does not. Checked are the order of vertices, neighbours and
+/// facets; half-edges, facet loops and adjacency against each other; Euler's formula. Every facet must be planar,
+/// strictly convex and wound once, every edge strictly convex. Where that is at most `max_global_tests` tests, every
+/// vertex below every facet. All signs are exact. Time O(n), and O(num_vertices * num_facets) for the last check.
 [[nodiscard]] std::string verify_polytope(const ConvexPolytope& polytope, double max_global_tests = 1e7);
 
 }  // namespace pd

@@ -11,9 +11,9 @@
 ///        O(n log n), for every i, and F_B the same with the roles exchanged.
 /// So sum(|A_i| + |B_i|) = O((m + n) log^2 (m + n)), although sum |A_i| |B_i| may be as large as m n.
 ///
-/// Departures: six charts on the faces of a cube take the place of two hemispheres, so that no arc is a ray; the random
-/// rotation is an infinitesimal one of A (structure/overlay.hpp), so that degenerate bodies are decomposed, too. A pair
-/// is found up to once with e in the role of the query and once with e', and again where it lies on a seam.
+/// Departures: six charts on the faces of a cube take the place of two hemispheres, so that no arc is a ray. The
+/// random rotation is an infinitesimal one of A (structure/overlay.hpp), so that degenerate bodies are decomposed, too.
+/// A pair is found up to once with e in the role of the query and once with e', and again where it lies on a seam.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
@@ -63,7 +63,7 @@ class Decomposition {
   /// Those of F_A, then those of F_B, by exponent; empty classes are left out.
   [[nodiscard]] std::vector<SizeClass> size_classes() const;
 
-  /// Where a pair's edges begin in one list of edges: A's, then B's.
+  /// The place at which a pair's edges begin in one list of edges: A's, then B's.
   struct StoredPair {
     std::int64_t first;
     std::int32_t count_a;
@@ -86,7 +86,7 @@ struct DecompositionCover {
 [[nodiscard]] DecompositionCover cover_of(const Decomposition& decomposition, const ConvexPolytope& a,
                                           const ConvexPolytope& b);
 
-/// F against the overlay, which shares no step with it beyond the sign that decides a crossing; and the side on which
+/// F against the overlay, which shares no step with it beyond the sign that decides a crossing. Then the side on which
 /// the lines of each edge-edge facet with an area lie, seen along the facet's outward normal (Lemma 2.3).
 struct DecompositionCheck {
   std::int64_t missing = 0;        ///< edge-edge facets of the overlay that no pair of F holds (C3)

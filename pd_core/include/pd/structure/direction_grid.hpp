@@ -1,7 +1,7 @@
 /// @file
 /// Finite sets of directions that cover the unit sphere: every direction is within the covering radius of one of them.
 ///
-/// A grid for a relative error delta has covering radius arccos(1 / (1 + delta)): then a convex surface round the
+/// A grid for a relative error delta has covering radius arccos(1 / (1 + delta)). Then a convex surface around the
 /// origin, at distance pi along the nearest grid direction's neighbour, is met within (1 + delta) pi along the grid
 /// ([A] Lemma 3.1, whose sqrt(delta) is a bound of this arc cosine's first term only).
 ///
@@ -37,11 +37,11 @@ struct DirectionGrid {
 
 /// A grid with 1 / cosine <= 1 + delta. The same bits on every machine.
 ///
-/// Proof of the geodesic radius: let x be a direction in the cone of a triangle with corners v_i on the sphere, and x'
-/// = sum w_i v_i the point where it meets the triangle's plane (w_i >= 0, sum 1). Then sum w_i <v_i, x> = <x', x> =
-/// |x'|, so that some <v_i, x> is at least |x'|, and |x'| at least the distance of the plane from the origin: `cosine`
-/// is the least such distance. Latitude and longitude: the metric ds^2 = dphi^2 + sin^2(phi) dtheta^2 is at most the
-/// plane one, so half a cell's diagonal bounds the distance to its nearest corner.
+/// Proof of the geodesic radius. Let x be a direction in the cone of a triangle with corners v_i on the sphere. Let
+/// x' = sum w_i v_i be the point where it meets the triangle's plane (w_i >= 0, sum 1). Then sum w_i <v_i, x> = <x', x>
+/// = |x'|, so that some <v_i, x> is at least |x'|, and |x'| at least the distance of the plane from the origin:
+/// `cosine` is the least such distance. Latitude and longitude: the metric ds^2 = dphi^2 + sin^2(phi) dtheta^2 is at
+/// most the plane one, so half a cell's diagonal bounds the distance to its nearest corner.
 ///
 /// @param delta  in (0, 1].
 /// @return ErrorCode::bad_value ("delta"), or limit_exceeded when more than `max_directions` are needed.

@@ -1,9 +1,9 @@
 /// @file
 /// The normal diagram (Gaussian map) of a convex polytope: the unit sphere cut into the cells of equal support.
 ///
-/// Facet f is the point normal(f); the edge of half-edge h the great arc between the normals of its two facets; vertex
-/// v the convex cell of the directions in which v is extreme, its corners the normals of the facets round v. It needs
-/// no storage beside the polytope's own: this is its vocabulary, and the location of a direction in it.
+/// Facet f is the point normal(f). The edge of half-edge h is the great arc between the normals of its two facets.
+/// Vertex v is the convex cell of the directions in which v is extreme, its corners the normals of the facets round v.
+/// It needs no storage beside the polytope's own: this is its vocabulary, and the location of a direction in it.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000, 2.2.
 #pragma once

@@ -2,8 +2,8 @@
 /// Every facet of P = B + (-A), one by one, without building P: the overlay of the normal diagrams of B and -A ([A]
 /// section 2.2), walked.
 ///
-/// A facet of P is a facet of one body and a vertex of the other, or an edge of each; where facets or edges of the two
-/// are parallel it is a sum of two larger faces, which the walk meets as several pieces in one plane (as if A were
+/// A facet of P is a facet of one body and a vertex of the other, or an edge of each. Where facets or edges of the
+/// two are parallel it is a sum of two larger faces. The walk meets it as several pieces in one plane (as if A were
 /// turned by infinitely little) or united, as the caller asks.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.

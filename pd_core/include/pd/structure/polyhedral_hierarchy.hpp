@@ -7,9 +7,9 @@
 /// the polar body. Heights are O(log n), sizes O(n), because at least a fixed fraction of a planar graph's vertices is
 /// independent and of a degree below 9 ([D] Fact 5.1).
 ///
-/// What both consist of is called an element here: a vertex of an inner hierarchy, a facet of an outer one. Every level
-/// is a triangulated surface over its elements; a triangle is a face of an inner level (coplanar ones stand side by
-/// side), and a vertex of an outer one, where its three planes meet.
+/// What both consist of is called an element here: a vertex of an inner hierarchy, a facet of an outer one. Every
+/// level is a triangulated surface over its elements. A triangle is a face of an inner level (coplanar ones stand
+/// side by side), and a vertex of an outer one, where its three planes meet.
 #pragma once
 
 #include <array>
@@ -71,8 +71,8 @@ class PolyhedralHierarchy {
   [[nodiscard]] std::size_t memory_bytes() const;
 
   /// The vertex of a level that maximises <v, direction>, up to rounding ([D] Lemma 5.4, the first contact of a
-  /// translating plane). Requires an inner hierarchy. Time O(log n), whatever the degrees: from level to level two
-  /// edges of the best vertex are kept, its neighbours in the shadow along a fixed second direction; a better vertex of
+  /// translating plane). Requires an inner hierarchy. Time O(log n), for any degrees. From level to level two edges
+  /// of the best vertex are kept, its neighbours in the shadow along a fixed second direction. A better vertex of
   /// the finer level must have created one of the four triangles at them (Edelsbrunner and Maurer, "Finding extreme
   /// points in three dimensions and solving the post-office problem in the plane", 1985).
   /// @param dot_products  counted up, when given.

@@ -44,7 +44,7 @@ constexpr Colour varied(Colour colour, std::uint32_t id) {
   return t < 0 ? mix(colour, hex(0x3A3F47), -t * 0.16f) : mix(colour, hex(0xFFFFFF), t * 0.22f);
 }
 
-/// What a picture is about.
+/// The subject of a picture.
 inline constexpr Colour kBodyA = hex(0x4C8DBF);
 inline constexpr Colour kBodyB = hex(0xE0A93B);
 inline constexpr Colour kDepth = hex(0xD1420F);    ///< the depth arrow: vermilion

@@ -43,7 +43,7 @@ struct PlaneDot {
   std::string label = {};  ///< to the right of it
 };
 
-/// What is listed first lies lowest; regions below lines below dots below arrows.
+/// Parts listed first lie lowest; regions below lines below dots below arrows.
 struct PlaneFigure {
   std::vector<PlaneRegion> regions = {};
   std::vector<PlaneLine> lines = {};

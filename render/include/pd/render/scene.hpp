@@ -98,7 +98,7 @@ struct Scene {
   /// Towards the key light; zero: high on the left of the camera (give it where the camera moves, or shadows turn with
   /// it).
   Vec3 light_direction = Vec3::Zero();
-  /// Where shadows and the grid are centred; empty: the bodies' bounds. Set it to one box for a whole film, so that
+  /// The centre of shadows and grid. Empty: the bodies' bounds. Set it to one box for a whole film, so that
   /// nothing swims when a body flies off.
   Box focus = {};
 };
