@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-LIMITS = {"openings": 0, "long sentences": 0, "decimals": 0}
+LIMITS = {"openings": 20, "long sentences": 75, "decimals": 1}
 OPENING = re.compile(r"(Of|As|The same|What|Whether|Where)\b")
 DECIMAL = re.compile(r"(?<![\w.\])}/*-])-?\.\d")
 MARK = re.compile(r"^\s*//[/!]?<?\s?|\s+//[/!]?<\s?")
@@ -51,7 +51,7 @@ def prose(text):
     text = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
     lines = [line for line in text.split("\n") if not re.match(r"\s*(\||#|!\[|    |@file)", line)]
     text = re.sub(r"^\s*([-*]|\d+\.) ", "\n\n", "\n".join(lines), flags=re.M)
-    text = re.sub(r"`[^`]*`", "code", text)
+    text = re.sub(r"`[^`]*`", "Code", text)
     text = re.sub(r"\]\([^)]*\)", "]", text)
     return re.sub(r"@(param|return)\b(\[\w+\])?", "\n\n", text)
 
@@ -65,7 +65,7 @@ def findings(name, text):
     header = not name.endswith(".md")
     blocks = list(comments(text)) if header else [(1, text)]
     for line, block in blocks:
-        first = block.lstrip("\n").lstrip()
+        first = re.sub(r"^\s*@file\b\s*", "", block).lstrip()
         if header and OPENING.match(first):
             yield "openings", line, first.split("\n")[0]
         for sentence in sentences(block):
