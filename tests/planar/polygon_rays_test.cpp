@@ -7,10 +7,10 @@
 
 #include "pd/planar/convex_depth.hpp"
 #include "pd/planar/polygon_depth.hpp"
+#include "planar/boundary/sum_boundary.hpp"
+#include "planar/boundary/turned_boxes.hpp"
 #include "planar/rounded_crossing.hpp"
 #include "planar/small_polygons.hpp"
-#include "planar/sum_boundary.hpp"
-#include "planar/turned_boxes.hpp"
 #include "scenes/polygon_families.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "depth/pair/direction_search.hpp"
+#include "depth/features/direction_search.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"

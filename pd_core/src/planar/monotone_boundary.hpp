@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "planar/sum_boundary.hpp"
+#include "planar/boundary/sum_boundary.hpp"
 
 namespace pd::detail {
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "planar/boundary_query.hpp"
+#include "planar/boundary/boundary_query.hpp"
 
 namespace pd::detail {
 

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "numeric/double_double.hpp"
-#include "planar/sum_geometry.hpp"
+#include "planar/boundary/sum_geometry.hpp"
 
 namespace pd::detail {
 

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "planar/boundary_query.hpp"
+#include "planar/boundary/boundary_query.hpp"
 #include "planar/polygon_answer.hpp"
 
 namespace pd::detail {

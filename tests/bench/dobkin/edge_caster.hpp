@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pd/planar/polygon_depth.hpp"
-#include "planar/box_tree.hpp"
+#include "planar/boundary/box_tree.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd::bench {

@@ -12,7 +12,7 @@
 
 #include "bench/programs/real.hpp"
 #include "depth/facets/box_sat.hpp"
-#include "depth/pair/nearest_of_segments.hpp"
+#include "depth/features/nearest_of_segments.hpp"
 #include "depth/pair/slender_on_box.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"

@@ -2,7 +2,7 @@
 /// Local minima of the height of curved bodies: no height in their cone is below the bound (in long double), the
 /// features that meet in closed form, and what they spare a search.
 
-#include "depth/pair/local_minimum.hpp"
+#include "depth/features/local_minimum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "depth/difference/smooth_difference.hpp"
-#include "depth/pair/point_in_ellipsoid.hpp"
+#include "depth/features/point_in_ellipsoid.hpp"
 #include "oracle/curved_oracle.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"

@@ -2,7 +2,7 @@
 /// Cylinders and cones in polytopes by all places where a ball inside P can touch P: against a sweep of directions,
 /// with bodies that lie flush on each other, and points that lie in both bodies.
 
-#include "depth/pair/revolution_depth.hpp"
+#include "depth/features/revolution_depth.hpp"
 
 #include <gtest/gtest.h>
 

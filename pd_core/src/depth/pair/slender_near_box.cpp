@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "depth/facets/box_sat.hpp"
-#include "depth/pair/nearest_of_segments.hpp"
+#include "depth/features/nearest_of_segments.hpp"
 #include "depth/pair/slender_pair.hpp"
 
 namespace pd::detail {

@@ -1,8 +1,8 @@
 #include "depth/pair/slender_pair.hpp"
 
 #include "depth/certificate/exact_answer.hpp"
+#include "depth/features/nearest_of_segments.hpp"
 #include "depth/pair/double_answer.hpp"
-#include "depth/pair/nearest_of_segments.hpp"
 #include "depth/pair/polytope_query.hpp"
 
 namespace pd::detail {

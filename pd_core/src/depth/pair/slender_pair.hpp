@@ -6,7 +6,7 @@
 /// it from below. Both are as near to each other as rounding leaves them wherever the points are found well.
 #pragma once
 
-#include "depth/pair/nearest_of_segments.hpp"
+#include "depth/features/nearest_of_segments.hpp"
 #include "depth/pair/polytope_depth.hpp"
 #include "pd/depth/depth_answer.hpp"
 #include "pd/shape/convex_shape.hpp"

@@ -8,8 +8,8 @@
 
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/expansion/expanding_hull.hpp"
-#include "depth/pair/local_minimum.hpp"
-#include "depth/pair/thinnest_axis.hpp"
+#include "depth/features/local_minimum.hpp"
+#include "depth/features/thinnest_axis.hpp"
 
 namespace pd::detail {
 

@@ -1,0 +1,370 @@
+#include "planar/boundary/boundary_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "numeric/at.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+double along(const Point2& direction, const Point2& p) { return direction[0] * p[0] + direction[1] * p[1]; }
+
+}  // namespace
+
+void BoundaryBuilder::build_implicit() {
+  triangulation_ = triangulate(p_);
+  r_.p_points_ = triangulation_.points;
+  r_.chains_.push_back(std::make_unique<NegatedChain>(std::vector<Point2>(q_.points().begin(), q_.points().end())));
+  const NegatedChain& chain = *r_.chains_.front();
+  auto& vertices = r_.chain_vertices_.emplace_back();
+  for (int k = 0; k <= chain.size(); ++k) vertices.push_back(chain.index(k));
+  for (int t = 0; t < triangulation_.num_inside; ++t) {
+    r_.sums_.emplace_back(r_.p_points_, triangulation_.triangles[at(t)].vertex, chain);
+  }
+  for (const Point2& p : q_.points()) q_box_.add(p);
+  seen_.assign(triangulation_.triangles.size(), -1);
+  for (int v = 0; v < p_.num_vertices(); ++v) add_arc_candidates(v);
+  // Sum after sum, so that the crossings of every two of them are counted together.
+  crossings_.assign(r_.sums_.size(), 0);
+  std::vector<std::int32_t> order(r_.candidates_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return r_.candidates_[at(a)].sum < r_.candidates_[at(b)].sum;
+  });
+  int last = -1;
+  for (const std::int32_t i : order) {
+    const Candidate& candidate = r_.candidates_[at(i)];
+    if (candidate.sum != std::exchange(last, candidate.sum)) next_sum();
+    ArcCover cutter(
+        r_, candidate,
+        [&](int sum, int edge) {
+          const int id = candidate_at(sum, edge);
+          return id >= 0 && id < candidate.id;
+        },
+        r_.counts_);
+    CandidateCover cover{{r_, candidate}, {}};
+    reach_of(candidate);
+    flood(candidate, candidate.sum, cutter, cover);
+    keep(candidate, cover);
+  }
+  next_sum();
+  for (auto* list : {&r_.stretches_, &r_.slots_}) {
+    std::stable_sort(list->begin(), list->end(),
+                     [](const Stretch& a, const Stretch& b) { return a.candidate < b.candidate; });
+  }
+  compact();
+}
+
+/// [D] Fact 4.1, checked while the boundary is made: what one sum's displaced edges and arcs have in common with the
+/// boundary of another one, counted.
+void BoundaryBuilder::count_crossings(int sum, std::int64_t crossings) {
+  if (crossings == 0) return;
+  if (crossings_[at(sum)] == 0) crossed_.push_back(sum);
+  crossings_[at(sum)] += static_cast<std::int32_t>(crossings);
+  r_.counts_.crossings += crossings;
+  r_.counts_.most_crossings = std::max<std::int64_t>(r_.counts_.most_crossings, crossings_[at(sum)]);
+}
+
+/// The sum at hand is done.
+void BoundaryBuilder::next_sum() {
+  for (const std::int32_t sum : crossed_) crossings_[at(sum)] = 0;
+  crossed_.clear();
+}
+
+/// The displaced edge that starts at vertex v, and the arc at v where P is convex there.
+void BoundaryBuilder::add_arc_candidates(int v) {
+  const std::int32_t owner = triangulation_.owner[at(v)];
+  const ConvexSum& sum = r_.sums_[at(owner)];
+  int a = 0;
+  while (sum.corners()[at(a)] != v) ++a;
+  const int edge = sum.edge_of_corner(a);
+  r_.candidates_.push_back({owner, edge, 1, 2 * v});
+  if (p_.turn(v) < 0) return;
+  // -B's edges strictly between the directions of P's edges into v and out of it; they come just before the latter.
+  const NegatedChain& chain = sum.chain();
+  const Direction in{p_.point(p_.previous(v)), p_.point(v)}, out{p_.point(v), p_.point(p_.next(v))};
+  int after_in = chain.edges_before(in);
+  if (after_in < chain.size() && compare_angles(chain.edge(after_in), in) == 0) ++after_in;
+  int count = chain.edges_before(out) - after_in;
+  if (compare_angles(in, out) > 0) count += chain.size();
+  if (count > 0) r_.candidates_.push_back({owner, (edge - count + sum.size()) % sum.size(), count, 2 * v + 1});
+}
+
+/// The id of the candidate that an edge of a sum is a part of, or -1: it then lies inside some other sum.
+int BoundaryBuilder::candidate_at(int sum_index, int edge) const {
+  const ConvexSum& sum = r_.sums_[at(sum_index)];
+  const ConvexSum::Parts parts = sum.parts(edge);
+  const std::int32_t v = sum.corners()[at(parts.a)];
+  if (parts.of_triangle) return p_.next(v) == sum.corners()[at((parts.a + 1) % 3)] ? 2 * v : -1;
+  if (p_.turn(v) < 0) return -1;
+  const Direction d = sum.chain().edge(parts.b);
+  const bool between = cross_sign({p_.point(p_.previous(v)), p_.point(v)}, d) > 0 &&
+                       cross_sign(d, {p_.point(v), p_.point(p_.next(v))}) > 0;
+  return between ? 2 * v + 1 : -1;
+}
+
+// While Q slides along the candidate, a point x of it, x + Q covers the candidate's points + Q. Measured along x, y and
+// the candidate's own normal, with air for rounding: only triangles that meet this region can cut the candidate.
+void BoundaryBuilder::reach_of(const Candidate& candidate) {
+  const ConvexSum& sum = r_.sum(candidate);
+  reach_.direction = {Point2{1, 0}, Point2{0, 1}, Point2{0, 0}};
+  if (candidate.count == 1) {
+    const Span e = r_.edge(candidate, 0);
+    const Point2 normal = {e.d.to[1] - e.d.from[1], e.d.from[0] - e.d.to[0]};
+    reach_.direction[2] = normal;
+    const NegatedChain& chain = sum.chain();
+    // Along the outer normal of e, -B's farthest vertex is that of the edge's own place.
+    const double one = along(normal, chain.point(chain.edges_before(e.d) % chain.size()));
+    const double two = along(normal, chain.point(chain.edges_before(e.d.reversed()) % chain.size()));
+    reach_.low[2] = std::min(one, two);
+    reach_.high[2] = std::max(one, two);
+  } else {
+    reach_.low[2] = reach_.high[2] = 0;
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    reach_.low[k] = q_box_.low[k];
+    reach_.high[k] = q_box_.high[k];
+  }
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  const auto add = [&](const SumPoint& x) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double value = along(reach_.direction[k], x.p) - along(reach_.direction[k], x.q);
+      low[k] = std::min(low[k], value);
+      high[k] = std::max(high[k], value);
+    }
+  };
+  if (candidate.count == 1) {
+    const Span e = r_.edge(candidate, 0);
+    add(e.s);
+    add(e.z);
+  } else {
+    const Box2 box = r_.box(candidate, 0, candidate.count);
+    for (std::size_t k = 0; k < 2; ++k) {
+      low[k] = box.low[k];
+      high[k] = box.high[k];
+    }
+    low[2] = high[2] = 0;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach_.low[k] += low[k];
+    reach_.high[k] += high[k];
+    const Point2& d = reach_.direction[k];
+    double size = 0;
+    for (std::size_t c = 0; c < 2; ++c) {
+      size += std::abs(d[c]) * (std::max(std::abs(q_box_.low[c]), std::abs(q_box_.high[c])) * 2 +
+                                std::max(std::abs(low[k]), std::abs(high[k])) * (k < 2 ? 1 : 0));
+      for (int a = 0; a < 3; ++a) size += std::abs(d[c]) * std::abs(sum.corner(a)[c]);
+    }
+    reach_.low[k] -= 0x1p-44 * size;
+    reach_.high[k] += 0x1p-44 * size;
+  }
+}
+
+bool BoundaryBuilder::may_meet(const Triangle& triangle) const {
+  for (std::size_t k = 0; k < 3; ++k) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::int32_t v : triangle.vertex) {
+      const double value = along(reach_.direction[k], r_.p_points_[at(v)]);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    const double air = 0x1p-44 * std::max(std::abs(low), std::abs(high));
+    if (low - air > reach_.high[k] || high + air < reach_.low[k]) return false;
+  }
+  // The triangle's own edges against the region's box.
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point2 &a = r_.p_points_[at(triangle.vertex[k])], &b = r_.p_points_[at(triangle.vertex[(k + 1) % 3])];
+    const Point2 inner = {a[1] - b[1], b[0] - a[0]};
+    double farthest = 0, size = 0;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double reach = inner[c] > 0 ? reach_.high[c] : reach_.low[c];
+      farthest += inner[c] * (reach - a[c]);
+      size += std::abs(inner[c]) * (std::abs(reach) + std::abs(a[c]));
+    }
+    if (farthest < -0x1p-44 * size) return false;
+  }
+  return true;
+}
+
+void BoundaryBuilder::flood(const Candidate& candidate, int triangle, ArcCover& cutter, CandidateCover& cover) {
+  queue_.assign(1, triangle);
+  seen_[at(triangle)] = candidate.id;
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const Triangle& t = triangulation_.triangles[at(queue_[i])];
+    if (t.inside && queue_[i] != candidate.sum) {
+      near_.push_back({index_of(candidate), queue_[i]});
+      count_crossings(queue_[i], cutter.cut(queue_[i], cover));
+      if (cover.covered.whole()) return;
+    }
+    for (const std::int32_t n : t.neighbour) {
+      if (n < 0 || seen_[at(n)] == candidate.id) continue;
+      seen_[at(n)] = candidate.id;
+      if (may_meet(triangulation_.triangles[at(n)])) queue_.push_back(n);
+    }
+  }
+}
+
+std::int32_t BoundaryBuilder::index_of(const Candidate& candidate) const {
+  return static_cast<std::int32_t>(&candidate - r_.candidates_.data());
+}
+
+void BoundaryBuilder::keep(const Candidate& candidate, const CandidateCover& cover) {
+  const std::int32_t index = index_of(candidate);
+  CoveredIntervals all = cover.covered;
+  CoveredIntervals slots = cover.covered;
+  for (const auto& interval : cover.abutting) {
+    for (const auto& part : slots.rest_of(interval)) r_.slots_.push_back({index, part.from, part.to});
+    slots.add(interval);
+    all.add(interval);
+  }
+  const auto rest = all.rest();
+  for (const auto& part : rest) r_.stretches_.push_back({index, part.from, part.to});
+  if (!rest.empty()) return;
+  while (!near_.empty() && near_.back().candidate == index) near_.pop_back();
+}
+
+/// Drops the candidates of which nothing is left.
+void BoundaryBuilder::compact() {
+  std::vector<std::int32_t> number(r_.candidates_.size(), -1);
+  std::vector<Candidate> kept;
+  for (auto* list : {&r_.stretches_, &r_.slots_}) {
+    for (Stretch& s : *list) {
+      std::int32_t& n = number[at(s.candidate)];
+      if (n < 0) {
+        n = static_cast<std::int32_t>(kept.size());
+        kept.push_back(r_.candidates_[at(s.candidate)]);
+      }
+      s.candidate = n;
+    }
+  }
+  r_.candidates_ = std::move(kept);
+  for (NearSum& near : near_) near.candidate = number[at(near.candidate)];
+  std::sort(near_.begin(), near_.end(), [](const NearSum& a, const NearSum& b) {
+    return a.candidate != b.candidate ? a.candidate < b.candidate : a.sum < b.sum;
+  });
+  r_.stretches_ = split_where_touched(r_, r_.stretches_, near_);
+  r_.stretches_.shrink_to_fit();
+  r_.counts_.sums = static_cast<std::int64_t>(r_.sums_.size());
+  r_.num_loops_ = link_loops(r_, r_.stretches_, r_.counts_.reflex_points);
+}
+
+void BoundaryBuilder::build_explicit() {
+  triangulation_ = triangulate(p_, false);
+  const Triangulation other = triangulate(q_, false);
+  r_.p_points_ = triangulation_.points;
+  r_.q_points_ = other.points;
+  for (int s = 0; s < other.num_inside; ++s) {
+    const auto& corners = other.triangles[at(s)].vertex;
+    std::vector<Point2> points;
+    for (const std::int32_t v : corners) points.push_back(other.points[at(v)]);
+    r_.chains_.push_back(std::make_unique<NegatedChain>(points));
+    auto& vertices = r_.chain_vertices_.emplace_back();
+    for (int k = 0; k <= 3; ++k) vertices.push_back(corners[at(r_.chains_.back()->index(k))]);
+  }
+  for (int t = 0; t < triangulation_.num_inside; ++t) {
+    for (const auto& chain : r_.chains_) {
+      r_.sums_.emplace_back(r_.p_points_, triangulation_.triangles[at(t)].vertex, *chain);
+    }
+  }
+  add_edge_candidates();
+  std::vector<Box2> boxes;
+  for (const ConvexSum& sum : r_.sums_) {
+    Box2 box;
+    for (int t = 0; t < sum.size(); ++t) {
+      const SumPoint x = sum.vertex(t);
+      box.add(Point2{x.p[0] - x.q[0], x.p[1] - x.q[1]});
+    }
+    boxes.push_back(box.widened());
+  }
+  const BoxTree tree(boxes);
+  for (const Candidate& candidate : r_.candidates_) {
+    ArcCover cutter(
+        r_, candidate, [&](int sum, int) { return sum < candidate.sum; }, r_.counts_);
+    CandidateCover cover{{r_, candidate}, {}};
+    Box2 box;
+    const Span e = r_.edge(candidate, 0);
+    for (const SumPoint& x : {e.s, e.z}) box.add(Point2{x.p[0] - x.q[0], x.p[1] - x.q[1]});
+    box = box.widened();
+    tree.visit([&](const Box2& b) { return b.meets(box) && !cover.covered.whole(); },
+               [&](std::int32_t sum) {
+                 if (sum == candidate.sum || !boxes[at(sum)].meets(box)) return;
+                 near_.push_back({index_of(candidate), sum});
+                 cutter.cut(sum, cover);
+               });
+    keep(candidate, cover);
+  }
+  compact();
+}
+
+/// Every edge of every sum, but those of diagonals alone: they lie inside.
+void BoundaryBuilder::add_edge_candidates() {
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(r_.sums_.size()); ++i) {
+    const ConvexSum& sum = r_.sums_[at(i)];
+    const auto& q_vertex = r_.chain_vertices_[at(i) % r_.chains_.size()];
+    for (int t = 0; t < sum.size(); ++t) {
+      const ConvexSum::Parts parts = sum.parts(t);
+      const bool p_edge =
+          parts.of_triangle && p_.next(sum.corners()[at(parts.a)]) == sum.corners()[at((parts.a + 1) % 3)];
+      const bool q_edge = parts.of_chain && q_.next(q_vertex[at(parts.b)]) == q_vertex[at(parts.b + 1)];
+      if (p_edge || q_edge) r_.candidates_.push_back({i, t, 1, static_cast<std::int32_t>(r_.candidates_.size())});
+    }
+  }
+}
+
+SumBoundary::SumBoundary(const Polygon& p, const Polygon& q, bool implicit) {
+  BoundaryBuilder builder(*this, p, q);
+  if (implicit) {
+    builder.build_implicit();
+  } else {
+    builder.build_explicit();
+  }
+}
+
+Box2 SumBoundary::box(const Candidate& c, int begin, int end) const {
+  Box2 box;
+  const auto add = [&](const SumPoint& x) { box.add(Point2{x.p[0] - x.q[0], x.p[1] - x.q[1]}); };
+  if (end - begin == 1) {
+    const Span e = edge(c, begin);
+    add(e.s);
+    add(e.z);
+    return box.widened();
+  }
+  const ConvexSum::Parts parts = sum(c).parts(sum_edge(c, begin));
+  const Box2 q = sum(c).chain().box(parts.b, end - begin);
+  const Point2& p = sum(c).corner(parts.a);
+  box.add(Point2{p[0] - q.high[0], p[1] - q.high[1]});
+  box.add(Point2{p[0] - q.low[0], p[1] - q.low[1]});
+  return box.widened();
+}
+
+EdgePart SumBoundary::part(const Stretch& s, int e) const {
+  EdgePart r{edge(candidate(s), e), {}, {Place::Kind::end, {}, {}}};
+  if (e == s.from.edge) r.from = s.from.at;
+  if (e == s.to.edge) r.to = s.to.at;
+  return r;
+}
+
+SumBoundary::Contact SumBoundary::contact(const Stretch& s, int e) const {
+  const Candidate& c = candidate(s);
+  const ConvexSum::Parts parts = sum(c).parts(sum_edge(c, e));
+  const auto& vertices = chain_vertices_[static_cast<std::size_t>(c.sum) % chains_.size()];
+  const std::size_t b = static_cast<std::size_t>(parts.b);
+  return {sum(c).corners()[at(parts.a)], vertices[b], parts.of_triangle, parts.of_chain};
+}
+
+std::size_t SumBoundary::memory_bytes() const {
+  std::size_t bytes = (p_points_.capacity() + q_points_.capacity()) * sizeof(Point2) +
+                      sums_.capacity() * sizeof(ConvexSum) + candidates_.capacity() * sizeof(Candidate) +
+                      (stretches_.capacity() + slots_.capacity()) * sizeof(Stretch);
+  for (const auto& chain : chains_) bytes += static_cast<std::size_t>(chain->size() + 1) * sizeof(Point2);
+  for (const auto& list : chain_vertices_) bytes += list.capacity() * sizeof(std::int32_t);
+  return bytes;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,66 @@
+/// @file
+/// The steps that make a SumBoundary.
+#pragma once
+
+#include "planar/boundary/arc_cover.hpp"
+#include "planar/boundary/box_tree.hpp"
+#include "planar/boundary/sum_boundary.hpp"
+
+namespace pd::detail {
+
+/// A candidate and another sum that may have a point in common.
+struct NearSum {
+  std::int32_t candidate, sum;
+};
+
+class BoundaryBuilder {
+ public:
+  BoundaryBuilder(SumBoundary& boundary, const Polygon& p, const Polygon& q) : r_(boundary), p_(p), q_(q) {}
+
+  void build_implicit();
+  void build_explicit();
+
+ private:
+  void add_arc_candidates(int vertex);
+  void add_edge_candidates();
+  [[nodiscard]] int candidate_at(int sum, int edge) const;
+  void flood(const Candidate& candidate, int triangle, ArcCover& cutter, CandidateCover& cover);
+  [[nodiscard]] bool may_meet(const Triangle& triangle) const;
+  [[nodiscard]] std::int32_t index_of(const Candidate& candidate) const;
+  void reach_of(const Candidate& candidate);
+  void keep(const Candidate& candidate, const CandidateCover& cover);
+  void count_crossings(int sum, std::int64_t crossings);
+  void next_sum();
+  void compact();
+
+  SumBoundary& r_;
+  const Polygon& p_;
+  const Polygon& q_;
+  Triangulation triangulation_;
+  std::vector<std::int32_t> seen_;  ///< per triangle: the candidate that met it last
+  std::vector<std::int32_t> queue_;
+  std::vector<std::int32_t> crossings_;  ///< per triangle: with the sum at hand
+  std::vector<std::int32_t> crossed_;    ///< those with any
+  std::vector<NearSum> near_;            ///< of candidates of which something is left
+  Box2 q_box_;
+
+  /// Where Q lies while it slides along a candidate: within an interval along each of three directions.
+  struct Reach {
+    std::array<Point2, 3> direction;
+    std::array<double, 3> low, high;
+  };
+  Reach reach_;
+};
+
+/// The stretches, split where a point of one lies inside another. Stretches are in the order of their candidates;
+/// `near` holds every pair of a candidate and another sum that touch, and few others: they were met when the candidate
+/// was cut.
+[[nodiscard]] std::vector<Stretch> split_where_touched(const SumBoundary& boundary,
+                                                       const std::vector<Stretch>& stretches,
+                                                       const std::vector<NearSum>& near);
+
+/// Links the stretches of a boundary into loops, numbers them, the outer one 0, and puts them in this order, each
+/// behind the one that it continues. @return how many there are.
+int link_loops(const SumBoundary& boundary, std::vector<Stretch>& stretches, std::int64_t& reflex_points);
+
+}  // namespace pd::detail

@@ -1,0 +1,99 @@
+/// @file
+/// A convolved triangle T + (-B) in implicit form ([D] section 4.1, step 2): the three places where T's edges go
+/// between those of -B, in slope order. Any vertex or edge in constant time, all in O(1) space; parallel edges are one
+/// edge.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "planar/boundary/box_tree.hpp"
+#include "planar/boundary/sum_geometry.hpp"
+
+namespace pd::detail {
+
+/// -B for a convex polygon B: its edges by their angle in (-90, 270] degrees.
+class NegatedChain {
+ public:
+  /// `points`: B counter-clockwise, no three collinear.
+  explicit NegatedChain(std::vector<Point2> points);
+
+  [[nodiscard]] int size() const { return size_; }
+  /// B's vertex k (mod size), k <= size: -point(k) is vertex k of -B. Vertex 0 is the least of -B.
+  [[nodiscard]] const Point2& point(int k) const { return points_[static_cast<std::size_t>(k)]; }
+  /// Of the caller's points, the one that is vertex k.
+  [[nodiscard]] int index(int k) const { return (first_ + k) % size_; }
+  [[nodiscard]] Direction edge(int k) const { return {point(k + 1), point(k)}; }
+  /// How many edges have a smaller angle than d.
+  [[nodiscard]] int edges_before(const Direction& d) const;
+  /// A box of B's vertices first .. first + count (mod size), in constant time.
+  [[nodiscard]] Box2 box(int first, int count) const;
+
+ private:
+  std::vector<Point2> points_;           ///< vertex 0 again at the end
+  std::array<std::int32_t, 4> extreme_;  ///< vertices of least and greatest x and y
+  int size_;
+  int first_;
+};
+
+class ConvexSum {
+ public:
+  /// `corners`: counter-clockwise indices into `points`.
+  ConvexSum(const std::vector<Point2>& points, const std::array<std::int32_t, 3>& corners, const NegatedChain& chain);
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] const std::array<std::int32_t, 3>& corners() const { return corner_; }
+  [[nodiscard]] const NegatedChain& chain() const { return *chain_; }
+
+  /// What edge t (0 <= t < size) is made of: T's edge from corner `a`, -B's edge from vertex `b`, or both where they
+  /// are parallel. The edge starts at corner a minus vertex b.
+  struct Parts {
+    int a, b;
+    bool of_triangle, of_chain;
+  };
+  [[nodiscard]] Parts parts(int t) const;
+  [[nodiscard]] SumPoint vertex(int t) const;
+  [[nodiscard]] Direction direction(int t) const;
+  [[nodiscard]] Span edge(int t) const { return {vertex(t), direction(t), vertex(t + 1 == size_ ? 0 : t + 1)}; }
+  /// How many edges have a smaller angle than d: the number of the first one that has not, which starts at the vertex
+  /// farthest to the right of d (`size` stands for 0).
+  [[nodiscard]] int edges_before(const Direction& d) const;
+  /// The edge that T's edge from corner a lies on.
+  [[nodiscard]] int edge_of_corner(int a) const { return place_[static_cast<std::size_t>(a)]; }
+
+  [[nodiscard]] const Point2& corner(int a) const {
+    return (*points_)[static_cast<std::size_t>(corner_[static_cast<std::size_t>(a % 3)])];
+  }
+  [[nodiscard]] Direction triangle_edge(int a) const { return {corner(a), corner(a + 1)}; }
+
+  /// Strictly inside, or else an edge that the point lies on or beyond.
+  struct Location {
+    bool inside;
+    int edge;
+  };
+  [[nodiscard]] Location locate(const SumPoint& x) const;
+  /// In the closed polygon.
+  [[nodiscard]] bool contains(const SumPoint& x) const;
+
+  /// The part of a span that lies inside.
+  struct Cover {
+    enum class Kind { inside, same_edge, opposite_edge } kind;
+    Place from, to;
+    int edge;  ///< the edge on the span's line, for the last two kinds
+  };
+  /// Empty where the part has no length. A span along an edge counts as such, of positive length only.
+  [[nodiscard]] std::optional<Cover> cover(const Span& e) const;
+  /// The same of the whole line.
+  [[nodiscard]] std::optional<Cover> cover_of_line(const Span& e) const;
+
+ private:
+  const std::vector<Point2>* points_;
+  const NegatedChain* chain_;
+  std::array<std::int32_t, 3> corner_;
+  std::array<std::int32_t, 3> place_;  ///< number of the edge that holds T's edge k
+  std::array<bool, 3> parallel_;       ///< fused with an edge of -B
+  std::int32_t size_;
+};
+
+}  // namespace pd::detail
