@@ -1,5 +1,5 @@
 // Blocks of 6 x 6 factorised by least degree, against the dense matrix.
-#include "block_cholesky.hpp"
+#include "stack/block_cholesky.hpp"
 
 #include <gtest/gtest.h>
 

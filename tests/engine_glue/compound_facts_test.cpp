@@ -2,7 +2,7 @@
 /// What children of a compound are to each other follows their shapes and places from step to step, and costs no more
 /// than those that are met.
 
-#include "compound_facts.hpp"
+#include "pieces/compound_facts.hpp"
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
@@ -11,7 +11,7 @@
 #include <deque>
 #include <vector>
 
-#include "solver_core.hpp"
+#include "pair/solver_core.hpp"
 
 namespace pd::test {
 namespace {

@@ -1,5 +1,5 @@
 // The turning of a body without torque: what it keeps, and the case that has a closed form.
-#include "free_rotation.hpp"
+#include "rollback/free_rotation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 /// @file
 /// Gentle triangles, answered without queries: the nearest triangle of all, which nothing covers, says what a query
 /// says, and which triangles share an edge or a corner is found whatever their order and direction.
-#include "gentle_ground.hpp"
+#include "union/gentle_ground.hpp"
 
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@
 #include "pd/bullet/shape_conversion.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "pieces/shared_edges.hpp"
 #include "scenes/shape_families.hpp"
-#include "shared_edges.hpp"
 
 namespace pd::test {
 namespace {

@@ -1,5 +1,5 @@
 // The impulses of a step solved at once, against what statics says they are.
-#include "impulse_newton.hpp"
+#include "stack/impulse_newton.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Impulses handed to the next step lead by half their trend: what a point begins with, and a tower that comes to rest.
-#include "impulse_trend.hpp"
+#include "pair/impulse_trend.hpp"
 
 #include <gtest/gtest.h>
 

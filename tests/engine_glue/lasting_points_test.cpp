@@ -1,5 +1,5 @@
 // Points that all go on are written four at a time: bit for bit what the way point by point gives.
-#include "lasting_points.hpp"
+#include "pair/lasting_points.hpp"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <btBulletDynamicsCommon.h>

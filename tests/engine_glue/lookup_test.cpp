@@ -5,9 +5,9 @@
 
 #include <thread>
 
-#include "cached_shape.hpp"
+#include "pair/thread_buffers.hpp"
 #include "pd/bullet/shape_cache.hpp"
-#include "thread_buffers.hpp"
+#include "shapes/cached_shape.hpp"
 
 namespace pd::test {
 namespace {

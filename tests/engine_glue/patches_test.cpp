@@ -1,7 +1,7 @@
 /// @file
 /// Which four points of many stand for a patch, and that it is the same four in the next step.
 
-#include "patches.hpp"
+#include "union/patches.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What pairs with meshes remember of their triangles: kept from step to step, forgotten with the triangles that are
 // left behind, the same on a replay.
-#include "piece_memories.hpp"
+#include "union/piece_memories.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /// @file
 /// What is called out of a body's reach is out of reach by the exact distance, and little that is goes unnoticed.
-#include "rounded_box.hpp"
+#include "shapes/rounded_box.hpp"
 
 #include <BulletCollision/CollisionShapes/btUniformScalingShape.h>
 #include <btBulletCollisionCommon.h>

@@ -1,5 +1,5 @@
 // Points that are apart are handed to Bullet where the bodies may close their gaps in the step, and not otherwise.
-#include "step_reach.hpp"
+#include "pair/step_reach.hpp"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <btBulletDynamicsCommon.h>

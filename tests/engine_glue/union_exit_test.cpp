@@ -1,5 +1,5 @@
 // The way out of a union in doubles is the exact one, but for slots that are narrower than a seam.
-#include "union_exit.hpp"
+#include "pieces/union_exit.hpp"
 
 #include <gtest/gtest.h>
 

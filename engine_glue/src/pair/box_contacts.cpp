@@ -1,0 +1,56 @@
+#include "pair/box_contacts.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+
+#include <algorithm>
+
+#include "pair/query_meter.hpp"
+#include "pair/solver_core.hpp"
+#include "pd/bullet/scalar.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+btVector3 sharp_half_extents(const btConvexShape& box) {
+  return static_cast<const btBoxShape&>(box).getHalfExtentsWithMargin();
+}
+
+BoxInRows in_rows(const btConvexShape& box, const btTransform& transform) {
+  BoxInRows out;
+  to_pd(transform.getBasis()[0], out.x);
+  to_pd(transform.getBasis()[1], out.y);
+  to_pd(transform.getBasis()[2], out.z);
+  to_pd(sharp_half_extents(box), out.half_extents);
+  out.centre = to_pd(transform.getOrigin());
+  return out;
+}
+
+}  // namespace
+
+BoxContact ask_boxes(const btConvexShape& a, const Pose& pose_a, const btConvexShape& b, const Pose& pose_b,
+                     double breaking_threshold, BoxWitness witness) {
+  const Vec3 half_a = to_pd(sharp_half_extents(a)), half_b = to_pd(sharp_half_extents(b));
+  const double tolerance =
+      contact_tolerance(pose_a.translation(), pose_b.translation(), std::min(half_a.norm(), half_b.norm()));
+  return box_contact({half_a, &pose_a}, {half_b, &pose_b}, tolerance, breaking_threshold, witness);
+}
+
+bool box_contacts(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
+                  const btTransform& transform_b, double breaking_threshold, ThreadBuffers& held, FreshPoints& out) {
+  if (!in_range(transform_a) || !in_range(transform_b)) return false;
+  QueryMeter meter(held);
+  const BoxInRows box_a = in_rows(a, transform_a), box_b = in_rows(b, transform_b);
+  const auto radius = [](const BoxInRows& box) {
+    return Vec3(box.half_extents[0], box.half_extents[1], box.half_extents[2]).norm();
+  };
+  const double tolerance = contact_tolerance(box_a.centre, box_b.centre, std::min(radius(box_a), radius(box_b)));
+  const BoxContact found = box_contact(box_a, box_b, tolerance, breaking_threshold, BoxWitness::left_out);
+  if (!found.answered) return false;
+  held.counters.calls.add();
+  meter.count(found.contact);
+  out = fresh_points(found.manifold);
+  return true;
+}
+
+}  // namespace pd::detail

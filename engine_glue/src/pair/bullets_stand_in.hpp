@@ -1,0 +1,49 @@
+/// @file
+/// Bullet's own algorithm behind one of ours, for what ours does not answer.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include "world/installation.hpp"
+
+namespace pd::detail {
+
+/// Made when it is first needed, with manifolds of its own.
+class BulletsStandIn {
+ public:
+  BulletsStandIn(const Installation& installation, btDispatcher& dispatcher)
+      : installation_(installation), dispatcher_(dispatcher) {}
+  ~BulletsStandIn() { release(); }
+  BulletsStandIn(const BulletsStandIn&) = delete;
+  BulletsStandIn& operator=(const BulletsStandIn&) = delete;
+
+  void process(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo& info,
+               btManifoldResult* result) {
+    if (algorithm_ == nullptr) {
+      // Bullet's constructor leaves the manifold unset, and its compound algorithm hands the manifold on to its
+      // children's pairs.
+      btCollisionAlgorithmConstructionInfo own(&dispatcher_, 0);
+      own.m_manifold = nullptr;
+      algorithm_ = installation_.bullets_algorithm(own, a, b);
+    }
+    algorithm_->processCollision(a, b, info, result);
+  }
+  /// Its points with it: ours answers.
+  void release() {
+    if (algorithm_ == nullptr) return;
+    algorithm_->~btCollisionAlgorithm();
+    dispatcher_.freeCollisionAlgorithm(algorithm_);
+    algorithm_ = nullptr;
+  }
+  void append_to(btManifoldArray& manifolds) {
+    if (algorithm_ != nullptr) algorithm_->getAllContactManifolds(manifolds);
+  }
+
+ private:
+  const Installation& installation_;
+  btDispatcher& dispatcher_;
+  btCollisionAlgorithm* algorithm_ = nullptr;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,207 @@
+#include "pair/contact_algorithm.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+
+#include <algorithm>
+#include <limits>
+#include <typeinfo>
+
+#include "pair/box_contacts.hpp"
+#include "pair/manifold_points.hpp"
+#include "pair/solver_core.hpp"
+#include "pair/step_reach.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pieces/covered_contact.hpp"
+#include "shapes/cached_shape.hpp"
+#include "shapes/moving_body.hpp"
+#include "shapes/prefetch.hpp"
+#include "world/installation.hpp"
+
+namespace pd::detail {
+
+// Bullet's pool gives out pieces of a fixed size and checks it by assertion only; this one is always large enough.
+static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConvexAlgorithm));
+
+namespace {
+
+/// Of a certificate's state, what bodies at rest read.
+constexpr std::size_t kWarmBytesAtRest = 128;
+
+const btConvexShape& convex_shape(const btCollisionObjectWrapper* wrapper) {
+  return *static_cast<const btConvexShape*>(wrapper->getCollisionShape());
+}
+
+/// Whether the bounding boxes are further apart than contacts reach. Bullet's broadphase widens boxes by 2 cm whatever
+/// the bodies' size, so that most pairs of small bodies end here.
+bool boxes_apart(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b, const btTransform& pose_b,
+                 btScalar reach) {
+  btVector3 lower_a;
+  btVector3 upper_a;
+  btVector3 lower_b;
+  btVector3 upper_b;
+  a.getAabb(pose_a, lower_a, upper_a);
+  b.getAabb(pose_b, lower_b, upper_b);
+  for (int i = 0; i < 3; ++i) {
+    if (lower_a[i] > upper_b[i] + reach || lower_b[i] > upper_a[i] + reach) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// How far apart two surfaces may be for a contact, as in Bullet's own algorithms: the breaking threshold and what a
+/// closest-point query asks for beyond it. Contact tests have results of their own, which take every point that they
+/// are given; Bullet's algorithm for two spheres gives them those within the query's threshold alone.
+btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentManifold& manifold, const btConvexShape& a,
+                           const btConvexShape& b) {
+  const btScalar asked = result.m_closestPointDistanceThreshold;
+  const bool spheres = a.getShapeType() == SPHERE_SHAPE_PROXYTYPE && b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+  return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
+}
+
+/// What the query reads of a pair's memory: first of all, before bounding boxes are compared.
+void fetch_for_query(PairMemory& memory) {
+  for (const auto& shape : memory.shapes) {
+    if (shape) fetch(*shape);
+  }
+  if (memory.num_points > 0) fetch_bytes(&memory.warm.state(), kWarmBytesAtRest);
+}
+
+}  // namespace
+
+ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                                   const btCollisionObjectWrapper* b, const Installation& installation)
+    : btActivatingCollisionAlgorithm(info, a, b),
+      installation_(installation),
+      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold) {}
+
+void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) { manifold_.append_to(manifolds); }
+
+btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                             const btCollisionObjectWrapper* a,
+                                                                             const btCollisionObjectWrapper* b) {
+  if (installation.dispatcher() != nullptr && !installation.takes(*a, *b)) {
+    const int type_a = a->getCollisionShape()->getShapeType();
+    const int type_b = b->getCollisionShape()->getShapeType();
+    btCollisionConfiguration* configuration = installation.dispatcher()->getCollisionConfiguration();
+    btCollisionAlgorithmCreateFunc* own = for_closest_points
+                                              ? configuration->getClosestPointsAlgorithmCreateFunc(type_a, type_b)
+                                              : configuration->getCollisionAlgorithmCreateFunc(type_a, type_b);
+    return own->CreateCollisionAlgorithm(info, a, b);
+  }
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
+  return new (memory) ContactAlgorithm(info, a, b, installation);
+}
+
+bool ContactAlgorithm::sharp_parts() const { return installation_.core().settings.unions_as_one; }
+
+void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                                        const btDispatcherInfo& info, btManifoldResult* result) {
+  SolverCore& core = installation_.core();
+  const bool first = manifold_.take(*a, *b);
+  btPersistentManifold& manifold = manifold_.get();
+  PairMemory* const memory = manifold_.memory();
+  result->setPersistentManifold(&manifold);
+  const btConvexShape& shape_a = convex_shape(a);
+  const btConvexShape& shape_b = convex_shape(b);
+  // Pieces of unions have neighbours that may cover their contacts.
+  const bool of_union = core.settings.unions_as_one && (is_piece(*a) || is_piece(*b));
+  const bool boxes = !of_union && are_boxes(shape_a, shape_b);
+  if (memory != nullptr && !boxes) fetch_for_query(*memory);
+
+  const btTransform& pose_a = a->getWorldTransform();
+  const btTransform& pose_b = b->getWorldTransform();
+  const btScalar threshold = reach_of_contacts(*result, manifold, shape_a, shape_b);
+  // A pair that had points is asked at once: it hardly ever parts in a step, and the query says so if it does.
+  const bool touched = memory != nullptr && memory->num_points > 0;
+  if (!touched && boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
+    manifold_.clear();
+    return;
+  }
+  fetch(manifold);
+  if (core.closed()) {
+    btGjkEpaPenetrationDepthSolver epa;
+    process_by_bullet(epa, shape_a, pose_a, shape_b, pose_b, info, result);
+    return;
+  }
+  const auto this_step = [&] { return StepReach(*result, threshold, info.m_timeStep); };
+  const bool own_boxes = boxes && memory != nullptr;
+  const btScalar reach = own_boxes && !touched ? this_step().of_boxes(shape_a, shape_b) : threshold;
+  auto buffers = core.buffers.lease();
+  FreshPoints fresh;
+  if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
+    // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
+    // compared.
+    const std::uint64_t stamp = first ? 0 : installation_.stamp();
+    const BoxCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
+    PairAnswer answer;
+    ContactManifold points;
+    const PairQuestion asked{shape_a,
+                             pose_a,
+                             shape_b,
+                             pose_b,
+                             corners,
+                             touched ? kAnyDistance : static_cast<double>(threshold),
+                             stamp,
+                             memory != nullptr ? memory->shapes : buffers->recent,
+                             memory != nullptr ? &memory->warm : nullptr,
+                             boxes};
+    const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, points);
+    if (outcome == SolverCore::Outcome::unsupported) {
+      process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
+      return;
+    }
+    if (outcome == SolverCore::Outcome::answered) {
+      if (of_union) {
+        buffers->cover.near.begin_pair(stamp);
+        keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold),
+                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, AnswerPoints::made, points);
+      }
+      fresh = fresh_points(points);
+    }
+  }
+  if (own_boxes && StepReach::may_be_idle(fresh, threshold)) this_step().leave_out_idle(fresh);
+  manifold_.replace(fresh, info.m_timeStep, *result);
+}
+
+void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a,
+                                         const btTransform& transform_a, const btConvexShape& b,
+                                         const btTransform& transform_b, const btDispatcherInfo& info,
+                                         btManifoldResult* result) {
+  if (is_finite(transform_a) && is_finite(transform_b)) {
+    btVoronoiSimplexSolver simplex;
+    btGjkPairDetector detector(&a, &b, &simplex, &solver);
+    btGjkPairDetector::ClosestPointInput input;
+    const btScalar reach = a.getMargin() + b.getMargin() + manifold_.get().getContactBreakingThreshold() +
+                           result->m_closestPointDistanceThreshold;
+    input.m_maximumDistanceSquared = reach * reach;
+    input.m_transformA = transform_a;
+    input.m_transformB = transform_b;
+    detector.getClosestPoints(input, *result, info.m_debugDraw);
+  }
+  manifold_.refresh(*result);
+}
+
+btScalar ContactAlgorithm::calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo&,
+                                                 btManifoldResult*) {
+  SolverCore& core = installation_.core();
+  if (core.closed() || !a->getCollisionShape()->isConvex() || !b->getCollisionShape()->isConvex()) {
+    return btScalar(1);
+  }
+  const auto shape_a = core.cache.find_or_convert(*static_cast<btConvexShape*>(a->getCollisionShape()));
+  const auto shape_b = core.cache.find_or_convert(*static_cast<btConvexShape*>(b->getCollisionShape()));
+  if (!shape_a || !shape_b) {
+    return btScalar(1);
+  }
+  auto buffers = core.buffers.lease();
+  const auto impact = time_of_impact(
+      moving_shape(*shape_a, a->getWorldTransform(), a->getInterpolationWorldTransform(), 1),
+      moving_shape(*shape_b, b->getWorldTransform(), b->getInterpolationWorldTransform(), 1), 1, buffers->scratch);
+  return impact.hit ? static_cast<btScalar>(impact.time) : btScalar(1);
+}
+
+}  // namespace pd::detail

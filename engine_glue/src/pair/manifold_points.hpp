@@ -1,0 +1,61 @@
+/// @file
+/// This step's contact points put into Bullet's manifold of four in place of last step's, with their impulses.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include <array>
+#include <cstdint>
+
+#include "pair/pair_registry.hpp"
+#include "pd/contact/manifold.hpp"
+
+namespace pd::detail {
+
+struct FreshPoint {
+  btVector3 normal;  ///< from B to A
+  btVector3 point_on_b;
+  btScalar distance;
+  std::int64_t feature_id;
+};
+
+struct FreshPoints {
+  std::array<FreshPoint, 4> points;
+  int count = 0;
+};
+
+[[nodiscard]] FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point);
+[[nodiscard]] FreshPoints fresh_points(const ContactManifold& manifold);
+
+/// Of the pieces that a point lies between, as Bullet counts parts and children: of both bodies of the pair's result.
+struct PieceNumbers {
+  int part_0 = -1, index_0 = -1, part_1 = -1, index_1 = -1;
+};
+
+/// What stands round a point while `btManifoldResult` takes it in: the piece that it belongs to, for the host's
+/// callbacks.
+class PointSurroundings {
+ public:
+  virtual ~PointSurroundings() = default;
+  virtual void enter(int) {}
+  virtual void leave() {}
+  /// Whether two points stand in the same surroundings.
+  [[nodiscard]] virtual bool same(int, int) const { return true; }
+  /// What `enter` tells the result. @return false: it does not tell it of both bodies
+  [[nodiscard]] virtual bool numbers(int, PieceNumbers&) const { return false; }
+  /// Whether all points do, as those of the last step did, and have one normal.
+  [[nodiscard]] virtual bool lasting() const { return true; }
+};
+
+/// Puts the points of this step in place of the manifold's, which nobody else writes to. Impulses (with their trend,
+/// impulse_trend.hpp), life times and anchors go from the old points to the new ones by feature, else by place;
+/// `memory` keeps the features.
+/// @param seconds of the step
+void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
+                    btManifoldResult& result, PointSurroundings& surroundings);
+
+/// Adds points to a manifold that other pairs write to as well.
+void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result);
+
+}  // namespace pd::detail

@@ -1,0 +1,71 @@
+/// @file
+/// The manifold of a pair that has one algorithm, and what is remembered of it.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include <memory>
+
+#include "pair/manifold_points.hpp"
+#include "pair/pair_registry.hpp"
+#include "pair/solver_core.hpp"
+
+namespace pd::detail {
+
+/// Taken from the dispatcher at the first query, and given back with the pair; or one that Bullet shares between pairs,
+/// which is added to, never cleared, and has no memory.
+class OwnManifold {
+ public:
+  OwnManifold(SolverCore& core, btDispatcher& dispatcher, btPersistentManifold* shared)
+      : core_(core), dispatcher_(dispatcher), manifold_(shared) {}
+  ~OwnManifold() {
+    if (!memory_) return;
+    core_.pairs.remove(manifold_);
+    dispatcher_.releaseManifold(manifold_);
+  }
+  OwnManifold(const OwnManifold&) = delete;
+  OwnManifold& operator=(const OwnManifold&) = delete;
+
+  /// @return whether it was taken just now
+  bool take(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) {
+    if (manifold_ != nullptr) return false;
+    manifold_ = dispatcher_.getNewManifold(a.getCollisionObject(), b.getCollisionObject());
+    memory_ = std::make_unique<PairMemory>();
+    core_.pairs.add(manifold_, memory_.get());
+    return true;
+  }
+
+  /// Requires `take`.
+  [[nodiscard]] btPersistentManifold& get() const { return *manifold_; }
+  /// Null: it is shared.
+  [[nodiscard]] PairMemory* memory() const { return memory_.get(); }
+
+  void clear() {
+    if (memory_) manifold_->clearManifold();
+  }
+  /// Puts this step's points in place of the last step's, or adds them to a shared one.
+  void replace(const FreshPoints& fresh, btScalar seconds, btManifoldResult& result) {
+    if (!memory_) {
+      add_points(*manifold_, fresh, result);
+      return;
+    }
+    PointSurroundings whole;
+    replace_points(*manifold_, *memory_, fresh, seconds, result, whole);
+  }
+  /// After Bullet's detector has added points of its own.
+  void refresh(btManifoldResult& result) {
+    if (memory_) result.refreshContactPoints();
+  }
+  void append_to(btManifoldArray& manifolds) const {
+    if (memory_) manifolds.push_back(manifold_);
+  }
+
+ private:
+  SolverCore& core_;
+  btDispatcher& dispatcher_;
+  btPersistentManifold* manifold_;
+  std::unique_ptr<PairMemory> memory_;
+};
+
+}  // namespace pd::detail

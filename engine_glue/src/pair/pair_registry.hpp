@@ -1,0 +1,121 @@
+/// @file
+/// What the contact algorithm remembers of a pair between steps, reachable by the pair's manifold so that snapshots can
+/// save it: a replay is bit for bit only if the warm start is the same.
+#pragma once
+
+#include <LinearMath/btVector3.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "pair/impulse_trend.hpp"
+#include "pair/standing_still.hpp"
+#include "pd/depth/warm_certificate.hpp"
+#include "shapes/cached_shape.hpp"
+
+class btPersistentManifold;
+
+namespace pd::detail {
+
+/// Which feature pair made a manifold point: the point is recognised by its exact local position.
+struct RememberedPoint {
+  btVector3 local_a;
+  std::int64_t feature_id;
+  ImpulseTrend impulse;
+};
+
+/// Of two pieces in a pair with a compound or mesh: two children, or a body and a triangle.
+struct PieceMemory {
+  std::uint64_t pieces = 0;  ///< both children's numbers, or the triangle's
+  bool met = false;          ///< the last step was within reach of contacts
+  /// Of two children: as long as their ways (`ChildMotion`) come to less, they are farther apart than contacts reach.
+  double apart_until = 0;
+  WarmCertificate warm;
+  std::array<std::shared_ptr<CachedShape>, 2> shapes;
+};
+
+/// Of a child of a compound: where it was last, and a bound of how far any of its points has come since it was met.
+struct ChildMotion {
+  std::shared_ptr<CachedShape> shape;
+  btTransform pose;
+  double way = 0;
+};
+
+class ManifoldOwner;
+
+struct PairMemory {
+  int patch = -1;  ///< the manifold's number among those of a pair with a mesh or compound; -1: of a single pair
+  ManifoldOwner* owner = nullptr;  ///< of a manifold with a number
+  WarmCertificate warm;
+  /// Held so that the certificate's shapes stay where they are, and so that a pair looks nothing up that has not
+  /// changed.
+  std::array<std::shared_ptr<CachedShape>, 2> shapes;
+  std::array<RememberedPoint, 4> points;
+  int num_points = 0;
+  btScalar seconds = 0;                              ///< of the step that the points' impulses belong to
+  std::vector<PieceMemory> pieces;                   ///< sorted by number
+  std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
+  StandingStill standing;                            ///< of a body on a mesh
+  int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
+  int union_refusals = 0;         ///< in a row
+  Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
+
+  /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
+  [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
+    const auto place = static_cast<std::size_t>(child + 1);
+    if (place >= children[body].size()) children[body].resize(place + 1);
+    return children[body][place].shape;
+  }
+
+  /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
+  [[nodiscard]] bool is_blank() const {
+    return patch < 0 && num_points == 0 && pieces.empty() && standing.empty() && union_refusals == 0 &&
+           warm.memory_bytes() == sizeof(warm);
+  }
+};
+
+/// Whoever made manifolds beyond the first of a pair, and can do without them.
+class ManifoldOwner {
+ public:
+  virtual ~ManifoldOwner() = default;
+  /// Releases the pair's manifolds from this number (> 0) on.
+  virtual void release_from(int patch) = 0;
+};
+
+/// Memories by manifold. Algorithms come and go on the dispatcher's threads.
+class PairRegistry {
+ public:
+  void add(const btPersistentManifold* manifold, PairMemory* memory) {
+    const std::lock_guard lock(mutex_);
+    memories_[manifold] = memory;
+  }
+  void remove(const btPersistentManifold* manifold) {
+    const std::lock_guard lock(mutex_);
+    memories_.erase(manifold);
+  }
+  [[nodiscard]] PairMemory* find(const btPersistentManifold* manifold) {
+    const std::lock_guard lock(mutex_);
+    return found(manifold);
+  }
+  /// Calls `visit(i, memory)` for each of `count` manifolds, nullptr where it has none; all under one lock.
+  template <class Visit>
+  void visit_all(const btPersistentManifold* const* manifolds, int count, Visit&& visit) const {
+    const std::lock_guard lock(mutex_);
+    for (int i = 0; i < count; ++i) visit(i, found(manifolds[i]));
+  }
+
+ private:
+  [[nodiscard]] PairMemory* found(const btPersistentManifold* manifold) const {
+    const auto at = memories_.find(manifold);
+    return at == memories_.end() ? nullptr : at->second;
+  }
+
+  mutable std::mutex mutex_;
+  std::unordered_map<const btPersistentManifold*, PairMemory*> memories_;  // looked up only, never iterated
+};
+
+}  // namespace pd::detail

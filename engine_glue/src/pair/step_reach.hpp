@@ -1,0 +1,54 @@
+/// @file
+/// Which points of a pair the solver can need in this step.
+///
+/// A point that is apart limits how fast it may close, to its gap in one step: where it closes more slowly, the solver
+/// visits it in every sweep and does nothing. Half of the points of a house of cards are such. Left out is what is
+/// apart by more than a quarter of the breaking threshold and twice what the bodies' velocities and forces close until
+/// the next step; the quarter and the two are for what other contacts may do meanwhile. Of parts of compounds it is
+/// half the threshold: they are linked, and a chain that tautens moves faster than it did.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "pair/manifold_points.hpp"
+
+namespace pd::detail {
+
+class StepReach {
+ public:
+  /// All points are needed where a host reads them without a step (contact tests, bodies without response, a distance
+  /// asked for beyond the threshold) or a velocity is not known (links of multibodies).
+  /// @param threshold  at which contacts break, and what the query asks for beyond it
+  StepReach(const btManifoldResult& result, btScalar threshold, btScalar seconds);
+
+  /// How far apart points may be to be needed. Requires two btBoxShapes.
+  [[nodiscard]] btScalar of_boxes(const btConvexShape& a, const btConvexShape& b) const;
+  /// The same of two pieces' points, which lie within `radius` of a place.
+  [[nodiscard]] btScalar of_pieces_near(const btVector3& place, btScalar radius) const;
+
+  /// Whether any of a pair's points may not be needed: mostly all touch, and nothing else has to be known.
+  [[nodiscard]] static bool may_be_idle(const FreshPoints& points, btScalar threshold);
+  /// Takes those that are not needed out.
+  void leave_out_idle(FreshPoints& points) const;
+  /// The same of two pieces'.
+  void leave_out_idle(ContactManifold& points) const;
+
+ private:
+  /// What a body's velocity will be after this step's forces, at its centre of mass.
+  struct Motion {
+    btVector3 velocity = btVector3(0, 0, 0), turn = btVector3(0, 0, 0), centre = btVector3(0, 0, 0);
+  };
+  [[nodiscard]] static bool motion_of(const btCollisionObject& object, btScalar seconds, Motion& out);
+  /// How B's material at a place comes to A's.
+  [[nodiscard]] btVector3 coming_at(const btVector3& place) const;
+  /// @param near  up to which gap all are
+  [[nodiscard]] bool is_needed(btScalar distance, const btVector3& place, const btVector3& normal, btScalar near) const;
+
+  btScalar threshold_;
+  btScalar seconds_;
+  bool all_;
+  Motion a_, b_;
+};
+
+}  // namespace pd::detail

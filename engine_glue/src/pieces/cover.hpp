@@ -1,0 +1,129 @@
+/// @file
+/// Whether the feature of a piece that another body touches lies inside of the other pieces of its union.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "pd/contact/manifold.hpp"
+#include "pieces/near_pieces.hpp"
+#include "pieces/union_piece.hpp"
+
+namespace pd::detail {
+
+class SolverCore;
+
+/// Memory of `keep_uncovered`, one a thread.
+struct CoverBuffers {
+  UnionPiece made;                ///< of a piece that `near` does not keep
+  const UnionPiece* own = &made;  ///< the piece at hand
+  NearPieces near;
+  std::vector<const UnionPiece*> found;  ///< near the contact
+  std::vector<const Plane*> active;
+  std::vector<Vec3> feature;
+  std::vector<Vec3> spare;
+  std::vector<std::pair<double, int>> facets;
+};
+
+/// A sine that is more than kDecided also where it was found another way.
+inline constexpr double kLedOn = (1 + 1e-6) * kDecided;
+
+/// A normal nearer to a facet's than this (1 - cosine, about 1e-5 rad) is that facet's.
+inline constexpr double kSameNormal = 1e-10;
+
+/// One of the pair's two bodies as a piece of its union, and the other that touches it.
+struct Side {
+  const btCollisionObjectWrapper& wrapper;
+  const PosedShape& own;
+  const PosedShape& other;
+  bool is_b;
+  Vec3 front = Vec3::Zero();  ///< the only side of a triangle, zero: both
+  /// From the piece outward, for the answer's normal.
+  [[nodiscard]] Vec3 outward(const Vec3& normal) const { return is_b ? normal : Vec3(-normal); }
+  [[nodiscard]] const Vec3& on_piece(const ContactPoint& point) const {
+    return is_b ? point.position_b : point.position_a;
+  }
+};
+
+/// Whether a body is a polygon.
+[[nodiscard]] bool is_flat(const PosedShape& body);
+
+/// Points and directions are those of `frame()`, in which the piece and what is near it lie.
+class Cover {
+ public:
+  Cover(const Side& side, double slack, double window, std::uint64_t stamp, SolverCore& core, CoverBuffers& buffers)
+      : wrapper_(side.wrapper),
+        own_(side.own),
+        slack_(slack),
+        window_(window),
+        stamp_(stamp),
+        core_(core),
+        buffers_(buffers),
+        frame_(buffers.near.frame_of(side.wrapper, core, kept_)) {}
+
+  /// Sets the piece at hand: one that is kept, or made anew. To be called first.
+  void take_own();
+
+  [[nodiscard]] const UnionFrame& frame() const { return frame_; }
+  /// No planes: nothing is known of it, as of what is curved.
+  [[nodiscard]] const UnionPiece& own() const { return *buffers_.own; }
+
+  /// Collects what is near the contact: only what could cover its feature against n, or (n zero) all.
+  /// @return whether there is anything
+  bool look_round(const Vec3& foot, const Vec3& n);
+
+  /// Whether what is no facet of the piece could be covered at `foot`, by what is known of it without looking round.
+  [[nodiscard]] bool may_be_covered(const Vec3& foot) const;
+
+  /// How far beyond doubt the feature of the piece at `foot` (on its core) that faces n is covered: the least sine over
+  /// the corners of its part within the window, kBeyondDoubt where it is more; -1 where one is free. Of a facet, no
+  /// more is found out than whether it is kDecided.
+  double covered(Vec3 foot, const Vec3& n);
+
+  /// Whether the feature of the triangle at hand at `foot` is covered beyond doubt by the triangle next to it.
+  [[nodiscard]] bool led_on_by_neighbour(const Vec3& foot, const Vec3& n) const;
+
+  /// What other pieces cover of all of the piece's facet, and so of every part of it; `some` where that is not known.
+  [[nodiscard]] FacetCover cover_of(std::size_t facet) const;
+
+ private:
+  /// What of the piece touches a point.
+  struct Touched {
+    bool any = false;
+    int facet = -1;  ///< that of the normal asked for
+    const Plane* first = nullptr;
+    const Plane* second = nullptr;
+    int count = 0;
+  };
+
+  /// The largest sine of all pieces near at a point of this one's core, or one that is enough.
+  double most_covered(const Vec3& point, const Vec3& n, double enough);
+  /// @param foot  moved into the piece, and on the facet if there is one
+  Touched touched_at(Vec3& foot, const Vec3& n) const;
+  /// The window's corners in the plane of n.
+  [[nodiscard]] std::array<Vec3, 4> window_corners(const Vec3& foot, const Vec3& n) const;
+  /// Whether a corner of the window lies on the piece's facet and is not covered: it is one of the feature's, which
+  /// need not be cut out then.
+  bool has_free_corner(const Vec3& foot, const Vec3& n);
+  /// The part of the feature within the window, by its corners. They lie in the piece up to half the slack, so that a
+  /// flush neighbour holds them.
+  void set_feature(const Touched& touched, const Vec3& foot, const Vec3& n);
+  [[nodiscard]] const Plane* edge_of_triangle(const Vec3& foot) const;
+
+  const btCollisionObjectWrapper& wrapper_;
+  const PosedShape& own_;
+  double slack_;
+  double window_;
+  std::uint64_t stamp_;
+  SolverCore& core_;
+  CoverBuffers& buffers_;
+  const UnionPiece* kept_ = nullptr;
+  const UnionFrame& frame_;
+};
+
+}  // namespace pd::detail

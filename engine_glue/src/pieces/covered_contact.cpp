@@ -1,0 +1,300 @@
+#include "pieces/covered_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "pair/solver_core.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pieces/lazy_points.hpp"
+#include "pieces/piece_exit.hpp"
+#include "shapes/moving_body.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// cos 25 degrees: what is turned to a facet's own normal without asking whether that is far.
+constexpr double kNearNormal = 0.9;
+/// Facets tried in place of a covered one.
+constexpr std::size_t kTries = 4;
+/// Of the reach of exits: the other body may stand so far through the plane of one, beside it.
+constexpr double kBeside = 4;
+/// Of the gap up to which there are contacts: what is in each other by less may wait for a step.
+constexpr double kSunk = 1.0 / 16;
+
+double deepest_of(const ContactManifold& points) {
+  double deepest = points.points[0].depth;
+  for (int i = 1; i < points.count; ++i) deepest = std::max(deepest, points.points[static_cast<std::size_t>(i)].depth);
+  return deepest;
+}
+
+/// What one side's piece does to the manifold.
+class SideRule {
+ public:
+  SideRule(const Side& side, double threshold, double window, double slack, std::uint64_t stamp, SolverCore& core,
+           ThreadBuffers& buffers)
+      : side_(side),
+        threshold_(threshold),
+        window_(window),
+        slack_(slack),
+        buffers_(buffers),
+        cover_(side_, slack, window, stamp, core, buffers.cover) {}
+
+  /// @return whether `points` was changed
+  bool apply(double depth, const Vec3& witness, LazyPoints& points) {
+    const Vec3 outward = side_.outward(points.normal());
+    if (pushes_from_triangle(outward)) return false;
+    cover_.take_own();
+    const UnionPiece& own = cover_.own();
+    if (own.planes.empty()) return false;
+    const Vec3 n = cover_.frame().turn(outward);
+    const Vec3 foot = cover_.frame().place(witness - own.margin * outward);
+    std::size_t best = 0;
+    double cosine = own.planes[0].normal.dot(n);
+    for (std::size_t f = 1; f < own.planes.size() - (own.flat ? 3 : 0); ++f) {
+      const double other = own.planes[f].normal.dot(n);
+      if (other <= cosine) continue;
+      best = f;
+      cosine = other;
+    }
+    const bool facet = cosine >= 1 - kSameNormal;
+    // Most have nothing near that could cover.
+    if (facet && !own.flat) {
+      const FacetCover known = cover_.cover_of(best);
+      if (known == FacetCover::none) return false;
+      if (known == FacetCover::all) {
+        points.set(nearest_free(n, depth, foot));
+        return true;
+      }
+    }
+    if (!own.flat && ((!facet && !cover_.may_be_covered(foot)) || !cover_.look_round(foot, n))) return false;
+    if (facet) return !own.flat && facet_contact(depth, own.planes[best].normal, foot, points.get());
+    const double sine = covered_here(foot, n);
+    if (sine <= kLevel) return false;
+    if (sine < kDecided && (cosine < kNearNormal || is_facet_of_other(outward))) return false;
+    points.set(own.flat && cosine >= kNearNormal ? turned(own.planes[best]) : nearest_free(n, depth, foot));
+    return true;
+  }
+
+ private:
+  /// Whether n is the normal of one side of a triangle: nothing covers those, and most contacts end here.
+  [[nodiscard]] bool pushes_from_triangle(const Vec3& n) const {
+    return is_flat(side_.own) &&
+           std::abs((side_.own.pose.rotation() * side_.own.shape->polytope()->facet_normal(0)).dot(n)) >=
+               1 - kSameNormal;
+  }
+
+  /// Whether the other body meets this one with a facet: -n is its normal then, and no noise.
+  [[nodiscard]] bool is_facet_of_other(const Vec3& n) const {
+    const ConvexPolytope* polytope = side_.other.shape->polytope();
+    if (polytope == nullptr) return false;
+    const Vec3 local = -(side_.other.pose.rotation().transpose() * n);
+    for (int f = 0; f < polytope->num_facets(); ++f) {
+      if (polytope->facet_normal(f).dot(local) >= 1 - kSameNormal) return true;
+    }
+    return false;
+  }
+
+  /// A contact in the middle of a triangle that does not push along its normal is the triangle's own: what lies round
+  /// it is not looked for.
+  double covered_here(const Vec3& foot, const Vec3& n) {
+    const UnionPiece& own = cover_.own();
+    if (own.flat) {
+      const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
+      if (own_sine > kDecided) return own_sine;
+      if (cover_.led_on_by_neighbour(foot, n)) return kLedOn;
+      cover_.look_round(foot, n);
+    }
+    return cover_.covered(foot, n);
+  }
+
+  /// A point of the piece's core, in the frame.
+  [[nodiscard]] Vec3 foot_of(const ContactPoint& point, const Vec3& n) const {
+    return cover_.frame().place(side_.on_piece(point)) - cover_.own().margin * n;
+  }
+
+  /// A solid's facet: each point by itself.
+  bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
+    const int before = points.count;
+    for (int i = points.count - 1; i >= 0; --i) {
+      if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(i)], n), n) > kDecided) drop_point(points, i);
+    }
+    if (points.count == before) return false;
+    if (points.count == 0) points = nearest_free(n, depth, foot);
+    return true;
+  }
+
+  /// Out along a facet of the piece.
+  [[nodiscard]] PieceExit exit_over(const Plane& facet) const {
+    const Vec3 n = cover_.frame().turn_back(facet.normal);
+    const Vec3 farthest = farthest_against(side_.other, n);
+    const double depth =
+        side_.other.shape->margin() + cover_.own().margin - facet.height(cover_.frame().place(farthest));
+    return exit_along(side_, n, depth, farthest);
+  }
+
+  /// Out against a facet of the other body, a solid polytope.
+  [[nodiscard]] PieceExit exit_against(int facet) const {
+    const ConvexPolytope& polytope = *side_.other.shape->polytope();
+    const Vec3 against = side_.other.pose.rotation() * polytope.facet_normal(facet);
+    const Vec3 on_facet = side_.other.pose.apply(polytope.vertex(polytope.facet_vertices(facet)[0]));
+    const Vec3 farthest = farthest_against(side_.own, against);
+    const double depth = side_.other.shape->margin() + side_.own.shape->margin() + against.dot(on_facet - farthest);
+    const Vec3 on_own = farthest - side_.own.shape->margin() * against;
+    return {depth, -against, on_own, on_own + depth * against};
+  }
+
+  ContactManifold manifold_along(const PieceExit& exit) {
+    return points_along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, buffers_.manifold);
+  }
+
+  ContactManifold turned(const Plane& facet) {
+    const PieceExit exit = exit_over(facet);
+    return exit.depth < -threshold_ ? ContactManifold() : manifold_along(exit);
+  }
+
+  /// The contact along the nearest facet of the piece, but that of n, that is not covered and lies within reach. Of
+  /// solids that are in each other and have none, also along one that the other body reaches through beside it, or
+  /// against one of the other body's.
+  ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
+    const UnionPiece& own = cover_.own();
+    std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
+    facets.clear();
+    const double limit = std::max(4 * depth, window_);
+    const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
+    for (int f = 0; f < count; ++f) {
+      const Plane& facet = own.planes[static_cast<std::size_t>(f)];
+      if (facet.normal.dot(n) >= 1 - kSameNormal || facet.normal.dot(side_.front) < 0) continue;
+      const double far = exit_over(facet).depth;
+      if (far < -threshold_) return {};  // apart along a facet: nothing of this piece is near
+      if (far <= kBeside * limit) facets.emplace_back(far, f);
+    }
+    std::sort(facets.begin(), facets.end());
+    bool looked = own.flat;
+    const auto within =
+        std::partition_point(facets.begin(), facets.end(), [&](const auto& facet) { return facet.first <= limit; });
+    ContactManifold points = first_free({facets.begin(), within}, foot, looked);
+    const ConvexPolytope* const other = side_.other.shape->polytope();
+    const bool solids = !own.flat && other != nullptr && other->affine_dimension() == 3;
+    if (points.count > 0 || !solids || depth < kSunk * threshold_) return points;
+    facets.erase(facets.begin(), within);
+    const Vec3 outward = cover_.frame().turn_back(n);
+    for (int f = 0; f < other->num_facets(); ++f) {
+      const PieceExit exit = exit_against(f);
+      if (exit.depth < -threshold_) return {};
+      if (exit.depth > kBeside * limit || exit.n.dot(outward) >= 1 - kSameNormal) continue;
+      facets.emplace_back(exit.depth, count + f);
+    }
+    std::sort(facets.begin(), facets.end());
+    points = first_free(facets, foot, looked);
+    return points.count > 0 && deepest_of(points) <= limit ? points : ContactManifold();
+  }
+
+  /// The points along the first of these exits, by depth, where any is not covered.
+  /// @param facets  from the piece's number of facets on, those of the other body
+  ContactManifold first_free(std::span<const std::pair<double, int>> facets, const Vec3& foot, bool& looked) {
+    const UnionPiece& own = cover_.own();
+    const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
+    for (std::size_t i = 0; i < std::min(kTries, facets.size()); ++i) {
+      const int f = facets[i].second;
+      const FacetCover known = f < count ? cover_.cover_of(static_cast<std::size_t>(f)) : FacetCover::some;
+      if (known == FacetCover::all) continue;
+      const PieceExit exit = f < count ? exit_over(own.planes[static_cast<std::size_t>(f)]) : exit_against(f - count);
+      const Vec3 along = f < count ? own.planes[static_cast<std::size_t>(f)].normal : cover_.frame().turn(exit.n);
+      ContactManifold points = manifold_along(exit);
+      if (points.count == 0) continue;
+      if (known == FacetCover::none) return points;
+      if (!looked) {
+        cover_.look_round(foot, Vec3::Zero());
+        looked = true;
+      }
+      for (int k = points.count - 1; k >= 0 && !own.flat; --k) {
+        if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(k)], along), along) > kDecided) {
+          drop_point(points, k);
+        }
+      }
+      if (points.count > 0) return points;
+    }
+    return {};
+  }
+
+  const Side& side_;
+  double threshold_;
+  double window_;
+  double slack_;
+  ThreadBuffers& buffers_;
+  Cover cover_;
+};
+
+/// How far from a contact a union is looked at: as far as the bodies may move before contacts are found again.
+double window_of(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double depth, double threshold,
+                 double seconds) {
+  const Vec3 way = seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject()));
+  return threshold + std::abs(depth) + way.norm();
+}
+
+}  // namespace
+
+void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
+                    const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
+                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points) {
+  LazyPoints lazy(answer, threshold, buffers.manifold, given, points);
+  if (lazy.none()) return;
+  const double slack = seam_slack(answer.a, answer.b);
+  double depth = -answer.depth.signed_distance();
+  const double window = window_of(a, b, depth, threshold, seconds);
+  Vec3 witness_b = answer.depth.witness_b;
+  if (is_piece(b)) {
+    const Side side{b, answer.b, answer.a, true, front};
+    SideRule rule(side, threshold, window, slack, stamp, core, buffers);
+    if (rule.apply(depth, witness_b, lazy)) {
+      buffers.counters.covered.add();
+      if (points.count == 0) return;
+      const auto deepest = std::max_element(points.points.begin(), points.points.begin() + points.count,
+                                            [](const auto& x, const auto& y) { return x.depth < y.depth; });
+      depth = deepest->depth;
+      witness_b = deepest->position_b;
+    }
+  }
+  if (is_piece(a)) {
+    const Side side{a, answer.a, answer.b, false};
+    SideRule rule(side, threshold, window, slack, stamp, core, buffers);
+    if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) buffers.counters.covered.add();
+  }
+  lazy.get();
+}
+
+void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
+                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                  ContactManifold& points) {
+  const double slack = seam_slack(body, body);
+  const Side side{a, body, body, false};
+  for (int i = points.count - 1; i >= 0; --i) {
+    const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
+    Cover cover(side, slack, window_of(a, b, point.depth, threshold, seconds), stamp, core, buffers.cover);
+    cover.take_own();
+    if (cover.own().planes.empty()) return;
+    const Vec3 n = cover.frame().turn(-points.normal);
+    const Vec3 foot = cover.frame().place(point.position_a) - cover.own().margin * n;
+    if (!cover.look_round(foot, n) || cover.covered(foot, n) <= kDecided) continue;
+    drop_point(points, i);
+    buffers.counters.covered.add();
+  }
+}
+
+ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer, const Vec3& front,
+                            double threshold, ThreadBuffers& buffers) {
+  UnionPiece& own = buffers.cover.made;
+  set_piece(answer.b, own);
+  if (own.planes.empty()) return {};
+  const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];
+  const Vec3 farthest = farthest_against(answer.a, side.normal);
+  const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
+  const Side sides{triangle, answer.b, answer.a, true, front};
+  return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, threshold,
+                      seam_slack(answer.a, answer.b), buffers.manifold);
+}
+
+}  // namespace pd::detail

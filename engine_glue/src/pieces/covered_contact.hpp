@@ -1,0 +1,56 @@
+/// @file
+/// Contacts inside of a union: a pair of pieces is answered as if they were alone, and this decides what of the answer
+/// holds for the whole.
+///
+/// A contact of a piece is dropped only where the facet, edge or vertex of the piece that it pushes off from (its part
+/// within the body's reach of motion) lies wholly in other pieces that lead on against the normal (union_piece.hpp). A
+/// facet that is covered only where the contact stands, as walls of a valley or a corner cover each other, keeps it.
+/// Where a contact is dropped, the nearest facet of the same piece that is not covered answers, if it lies within
+/// reach. Triangles have two facets, their sides, which nothing covers.
+///
+/// Decided by tolerances of the poses' rounding, since the pieces of a decomposition meet up to rounding only.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include <cstdint>
+
+#include "pd/contact/manifold.hpp"
+#include "pieces/cover.hpp"
+
+namespace pd::detail {
+
+class SolverCore;
+struct PairAnswer;
+struct ThreadBuffers;
+
+/// Whether `keep_uncovered` is handed the answer's points, or makes them where it needs them: what is turned or dropped
+/// for what lies round it needs none.
+enum class AnswerPoints : std::uint8_t { made, to_be_made };
+
+/// Changes `points`, the manifold of `answer`, to what holds for the unions that a and b are pieces of.
+/// @param given  to_be_made: whatever `points` are, they become those of the answer (as lifted), or what holds
+///
+/// @param front  zero, or: b is a triangle that has this side only (unit, in the world)
+/// @param threshold  up to which gap a pair of points is a contact
+/// @param seconds    of the step: how far bodies may move before contacts are found again
+/// Time: a query of the mesh's or compound's tree where a contact is suspect, and O(k f) in the k pieces near it and
+/// their f facets.
+void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
+                    const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
+                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points);
+
+/// Drops the points of piece A's contact with a plane of B that lie inside of other pieces of A's union which lead on
+/// into the plane: those are deeper in it.
+/// @param body  what A is taken as
+void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
+                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                  ContactManifold& points);
+
+/// The contact of a body A that stands through or behind triangle B and is to leave by B's side `front`: points over
+/// the triangle, each as deep as A lies behind its plane.
+[[nodiscard]] ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer,
+                                          const Vec3& front, double threshold, ThreadBuffers& buffers);
+
+}  // namespace pd::detail

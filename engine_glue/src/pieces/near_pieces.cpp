@@ -1,0 +1,297 @@
+#include "pieces/near_pieces.hpp"
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "pair/solver_core.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "shapes/child_tree.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Of so few triangles, and for so few contacts, each is compared; of more, groups of them, or a large body on a fine
+/// mesh would compare every triangle that it meets with every other.
+constexpr std::size_t kFewTriangles = 128;
+constexpr int kFewContacts = 12;
+
+}  // namespace
+
+/// What is collected, where.
+struct NearPieces::Search {
+  btVector3 centre;
+  btScalar reach;
+  const Beyond* beyond;
+  std::uint64_t stamp;
+  SolverCore& core;
+  std::vector<const UnionPiece*>& found;
+};
+
+class NearPieces::TrianglesOf : public btTriangleCallback {
+ public:
+  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Search& search,
+              NearPieces& list)
+      : pose_(pose), margin_(margin), except_(except), beyond_(search.beyond), found_(search.found), list_(list) {}
+  void processTriangle(btVector3* corners, int part, int index) override {
+    if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
+    const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
+    if (beyond_ != nullptr) {
+      const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
+      if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
+    }
+    UnionPiece& piece = list_.next_made();
+    set_triangle(points, margin_, piece);
+    if (piece.planes.empty()) return;
+    found_.push_back(&piece);
+    ++list_.num_made_;
+  }
+
+ private:
+  const btTransform& pose_;
+  double margin_;
+  const btCollisionObjectWrapper* except_;
+  const Beyond* beyond_;
+  std::vector<const UnionPiece*>& found_;
+  NearPieces& list_;
+};
+
+UnionPiece& NearPieces::next_made() {
+  if (num_made_ == made_.size()) made_.emplace_back();
+  return made_[num_made_];
+}
+
+void NearPieces::begin_pair(std::uint64_t stamp) {
+  frames_[0].body = frames_[1].body = nullptr;
+  around_ = nullptr;
+  facts_.begin_pair(stamp);
+}
+
+void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh) {
+  around_ = &around;
+  around_pose_ = to_pd(mesh.getWorldTransform());
+  around_margin_ = static_cast<double>(mesh.getCollisionShape()->getMargin());
+  known_searches_ = 0;
+  known_edges_.begin(around.triangles());
+  known_made_.assign(around.triangles().size(), false);
+  if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
+}
+
+const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, SolverCore& core,
+                                       const UnionPiece*& kept) {
+  kept = nullptr;
+  const btCollisionObjectWrapper* parent = piece.m_parent;
+  if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return world_;
+  const auto& compound = static_cast<const btCompoundShape&>(*parent->getCollisionShape());
+  if (compound.getChildShape(piece.m_index) != piece.getCollisionShape()) return world_;
+  const UnionPiece& child = facts_.piece_of(compound, piece.m_index, core);
+  if (child.planes.empty()) return world_;
+  kept = &child;
+  const btCollisionObject* const body = parent->getCollisionObject();
+  if (frames_[0].body != body) {
+    std::swap(frames_[0], frames_[1]);
+    if (frames_[0].body != body) {
+      frames_[0].body = body;
+      frames_[0].frame = {false, to_pd(parent->getWorldTransform().getBasis()),
+                          to_pd(parent->getWorldTransform().getOrigin())};
+    }
+  }
+  return frames_[0].frame;
+}
+
+const UnionPiece* NearPieces::known_triangle_of(const btCollisionObjectWrapper& piece) {
+  const btCollisionObjectWrapper* parent = piece.m_parent;
+  const bool of_mesh = parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isConcave();
+  return of_mesh ? known_piece(piece) : nullptr;
+}
+
+UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
+  if (around_ == nullptr || !around_->are_of(*triangle.m_parent->getCollisionShape())) return nullptr;
+  const auto& shape = static_cast<const btTriangleShape&>(*triangle.getCollisionShape());
+  const std::size_t i = around_->find(triangle.m_partId, triangle.m_index, shape.m_vertices1);
+  return i < around_->triangles().size() ? &known_triangle(i) : nullptr;
+}
+
+void NearPieces::collect_children(const btCompoundShape& compound, const btTransform& pose, int except,
+                                  Search& search) {
+  for_each_child_meeting(compound, btDbvtVolume::FromCR(pose.invXform(search.centre), search.reach), [&](int i) {
+    if (i != except) collect(*compound.getChildShape(i), pose * compound.getChildTransform(i), nullptr, search);
+  });
+}
+
+void NearPieces::collect_in_frame(const btCompoundShape& compound, int except, double slack, Search& search) {
+  const auto add = [&](int i) {
+    const btCollisionShape& shape = *compound.getChildShape(i);
+    if (!shape.isConvex()) {
+      collect(shape, compound.getChildTransform(i), nullptr, search);
+      return;
+    }
+    const UnionPiece& piece = facts_.piece_of(compound, i, search.core);
+    if (!piece.planes.empty()) search.found.push_back(&piece);
+  };
+  const Vec3 centre = to_pd(search.centre);
+  const auto reach = static_cast<double>(search.reach);
+  const Beyond* const beyond = search.beyond;
+  if (beyond != nullptr &&
+      facts_.rising_near(compound, except, centre, beyond->n, beyond->level, reach, 4 * slack, search.core, near_)) {
+    for (const int i : near_) add(i);
+    return;
+  }
+  const auto visit = [&](int i) {
+    if (i == except) return;
+    const UnionPiece& piece = facts_.piece_of(compound, i, search.core);
+    const auto parts = [&](const Plane& plane) { return plane.height(centre) > reach; };
+    if (std::none_of(piece.planes.begin(), piece.planes.end(), parts)) add(i);
+  };
+  if (const auto* neighbours = facts_.neighbours(compound, except, 4 * slack, search.core)) {
+    for (const int i : *neighbours) visit(i);
+  } else {
+    for_each_child_meeting(compound, btDbvtVolume::FromCR(search.centre, search.reach), visit);
+  }
+}
+
+bool NearPieces::within(const btVector3& lower, const btVector3& upper, const Search& search) {
+  for (int i = 0; i < 3; ++i) {
+    if (lower[i] > search.centre[i] + search.reach || upper[i] < search.centre[i] - search.reach) return false;
+  }
+  if (search.beyond == nullptr) return true;
+  const Vec3& n = search.beyond->n;
+  const Vec3 far = n.cwiseProduct(to_pd(lower)).cwiseMax(n.cwiseProduct(to_pd(upper)));
+  return far.sum() > search.beyond->level;
+}
+
+void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                               const btVector3& upper) {
+  const std::span<const MeshTriangle> triangles = around_->triangles();
+  Vec3 n = Vec3::Zero();
+  double level = -1;
+  if (const Beyond* beyond = search.beyond) {
+    n = around_pose_.rotation().transpose() * beyond->n;
+    level = beyond->level - beyond->n.dot(around_pose_.translation());
+  }
+  const auto visit = [&](std::size_t i) {
+    const MeshTriangle& triangle = triangles[i];
+    if (triangle.part == except.m_partId && triangle.index == except.m_index) return;
+    const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
+    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) return;
+    add_known(i, search.found);
+  };
+  if (triangles.size() > kFewTriangles && ++known_searches_ > kFewContacts) {
+    if (known_searches_ == kFewContacts + 1) known_boxes_.make(triangles);
+    known_boxes_.each_meeting(lower, upper, visit);
+    return;
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (boxes_meet(triangles[i].lower, triangles[i].upper, lower, upper)) visit(i);
+  }
+}
+
+void NearPieces::add_known(std::size_t i, std::vector<const UnionPiece*>& found) {
+  const UnionPiece& piece = known_triangle(i);
+  if (!piece.planes.empty()) found.push_back(&piece);
+}
+
+UnionPiece& NearPieces::known_triangle(std::size_t i) {
+  if (!known_made_[i]) {
+    known_made_[i] = true;
+    const MeshTriangle& triangle = around_->triangles()[i];
+    set_triangle({around_pose_.apply(to_pd(triangle.corners[0])), around_pose_.apply(to_pd(triangle.corners[1])),
+                  around_pose_.apply(to_pd(triangle.corners[2]))},
+                 around_margin_, known_[i]);
+    known_[i].around = static_cast<int>(i);
+  }
+  return known_[i];
+}
+
+bool NearPieces::neighbour_leads_on(const UnionPiece& triangle, const Vec3& foot, const Vec3& n, double sine,
+                                    double slack) {
+  if (triangle.around < 0) return false;
+  const auto place = static_cast<std::size_t>(triangle.around);
+  bool on_edge[3];
+  int num_edges = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double height = triangle.planes[2 + i].height(foot);
+    if (height > slack) return false;
+    on_edge[i] = height >= -slack;
+    if (on_edge[i]) ++num_edges;
+  }
+  if (num_edges == 0) return false;
+  const btVector3* const corners = around_->triangles()[place].corners;
+  const Vec3 normal = around_pose_.rotation().transpose() * n;
+  const Vec3 local = around_pose_.rotation().transpose() * (foot - around_pose_.translation());
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!on_edge[i]) continue;
+    const btVector3* const across = known_edges_.across(place, i);
+    if (across == nullptr) continue;
+    // From each point of the edge the way to the corner across it leads through the other triangle.
+    const Vec3 to = to_pd(*across);
+    const Vec3 ends[2] = {to_pd(corners[i]), to_pd(corners[(i + 1) % 3])};
+    double rise = normal.dot(to - local);
+    if (num_edges == 1) rise = std::min({rise, normal.dot(to - ends[0]), normal.dot(to - ends[1])});
+    rise -= 2 * slack;
+    if (rise <= 2 * slack) continue;
+    const double longest = std::max((to - ends[0]).squaredNorm(), (to - ends[1]).squaredNorm());
+    if (rise * rise >= sine * sine * longest) return true;
+  }
+  return false;
+}
+
+void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
+                         Search& search) {
+  if (shape.isCompound()) {
+    collect_children(static_cast<const btCompoundShape&>(shape), pose, -1, search);
+  } else if (shape.isConcave()) {
+    const auto& concave = static_cast<const btConcaveShape&>(shape);
+    const btVector3 local = pose.invXform(search.centre);
+    const btVector3 extent(search.reach, search.reach, search.reach);
+    const bool known = except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
+                       around_->cover(concave, local - extent, local + extent);
+    if (known) {
+      collect_known(*except, search, local - extent, local + extent);
+      return;
+    }
+    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
+    concave.processAllTriangles(&triangles, local - extent, local + extent);
+  } else if (shape.isConvex()) {
+    btVector3 lower, upper;
+    shape.getAabb(pose, lower, upper);
+    if (!within(lower, upper, search)) return;
+    const auto found = search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp);
+    if (!found || !found->body) return;
+    UnionPiece& piece = next_made();
+    set_solid(found->sharp ? *found->sharp : *found->body, to_pd(pose), piece);
+    if (piece.planes.empty()) return;
+    search.found.push_back(&piece);
+    ++num_made_;
+  }
+}
+
+void NearPieces::find(const btCollisionObjectWrapper& piece, const UnionFrame& frame, const Vec3& point, double reach,
+                      double slack, const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+                      std::vector<const UnionPiece*>& found) {
+  found.clear();
+  Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, found};
+  if (!frame.is_world) {
+    collect_in_frame(static_cast<const btCompoundShape&>(*piece.m_parent->getCollisionShape()), piece.m_index, slack,
+                     search);
+    return;
+  }
+  for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
+    const btCollisionObjectWrapper& parent = *child->m_parent;
+    const btCollisionShape& shape = *parent.getCollisionShape();
+    if (shape.isConcave()) {
+      collect(shape, parent.getWorldTransform(), child, search);
+    } else if (shape.isCompound()) {
+      collect_children(static_cast<const btCompoundShape&>(shape), parent.getWorldTransform(), child->m_index, search);
+    }
+  }
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,130 @@
+/// @file
+/// The pieces of a union that come near a contact of one of them.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "pieces/compound_facts.hpp"
+#include "pieces/shared_edges.hpp"
+#include "pieces/triangle_boxes.hpp"
+#include "pieces/union_piece.hpp"
+#include "shapes/triangles_around.hpp"
+
+class btConvexShape;
+
+namespace pd::detail {
+
+class SolverCore;
+
+/// The half-space of what covers against n: what does not reach into it has no way that leads on along n.
+struct Beyond {
+  Vec3 n;
+  double level;
+};
+
+/// Where the pieces of a union are looked at: the children of a body's compound in its frame, in which they stand still
+/// from step to step; all others in the world.
+struct UnionFrame {
+  bool is_world = true;
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();
+  [[nodiscard]] Vec3 place(const Vec3& point) const {
+    return is_world ? point : Vec3(rotation.transpose() * (point - translation));
+  }
+  [[nodiscard]] Vec3 turn(const Vec3& direction) const {
+    return is_world ? direction : Vec3(rotation.transpose() * direction);
+  }
+  [[nodiscard]] Vec3 turn_back(const Vec3& direction) const {
+    return is_world ? direction : Vec3(rotation * direction);
+  }
+};
+
+/// Finds the pieces of a union near one of them.
+class NearPieces {
+ public:
+  /// To be called for each pair in each step.
+  /// @param stamp  of this step, 0: unknown, so that what is known of compounds is compared again
+  void begin_pair(std::uint64_t stamp);
+  /// The triangles of a mesh that were read for the pair at hand: those near are taken from them where they are enough.
+  void know(const TrianglesAround& around, const btCollisionObjectWrapper& mesh);
+
+  /// Where the union of a piece is looked at. Valid until the next pair.
+  /// @param kept  set to the piece in its frame where it is a child that is kept there, else to nullptr
+  [[nodiscard]] const UnionFrame& frame_of(const btCollisionObjectWrapper& piece, SolverCore& core,
+                                           const UnionPiece*& kept);
+
+  /// The other pieces of the union that come within `reach` of a point of this one, and within `slack` of the piece
+  /// itself, which is not looked at closely; all in the piece's frame. Compounds in compounds and meshes in compounds
+  /// included; curved parts are left out, since contacts inside of them do not arise from seams.
+  /// @param beyond  null, or: pieces whose surface does not come beyond it are left out
+  /// @param found  valid until `forget_made` or the next pair
+  void find(const btCollisionObjectWrapper& piece, const UnionFrame& frame, const Vec3& point, double reach,
+            double slack, const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+            std::vector<const UnionPiece*>& found);
+  /// Whether a triangle that shares an edge with this one, on which `foot` lies, leads on against n by a sine of `sine`
+  /// and more: from there and, unless foot is a corner, from all of the edge. No search; false may be either.
+  /// @param slack  up to which a point lies on an edge
+  [[nodiscard]] bool neighbour_leads_on(const UnionPiece& triangle, const Vec3& foot, const Vec3& n, double sine,
+                                        double slack);
+  /// Of the triangles that are known.
+  [[nodiscard]] SharedEdges& shared_edges() { return known_edges_; }
+  [[nodiscard]] CompoundFacts& facts() { return facts_; }
+
+  /// Makes room: what was found may go.
+  void forget_made() { num_made_ = 0; }
+
+  /// A triangle that is known, as a piece; nullptr: the piece is none.
+  [[nodiscard]] const UnionPiece* known_triangle_of(const btCollisionObjectWrapper& piece);
+
+ private:
+  struct Search;
+  class TrianglesOf;
+  /// That of a body of the pair at hand.
+  struct BodyFrame {
+    const btCollisionObject* body = nullptr;
+    UnionFrame frame;
+  };
+
+  /// Those of the triangles that are known. Requires: they cover what is searched.
+  void collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                     const btVector3& upper);
+  /// The piece of one of them, which is made when it is first asked for.
+  UnionPiece& known_triangle(std::size_t i);
+  /// Adds it, unless it has no planes.
+  void add_known(std::size_t i, std::vector<const UnionPiece*>& found);
+  /// Of this triangle, or null.
+  UnionPiece* known_piece(const btCollisionObjectWrapper& triangle);
+  /// @param except  a piece of this shape, or null
+  void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
+               Search& search);
+  void collect_children(const btCompoundShape& compound, const btTransform& pose, int except, Search& search);
+  /// The children of a whole body's compound, in its frame.
+  void collect_in_frame(const btCompoundShape& compound, int except, double slack, Search& search);
+  /// Whether a box comes within reach.
+  static bool within(const btVector3& lower, const btVector3& upper, const Search& search);
+  /// Not taken before `num_made_` grows.
+  UnionPiece& next_made();
+
+  CompoundFacts facts_;
+  std::vector<int> near_;        ///< numbers of children
+  std::deque<UnionPiece> made_;  ///< for pieces that are no children of a whole body
+  std::size_t num_made_ = 0;
+  std::array<BodyFrame, 2> frames_;
+  UnionFrame world_;
+  const TrianglesAround* around_ = nullptr;
+  Pose around_pose_;
+  double around_margin_ = 0;
+  std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
+  std::vector<bool> known_made_;
+  TriangleBoxes known_boxes_;
+  SharedEdges known_edges_;
+  int known_searches_ = 0;  ///< among these, of the pair at hand
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,81 @@
+#include "pieces/piece_exit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+namespace pd::detail {
+
+Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
+  if (const ConvexPolytope* polytope = shape.shape->polytope()) {
+    const Vec3 local = shape.pose.rotation().transpose() * n;
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int v = 0; v < polytope->num_vertices(); ++v) {
+      const double value = polytope->vertex(v).dot(local);
+      if (value < least) {
+        least = value;
+        best = v;
+      }
+    }
+    return shape.pose.apply(polytope->vertex(best));
+  }
+  const Mat3 rotation = shape.pose.nearest_rotation();
+  const Vec3 way = -(rotation.transpose() * n);
+  const auto round = [&](int axis, double radius) {
+    Vec3 radial = way;
+    radial[axis] = 0;
+    const double length = radial.norm();
+    return length > 0 ? Vec3(radius / length * radial) : Vec3(Vec3::Zero());
+  };
+  Vec3 local;
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.shape->core())) {
+    local = round(cylinder->axis, cylinder->radius);
+    local[cylinder->axis] = way[cylinder->axis] > 0 ? cylinder->half_height : -cylinder->half_height;
+  } else if (const auto* cone = std::get_if<Cone>(&shape.shape->core())) {
+    local = round(cone->axis, cone->radius);
+    local[cone->axis] = -cone->half_height;
+    const Vec3 apex = cone->half_height * Vec3::Unit(cone->axis);
+    if (apex.dot(way) > local.dot(way)) local = apex;
+  } else if (const auto* spheres = std::get_if<SphereHull>(&shape.shape->core())) {
+    local = spheres->support(way);
+  } else {
+    const Vec3& radii = std::get<Ellipsoid>(shape.shape->core()).radii;
+    local = radii.cwiseProduct(radii.cwiseProduct(way)) / radii.cwiseProduct(way).norm();
+  }
+  return rotation * local + shape.pose.translation();
+}
+
+void drop_point(ContactManifold& points, int i) {
+  --points.count;
+  points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];
+}
+
+PieceExit exit_along(const Side& side, const Vec3& n, double depth, const Vec3& farthest) {
+  const Vec3 on_other = farthest - side.other.shape->margin() * n;
+  return {depth, n, on_other + depth * n, on_other};
+}
+
+ContactManifold points_along(const PieceExit& exit, const Side& side, const UnionFrame& frame, const UnionPiece& own,
+                             double threshold, double slack, ManifoldScratch& scratch) {
+  PenetrationDepth answer;
+  answer.contact = exit.depth > 0 ? ContactClass::overlapping : ContactClass::separated;
+  answer.depth = std::max(exit.depth, 0.0);
+  answer.distance = std::max(-exit.depth, 0.0);
+  answer.normal = side.is_b ? exit.n : Vec3(-exit.n);
+  answer.witness_a = side.is_b ? exit.on_other : exit.on_own;
+  answer.witness_b = side.is_b ? exit.on_own : exit.on_other;
+  ContactManifold points =
+      side.is_b ? contact_manifold(side.other, side.own, answer, threshold, scratch, DeepestPoint::as_lifted)
+                : contact_manifold(side.own, side.other, answer, threshold, scratch, DeepestPoint::as_lifted);
+  for (int i = points.count - 1; i >= 0; --i) {
+    const Vec3 foot = frame.place(side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * exit.n);
+    const bool outside = std::any_of(own.planes.begin(), own.planes.end(),
+                                     [&](const Plane& plane) { return plane.height(foot) > 2 * slack; });
+    if (outside) drop_point(points, i);
+  }
+  return points;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,143 @@
+#include "record/record_shapes.hpp"
+
+#include <BulletCollision/CollisionShapes/btBox2dShape.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btConvex2dShape.h>
+#include <BulletCollision/CollisionShapes/btUniformScalingShape.h>
+
+#include <bit>
+#include <vector>
+
+#include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_conversion.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+constexpr const char* kAxes = "xyz";
+
+/// A running number that changes with the bits of what is added.
+class Number {
+ public:
+  explicit Number(std::uint64_t seed) : value_(seed) {}
+  Number& add(double x) {
+    value_ = (value_ ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15ULL;
+    value_ ^= value_ >> 32;
+    return *this;
+  }
+  Number& add(const Vec3& v) { return add(v.x()).add(v.y()).add(v.z()); }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_;
+};
+
+struct WriteCore {
+  pd_record& record;
+  const char* id;
+  double margin;
+
+  void operator()(const ConvexPolytope& polytope) const {
+    if (polytope.num_vertices() == 1 && polytope.vertex(0).isZero(0) && margin > 0) {
+      pd_record_sphere(&record, id, margin);
+      return;
+    }
+    std::vector<double> points;
+    for (int v = 0; v < polytope.num_vertices(); ++v) {
+      const Vec3 p = polytope.vertex(v);
+      points.insert(points.end(), p.data(), p.data() + 3);
+    }
+    pd_record_convex(&record, id, points.data(), points.size() / 3, margin);
+  }
+  void operator()(const Ellipsoid& ellipsoid) const {
+    pd_record_ellipsoid(&record, id, ellipsoid.radii.data(), margin);
+  }
+  void operator()(const Cylinder& cylinder) const {
+    pd_record_round(&record, id, "cylinder", cylinder.radius, cylinder.half_height, kAxes[cylinder.axis], margin);
+  }
+  void operator()(const Cone& cone) const {
+    pd_record_round(&record, id, "cone", cone.radius, cone.half_height, kAxes[cone.axis], margin);
+  }
+  void operator()(const SphereHull& hull) const {
+    std::vector<double> spheres;
+    for (const Sphere& s : hull.spheres()) {
+      spheres.insert(spheres.end(), {s.centre.x(), s.centre.y(), s.centre.z(), s.radius});
+    }
+    pd_record_spheres(&record, id, spheres.data(), hull.spheres().size(), margin);
+  }
+};
+
+/// Of a box to its corners; none of other shapes.
+std::optional<Vec3> half_extents(const btConvexShape& shape) {
+  switch (shape.getShapeType()) {
+    case BOX_SHAPE_PROXYTYPE:
+      return to_pd(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
+    case BOX_2D_SHAPE_PROXYTYPE:
+      return to_pd(static_cast<const btBox2dShape&>(shape).getHalfExtentsWithMargin());
+    case CONVEX_2D_SHAPE_PROXYTYPE:
+      return half_extents(*static_cast<const btConvex2dShape&>(shape).getChildShape());
+    case UNIFORM_SCALING_SHAPE_PROXYTYPE: {
+      const auto& scaled = static_cast<const btUniformScalingShape&>(shape);
+      auto half = half_extents(*scaled.getChildShape());
+      if (half) *half *= static_cast<double>(scaled.getUniformScalingFactor());
+      return half;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+void write(pd_record& record, const std::string& id, const ConvexShape& shape) {
+  std::visit(WriteCore{record, id.c_str(), shape.margin()}, shape.core());
+}
+
+}  // namespace
+
+template <class Write>
+std::string RecordShapes::known(std::uint64_t number, Write&& write_it) {
+  const auto [entry, fresh] = ids_.try_emplace(number, static_cast<std::int64_t>(ids_.size()));
+  std::string id = "s" + std::to_string(entry->second);
+  if (fresh) write_it(id);
+  return id;
+}
+
+std::optional<std::string> RecordShapes::convex(pd_record& record, const btConvexShape& shape) {
+  const std::uint64_t number = shape_fingerprint(shape);
+  if (ids_.contains(number)) return known(number, [](const std::string&) {});
+  const auto body = to_convex_shape(shape);
+  if (!body) return std::nullopt;
+  return known(number, [&](const std::string& id) { write(record, id, *body); });
+}
+
+std::optional<std::string> RecordShapes::sharp(pd_record& record, const btConvexShape& shape) {
+  const auto half = half_extents(shape);
+  if (!half) return convex(record, shape);
+  Number number(0xB0C5);
+  if (half->minCoeff() > 0) {
+    return known(number.add(*half).value(),
+                 [&](const std::string& id) { pd_record_box(&record, id.c_str(), half->data(), 0); });
+  }
+  std::vector<double> corners;  // a rectangle
+  for (int i = 0; i < 8; ++i) {
+    for (int axis = 0; axis < 3; ++axis) corners.push_back(((i >> axis) & 1) != 0 ? (*half)[axis] : -(*half)[axis]);
+  }
+  return known(number.add(*half).value(),
+               [&](const std::string& id) { pd_record_convex(&record, id.c_str(), corners.data(), 8, 0); });
+}
+
+std::string RecordShapes::plane(pd_record& record, const btStaticPlaneShape& shape) {
+  const Vec3 normal = to_pd(shape.getPlaneNormal());
+  const auto offset = static_cast<double>(shape.getPlaneConstant());
+  return known(Number(0x91A7E).add(normal).add(offset).value(),
+               [&](const std::string& id) { pd_record_plane(&record, id.c_str(), normal.data(), offset); });
+}
+
+std::string RecordShapes::triangle(pd_record& record, const ConvexShape& triangle) {
+  Number number(0x741A);
+  const ConvexPolytope& polytope = *triangle.polytope();
+  for (int v = 0; v < polytope.num_vertices(); ++v) number.add(polytope.vertex(v));
+  return known(number.add(triangle.margin()).value(), [&](const std::string& id) { write(record, id, triangle); });
+}
+
+}  // namespace pd::detail

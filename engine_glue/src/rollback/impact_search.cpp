@@ -1,0 +1,338 @@
+#include "rollback/impact_search.hpp"
+
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_cache.hpp"
+#include "shapes/moving_body.hpp"
+#include "shapes/triangles_in_box.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+constexpr DepthSettings kQuick{.bracket = Bracket::certified};
+
+/// What a pair in contact may sink by in a part of a step is the slop less what it has sunk in the step already, and
+/// this share of the slop at the least: a pair that sinks on and on is cut at finite lengths.
+constexpr double kLeastSlop = 0.25;
+/// A pair that sank less than this share of the slop has not come in yet.
+constexpr double kNotIn = 0.02;
+/// Looks at a motion that sinks by the slop, the last of which that finds the pair out is where it came in; none in the
+/// first quarter, so that pairs that sink steadily are not cut there.
+constexpr int kLooks = 8;
+constexpr int kFirstLook = 2;
+/// To 1/2000 of the motion; trials do the rest.
+constexpr int kHalvings = 8;
+
+}  // namespace
+
+const ConvexShape& Piece::shape_beside(const Piece& other) const {
+  if (triangle) return *triangle;
+  return cached->sharp && other.cached && other.cached->sharp ? *cached->sharp : *cached->body;
+}
+
+Pose Piece::with_body_at(const btTransform& pose) const { return to_pd(pose * local); }
+
+void ImpactSearch::begin_frame() {
+  bodies_.clear();
+  first_depths_.clear();
+  collected_ = false;
+  const auto& objects = world_.getCollisionObjectArray();
+  for (int i = 0; i < objects.size(); ++i) {
+    if (objects[i]->hasContactResponse()) bodies_.push_back({objects[i]});
+  }
+}
+
+void ImpactSearch::collect() {
+  if (collected_) return;
+  collected_ = true;
+  pieces_.clear();
+  for (Body& body : bodies_) {
+    body.first_piece = static_cast<int>(pieces_.size());
+    add_pieces(body.object, body.object->getCollisionShape(), btTransform::getIdentity());
+    body.num_pieces = static_cast<int>(pieces_.size()) - body.first_piece;
+    body.radius = 0;
+    for (int k = body.first_piece; k < body.first_piece + body.num_pieces; ++k) {
+      const Piece& piece = pieces_[static_cast<std::size_t>(k)];
+      body.radius =
+          std::max(body.radius, piece.concave != nullptr ? std::numeric_limits<double>::infinity()
+                                                         : to_pd(piece.local.getOrigin()).norm() + piece.radius);
+    }
+  }
+  bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.num_pieces == 0; }),
+                bodies_.end());
+}
+
+void ImpactSearch::add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local) {
+  if (shape->isCompound()) {
+    const auto* compound = static_cast<const btCompoundShape*>(shape);
+    for (int i = 0; i < compound->getNumChildShapes(); ++i) {
+      add_pieces(object, compound->getChildShape(i), local * compound->getChildTransform(i));
+    }
+    return;
+  }
+  Piece piece;
+  piece.body = object;
+  piece.local = local;
+  if (shape->isConcave()) {
+    piece.concave = static_cast<const btConcaveShape*>(shape);
+  } else if (shape->isConvex()) {
+    piece.cached = solver_.cache().find(*static_cast<const btConvexShape*>(shape), 0);
+    if (!piece.cached->body) return;
+    piece.radius = bounding_radius(piece.cached->sharp ? *piece.cached->sharp : *piece.cached->body);
+  } else {
+    return;
+  }
+  pieces_.push_back(std::move(piece));
+}
+
+void ImpactSearch::mark_start() {
+  for (Body& body : bodies_) body.start = body.object->getWorldTransform();
+}
+
+double ImpactSearch::farthest_way() const {
+  const auto reach = [](const Body& body) {
+    // Of the step that was made, which began at the marked pose.
+    const btBroadphaseProxy& box = *body.object->getBroadphaseHandle();
+    const btVector3 origin = body.start.getOrigin();
+    return to_pd(btVector3((box.m_aabbMin - origin).absolute()))
+        .cwiseMax(to_pd(btVector3((box.m_aabbMax - origin).absolute())))
+        .norm();
+  };
+  double farthest = 0, second = 0;
+  for (const Body& body : bodies_) {
+    const btTransform& end = body.object->getWorldTransform();
+    double turned = 0;
+    for (int i = 0; i < 3; ++i) {
+      turned += static_cast<double>((end.getBasis()[i] - body.start.getBasis()[i]).length2());
+    }
+    // A turn by the angle t moves a point at r by the chord 2 r sin(t / 2), and the matrix by sqrt(8) sin(t / 2). Up to
+    // t = 1 the arc is less than 1.05 of the chord.
+    const double chord = turned > 0 ? std::sqrt(0.5 * turned) * reach(body) : 0;
+    if (turned > 0.4) return std::numeric_limits<double>::infinity();
+    const double way = to_pd(end.getOrigin() - body.start.getOrigin()).norm() + 1.05 * chord;
+    second = std::max(second, std::min(way, farthest));
+    farthest = std::max(farthest, way);
+  }
+  return farthest + second;
+}
+
+void ImpactSearch::sweep(Body& body, double duration) {
+  const btTransform& end = body.object->getWorldTransform();
+  body.motion = motion_between(body.start, end, duration);
+  const double turn = body.motion.angular_velocity.norm() * duration;
+  body.travel = body.motion.linear_velocity.norm() * duration + (turn > 0 ? turn * body.radius : 0);
+  const btCollisionShape* shape = body.object->getCollisionShape();
+  shape->getAabb(body.start, body.lower, body.upper);
+  if (body.travel == 0) return;
+  btVector3 lower;
+  btVector3 upper;
+  shape->getAabb(end, lower, upper);
+  body.lower.setMin(lower);
+  body.upper.setMax(upper);
+  if (turn > 0 && std::isfinite(body.radius)) {
+    // Between its ends a turning point leaves the chord by r (1 - cos(turn / 2)) at most.
+    const auto bulge = static_cast<btScalar>(body.radius * (1 - std::cos(0.5 * std::min(turn, 6.28))) * 1.001);
+    body.lower -= btVector3(bulge, bulge, bulge);
+    body.upper += btVector3(bulge, bulge, bulge);
+  }
+}
+
+bool ImpactSearch::may_meet(const Body& a, const Body& b) const {
+  if (a.travel == 0 && b.travel == 0) return false;
+  if (a.object->isStaticOrKinematicObject() && b.object->isStaticOrKinematicObject()) return false;
+  if (a.lower.y() > b.upper.y() || b.lower.y() > a.upper.y() || a.lower.z() > b.upper.z() ||
+      b.lower.z() > a.upper.z()) {
+    return false;
+  }
+  return world_.getDispatcher()->needsCollision(a.object, b.object) &&
+         world_.getPairCache()->needsBroadphaseCollision(a.object->getBroadphaseHandle(),
+                                                         b.object->getBroadphaseHandle());
+}
+
+bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpact& found) {
+  duration_ = duration;
+  found = FoundImpact();
+  found.time = HUGE_VAL;
+  if (farthest_way() <= settings.searched) return false;
+  collect();
+  const auto widen = static_cast<btScalar>(settings.gap);
+  for (Body& body : bodies_) {
+    sweep(body, duration);
+    body.lower -= btVector3(widen, widen, widen);
+    body.upper += btVector3(widen, widen, widen);
+  }
+  order_.resize(bodies_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto lower_x = [&](int i) { return bodies_[static_cast<std::size_t>(i)].lower.x(); };
+  std::sort(order_.begin(), order_.end(),
+            [&](int i, int j) { return lower_x(i) != lower_x(j) ? lower_x(i) < lower_x(j) : i < j; });
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const Body& first = bodies_[static_cast<std::size_t>(order_[i])];
+    for (std::size_t j = i + 1; j < order_.size() && lower_x(order_[j]) <= first.upper.x(); ++j) {
+      const Body& second = bodies_[static_cast<std::size_t>(order_[j])];
+      if (may_meet(first, second)) {
+        // In the order of the world, so that the answer does not depend on where the bodies are.
+        search_bodies(order_[i] < order_[j] ? first : second, order_[i] < order_[j] ? second : first, settings, found);
+      }
+    }
+  }
+  return found.a.body != nullptr;
+}
+
+void ImpactSearch::search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found) {
+  // As for the world: pairs that move together.
+  const double apart = (a.motion.linear_velocity - b.motion.linear_velocity).norm() * duration_;
+  const auto turning = [&](const Body& body) {
+    const double turn = body.motion.angular_velocity.norm() * duration_;
+    return turn > 0 ? turn * body.radius : 0;
+  };
+  if (apart + turning(a) + turning(b) <= settings.searched) return;
+  for (int i = a.first_piece; i < a.first_piece + a.num_pieces; ++i) {
+    for (int j = b.first_piece; j < b.first_piece + b.num_pieces; ++j) {
+      const Piece& pa = pieces_[static_cast<std::size_t>(i)];
+      const Piece& pb = pieces_[static_cast<std::size_t>(j)];
+      if (pa.concave == nullptr && pb.concave == nullptr) {
+        search_convex(a, pa, b, pb, settings, found);
+      } else if (pa.concave == nullptr) {
+        search_concave(a, pa, b, pb, settings, found);
+      } else if (pb.concave == nullptr) {
+        search_concave(b, pb, a, pa, settings, found);
+      }
+    }
+  }
+}
+
+void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
+                                 const Settings& settings, FoundImpact& found) {
+  const MovingShape moving_a = moving_piece(pa.shape_beside(pb), a.start, pa.local, a.motion);
+  const MovingShape moving_b = moving_piece(pb.shape_beside(pa), b.start, pb.local, b.motion);
+  const auto travel = [&](const Body& body, const Piece& piece, const MovingShape& moving) {
+    return body.motion.angular_velocity.norm() * duration_ * (moving.arm.norm() + piece.radius);
+  };
+  const double reach = (a.motion.linear_velocity - b.motion.linear_velocity).norm() * duration_ +
+                       travel(a, pa, moving_a) + travel(b, pb, moving_b);
+  const double centres = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
+  if (centres > reach + pa.radius + pb.radius + settings.gap) return;
+  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, kQuick);
+  const double start = before.signed_distance();
+  if (start > reach + settings.gap) return;
+  TimeOfImpactSettings impact;
+  impact.distance_tolerance = 0.5 * settings.gap;
+  impact.contact_at_end = false;
+  impact.depth = kQuick;
+  // From where it is, a pair in contact may sink; then the step is cut, and Bullet sees it there.
+  const double depth = std::max(-start, 0.0);
+  if (start <= settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
+  const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
+  if (!(hit.hit && hit.time < found.time)) return;
+  found = {pa, pb, hit.time, impact.allowed_depth};
+  if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
+}
+
+double ImpactSearch::allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings) {
+  const auto place = [&](const Piece& piece) { return static_cast<std::size_t>(&piece - pieces_.data()); };
+  const double first = first_depths_.emplace(place(a) * pieces_.size() + place(b), depth).first->second;
+  return depth + std::max(settings.slop - std::max(depth - first, 0.0), kLeastSlop * settings.slop);
+}
+
+void ImpactSearch::end_where_it_came_in(const MovingShape& a, const MovingShape& b, double depth,
+                                        const Settings& settings, FoundImpact& found) {
+  const double allowed = depth + kNotIn * settings.slop;
+  const auto is_out = [&](double time) {
+    const PenetrationDepth answer =
+        penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch_, kQuick);
+    return allowed + answer.signed_distance() > 0;
+  };
+  double low = 0;
+  double high = found.time;
+  for (int k = kLooks - 1; k >= kFirstLook && low == 0; --k) {
+    const double time = found.time * k / kLooks;
+    (is_out(time) ? low : high) = time;
+  }
+  if (low == 0) return;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (is_out(middle) ? low : high) = middle;
+  }
+  found.time = low;
+  found.allowed_depth = allowed;
+}
+
+void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
+                             btVector3& upper) const {
+  const btTransform frame = (b.start * pb.local).inverse();
+  const btTransform start = a.start * pa.local;
+  const btTransform end = a.object->getWorldTransform() * pa.local;
+  const btVector3 from = frame * start.getOrigin();
+  const btVector3 to = frame * end.getOrigin();
+  lower = from;
+  upper = from;
+  lower.setMin(to);
+  upper.setMax(to);
+  const double turn = a.motion.angular_velocity.norm() * duration_;
+  const double arm = to_pd(pa.local.getOrigin()).norm();
+  // Where the concave body moves, too, its motion is laid on the other one.
+  const double moved = b.motion.linear_velocity.norm() * duration_ +
+                       b.motion.angular_velocity.norm() * duration_ *
+                           (to_pd(a.start.getOrigin() - b.start.getOrigin()).norm() + arm + a.travel);
+  const auto margin = static_cast<double>(pb.concave->getMargin());
+  const auto grown =
+      static_cast<btScalar>((pa.radius + margin + arm * (1 - std::cos(0.5 * std::min(turn, 6.28))) + moved) * 1.001);
+  lower -= btVector3(grown, grown, grown);
+  upper += btVector3(grown, grown, grown);
+}
+
+void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
+                                  const Settings& settings, FoundImpact& found) {
+  btVector3 lower;
+  btVector3 upper;
+  swept_box(a, pa, b, pb, lower, upper);
+  const std::vector<BoxedTriangle> triangles = triangles_in_box(*pb.concave, lower, upper);
+  const MovingShape moving_a = moving_piece(*pa.cached->body, a.start, pa.local, a.motion);
+  // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
+  // their edges, no deeper than it lies on this one. So one depth is allowed for all.
+  double deepest = -HUGE_VAL;
+  for (const BoxedTriangle& triangle : triangles) {
+    const PosedShape posed = moving_piece(*triangle.shape, b.start, pb.local, b.motion).start;
+    deepest = std::max(deepest, -penetration_depth(moving_a.start, posed, scratch_, kQuick).signed_distance());
+  }
+  TimeOfImpactSettings impact;
+  impact.distance_tolerance = 0.5 * settings.gap;
+  impact.contact_at_end = false;
+  impact.depth = kQuick;
+  const double depth = std::max(deepest, 0.0);
+  if (deepest >= -settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
+  for (const BoxedTriangle& triangle : triangles) {
+    const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
+    const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
+    if (hit.hit && hit.time < found.time) {
+      found = {pa, pb, hit.time, impact.allowed_depth};
+      found.b.triangle = triangle.shape;
+      if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
+    }
+  }
+}
+
+PenetrationDepth ImpactSearch::measure(const FoundImpact& impact, const btTransform& a, const btTransform& b) {
+  return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.with_body_at(a)},
+                           {&impact.b.shape_beside(impact.a), impact.b.with_body_at(b)}, scratch_, kQuick);
+}
+
+btTransform ImpactSearch::pose_on_the_way(const btCollisionObject& object, double time) const {
+  const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == &object; });
+  btTransform pose = object.getWorldTransform();
+  if (body == bodies_.end() || body->travel == 0) return pose;
+  btTransformUtil::integrateTransform(body->start, to_bullet(body->motion.linear_velocity),
+                                      to_bullet(body->motion.angular_velocity), static_cast<btScalar>(time), pose);
+  return pose;
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,118 @@
+/// @file
+/// The first contact of a world's bodies between two states: swept boxes first, then pairs of convex pieces, then time
+/// of impact.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "pd/bullet/penetration_depth_solver.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/scratch.hpp"
+#include "shapes/cached_shape.hpp"
+
+namespace pd::detail {
+
+/// A convex piece of a body, or a concave child whose triangles are pieces.
+struct Piece {
+  btCollisionObject* body = nullptr;
+  btTransform local = btTransform::getIdentity();  ///< in the body
+  std::shared_ptr<CachedShape> cached;
+  const btConcaveShape* concave = nullptr;
+  std::shared_ptr<const ConvexShape> triangle;  ///< of a concave child: the one that was met
+  double radius = 0;                            ///< of a convex piece, about its own origin
+
+  /// As the contact algorithm takes it: two boxes are sharp.
+  [[nodiscard]] const ConvexShape& shape_beside(const Piece& other) const;
+  [[nodiscard]] Pose present() const { return with_body_at(body->getWorldTransform()); }
+  [[nodiscard]] Pose with_body_at(const btTransform& pose) const;
+};
+
+struct FoundImpact {
+  Piece a;
+  Piece b;
+  double time = 0;
+  double allowed_depth = 0;  ///< 0: a first contact
+};
+
+class ImpactSearch {
+ public:
+  ImpactSearch(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver) : world_(world), solver_(solver) {}
+
+  /// Reads the world's bodies, and forgets their pieces: the host may have changed shapes since.
+  void begin_frame();
+  /// The present poses are where the motion begins.
+  void mark_start();
+
+  struct Settings {
+    double gap = 0;         ///< at which bodies meet
+    double in_contact = 0;  ///< pairs no farther apart than this are in contact already
+    double searched = 0;    ///< pairs that move by no more than this are not searched
+    double slop = 0;        ///< those may sink by this in a frame, about
+  };
+  /// The earliest first contact of the motion from the marked poses to the present ones, which takes `duration`.
+  /// @return whether there is one.
+  bool earliest(double duration, const Settings& settings, FoundImpact& found);
+
+  /// The pair's answer at the present poses.
+  [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact) {
+    return measure(impact, impact.a.body->getWorldTransform(), impact.b.body->getWorldTransform());
+  }
+  /// With its bodies elsewhere.
+  [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact, const btTransform& a, const btTransform& b);
+  /// Where the body of the world was after `time` of the motion that was searched last.
+  [[nodiscard]] btTransform pose_on_the_way(const btCollisionObject& object, double time) const;
+
+ private:
+  struct Body {
+    btCollisionObject* object;
+    int first_piece = 0;
+    int num_pieces = 0;
+    double radius = 0;  ///< of all pieces about the body's origin; infinite with a concave child
+    btTransform start = btTransform::getIdentity();
+    RigidMotion motion = {};
+    double travel = 0;  ///< no point of it moves farther
+    btVector3 lower = btVector3(0, 0, 0);
+    btVector3 upper = btVector3(0, 0, 0);
+  };
+
+  /// Reads the pieces of all bodies, once a frame; bodies without any are left out.
+  void collect();
+  void add_pieces(btCollisionObject* object, const btCollisionShape* shape, const btTransform& local);
+  /// No points of two bodies have moved farther against each other since `mark_start`. Rough, quicker than motions, and
+  /// without pieces: how far a body reaches is taken from the broadphase.
+  [[nodiscard]] double farthest_way() const;
+  void sweep(Body& body, double duration);
+  [[nodiscard]] bool may_meet(const Body& a, const Body& b) const;
+  void search_bodies(const Body& a, const Body& b, const Settings& settings, FoundImpact& found);
+  void search_convex(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
+                     FoundImpact& found);
+  /// How deep a pair in contact, at present `depth` deep, may be at the end of the motion.
+  double allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings);
+  /// The found pair was in contact, `depth` deep, and sinks deeper than it may. Where it is out again before (one
+  /// corner leaves, the next comes in), its time becomes that at which it comes in, and Bullet meets it there.
+  void end_where_it_came_in(const MovingShape& a, const MovingShape& b, double depth, const Settings& settings,
+                            FoundImpact& found);
+  void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
+                      FoundImpact& found);
+  /// The box of a convex piece's motion in the frame of a concave one.
+  void swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
+                 btVector3& upper) const;
+
+  btDiscreteDynamicsWorld& world_;
+  BulletPenetrationDepthSolver& solver_;
+  double duration_ = 0;
+  bool collected_ = false;
+  std::vector<Piece> pieces_;
+  std::vector<Body> bodies_;
+  std::vector<int> order_;
+  /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.
+  std::unordered_map<std::size_t, double> first_depths_;
+  Scratch scratch_;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,304 @@
+#include "pd/bullet/rollback.hpp"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "pd/bullet/scalar.hpp"
+#include "rollback/impact_search.hpp"
+#include "rollback/substep.hpp"
+#include "rollback/world_step.hpp"
+
+namespace pd {
+
+namespace {
+
+/// Of a point of a body that moves as it does at present, at the pose given.
+Vec3 velocity_at(const btCollisionObject& object, const btTransform& pose, const Vec3& point) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr || body->isStaticObject()) {
+    return Vec3::Zero();
+  }
+  const Vec3 arm = point - to_pd(pose.getOrigin());
+  return to_pd(body->getLinearVelocity()) + to_pd(body->getAngularVelocity()).cross(arm);
+}
+
+/// Of the point of B nearest to A against that of A: along the contact's normal it is positive where they approach.
+Vec3 approach(const detail::FoundImpact& impact, const btTransform& a, const btTransform& b,
+              const PenetrationDepth& contact) {
+  return velocity_at(*impact.b.body, b, contact.witness_b) - velocity_at(*impact.a.body, a, contact.witness_a);
+}
+
+Vec3 approach(const detail::FoundImpact& impact, const PenetrationDepth& contact) {
+  return approach(impact, impact.a.body->getWorldTransform(), impact.b.body->getWorldTransform(), contact);
+}
+
+/// What is left of a step below this share of it is rounding, no part.
+constexpr double kNothingLeft = 1e-6;
+/// Steps of Newton's method before a trial; its speeds are those at the trial's end, so that it converges by a factor.
+constexpr int kMostForeseen = 8;
+/// A pair in contact that deepens ends a part when it has this share of the slop left, or less.
+constexpr double kDeepEnough = 0.2;
+/// Trials for one contact after which, where none was free of contacts, one of the least length says whether any is.
+/// Later (10) the parts that follow are short, and the cap on cuts is reached in ten times as many steps.
+constexpr int kTrialsBeforeLeast = 4;
+/// Trials for one contact after which one that meets nothing is taken for a part of its own: what stands in their way
+/// (motions that jump between two lengths of a part, contacts that brake each other) looks different from nearer by.
+constexpr int kPatience = 10;
+
+}  // namespace
+
+struct RollbackStepper::State {
+  btDiscreteDynamicsWorld& world;
+  BulletPenetrationDepthSolver& solver;
+  RollbackSettings settings;
+  detail::ImpactSearch search;
+  detail::SubStepper parts;
+  std::unique_ptr<BulletSnapshot> start;
+  bool is_cut = false;        ///< the present part is not the frame's first
+  int unrecorded_trials = 0;  ///< of parts that ended before the contact that they were about
+  btScalar owed = 0;          ///< time of fixed steps that is not due yet
+
+  State(btDiscreteDynamicsWorld& w, BulletPenetrationDepthSolver& s, const RollbackSettings& chosen)
+      : world(w), solver(s), settings(chosen), search(w, s), parts(w, chosen.exact_flight) {}
+
+  void save() {
+    if (start) {
+      start->save_again();
+    } else {
+      start = std::make_unique<BulletSnapshot>(world, &solver);
+    }
+  }
+
+  [[nodiscard]] detail::ImpactSearch::Settings search_settings() const {
+    const double in_contact = detail::kInContactGaps * settings.gap;
+    // In whole steps Bullet brakes what is slower than the slop, and most bodies of most worlds are.
+    return {settings.gap, in_contact, is_cut ? in_contact : settings.contact_slop, settings.contact_slop};
+  }
+
+  void try_part(double from, double length, RollbackReport& report) {
+    parts.move(from, length, settings.gap, settings.contact_slop);
+    ++report.simulation_steps;
+    while (parts.must_repeat(length)) {
+      start->restore();
+      parts.move(from, length, settings.gap, settings.contact_slop);
+      ++report.simulation_steps;
+    }
+    parts.finish_move(length);
+  }
+
+  void accept(double from, double length, RollbackReport& report) {
+    parts.accept(from, length);
+    ++report.parts;
+    detail::WorldStep::post_tick(world, static_cast<btScalar>(length));
+  }
+
+  /// Whether the state at `time` of a part, which meets something at `impact.time`, is one just before that all the
+  /// same: a gap left, and less than two gaps moved since.
+  [[nodiscard]] bool is_just_before(const detail::FoundImpact& impact, double time, double clearance,
+                                    const PenetrationDepth& contact) const;
+  /// When a part is to end so that the impact's pair has about three quarters of the gap left: on the motion that a
+  /// shorter part would make, as far as it is known. Otherwise on the way of the last trial. @return less than `end`.
+  [[nodiscard]] double foresee(const detail::FoundImpact& impact, double end);
+  /// Whether a part of whose motion nothing met anything ended where the impact's pair meets.
+  [[nodiscard]] bool is_at(const detail::FoundImpact& impact, double clearance, int trials) const;
+  /// Reports the contact that ended a part, and expects its impact.
+  void record(const detail::FoundImpact& impact, const PenetrationDepth& contact, FirstContact& result,
+              RollbackReport& report);
+  /// Ends a part just before the impact, or, where trials do not come to it, at a time before that from which the next
+  /// part will. @return its length, `least` or more.
+  double advance_to(detail::FoundImpact& impact, double from, double duration, double least, RollbackReport& report);
+  /// One frame, without what follows it (motion states, forces).
+  void frame(btScalar step, double elapsed, RollbackReport& report);
+};
+
+RollbackStepper::RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
+                                 const RollbackSettings& settings)
+    : state_(new State(world, solver, settings)) {}
+
+RollbackStepper::~RollbackStepper() { delete state_; }
+
+bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, double time, double clearance,
+                                            const PenetrationDepth& contact) const {
+  if (!(clearance > 0 && clearance <= settings.gap)) return false;
+  return (time - impact.time) * approach(impact, contact).norm() <= 2 * settings.gap;
+}
+
+bool RollbackStepper::State::is_at(const detail::FoundImpact& impact, double clearance, int trials) const {
+  // How deep a pair may go before the step is cut is no matter of digits. And a pair that Bullet brakes comes to the
+  // end of every part at the distance that counts as touching; the next part has it in contact.
+  return clearance <= settings.gap || (impact.allowed_depth > 0 && clearance <= kDeepEnough * settings.contact_slop) ||
+         (trials > 1 && clearance <= detail::kInContactGaps * settings.gap);
+}
+
+double RollbackStepper::State::foresee(const detail::FoundImpact& impact, double end) {
+  const auto pose_at = [&](const btCollisionObject& body, double time) {
+    btTransform pose;
+    return parts.predict(body, time, pose) ? pose : search.pose_on_the_way(body, time);
+  };
+  double time = impact.time;
+  for (int i = 0; i < kMostForeseen; ++i) {
+    const btTransform a = pose_at(*impact.a.body, time);
+    const btTransform b = pose_at(*impact.b.body, time);
+    const PenetrationDepth contact = search.measure(impact, a, b);
+    const double clearance = contact.signed_distance() + impact.allowed_depth;
+    if (clearance > 0.5 * settings.gap && clearance <= settings.gap) break;
+    const double closing = approach(impact, a, b, contact).dot(contact.normal);
+    const double next = time + (clearance - 0.75 * settings.gap) / closing;
+    if (!(closing > 0 && next > 0 && next < end)) break;
+    time = next;
+  }
+  return time;
+}
+
+double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double from, double duration, double least,
+                                          RollbackReport& report) {
+  FirstContact result;
+  PenetrationDepth contact;
+  result.undone_depth = std::max(0.0, -search.measure(impact).signed_distance());
+  // A shorter part moves a little differently (forces act for less time, Bullet clamps a fast turn less), so that each
+  // trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
+  // motion does; between them Newton's method on the pair's gap.
+  double low = 0;
+  double high = duration;
+  double time = std::max(least, foresee(impact, duration));
+  bool at_contact = false;
+  const auto make = [&] {
+    start->restore();
+    try_part(from, time, report);
+    ++unrecorded_trials;
+  };
+  for (int trials = 1;; ++trials) {
+    make();
+    detail::FoundImpact earlier;
+    const bool meets = search.earliest(time, search_settings(), earlier);
+    if (meets) impact = earlier;
+    contact = search.measure(impact);
+    const double clearance = contact.signed_distance() + impact.allowed_depth;
+    at_contact = meets ? is_just_before(impact, time, clearance, contact) : is_at(impact, clearance, trials);
+    if (at_contact) break;
+    (meets ? high : low) = time;
+    const bool free_part = low >= least;
+    if (free_part && (trials >= kPatience || (meets && impact.time <= low))) {
+      time = low;
+      if (meets) make();
+      break;
+    }
+    double next = HUGE_VAL;
+    if (meets) {
+      next = foresee(impact, time);
+    } else {
+      const double closing = approach(impact, contact).dot(contact.normal);
+      if (closing > 0) next = time + (clearance - 0.75 * settings.gap) / closing;
+    }
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    // Where no trial was free yet, the least part says whether any is.
+    if (meets && low == 0 && trials == kTrialsBeforeLeast) next = std::min(next, least);
+    const bool no_finer = static_cast<btScalar>(next) == static_cast<btScalar>(time);
+    if (next >= least && trials < settings.max_trials && !no_finer) {
+      time = next;
+      continue;
+    }
+    if (!meets) break;
+    // No trial was free.
+    time = least;
+    make();
+    contact = search.measure(impact);
+    ++report.least_parts;
+    report.deepest_run_in = std::max(report.deepest_run_in, -contact.signed_distance());
+    at_contact = true;
+    break;
+  }
+  if (!at_contact) return time;
+  result.time = from + time;
+  record(impact, contact, result, report);
+  return time;
+}
+
+void RollbackStepper::State::record(const detail::FoundImpact& impact, const PenetrationDepth& contact,
+                                    FirstContact& result, RollbackReport& report) {
+  parts.expect_impact(impact.a.body, impact.b.body);
+  result.gap = contact.signed_distance();
+  result.trials = std::exchange(unrecorded_trials, 0);
+  result.body_a = impact.a.body;
+  result.body_b = impact.b.body;
+  result.normal = to_bullet(contact.normal);
+  result.point_a = to_bullet(contact.witness_a);
+  result.point_b = to_bullet(contact.witness_b);
+  if (impact.allowed_depth > 0) {
+    parts.expect_deep(impact.a.body, impact.b.body);
+    ++report.deepened;
+  } else {
+    report.contacts.push_back(result);
+  }
+}
+
+void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport& report) {
+  const auto whole = static_cast<double>(step);
+  const double least = settings.least_part * whole;
+  const int known = report.contacts.size();
+  search.begin_frame();
+  parts.begin_frame(step);
+  unrecorded_trials = 0;
+  double done = 0;
+  int cuts = 0;
+  while (whole - done > kNothingLeft * whole) {
+    const double remaining = whole - done;
+    is_cut = cuts > 0;
+    detail::WorldStep::pre_tick(world, static_cast<btScalar>(remaining));
+    save();
+    parts.begin_part();
+    search.mark_start();
+    try_part(done, remaining, report);
+    const bool bounded = cuts >= settings.max_contacts_per_step;
+    report.bounded = report.bounded || bounded;
+    detail::FoundImpact impact;
+    if (bounded || remaining <= least || !search.earliest(remaining, search_settings(), impact)) {
+      accept(done, remaining, report);
+      break;
+    }
+    ++cuts;
+    double part = least;
+    if (impact.time < least) {
+      start->restore();
+      try_part(done, least, report);
+      parts.expect_impact(impact.a.body, impact.b.body);
+      ++report.least_parts;
+      report.deepest_run_in = std::max(report.deepest_run_in, -search.measure(impact).signed_distance());
+    } else {
+      part = advance_to(impact, done, remaining, least, report);
+    }
+    accept(done, part, report);
+    done += part;
+  }
+  for (int i = known; i < report.contacts.size(); ++i) report.contacts[i].time += elapsed;
+}
+
+RollbackReport RollbackStepper::step(btScalar step) {
+  RollbackReport report;
+  state_->frame(step, 0, report);
+  state_->parts.end_frame();
+  const bool latency = state_->world.getLatencyMotionStateInterpolation();
+  detail::WorldStep::synchronize(state_->world, latency ? btScalar(0) : step, 0);
+  return report;
+}
+
+RollbackReport RollbackStepper::step(btScalar time, int max_steps, btScalar fixed) {
+  RollbackReport report;
+  btScalar& owed = state_->owed;
+  owed += time;
+  const int due = static_cast<int>(owed / fixed);
+  owed -= static_cast<btScalar>(due) * fixed;
+  // As Bullet does: what is due beyond the most steps is lost.
+  for (int i = 0; i < std::min(due, max_steps); ++i) {
+    state_->frame(fixed, i * static_cast<double>(fixed), report);
+  }
+  if (due > 0) state_->parts.end_frame();
+  detail::WorldStep::synchronize(state_->world, owed, fixed);
+  return report;
+}
+
+}  // namespace pd

@@ -1,0 +1,70 @@
+#include "shapes/compound_children.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <algorithm>
+
+#include "pd/bullet/scalar.hpp"
+#include "shapes/child_tree.hpp"
+
+namespace pd::detail {
+
+Box box_of(const btCollisionShape& shape, const btTransform& pose) {
+  Box box;
+  shape.getAabb(pose, box.lower, box.upper);
+  return box;
+}
+
+bool apart(const Box& a, const Box& b, btScalar reach) {
+  for (int i = 0; i < 3; ++i) {
+    if (a.lower[i] > b.upper[i] + reach || b.lower[i] > a.upper[i] + reach) return true;
+  }
+  return false;
+}
+
+void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
+                   std::vector<Child>& children) {
+  children.clear();
+  const btCollisionShape& shape = *wrapper.getCollisionShape();
+  const btTransform& pose = wrapper.getWorldTransform();
+  if (!shape.isCompound()) {
+    children.push_back({&shape, pose, -1, box_of(shape, pose)});
+    return;
+  }
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  const auto visit = [&](int i) {
+    Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i, {}};
+    child.box = box_of(*child.shape, child.pose);
+    if (!apart(child.box, world, reach)) children.push_back(child);
+  };
+  const btVector3 extra(reach, reach, reach);
+  for_each_child_meeting(compound, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
+  // The tree's order depends on its history.
+  const auto by_number = [](const Child& x, const Child& y) { return x.index < y.index; };
+  if (!std::is_sorted(children.begin(), children.end(), by_number)) {
+    std::sort(children.begin(), children.end(), by_number);
+  }
+}
+
+bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShape& other,
+                  std::vector<Child>& children) {
+  children.clear();
+  const btCollisionShape& shape = *wrapper.getCollisionShape();
+  const btTransform& pose = wrapper.getWorldTransform();
+  if (!shape.isCompound()) {
+    children.push_back({&shape, pose, -1, {}});
+    return true;
+  }
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+    const btCollisionShape& child = *compound.getChildShape(i);
+    if (!child.isConvex()) return false;
+    if (gCompoundChildShapePairCallback != nullptr && !gCompoundChildShapePairCallback(&other, &child)) continue;
+    const btTransform place = pose * compound.getChildTransform(i);
+    if (is_finite(place)) children.push_back({&child, place, i, {}});
+  }
+  return true;
+}
+
+}  // namespace pd::detail

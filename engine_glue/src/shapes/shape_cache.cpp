@@ -1,0 +1,134 @@
+#include "pd/bullet/shape_cache.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "shapes/cached_shape.hpp"
+
+namespace pd {
+
+namespace {
+
+std::shared_ptr<detail::CachedShape> convert(const btConvexShape& shape) {
+  auto result = std::make_shared<detail::CachedShape>();
+  result->source = &shape;
+  auto body = to_convex_shape(shape);
+  if (!body) {
+    result->refusal = body.error();
+    return result;
+  }
+  result->body = std::make_shared<const ConvexShape>(std::move(body).value());
+  if (shape.getShapeType() == BOX_SHAPE_PROXYTYPE) {
+    auto sharp = to_sharp_box(static_cast<const btBoxShape&>(shape));
+    result->sharp = sharp ? std::make_shared<const ConvexShape>(std::move(sharp).value()) : result->body;
+  }
+  return result;
+}
+
+}  // namespace
+
+BulletShapeCache::BulletShapeCache(std::size_t capacity) : capacity_(std::max<std::size_t>(capacity, 1)) {}
+
+std::shared_ptr<const ConvexShape> BulletShapeCache::find_or_convert(const btConvexShape& shape) {
+  return find(shape, 0)->body;
+}
+
+std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape& shape, std::uint64_t stamp) {
+  if (shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+    conversions_.fetch_add(1, std::memory_order_relaxed);
+    return convert(shape);
+  }
+  const std::uint64_t signature = shape_signature(shape);
+  const std::uint64_t now = clock_.fetch_add(1, std::memory_order_relaxed);
+  std::shared_ptr<detail::CachedShape> known;
+  {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(&shape);
+    if (found != entries_.end() && found->second->signature == signature) {
+      known = found->second;
+      known->last_use.store(now, std::memory_order_relaxed);
+      if (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp) {
+        return known;
+      }
+    }
+  }
+  const std::uint64_t fingerprint = shape_fingerprint(shape);
+  if (known && known->fingerprint == fingerprint) {
+    known->compared.store(stamp, std::memory_order_relaxed);
+    return known;
+  }
+  auto entry = make_entry(shape, fingerprint);
+  entry->signature = signature;
+  entry->compared.store(stamp, std::memory_order_relaxed);
+  entry->last_use.store(now, std::memory_order_relaxed);
+  const std::unique_lock lock(mutex_);
+  const auto present = entries_.find(&shape);
+  if (present != entries_.end()) {
+    if (present->second->fingerprint == fingerprint && present->second->signature == signature) {
+      return present->second;  // another thread was first: one body for all, so that warm pairs recognise it
+    }
+    erase(&shape);
+  }
+  if (entries_.size() >= capacity_) {
+    erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
+            return a.second->last_use.load(std::memory_order_relaxed) <
+                   b.second->last_use.load(std::memory_order_relaxed);
+          })->first);
+  }
+  entries_.emplace(&shape, entry);
+  std::weak_ptr<detail::CachedShape>& like = by_content_[fingerprint];
+  if (like.expired()) like = entry;
+  return entry;
+}
+
+std::shared_ptr<detail::CachedShape> BulletShapeCache::make_entry(const btConvexShape& shape,
+                                                                  std::uint64_t fingerprint) {
+  std::shared_ptr<detail::CachedShape> like;
+  {
+    const std::shared_lock lock(mutex_);
+    const auto found = by_content_.find(fingerprint);
+    if (found != by_content_.end()) like = found->second.lock();
+  }
+  std::shared_ptr<detail::CachedShape> entry;
+  if (like) {
+    entry = std::make_shared<detail::CachedShape>();
+    entry->source = &shape;
+    entry->body = like->body;
+    entry->sharp = like->sharp;
+    entry->refusal = like->refusal;
+  } else {
+    // Outside the lock: readers of other shapes go on. Two threads may convert the same shape; both get equal bodies.
+    conversions_.fetch_add(1, std::memory_order_relaxed);
+    entry = convert(shape);
+  }
+  entry->fingerprint = fingerprint;
+  return entry;
+}
+
+void BulletShapeCache::erase(const btCollisionShape* shape) {
+  const auto entry = entries_.find(shape);
+  if (entry == entries_.end()) return;
+  const auto like = by_content_.find(entry->second->fingerprint);
+  if (like != by_content_.end() && like->second.lock() == entry->second) by_content_.erase(like);
+  entries_.erase(entry);
+}
+
+void BulletShapeCache::forget(const btCollisionShape* shape) {
+  const std::unique_lock lock(mutex_);
+  erase(shape);
+}
+
+void BulletShapeCache::clear() {
+  const std::unique_lock lock(mutex_);
+  entries_.clear();
+  by_content_.clear();
+}
+
+std::size_t BulletShapeCache::size() const {
+  const std::shared_lock lock(mutex_);
+  return entries_.size();
+}
+
+}  // namespace pd

@@ -1,0 +1,279 @@
+#include "union/compound_contacts.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "pair/solver_core.hpp"
+#include "pair/step_reach.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pieces/compound_facts.hpp"
+#include "pieces/covered_contact.hpp"
+#include "shapes/compound_children.hpp"
+#include "shapes/moving_body.hpp"
+#include "union/deep_union.hpp"
+#include "union/piece_memories.hpp"
+#include "union/pieces_in_result.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Two children in place of their bodies in the result.
+class ChildrenInResult {
+ public:
+  ChildrenInResult(btManifoldResult& result, const btCollisionObjectWrapper& a, const Child& child_a,
+                   const btCollisionObjectWrapper& b, const Child& child_b)
+      : a_(result, a, child_a), b_(result, b, child_b) {}
+  [[nodiscard]] const btCollisionObjectWrapper& a() const { return a_.wrapper(); }
+  [[nodiscard]] const btCollisionObjectWrapper& b() const { return b_.wrapper(); }
+
+ private:
+  ChildInResult a_;
+  ChildInResult b_;
+};
+
+/// What was over the budget is asked again after 1, 3, 7, ... steps, 31 at the most: it costs the budget each time.
+constexpr int kMostRefusals = 5;
+
+using ChildPair = std::pair<int, int>;  ///< places in the lists of near children
+
+class ChildrenOfPoint : public PointSurroundings {
+ public:
+  ChildrenOfPoint(btManifoldResult& result, const btCollisionObjectWrapper& a, const std::vector<Child>& children_a,
+                  const btCollisionObjectWrapper& b, const std::vector<Child>& children_b,
+                  const std::vector<ChildPair>& pairs)
+      : result_(result), a_(a), children_a_(children_a), b_(b), children_b_(children_b), pairs_(pairs) {}
+  void enter(int pair) override {
+    const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
+    inside_.emplace(result_, a_, children_a_[static_cast<std::size_t>(i)], b_,
+                    children_b_[static_cast<std::size_t>(j)]);
+  }
+  void leave() override { inside_.reset(); }
+  [[nodiscard]] bool numbers(int pair, PieceNumbers& out) const override {
+    const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
+    const Child& of_a = children_a_[static_cast<std::size_t>(i)];
+    const Child& of_b = children_b_[static_cast<std::size_t>(j)];
+    out = numbers_in_result(result_, a_, part_of_child(a_, of_a), index_of_child(a_, of_a), part_of_child(b_, of_b),
+                            index_of_child(b_, of_b));
+    return true;
+  }
+
+ private:
+  btManifoldResult& result_;
+  const btCollisionObjectWrapper& a_;
+  const std::vector<Child>& children_a_;
+  const btCollisionObjectWrapper& b_;
+  const std::vector<Child>& children_b_;
+  const std::vector<ChildPair>& pairs_;
+  std::optional<ChildrenInResult> inside_;
+};
+
+/// Where a child stands in a list, at whose end it is put if it is not there.
+int place_of(const Child& child, std::vector<Child>& children) {
+  const auto same = [&](const Child& other) { return other.index == child.index; };
+  const auto found = std::find_if(children.begin(), children.end(), same);
+  const auto place = static_cast<int>(found - children.begin());
+  if (found == children.end()) children.push_back(child);
+  return place;
+}
+
+/// Whether two children cannot have come within reach of each other since they were last asked.
+/// @param way_and_reach  what both have come, and up to which gap there are contacts
+bool still_apart(const PieceMemory& memory, const ChildMotion& a, const ChildMotion& b, double way_and_reach) {
+  return way_and_reach < memory.apart_until * (1 - 0x1p-40) && memory.shapes[0] == a.shape &&
+         memory.shapes[1] == b.shape;
+}
+
+/// Up to which gap the solver can need points of two children in this step: they lie within the threshold of both
+/// boxes.
+btScalar reach_of(const Box& a, const Box& b, const StepReach& reach, btScalar threshold) {
+  btVector3 lower = a.lower, upper = a.upper;
+  lower.setMax(b.lower);
+  upper.setMin(b.upper);
+  return reach.of_pieces_near(btScalar(0.5) * (lower + upper), btScalar(0.5) * (upper - lower).length() + threshold);
+}
+
+bool all_convex(const std::vector<Child>& children) {
+  return std::all_of(children.begin(), children.end(), [](const Child& child) { return child.shape->isConvex(); });
+}
+
+class CompoundContacts final : public UnionContacts {
+ public:
+  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
+    ChildrenOfPoint around(question.result, question.a, children_a_, question.b, children_b_, pairs_);
+    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+  }
+
+ private:
+  /// Brings what is remembered of the near children of one body up to date.
+  static void move(const std::vector<Child>& children, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
+                   std::vector<ChildMotion>& motions);
+  /// One pair's points. @return false where a child has no exact form
+  /// @param way  of both children
+  /// @param gap  up to which their points can be needed; `reach`: which of them are
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way, double gap,
+           const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers, Patches& patches);
+  /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
+  void leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory, ThreadBuffers& buffers,
+                    Patches& patches);
+
+  std::vector<Child> children_a_;
+  std::vector<Child> children_b_;
+  std::vector<ChildPair> pairs_;
+  PieceMemories memories_;
+  DeepUnion deep_;
+};
+
+void CompoundContacts::move(const std::vector<Child>& children, std::uint64_t stamp, SolverCore& core,
+                            ThreadBuffers& buffers, std::vector<ChildMotion>& motions) {
+  for (const Child& child : children) {
+    const auto place = static_cast<std::size_t>(child.index + 1);
+    if (place >= motions.size()) motions.resize(place + 1);
+    ChildMotion& motion = motions[place];
+    const bool met = motion.shape != nullptr;
+    const CachedShape& found = core.find(static_cast<const btConvexShape&>(*child.shape), stamp, motion.shape, buffers);
+    if (met && found.body) {
+      double radius = bounding_radius(*found.body);
+      if (found.sharp) radius = std::max(radius, bounding_radius(*found.sharp));
+      // Rounded up, so that the way that is left is no less than the way that was come.
+      motion.way = (motion.way + moved_at_most(motion.pose, child.pose, radius)) * (1 + 0x1p-52);
+    }
+    motion.pose = child.pose;
+  }
+}
+
+bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+  const auto& [a, b, seconds, threshold, stamp, result] = question;
+  pairs_.clear();
+  memories_.begin();
+  deep_.clear();
+  const btTransform& pose_a = a.getWorldTransform();
+  const btTransform& pose_b = b.getWorldTransform();
+  if (!is_finite(pose_a) || !is_finite(pose_b)) return true;
+  const btCollisionShape& shape_a = *a.getCollisionShape();
+  const btCollisionShape& shape_b = *b.getCollisionShape();
+  children_near(a, box_of(shape_b, pose_a.inverseTimes(pose_b)), box_of(shape_b, pose_b), threshold, children_a_);
+  children_b_.clear();
+  if (!children_a_.empty()) {
+    children_near(b, box_of(shape_a, pose_b.inverseTimes(pose_a)), box_of(shape_a, pose_a), threshold, children_b_);
+  }
+  // Most pairs of boxes that overlap end here.
+  if (children_b_.empty()) children_a_.clear();
+  if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
+  auto buffers = core.buffers.lease();
+  buffers->cover.near.begin_pair(stamp);
+  move(children_a_, stamp, core, *buffers, memory.children[0]);
+  move(children_b_, stamp, core, *buffers, memory.children[1]);
+  look_at(a, children_a_, buffers->cover.near.facts(), core);
+  look_at(b, children_b_, buffers->cover.near.facts(), core);
+  const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
+  for (std::size_t i = 0; i < children_a_.size(); ++i) {
+    const Child& child_a = children_a_[i];
+    for (std::size_t j = 0; j < children_b_.size(); ++j) {
+      const Child& child_b = children_b_[j];
+      if (apart(child_a.box, child_b.box, threshold)) continue;
+      const btScalar gap = reach_of(child_a.box, child_b.box, step_reach, threshold);
+      if (gap < threshold && apart(child_a.box, child_b.box, gap)) continue;
+      if (gCompoundChildShapePairCallback != nullptr &&
+          !gCompoundChildShapePairCallback(child_a.shape, child_b.shape)) {
+        continue;
+      }
+      const std::uint64_t number = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child_a.index + 1)) << 32U) |
+                                   static_cast<std::uint32_t>(child_b.index + 1);
+      PieceMemory& remembered = memories_.take(memory.pieces, number);
+      const ChildMotion& motion_a = memory.children[0][static_cast<std::size_t>(child_a.index + 1)];
+      const ChildMotion& motion_b = memory.children[1][static_cast<std::size_t>(child_b.index + 1)];
+      const double way = motion_a.way + motion_b.way;
+      if (still_apart(remembered, motion_a, motion_b, way + static_cast<double>(gap))) continue;
+      pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
+      if (remembered.shapes[0] != motion_a.shape) remembered.shapes[0] = motion_a.shape;
+      if (remembered.shapes[1] != motion_b.shape) remembered.shapes[1] = motion_b.shape;
+      const ChildrenInResult pair(result, a, child_a, b, child_b);
+      if (!ask(pair, question, core, way, static_cast<double>(gap), step_reach, remembered, *buffers, patches)) {
+        return false;
+      }
+    }
+  }
+  memories_.end(memory.pieces);
+  if (deep_.needed()) {
+    leave_as_one(question, core, memory, *buffers, patches);
+  } else {
+    memory.union_pause = memory.union_refusals = 0;
+    memory.union_way.setZero();
+  }
+  return true;
+}
+
+void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory,
+                                    ThreadBuffers& buffers, Patches& patches) {
+  if (memory.union_pause > 0) {
+    --memory.union_pause;
+    buffers.counters.deep_unions_left.add();
+    return;
+  }
+  DeepUnion::Way way;
+  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, memory.union_way, way);
+  if (outcome == DeepUnion::Outcome::over_budget) {
+    memory.union_refusals = std::min(memory.union_refusals + 1, kMostRefusals);
+    memory.union_pause = (1 << memory.union_refusals) - 1;
+    buffers.counters.deep_unions_left.add();
+    return;
+  }
+  memory.union_refusals = 0;
+  if (outcome != DeepUnion::Outcome::found && outcome != DeepUnion::Outcome::nearly) return;
+  buffers.counters.deep_unions.add();
+  if (outcome == DeepUnion::Outcome::nearly) buffers.counters.deep_unions_nearly.add();
+  // The children that touch last need not touch yet.
+  const ChildPair last(place_of(way.a, children_a_), place_of(way.b, children_b_));
+  auto pair = std::find(pairs_.begin(), pairs_.end(), last);
+  if (pair == pairs_.end()) pair = pairs_.insert(pairs_.end(), last);
+  patches.keep_along(way.points.normal);
+  patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.a.index, way.b.index);
+}
+
+bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
+                           double gap, const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers,
+                           Patches& patches) {
+  PairAnswer answer;
+  const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
+  const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
+  const auto threshold = static_cast<double>(question.threshold);
+  ContactManifold points;
+  const PairQuestion asked{shape_a,
+                           pair.a().getWorldTransform(),
+                           shape_b,
+                           pair.b().getWorldTransform(),
+                           {true, is_part(pair.a()), is_part(pair.b())},
+                           memory.met ? kAnyDistance : gap,
+                           question.stamp,
+                           memory.shapes,
+                           &memory.warm,
+                           false,
+                           true};
+  const auto outcome = core.contacts(asked, memory.met ? threshold : gap, buffers, answer, points);
+  if (outcome == SolverCore::Outcome::unsupported) return false;
+  if (outcome != SolverCore::Outcome::answered) return true;
+  memory.met = answer.depth.signed_distance() <= gap;
+  memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
+  reach.leave_out_idle(points);
+  keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
+                 AnswerPoints::made, points);
+  const auto [i, j] = pairs_.back();
+  const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
+  const int piece_b = children_b_[static_cast<std::size_t>(j)].index;
+  deep_.add(answer, piece_a, piece_b, points);
+  patches.add(points, static_cast<int>(pairs_.size()) - 1, piece_a, piece_b);
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<UnionContacts> compound_contacts() { return std::make_unique<CompoundContacts>(); }
+
+}  // namespace pd::detail

@@ -1,0 +1,393 @@
+#include "union/mesh_contacts.hpp"
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pair/solver_core.hpp"
+#include "pd/bullet/scalar.hpp"
+#include "pieces/compound_facts.hpp"
+#include "pieces/covered_contact.hpp"
+#include "shapes/compound_children.hpp"
+#include "shapes/met_triangle.hpp"
+#include "shapes/moving_body.hpp"
+#include "shapes/triangles_around.hpp"
+#include "union/flat_ground.hpp"
+#include "union/gentle_ground.hpp"
+#include "union/one_sided.hpp"
+#include "union/piece_memories.hpp"
+#include "union/pieces_in_result.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Of a way out of a triangle: so much farther, a body that follows it is off the triangle beyond rounding.
+constexpr double kClear = 1 + 0x1p-6;
+
+/// Triangles of one step that a body or child remembers, some 2 KB each; those met after them begin anew each step.
+constexpr std::size_t kMostRemembered = 256;
+
+/// Children whose boxes have less than this share of the surface of the box around all of them read the mesh one by
+/// one: between them lie triangles that none of them meets.
+constexpr btScalar kCloseTogether = btScalar(.5);
+
+/// Half the surface of a box.
+btScalar surface(const btVector3& lower, const btVector3& upper) {
+  const btVector3 extent = upper - lower;
+  return extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x();
+}
+
+/// Of a child and a triangle; unlike those of any other two, of up to 65,535 children and parts.
+std::uint64_t number_of(const Child& child, const MetTriangle& triangle) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child.index + 1)) << 48U) ^
+         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) ^
+         static_cast<std::uint32_t>(triangle.index);
+}
+
+/// Of the same two in place of the triangle's part: Bullet's number of that for a body that is no compound.
+int part_of(const Child& child, const MetTriangle& triangle) { return triangle.part ^ ((child.index + 1) << 16); }
+
+/// The child and the triangle that a point lies between.
+class PiecesOfPoint : public PointSurroundings {
+ public:
+  PiecesOfPoint(const UnionQuestion& question, const std::vector<Child>& children,
+                const std::vector<MetTriangle>& triangles)
+      : question_(question), children_(children), triangles_(triangles) {}
+  void enter(int place) override {
+    const MetTriangle& triangle = triangles_[static_cast<std::size_t>(place)];
+    child_.emplace(question_.result, question_.a, children_[static_cast<std::size_t>(triangle.child)]);
+    triangle_.emplace(question_.result, question_.b, triangle);
+  }
+  void leave() override {
+    triangle_.reset();
+    child_.reset();
+  }
+  [[nodiscard]] bool numbers(int place, PieceNumbers& out) const override {
+    const MetTriangle& triangle = triangles_[static_cast<std::size_t>(place)];
+    const Child& child = children_[static_cast<std::size_t>(triangle.child)];
+    out = numbers_in_result(question_.result, question_.a, part_of_child(question_.a, child),
+                            index_of_child(question_.a, child), triangle.part, triangle.index);
+    return true;
+  }
+
+ private:
+  const UnionQuestion& question_;
+  const std::vector<Child>& children_;
+  const std::vector<MetTriangle>& triangles_;
+  std::optional<ChildInResult> child_;
+  std::optional<TriangleInResult> triangle_;
+};
+
+class MeshContacts final : public UnionContacts {
+ public:
+  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
+    PiecesOfPoint around(question, children_, triangles_);
+    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+    if (!still_) remember_points(patches, manifolds.memory().standing);
+  }
+
+ private:
+  /// Compares where the children are with where all triangles were asked about them.
+  /// @return whether only those that made points are to be asked again
+  bool stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory);
+  /// False: in the next step the body will not be where it is.
+  static bool may_come_to_rest(const UnionQuestion& question);
+  /// The triangles that one of the children is asked about.
+  void choose_triangles(int place, const TrianglesAround& around, StandingStill& standing);
+  /// Which triangles made points that were chosen.
+  void remember_points(const Patches& patches, StandingStill& standing) const;
+  /// Sets how far the children reach.
+  void reach_out(const UnionQuestion& question);
+  /// Reads the mesh around one of them, or all.
+  void read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper, ThreadBuffers& buffers);
+  /// The contacts of one of them. @return false where a piece has no exact form
+  bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+               Patches& patches);
+  /// Whether the body can be asked along the normals of gentle triangles. @param a  the wrapper of the child
+  bool begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place, SolverCore& core,
+                    PairMemory& memory);
+  /// The contacts with one of the triangles that were chosen, if it is gentle. @return false: it is not
+  bool find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, std::size_t triangle,
+                      SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+  /// Asks a triangle by itself.
+  SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,
+                          const TriangleInResult& triangle, PieceMemory* memory, SolverCore& core,
+                          ThreadBuffers& buffers, PairAnswer& answer) const;
+  void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
+                  ThreadBuffers& buffers, Patches& patches);
+
+  std::vector<Child> children_;         ///< of question.a, or itself
+  std::vector<BodyReach> reaches_;      ///< of the children
+  btVector3 lower_, upper_;             ///< of the box around all of them
+  bool together_ = true;                ///< so close that the mesh is read once for all
+  bool still_ = false;                  ///< since all triangles were asked
+  std::vector<StandingChild> stand_;    ///< as the children are now
+  std::vector<double> radii_;           ///< of the children, about the origins of their frames
+  std::vector<int> known_;              ///< places of the triangles around among those that were asked
+  std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
+  std::vector<std::size_t> places_;     ///< theirs among the triangles around
+  FlatGround flat_;
+  GentleGround gentle_;
+  PosedShape body_{};  ///< the child at hand
+  PieceMemories memories_;
+  OneSided one_sided_;
+};
+
+/// The side from which the corners run counter-clockwise (unit, in the world). Requires an area.
+Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
+  const Vec3 across = (to_pd(triangle.corners[1]) - to_pd(triangle.corners[0]))
+                          .cross(to_pd(triangle.corners[2]) - to_pd(triangle.corners[0]));
+  return (to_pd(pose).rotation() * across).normalized();
+}
+
+void MeshContacts::reach_out(const UnionQuestion& question) {
+  const btTransform into_mesh = question.b.getWorldTransform().inverse();
+  const btScalar reach = question.b.getCollisionShape()->getMargin() + question.threshold;
+  reaches_.clear();
+  lower_.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  upper_ = -lower_;
+  btScalar of_children = 0;
+  for (const Child& child : children_) {
+    reaches_.emplace_back(static_cast<const btConvexShape&>(*child.shape), into_mesh * child.pose, reach);
+    lower_.setMin(reaches_.back().lower());
+    upper_.setMax(reaches_.back().upper());
+    of_children += surface(reaches_.back().lower(), reaches_.back().upper());
+  }
+  together_ = children_.size() == 1 || of_children >= kCloseTogether * surface(lower_, upper_);
+}
+
+void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper,
+                             ThreadBuffers& buffers) {
+  const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
+  const int skipped = buffers.around.read(mesh, lower, upper);
+  if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
+  buffers.cover.near.know(buffers.around, question.b);
+}
+
+SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
+                                      const UnionQuestion& question, const TriangleInResult& triangle,
+                                      PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers,
+                                      PairAnswer& answer) const {
+  const bool met = memory != nullptr && memory->met;
+  const PairQuestion asked{static_cast<const btConvexShape&>(*a.getCollisionShape()),
+                           pose_a,
+                           triangle.shape(),
+                           question.b.getWorldTransform(),
+                           {true, is_part(a), false},
+                           met ? kAnyDistance : static_cast<double>(question.threshold),
+                           question.stamp,
+                           memory != nullptr ? memory->shapes : buffers.recent,
+                           memory != nullptr ? &memory->warm : nullptr};
+  return core.answer(asked, buffers, answer);
+}
+
+/// The contacts along the fronts of triangles that the body stands through, where none of the others leads off them.
+void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
+                              ThreadBuffers& buffers, Patches& patches) {
+  const btTransform& pose = a.getWorldTransform();
+  for (const OneSided::Behind& behind : one_sided_.behind()) {
+    const MetTriangle& met = triangles_[static_cast<std::size_t>(behind.triangle)];
+    const TriangleInResult triangle(question.result, question.b, met);
+    PairAnswer answer;
+    const std::vector<Vec3>& ways = one_sided_.ways_out();
+    const bool left = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
+      // A little farther than touching, which rounding would decide.
+      const btTransform moved(pose.getBasis(), pose.getOrigin() + to_bullet(Vec3(kClear * way)));
+      return ask(a, moved, question, triangle, nullptr, core, buffers, answer) == SolverCore::Outcome::answered &&
+             answer.depth.contact != ContactClass::overlapping;
+    });
+    if (left || ask(a, pose, question, triangle, nullptr, core, buffers, answer) != SolverCore::Outcome::answered) {
+      continue;
+    }
+    const ContactManifold points =
+        along_front(triangle.wrapper(), answer, behind.front, static_cast<double>(question.threshold), buffers);
+    patches.add(points, behind.triangle, part_of(children_[static_cast<std::size_t>(met.child)], met), met.index);
+  }
+}
+
+bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+  triangles_.clear();
+  places_.clear();
+  memories_.begin();
+  if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
+  if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
+  auto buffers = core.buffers.lease();
+  buffers->cover.near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers->cover.near.facts(), core);
+  if (children_.empty()) return true;
+  reach_out(question);
+  still_ = stand_still(question, core, *buffers, memory);
+  if (together_) read_mesh(question, lower_, upper_, *buffers);
+  if (still_) {
+    memory.standing.find(buffers->around.triangles(), known_);
+  } else if (!stand_.empty() && may_come_to_rest(question)) {
+    memory.standing.begin(stand_, question.threshold, question.b.getCollisionShape()->getMargin(),
+                          buffers->around.triangles());
+  } else {
+    memory.standing.forget();
+  }
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    if (find_of(question, static_cast<int>(i), core, *buffers, memory, patches)) continue;
+    memory.standing.forget();
+    return false;
+  }
+  if (!still_) memories_.end(memory.pieces);
+  return true;
+}
+
+bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
+                               PairMemory& memory) {
+  stand_.clear();
+  radii_.clear();
+  // Children far apart read the mesh one by one; what stands behind a one-sided triangle is asked with all others.
+  if (!together_ || core.settings.one_sided_meshes) return false;
+  const btTransform into_mesh = question.b.getWorldTransform().inverse();
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    const Child& child = children_[i];
+    std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, child.index);
+    core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, buffers);
+    stand_.push_back({child.index, into_mesh * child.pose, shape});
+    const Vec3 origin = to_pd(stand_.back().pose.getOrigin());
+    radii_.push_back((to_pd(reaches_[i].upper()) - origin).cwiseMax(origin - to_pd(reaches_[i].lower())).norm());
+  }
+  return memory.standing.still(stand_, radii_, question.threshold, question.b.getCollisionShape()->getMargin());
+}
+
+bool MeshContacts::may_come_to_rest(const UnionQuestion& question) {
+  const Vec3 way = question.seconds * (linear_velocity(*question.a.getCollisionObject()) -
+                                       linear_velocity(*question.b.getCollisionObject()));
+  return way.squaredNorm() <= static_cast<double>(question.threshold) * static_cast<double>(question.threshold);
+}
+
+void MeshContacts::choose_triangles(int place, const TrianglesAround& around, StandingStill& standing) {
+  using Met = StandingStill::Met;
+  const auto child = static_cast<std::size_t>(place);
+  const BodyReach& reach = reaches_[child];
+  const std::span<const MeshTriangle> all = around.triangles();
+  const Met least = still_ && !standing.flat(child) ? Met::with_points : Met::within_reach;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const MeshTriangle& near = all[i];
+    const bool known = still_ && known_[i] >= 0;
+    if (known ? standing.met(child, static_cast<std::size_t>(known_[i])) < least : !reach.meets(near)) continue;
+    if (!still_ && !standing.empty()) standing.set(child, i, Met::within_reach);
+    triangles_.push_back({{near.corners[0], near.corners[1], near.corners[2]}, near.part, near.index, place});
+    places_.push_back(i);
+  }
+}
+
+void MeshContacts::remember_points(const Patches& patches, StandingStill& standing) const {
+  if (standing.empty()) return;
+  for (int i = 0; i < patches.size(); ++i) {
+    for (int k = 0; k < patches[i].fresh.count; ++k) {
+      const auto piece = static_cast<std::size_t>(patches[i].pieces[static_cast<std::size_t>(k)]);
+      standing.set(static_cast<std::size_t>(triangles_[piece].child), places_[piece], StandingStill::Met::with_points);
+    }
+  }
+}
+
+bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place,
+                                SolverCore& core, PairMemory& memory) {
+  const btTransform& pose = a.getWorldTransform();
+  if (!in_range(pose) || !in_range(question.b.getWorldTransform())) return false;
+  std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, children_[static_cast<std::size_t>(place)].index);
+  core.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()), question.stamp, shape);
+  if (!shape->body) return false;
+  body_ = {(is_part(a) && shape->sharp ? shape->sharp : shape->body).get(), to_pd(pose)};
+  return gentle_.begin(body_, reaches_[static_cast<std::size_t>(place)], to_pd(question.b.getWorldTransform()),
+                       static_cast<double>(question.b.getCollisionShape()->getMargin()),
+                       static_cast<double>(question.threshold), core.settings.one_sided_meshes);
+}
+
+bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question,
+                                  std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
+  const std::size_t place = places_[triangle];
+  if (!gentle_.ask(buffers.around.triangles()[place], place, buffers.cover.near.shared_edges())) return false;
+  buffers.counters.calls.add();
+  buffers.counters.support_calls.add();
+  const MetTriangle& met = triangles_[triangle];
+  const Child& child = children_[static_cast<std::size_t>(met.child)];
+  for (const ContactManifold& found : gentle_.manifolds()) {
+    ContactManifold points = found;
+    for (int k = 0; k < points.count && core.settings.one_sided_meshes; ++k) {
+      const double depth = points.points[static_cast<std::size_t>(k)].depth;
+      if (depth > 0) one_sided_.add_way(depth * points.normal);
+    }
+    if (is_piece(a)) {
+      drop_covered(a, body_, question.b, static_cast<double>(question.threshold), question.seconds, question.stamp,
+                   core, buffers, points);
+    }
+    patches.add(points, static_cast<int>(triangle), part_of(child, met), met.index);
+  }
+  return true;
+}
+
+bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers,
+                           PairMemory& memory, Patches& patches) {
+  const Child& child = children_[static_cast<std::size_t>(place)];
+  const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
+  const btCollisionObjectWrapper& mesh = question.b;
+  const btTransform& pose = mesh.getWorldTransform();
+  if (!together_) read_mesh(question, reach.lower(), reach.upper(), buffers);
+  const std::size_t first = triangles_.size();
+  choose_triangles(place, buffers.around, memory.standing);
+  if (triangles_.size() == first) return true;
+  const ChildInResult piece(question.result, question.a, child);
+  const btCollisionObjectWrapper& a = piece.wrapper();
+  const auto threshold = static_cast<double>(question.threshold);
+  const FlatGround::Body standing{a, memory.shape_of_child(0, child.index)};
+  const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
+  const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
+  if (!asked_one_by_one && flat_.find(standing, question, met_of_child, first, core, buffers, patches)) {
+    if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
+    return true;
+  }
+  // What stood on flat ground stands over an edge of it now: all are asked again in the next step.
+  if (still_ && !asked_one_by_one) memory.standing.forget();
+  const bool one_sided = core.settings.one_sided_meshes;
+  one_sided_.clear();
+  const bool gentle = begin_gentle(a, question, place, core, memory);
+  for (std::size_t i = first; i < triangles_.size(); ++i) {
+    const MetTriangle& met = triangles_[i];
+    if (gentle && find_on_gentle(a, question, i, core, buffers, patches)) continue;
+    const TriangleInResult triangle(question.result, mesh, met);
+    PairAnswer answer;
+    PieceMemory* remembered = nullptr;
+    if (still_) {
+      remembered = PieceMemories::find(memory.pieces, number_of(child, met));
+    } else if (i - first < kMostRemembered) {
+      remembered = &memories_.take(memory.pieces, number_of(child, met));
+    }
+    const auto outcome = ask(a, child.pose, question, triangle, remembered, core, buffers, answer);
+    if (outcome == SolverCore::Outcome::unsupported) return false;
+    if (outcome != SolverCore::Outcome::answered) continue;
+    if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
+    const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
+    if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
+    ContactManifold points;
+    keep_uncovered(a, triangle.wrapper(), answer, front, threshold, question.seconds, question.stamp, core, buffers,
+                   AnswerPoints::to_be_made, points);
+    patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
+  }
+  if (one_sided) add_fronts(a, question, core, buffers, patches);
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<UnionContacts> mesh_contacts() { return std::make_unique<MeshContacts>(); }
+
+bool takes_mesh(int proxy_type) {
+  return proxy_type == TRIANGLE_MESH_SHAPE_PROXYTYPE || proxy_type == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
+         proxy_type == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE || proxy_type == FAST_CONCAVE_MESH_PROXYTYPE ||
+         proxy_type == TERRAIN_SHAPE_PROXYTYPE || proxy_type == CUSTOM_CONCAVE_SHAPE_TYPE;
+}
+
+}  // namespace pd::detail

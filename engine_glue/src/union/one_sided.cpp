@@ -1,0 +1,39 @@
+#include "union/one_sided.hpp"
+
+#include <algorithm>
+
+namespace pd::detail {
+
+namespace {
+
+/// Sines: less than a degree behind an edge is the noise of normals there; 25 degrees round the back's normal.
+constexpr double kSideways = 0.02;
+constexpr double kThrough = 0.9;
+constexpr std::size_t kMostWays = 4;
+
+}  // namespace
+
+void OneSided::clear() {
+  behind_.clear();
+  ways_.clear();
+}
+
+bool OneSided::admit(const PairAnswer& answer, const Vec3& front, int triangle) {
+  const bool overlapping = answer.depth.contact == ContactClass::overlapping;
+  const double ahead = answer.depth.normal.dot(front);
+  if (ahead >= -kSideways) {
+    if (overlapping) ways_.emplace_back(answer.depth.depth * answer.depth.normal);
+    return true;
+  }
+  if (overlapping && ahead < -kThrough) behind_.push_back({triangle, front});
+  return false;
+}
+
+const std::vector<Vec3>& OneSided::ways_out() {
+  std::stable_sort(ways_.begin(), ways_.end(),
+                   [](const Vec3& x, const Vec3& y) { return x.squaredNorm() > y.squaredNorm(); });
+  if (ways_.size() > kMostWays) ways_.resize(kMostWays);
+  return ways_;
+}
+
+}  // namespace pd::detail

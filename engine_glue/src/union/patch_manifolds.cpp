@@ -1,0 +1,126 @@
+#include "union/patch_manifolds.hpp"
+
+#include <array>
+
+#include "pair/solver_core.hpp"
+#include "pd/bullet/scalar.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// Leads from a point's number in its patch to its piece's.
+class PieceOfPoint : public PointSurroundings {
+ public:
+  PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
+  void enter(int point) override { pieces_.enter(patch_.pieces[static_cast<std::size_t>(point)]); }
+  void leave() override { pieces_.leave(); }
+  [[nodiscard]] bool same(int i, int k) const override {
+    return patch_.pieces[static_cast<std::size_t>(i)] == patch_.pieces[static_cast<std::size_t>(k)];
+  }
+  [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
+    return pieces_.numbers(patch_.pieces[static_cast<std::size_t>(point)], out);
+  }
+  [[nodiscard]] bool lasting() const override { return false; }
+
+ private:
+  const Patch& patch_;
+  PointSurroundings& pieces_;
+};
+
+}  // namespace
+
+PatchManifolds::~PatchManifolds() {
+  for (const auto& kept : manifolds_) {
+    core_.pairs.remove(kept->manifold);
+    dispatcher_.releaseManifold(kept->manifold);
+  }
+}
+
+void PatchManifolds::release_from(int patch) {
+  while (static_cast<int>(manifolds_.size()) > patch) {
+    core_.pairs.remove(manifolds_.back()->manifold);
+    dispatcher_.releaseManifold(manifolds_.back()->manifold);
+    manifolds_.pop_back();
+  }
+}
+
+PatchManifolds::Kept& PatchManifolds::at(std::size_t i, const btCollisionObject& a, const btCollisionObject& b) {
+  while (i >= manifolds_.size()) {
+    manifolds_.push_back(std::make_unique<Kept>());
+    manifolds_.back()->manifold = dispatcher_.getNewManifold(&a, &b);
+    manifolds_.back()->memory.patch = static_cast<int>(manifolds_.size()) - 1;
+    manifolds_.back()->memory.owner = this;
+    core_.pairs.add(manifolds_.back()->manifold, &manifolds_.back()->memory);
+  }
+  return *manifolds_[i];
+}
+
+void PatchManifolds::clear() {
+  for (const auto& kept : manifolds_) {
+    if (kept->manifold->getNumContacts() > 0) kept->manifold->clearManifold();
+  }
+}
+
+void PatchManifolds::append_to(btManifoldArray& manifolds) const {
+  for (const auto& kept : manifolds_) manifolds.push_back(kept->manifold);
+}
+
+std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& of) {
+  std::size_t count = 0;
+  for (std::size_t m = 0; m < manifolds_.size(); ++m) {
+    const btPersistentManifold& manifold = *manifolds_[m]->manifold;
+    if (manifold.getNumContacts() == 0) continue;
+    LastPatch& last = last_[count];
+    last.normal.setZero();
+    last.count = manifold.getNumContacts();
+    const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
+    for (int k = 0; k < last.count; ++k) {
+      const btManifoldPoint& point = manifold.getContactPoint(k);
+      last.places[static_cast<std::size_t>(k)] = to_pd(pose_b(point.m_localPointB));
+      last.normal += to_pd(point.m_normalWorldOnB);
+    }
+    last.normal.normalize();
+    of[count++] = static_cast<int>(m);
+  }
+  return {last_.data(), count};
+}
+
+void PatchManifolds::replace(Patches& patches, btScalar seconds, btManifoldResult& result,
+                             PointSurroundings& surroundings) {
+  btPersistentManifold& first = *manifolds_[0]->manifold;
+  if (patches.empty()) {
+    clear();
+    return;
+  }
+  const btCollisionObject& a = *first.getBody0();
+  const btCollisionObject& b = *first.getBody1();
+  std::array<int, kMost> of{};
+  patches.choose(kMost, static_cast<double>(first.getContactBreakingThreshold()), last_patches(of));
+  std::array<int, kMost> heirs{};
+  heirs.fill(-1);
+  for (int i = 0; i < patches.size(); ++i) {
+    if (patches[i].last >= 0) heirs[static_cast<std::size_t>(of[static_cast<std::size_t>(patches[i].last)])] = i;
+  }
+  // New patches go where the first ones are free.
+  std::size_t free = 0;
+  for (int i = 0; i < patches.size(); ++i) {
+    if (patches[i].last >= 0) continue;
+    while (heirs[free] >= 0) ++free;
+    heirs[free] = i;
+  }
+  for (std::size_t m = 0; m < static_cast<std::size_t>(kMost); ++m) {
+    if (heirs[m] < 0) {
+      if (m < manifolds_.size()) manifolds_[m]->manifold->clearManifold();
+      continue;
+    }
+    Kept& kept = at(m, a, b);
+    const Patch& patch = patches[heirs[m]];
+    PieceOfPoint around(patch, surroundings);
+    result.setPersistentManifold(kept.manifold);
+    replace_points(*kept.manifold, kept.memory, patch.fresh, seconds, result, around);
+  }
+  result.setPersistentManifold(&first);
+}
+
+}  // namespace pd::detail

@@ -1,0 +1,99 @@
+/// @file
+/// The contact points of many pieces, sorted by normal into patches, and four of each patch chosen.
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "pair/manifold_points.hpp"
+#include "pd/contact/manifold.hpp"
+
+namespace pd::detail {
+
+/// At most four points of about one normal, and which piece each came from.
+struct Patch {
+  FreshPoints fresh;
+  std::array<int, 4> pieces{};
+  Vec3 normal = Vec3::UnitX();  ///< of its deepest point, or of the patch of the last step that goes on in it
+  int last = -1;                ///< number of that patch; -1: it is new
+};
+
+/// A patch of the last step where the bodies are now.
+struct LastPatch {
+  Vec3 normal = Vec3::UnitX();  ///< the mean of its points'
+  std::array<Vec3, 4> places;   ///< of its points, on B
+  int count = 0;
+};
+
+class Patches {
+ public:
+  void clear();
+  /// @param piece  handed back with the point
+  /// @param i, j  numbers of the piece that do not change from step to step: features are told apart by them
+  void add(const ContactManifold& manifold, int piece, int i, int j);
+
+  /// Whether no points were added.
+  [[nodiscard]] bool empty() const { return points_.empty(); }
+  /// Drops the points whose normals are more than 60 degrees off `normal`.
+  void keep_along(const Vec3& normal);
+
+  /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees (the
+  /// last ones take what fits nowhere), drops those that coincide, and keeps four of each patch: the deepest, the
+  /// farthest from it, and those that span the largest triangles with these two, one to each side.
+  ///
+  /// The choice is the same from step to step as far as that goes, since a point that is new has no impulse yet:
+  /// patches of the last step go on where points are left for them, points of the last step count as a tenth farther
+  /// out, and of points that are as deep up to the noise of a resting contact (a thousandth of the breaking threshold)
+  /// the first is one of the last step, or else the farthest out in a fixed direction.
+  ///
+  /// Of a corner in a valley that is less steep than a patch is wide, two points push, each to its side. One of them
+  /// alone moves the body until the other one is the deeper, and back in the next step; so what touches within the
+  /// breaking threshold of a chosen point, along a normal more than three degrees off, gets a patch of its own. O(p (q
+  /// + log p)), p points, q patches.
+  /// @param last  of the last step, at most `most`
+  void choose(int most, double breaking_threshold, std::span<const LastPatch> last);
+
+  [[nodiscard]] int size() const { return static_cast<int>(patches_.size()); }
+  [[nodiscard]] const Patch& operator[](int i) const { return patches_[static_cast<std::size_t>(i)]; }
+
+ private:
+  struct Point {
+    Vec3 normal;
+    ContactPoint contact;
+    int piece;
+    int patch;
+    bool lasting;  ///< it stands where the patch had a point in the last step
+  };
+  /// A point by how far it lies in some direction.
+  struct Place {
+    double along;
+    std::size_t point;
+    bool kept;
+  };
+  static void add(const Point& point, Patch& patch);
+  /// The patches of the last step that some point belongs to.
+  void go_on(std::span<const LastPatch> last);
+  /// The deepest first, of equal ones that which was added first.
+  void sort_by_depth();
+  void choose_in(int patch, double breaking_threshold, std::span<const LastPatch> last);
+  /// Of the points that are left: those that touch and push another way than what was chosen beside them.
+  void find_twins(double breaking_threshold);
+  /// As patches of their own.
+  void add_twins(int most, std::span<const LastPatch> last);
+  /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
+  void keep_one_of_each(int patch, double merge);
+
+  std::vector<Point> points_;
+  std::vector<Point> sorted_;
+  std::vector<std::pair<double, std::size_t>> by_depth_;
+  std::vector<Patch> patches_;
+  std::vector<const Point*> left_;
+  std::vector<const Point*> chosen_;  ///< of the patch at hand
+  std::vector<Patch> twins_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> ranks_;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,95 @@
+/// @file
+/// Pieces of unions in place of their bodies in Bullet's result, as Bullet's own algorithms put them there for the
+/// host's callbacks.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+
+#include "pair/manifold_points.hpp"
+#include "shapes/compound_children.hpp"
+#include "shapes/met_triangle.hpp"
+
+namespace pd::detail {
+
+/// Puts a wrapper with its numbers in place of its body's in the result, and back.
+class PieceInResult {
+ public:
+  PieceInResult(btManifoldResult& result, const btCollisionObjectWrapper& piece)
+      : result_(result),
+        first_(result.getBody0Internal() == piece.getCollisionObject()),
+        before_(first_ ? result.getBody0Wrap() : result.getBody1Wrap()) {
+    put(piece);
+    if (first_) {
+      result.setShapeIdentifiersA(piece.m_partId, piece.m_index);
+    } else {
+      result.setShapeIdentifiersB(piece.m_partId, piece.m_index);
+    }
+  }
+  ~PieceInResult() { put(*before_); }
+  PieceInResult(const PieceInResult&) = delete;
+  PieceInResult& operator=(const PieceInResult&) = delete;
+
+ private:
+  void put(const btCollisionObjectWrapper& wrapper) {
+    if (first_) {
+      result_.setBody0Wrap(&wrapper);
+    } else {
+      result_.setBody1Wrap(&wrapper);
+    }
+  }
+
+  btManifoldResult& result_;
+  bool first_;
+  const btCollisionObjectWrapper* before_;
+};
+
+/// The numbers that a child, or the convex body itself, has in the result.
+inline int part_of_child(const btCollisionObjectWrapper& body, const Child& child) {
+  return child.index < 0 ? body.m_partId : -1;
+}
+inline int index_of_child(const btCollisionObjectWrapper& body, const Child& child) {
+  return child.index < 0 ? body.m_index : child.index;
+}
+
+/// The numbers of a piece of each body, in the result's order.
+inline PieceNumbers numbers_in_result(const btManifoldResult& result, const btCollisionObjectWrapper& a, int part_a,
+                                      int index_a, int part_b, int index_b) {
+  if (result.getBody0Internal() == a.getCollisionObject()) return {part_a, index_a, part_b, index_b};
+  return {part_b, index_b, part_a, index_a};
+}
+
+/// A child of a compound, or the convex body itself.
+class ChildInResult {
+ public:
+  ChildInResult(btManifoldResult& result, const btCollisionObjectWrapper& body, const Child& child)
+      : wrapper_(child.index < 0 ? body.m_parent : &body, child.shape, body.getCollisionObject(), child.pose,
+                 part_of_child(body, child), index_of_child(body, child)),
+        placed_(result, wrapper_) {}
+  [[nodiscard]] const btCollisionObjectWrapper& wrapper() const { return wrapper_; }
+
+ private:
+  btCollisionObjectWrapper wrapper_;
+  PieceInResult placed_;
+};
+
+/// A triangle of a mesh.
+class TriangleInResult {
+ public:
+  TriangleInResult(btManifoldResult& result, const btCollisionObjectWrapper& mesh, const MetTriangle& triangle)
+      : shape_(triangle.corners[0], triangle.corners[1], triangle.corners[2]),
+        wrapper_(&mesh, &shape_, mesh.getCollisionObject(), mesh.getWorldTransform(), triangle.part, triangle.index),
+        placed_(result, wrapper_) {
+    shape_.setMargin(mesh.getCollisionShape()->getMargin());
+  }
+  [[nodiscard]] const btTriangleShape& shape() const { return shape_; }
+  [[nodiscard]] const btCollisionObjectWrapper& wrapper() const { return wrapper_; }
+
+ private:
+  btTriangleShape shape_;
+  btCollisionObjectWrapper wrapper_;
+  PieceInResult placed_;
+};
+
+}  // namespace pd::detail

@@ -1,0 +1,81 @@
+#include "union/plane_contacts.hpp"
+
+#include <optional>
+#include <vector>
+
+#include "pair/plane_ground.hpp"
+#include "pair/solver_core.hpp"
+#include "pieces/compound_facts.hpp"
+#include "pieces/covered_contact.hpp"
+#include "shapes/compound_children.hpp"
+#include "union/pieces_in_result.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// The child that a point lies on.
+class ChildOfPoint : public PointSurroundings {
+ public:
+  ChildOfPoint(const UnionQuestion& question, const std::vector<Child>& children)
+      : question_(question), children_(children) {}
+  void enter(int place) override {
+    inside_.emplace(question_.result, question_.a, children_[static_cast<std::size_t>(place)]);
+  }
+  void leave() override { inside_.reset(); }
+
+ private:
+  const UnionQuestion& question_;
+  const std::vector<Child>& children_;
+  std::optional<ChildInResult> inside_;
+};
+
+class PlaneContacts final : public UnionContacts {
+ public:
+  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
+    ChildOfPoint around(question, children_);
+    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+  }
+
+ private:
+  std::vector<Child> children_;
+};
+
+bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+  const btCollisionObjectWrapper& compound = question.a;
+  const btCollisionObjectWrapper& plane = question.b;
+  children_.clear();
+  if (!is_finite(compound.getWorldTransform()) || !is_finite(plane.getWorldTransform())) return true;
+  if (!all_children(compound, *plane.getCollisionShape(), children_)) return false;
+  const Halfspace3 ground = ground_of(plane);
+  const auto threshold = static_cast<double>(question.threshold);
+  auto buffers = core.buffers.lease();
+  buffers->cover.near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers->cover.near.facts(), core);
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    const Child& child = children_[i];
+    const auto& shape = static_cast<const btConvexShape&>(*child.shape);
+    if (box_above(shape, child.pose, ground, threshold)) continue;
+    std::shared_ptr<CachedShape>& known = memory.shape_of_child(0, child.index);
+    HalfspaceContact found;
+    const GroundQuestion asked{shape, child.pose, ground, question.stamp, known, threshold, true};
+    const SolverCore::Outcome outcome = core.stand_on(asked, *buffers, found);
+    if (outcome == SolverCore::Outcome::unsupported) return false;
+    if (outcome != SolverCore::Outcome::answered || found.manifold.count == 0) continue;
+    const ChildInResult piece(question.result, compound, child);
+    if (is_piece(piece.wrapper())) {
+      const PosedShape posed{(known->sharp ? known->sharp : known->body).get(), to_pd(child.pose)};
+      drop_covered(piece.wrapper(), posed, plane, threshold, question.seconds, question.stamp, core, *buffers,
+                   found.manifold);
+    }
+    patches.add(found.manifold, static_cast<int>(i), child.index, -1);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<UnionContacts> plane_contacts() { return std::make_unique<PlaneContacts>(); }
+
+}  // namespace pd::detail

@@ -1,0 +1,134 @@
+#include "pd/bullet/install.hpp"
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+
+#include "pair/solver_core.hpp"
+#include "union/mesh_contacts.hpp"
+#include "world/installation.hpp"
+
+namespace pd {
+
+namespace {
+
+template <class Visit>
+void for_each_convex_pair(Visit&& visit) {
+  for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
+    for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
+      if (btBroadphaseProxy::isConvex(i) && btBroadphaseProxy::isConvex(j)) {
+        visit(i, j);
+      }
+    }
+  }
+}
+
+/// Convex bodies and compounds against meshes and planes, in both orders.
+template <class Visit>
+void for_each_ground_pair(Visit&& visit) {
+  for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
+    for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
+      const bool body = btBroadphaseProxy::isConvex(i) || btBroadphaseProxy::isCompound(i);
+      if (body && (detail::takes_mesh(j) || j == STATIC_PLANE_PROXYTYPE)) {
+        visit(i, j, false);
+        visit(j, i, true);
+      }
+    }
+  }
+}
+
+/// Compounds against convex bodies, in both orders, and against compounds.
+template <class Visit>
+void for_each_compound_pair(Visit&& visit) {
+  for (int i = 0; i < MAX_BROADPHASE_COLLISION_TYPES; ++i) {
+    if (btBroadphaseProxy::isConvex(i)) {
+      visit(i, COMPOUND_SHAPE_PROXYTYPE);
+      visit(COMPOUND_SHAPE_PROXYTYPE, i);
+    }
+  }
+  visit(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE);
+}
+
+/// Pairs lose their algorithms and get new ones, from the dispatcher's present tables, at the next step.
+void renew_pairs(btCollisionWorld& world) {
+  btOverlappingPairCache* cache = world.getPairCache();
+  btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
+  for (int i = 0; i < pairs.size(); ++i) {
+    cache->cleanOverlappingPair(pairs[i], world.getDispatcher());
+  }
+}
+
+}  // namespace
+
+void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
+  detail::Installation& installation = solver.core().installation(&dispatcher);
+  const bool whole = contacts == BulletContacts::one_shot;
+  for_each_convex_pair([&](int i, int j) {
+    dispatcher.registerCollisionCreateFunc(i, j, whole ? installation.one_shot(false) : installation.persistent());
+    dispatcher.registerClosestPointsCreateFunc(i, j, whole ? installation.one_shot(true) : installation.persistent());
+  });
+  btCollisionConfiguration* configuration = dispatcher.getCollisionConfiguration();
+  for_each_ground_pair([&](int i, int j, bool swapped) {
+    const bool plane = (swapped ? i : j) == STATIC_PLANE_PROXYTYPE;
+    const bool compound = btBroadphaseProxy::isCompound(swapped ? j : i);
+    btCollisionAlgorithmCreateFunc* ours = !plane     ? installation.mesh(swapped)
+                                           : compound ? installation.compound_on_plane(swapped)
+                                                      : installation.plane(swapped);
+    dispatcher.registerCollisionCreateFunc(i, j, whole ? ours : configuration->getCollisionAlgorithmCreateFunc(i, j));
+  });
+  for_each_compound_pair([&](int i, int j) {
+    dispatcher.registerCollisionCreateFunc(
+        i, j, whole ? installation.compound() : configuration->getCollisionAlgorithmCreateFunc(i, j));
+  });
+}
+
+bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
+  auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
+  if (dispatcher == nullptr) {
+    return false;
+  }
+  install(*dispatcher, solver, contacts);
+  if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
+    btActionInterface* action = solver.core().installation(dispatcher).step_action();
+    dynamics->removeAction(action);  // of an earlier installation, if there was one
+    dynamics->addAction(action);
+  }
+  renew_pairs(world);
+  return true;
+}
+
+bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
+  auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
+  detail::Installation* installation = solver.core().find_installation(dispatcher);
+  if (dispatcher == nullptr || installation == nullptr) {
+    return false;
+  }
+  btCollisionConfiguration* configuration = dispatcher->getCollisionConfiguration();
+  for_each_convex_pair([&](int i, int j) {
+    dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
+    dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
+  });
+  const auto give_back = [&](int i, int j) {
+    dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
+  };
+  for_each_ground_pair([&](int i, int j, bool) { give_back(i, j); });
+  for_each_compound_pair(give_back);
+  if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
+    dynamics->removeAction(installation->step_action());
+  }
+  renew_pairs(world);
+  return true;
+}
+
+bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolver& solver) {
+  auto* general = dynamic_cast<btConvexConvexAlgorithm::CreateFunc*>(
+      configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE));
+  if (general == nullptr) {
+    return false;
+  }
+  general->m_pdSolver = solver.core().installation(nullptr).depth_solver();
+  return true;
+}
+
+}  // namespace pd

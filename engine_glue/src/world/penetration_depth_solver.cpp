@@ -1,0 +1,110 @@
+#include "pd/bullet/penetration_depth_solver.hpp"
+
+#include <cstdio>
+
+#include "pair/solver_core.hpp"
+#include "pd/bullet/pair_answer.hpp"
+#include "world/installation.hpp"
+
+namespace pd {
+
+namespace {
+
+/// Keeps what dispatchers may still point to until the program ends. Reachable, so that leak checkers know it.
+void keep_for_ever(std::unique_ptr<detail::SolverCore> core) {
+  static std::mutex mutex;
+  static auto* kept = new std::vector<std::unique_ptr<detail::SolverCore>>;
+  const std::lock_guard lock(mutex);
+  kept->push_back(std::move(core));
+}
+
+}  // namespace
+
+void BulletSolverSettings::print_warning(const char* line, void* /*user*/) { std::fprintf(stderr, "%s\n", line); }
+
+BulletPenetrationDepthSolver::BulletPenetrationDepthSolver(const BulletSolverSettings& settings)
+    : core_(new detail::SolverCore(settings)) {}
+
+BulletPenetrationDepthSolver::~BulletPenetrationDepthSolver() {
+  std::unique_ptr<detail::SolverCore> core(core_);
+  if (core->installed()) {
+    core->close();
+    keep_for_ever(std::move(core));
+  }
+}
+
+const BulletSolverSettings& BulletPenetrationDepthSolver::settings() const { return core_->settings; }
+BulletShapeCache& BulletPenetrationDepthSolver::cache() { return core_->cache; }
+detail::PairRegistry& BulletPenetrationDepthSolver::pairs() { return core_->pairs; }
+
+std::optional<BulletPairAnswer> BulletPenetrationDepthSolver::query(const btConvexShape& a,
+                                                                    const btTransform& transform_a,
+                                                                    const btConvexShape& b,
+                                                                    const btTransform& transform_b,
+                                                                    WarmCertificate* warm) {
+  auto buffers = core_->buffers.lease();
+  detail::PairAnswer found;
+  const detail::PairQuestion question{a, transform_a,     b,   transform_b, detail::kSharpBoxPair, detail::kAnyDistance,
+                                      0, buffers->recent, warm};
+  if (core_->answer(question, *buffers, found) != detail::SolverCore::Outcome::answered) {
+    return std::nullopt;
+  }
+  // Shared with the entries, so that the bodies live as long as the answer.
+  return BulletPairAnswer{found.depth, std::shared_ptr<const ConvexShape>(buffers->recent[0], found.a.shape),
+                          std::shared_ptr<const ConvexShape>(buffers->recent[1], found.b.shape), found.a.pose,
+                          found.b.pose};
+}
+
+ContactManifold BulletPenetrationDepthSolver::manifold(const BulletPairAnswer& answer, double breaking_threshold) {
+  auto buffers = core_->buffers.lease();
+  return contact_manifold({answer.shape_a.get(), answer.pose_a}, {answer.shape_b.get(), answer.pose_b}, answer.depth,
+                          breaking_threshold, buffers->manifold);
+}
+
+bool BulletPenetrationDepthSolver::calcPenDepth(btSimplexSolverInterface& simplex_solver, const btConvexShape* a,
+                                                const btConvexShape* b, const btTransform& transform_a,
+                                                const btTransform& transform_b, btVector3& v, btVector3& witness_a,
+                                                btVector3& witness_b, btIDebugDraw* debug_draw) {
+  return core_->calc_pen_depth(0, simplex_solver, a, b, transform_a, transform_b, v, witness_a, witness_b, debug_draw);
+}
+
+BulletSolverStatistics BulletPenetrationDepthSolver::statistics() const {
+  BulletSolverStatistics result;
+  core_->buffers.for_each([&](detail::ThreadBuffers& buffers) {
+    const detail::SolverCounters& counters = buffers.counters;
+    result.calls += counters.calls.read();
+    result.overlapping += counters.overlapping.read();
+    result.touching += counters.touching.read();
+    result.separated += counters.separated.read();
+    result.warm += counters.warm.read();
+    result.unsupported += counters.unsupported.read();
+    result.fallback += counters.fallback.read();
+    result.refused_poses += counters.refused_poses.read();
+    result.support_calls += counters.support_calls.read();
+    result.nanoseconds += counters.nanoseconds.read();
+    result.exact_signs += counters.exact_signs.read();
+    result.wider_brackets += counters.wider.read();
+    result.covered_contacts += counters.covered.read();
+    result.skipped_triangles += counters.skipped_triangles.read();
+    result.deep_unions += counters.deep_unions.read();
+    result.deep_unions_nearly += counters.deep_unions_nearly.read();
+    result.deep_unions_left += counters.deep_unions_left.read();
+  });
+  return result;
+}
+
+void BulletPenetrationDepthSolver::reset_statistics() {
+  core_->buffers.for_each([](detail::ThreadBuffers& buffers) {
+    buffers.counters.for_each([](detail::Counter& counter) { counter.reset(); });
+  });
+}
+
+btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::one_shot_create_func() {
+  return core_->installation(nullptr).one_shot(false);
+}
+
+btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::persistent_create_func() {
+  return core_->installation(nullptr).persistent();
+}
+
+}  // namespace pd

@@ -1,0 +1,261 @@
+#include "pd/bullet/world_queries.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pd/bullet/scalar.hpp"
+#include "pd/bullet/shape_conversion.hpp"
+#include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/scratch.hpp"
+#include "shapes/cached_shape.hpp"
+#include "shapes/moving_body.hpp"
+#include "shapes/triangles_in_box.hpp"
+
+namespace pd {
+
+namespace {
+
+/// A convex shape as Bullet's contacts take it: two boxes are sharp.
+struct Body {
+  std::shared_ptr<const ConvexShape> rounded;
+  std::shared_ptr<const ConvexShape> sharp;
+
+  [[nodiscard]] const ConvexShape& beside(const Body& other) const { return sharp && other.sharp ? *sharp : *rounded; }
+};
+
+Expected<Body> convert(const btConvexShape& shape, BulletShapeCache* cache) {
+  if (cache != nullptr) {
+    const auto cached = cache->find(shape, 0);
+    if (!cached->body) return cached->refusal;
+    return Body{cached->body, cached->sharp};
+  }
+  auto rounded = to_convex_shape(shape);
+  if (!rounded) return rounded.error();
+  Body body{std::make_shared<const ConvexShape>(std::move(rounded).value()), nullptr};
+  if (shape.getShapeType() == BOX_SHAPE_PROXYTYPE) {
+    if (auto sharp = to_sharp_box(static_cast<const btBoxShape&>(shape))) {
+      body.sharp = std::make_shared<const ConvexShape>(std::move(sharp).value());
+    }
+  }
+  return body;
+}
+
+/// A convex piece of an object.
+struct Piece {
+  Body body;
+  btTransform pose;
+  int part;
+  int index;
+};
+
+/// The pieces of an object that a box of the world meets. @return false where one has no exact body.
+class Pieces {
+ public:
+  Pieces(const btVector3& lower, const btVector3& upper, BulletShapeCache* cache)
+      : lower_(lower), upper_(upper), cache_(cache) {}
+
+  bool add(const btCollisionShape& shape, const btTransform& pose, int part, int index, bool outermost) {
+    btVector3 low;
+    btVector3 high;
+    shape.getAabb(pose, low, high);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (low[axis] > upper_[axis] || high[axis] < lower_[axis]) return true;
+    }
+    if (shape.isCompound()) {
+      const auto& compound = static_cast<const btCompoundShape&>(shape);
+      bool all = true;
+      for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+        all = add(*compound.getChildShape(i), pose * compound.getChildTransform(i), -1, outermost ? i : index, false) &&
+              all;
+      }
+      return all;
+    }
+    if (shape.isConcave()) {
+      add_triangles(static_cast<const btConcaveShape&>(shape), pose);
+      return true;
+    }
+    if (!shape.isConvex()) return false;
+    auto body = convert(static_cast<const btConvexShape&>(shape), cache_);
+    if (!body) return false;
+    pieces.push_back({std::move(body).value(), pose, part, index});
+    return true;
+  }
+
+  std::vector<Piece> pieces;
+
+ private:
+  void add_triangles(const btConcaveShape& shape, const btTransform& pose) {
+    // The box of the box in the shape's frame.
+    const btVector3 middle = pose.invXform(btScalar(0.5) * (lower_ + upper_));
+    const btMatrix3x3 turn = pose.getBasis().transpose().absolute();
+    const btVector3 half = turn * (btScalar(0.5) * (upper_ - lower_));
+    for (detail::BoxedTriangle& triangle : detail::triangles_in_box(shape, middle - half, middle + half)) {
+      pieces.push_back({{std::move(triangle.shape), nullptr}, pose, triangle.part, triangle.index});
+    }
+  }
+
+  btVector3 lower_;
+  btVector3 upper_;
+  BulletShapeCache* cache_;
+};
+
+/// Every object whose box in the broadphase meets a box.
+class Neighbours : public btBroadphaseAabbCallback {
+ public:
+  explicit Neighbours(const std::function<void(btBroadphaseProxy&)>& visit) : visit_(visit) {}
+  bool process(const btBroadphaseProxy* proxy) override {
+    visit_(*const_cast<btBroadphaseProxy*>(proxy));
+    return true;
+  }
+
+ private:
+  const std::function<void(btBroadphaseProxy&)>& visit_;
+};
+
+void fill(WorldHit& hit, const btCollisionObject& object, const Piece& piece, const PenetrationDepth& answer) {
+  hit.object = &object;
+  hit.part = piece.part;
+  hit.index = piece.index;
+  hit.point_on_shape = answer.witness_a;
+  hit.point_on_object = answer.witness_b;
+  hit.normal = answer.normal;
+  hit.distance = answer.signed_distance();
+}
+
+bool passes(const btBroadphaseProxy& proxy, const WorldQuerySettings& settings) {
+  return (proxy.m_collisionFilterGroup & settings.filter_mask) != 0 &&
+         (settings.filter_group & proxy.m_collisionFilterMask) != 0;
+}
+
+/// A box around the shape on all of its way.
+void swept_box(const btConvexShape& shape, const btTransform& from, const btTransform& to, const RigidMotion& motion,
+               double radius, double margin, btVector3& lower, btVector3& upper) {
+  btVector3 low;
+  btVector3 high;
+  shape.getAabb(from, lower, upper);
+  shape.getAabb(to, low, high);
+  lower.setMin(low);
+  upper.setMax(high);
+  // Between its ends a turning point leaves the chord by r (1 - cos(turn / 2)) at most; boxes of floats are rounded.
+  const double bulge = radius * (1 - std::cos(0.5 * motion.angular_velocity.norm()));
+  const auto grown = static_cast<btScalar>((bulge + margin) * 1.001);
+  lower -= btVector3(grown, grown, grown);
+  upper += btVector3(grown, grown, grown);
+}
+
+/// The first hit of one object before `limit`, if there is one.
+std::optional<SweepHit> first_hit(const Body& body, const RigidMotion& motion, const btTransform& from,
+                                  const btCollisionObject& object, const std::vector<Piece>& pieces, double limit,
+                                  double tolerance, Scratch& scratch) {
+  std::optional<SweepHit> best;
+  TimeOfImpactSettings settings;
+  settings.distance_tolerance = tolerance;
+  settings.contact_at_end = false;
+  settings.depth.bracket = Bracket::certified;
+  for (const Piece& piece : pieces) {
+    const TimeOfImpact found = time_of_impact({{&body.beside(piece.body), to_pd(from)}, motion},
+                                              {{&piece.body.beside(body), to_pd(piece.pose)}, {}},
+                                              best ? best->fraction : limit, scratch, settings);
+    if (!found.hit || !(found.time < (best ? best->fraction : limit))) continue;
+    best.emplace();
+    fill(*best, object, piece, found.contact);
+    best->fraction = found.time;
+  }
+  return best;
+}
+
+/// @param needs    bool(btBroadphaseProxy&): who is asked.
+/// @param limit    double(): hits from here on are of no interest.
+/// @param answer   void(const SweepHit&).
+template <class Needs, class Limit, class Answer>
+Expected<int> sweep(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from, const btTransform& to,
+                    const WorldQuerySettings& settings, const Needs& needs, const Limit& limit, const Answer& answer) {
+  const Expected<Body> body = convert(shape, settings.cache);
+  if (!body) return body.error();
+  const RigidMotion motion = detail::motion_between(from, to, 1);
+  const double radius = bounding_radius(body->sharp ? *body->sharp : *body->rounded);
+  btVector3 lower;
+  btVector3 upper;
+  swept_box(shape, from, to, motion, radius, settings.tolerance, lower, upper);
+  int unanswered = 0;
+  Scratch scratch;
+  const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
+    const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
+    if (!needs(proxy)) return;
+    Pieces found(lower, upper, settings.cache);
+    if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++unanswered;
+    const auto hit =
+        first_hit(*body, motion, from, object, found.pieces, std::min(1.0, limit()), settings.tolerance, scratch);
+    if (hit) answer(*hit);
+  };
+  Neighbours neighbours(visit);
+  world.getBroadphase()->aabbTest(lower, upper, neighbours);
+  return unanswered;
+}
+
+}  // namespace
+
+Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from,
+                                 const btTransform& to, const WorldQuerySettings& settings) {
+  SweepResult result;
+  const auto unanswered = sweep(
+      world, shape, from, to, settings, [&](const btBroadphaseProxy& proxy) { return passes(proxy, settings); },
+      // A hit at the very end counts, and of two at the same time the one that is found first.
+      [&] { return result.hit ? result.hit->fraction : 1.0; }, [&](const SweepHit& hit) { result.hit = hit; });
+  if (!unanswered) return unanswered.error();
+  result.unanswered = *unanswered;
+  return result;
+}
+
+Expected<int> sweep_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from,
+                         const btTransform& to, btCollisionWorld::ConvexResultCallback& callback,
+                         const WorldQuerySettings& settings) {
+  return sweep(
+      world, shape, from, to, settings, [&](btBroadphaseProxy& proxy) { return callback.needsCollision(&proxy); },
+      [&] { return static_cast<double>(callback.m_closestHitFraction); },
+      [&](const SweepHit& hit) {
+        btCollisionWorld::LocalShapeInfo info{hit.part, hit.index};
+        btCollisionWorld::LocalConvexResult local(hit.object, hit.index >= 0 ? &info : nullptr, to_bullet(hit.normal),
+                                                  to_bullet(hit.point_on_object), static_cast<btScalar>(hit.fraction));
+        callback.addSingleResult(local, true);
+      });
+}
+
+Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& pose,
+                                       double reach, const WorldQuerySettings& settings) {
+  const Expected<Body> body = convert(shape, settings.cache);
+  if (!body) return body.error();
+  btVector3 lower;
+  btVector3 upper;
+  swept_box(shape, pose, pose, {}, 0, reach + settings.tolerance, lower, upper);
+  DistanceResult result;
+  Scratch scratch;
+  double least = reach;
+  const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
+    const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
+    if (!passes(proxy, settings)) return;
+    Pieces found(lower, upper, settings.cache);
+    if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
+    for (const Piece& piece : found.pieces) {
+      const PenetrationDepth answer = penetration_depth({&body->beside(piece.body), to_pd(pose)},
+                                                        {&piece.body.beside(*body), to_pd(piece.pose)}, scratch);
+      WorldHit hit;
+      fill(hit, object, piece, answer);
+      if (hit.distance > least || (result.nearest && hit.distance == least)) continue;
+      least = hit.distance;
+      result.nearest = hit;
+    }
+  };
+  Neighbours neighbours(visit);
+  world.getBroadphase()->aabbTest(lower, upper, neighbours);
+  return result;
+}
+
+}  // namespace pd
