@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 
+#include "files/decimal_number.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {
@@ -16,9 +16,7 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& op
   while ((at = text.find_first_not_of(", \t", at)) != std::string::npos) {
     const std::size_t end = std::min(text.find_first_of(", \t", at), text.size());
     double value = 0;
-    const char* first = text.data() + at + (text[at] == '+' ? 1 : 0);
-    const auto result = std::from_chars(first, text.data() + end, value);
-    if (result.ec != std::errc() || result.ptr != text.data() + end) {
+    if (!query::parse_decimal(std::string_view(text).substr(at, end - at), value)) {
       query::refuse("bad_value", option + ": \"" + text.substr(at, end - at) + "\" is no number", "");
     }
     numbers.push_back(value);

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "drawing/svg_file.hpp"
+#include "files/regular_file.hpp"
 #include "protocol/json_text.hpp"
 #include "protocol/json_writer.hpp"
 #include "protocol/polygon_reader.hpp"
@@ -23,17 +19,7 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 256u << 20;
 constexpr double kUsualFlatness = 1e-4;  // of the outline's diagonal: below a pixel of a large screen
 
-std::string read_text(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) query::refuse("unreadable_file", "there is no such file", "");
-  if (!std::filesystem::is_regular_file(status)) query::refuse("unreadable_file", "not a regular file", "");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > kMaxBytes) query::refuse("limit_exceeded", "more than 256 MiB", "");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) query::refuse("unreadable_file", std::strerror(errno), "");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
+std::string read_text(const std::string& path) { return query::RegularFile::open(path, kMaxBytes).read_all(); }
 
 /// Twice the area of a ring, positive where it runs counter-clockwise (x right, y up). In a double, from its first
 /// point: for the choice of the outer ring, which is then checked exactly.

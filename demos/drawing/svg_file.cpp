@@ -157,7 +157,11 @@ struct Found {
 struct Inherited {
   PlaneMap map;
   bool even_odd = false;
+  int depth = 0;  ///< groups around
 };
+
+/// Editors nest layers and groups some ten deep; the walk takes stack for each.
+constexpr int kMaxGroups = 200;
 
 void refuse_unknown_effects(const pugi::xml_node& node) {
   for (const char* name : {"clip-path", "mask"}) {
@@ -197,6 +201,9 @@ void visit(const pugi::xml_node& node, const Inherited& inherited, std::vector<F
   }
   refuse_unknown_effects(node);
   Inherited own = inherited;
+  if (++own.depth > kMaxGroups) {
+    query::refuse("limit_exceeded", "groups nest deeper than " + std::to_string(kMaxGroups) + " levels", "");
+  }
   if (const pugi::xml_attribute transform = node.attribute("transform")) {
     try {
       own.map = inherited.map.after(parse_transform(transform.value()));

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "files/decimal_number.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::drawing {
@@ -95,11 +95,10 @@ bool SvgScanner::number_ahead() const {
 
 double SvgScanner::number() {
   if (!number_ahead()) refuse("a number is missing");
-  const char* first = text_.data() + at_ + (peek() == '+' ? 1 : 0);
   double value = 0;
-  const auto result = std::from_chars(first, text_.data() + text_.size(), value);
-  if (result.ec != std::errc()) refuse("a number lies past the range of doubles");
-  at_ = static_cast<std::size_t>(result.ptr - text_.data());
+  const char* const rest = query::read_decimal(text_.data() + at_, text_.data() + text_.size(), value);
+  if (!std::isfinite(value)) refuse("a number lies past the range of doubles");
+  at_ = static_cast<std::size_t>(rest - text_.data());
   return value;
 }
 

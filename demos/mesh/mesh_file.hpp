@@ -1,8 +1,11 @@
 /// @file
-/// Points of mesh files, at the precision that the file holds.
+/// Points and faces of mesh files, at the precision that the file holds.
 ///
-/// OBJ, OFF, PLY (text and binary) and STL are read here: text numbers are rounded once, to double. glTF goes through
-/// Assimp, which keeps single precision, as glTF itself does. Materials, normals and textures are ignored.
+/// OBJ, OFF, PLY (text and binary) and STL text numbers are rounded once, to double; glTF 2 keeps its single precision,
+/// and its nodes' transforms are applied in double. Materials, normals and textures are ignored.
+///
+/// A file may come from a stranger: it is a regular file, and so is each file that it names, which stands in its own
+/// folder; vertices, corners and bytes are counted before memory is spent on them.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +16,34 @@
 
 namespace pd::query {
 
+/// Polygons over a list of points: loop f is corners[offsets[f]] to corners[offsets[f + 1] - 1].
+struct MeshFaces {
+  std::vector<std::int32_t> offsets{0};
+  std::vector<std::int32_t> corners;
+  /// Line of the file for each face; empty for formats without lines.
+  std::vector<std::int32_t> lines;
+
+  [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(offsets.size()) - 1; }
+};
+
 /// The vertices that some face, line or point element refers to, in the order of the file; all of them where the file
 /// has no elements (a point cloud).
 struct MeshPoints {
   std::vector<Vec3> points;
   /// Index of each point among all vertices of the file, from 0. Empty where every vertex is there.
   std::vector<std::int32_t> ids;
+  /// The file's polygons, as indices of `points`. Formats that repeat a vertex for each face (STL, and glTF for each
+  /// normal) hold its point several times.
+  MeshFaces faces;
 };
 
 /// Reads a mesh by its file ending (.obj, .off, .ply, .stl, .gltf, .glb; any case).
 ///
 /// All meshes of a scene are taken, each where its nodes put it. Coordinates may still be infinite or NaN: the hull
 /// builder refuses those by name.
-/// @throws Refusal unreadable_file (missing, not a regular file, malformed; the message says the line or byte where it
-/// can) or limit_exceeded (more vertices than `max_vertices`, more bytes than `max_bytes`).
+/// @throws Refusal unreadable_file (missing, not a regular file, malformed, a glTF's buffer outside of its folder; the
+/// message says the line, byte or member where it can), unsupported (compressed glTF) or limit_exceeded (more vertices
+/// than `max_vertices`, more bytes than `max_bytes`, nodes or JSON nested too deep).
 [[nodiscard]] MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes);
 
 }  // namespace pd::query

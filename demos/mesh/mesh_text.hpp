@@ -1,20 +1,28 @@
 /// @file
-/// What the readers of mesh formats share: vertices being collected, and a cursor over text.
+/// What the readers of mesh formats share: vertices and faces being collected, and a cursor over text.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "files/decimal_number.hpp"
 #include "mesh/mesh_file.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::query {
 
-/// Vertices in file order and which of them an element names.
+[[noreturn]] inline void refuse_line(int line, const std::string& what) {
+  refuse("unreadable_file", "line " + std::to_string(line) + ": " + what, "");
+}
+
+/// Vertices in file order, and the elements that name them. Elements may stand before the vertices that they name:
+/// whether those are there is asked at the end.
 class VertexCollector {
  public:
   explicit VertexCollector(std::int64_t limit) : limit_(limit) {}
@@ -35,46 +43,95 @@ class VertexCollector {
              "");
     }
   }
-  /// An element names a vertex. Returns false when there is no such vertex.
-  [[nodiscard]] bool reference(std::int64_t index) {
-    if (index < 0 || index >= size()) return false;
-    if (referenced_.size() < points_.size()) referenced_.resize(points_.size(), 0);
-    referenced_[static_cast<std::size_t>(index)] = 1;
-    any_element_ = true;
-    return true;
+
+  /// Refuses early what further elements will name.
+  void announce_corners(std::int64_t count) const {
+    const std::int64_t most = std::min(kCornersPerVertex * limit_, kMostCorners);
+    if (count <= most - static_cast<std::int64_t>(faces_.corners.size())) return;
+    refuse("limit_exceeded",
+           "the mesh has more than " + std::to_string(most) + " corners of faces, which follows from --max-vertices",
+           "");
+  }
+
+  /// An element names a vertex. An index that no vertex can have is refused at the end.
+  void corner(std::int64_t index) {
+    announce_corners(1);
+    const bool possible = index >= 0 && index < std::numeric_limits<std::int32_t>::max();
+    faces_.corners.push_back(possible ? static_cast<std::int32_t>(index) : -1);
+  }
+  /// The corners since the last element were a polygon, or else (lines, points, strips) mere references.
+  /// @param line  of the file, from 1; 0: the format has no lines
+  void end_element(bool is_face, int line) {
+    const auto end = static_cast<std::int32_t>(faces_.corners.size());
+    if (end == faces_.offsets.back()) return;
+    faces_.offsets.push_back(end);
+    is_face_.push_back(static_cast<char>(is_face));
+    if (line > 0) faces_.lines.push_back(line);
   }
 
   [[nodiscard]] MeshPoints finish() && {
     MeshPoints mesh;
-    if (!any_element_) {
+    mesh.faces.lines = {};
+    if (faces_.size() == 0) {
       mesh.points = std::move(points_);
       return mesh;
     }
-    referenced_.resize(points_.size(), 0);
+    // New number of each vertex that an element names; -1: none does.
+    std::vector<std::int32_t> number(points_.size(), -1);
+    for (std::int64_t f = 0; f < faces_.size(); ++f) mark(static_cast<std::size_t>(f), number);
+    std::int32_t used = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (referenced_[i] == 0) continue;
+      if (number[i] < 0) continue;
+      number[i] = used++;
       mesh.points.push_back(points_[i]);
       mesh.ids.push_back(static_cast<std::int32_t>(i));
     }
     if (mesh.points.size() == points_.size()) mesh.ids.clear();
+    keep_polygons(number, mesh.faces);
     return mesh;
   }
 
  private:
+  /// A closed surface of n vertices has some 6 n corners; open and broken ones, and many handles, may have more.
+  static constexpr std::int64_t kCornersPerVertex = 16;
+  static constexpr std::int64_t kMostCorners = std::numeric_limits<std::int32_t>::max();
+
+  void mark(std::size_t f, std::vector<std::int32_t>& number) const {
+    for (auto k = static_cast<std::size_t>(faces_.offsets[f]); k < static_cast<std::size_t>(faces_.offsets[f + 1]);
+         ++k) {
+      const std::int32_t index = faces_.corners[k];
+      if (index < 0 || static_cast<std::size_t>(index) >= points_.size()) {
+        const char* const what = "an element names a vertex that is not there";
+        if (!faces_.lines.empty()) refuse_line(faces_.lines[f], what);
+        refuse("unreadable_file", what, "");
+      }
+      number[static_cast<std::size_t>(index)] = 0;
+    }
+  }
+  void keep_polygons(const std::vector<std::int32_t>& number, MeshFaces& kept) const {
+    for (std::size_t f = 0; f + 1 < faces_.offsets.size(); ++f) {
+      if (is_face_[f] == 0) continue;
+      for (std::int32_t k = faces_.offsets[f]; k < faces_.offsets[f + 1]; ++k) {
+        kept.corners.push_back(number[static_cast<std::size_t>(faces_.corners[static_cast<std::size_t>(k)])]);
+      }
+      kept.offsets.push_back(static_cast<std::int32_t>(kept.corners.size()));
+      if (!faces_.lines.empty()) kept.lines.push_back(faces_.lines[f]);
+    }
+  }
+
   std::int64_t limit_;
   std::vector<Vec3> points_;
-  std::vector<char> referenced_;
-  bool any_element_ = false;
+  MeshFaces faces_;            ///< all elements
+  std::vector<char> is_face_;  ///< of each element
 };
-
-[[noreturn]] inline void refuse_line(int line, const std::string& what) {
-  refuse("unreadable_file", "line " + std::to_string(line) + ": " + what, "");
-}
 
 /// Words and lines of a text.
 class TextCursor {
  public:
-  explicit TextCursor(std::string_view text) : rest_(text) {}
+  /// A byte order mark in front is no part of the text.
+  explicit TextCursor(std::string_view text) : rest_(text) {
+    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+  }
 
   [[nodiscard]] int line_number() const { return line_; }
   [[nodiscard]] bool at_end() const { return rest_.empty(); }
@@ -110,24 +167,19 @@ inline std::string_view next_word(std::string_view& rest) {
   return word;
 }
 
-/// A whole word as a number, correctly rounded; "nan" and "inf" are numbers here. False when it is none.
-inline bool parse_number(std::string_view word, double& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (result.ptr != word.data() + word.size()) return false;
-  // Too small is 0 to the precision of a double, too large is no number.
-  if (result.ec == std::errc::result_out_of_range) {
-    const bool tiny = word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
-    value = tiny ? 0 : std::numeric_limits<double>::infinity();
-    return true;
-  }
-  return result.ec == std::errc();
-}
-
 inline bool parse_index(std::string_view word, std::int64_t& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
   return result.ec == std::errc() && result.ptr == word.data() + word.size();
+}
+
+/// A line's next three words as a point. @throws Refusal at that line.
+inline Vec3 read_point(std::string_view& rest, int line) {
+  Vec3 point;
+  for (int k = 0; k < 3; ++k) {
+    if (!parse_decimal(next_word(rest), point[k])) refuse_line(line, "a vertex needs three numbers");
+  }
+  return point;
 }
 
 /// The readers, one a format. `bytes` is the whole file.
@@ -135,7 +187,7 @@ MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices);
 MeshPoints read_off(std::string_view bytes, std::int64_t max_vertices);
 MeshPoints read_ply(std::string_view bytes, std::int64_t max_vertices);
 MeshPoints read_stl(std::string_view bytes, std::int64_t max_vertices);
-/// glTF names further files beside itself, so that Assimp opens it by its path.
-MeshPoints read_gltf(const std::string& path, std::int64_t max_vertices);
+/// glTF names further files: those beside `path`, with `bytes` no more than `max_bytes` in all.
+MeshPoints read_gltf(const std::string& path, std::string bytes, std::int64_t max_vertices, std::uintmax_t max_bytes);
 
 }  // namespace pd::query

@@ -27,23 +27,11 @@ MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices) {
   VertexCollector vertices(max_vertices);
   TextCursor cursor(bytes);
   std::string joined;
-  // Elements may stand before the vertices that they name: they are looked up at the end.
-  struct Reference {
-    std::int64_t index;
-    int line;
-  };
-  std::vector<Reference> references;
   while (!cursor.at_end()) {
     std::string_view rest = logical_line(cursor, joined);
     const std::string_view keyword = next_word(rest);
     if (keyword == "v") {
-      Vec3 point;
-      for (int k = 0; k < 3; ++k) {
-        if (!parse_number(next_word(rest), point[k])) {
-          refuse_line(cursor.line_number(), "a vertex needs three numbers");
-        }
-      }
-      vertices.add(point);  // a fourth number is a weight, further ones a colour: no coordinates
+      vertices.add(read_point(rest, cursor.line_number()));  // a fourth number is a weight, further ones a colour
     } else if (keyword == "f" || keyword == "l" || keyword == "p") {
       for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
         std::int64_t index = 0;
@@ -51,13 +39,9 @@ MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices) {
         if (!parse_index(word.substr(0, word.find('/')), index) || index == 0) {
           refuse_line(cursor.line_number(), "an element needs vertex numbers from 1, or from -1 downwards");
         }
-        references.push_back({index > 0 ? index - 1 : vertices.size() + index, cursor.line_number()});
+        vertices.corner(index > 0 ? index - 1 : vertices.size() + index);
       }
-    }
-  }
-  for (const Reference& reference : references) {
-    if (!vertices.reference(reference.index)) {
-      refuse_line(reference.line, "an element names a vertex that is not there");
+      vertices.end_element(keyword == "f", cursor.line_number());
     }
   }
   return std::move(vertices).finish();

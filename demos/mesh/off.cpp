@@ -23,7 +23,7 @@ class OffWords {
   void skip_line() { line_ = {}; }
   double number(const char* meaning) {
     double value = 0;
-    if (!parse_number(next(), value)) refuse_line(cursor_.line_number(), std::string(meaning) + " must be a number");
+    if (!parse_decimal(next(), value)) refuse_line(cursor_.line_number(), std::string(meaning) + " must be a number");
     return value;
   }
   std::int64_t count(const char* meaning) {
@@ -64,11 +64,8 @@ MeshPoints read_off(std::string_view bytes, std::int64_t max_vertices) {
   }
   for (std::int64_t f = 0; f < num_faces; ++f) {
     const std::int64_t corners = words.count("the number of a face's corners");
-    for (std::int64_t k = 0; k < corners; ++k) {
-      if (!vertices.reference(words.count("a vertex index"))) {
-        refuse_line(words.line_number(), "a face names a vertex that is not there");
-      }
-    }
+    for (std::int64_t k = 0; k < corners; ++k) vertices.corner(words.count("a vertex index"));
+    vertices.end_element(true, words.line_number());
     words.skip_line();  // a colour may follow
   }
   return std::move(vertices).finish();

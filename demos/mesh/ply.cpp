@@ -127,7 +127,7 @@ class TextBody {
       word = next_word(line_);
     }
     double value = 0;
-    if (!parse_number(word, value)) refuse_line(cursor_.line_number(), "not a number");
+    if (!parse_decimal(word, value)) refuse_line(cursor_.line_number(), "not a number");
     return value;
   }
 
@@ -177,8 +177,6 @@ class BinaryBody {
 template <class Body>
 MeshPoints read_body(const Header& header, Body body, std::int64_t max_vertices) {
   VertexCollector vertices(max_vertices);
-  // Faces may stand before the vertices: their indices are looked up at the end.
-  std::vector<std::int64_t> references;
   for (const Element& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
     if (is_vertex) {
@@ -199,9 +197,10 @@ MeshPoints read_body(const Header& header, Body body, std::int64_t max_vertices)
             const double index = body.next(property.type);
             if (property.names_vertices() && !is_vertex && index != -1) {
               // A value that is no index becomes one that no vertex has.
-              references.push_back(index >= 0 && index < 9e15 ? static_cast<std::int64_t>(index) : -1);
+              vertices.corner(index >= 0 && index < 9e15 ? static_cast<std::int64_t>(index) : -1);
             }
           }
+          vertices.end_element(element.name == "face", 0);
         } else {
           const double value = body.next(property.type);
           if (property.name == "x") point.x() = value;
@@ -211,9 +210,6 @@ MeshPoints read_body(const Header& header, Body body, std::int64_t max_vertices)
       }
       if (is_vertex) vertices.add(point);
     }
-  }
-  for (const std::int64_t index : references) {
-    if (!vertices.reference(index)) refuse("unreadable_file", "a face names a vertex that is not there", "");
   }
   return std::move(vertices).finish();
 }

@@ -34,8 +34,10 @@ MeshPoints read_binary(std::string_view bytes, std::int64_t max_vertices) {
     for (int c = 0; c < 3; ++c) {
       Vec3 point;
       for (int k = 0; k < 3; ++k, corner += 4) point[k] = double{std::bit_cast<float>(little_endian_word(corner))};
+      vertices.corner(vertices.size());
       vertices.add(point);
     }
+    vertices.end_element(true, 0);
   }
   return std::move(vertices).finish();
 }
@@ -49,11 +51,9 @@ MeshPoints read_text(std::string_view bytes, std::int64_t max_vertices) {
     const std::string_view keyword = next_word(rest);
     if (keyword == "endsolid") closed = true;
     if (keyword != "vertex") continue;
-    Vec3 point;
-    for (int k = 0; k < 3; ++k) {
-      if (!parse_number(next_word(rest), point[k])) refuse_line(cursor.line_number(), "a vertex needs three numbers");
-    }
-    vertices.add(point);
+    vertices.corner(vertices.size());
+    vertices.add(read_point(rest, cursor.line_number()));
+    if (vertices.size() % 3 == 0) vertices.end_element(true, cursor.line_number());
   }
   if (vertices.size() % 3 != 0 || !closed) {
     refuse_line(cursor.line_number(), "the file ends before its last triangle or its \"endsolid\"");
@@ -68,7 +68,8 @@ MeshPoints read_stl(std::string_view bytes, std::int64_t max_vertices) {
   const bool fits_binary =
       bytes.size() >= kHeaderBytes &&
       bytes.size() == kHeaderBytes + kTriangleBytes * std::size_t{little_endian_word(bytes.data() + 80)};
-  if (!fits_binary && bytes.starts_with("solid")) return read_text(bytes, max_vertices);
+  const bool says_text = bytes.starts_with("solid") || bytes.starts_with("\xEF\xBB\xBFsolid");
+  if (!fits_binary && says_text) return read_text(bytes, max_vertices);
   if (bytes.size() < kHeaderBytes) refuse("unreadable_file", "neither a text nor a binary STL", "");
   return read_binary(bytes, max_vertices);
 }

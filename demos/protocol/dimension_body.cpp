@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "protocol/points_file.hpp"
+#include "files/points_file.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::query {
@@ -24,7 +24,7 @@ PointsFile open_file(const Node& node, const Limits& limits) {
   const std::string path = read_string(node);
   if (!limits.files) node.refuse("unsupported", "bodies that name a file are refused here (--no-files)");
   try {
-    return PointsFile(path);
+    return PointsFile(path, limits.max_file_points());
   } catch (const Refusal& refusal) {
     node.refuse(refusal.code, refusal.message);
   }

@@ -65,8 +65,8 @@ struct Streamed {
 };
 
 template <int D>
-Streamed<D> body_of_file(const Node& file, double epsilon) {
-  EpsilonKernelStream<D> kernel = kernel_of_file<D>(file, epsilon);
+Streamed<D> body_of_file(const Node& file, const Limits& limits, double epsilon) {
+  EpsilonKernelStream<D> kernel = kernel_of_file<D>(file, limits, epsilon);
   Expected<Body<D>> body = Body<D>::from_points(kernel.kernel_points());
   if (!body) file.refuse(body.error());
   return {*std::move(body), kernel.finish().indices};
@@ -75,14 +75,14 @@ Streamed<D> body_of_file(const Node& file, double epsilon) {
 /// (1 + a) / (1 - share) = 1 + epsilon for the width of a kernel, which is the least of few points; the direction that
 /// it finds is measured on all of them.
 template <int D>
-Expected<dimension::ApproximateWidth<D>> width_of_file(const Node& file, double epsilon) {
+Expected<dimension::ApproximateWidth<D>> width_of_file(const Node& file, const Limits& limits, double epsilon) {
   const double share = epsilon * (1 - 1e-4);
-  const Streamed<D> kernel = body_of_file<D>(file, kStreamedShare * share / (1 + share));
+  const Streamed<D> kernel = body_of_file<D>(file, limits, kStreamedShare * share / (1 + share));
   const auto found = dimension::approximate_width<D>(kernel.body, (1 - kStreamedShare) * share, Backend::kernel);
   if (!found) return found;
   dimension::ApproximateWidth<D> width = *found;
   constexpr double kRoom = 1e-10;  // what the sums of products may lose
-  width.upper = std::max(width.upper, extent_of_file<D>(file, width.direction) * (1 + kRoom));
+  width.upper = std::max(width.upper, extent_of_file<D>(file, limits, width.direction) * (1 + kRoom));
   width.width = width.upper;
   return width;
 }
@@ -143,7 +143,7 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
     // (1 - share) (1 - rest) >= 1 - epsilon.
     const Streamed<D> input =
         composed ? Streamed<D>{body_of_composed<D>(a, session.limits, kComposedShare * epsilon, backend), {}}
-        : file   ? body_of_file<D>(*file, kStreamedShare * epsilon)
+        : file   ? body_of_file<D>(*file, session.limits, kStreamedShare * epsilon)
                  : Streamed<D>{read_dimension_body<D>(a, session.limits), {}};
     const double rest = (composed ? 1 - kComposedShare : file ? 1 - kStreamedShare : 1) * epsilon;
     const auto structure = DirectionalWidth<D>::build(input.body, rest, backend);
@@ -185,7 +185,7 @@ void answer_approx_width(const Node& line, Session& session, JsonWriter& answer)
     const auto file = streamed_file(a, epsilon, backend);
     const auto width =
         is_composed(a) ? width_of_composed<D>(a, session.limits, epsilon, backend)
-        : file         ? width_of_file<D>(*file, epsilon)
+        : file         ? width_of_file<D>(*file, session.limits, epsilon)
                        : dimension::approximate_width<D>(read_dimension_body<D>(a, session.limits), epsilon, backend);
     if (!width) line.refuse(width.error());
     const std::int64_t nanoseconds = watch.nanoseconds();
@@ -252,7 +252,7 @@ void answer_epsilon_kernel(const Node& line, Session& session, JsonWriter& answe
     };
     // Kernels are those of the affine image, too: streaming needs no map.
     if (const auto file = a.find("points_file"); file && !a.find("affine")) {
-      return write(kernel_of_file<D>(*file, epsilon).finish());
+      return write(kernel_of_file<D>(*file, session.limits, epsilon).finish());
     }
     const auto kernel = dimension::epsilon_kernel<D>(read_dimension_body<D>(a, session.limits), epsilon);
     if (!kernel) line.refuse(kernel.error());

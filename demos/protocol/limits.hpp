@@ -13,6 +13,11 @@ struct Limits {
   std::size_t max_line = std::size_t{64} << 20;
   /// Most vertices of one shape, and most facets of one answer (`--max-vertices`).
   std::int64_t max_vertices = 1'000'000;
+  /// Most points of a file of points. Such files are for clouds that fit in no line, most of which are never held as a
+  /// whole: they may hold a hundred times a shape's vertices, as long as `--max-vertices` is left at its default.
+  [[nodiscard]] std::int64_t max_file_points() const {
+    return max_vertices == Limits().max_vertices ? 100 * max_vertices : max_vertices;
+  }
   /// False: a shape that names a file is refused (`--no-files`).
   bool files = true;
 };

@@ -1,9 +1,11 @@
 #include "protocol/search_file.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
+#include <sstream>
 #include <utility>
+
+#include "files/regular_file.hpp"
 
 namespace pd::query {
 
@@ -156,8 +158,12 @@ void SearchRecorder::add_answer(const PenetrationDepth& answer, const Pair& pair
 }
 
 SearchFile read_search_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse("unreadable_file", path.string() + " cannot be read", "");
+  std::istringstream file;
+  try {
+    file.str(RegularFile::open(path.string(), kMaxMeshBytes).read_all());
+  } catch (const Refusal& refusal) {
+    refuse(refusal.code, path.string() + ": " + refusal.message, "");
+  }
   const Limits limits{.max_vertices = 50'000'000};
   std::optional<SearchFile> out;
   std::string text;

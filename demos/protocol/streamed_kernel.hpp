@@ -6,9 +6,10 @@
 #include <limits>
 #include <vector>
 
+#include "files/points_file.hpp"
 #include "pd/dimension/epsilon_kernel.hpp"
 #include "protocol/field_reader.hpp"
-#include "protocol/points_file.hpp"
+#include "protocol/limits.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::query {
@@ -31,13 +32,13 @@ void visit_chunks(PointsFile& file, Visit&& visit) {
 
 /// @param node  the file's name. @return a stream that has seen the file twice.
 template <int D>
-dimension::EpsilonKernelStream<D> kernel_of_file(const Node& node, double epsilon) {
+dimension::EpsilonKernelStream<D> kernel_of_file(const Node& node, const Limits& limits, double epsilon) {
   using Stream = dimension::EpsilonKernelStream<D>;
   Expected<Stream> made = Stream::create(epsilon);
   if (!made) node.refuse(made.error());
   Stream kernel = *std::move(made);
   try {
-    PointsFile file(read_string(node));
+    PointsFile file(read_string(node), limits.max_file_points());
     visit_chunks<D>(file, [&](const auto& chunk) {
       if (const auto error = kernel.survey(chunk)) node.refuse(*error);
     });
@@ -52,10 +53,10 @@ dimension::EpsilonKernelStream<D> kernel_of_file(const Node& node, double epsilo
 
 /// h(v) + h(-v) over all points of the file.
 template <int D>
-double extent_of_file(const Node& node, const dimension::Vector<D>& direction) {
+double extent_of_file(const Node& node, const Limits& limits, const dimension::Vector<D>& direction) {
   double most = -std::numeric_limits<double>::infinity(), least = -most;
   try {
-    PointsFile file(read_string(node));
+    PointsFile file(read_string(node), limits.max_file_points());
     visit_chunks<D>(file, [&](const auto& chunk) {
       for (const dimension::Vector<D>& p : chunk) {
         const double at = direction.dot(p);

@@ -3,7 +3,7 @@
 # inputs, then mutations that follow coverage. Ends with the first law that breaks; the input that broke it stands in the folder
 # of the findings. Inputs that reach something new are kept in the build folder from run to run.
 #
-#   [ENGINE=afl] tests/long/fuzz.sh [SECONDS_PER_TARGET [BUILD_FOLDER [TARGET...]]]        2400 build/fuzz pairs lines meshes
+#   [ENGINE=afl] tests/long/fuzz.sh [SECONDS_PER_TARGET [BUILD_FOLDER [TARGET...]]]        2400 build/fuzz pairs lines meshes structures
 #
 # Needs Clang with its libFuzzer and sanitizers (Debian: clang-14, libclang-rt-14-dev), or afl++. Other fuzzing: run.sh, without
 # instrumentation. The last run stands in last_run.txt.
@@ -17,7 +17,7 @@ seconds=${1:-2400}
 build=${2:-build/fuzz}
 shift $(($# < 2 ? $# : 2))
 targets=("$@")
-((${#targets[@]} > 0)) || targets=(pairs lines meshes)
+((${#targets[@]} > 0)) || targets=(pairs lines meshes structures)
 
 # The sanitizers of the preset asan-ubsan.
 sanitizers='-fsanitize=address,undefined -fno-sanitize=null,alignment -fno-sanitize-recover=all'
