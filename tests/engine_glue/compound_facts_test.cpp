@@ -11,7 +11,7 @@
 #include <deque>
 #include <vector>
 
-#include "pair/solver_core.hpp"
+#include "pd/bullet/shape_cache.hpp"
 
 namespace pd::test {
 namespace {
@@ -30,35 +30,38 @@ class Row {
   /// A step in which some children are near another body.
   void step(const std::vector<int>& near) {
     facts_.begin_pair(++stamp_);
-    for (const int child : near) facts_.look_at(compound_, child, core_);
+    for (const int child : near) facts_.look_at({compound_, child}, cache_);
   }
   /// How many of a child's facets are covered so.
   int num_covered(int child, detail::FacetCover cover, double slack = 1e-4) {
     int count = 0;
     for (std::size_t facet = 0; facet < 6; ++facet) {
-      count += facts_.cover_of(compound_, child, facet, slack, core_) == cover ? 1 : 0;
+      count += facts_.cover_of({compound_, child}, facet, slack, cache_) == cover ? 1 : 0;
     }
     return count;
   }
   int num_sealed(int child) { return num_covered(child, detail::FacetCover::all); }
   std::vector<int> neighbours(int child) {
-    const std::vector<int>* all = facts_.neighbours(compound_, child, 1e-4, core_);
+    const std::vector<int>* all = facts_.neighbours({compound_, child}, 1e-4, cache_);
     return all != nullptr ? *all : std::vector<int>{-1};
   }
   /// Those that rise above the top of a child near a point of it.
   std::vector<int> rising(int child, double x, double reach) {
     std::vector<int> found;
-    EXPECT_TRUE(facts_.rising_near(compound_, child, Vec3(x, 0, .5), Vec3::UnitZ(), .5, reach, 1e-4, core_, found));
+    EXPECT_TRUE(
+        facts_.rising_near({compound_, child}, {Vec3(x, 0, .5), reach, 1e-4}, {Vec3::UnitZ(), .5}, cache_, found));
     return found;
   }
-  bool may_hold(int child, const Vec3& point) { return facts_.may_hold(compound_, child, point, 1e-4, 1e-4, core_); }
+  bool may_hold(int child, const Vec3& point) {
+    return facts_.may_hold({compound_, child}, {point, 1e-4, 1e-4}, cache_);
+  }
   btCompoundShape& compound() { return compound_; }
-  std::size_t num_met() const { return core_.cache.size(); }
+  std::size_t num_met() const { return cache_.size(); }
 
  private:
   std::deque<btBoxShape> shapes_;
   btCompoundShape compound_;
-  detail::SolverCore core_{BulletSolverSettings()};
+  BulletShapeCache cache_;
   detail::CompoundFacts facts_;
   std::uint64_t stamp_ = 0;
 };

@@ -7,6 +7,8 @@
 #   3. Every header says #pragma once and describes itself with @file.
 #   4. A constant of a source has no namesake in another source of its folder: compiled as one they clash, or one hides the
 #      other.
+#   5. A folder of engine_glue/src or pd_core/src holds at most 25 units, where a header with its source is one. Larger folders are
+#      named in `crowded_folders` and may only shrink.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
@@ -14,6 +16,9 @@ set(rooms CMakeLists.txt engine_glue pd_core demos tests render README.md)
 set(tool_files CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff pyproject.toml)
 set(ignored_by_git build out compile_commands.json)
 set(max_lines 500)
+set(max_units 25)
+# "folder units": the units that it holds today, to be lowered with each one that leaves, and taken out at 25.
+set(crowded_folders "pd_core/src/depth/facets 27" "pd_core/src/dimension 35")
 
 set(broken 0)
 macro(report)
@@ -83,6 +88,33 @@ foreach(file ${files})
     foreach(constant ${outermost})
       set("first_${folder}_${constant}" ${file})
     endforeach()
+  endif()
+endforeach()
+
+# Units by folder.
+set(folders "")
+foreach(file ${files})
+  if(file MATCHES "^((engine_glue|pd_core)/src/.*)/([^/]+)\\.[ch]pp$")
+    list(APPEND folders ${CMAKE_MATCH_1})
+    list(APPEND "units_of_${CMAKE_MATCH_1}" ${CMAKE_MATCH_3})
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES folders)
+foreach(folder ${folders})
+  list(REMOVE_DUPLICATES "units_of_${folder}")
+  list(LENGTH "units_of_${folder}" units)
+  set(known ${crowded_folders})
+  list(FILTER known INCLUDE REGEX "^${folder} ")
+  if(known)
+    string(REGEX REPLACE ".* " "" allowed "${known}")
+    if(units LESS allowed)
+      report("${folder}: ${units} units are fewer than crowded_folders says; lower its number, or take it out at ${max_units}")
+    endif()
+  else()
+    set(allowed ${max_units})
+  endif()
+  if(units GREATER allowed)
+    report("${folder}: ${units} units, more than ${allowed}; a room is missing")
   endif()
 endforeach()
 

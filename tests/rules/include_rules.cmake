@@ -13,6 +13,7 @@
 #   4. Nothing outside pd_core includes pd_core/src, except tests.
 #   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli, tests/audit and tests/fuzz the command's parts.
 #   6. demos/python stands on the core, the renderer and the demos' libraries (protocol, mesh, audit, support); nobody includes it.
+#   7. engine_glue/src stands in rooms, lowest first in glue_rooms; each includes itself and those named in rooms_under_* below.
 # With -DGRAPH=<file> it also writes those arrows, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
@@ -42,6 +43,16 @@ set(folders_under_pair ${depth_folders})
 set(depth_words pd/depth/depth_answer.hpp pd/depth/scratch.hpp pd/depth/search_observer.hpp pd/depth/warm_certificate.hpp)
 # Old names of headers that moved.
 set(forwarding pd_core/include/pd/depth/union_of_parts.hpp pd_core/include/pd/depth/union_difference.hpp)
+
+set(glue_rooms shapes pieces pair union world rollback record stack)
+set(rooms_under_shapes shapes)
+set(rooms_under_pieces shapes pieces)
+set(rooms_under_pair shapes pieces pair)
+set(rooms_under_union shapes pieces pair union)
+set(rooms_under_world shapes pieces pair union world)
+set(rooms_under_rollback shapes pieces pair rollback)
+set(rooms_under_record shapes pieces pair record)
+set(rooms_under_stack stack)
 
 set_property(GLOBAL PROPERTY broken 0)
 function(report file line reason)
@@ -91,6 +102,19 @@ function(check_folder_of_depth file line path)
     report(${file} "${line}" "${own_folder} stands below or beside ${CMAKE_MATCH_1}")
   elseif(path MATCHES "^pd/depth/" AND NOT path IN_LIST depth_words)
     report(${file} "${line}" "machinery does not know public queries")
+  endif()
+endfunction()
+
+# Inside engine_glue/src: the order of its rooms.
+function(check_room_of_glue file line path)
+  if(NOT file MATCHES "^engine_glue/src/")
+    return()
+  endif()
+  string(REGEX REPLACE "^engine_glue/src/([a-z_]+)/[^/]+$" "\\1" own_room "${file}")
+  if(NOT own_room IN_LIST glue_rooms)
+    report(${file} "${line}" "stands in none of the rooms ${glue_rooms}")
+  elseif(path MATCHES "^([a-z_]+)/" AND CMAKE_MATCH_1 IN_LIST glue_rooms AND NOT CMAKE_MATCH_1 IN_LIST rooms_under_${own_room})
+    report(${file} "${line}" "${own_room} stands below or beside ${CMAKE_MATCH_1}")
   endif()
 endfunction()
 
@@ -162,6 +186,7 @@ function(check_include file line path)
     return()
   endif()
 
+  check_room_of_glue(${file} "${line}" "${path}")
   if(kind STREQUAL "internal" AND NOT room STREQUAL "tests")
     report(${file} "${line}" "only pd_core and tests include pd_core/src")
   endif()

@@ -5,15 +5,14 @@
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
-#include "world/installation.hpp"
+#include "pair/solver_in_world.hpp"
 
 namespace pd::detail {
 
 /// Made when it is first needed, with manifolds of its own.
 class BulletsStandIn {
  public:
-  BulletsStandIn(const Installation& installation, btDispatcher& dispatcher)
-      : installation_(installation), dispatcher_(dispatcher) {}
+  BulletsStandIn(const SolverInWorld& world, btDispatcher& dispatcher) : world_(world), dispatcher_(dispatcher) {}
   ~BulletsStandIn() { release(); }
   BulletsStandIn(const BulletsStandIn&) = delete;
   BulletsStandIn& operator=(const BulletsStandIn&) = delete;
@@ -25,7 +24,7 @@ class BulletsStandIn {
       // children's pairs.
       btCollisionAlgorithmConstructionInfo own(&dispatcher_, 0);
       own.m_manifold = nullptr;
-      algorithm_ = installation_.bullets_algorithm(own, a, b);
+      algorithm_ = world_.bullets_algorithm(own, a, b);
     }
     algorithm_->processCollision(a, b, info, result);
   }
@@ -41,7 +40,7 @@ class BulletsStandIn {
   }
 
  private:
-  const Installation& installation_;
+  const SolverInWorld& world_;
   btDispatcher& dispatcher_;
   btCollisionAlgorithm* algorithm_ = nullptr;
 };

@@ -1,8 +1,6 @@
 #include "pair/contact_algorithm.hpp"
 
-#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
@@ -19,12 +17,8 @@
 #include "shapes/cached_shape.hpp"
 #include "shapes/moving_body.hpp"
 #include "shapes/prefetch.hpp"
-#include "world/installation.hpp"
 
 namespace pd::detail {
-
-// Bullet's pool gives out pieces of a fixed size and checks it by assertion only; this one is always large enough.
-static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConvexAlgorithm));
 
 namespace {
 
@@ -74,34 +68,16 @@ void fetch_for_query(PairMemory& memory) {
 }  // namespace
 
 ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                                   const btCollisionObjectWrapper* b, const Installation& installation)
-    : btActivatingCollisionAlgorithm(info, a, b),
-      installation_(installation),
-      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold) {}
+                                   const btCollisionObjectWrapper* b, const SolverInWorld& world, Kind)
+    : AlgorithmShell(info, a, b), world_(world), manifold_(world.core(), *info.m_dispatcher1, info.m_manifold) {}
 
 void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) { manifold_.append_to(manifolds); }
 
-btCollisionAlgorithm* ContactAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                                             const btCollisionObjectWrapper* a,
-                                                                             const btCollisionObjectWrapper* b) {
-  if (installation.dispatcher() != nullptr && !installation.takes(*a, *b)) {
-    const int type_a = a->getCollisionShape()->getShapeType();
-    const int type_b = b->getCollisionShape()->getShapeType();
-    btCollisionConfiguration* configuration = installation.dispatcher()->getCollisionConfiguration();
-    btCollisionAlgorithmCreateFunc* own = for_closest_points
-                                              ? configuration->getClosestPointsAlgorithmCreateFunc(type_a, type_b)
-                                              : configuration->getCollisionAlgorithmCreateFunc(type_a, type_b);
-    return own->CreateCollisionAlgorithm(info, a, b);
-  }
-  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
-  return new (memory) ContactAlgorithm(info, a, b, installation);
-}
-
-bool ContactAlgorithm::sharp_parts() const { return installation_.core().settings.unions_as_one; }
+bool ContactAlgorithm::sharp_parts() const { return world_.core().settings.unions_as_one; }
 
 void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         const btDispatcherInfo& info, btManifoldResult* result) {
-  SolverCore& core = installation_.core();
+  SolverCore& core = world_.core();
   const bool first = manifold_.take(*a, *b);
   btPersistentManifold& manifold = manifold_.get();
   PairMemory* const memory = manifold_.memory();
@@ -125,7 +101,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   fetch(manifold);
   if (core.closed()) {
     btGjkEpaPenetrationDepthSolver epa;
-    process_by_bullet(epa, shape_a, pose_a, shape_b, pose_b, info, result);
+    process_by_bullet(epa, *a, *b, info, *result);
     return;
   }
   const auto this_step = [&] { return StepReach(*result, threshold, info.m_timeStep); };
@@ -136,30 +112,36 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
     // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
     // compared.
-    const std::uint64_t stamp = first ? 0 : installation_.stamp();
+    const std::uint64_t stamp = first ? 0 : world_.stamp();
     const BoxCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
     PairAnswer answer;
     ContactManifold points;
-    const PairQuestion asked{shape_a,
-                             pose_a,
-                             shape_b,
-                             pose_b,
-                             corners,
-                             touched ? kAnyDistance : static_cast<double>(threshold),
-                             stamp,
-                             memory != nullptr ? memory->shapes : buffers->recent,
-                             memory != nullptr ? &memory->warm : nullptr,
-                             boxes};
+    const PairQuestion asked{.a = shape_a,
+                             .pose_a = pose_a,
+                             .b = shape_b,
+                             .pose_b = pose_b,
+                             .shapes = memory != nullptr ? memory->shapes : buffers->recent,
+                             .warm = memory != nullptr ? &memory->warm : nullptr,
+                             .stamp = stamp,
+                             .corners = corners,
+                             .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
+                             .boxes_asked = boxes};
     const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, points);
     if (outcome == SolverCore::Outcome::unsupported) {
-      process_by_bullet(core.fallback(), shape_a, pose_a, shape_b, pose_b, info, result);
+      process_by_bullet(core.fallback(), *a, *b, info, *result);
       return;
     }
     if (outcome == SolverCore::Outcome::answered) {
       if (of_union) {
         buffers->cover.near.begin_pair(stamp);
-        keep_uncovered(*a, *b, answer, Vec3::Zero(), static_cast<double>(threshold),
-                       static_cast<double>(info.m_timeStep), stamp, core, *buffers, AnswerPoints::made, points);
+        const PiecePair pieces{.a = *a,
+                               .b = *b,
+                               .threshold = static_cast<double>(threshold),
+                               .seconds = static_cast<double>(info.m_timeStep),
+                               .shapes = {core.cache, stamp},
+                               .cover = buffers->cover,
+                               .manifold = buffers->manifold};
+        count_covered(keep_uncovered(pieces, answer, AnswerPoints::made, points), *buffers);
       }
       fresh = fresh_points(points);
     }
@@ -168,27 +150,28 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   manifold_.replace(fresh, info.m_timeStep, *result);
 }
 
-void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btConvexShape& a,
-                                         const btTransform& transform_a, const btConvexShape& b,
-                                         const btTransform& transform_b, const btDispatcherInfo& info,
-                                         btManifoldResult* result) {
-  if (is_finite(transform_a) && is_finite(transform_b)) {
+void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btCollisionObjectWrapper& of_a,
+                                         const btCollisionObjectWrapper& of_b, const btDispatcherInfo& info,
+                                         btManifoldResult& result) {
+  if (is_finite(of_a.getWorldTransform()) && is_finite(of_b.getWorldTransform())) {
+    const btConvexShape& a = convex_shape(&of_a);
+    const btConvexShape& b = convex_shape(&of_b);
     btVoronoiSimplexSolver simplex;
     btGjkPairDetector detector(&a, &b, &simplex, &solver);
     btGjkPairDetector::ClosestPointInput input;
     const btScalar reach = a.getMargin() + b.getMargin() + manifold_.get().getContactBreakingThreshold() +
-                           result->m_closestPointDistanceThreshold;
+                           result.m_closestPointDistanceThreshold;
     input.m_maximumDistanceSquared = reach * reach;
-    input.m_transformA = transform_a;
-    input.m_transformB = transform_b;
-    detector.getClosestPoints(input, *result, info.m_debugDraw);
+    input.m_transformA = of_a.getWorldTransform();
+    input.m_transformB = of_b.getWorldTransform();
+    detector.getClosestPoints(input, result, info.m_debugDraw);
   }
-  manifold_.refresh(*result);
+  manifold_.refresh(result);
 }
 
 btScalar ContactAlgorithm::calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo&,
                                                  btManifoldResult*) {
-  SolverCore& core = installation_.core();
+  SolverCore& core = world_.core();
   if (core.closed() || !a->getCollisionShape()->isConvex() || !b->getCollisionShape()->isConvex()) {
     return btScalar(1);
   }

@@ -1,25 +1,20 @@
 #include "pair/plane_algorithm.hpp"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 
 #include "pair/bullets_stand_in.hpp"
 #include "pair/plane_ground.hpp"
 #include "pair/solver_core.hpp"
-#include "world/installation.hpp"
 
 namespace pd::detail {
 
-// Bullet's pool of algorithms holds no larger ones.
-static_assert(sizeof(PlaneAlgorithm) <= sizeof(btConvexConvexAlgorithm));
-
 PlaneAlgorithm::PlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                               const btCollisionObjectWrapper* b, const Installation& installation, bool swapped)
-    : btActivatingCollisionAlgorithm(info, a, b),
-      installation_(installation),
-      swapped_(swapped),
-      manifold_(installation.core(), *info.m_dispatcher1, info.m_manifold),
-      bullets_(std::make_unique<BulletsStandIn>(installation, *info.m_dispatcher1)) {}
+                               const btCollisionObjectWrapper* b, const SolverInWorld& world, Kind kind)
+    : AlgorithmShell(info, a, b),
+      world_(world),
+      swapped_(kind.swapped),
+      manifold_(world.core(), *info.m_dispatcher1, info.m_manifold),
+      bullets_(std::make_unique<BulletsStandIn>(world, *info.m_dispatcher1)) {}
 
 PlaneAlgorithm::~PlaneAlgorithm() = default;
 
@@ -28,17 +23,9 @@ void PlaneAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   bullets_->append_to(manifolds);
 }
 
-btCollisionAlgorithm* PlaneAlgorithm::CreateFunc::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                                           const btCollisionObjectWrapper* a,
-                                                                           const btCollisionObjectWrapper* b) {
-  if (!installation.takes(*a, *b)) return installation.bullets_algorithm(info, a, b);
-  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(PlaneAlgorithm));
-  return new (memory) PlaneAlgorithm(info, a, b, installation, m_swapped);
-}
-
 bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& plane, bool first,
                           btManifoldResult& result, FreshPoints& fresh) {
-  SolverCore& core = installation_.core();
+  SolverCore& core = world_.core();
   if (core.closed()) return false;
   if (!is_finite(plane.getWorldTransform())) return true;
   const Halfspace3 ground = ground_of(plane);
@@ -50,13 +37,13 @@ bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisio
   if (!touched && box_above(convex, body.getWorldTransform(), ground, threshold)) return true;
   auto buffers = core.buffers.lease();
   // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
-  const GroundQuestion asked{convex,
-                             body.getWorldTransform(),
-                             ground,
-                             first ? 0 : installation_.stamp(),
-                             memory != nullptr ? memory->shapes[0] : buffers->recent[0],
-                             threshold,
-                             true};
+  const GroundQuestion asked{.body = convex,
+                             .pose = body.getWorldTransform(),
+                             .ground = ground,
+                             .stamp = first ? 0 : world_.stamp(),
+                             .shape = memory != nullptr ? memory->shapes[0] : buffers->recent[0],
+                             .threshold = threshold,
+                             .sharp_box = true};
   HalfspaceContact found;
   const SolverCore::Outcome outcome = core.stand_on(asked, *buffers, found);
   if (outcome == SolverCore::Outcome::answered) fresh = fresh_points(found.manifold);

@@ -6,11 +6,11 @@
 
 #include "pair/box_contacts.hpp"
 #include "pair/query_meter.hpp"
+#include "pair/solver_in_world.hpp"
 #include "pair/warm_up.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "shapes/lane_transform.hpp"
-#include "world/installation.hpp"
 
 namespace pd::detail {
 
@@ -43,20 +43,8 @@ CachedShape& SolverCore::find(const btConvexShape& shape, std::uint64_t stamp, s
                         [&](const btTriangleShape& triangle) { return cache.find(triangle, stamp); });
     return *known;
   }
-  refresh(shape, stamp, known);
+  StepShapes{cache, stamp}.refresh(shape, known);
   return *known;
-}
-
-void SolverCore::refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known) {
-  // The signature of a box is all that there is to compare.
-  const auto compared = [&] {
-    return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ||
-           (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp);
-  };
-  const bool current = known && known->source == &shape && compared() && known->signature == shape_signature(shape);
-  if (!current) {
-    known = cache.find(shape, stamp);
-  }
 }
 
 SolverCore::Outcome SolverCore::place(const PairQuestion& question, ThreadBuffers& held, PairAnswer& out) {
@@ -171,7 +159,8 @@ bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& s
   auto held = buffers.lease();
   PairAnswer found;
   // Rounded corners: Bullet's detector takes its cores and adds the margins itself.
-  const PairQuestion question{*a, pose_a, *b, pose_b, kRoundedBoxes, kAnyDistance, stamp, held->recent, nullptr};
+  const PairQuestion question{
+      .a = *a, .pose_a = pose_a, .b = *b, .pose_b = pose_b, .shapes = held->recent, .stamp = stamp};
   switch (answer(question, *held, found)) {
     case Outcome::answered:
       break;
@@ -199,25 +188,18 @@ bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& s
   return false;
 }
 
-Installation* SolverCore::find_installation(const btCollisionDispatcher* dispatcher) {
+SolverInWorld* SolverCore::find_world(const btCollisionDispatcher* dispatcher) {
   const std::lock_guard lock(mutex_);
-  for (const auto& installation : installations_) {
-    if (installation->dispatcher() == dispatcher) {
-      return installation.get();
-    }
-  }
-  return nullptr;
+  const auto found = std::find_if(worlds_.begin(), worlds_.end(),
+                                  [&](const auto& world) { return world->dispatcher() == dispatcher; });
+  return found == worlds_.end() ? nullptr : found->get();
 }
 
-Installation& SolverCore::installation(btCollisionDispatcher* dispatcher) {
-  if (Installation* known = find_installation(dispatcher)) {
-    return *known;
-  }
+void SolverCore::add_world(std::unique_ptr<SolverInWorld> world) {
   const std::lock_guard lock(mutex_);
   if (!installed_) warm_up(*buffers.lease());
   installed_ = true;
-  installations_.push_back(std::make_unique<Installation>(*this, dispatcher));
-  return *installations_.back();
+  worlds_.push_back(std::move(world));
 }
 
 void SolverCore::close() {

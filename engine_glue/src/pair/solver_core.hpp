@@ -17,21 +17,14 @@
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/shape_cache.hpp"
 #include "pd/contact/halfspace_contact.hpp"
+#include "shapes/pair_answer.hpp"
+#include "shapes/step_shapes.hpp"
 
 class btCollisionDispatcher;
 
 namespace pd::detail {
 
-class Installation;
-
-/// One answer, with the bodies that it was made for. Valid while the buffers of the call are held, and until the pair's
-/// memory meets other shapes.
-struct PairAnswer {
-  PenetrationDepth depth;
-  PosedShape a;
-  PosedShape b;
-  bool boxes = false;  ///< two btBoxShapes, both taken sharp
-};
+class SolverInWorld;
 
 /// Which btBoxShapes are taken without their margins; the others as Bullet's GJK sees every shape, core and margin.
 struct BoxCorners {
@@ -50,13 +43,13 @@ struct PairQuestion {
   const btTransform& pose_a;
   const btConvexShape& b;
   const btTransform& pose_b;
-  BoxCorners corners;
-  double beyond;        ///< that the bodies are farther apart than this is all there is to know then
-  std::uint64_t stamp;  ///< of this step of this world (`BulletShapeCache::find`), 0: unknown
   std::array<std::shared_ptr<CachedShape>, 2>& shapes;  ///< as found earlier: the pair's memory, or the buffers' last
-  WarmCertificate* warm;                                ///< of this pair, or nullptr
-  bool boxes_asked = false;                             ///< `box_contacts` had no answer
-  bool shapes_current = false;                          ///< `shapes` are those of this step
+  WarmCertificate* warm = nullptr;                      ///< of this pair, or nullptr
+  std::uint64_t stamp = 0;  ///< of this step of this world (`BulletShapeCache::find`), 0: unknown
+  BoxCorners corners = kRoundedBoxes;
+  double beyond = kAnyDistance;  ///< that the bodies are farther apart than this is all there is to know then
+  bool boxes_asked = false;      ///< `box_contacts` had no answer
+  bool shapes_current = false;   ///< `shapes` are those of this step
 };
 
 /// A body on a plane.
@@ -96,9 +89,7 @@ class SolverCore {
 
   /// A body on a plane: its distance and its contact points.
   Outcome stand_on(const GroundQuestion& question, ThreadBuffers& buffers, HalfspaceContact& answer);
-  /// Brings up to date what a shape that is no triangle was converted to. `known`: as found earlier, or null.
-  void refresh(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known);
-  /// The same of every shape.
+  /// Brings up to date what a shape was converted to. `known`: as found earlier, or null.
   CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
                     ThreadBuffers& buffers);
 
@@ -113,10 +104,10 @@ class SolverCore {
   /// A number that no step of any world had before.
   [[nodiscard]] std::uint64_t next_stamp() { return 1 + stamps_.fetch_add(1, std::memory_order_relaxed); }
 
-  /// The installation of a dispatcher, made where there is none; nullptr: the one of no dispatcher.
-  Installation& installation(btCollisionDispatcher* dispatcher);
-  /// The installation of a dispatcher, or nullptr.
-  Installation* find_installation(const btCollisionDispatcher* dispatcher);
+  /// The world of a dispatcher, or nullptr.
+  SolverInWorld* find_world(const btCollisionDispatcher* dispatcher);
+  /// Keeps it as long as the core lives.
+  void add_world(std::unique_ptr<SolverInWorld> world);
   [[nodiscard]] bool installed() const { return installed_; }
 
   /// The solver is gone: from now on Bullet's EPA answers.
@@ -140,7 +131,7 @@ class SolverCore {
   std::atomic<std::uint64_t> warned_{0};  ///< a bit for each Bullet type
   std::atomic<bool> closed_{false};
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Installation>> installations_;
+  std::vector<std::unique_ptr<SolverInWorld>> worlds_;
   bool installed_ = false;
 };
 

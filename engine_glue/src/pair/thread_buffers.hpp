@@ -54,6 +54,11 @@ struct ThreadBuffers {
   std::array<std::shared_ptr<CachedShape>, 2> recent;
 };
 
+/// Counts contacts that were dropped or changed for what lies around them; most often there are none.
+inline void count_covered(int contacts, ThreadBuffers& buffers) {
+  if (contacts > 0) buffers.counters.covered.add(contacts);
+}
+
 /// A pool of buffers: as many as there were threads inside a call at once. Taking and giving back is one exchange of a
 /// pointer each as long as no more than kSlots threads are inside calls.
 class ThreadBufferPool {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "shapes/child_tree.hpp"
@@ -50,15 +49,15 @@ CompoundFacts::Known& CompoundFacts::known_of(const btCompoundShape& compound) {
   return known;
 }
 
-CompoundFacts::Child& CompoundFacts::compared(const btCompoundShape& compound, Known& known, int number,
-                                              SolverCore& core) const {
+CompoundFacts::Child& CompoundFacts::compared(const ChildOf& of, Known& known, BulletShapeCache& cache) const {
+  const auto& [compound, number] = of;
   Child& child = known.children[static_cast<std::size_t>(number)];
   if (child.compared == visit_) return child;
   child.compared = visit_;
   const btCollisionShape& source = *compound.getChildShape(number);
   const CachedShape* const before = child.shape.get();
   if (source.isConvex()) {
-    core.refresh(static_cast<const btConvexShape&>(source), stamp_, child.shape);
+    StepShapes{cache, stamp_}.refresh(static_cast<const btConvexShape&>(source), child.shape);
   } else {
     child.shape.reset();
   }
@@ -82,76 +81,73 @@ CompoundFacts::Child& CompoundFacts::compared(const btCompoundShape& compound, K
   return child;
 }
 
-void CompoundFacts::find_neighbours(const btCompoundShape& compound, Known& known, int number, SolverCore& core) const {
+void CompoundFacts::find_neighbours(const ChildOf& of, Known& known, BulletShapeCache& cache) const {
+  const auto& [compound, number] = of;
   Child& own = known.children[static_cast<std::size_t>(number)];
   std::vector<int>& neighbours = own.neighbours;
   const btScalar within = reach_of(own.lower, own.upper);
   const btVector3 extra(within, within, within);
   neighbours.clear();
   for_each_child_meeting(compound, btDbvtVolume::FromMM(own.lower - extra, own.upper + extra), [&](int i) {
-    if (i == number) return;
-    const Child& other = compared(compound, known, i, core);
+    if (i == of.number) return;
+    const Child& other = compared({of.compound, i}, known, cache);
     if (TestAabbAgainstAabb2(own.lower - extra, own.upper + extra, other.lower, other.upper)) neighbours.push_back(i);
   });
   // The tree's order depends on its history.
   std::sort(neighbours.begin(), neighbours.end());
 }
 
-CompoundFacts::Child& CompoundFacts::surrounded(const btCompoundShape& compound, Known& known, int number,
-                                                SolverCore& core) {
-  Child& child = known.children[static_cast<std::size_t>(number)];
+CompoundFacts::Child& CompoundFacts::surrounded(const ChildOf& of, Known& known, BulletShapeCache& cache) {
+  Child& child = known.children[static_cast<std::size_t>(of.number)];
   if (child.surrounded == visit_ && child.facts == known.change) return child;
-  compared(compound, known, number, core);
+  compared(of, known, cache);
   if (child.surrounded != visit_ && child.facts == known.change) {
-    for (const int i : child.neighbours) compared(compound, known, i, core);
+    for (const int i : child.neighbours) compared({of.compound, i}, known, cache);
   }
   child.surrounded = visit_;
   if (child.facts != known.change) {
-    find_neighbours(compound, known, number, core);
+    find_neighbours(of, known, cache);
     child.facts = known.change;
     child.facets.assign(child.piece.planes.size(), FacetCover::unknown);
   }
   return child;
 }
 
-FacetCover CompoundFacts::cover_of(const btCompoundShape& compound, int number, std::size_t facet, double slack,
-                                   SolverCore& core) {
-  Known& known = known_of(compound);
-  Child& child = surrounded(compound, known, number, core);
+FacetCover CompoundFacts::cover_of(const ChildOf& of, std::size_t facet, double slack, BulletShapeCache& cache) {
+  Known& known = known_of(of.compound);
+  Child& child = surrounded(of, known, cache);
   if (facet >= child.facets.size() || slack > 0.5 * static_cast<double>(reach_of(child.lower, child.upper))) {
     return FacetCover::some;
   }
   FacetCover& cover = child.facets[facet];
-  if (cover == FacetCover::unknown) cover = find_cover(compound, known, number, facet, core);
+  if (cover == FacetCover::unknown) cover = find_cover(of, known, facet, cache);
   return cover;
 }
 
-const std::vector<int>* CompoundFacts::neighbours(const btCompoundShape& compound, int number, double reach,
-                                                  SolverCore& core) {
-  const Child& own = surrounded(compound, known_of(compound), number, core);
+const std::vector<int>* CompoundFacts::neighbours(const ChildOf& of, double reach, BulletShapeCache& cache) {
+  const Child& own = surrounded(of, known_of(of.compound), cache);
   return reach <= 0.5 * static_cast<double>(reach_of(own.lower, own.upper)) ? &own.neighbours : nullptr;
 }
 
-bool CompoundFacts::may_hold(const btCompoundShape& compound, int number, const Vec3& point, double reach, double slack,
-                             SolverCore& core) {
-  Known& known = known_of(compound);
-  const Child& own = surrounded(compound, known, number, core);
-  if (slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return true;
+bool CompoundFacts::may_hold(const ChildOf& of, const NearPoint& near, BulletShapeCache& cache) {
+  Known& known = known_of(of.compound);
+  const Child& own = surrounded(of, known, cache);
+  if (near.slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return true;
   return std::any_of(own.neighbours.begin(), own.neighbours.end(), [&](int i) {
     const Child& other = known.children[static_cast<std::size_t>(i)];
     if (other.piece.planes.empty()) return !other.source->isConvex();
     // Surfaces lie flush, not cores, where margins differ.
-    const double far = reach + std::abs(own.piece.margin - other.piece.margin);
-    const auto parts = [&](const Plane& plane) { return plane.height(point) > far; };
+    const double far = near.reach + std::abs(own.piece.margin - other.piece.margin);
+    const auto parts = [&](const Plane& plane) { return plane.height(near.point) > far; };
     return std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts);
   });
 }
 
-bool CompoundFacts::rising_near(const btCompoundShape& compound, int number, const Vec3& point, const Vec3& n,
-                                double level, double reach, double slack, SolverCore& core, std::vector<int>& rising) {
-  Known& known = known_of(compound);
-  const Child& own = surrounded(compound, known, number, core);
-  if (slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return false;
+bool CompoundFacts::rising_near(const ChildOf& of, const NearPoint& near, const Beyond& beyond, BulletShapeCache& cache,
+                                std::vector<int>& rising) {
+  Known& known = known_of(of.compound);
+  const Child& own = surrounded(of, known, cache);
+  if (near.slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return false;
   rising.clear();
   for (const int i : own.neighbours) {
     const Child& other = known.children[static_cast<std::size_t>(i)];
@@ -159,20 +155,19 @@ bool CompoundFacts::rising_near(const btCompoundShape& compound, int number, con
       if (!other.source->isConvex()) rising.push_back(i);
       continue;
     }
-    const double level_of_core = level - other.piece.margin;
-    const auto rises = [&](const Vec3& corner) { return n.dot(corner) > level_of_core; };
+    const double level_of_core = beyond.level - other.piece.margin;
+    const auto rises = [&](const Vec3& corner) { return beyond.n.dot(corner) > level_of_core; };
     if (std::none_of(other.corners.begin(), other.corners.end(), rises)) continue;
     // Surfaces lie flush, not cores, where margins differ.
-    const double far = reach + std::abs(own.piece.margin - other.piece.margin);
-    const auto parts = [&](const Plane& plane) { return plane.height(point) > far; };
+    const double far = near.reach + std::abs(own.piece.margin - other.piece.margin);
+    const auto parts = [&](const Plane& plane) { return plane.height(near.point) > far; };
     if (std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts)) rising.push_back(i);
   }
   return true;
 }
 
-FacetCover CompoundFacts::find_cover(const btCompoundShape& compound, Known& known, int number, std::size_t facet,
-                                     SolverCore& core) {
-  const Child& own = known.children[static_cast<std::size_t>(number)];
+FacetCover CompoundFacts::find_cover(const ChildOf& of, Known& known, std::size_t facet, BulletShapeCache& cache) {
+  const Child& own = known.children[static_cast<std::size_t>(of.number)];
   const ConvexShape& shape = *taken_of(*own.shape);
   const PosedShape posed{&shape, to_pd(own.place)};
   const Vec3& n = own.piece.planes[facet].normal;
@@ -207,7 +202,7 @@ FacetCover CompoundFacts::find_cover(const btCompoundShape& compound, Known& kno
   };
   bool free = true;
   for (const int i : own.neighbours) {
-    const Child& other = compared(compound, known, i, core);
+    const Child& other = compared({of.compound, i}, known, cache);
     if (covers(other)) return FacetCover::all;
     free = free && leaves_free(other);
   }
@@ -215,10 +210,10 @@ FacetCover CompoundFacts::find_cover(const btCompoundShape& compound, Known& kno
 }
 
 void look_at(const btCollisionObjectWrapper& body, std::span<const Child> children, CompoundFacts& facts,
-             SolverCore& core) {
+             BulletShapeCache& cache) {
   if (!body.getCollisionShape()->isCompound()) return;
   const auto& compound = static_cast<const btCompoundShape&>(*body.getCollisionShape());
-  for (const Child& child : children) facts.look_at(compound, child.index, core);
+  for (const Child& child : children) facts.look_at({compound, child.index}, cache);
 }
 
 }  // namespace pd::detail

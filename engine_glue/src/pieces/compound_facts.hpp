@@ -17,10 +17,27 @@
 #include "pieces/union_piece.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/compound_children.hpp"
+#include "shapes/step_shapes.hpp"
 
 namespace pd::detail {
 
-class SolverCore;
+struct ChildOf {
+  const btCompoundShape& compound;
+  int number;
+};
+
+/// Around a point of a piece's core, in the frame of its union.
+struct NearPoint {
+  Vec3 point;
+  double reach;
+  double slack;  ///< within which pieces are neighbours, as the reach of `neighbours`
+};
+
+/// The half-space of what covers against n: what does not reach into it has no way that leads on along n.
+struct Beyond {
+  Vec3 n;  ///< unit, outward
+  double level;
+};
 
 /// What the other children of a compound cover of a child's facet.
 enum class FacetCover : std::uint8_t {
@@ -45,38 +62,30 @@ class CompoundFacts {
   /// To be called for each child near the other body, before any facts are asked for: one that has changed or come next
   /// to another is seen here. (Where Bullet hands over the children one by one, that is when they are asked
   /// themselves.)
-  void look_at(const btCompoundShape& compound, int child, SolverCore& core) {
-    compared(compound, known_of(compound), child, core);
-  }
+  void look_at(const ChildOf& child, BulletShapeCache& cache) { compared(child, known_of(child.compound), cache); }
 
   /// @param slack  as the reach of `neighbours`
   /// @return never `unknown`; `some` where the child is no solid polytope
-  [[nodiscard]] FacetCover cover_of(const btCompoundShape& compound, int child, std::size_t facet, double slack,
-                                    SolverCore& core);
+  [[nodiscard]] FacetCover cover_of(const ChildOf& child, std::size_t facet, double slack, BulletShapeCache& cache);
 
   /// The children other than this one whose boxes come within `reach` of its own, and perhaps a few more; nullptr: they
   /// are not known for so large a reach.
-  [[nodiscard]] const std::vector<int>* neighbours(const btCompoundShape& compound, int child, double reach,
-                                                   SolverCore& core);
+  [[nodiscard]] const std::vector<int>* neighbours(const ChildOf& child, double reach, BulletShapeCache& cache);
 
   /// Whether a child other than this one comes within `reach` of a point of its core, or might: of most contacts none
   /// does.
-  /// @param slack  as the reach of `neighbours`
-  [[nodiscard]] bool may_hold(const btCompoundShape& compound, int child, const Vec3& point, double reach, double slack,
-                              SolverCore& core);
+  [[nodiscard]] bool may_hold(const ChildOf& child, const NearPoint& near, BulletShapeCache& cache);
 
   /// The children that could cover what this one touches another body with: of those as above the ones that come within
   /// `reach` of a point of its core and rise beyond a level along n. Most contacts have none.
-  /// @param point  in the compound's frame; n: unit, in that frame, outward
-  /// @param slack  as the reach of `neighbours`
   /// @param rising  set to them, by number
   /// @return false, and nothing set, where they are not known
-  bool rising_near(const btCompoundShape& compound, int child, const Vec3& point, const Vec3& n, double level,
-                   double reach, double slack, SolverCore& core, std::vector<int>& rising);
+  bool rising_near(const ChildOf& child, const NearPoint& near, const Beyond& beyond, BulletShapeCache& cache,
+                   std::vector<int>& rising);
 
   /// A child as planes in the compound's frame, as it is in this step; no planes where it is no solid polytope.
-  [[nodiscard]] const UnionPiece& piece_of(const btCompoundShape& compound, int child, SolverCore& core) {
-    return compared(compound, known_of(compound), child, core).piece;
+  [[nodiscard]] const UnionPiece& piece_of(const ChildOf& child, BulletShapeCache& cache) {
+    return compared(child, known_of(child.compound), cache).piece;
   }
 
  private:
@@ -101,11 +110,11 @@ class CompoundFacts {
 
   Known& known_of(const btCompoundShape& compound);
   /// The child as it is in this step.
-  Child& compared(const btCompoundShape& compound, Known& known, int child, SolverCore& core) const;
+  Child& compared(const ChildOf& child, Known& known, BulletShapeCache& cache) const;
   /// The same, with its neighbours as they are in this step, and facts that hold.
-  Child& surrounded(const btCompoundShape& compound, Known& known, int child, SolverCore& core);
-  void find_neighbours(const btCompoundShape& compound, Known& known, int child, SolverCore& core) const;
-  FacetCover find_cover(const btCompoundShape& compound, Known& known, int child, std::size_t facet, SolverCore& core);
+  Child& surrounded(const ChildOf& child, Known& known, BulletShapeCache& cache);
+  void find_neighbours(const ChildOf& child, Known& known, BulletShapeCache& cache) const;
+  FacetCover find_cover(const ChildOf& child, Known& known, std::size_t facet, BulletShapeCache& cache);
 
   std::unordered_map<const btCompoundShape*, Known> compounds_;
   std::vector<const Plane*> active_;
@@ -122,6 +131,6 @@ class CompoundFacts {
 
 /// `look_at` for a pair's children of a body; of one that is no compound, nothing.
 void look_at(const btCollisionObjectWrapper& body, std::span<const Child> children, CompoundFacts& facts,
-             SolverCore& core);
+             BulletShapeCache& cache);
 
 }  // namespace pd::detail

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "pair/solver_core.hpp"
-
 namespace pd::detail {
 
 bool is_flat(const PosedShape& body) {
@@ -25,17 +23,16 @@ bool Cover::look_round(const Vec3& foot, const Vec3& n) {
   const double reach = 1.5 * window_ + slack_;
   const Beyond beyond{n, n.dot(foot) + own().margin + 2 * slack_};
   buffers_.near.forget_made();
-  buffers_.near.find(wrapper_, frame_, foot, reach, slack_, n.isZero(0) ? nullptr : &beyond, stamp_, core_,
+  buffers_.near.find({wrapper_, frame_}, {foot, reach, slack_}, n.isZero(0) ? nullptr : &beyond, shapes_,
                      buffers_.found);
   return !buffers_.found.empty();
 }
 
 bool Cover::may_be_covered(const Vec3& foot) const {
   if (frame_.is_world) return true;
-  const auto& compound = static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape());
   // An edge or vertex is covered only where its foot is, which `touched_at` moves by less than this.
   const double reach = 8 * slack_;
-  return buffers_.near.facts().may_hold(compound, wrapper_.m_index, foot, reach, 4 * slack_, core_);
+  return buffers_.near.facts().may_hold(child(), {foot, reach, 4 * slack_}, shapes_.cache);
 }
 
 double Cover::covered(Vec3 foot, const Vec3& n) {
@@ -63,8 +60,7 @@ bool Cover::led_on_by_neighbour(const Vec3& foot, const Vec3& n) const {
 
 FacetCover Cover::cover_of(std::size_t facet) const {
   if (frame_.is_world) return FacetCover::some;
-  const auto& compound = static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape());
-  return buffers_.near.facts().cover_of(compound, wrapper_.m_index, facet, 4 * slack_, core_);
+  return buffers_.near.facts().cover_of(child(), facet, 4 * slack_, shapes_.cache);
 }
 
 double Cover::most_covered(const Vec3& point, const Vec3& n, double enough) {

@@ -16,8 +16,6 @@
 
 namespace pd::detail {
 
-class SolverCore;
-
 /// Memory of `keep_uncovered`, one a thread.
 struct CoverBuffers {
   UnionPiece made;                ///< of a piece that `near` does not keep
@@ -56,15 +54,14 @@ struct Side {
 /// Points and directions are those of `frame()`, in which the piece and what is near it lie.
 class Cover {
  public:
-  Cover(const Side& side, double slack, double window, std::uint64_t stamp, SolverCore& core, CoverBuffers& buffers)
+  Cover(const Side& side, double slack, double window, const StepShapes& shapes, CoverBuffers& buffers)
       : wrapper_(side.wrapper),
         own_(side.own),
         slack_(slack),
         window_(window),
-        stamp_(stamp),
-        core_(core),
+        shapes_(shapes),
         buffers_(buffers),
-        frame_(buffers.near.frame_of(side.wrapper, core, kept_)) {}
+        frame_(buffers.near.frame_of(side.wrapper, shapes.cache, kept_)) {}
 
   /// Sets the piece at hand: one that is kept, or made anew. To be called first.
   void take_own();
@@ -114,13 +111,16 @@ class Cover {
   /// flush neighbour holds them.
   void set_feature(const Touched& touched, const Vec3& foot, const Vec3& n);
   [[nodiscard]] const Plane* edge_of_triangle(const Vec3& foot) const;
+  /// Requires: the piece is one of a whole body's compound.
+  [[nodiscard]] ChildOf child() const {
+    return {static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()), wrapper_.m_index};
+  }
 
   const btCollisionObjectWrapper& wrapper_;
   const PosedShape& own_;
   double slack_;
   double window_;
-  std::uint64_t stamp_;
-  SolverCore& core_;
+  StepShapes shapes_;
   CoverBuffers& buffers_;
   const UnionPiece* kept_ = nullptr;
   const UnionFrame& frame_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pieces/lazy_points.hpp"
@@ -33,14 +32,14 @@ double deepest_of(const ContactManifold& points) {
 /// What one side's piece does to the manifold.
 class SideRule {
  public:
-  SideRule(const Side& side, double threshold, double window, double slack, std::uint64_t stamp, SolverCore& core,
-           ThreadBuffers& buffers)
+  SideRule(const Side& side, const PiecePair& pair, double window, double slack)
       : side_(side),
-        threshold_(threshold),
+        threshold_(pair.threshold),
         window_(window),
         slack_(slack),
-        buffers_(buffers),
-        cover_(side_, slack, window, stamp, core, buffers.cover) {}
+        buffers_(pair.cover),
+        manifold_(pair.manifold),
+        cover_(side_, slack, window, pair.shapes, pair.cover) {}
 
   /// @return whether `points` was changed
   bool apply(double depth, const Vec3& witness, LazyPoints& points) {
@@ -102,7 +101,7 @@ class SideRule {
   double covered_here(const Vec3& foot, const Vec3& n) {
     const UnionPiece& own = cover_.own();
     if (own.flat) {
-      const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.cover.active);
+      const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.active);
       if (own_sine > kDecided) return own_sine;
       if (cover_.led_on_by_neighbour(foot, n)) return kLedOn;
       cover_.look_round(foot, n);
@@ -147,7 +146,7 @@ class SideRule {
   }
 
   ContactManifold manifold_along(const PieceExit& exit) {
-    return points_along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, buffers_.manifold);
+    return points_along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, manifold_);
   }
 
   ContactManifold turned(const Plane& facet) {
@@ -160,7 +159,7 @@ class SideRule {
   /// against one of the other body's.
   ContactManifold nearest_free(const Vec3& n, double depth, const Vec3& foot) {
     const UnionPiece& own = cover_.own();
-    std::vector<std::pair<double, int>>& facets = buffers_.cover.facets;
+    std::vector<std::pair<double, int>>& facets = buffers_.facets;
     facets.clear();
     const double limit = std::max(4 * depth, window_);
     const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
@@ -224,77 +223,75 @@ class SideRule {
   double threshold_;
   double window_;
   double slack_;
-  ThreadBuffers& buffers_;
+  CoverBuffers& buffers_;
+  ManifoldScratch& manifold_;
   Cover cover_;
 };
 
 /// How far from a contact a union is looked at: as far as the bodies may move before contacts are found again.
-double window_of(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double depth, double threshold,
-                 double seconds) {
-  const Vec3 way = seconds * (linear_velocity(*a.getCollisionObject()) - linear_velocity(*b.getCollisionObject()));
-  return threshold + std::abs(depth) + way.norm();
+double window_of(const PiecePair& pair, double depth) {
+  const Vec3 way =
+      pair.seconds * (linear_velocity(*pair.a.getCollisionObject()) - linear_velocity(*pair.b.getCollisionObject()));
+  return pair.threshold + std::abs(depth) + way.norm();
 }
 
 }  // namespace
 
-void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
-                    const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
-                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points) {
-  LazyPoints lazy(answer, threshold, buffers.manifold, given, points);
-  if (lazy.none()) return;
+int keep_uncovered(const PiecePair& pair, const PairAnswer& answer, AnswerPoints given, ContactManifold& points) {
+  LazyPoints lazy(answer, pair.threshold, pair.manifold, given, points);
+  if (lazy.none()) return 0;
   const double slack = seam_slack(answer.a, answer.b);
   double depth = -answer.depth.signed_distance();
-  const double window = window_of(a, b, depth, threshold, seconds);
+  const double window = window_of(pair, depth);
   Vec3 witness_b = answer.depth.witness_b;
-  if (is_piece(b)) {
-    const Side side{b, answer.b, answer.a, true, front};
-    SideRule rule(side, threshold, window, slack, stamp, core, buffers);
+  int changed = 0;
+  if (is_piece(pair.b)) {
+    const Side side{pair.b, answer.b, answer.a, true, pair.front};
+    SideRule rule(side, pair, window, slack);
     if (rule.apply(depth, witness_b, lazy)) {
-      buffers.counters.covered.add();
-      if (points.count == 0) return;
+      ++changed;
+      if (points.count == 0) return changed;
       const auto deepest = std::max_element(points.points.begin(), points.points.begin() + points.count,
                                             [](const auto& x, const auto& y) { return x.depth < y.depth; });
       depth = deepest->depth;
       witness_b = deepest->position_b;
     }
   }
-  if (is_piece(a)) {
-    const Side side{a, answer.a, answer.b, false};
-    SideRule rule(side, threshold, window, slack, stamp, core, buffers);
-    if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) buffers.counters.covered.add();
+  if (is_piece(pair.a)) {
+    const Side side{pair.a, answer.a, answer.b, false};
+    SideRule rule(side, pair, window, slack);
+    if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) ++changed;
   }
   lazy.get();
+  return changed;
 }
 
-void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
-                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
-                  ContactManifold& points) {
+int drop_covered(const PiecePair& pair, const PosedShape& body, ContactManifold& points) {
   const double slack = seam_slack(body, body);
-  const Side side{a, body, body, false};
+  const Side side{pair.a, body, body, false};
+  const int before = points.count;
   for (int i = points.count - 1; i >= 0; --i) {
     const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
-    Cover cover(side, slack, window_of(a, b, point.depth, threshold, seconds), stamp, core, buffers.cover);
+    Cover cover(side, slack, window_of(pair, point.depth), pair.shapes, pair.cover);
     cover.take_own();
-    if (cover.own().planes.empty()) return;
+    if (cover.own().planes.empty()) break;
     const Vec3 n = cover.frame().turn(-points.normal);
     const Vec3 foot = cover.frame().place(point.position_a) - cover.own().margin * n;
-    if (!cover.look_round(foot, n) || cover.covered(foot, n) <= kDecided) continue;
-    drop_point(points, i);
-    buffers.counters.covered.add();
+    if (cover.look_round(foot, n) && cover.covered(foot, n) > kDecided) drop_point(points, i);
   }
+  return before - points.count;
 }
 
-ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer, const Vec3& front,
-                            double threshold, ThreadBuffers& buffers) {
-  UnionPiece& own = buffers.cover.made;
+ContactManifold along_front(const PiecePair& pair, const PairAnswer& answer) {
+  UnionPiece& own = pair.cover.made;
   set_piece(answer.b, own);
   if (own.planes.empty()) return {};
-  const Plane& side = own.planes[own.planes[0].normal.dot(front) > 0 ? 0 : 1];
+  const Plane& side = own.planes[own.planes[0].normal.dot(pair.front) > 0 ? 0 : 1];
   const Vec3 farthest = farthest_against(answer.a, side.normal);
   const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
-  const Side sides{triangle, answer.b, answer.a, true, front};
-  return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, threshold,
-                      seam_slack(answer.a, answer.b), buffers.manifold);
+  const Side sides{pair.b, answer.b, answer.a, true, pair.front};
+  return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, pair.threshold,
+                      seam_slack(answer.a, answer.b), pair.manifold);
 }
 
 }  // namespace pd::detail

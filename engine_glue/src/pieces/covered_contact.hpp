@@ -18,39 +18,42 @@
 
 #include "pd/contact/manifold.hpp"
 #include "pieces/cover.hpp"
+#include "shapes/pair_answer.hpp"
+#include "shapes/step_shapes.hpp"
 
 namespace pd::detail {
-
-class SolverCore;
-struct PairAnswer;
-struct ThreadBuffers;
 
 /// Whether `keep_uncovered` is handed the answer's points, or makes them where it needs them: what is turned or dropped
 /// for what lies round it needs none.
 enum class AnswerPoints : std::uint8_t { made, to_be_made };
 
+/// Two bodies in one step, at least one of them a piece of a union.
+struct PiecePair {
+  const btCollisionObjectWrapper& a;
+  const btCollisionObjectWrapper& b;
+  double threshold;  ///< up to which gap a pair of points is a contact
+  double seconds;    ///< of the step: how far bodies may move before contacts are found again
+  StepShapes shapes;
+  CoverBuffers& cover;
+  ManifoldScratch& manifold;
+  Vec3 front = Vec3::Zero();  ///< zero, or: b is a triangle that has this side only (unit, in the world)
+};
+
 /// Changes `points`, the manifold of `answer`, to what holds for the unions that a and b are pieces of.
 /// @param given  to_be_made: whatever `points` are, they become those of the answer (as lifted), or what holds
-///
-/// @param front  zero, or: b is a triangle that has this side only (unit, in the world)
-/// @param threshold  up to which gap a pair of points is a contact
-/// @param seconds    of the step: how far bodies may move before contacts are found again
+/// @return how many of the two sides changed it
 /// Time: a query of the mesh's or compound's tree where a contact is suspect, and O(k f) in the k pieces near it and
 /// their f facets.
-void keep_uncovered(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const PairAnswer& answer,
-                    const Vec3& front, double threshold, double seconds, std::uint64_t stamp, SolverCore& core,
-                    ThreadBuffers& buffers, AnswerPoints given, ContactManifold& points);
+int keep_uncovered(const PiecePair& pair, const PairAnswer& answer, AnswerPoints given, ContactManifold& points);
 
 /// Drops the points of piece A's contact with a plane of B that lie inside of other pieces of A's union which lead on
 /// into the plane: those are deeper in it.
 /// @param body  what A is taken as
-void drop_covered(const btCollisionObjectWrapper& a, const PosedShape& body, const btCollisionObjectWrapper& b,
-                  double threshold, double seconds, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
-                  ContactManifold& points);
+/// @return how many
+int drop_covered(const PiecePair& pair, const PosedShape& body, ContactManifold& points);
 
-/// The contact of a body A that stands through or behind triangle B and is to leave by B's side `front`: points over
+/// The contact of a body A that stands through or behind triangle B and is to leave by B's front: points over
 /// the triangle, each as deep as A lies behind its plane.
-[[nodiscard]] ContactManifold along_front(const btCollisionObjectWrapper& triangle, const PairAnswer& answer,
-                                          const Vec3& front, double threshold, ThreadBuffers& buffers);
+[[nodiscard]] ContactManifold along_front(const PiecePair& pair, const PairAnswer& answer);
 
 }  // namespace pd::detail

@@ -3,9 +3,9 @@
 /// it needs none.
 #pragma once
 
-#include "pair/solver_core.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pieces/covered_contact.hpp"
+#include "shapes/pair_answer.hpp"
 
 namespace pd::detail {
 

@@ -10,7 +10,6 @@
 #include <span>
 #include <utility>
 
-#include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "shapes/child_tree.hpp"
 
@@ -30,8 +29,7 @@ struct NearPieces::Search {
   btVector3 centre;
   btScalar reach;
   const Beyond* beyond;
-  std::uint64_t stamp;
-  SolverCore& core;
+  const StepShapes& shapes;
   std::vector<const UnionPiece*>& found;
 };
 
@@ -84,14 +82,14 @@ void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrap
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
 
-const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, SolverCore& core,
+const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, BulletShapeCache& cache,
                                        const UnionPiece*& kept) {
   kept = nullptr;
   const btCollisionObjectWrapper* parent = piece.m_parent;
   if (parent == nullptr || parent->m_parent != nullptr || !parent->getCollisionShape()->isCompound()) return world_;
   const auto& compound = static_cast<const btCompoundShape&>(*parent->getCollisionShape());
   if (compound.getChildShape(piece.m_index) != piece.getCollisionShape()) return world_;
-  const UnionPiece& child = facts_.piece_of(compound, piece.m_index, core);
+  const UnionPiece& child = facts_.piece_of({compound, piece.m_index}, cache);
   if (child.planes.empty()) return world_;
   kept = &child;
   const btCollisionObject* const body = parent->getCollisionObject();
@@ -126,31 +124,31 @@ void NearPieces::collect_children(const btCompoundShape& compound, const btTrans
   });
 }
 
-void NearPieces::collect_in_frame(const btCompoundShape& compound, int except, double slack, Search& search) {
+void NearPieces::collect_in_frame(const ChildOf& except, const NearPoint& near, Search& search) {
+  const btCompoundShape& compound = except.compound;
+  BulletShapeCache& cache = search.shapes.cache;
   const auto add = [&](int i) {
     const btCollisionShape& shape = *compound.getChildShape(i);
     if (!shape.isConvex()) {
       collect(shape, compound.getChildTransform(i), nullptr, search);
       return;
     }
-    const UnionPiece& piece = facts_.piece_of(compound, i, search.core);
+    const UnionPiece& piece = facts_.piece_of({compound, i}, cache);
     if (!piece.planes.empty()) search.found.push_back(&piece);
   };
-  const Vec3 centre = to_pd(search.centre);
-  const auto reach = static_cast<double>(search.reach);
-  const Beyond* const beyond = search.beyond;
-  if (beyond != nullptr &&
-      facts_.rising_near(compound, except, centre, beyond->n, beyond->level, reach, 4 * slack, search.core, near_)) {
+  // As the search has them, in Bullet's scalar.
+  const NearPoint rounded{to_pd(search.centre), static_cast<double>(search.reach), 4 * near.slack};
+  if (search.beyond != nullptr && facts_.rising_near(except, rounded, *search.beyond, cache, near_)) {
     for (const int i : near_) add(i);
     return;
   }
   const auto visit = [&](int i) {
-    if (i == except) return;
-    const UnionPiece& piece = facts_.piece_of(compound, i, search.core);
-    const auto parts = [&](const Plane& plane) { return plane.height(centre) > reach; };
+    if (i == except.number) return;
+    const UnionPiece& piece = facts_.piece_of({compound, i}, cache);
+    const auto parts = [&](const Plane& plane) { return plane.height(rounded.point) > rounded.reach; };
     if (std::none_of(piece.planes.begin(), piece.planes.end(), parts)) add(i);
   };
-  if (const auto* neighbours = facts_.neighbours(compound, except, 4 * slack, search.core)) {
+  if (const auto* neighbours = facts_.neighbours(except, rounded.slack, cache)) {
     for (const int i : *neighbours) visit(i);
   } else {
     for_each_child_meeting(compound, btDbvtVolume::FromCR(search.centre, search.reach), visit);
@@ -263,7 +261,7 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     btVector3 lower, upper;
     shape.getAabb(pose, lower, upper);
     if (!within(lower, upper, search)) return;
-    const auto found = search.core.cache.find(static_cast<const btConvexShape&>(shape), search.stamp);
+    const auto found = search.shapes.find(static_cast<const btConvexShape&>(shape));
     if (!found || !found->body) return;
     UnionPiece& piece = next_made();
     set_solid(found->sharp ? *found->sharp : *found->body, to_pd(pose), piece);
@@ -273,17 +271,16 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
   }
 }
 
-void NearPieces::find(const btCollisionObjectWrapper& piece, const UnionFrame& frame, const Vec3& point, double reach,
-                      double slack, const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+void NearPieces::find(const PieceInFrame& piece, const NearPoint& near, const Beyond* beyond, const StepShapes& shapes,
                       std::vector<const UnionPiece*>& found) {
   found.clear();
-  Search search{to_bullet(point), static_cast<btScalar>(reach), beyond, stamp, core, found};
-  if (!frame.is_world) {
-    collect_in_frame(static_cast<const btCompoundShape&>(*piece.m_parent->getCollisionShape()), piece.m_index, slack,
-                     search);
+  Search search{to_bullet(near.point), static_cast<btScalar>(near.reach), beyond, shapes, found};
+  if (!piece.frame.is_world) {
+    const auto& compound = static_cast<const btCompoundShape&>(*piece.wrapper.m_parent->getCollisionShape());
+    collect_in_frame({compound, piece.wrapper.m_index}, near, search);
     return;
   }
-  for (const btCollisionObjectWrapper* child = &piece; child->m_parent != nullptr; child = child->m_parent) {
+  for (const btCollisionObjectWrapper* child = &piece.wrapper; child->m_parent != nullptr; child = child->m_parent) {
     const btCollisionObjectWrapper& parent = *child->m_parent;
     const btCollisionShape& shape = *parent.getCollisionShape();
     if (shape.isConcave()) {

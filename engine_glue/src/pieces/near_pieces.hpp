@@ -20,14 +20,6 @@ class btConvexShape;
 
 namespace pd::detail {
 
-class SolverCore;
-
-/// The half-space of what covers against n: what does not reach into it has no way that leads on along n.
-struct Beyond {
-  Vec3 n;
-  double level;
-};
-
 /// Where the pieces of a union are looked at: the children of a body's compound in its frame, in which they stand still
 /// from step to step; all others in the world.
 struct UnionFrame {
@@ -45,6 +37,11 @@ struct UnionFrame {
   }
 };
 
+struct PieceInFrame {
+  const btCollisionObjectWrapper& wrapper;
+  const UnionFrame& frame;
+};
+
 /// Finds the pieces of a union near one of them.
 class NearPieces {
  public:
@@ -56,16 +53,15 @@ class NearPieces {
 
   /// Where the union of a piece is looked at. Valid until the next pair.
   /// @param kept  set to the piece in its frame where it is a child that is kept there, else to nullptr
-  [[nodiscard]] const UnionFrame& frame_of(const btCollisionObjectWrapper& piece, SolverCore& core,
+  [[nodiscard]] const UnionFrame& frame_of(const btCollisionObjectWrapper& piece, BulletShapeCache& cache,
                                            const UnionPiece*& kept);
 
-  /// The other pieces of the union that come within `reach` of a point of this one, and within `slack` of the piece
+  /// The other pieces of the union that come within reach of a point of this one, and within the slack of the piece
   /// itself, which is not looked at closely; all in the piece's frame. Compounds in compounds and meshes in compounds
   /// included; curved parts are left out, since contacts inside of them do not arise from seams.
   /// @param beyond  null, or: pieces whose surface does not come beyond it are left out
   /// @param found  valid until `forget_made` or the next pair
-  void find(const btCollisionObjectWrapper& piece, const UnionFrame& frame, const Vec3& point, double reach,
-            double slack, const Beyond* beyond, std::uint64_t stamp, SolverCore& core,
+  void find(const PieceInFrame& piece, const NearPoint& near, const Beyond* beyond, const StepShapes& shapes,
             std::vector<const UnionPiece*>& found);
   /// Whether a triangle that shares an edge with this one, on which `foot` lies, leads on against n by a sine of `sine`
   /// and more: from there and, unless foot is a corner, from all of the edge. No search; false may be either.
@@ -105,7 +101,7 @@ class NearPieces {
                Search& search);
   void collect_children(const btCompoundShape& compound, const btTransform& pose, int except, Search& search);
   /// The children of a whole body's compound, in its frame.
-  void collect_in_frame(const btCompoundShape& compound, int except, double slack, Search& search);
+  void collect_in_frame(const ChildOf& except, const NearPoint& near, Search& search);
   /// Whether a box comes within reach.
   static bool within(const btVector3& lower, const btVector3& upper, const Search& search);
   /// Not taken before `num_made_` grows.

@@ -170,8 +170,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   buffers->cover.near.begin_pair(stamp);
   move(children_a_, stamp, core, *buffers, memory.children[0]);
   move(children_b_, stamp, core, *buffers, memory.children[1]);
-  look_at(a, children_a_, buffers->cover.near.facts(), core);
-  look_at(b, children_b_, buffers->cover.near.facts(), core);
+  look_at(a, children_a_, buffers->cover.near.facts(), core.cache);
+  look_at(b, children_b_, buffers->cover.near.facts(), core.cache);
   const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
@@ -245,25 +245,24 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
   const auto threshold = static_cast<double>(question.threshold);
   ContactManifold points;
-  const PairQuestion asked{shape_a,
-                           pair.a().getWorldTransform(),
-                           shape_b,
-                           pair.b().getWorldTransform(),
-                           {true, is_part(pair.a()), is_part(pair.b())},
-                           memory.met ? kAnyDistance : gap,
-                           question.stamp,
-                           memory.shapes,
-                           &memory.warm,
-                           false,
-                           true};
+  const PairQuestion asked{.a = shape_a,
+                           .pose_a = pair.a().getWorldTransform(),
+                           .b = shape_b,
+                           .pose_b = pair.b().getWorldTransform(),
+                           .shapes = memory.shapes,
+                           .warm = &memory.warm,
+                           .stamp = question.stamp,
+                           .corners = {true, is_part(pair.a()), is_part(pair.b())},
+                           .beyond = memory.met ? kAnyDistance : gap,
+                           .shapes_current = true};
   const auto outcome = core.contacts(asked, memory.met ? threshold : gap, buffers, answer, points);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
   memory.met = answer.depth.signed_distance() <= gap;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   reach.leave_out_idle(points);
-  keep_uncovered(pair.a(), pair.b(), answer, Vec3::Zero(), threshold, question.seconds, question.stamp, core, buffers,
-                 AnswerPoints::made, points);
+  const PiecePair pieces = question.of_pieces(pair.a(), pair.b(), core, buffers);
+  count_covered(keep_uncovered(pieces, answer, AnswerPoints::made, points), buffers);
   const auto [i, j] = pairs_.back();
   const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
   const int piece_b = children_b_[static_cast<std::size_t>(j)].index;

@@ -126,7 +126,13 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
   const bool part = is_part(body.wrapper);
   const auto stand = [&] {
     const Halfspace3 ground{normal, normal.dot(corner) + margin};
-    const GroundQuestion asked{shape, body_pose, ground, question.stamp, body.known, threshold, part};
+    const GroundQuestion asked{.body = shape,
+                               .pose = body_pose,
+                               .ground = ground,
+                               .stamp = question.stamp,
+                               .shape = body.known,
+                               .threshold = threshold,
+                               .sharp_box = part};
     return core.stand_on(asked, buffers, found) == SolverCore::Outcome::answered;
   };
   if (!stand()) return false;
@@ -140,8 +146,8 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
   if (found.manifold.count == 0) return true;
   const PosedShape posed{(part && body.known->sharp ? body.known->sharp : body.known->body).get(), to_pd(body_pose)};
   if (is_piece(body.wrapper)) {
-    drop_covered(body.wrapper, posed, question.b, threshold, question.seconds, question.stamp, core, buffers,
-                 plane.points);
+    const PiecePair pieces = question.of_pieces(body.wrapper, question.b, core, buffers);
+    count_covered(drop_covered(pieces, posed, plane.points), buffers);
   }
 
   // 3. What is under its points.

@@ -177,15 +177,15 @@ SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const b
                                       PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers,
                                       PairAnswer& answer) const {
   const bool met = memory != nullptr && memory->met;
-  const PairQuestion asked{static_cast<const btConvexShape&>(*a.getCollisionShape()),
-                           pose_a,
-                           triangle.shape(),
-                           question.b.getWorldTransform(),
-                           {true, is_part(a), false},
-                           met ? kAnyDistance : static_cast<double>(question.threshold),
-                           question.stamp,
-                           memory != nullptr ? memory->shapes : buffers.recent,
-                           memory != nullptr ? &memory->warm : nullptr};
+  const PairQuestion asked{.a = static_cast<const btConvexShape&>(*a.getCollisionShape()),
+                           .pose_a = pose_a,
+                           .b = triangle.shape(),
+                           .pose_b = question.b.getWorldTransform(),
+                           .shapes = memory != nullptr ? memory->shapes : buffers.recent,
+                           .warm = memory != nullptr ? &memory->warm : nullptr,
+                           .stamp = question.stamp,
+                           .corners = {true, is_part(a), false},
+                           .beyond = met ? kAnyDistance : static_cast<double>(question.threshold)};
   return core.answer(asked, buffers, answer);
 }
 
@@ -208,7 +208,7 @@ void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQues
       continue;
     }
     const ContactManifold points =
-        along_front(triangle.wrapper(), answer, behind.front, static_cast<double>(question.threshold), buffers);
+        along_front(question.of_pieces(a, triangle.wrapper(), core, buffers, behind.front), answer);
     patches.add(points, behind.triangle, part_of(children_[static_cast<std::size_t>(met.child)], met), met.index);
   }
 }
@@ -221,7 +221,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair(question.stamp);
-  look_at(question.a, children_, buffers->cover.near.facts(), core);
+  look_at(question.a, children_, buffers->cover.near.facts(), core.cache);
   if (children_.empty()) return true;
   reach_out(question);
   still_ = stand_still(question, core, *buffers, memory);
@@ -298,7 +298,7 @@ bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQu
   const btTransform& pose = a.getWorldTransform();
   if (!in_range(pose) || !in_range(question.b.getWorldTransform())) return false;
   std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, children_[static_cast<std::size_t>(place)].index);
-  core.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()), question.stamp, shape);
+  StepShapes{core.cache, question.stamp}.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()), shape);
   if (!shape->body) return false;
   body_ = {(is_part(a) && shape->sharp ? shape->sharp : shape->body).get(), to_pd(pose)};
   return gentle_.begin(body_, reaches_[static_cast<std::size_t>(place)], to_pd(question.b.getWorldTransform()),
@@ -321,8 +321,7 @@ bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const Union
       if (depth > 0) one_sided_.add_way(depth * points.normal);
     }
     if (is_piece(a)) {
-      drop_covered(a, body_, question.b, static_cast<double>(question.threshold), question.seconds, question.stamp,
-                   core, buffers, points);
+      count_covered(drop_covered(question.of_pieces(a, question.b, core, buffers), body_, points), buffers);
     }
     patches.add(points, static_cast<int>(triangle), part_of(child, met), met.index);
   }
@@ -372,8 +371,8 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
     ContactManifold points;
-    keep_uncovered(a, triangle.wrapper(), answer, front, threshold, question.seconds, question.stamp, core, buffers,
-                   AnswerPoints::to_be_made, points);
+    const PiecePair pieces = question.of_pieces(a, triangle.wrapper(), core, buffers, front);
+    count_covered(keep_uncovered(pieces, answer, AnswerPoints::to_be_made, points), buffers);
     patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
   }
   if (one_sided) add_fronts(a, question, core, buffers, patches);

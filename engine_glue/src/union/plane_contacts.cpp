@@ -52,22 +52,28 @@ bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMe
   const auto threshold = static_cast<double>(question.threshold);
   auto buffers = core.buffers.lease();
   buffers->cover.near.begin_pair(question.stamp);
-  look_at(question.a, children_, buffers->cover.near.facts(), core);
+  look_at(question.a, children_, buffers->cover.near.facts(), core.cache);
   for (std::size_t i = 0; i < children_.size(); ++i) {
     const Child& child = children_[i];
     const auto& shape = static_cast<const btConvexShape&>(*child.shape);
     if (box_above(shape, child.pose, ground, threshold)) continue;
     std::shared_ptr<CachedShape>& known = memory.shape_of_child(0, child.index);
     HalfspaceContact found;
-    const GroundQuestion asked{shape, child.pose, ground, question.stamp, known, threshold, true};
+    const GroundQuestion asked{.body = shape,
+                               .pose = child.pose,
+                               .ground = ground,
+                               .stamp = question.stamp,
+                               .shape = known,
+                               .threshold = threshold,
+                               .sharp_box = true};
     const SolverCore::Outcome outcome = core.stand_on(asked, *buffers, found);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered || found.manifold.count == 0) continue;
     const ChildInResult piece(question.result, compound, child);
     if (is_piece(piece.wrapper())) {
       const PosedShape posed{(known->sharp ? known->sharp : known->body).get(), to_pd(child.pose)};
-      drop_covered(piece.wrapper(), posed, plane, threshold, question.seconds, question.stamp, core, *buffers,
-                   found.manifold);
+      const PiecePair pieces = question.of_pieces(piece.wrapper(), plane, core, *buffers);
+      count_covered(drop_covered(pieces, posed, found.manifold), *buffers);
     }
     patches.add(found.manifold, static_cast<int>(i), child.index, -1);
   }

@@ -2,21 +2,15 @@
 /// The contact algorithm of pairs with a mesh, heightfield or compound: the points of all pieces, chosen together.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
-#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
-
 #include <cstdint>
 #include <memory>
 
+#include "pair/algorithm_shell.hpp"
+#include "pieces/covered_contact.hpp"
 #include "union/patch_manifolds.hpp"
 #include "union/patches.hpp"
 
 namespace pd::detail {
-
-class Installation;
-class SolverCore;
 
 /// What a step asks of a pair; of a mesh and another body, a is the other one.
 struct UnionQuestion {
@@ -26,6 +20,19 @@ struct UnionQuestion {
   btScalar threshold;  ///< up to which gap points are contacts
   std::uint64_t stamp;
   btManifoldResult& result;
+
+  /// Two pieces of the pair, as the rule for covered contacts is asked about them.
+  [[nodiscard]] PiecePair of_pieces(const btCollisionObjectWrapper& piece_a, const btCollisionObjectWrapper& piece_b,
+                                    SolverCore& core, ThreadBuffers& buffers, const Vec3& front = Vec3::Zero()) const {
+    return {.a = piece_a,
+            .b = piece_b,
+            .threshold = static_cast<double>(threshold),
+            .seconds = seconds,
+            .shapes = {core.cache, stamp},
+            .cover = buffers.cover,
+            .manifold = buffers.manifold,
+            .front = front};
+  }
 };
 
 /// The contacts of a pair's pieces, of one kind of union: triangles (mesh_contacts.hpp) or children
@@ -46,32 +53,24 @@ class UnionContacts {
 
 /// Bullet's own algorithms hand the pieces their points one after the other; this one keeps four for each direction of
 /// the whole pair (patches.hpp).
-class UnionAlgorithm final : public btActivatingCollisionAlgorithm {
+class UnionAlgorithm final : public AlgorithmShell {
  public:
-  /// @param swapped  b is asked as the question's a
+  struct Kind {
+    std::unique_ptr<UnionContacts> (*contacts)();
+    bool swapped;  ///< b is asked as the question's a
+    static constexpr ContactTable table = ContactTable::contacts;
+    [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
+                                    const btCollisionObjectWrapper& b) {
+      return world.takes(a, b) && world.core().settings.unions_as_one;
+    }
+  };
   UnionAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                 const btCollisionObjectWrapper* b, const Installation& installation, bool swapped,
-                 std::unique_ptr<UnionContacts> contacts);
+                 const btCollisionObjectWrapper* b, const SolverInWorld& world, const Kind& kind);
   ~UnionAlgorithm() override;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
-  /// 1: as without motion; no world of Bullet 3 asks.
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return btScalar(1);
-  }
   void getAllContactManifolds(btManifoldArray& manifolds) override;
-
-  struct CreateFunc : public btCollisionAlgorithmCreateFunc {
-    using Contacts = std::unique_ptr<UnionContacts> (*)();
-    CreateFunc(const Installation& i, Contacts c, bool swapped) : installation(i), contacts(c) { m_swapped = swapped; }
-    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                   const btCollisionObjectWrapper* a,
-                                                   const btCollisionObjectWrapper* b) override;
-    const Installation& installation;
-    Contacts contacts;
-  };
 
  private:
   struct State;

@@ -5,7 +5,6 @@
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 
-#include "pair/solver_core.hpp"
 #include "union/mesh_contacts.hpp"
 #include "world/installation.hpp"
 
@@ -62,7 +61,7 @@ void renew_pairs(btCollisionWorld& world) {
 }  // namespace
 
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
-  detail::Installation& installation = solver.core().installation(&dispatcher);
+  detail::Installation& installation = detail::Installation::of(solver.core(), &dispatcher);
   const bool whole = contacts == BulletContacts::one_shot;
   for_each_convex_pair([&](int i, int j) {
     dispatcher.registerCollisionCreateFunc(i, j, whole ? installation.one_shot(false) : installation.persistent());
@@ -90,7 +89,7 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
   }
   install(*dispatcher, solver, contacts);
   if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
-    btActionInterface* action = solver.core().installation(dispatcher).step_action();
+    btActionInterface* action = detail::Installation::of(solver.core(), dispatcher).step_action();
     dynamics->removeAction(action);  // of an earlier installation, if there was one
     dynamics->addAction(action);
   }
@@ -100,7 +99,7 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
 
 bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
-  detail::Installation* installation = solver.core().find_installation(dispatcher);
+  detail::Installation* installation = detail::Installation::find(solver.core(), dispatcher);
   if (dispatcher == nullptr || installation == nullptr) {
     return false;
   }
@@ -127,7 +126,7 @@ bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolv
   if (general == nullptr) {
     return false;
   }
-  general->m_pdSolver = solver.core().installation(nullptr).depth_solver();
+  general->m_pdSolver = detail::Installation::of(solver.core(), nullptr).depth_solver();
   return true;
 }
 

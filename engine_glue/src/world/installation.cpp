@@ -1,10 +1,8 @@
 #include "world/installation.hpp"
 
-#include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <memory>
+#include <utility>
 
-#include "pair/solver_core.hpp"
 #include "union/compound_contacts.hpp"
 #include "union/mesh_contacts.hpp"
 #include "union/plane_contacts.hpp"
@@ -12,32 +10,30 @@
 namespace pd::detail {
 
 Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
-    : core_(core),
-      dispatcher_(dispatcher),
+    : SolverInWorld(core, dispatcher),
       depth_solver_(*this),
       step_action_(*this),
-      contacts_(*this, false),
-      closest_(*this, true),
-      mesh_(*this, mesh_contacts, false),
-      swapped_mesh_(*this, mesh_contacts, true),
-      compound_(*this, compound_contacts, false),
-      compound_on_plane_(*this, plane_contacts, false),
-      swapped_compound_on_plane_(*this, plane_contacts, true),
-      plane_(*this, false),
-      swapped_plane_(*this, true),
+      contacts_(*this, {ContactTable::contacts}),
+      closest_(*this, {ContactTable::closest_points}),
+      mesh_(*this, {mesh_contacts, false}),
+      swapped_mesh_(*this, {mesh_contacts, true}),
+      compound_(*this, {compound_contacts, false}),
+      compound_on_plane_(*this, {plane_contacts, false}),
+      swapped_compound_on_plane_(*this, {plane_contacts, true}),
+      plane_(*this, {false}),
+      swapped_plane_(*this, {true}),
       persistent_(&depth_solver_) {}
 
-bool Installation::takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const {
-  const BulletSolverSettings& settings = core_.settings;
-  return !settings.takes_pair || settings.takes_pair(*a.getCollisionObject(), *b.getCollisionObject(), settings.user);
+Installation* Installation::find(SolverCore& core, const btCollisionDispatcher* dispatcher) {
+  return static_cast<Installation*>(core.find_world(dispatcher));  // no other kind is added
 }
 
-btCollisionAlgorithm* Installation::bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                      const btCollisionObjectWrapper* a,
-                                                      const btCollisionObjectWrapper* b) const {
-  return dispatcher_->getCollisionConfiguration()
-      ->getCollisionAlgorithmCreateFunc(a->getCollisionShape()->getShapeType(), b->getCollisionShape()->getShapeType())
-      ->CreateCollisionAlgorithm(info, a, b);
+Installation& Installation::of(SolverCore& core, btCollisionDispatcher* dispatcher) {
+  if (Installation* const known = find(core, dispatcher)) return *known;
+  auto made = std::make_unique<Installation>(core, dispatcher);
+  Installation& result = *made;
+  core.add_world(std::move(made));
+  return result;
 }
 
 bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a,
@@ -48,8 +44,6 @@ bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, 
                                              witness_b, draw);
 }
 
-void Installation::StepAction::updateAction(btCollisionWorld*, btScalar) {
-  installation_.stamp_.store(installation_.core().next_stamp(), std::memory_order_relaxed);
-}
+void Installation::StepAction::updateAction(btCollisionWorld*, btScalar) { installation_.begin_step(); }
 
 }  // namespace pd::detail

@@ -6,31 +6,21 @@
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <LinearMath/btScalar.h>
 
-#include <atomic>
-#include <cstdint>
-
 #include "pair/contact_algorithm.hpp"
 #include "pair/plane_algorithm.hpp"
+#include "pair/solver_in_world.hpp"
 #include "union/union_algorithm.hpp"
-
-class btCollisionDispatcher;
 
 namespace pd::detail {
 
-class SolverCore;
-
-/// Never moves and, once a dispatcher knows it, never dies: see SolverCore.
-class Installation {
+class Installation final : public SolverInWorld {
  public:
-  /// @param dispatcher  nullptr: create functions that a host registers itself
-  Installation(SolverCore& core, btCollisionDispatcher* dispatcher);
-  Installation(const Installation&) = delete;
-  Installation& operator=(const Installation&) = delete;
+  /// That of a dispatcher, made where there is none; nullptr: the one of no dispatcher.
+  static Installation& of(SolverCore& core, btCollisionDispatcher* dispatcher);
+  /// That of a dispatcher, or nullptr.
+  static Installation* find(SolverCore& core, const btCollisionDispatcher* dispatcher);
 
-  [[nodiscard]] SolverCore& core() const { return core_; }
-  [[nodiscard]] btCollisionDispatcher* dispatcher() const { return dispatcher_; }
-  /// Of the present step; 0 until the world made its first step with `step_action`.
-  [[nodiscard]] std::uint64_t stamp() const { return stamp_.load(std::memory_order_relaxed); }
+  Installation(SolverCore& core, btCollisionDispatcher* dispatcher);
 
   /// For the table of contacts (`closest` false) or that of closest points.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
@@ -44,12 +34,6 @@ class Installation {
   [[nodiscard]] btCollisionAlgorithmCreateFunc* compound_on_plane(bool swapped) {
     return swapped ? &swapped_compound_on_plane_ : &compound_on_plane_;
   }
-  /// Whether the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
-  [[nodiscard]] bool takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const;
-  /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a dispatcher.
-  [[nodiscard]] btCollisionAlgorithm* bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                        const btCollisionObjectWrapper* a,
-                                                        const btCollisionObjectWrapper* b) const;
   [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent() { return &persistent_; }
   [[nodiscard]] btConvexPenetrationDepthSolver* depth_solver() { return &depth_solver_; }
   /// Tells that a step has ended; for `btDynamicsWorld::addAction`.
@@ -78,20 +62,17 @@ class Installation {
     Installation& installation_;
   };
 
-  SolverCore& core_;
-  btCollisionDispatcher* dispatcher_;
-  std::atomic<std::uint64_t> stamp_{0};
   DepthSolver depth_solver_;
   StepAction step_action_;
-  ContactAlgorithm::CreateFunc contacts_;
-  ContactAlgorithm::CreateFunc closest_;
-  UnionAlgorithm::CreateFunc mesh_;
-  UnionAlgorithm::CreateFunc swapped_mesh_;
-  UnionAlgorithm::CreateFunc compound_;
-  UnionAlgorithm::CreateFunc compound_on_plane_;
-  UnionAlgorithm::CreateFunc swapped_compound_on_plane_;
-  PlaneAlgorithm::CreateFunc plane_;
-  PlaneAlgorithm::CreateFunc swapped_plane_;
+  CreateFuncOf<ContactAlgorithm> contacts_;
+  CreateFuncOf<ContactAlgorithm> closest_;
+  CreateFuncOf<UnionAlgorithm> mesh_;
+  CreateFuncOf<UnionAlgorithm> swapped_mesh_;
+  CreateFuncOf<UnionAlgorithm> compound_;
+  CreateFuncOf<UnionAlgorithm> compound_on_plane_;
+  CreateFuncOf<UnionAlgorithm> swapped_compound_on_plane_;
+  CreateFuncOf<PlaneAlgorithm> plane_;
+  CreateFuncOf<PlaneAlgorithm> swapped_plane_;
   btConvexConvexAlgorithm::CreateFunc persistent_;
 };
 

@@ -44,8 +44,13 @@ std::optional<BulletPairAnswer> BulletPenetrationDepthSolver::query(const btConv
                                                                     WarmCertificate* warm) {
   auto buffers = core_->buffers.lease();
   detail::PairAnswer found;
-  const detail::PairQuestion question{a, transform_a,     b,   transform_b, detail::kSharpBoxPair, detail::kAnyDistance,
-                                      0, buffers->recent, warm};
+  const detail::PairQuestion question{.a = a,
+                                      .pose_a = transform_a,
+                                      .b = b,
+                                      .pose_b = transform_b,
+                                      .shapes = buffers->recent,
+                                      .warm = warm,
+                                      .corners = detail::kSharpBoxPair};
   if (core_->answer(question, *buffers, found) != detail::SolverCore::Outcome::answered) {
     return std::nullopt;
   }
@@ -100,11 +105,11 @@ void BulletPenetrationDepthSolver::reset_statistics() {
 }
 
 btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::one_shot_create_func() {
-  return core_->installation(nullptr).one_shot(false);
+  return detail::Installation::of(*core_, nullptr).one_shot(false);
 }
 
 btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::persistent_create_func() {
-  return core_->installation(nullptr).persistent();
+  return detail::Installation::of(*core_, nullptr).persistent();
 }
 
 }  // namespace pd
