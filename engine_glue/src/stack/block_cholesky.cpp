@@ -1,8 +1,10 @@
 #include "stack/block_cholesky.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
 #include <algorithm>
-#include <iterator>
+#include <cstddef>
 
 namespace pd::detail {
 
@@ -10,53 +12,46 @@ void BlockCholesky::set_pattern(int num_bodies, const std::vector<std::pair<int,
   if (num_bodies == num_bodies_ && pairs == pairs_) return;
   num_bodies_ = num_bodies;
   pairs_ = pairs;
-  eliminate();
+  choose_order();
+  find_columns();
   place_products();
   diagonal_.resize(static_cast<std::size_t>(num_bodies));
   below_.resize(row_.size());
 }
 
-/// Least degree first, of equals the first body: what it meets of those that are left then meets each other.
-void BlockCholesky::eliminate() {
-  const auto n = static_cast<std::size_t>(num_bodies_);
-  std::vector<std::vector<int>> neighbours(n);
-  for (const auto& [a, b] : pairs_) {
-    neighbours[static_cast<std::size_t>(a)].push_back(b);
-    neighbours[static_cast<std::size_t>(b)].push_back(a);
+void BlockCholesky::choose_order() {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int body = 0; body < num_bodies_; ++body) entries.emplace_back(body, body, 1.0);
+  for (const auto& [a, b] : pairs_) entries.emplace_back(b, a, 1.0);
+  Eigen::SparseMatrix<double> pattern(num_bodies_, num_bodies_);
+  pattern.setFromTriplets(entries.begin(), entries.end());
+  Eigen::AMDOrdering<int>::PermutationType order;
+  Eigen::AMDOrdering<int>()(pattern, order);
+  order_.assign(order.indices().data(), order.indices().data() + num_bodies_);
+  rank_.resize(order_.size());
+  for (std::size_t rank = 0; rank < order_.size(); ++rank) {
+    rank_[static_cast<std::size_t>(order_[rank])] = static_cast<int>(rank);
   }
-  for (std::vector<int>& each : neighbours) std::sort(each.begin(), each.end());
-  rank_.assign(n, -1);
-  order_.clear();
-  std::vector<std::vector<int>> columns;  // by rank, of bodies
-  std::vector<int> merged;
-  for (std::size_t rank = 0; rank < n; ++rank) {
-    int least = -1;
-    for (int body = 0; body < num_bodies_; ++body) {
-      const auto at = static_cast<std::size_t>(body);
-      if (rank_[at] >= 0) continue;
-      if (least < 0 || neighbours[at].size() < neighbours[static_cast<std::size_t>(least)].size()) least = body;
-    }
-    rank_[static_cast<std::size_t>(least)] = static_cast<int>(rank);
-    order_.push_back(least);
-    columns.push_back(std::move(neighbours[static_cast<std::size_t>(least)]));
-    const std::vector<int>& column = columns.back();
-    for (const int body : column) {
-      std::vector<int>& own = neighbours[static_cast<std::size_t>(body)];
-      merged.clear();
-      std::set_union(own.begin(), own.end(), column.begin(), column.end(), std::back_inserter(merged));
-      own.clear();
-      for (const int other : merged) {
-        if (other != body && other != least) own.push_back(other);
-      }
-    }
+}
+
+/// A column holds the blocks of its own pairs, and those of each column whose first block below the diagonal lies in
+/// its row: a body that is eliminated leaves its neighbours connected, and the first of them takes the others over.
+void BlockCholesky::find_columns() {
+  std::vector<std::vector<int>> columns(order_.size());
+  for (const auto& [a, b] : pairs_) {
+    const auto [first, second] = std::minmax(rank_[static_cast<std::size_t>(a)], rank_[static_cast<std::size_t>(b)]);
+    columns[static_cast<std::size_t>(first)].push_back(second);
   }
   column_start_.assign(1, 0);
   row_.clear();
   for (std::vector<int>& column : columns) {
-    for (int& body : column) body = rank_[static_cast<std::size_t>(body)];
     std::sort(column.begin(), column.end());
+    column.erase(std::unique(column.begin(), column.end()), column.end());
     row_.insert(row_.end(), column.begin(), column.end());
     column_start_.push_back(static_cast<int>(row_.size()));
+    if (column.size() < 2) continue;
+    std::vector<int>& heir = columns[static_cast<std::size_t>(column.front())];
+    heir.insert(heir.end(), column.begin() + 1, column.end());
   }
 }
 

@@ -1,10 +1,10 @@
 /// @file
 /// Cholesky factorisation of sparse symmetric positive definite matrices of blocks of 6 x 6, one row of blocks a body.
 ///
-/// Bodies are eliminated by least degree; which blocks fill in and where each product goes is found once a pattern, so
-/// that a factorisation is a straight run through lists. A factorisation of a tower of n bodies takes time O(n), of a
-/// heap as many products as half the squares of its columns' blocks; a new pattern O(n^2) and more, as each body to
-/// eliminate is looked for among all.
+/// Bodies are eliminated by approximate minimum degree (Amestoy, Davis and Duff 1996, by `Eigen::AMDOrdering`). Which
+/// blocks fill in and where each product goes is found once a pattern, so that a factorisation is a straight run
+/// through lists. A factorisation of a tower of n bodies takes time O(n). That of a heap takes as many products as half
+/// the squares of its columns' blocks. A new pattern takes time in proportion to those products, times a logarithm.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,7 +29,8 @@ class BlockCholesky {
   void solve(Eigen::VectorXd& x) const;
 
  private:
-  void eliminate();
+  void choose_order();
+  void find_columns();
   void place_products();
 
   int num_bodies_ = 0;
