@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "pd/render/composition.hpp"
 #include "pd/render/video.hpp"
@@ -49,12 +50,16 @@ Bodies own_pair() {
 
 Bodies read_pair(const std::vector<std::string>& files) {
   const query::Limits limits;
-  return {query::load_mesh_shape(files[0], limits),
-          query::load_mesh_shape(files[1], limits),
-          Pose(),
-          Pose(),
-          files[0],
-          files[1]};
+  Bodies bodies = {query::load_mesh_shape(files[0], limits),
+                   query::load_mesh_shape(files[1], limits),
+                   Pose(),
+                   Pose(),
+                   files[0],
+                   files[1]};
+  for (const auto& [shape, file] : {std::pair{&bodies.a, &files[0]}, std::pair{&bodies.b, &files[1]}}) {
+    if (shape->hull_note) fmt::print(stderr, "{}: {}\n", *file, in_words(*shape->hull_note));
+  }
+  return bodies;
 }
 
 /// The answer beside the picture, as `pdepth query` gives it.
@@ -65,6 +70,8 @@ std::string figures_of(const Bodies& bodies, const PenetrationDepth& answer, std
   writer.key("a").string(bodies.name_a);
   writer.key("b").string(bodies.name_b);
   query::write_depth_answer(answer, bodies.a, bodies.b, nanoseconds, writer);
+  if (bodies.a.hull_note) writer.key("a_is").string("hull");
+  if (bodies.b.hull_note) writer.key("b_is").string("hull");
   writer.end_object();
   return text + "\n";
 }

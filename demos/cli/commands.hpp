@@ -12,7 +12,7 @@ enum ExitCode : int {
   kDone = 0,
   kFailed = 1,          ///< the work could not be finished: no room on the disk, no GL context
   kBadUsage = 2,        ///< an unknown option, or input that cannot be read
-  kConditionFails = 3,  ///< `audit`: a condition of --fail-on does not hold
+  kConditionFails = 3,  ///< `audit`: a condition of --fail-on does not hold; `check`: one of its faults is there
   kInterrupted = 130,   ///< Ctrl-C
 };
 
@@ -20,6 +20,7 @@ enum ExitCode : int {
 using Action = std::function<int()>;
 
 void add_depth_command(CLI::App& app, Action& action);
+void add_check_command(CLI::App& app, Action& action);
 void add_polygon_command(CLI::App& app, Action& action);
 void add_query_command(CLI::App& app, Action& action);
 void add_minimise_command(CLI::App& app, Action& action);

@@ -26,7 +26,8 @@ constexpr const char* kDepthFooter =
     R"(Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
 x,y,z,r11,r12,r13,r21,...,r33 turns by a matrix. World point = R * point + (x,y,z).
 
-A mesh stands for the convex hull of its vertices. A moves by the translation, B stays.
+A moves by the translation, B stays. A mesh that is not convex is asked as the convex hull of its vertices, and the answer
+says so; --hull says that the hull is meant. `pdepth check FILE` tells why a mesh is not convex.
 
 Examples:
   pdepth depth cup.obj table.stl --pose-a 0,0,0.74
@@ -42,6 +43,7 @@ struct DepthArguments {
   std::string picture;
   std::string trace;
   bool json = false;
+  bool hull = false;
 };
 
 Pose parse_pose(const std::string& text, const std::string& option) {
@@ -109,32 +111,39 @@ std::string feature_in_words(const Feature& feature, const query::NamedShape& sh
   return "none";
 }
 
-void print_body(std::string_view name, const std::string& file, const ConvexPolytope& hull) {
+void print_body(std::string_view name, const std::string& file, const query::NamedShape& shape) {
+  const ConvexPolytope& hull = *shape.shape.polytope();
   print_row(name, fmt::format("{}  (hull: {} vertices, {} edges, {} facets)", file, hull.num_vertices(),
                               hull.num_edges(), hull.num_facets()));
+  if (shape.hull_note) print_row("", in_words(*shape.hull_note));
+}
+
+/// "A's hull and B": what the answer is about.
+std::string subjects(const query::Pair& pair) {
+  return std::string(pair.a.hull_note ? "A's hull" : "A") + " and " + (pair.b.hull_note ? "B's hull" : "B");
 }
 
 void print_result(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result,
                   std::int64_t nanoseconds) {
   fmt::print("\n");
-  print_body("A", arguments.file_a, *pair.a.shape.polytope());
-  print_body("B", arguments.file_b, *pair.b.shape.polytope());
+  print_body("A", arguments.file_a, pair.a);
+  print_body("B", arguments.file_b, pair.b);
   fmt::print("\n");
   switch (result.contact) {
     case ContactClass::overlapping:
-      fmt::print("A and B overlap.\n\n");
+      fmt::print("{} overlap.\n\n", subjects(pair));
       print_row("depth", in_full(result.depth));
       print_row("bracket", fmt::format("[{}, {}]", in_full(result.lower), in_full(result.upper)));
       print_row("translation", in_words(result.translation) + "  moves A clear of B");
       print_row("direction", in_words(result.normal));
       break;
     case ContactClass::touching:
-      fmt::print("A and B touch: they share boundary points, but no inside.\n\n");
+      fmt::print("{} touch: they share boundary points, but no inside.\n\n", subjects(pair));
       print_row("depth", "0, exactly");
       print_row("direction", in_words(result.normal) + "  a way out for A");
       break;
     case ContactClass::separated:
-      fmt::print("A and B are apart.\n\n");
+      fmt::print("{} are apart.\n\n", subjects(pair));
       print_row("distance", in_full(result.distance));
       print_row("bracket", fmt::format("[{}, {}]", in_full(result.distance_lower), in_full(result.distance_upper)));
       print_row("direction", in_words(result.normal) + "  from B to A");
@@ -190,9 +199,10 @@ bool write_trace(const std::string& file, const query::SearchRecorder& recorder)
 int run_depth(const DepthArguments& arguments) {
   try {
     const query::Limits limits{.max_vertices = 50'000'000};
-    const query::Pair pair{query::load_mesh_shape(arguments.file_a, limits),
-                           query::load_mesh_shape(arguments.file_b, limits), parse_pose(arguments.pose_a, "--pose-a"),
-                           parse_pose(arguments.pose_b, "--pose-b")};
+    const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
+    const query::Pair pair{query::load_mesh_shape(arguments.file_a, limits, as),
+                           query::load_mesh_shape(arguments.file_b, limits, as),
+                           parse_pose(arguments.pose_a, "--pose-a"), parse_pose(arguments.pose_b, "--pose-b")};
     Scratch scratch;
     query::SearchRecorder recorder(pair, arguments.method);
     if (!arguments.trace.empty()) observe_searches(scratch, &recorder);
@@ -208,6 +218,8 @@ int run_depth(const DepthArguments& arguments) {
       query::JsonWriter writer(out);
       writer.begin_object();
       query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
+      if (pair.a.hull_note) writer.key("a_is").string("hull");
+      if (pair.b.hull_note) writer.key("b_is").string("hull");
       writer.end_object();
       fmt::print("{}\n", out);
     } else {
@@ -240,6 +252,7 @@ void add_depth_command(CLI::App& app, Action& action) {
       ->check(refuse_other_pictures, "FILE.png");
   command->add_option("--trace", arguments->trace,
                       "Write the search step by step, as JSON lines (`pdepth demo difference --trace` draws them)");
+  command->add_flag("--hull", arguments->hull, "Meshes that are not convex are meant as their convex hulls");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");
   command->callback([arguments, &action] { action = [arguments] { return run_depth(*arguments); }; });
 }

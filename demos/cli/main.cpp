@@ -14,6 +14,7 @@ namespace {
 constexpr const char* kFooter = R"(Examples:
   pdepth depth part.obj fixture.stl --pose-a 0,0,0.25
   pdepth depth a.ply b.off --json
+  pdepth check part.stl --fail-on solid
   pdepth polygon plate.svg tool.json --direction 0,1
   pdepth query lines.jsonl --threads 4 > answers.jsonl
   echo '{"id":1,"query":"depth","a":{"type":"box","half_extents":[1,1,1]},
@@ -26,7 +27,7 @@ Exit codes:
   0    done; for `query`: every line has its answer (an error object is one)
   1    the work could not be finished (output that cannot be written, no graphics)
   2    bad usage, or input that cannot be read; for `audit`: not all could be judged
-  3    for `audit`: a condition of --fail-on does not hold
+  3    for `audit`: a condition of --fail-on does not hold; for `check`: a fault of --fail-on is there
   130  stopped by Ctrl-C
 
 `pdepth SUBCOMMAND --help` says more.)";
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   pd::cli::Action action;
   pd::cli::add_depth_command(app, action);
+  pd::cli::add_check_command(app, action);
   pd::cli::add_polygon_command(app, action);
   pd::cli::add_query_command(app, action);
   pd::cli::add_minimise_command(app, action);

@@ -1,5 +1,6 @@
 #include "protocol/answer_line.hpp"
 
+#include <algorithm>
 #include <array>
 #include <new>
 
@@ -61,6 +62,17 @@ Handler find_handler(const Node& line) {
   name_node.refuse("unknown_query", "there is no query \"" + shortened(name) + "\"; known: " + known);
 }
 
+/// "a_is":"hull" where a body, or a part of it, is a mesh that is answered as its convex hull.
+void write_remarks(const std::vector<Remark>& remarks, JsonWriter& answer) {
+  for (const std::string_view body : {"a", "b"}) {
+    const auto found = std::find_if(remarks.begin(), remarks.end(), [&](const Remark& remark) {
+      const std::string_view path = remark.path;
+      return path.starts_with(body) && (path.size() == 1 || path[1] == '.');
+    });
+    if (found != remarks.end()) answer.key(std::string(body) + "_is").string(found->word);
+  }
+}
+
 }  // namespace
 
 std::span<const QueryEntry> queries() { return kQueries; }
@@ -70,11 +82,13 @@ std::string answer_line(std::string_view line, Session& session) {
   try {
     parsed = parse_line_within(line, session.limits.max_vertices);
     if (parsed.refusal) return error_answer(parsed.id_text, *parsed.refusal);
-    const Node root(parsed.object);
+    std::vector<Remark> remarks;
+    const Node root(parsed.object, &remarks);
     std::string out;
     JsonWriter writer(out);
     writer.begin_object().key("id").raw(parsed.id_text);
     find_handler(root)(root, session, writer);
+    write_remarks(remarks, writer);
     writer.end_object();
     return out;
   } catch (const Refusal& refusal) {

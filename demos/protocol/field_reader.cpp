@@ -62,6 +62,12 @@ Node Node::at(std::string_view key) const {
   return {*member, this, member.key(), 0};
 }
 
+void Node::remark(std::string word) const {
+  const Node* root = this;
+  while (root->parent_ != nullptr) root = root->parent_;
+  if (root->remarks_ != nullptr) root->remarks_->push_back({path(), std::move(word)});
+}
+
 void Node::refuse(std::string_view code, std::string message) const { query::refuse(code, std::move(message), path()); }
 
 void Node::refuse(const Error& error) const {

@@ -16,11 +16,18 @@
 
 namespace pd::query {
 
+/// What an answer must say about a part of its line: its path, and a word.
+struct Remark {
+  std::string path;
+  std::string word;
+};
+
 /// A JSON value and its place in the line. Refers to its parent, which must outlive it; no path is built before a
 /// refusal.
 class Node {
  public:
-  explicit Node(const Json& root) : value_(&root) {}
+  /// @param remarks  where `remark` writes; may be null
+  explicit Node(const Json& root, std::vector<Remark>* remarks = nullptr) : value_(&root), remarks_(remarks) {}
 
   [[nodiscard]] const Json& json() const { return *value_; }
   /// "a.vertices[3]"; empty for the line itself.
@@ -33,6 +40,8 @@ class Node {
   [[nodiscard]] Node element(std::size_t index) const { return {(*value_)[index], this, {}, index}; }
   [[nodiscard]] std::size_t size() const { return value_->size(); }
 
+  /// Has the answer say a word about this node.
+  void remark(std::string word) const;
   [[noreturn]] void refuse(std::string_view code, std::string message) const;
   /// Passes a factory's refusal on, its `where` taken as a path below this node.
   [[noreturn]] void refuse(const Error& error) const;
@@ -45,6 +54,7 @@ class Node {
   const Node* parent_ = nullptr;
   std::string_view key_;
   std::size_t index_ = 0;
+  std::vector<Remark>* remarks_ = nullptr;  ///< of the root
 };
 
 /// Refuses a value that is no object (bad_value).

@@ -124,12 +124,16 @@ NamedShape read_sphere_hull(const Node& node, const Limits& limits) {
 }
 
 NamedShape read_mesh(const Node& node, const Limits& limits) {
-  allow_only(node, {"type", "margin", "path"});
+  allow_only(node, {"type", "margin", "path", "as"});
   const Node path = node.at("path");
+  const auto as = node.find("as");
+  if (as && read_string(*as) != "hull") as->refuse("bad_value", "must be \"hull\"");
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
   try {
-    return load_mesh_shape(file, limits);
+    NamedShape shape = load_mesh_shape(file, limits, as ? MeshAs::hull : MeshAs::found);
+    if (shape.hull_note) node.remark("hull");
+    return shape;
   } catch (const Refusal& refusal) {
     path.refuse(refusal.code, refusal.message);
   }
@@ -217,11 +221,14 @@ Pose read_pose(const Node& node) {
   return pose_or_refuse(Pose::from_matrix(rotation, translation), matrix ? *matrix : node);
 }
 
-NamedShape load_mesh_shape(const std::string& path, const Limits& limits) {
+NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs as) {
   MeshPoints mesh = read_mesh_points(path, limits.max_vertices, kMaxMeshBytes);
   auto hull = ConvexPolytope::from_points(mesh.points);
   if (!hull) refuse(to_string(hull.error().code), path + ": " + hull.error().message, hull.error().where);
-  return {std::move(hull).value(), std::move(mesh.ids)};
+  std::optional<HullNote> note;
+  if (as == MeshAs::found) note = why_hull(mesh, *hull);
+  if (as == MeshAs::hull) note = HullNote{"that is what was asked for", hull->num_vertices(), 0};
+  return {std::move(hull).value(), std::move(mesh.ids), std::move(note)};
 }
 
 }  // namespace pd::query

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mesh/hull_note.hpp"
 #include "pd/shape/convex_shape.hpp"
 #include "protocol/field_reader.hpp"
 #include "protocol/limits.hpp"
@@ -18,6 +20,8 @@ struct NamedShape {
   /// Where the hull was given a selection of the caller's points (a mesh file's referenced vertices): the caller's id
   /// of each. Empty: the hull's own caller ids are right.
   std::vector<std::int32_t> selected_ids;
+  /// Why a mesh is answered as its convex hull; nothing for other shapes, and for meshes that are convex.
+  std::optional<HullNote> hull_note = std::nullopt;
 
   /// The caller's id of a vertex of the polytope core.
   [[nodiscard]] int caller_id(int vertex) const {
@@ -36,8 +40,14 @@ struct NamedShape {
 /// Reads a pose; the identity where a part is missing.
 [[nodiscard]] Pose read_pose(const Node& node);
 
-/// The hull of a mesh file's referenced vertices. @throws Refusal unreadable_file or limit_exceeded without a path, or
-/// a refusal of the hull.
-[[nodiscard]] NamedShape load_mesh_shape(const std::string& path, const Limits& limits);
+/// How a mesh is to be taken.
+enum class MeshAs {
+  found,  ///< as it is where it is convex, else as its hull, with a note
+  hull,   ///< as its hull, and nothing else is looked at
+};
+
+/// The hull of a mesh file's referenced vertices, with a note where the file holds something else. @throws Refusal
+/// unreadable_file or limit_exceeded without a path, or a refusal of the hull.
+[[nodiscard]] NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs as = MeshAs::found);
 
 }  // namespace pd::query

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "audit/audit_answer.hpp"
+#include "mesh/hull_note.hpp"
 #include "mesh/mesh_file.hpp"
 #include "protocol/answer_line.hpp"
 #include "python/arrays.hpp"
@@ -59,8 +60,8 @@ std::vector<std::string> answer_many(const std::vector<std::string>& lines, int 
   return answers;
 }
 
-/// Points [n, 3] and the file's own numbers of them.
-py::tuple mesh_points(const std::string& path) {
+/// Points [n, 3], the file's own numbers of them, and with `check` what keeps the mesh from being convex (or "").
+py::tuple mesh_points(const std::string& path, bool check) {
   const query::Limits limits;
   try {
     const query::MeshPoints mesh = query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
@@ -68,7 +69,7 @@ py::tuple mesh_points(const std::string& path) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
       for (int k = 0; k < 3; ++k) points.mutable_at(static_cast<py::ssize_t>(i), k) = mesh.points[i][k];
     }
-    return py::make_tuple(points, mesh.ids);
+    return py::make_tuple(points, mesh.ids, check ? query::not_convex_because(mesh) : "");
   } catch (const query::Refusal& refusal) {
     refuse(refusal.code, refusal.message, path);
   }

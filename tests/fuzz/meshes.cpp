@@ -1,13 +1,15 @@
 /// @file
-/// Any bytes as a mesh file, the first of them its format: points, or a refusal.
+/// Any bytes as a mesh file, the first of them its format: points, or a refusal, and a check of the faces that ends.
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "fuzz/input.hpp"
 #include "mesh/mesh_file.hpp"
+#include "pd/shape/mesh_check.hpp"
 #include "support/refusal.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -22,6 +24,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto mesh = pd::query::read_mesh_points(path, 10'000, std::uintmax_t{1} << 20);
     PD_LAW(mesh.ids.empty() || mesh.ids.size() == mesh.points.size());
+    if (const auto report = pd::check_mesh({mesh.points, mesh.faces.offsets, mesh.faces.corners})) {
+      PD_LAW(std::isfinite(report->relative_volume));
+      PD_LAW(!report->convex || (report->closed() && report->oriented() && report->manifold()));
+    }
   } catch (const pd::query::Refusal&) {
   }
   (void)std::remove(path.c_str());

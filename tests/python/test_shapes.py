@@ -1,6 +1,7 @@
 """Shapes and poses: what they take, what they refuse, and that they can be made again."""
 import copy
 import pickle
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -54,7 +55,15 @@ def test_polytopes_from_faces_halfspaces_and_meshes(tmp_path):
     file = tmp_path / "cube.obj"
     lines = [f"v {x} {y} {z}" for x, y, z in CUBE] + ["f " + " ".join(str(i + 1) for i in f) for f in faces]
     file.write_text("\n".join(lines) + "\n")
-    assert np.array_equal(pdepth.ConvexPolytope.from_mesh(file).vertices, CUBE)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.array_equal(pdepth.ConvexPolytope.from_mesh(file).vertices, CUBE)
+    file.write_text("\n".join(lines[:-1]) + "\n")  # without its last face
+    with pytest.warns(UserWarning, match="cube.obj: the mesh has holes, so that the shape is its convex hull"):
+        assert np.array_equal(pdepth.ConvexPolytope.from_mesh(file).vertices, CUBE)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pdepth.ConvexPolytope.from_mesh(file, hull=True)
 
 
 BAD = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 
 import numpy as np
 
@@ -159,16 +160,22 @@ class ConvexPolytope(Shape):
         return cls(_core.Shape("halfspaces", (planes,), 0.0).vertices, margin=margin)
 
     @classmethod
-    def from_mesh(cls, mesh, *, margin=0.0):
+    def from_mesh(cls, mesh, *, margin=0.0, hull=False):
         """The hull of a mesh: a file (OBJ, STL, PLY, OFF, glTF) or an object with `.vertices` and `.faces` (trimesh's).
 
+        A file whose mesh is not convex gives a UserWarning, unless hull=True says that its hull is meant.
         Vertices that no face refers to are left out. Feature ids are rows of the points that are kept.
         Raises Refused: 'unreadable_file' with the line or byte at fault.
         """
         if isinstance(mesh, (str, os.PathLike)):
             from . import _protocol
 
-            points, _ = _protocol.mesh_points(os.fspath(mesh))
+            points, _, reason = _protocol.mesh_points(os.fspath(mesh), not hull)
+            if reason:
+                warnings.warn(
+                    f"{os.fspath(mesh)}: {reason}, so that the shape is its convex hull; hull=True says that this is meant",
+                    stacklevel=2,
+                )
             return cls(points, margin=margin)
         if not hasattr(mesh, "vertices"):
             raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")

@@ -1,0 +1,251 @@
+/// @file
+/// `pdepth check FILE`: does a mesh bound a solid, and is it convex? For people who have never heard of manifolds, or
+/// with --json for programs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "mesh/hull_note.hpp"
+#include "mesh/mesh_file.hpp"
+#include "options.hpp"
+#include "pd/shape/convex_polytope.hpp"
+#include "protocol/json_writer.hpp"
+#include "protocol/limits.hpp"
+#include "support/refusal.hpp"
+
+namespace pd::cli {
+
+namespace {
+
+constexpr const char* kCheckFooter =
+    R"(A mesh bounds a solid when its faces leave no hole, all show their outside, and nowhere cross or meet a third face.
+
+--fail-on takes words between commas; the exit code is 3 when one of them applies:
+  open_edge        a face has no neighbour at an edge: the surface has a hole
+  flipped_face     two neighbours show opposite sides
+  not_manifold     more than two faces meet at an edge, or parts of the surface touch in a vertex
+  self_crossing    two faces cross or touch where they are no neighbours
+  inside_out       all faces show their inside
+  not_planar       the corners of a polygon lie in no plane
+  degenerate_face  a face without an area
+  not_convex       the mesh is not its convex hull
+  duplicate_points a point stands twice in the file
+  solid            any of the first six
+
+Examples:
+  pdepth check part.stl
+  pdepth check part.obj --fail-on solid,not_convex)";
+
+struct CheckArguments {
+  std::string file;
+  std::string fail_on;
+  bool json = false;
+};
+
+constexpr std::int64_t kMostChecked = 50'000'000;
+
+/// A file, its check, and its hull.
+struct CheckedMesh {
+  std::string file;
+  query::MeshPoints mesh;
+  MeshReport report;
+  ConvexPolytope hull;
+
+  [[nodiscard]] double volume(double relative) const { return relative * std::pow(report.size, 3); }
+  [[nodiscard]] double hull_volume() const { return report.size > 0 ? query::relative_volume(hull, report.size) : 0; }
+  [[nodiscard]] bool encloses() const { return report.closed() && report.oriented(); }
+};
+
+CheckedMesh read_checked(const std::string& file) {
+  query::MeshPoints mesh = query::read_mesh_points(file, kMostChecked, query::kMaxMeshBytes);
+  const auto refuse = [&](const Error& error) {
+    query::refuse(to_string(error.code), file + ": " + error.message, error.where);
+  };
+  auto report = check_mesh({mesh.points, mesh.faces.offsets, mesh.faces.corners});
+  if (!report) refuse(report.error());
+  auto hull = ConvexPolytope::from_points(mesh.points);
+  if (!hull) refuse(hull.error());
+  return {file, std::move(mesh), *std::move(report), *std::move(hull)};
+}
+
+// ---- words for people --------------------------------------------------------------------------------------------
+
+std::string point_in_words(const Vec3& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x(), p.y(), p.z()); }
+
+/// "face 12 (line 40)", from 1 as OBJ counts.
+std::string face_in_words(const CheckedMesh& checked, std::int32_t face) {
+  const auto& lines = checked.mesh.faces.lines;
+  const std::string line = lines.empty() ? "" : fmt::format(" (line {})", lines[static_cast<std::size_t>(face)]);
+  return fmt::format("face {}{}", face + 1, line);
+}
+
+std::string place_in_words(const CheckedMesh& checked, const MeshFinding& finding) {
+  const auto point = [&](std::int32_t v) { return point_in_words(checked.mesh.points[static_cast<std::size_t>(v)]); };
+  std::string words;
+  if (finding.edge[1] >= 0) {
+    words = fmt::format("the edge from {} to {}", point(finding.edge[0]), point(finding.edge[1]));
+  } else if (finding.edge[0] >= 0) {
+    words = "the vertex " + point(finding.edge[0]);
+  }
+  if (finding.faces[0] >= 0) words += (words.empty() ? "" : " of ") + face_in_words(checked, finding.faces[0]);
+  if (finding.faces[1] >= 0) words += " and " + face_in_words(checked, finding.faces[1]);
+  return words;
+}
+
+void print_places(const CheckedMesh& checked, MeshFault fault) {
+  std::int64_t shown = 0;
+  for (const MeshFinding& finding : checked.report.findings) {
+    if (finding.fault != fault) continue;
+    print_row("", "  " + place_in_words(checked, finding));
+    ++shown;
+  }
+  const std::int64_t more = checked.report.count(fault) - shown;
+  if (more > 0) print_row("", fmt::format("  and {} more", more));
+}
+
+/// A row of the check: what is good, or what is wrong and where.
+void print_judged(const CheckedMesh& checked, std::string_view name, MeshFault fault, const std::string& good,
+                  const std::string& wrong) {
+  const std::int64_t count = checked.report.count(fault);
+  if (checked.report.faces == 0) return;
+  print_row(name, count == 0 ? good
+                             : fmt::format("{} {} {}", wrong.substr(0, wrong.find('#')), count,
+                                           wrong.substr(wrong.find('#') + 1)));
+  print_places(checked, fault);
+}
+
+std::string verdict(const CheckedMesh& checked) {
+  const MeshReport& report = checked.report;
+  if (report.faces == 0) return "The file holds points and no faces: it bounds no solid.";
+  if (!report.solid()) return "The faces do not bound a solid. What is in the way stands below.";
+  if (!report.crossings_searched) return "No fault was found; faces that cross were not searched to the end.";
+  return report.convex ? "The faces bound a solid, and it is convex." : "The faces bound a solid, which is not convex.";
+}
+
+void print_report(const CheckedMesh& checked) {
+  const MeshReport& report = checked.report;
+  fmt::print("\n  {}\n\n  {}\n\n", checked.file, verdict(checked));
+  const std::int64_t repeated = report.points - report.vertices;
+  print_row("points", fmt::format("{}{}", report.points,
+                                  repeated > 0 ? fmt::format(", {} of them repeat another", repeated) : ""));
+  print_row("faces", fmt::format("{} in {} connected {}", report.faces, report.shells,
+                                 report.shells == 1 ? "surface" : "surfaces"));
+  const Vec3 extent = report.high - report.low;
+  print_row("size", fmt::format("{:.6g} x {:.6g} x {:.6g}, from {} to {}", extent.x(), extent.y(), extent.z(),
+                                point_in_words(report.low), point_in_words(report.high)));
+  print_judged(checked, "closed", MeshFault::open_edge, "yes: every edge has a face on both sides",
+               "no: the surface has holes;#edges have a face on one side only");
+  print_judged(checked, "oriented", MeshFault::flipped_face, "yes: neighbouring faces show the same side",
+               "no:#edges where one neighbour shows its outside and the other its inside");
+  print_judged(checked, "manifold", MeshFault::not_manifold, "yes: no third face meets at an edge",
+               "no:#edges or vertices where more faces meet than the two sides of a surface");
+  print_judged(checked, "crossings", MeshFault::self_crossing,
+               report.crossings_searched ? "none: faces meet only at common edges and vertices"
+                                         : "none found, but the search was ended early",
+               "yes:#pairs of faces cross or touch where they are no neighbours");
+  print_judged(
+      checked, "outside", MeshFault::inside_out,
+      checked.encloses() ? "faces show their outside" : "cannot be told before the surface is closed and oriented",
+      "wrong way round:#surfaces show their inside; turn the faces");
+  if (report.count(MeshFault::not_planar) > 0) {
+    print_judged(checked, "flat", MeshFault::not_planar, "", "no:#polygons whose corners lie in no plane");
+  }
+  if (report.count(MeshFault::degenerate_face) > 0) {
+    print_judged(checked, "slivers", MeshFault::degenerate_face, "", "#faces have no area, which does no harm");
+  }
+  if (checked.encloses()) print_row("volume", fmt::format("{:.10g}", checked.volume(report.relative_volume)));
+  print_row("hull", fmt::format("{} vertices, volume {:.10g}", checked.hull.num_vertices(),
+                                checked.volume(checked.hull_volume())));
+  const auto note = query::why_hull(report, checked.hull);
+  print_row("convex",
+            !note ? "yes: the mesh is its own convex hull" : "no: a query about this file is " + in_words(*note));
+  fmt::print("\n");
+}
+
+// ---- for programs ------------------------------------------------------------------------------------------------
+
+void print_json(const CheckedMesh& checked) {
+  const MeshReport& report = checked.report;
+  std::string out;
+  query::JsonWriter writer(out);
+  writer.begin_object();
+  writer.key("file").string(checked.file);
+  writer.key("solid").boolean(report.solid()).key("closed").boolean(report.closed());
+  writer.key("oriented").boolean(report.oriented()).key("manifold").boolean(report.manifold());
+  writer.key("convex").boolean(!query::why_hull(report, checked.hull));
+  writer.key("crossings_searched").boolean(report.crossings_searched);
+  writer.key("points").integer(report.points).key("duplicate_points").integer(report.points - report.vertices);
+  writer.key("faces").integer(report.faces).key("surfaces").integer(report.shells);
+  writer.key("low").vector(report.low).key("high").vector(report.high);
+  writer.key("faults").begin_object();
+  for (std::size_t f = 0; f < kMeshFaults; ++f) {
+    if (report.counts[f] > 0) writer.key(to_string(static_cast<MeshFault>(f))).integer(report.counts[f]);
+  }
+  writer.end_object();
+  // Beyond the range of doubles a volume is left out.
+  const double volume = checked.volume(report.relative_volume), hull = checked.volume(checked.hull_volume());
+  if (checked.encloses() && std::isfinite(volume)) writer.key("volume").number(volume);
+  if (std::isfinite(hull)) writer.key("hull_volume").number(hull);
+  writer.key("hull_vertices").integer(checked.hull.num_vertices());
+  writer.key("findings").begin_array();
+  for (const MeshFinding& finding : report.findings) {
+    writer.begin_object().key("fault").string(to_string(finding.fault));
+    writer.key("where").string(place_in_words(checked, finding)).end_object();
+  }
+  writer.end_array().end_object();
+  fmt::print("{}\n", out);
+}
+
+/// Does the word apply? Refused where it is no word of --fail-on.
+bool applies(const std::string& word, const CheckedMesh& checked) {
+  const MeshReport& report = checked.report;
+  if (word == "not_convex") return query::why_hull(report, checked.hull).has_value();
+  if (word == "duplicate_points") return report.vertices < report.points;
+  if (word == "solid") return !report.solid();
+  for (std::size_t f = 0; f < kMeshFaults; ++f) {
+    if (word == to_string(static_cast<MeshFault>(f))) return report.counts[f] > 0;
+  }
+  query::refuse("bad_value", "--fail-on: unknown word \"" + word + "\"; `pdepth check --help` lists them", "");
+}
+
+int run_check(const CheckArguments& arguments) {
+  try {
+    const CheckedMesh checked = read_checked(arguments.file);
+    std::vector<std::string> failed;
+    for (const std::string& word : CLI::detail::split(arguments.fail_on, ',')) {
+      if (!word.empty() && applies(word, checked)) failed.push_back(word);
+    }
+    if (arguments.json) {
+      print_json(checked);
+    } else {
+      print_report(checked);
+    }
+    if (failed.empty()) return kDone;
+    fmt::print(stderr, "pdepth: {} of --fail-on {}: {}\n", fmt::join(failed, ", "),
+               failed.size() == 1 ? "applies" : "apply", arguments.file);
+    return kConditionFails;
+  } catch (const query::Refusal& refusal) {
+    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    return kBadUsage;
+  }
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command = app.add_subcommand("check", "Does a mesh bound a solid, and is it convex?");
+  command->footer(kCheckFooter);
+  command->add_option("FILE", arguments->file, "Mesh: OBJ, STL, PLY, OFF or glTF")->required();
+  command->add_option("--fail-on", arguments->fail_on, "Faults that end the command with exit code 3");
+  command->add_flag("--json", arguments->json, "Print one JSON object");
+  command->callback([arguments, &action] { action = [arguments] { return run_check(*arguments); }; });
+}
+
+}  // namespace pd::cli

@@ -1,0 +1,35 @@
+/// @file
+/// A mesh that is answered as its convex hull: why, and by how much the hull is larger. Queries are about convex
+/// bodies, so that an answer about a mesh that is not convex must say that it is about another body.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mesh/mesh_file.hpp"
+#include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/mesh_check.hpp"
+
+namespace pd::query {
+
+struct HullNote {
+  std::string reason;         ///< "the mesh is not convex"
+  int vertices = 0;           ///< of the hull
+  double times_as_large = 0;  ///< volume of the hull in volumes of the mesh; 0: the mesh encloses none
+};
+
+/// What keeps a mesh from being convex, in a few words; empty for a mesh that is.
+[[nodiscard]] std::string not_convex_because(const MeshPoints& mesh);
+
+/// Nothing where the file's faces are the boundary of its hull, to kMeshPrecision.
+[[nodiscard]] std::optional<HullNote> why_hull(const MeshPoints& mesh, const ConvexPolytope& hull);
+/// The same for a mesh whose report is there.
+[[nodiscard]] std::optional<HullNote> why_hull(const MeshReport& report, const ConvexPolytope& hull);
+
+/// Volume of a hull divided by the cube of `size`.
+[[nodiscard]] double relative_volume(const ConvexPolytope& hull, double size);
+
+/// "asked as the convex hull, since the mesh is not convex: 10 vertices, 1.167 times the mesh's volume"
+[[nodiscard]] std::string in_words(const HullNote& note);
+
+}  // namespace pd::query

@@ -1,0 +1,245 @@
+#include "shape/mesh/triangle_crossings.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "pd/numeric/predicates.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+using Triangle = std::array<Vec3, 3>;
+using Flat = std::array<double, 2>;
+
+// ---- in the plane of a triangle ----------------------------------------------------------------------------------
+
+/// The coordinate plane on which the triangle's shadow has an area.
+int dropped_axis(const Triangle& t) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (orient2d({t[0][u], t[0][v]}, {t[1][u], t[1][v]}, {t[2][u], t[2][v]}) != 0) return axis;
+  }
+  return 0;
+}
+
+Flat shadow(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+
+bool in_flat_triangle(const Flat& p, const std::array<Flat, 3>& t) {
+  bool left = false, right = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int side = orient2d(t[k], t[(k + 1) % 3], p);
+    left = left || side > 0;
+    right = right || side < 0;
+  }
+  return !(left && right);
+}
+
+bool between(double x, double a, double b) { return std::min(a, b) <= x && x <= std::max(a, b); }
+
+/// Closed segments.
+bool flat_segments_meet(const Flat& p, const Flat& q, const Flat& a, const Flat& b) {
+  const int pa = orient2d(p, q, a), pb = orient2d(p, q, b), ap = orient2d(a, b, p), aq = orient2d(a, b, q);
+  if (pa * pb < 0 && ap * aq < 0) return true;
+  const auto on = [](int side, const Flat& x, const Flat& u, const Flat& v) {
+    return side == 0 && between(x[0], u[0], v[0]) && between(x[1], u[1], v[1]);
+  };
+  return on(pa, a, p, q) || on(pb, b, p, q) || on(ap, p, a, b) || on(aq, q, a, b);
+}
+
+/// A segment in the plane of a triangle, both closed.
+bool flat_segment_meets(const Vec3& p, const Vec3& q, const Triangle& t) {
+  const int axis = dropped_axis(t);
+  const Flat u = shadow(p, axis), v = shadow(q, axis);
+  const std::array<Flat, 3> flat = {shadow(t[0], axis), shadow(t[1], axis), shadow(t[2], axis)};
+  if (in_flat_triangle(u, flat)) return true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (flat_segments_meet(u, v, flat[k], flat[(k + 1) % 3])) return true;
+  }
+  return false;
+}
+
+// ---- in space ----------------------------------------------------------------------------------------------------
+
+/// A segment and a triangle, both closed.
+bool segment_meets(const Vec3& p, const Vec3& q, const Triangle& t) {
+  const int above_p = orient3d(t[0], t[1], t[2], p), above_q = orient3d(t[0], t[1], t[2], q);
+  if (above_p * above_q > 0) return false;
+  if (above_p == 0 && above_q == 0) return flat_segment_meets(p, q, t);
+  bool left = false, right = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int side = orient3d(p, q, t[k], t[(k + 1) % 3]);
+    left = left || side > 0;
+    right = right || side < 0;
+  }
+  return !(left && right);
+}
+
+Triangle corners(std::span<const Vec3> points, const SurfaceTriangle& t) {
+  const auto point = [&](std::size_t k) { return points[static_cast<std::size_t>(t.vertices[k])]; };
+  return {point(0), point(1), point(2)};
+}
+
+/// The triangle so turned that its vertices in `shared` come first.
+SurfaceTriangle shared_first(SurfaceTriangle t, const SurfaceTriangle& other) {
+  std::stable_partition(t.vertices.begin(), t.vertices.end(), [&](std::int32_t v) {
+    return std::find(other.vertices.begin(), other.vertices.end(), v) != other.vertices.end();
+  });
+  return t;
+}
+
+int count_shared(const SurfaceTriangle& s, const SurfaceTriangle& t) {
+  int shared = 0;
+  for (const std::int32_t v : s.vertices)
+    shared += std::find(t.vertices.begin(), t.vertices.end(), v) != t.vertices.end();
+  return shared;
+}
+
+}  // namespace
+
+bool cross(std::span<const Vec3> points, const SurfaceTriangle& s, const SurfaceTriangle& t) {
+  const int shared = count_shared(s, t);
+  if (shared == 3) return true;
+  const Triangle a = corners(points, shared_first(s, t)), b = corners(points, shared_first(t, s));
+  if (shared == 0) {
+    // Of two triangles that meet, an edge of one meets the other.
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (segment_meets(a[k], a[(k + 1) % 3], b) || segment_meets(b[k], b[(k + 1) % 3], a)) return true;
+    }
+    return false;
+  }
+  // What two triangles share beyond a common vertex reaches the edge opposite to it in one of them.
+  if (shared == 1) return segment_meets(a[1], a[2], b) || segment_meets(b[1], b[2], a);
+  // Beyond a common edge they share something only when one lies folded upon the other.
+  if (orient3d(a[0], a[1], a[2], b[2]) != 0) return false;
+  const int axis = dropped_axis(a);
+  const Flat u = shadow(a[0], axis), v = shadow(a[1], axis);
+  return orient2d(u, v, shadow(a[2], axis)) == orient2d(u, v, shadow(b[2], axis));
+}
+
+namespace {
+
+struct Box {
+  Vec3 low, high;
+  [[nodiscard]] bool meets(const Box& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+/// A tree of boxes over the triangles, split at the median of the longest axis; leaves of up to kLeaf triangles.
+class BoxTree {
+ public:
+  BoxTree(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
+          const std::function<void(std::int32_t, std::int32_t)>& found)
+      : points_(points), triangles_(triangles), budget_(budget), found_(found), order_(triangles.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    if (!order_.empty()) build(0, order_.size());
+  }
+
+  bool search() {
+    if (!nodes_.empty()) within(0);
+    return budget_ >= 0;
+  }
+
+ private:
+  static constexpr std::size_t kLeaf = 4;
+  struct Node {
+    Box box;
+    std::size_t first, last;          ///< of the triangles in `order_`
+    std::size_t left = 0, right = 0;  ///< 0: a leaf
+  };
+
+  [[nodiscard]] Box box_of(std::size_t triangle) const {
+    const Triangle t = corners(points_, triangles_[triangle]);
+    return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
+  }
+
+  std::size_t build(std::size_t first, std::size_t last) {
+    Box box = box_of(order_[first]);
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const Box other = box_of(order_[i]);
+      box = {box.low.cwiseMin(other.low), box.high.cwiseMax(other.high)};
+    }
+    const std::size_t at = nodes_.size();
+    nodes_.push_back({box, first, last});
+    if (last - first <= kLeaf) return at;
+    int axis = 0;
+    (box.high - box.low).maxCoeff(&axis);
+    const std::size_t middle = first + (last - first) / 2;
+    const auto place = [&](std::size_t triangle) {
+      const Box b = box_of(triangle);
+      return 0.5 * b.low[axis] + 0.5 * b.high[axis];
+    };
+    const auto begin = order_.begin();
+    std::nth_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
+                     begin + static_cast<std::ptrdiff_t>(last), [&](std::size_t i, std::size_t j) {
+                       const double x = place(i), y = place(j);
+                       return x < y || (x == y && i < j);
+                     });
+    const std::size_t left = build(first, middle), right = build(middle, last);
+    nodes_[at].left = left;
+    nodes_[at].right = right;
+    return at;
+  }
+
+  [[nodiscard]] bool is_leaf(const Node& node) const { return node.right == 0; }
+
+  void test(std::size_t i, std::size_t j) {
+    if (--budget_ < 0) return;
+    const SurfaceTriangle &s = triangles_[order_[i]], &t = triangles_[order_[j]];
+    if (s.face != t.face && box_of(order_[i]).meets(box_of(order_[j])) && cross(points_, s, t)) {
+      found_(std::min(s.face, t.face), std::max(s.face, t.face));
+    }
+  }
+
+  /// Pairs inside of one node.
+  void within(std::size_t at) {
+    const Node& node = nodes_[at];
+    if (is_leaf(node)) {
+      for (std::size_t i = node.first; i < node.last; ++i) {
+        for (std::size_t j = i + 1; j < node.last; ++j) test(i, j);
+      }
+      return;
+    }
+    within(node.left);
+    within(node.right);
+    between_nodes(node.left, node.right);
+  }
+
+  void between_nodes(std::size_t a, std::size_t b) {
+    if (--budget_ < 0) return;
+    const Node &s = nodes_[a], &t = nodes_[b];
+    if (!s.box.meets(t.box)) return;
+    if (is_leaf(s) && is_leaf(t)) {
+      for (std::size_t i = s.first; i < s.last; ++i) {
+        for (std::size_t j = t.first; j < t.last; ++j) test(i, j);
+      }
+      return;
+    }
+    const bool split_first = !is_leaf(s) && (is_leaf(t) || s.last - s.first >= t.last - t.first);
+    if (split_first) {
+      between_nodes(s.left, b);
+      between_nodes(s.right, b);
+    } else {
+      between_nodes(a, t.left);
+      between_nodes(a, t.right);
+    }
+  }
+
+  std::span<const Vec3> points_;
+  const std::vector<SurfaceTriangle>& triangles_;
+  std::int64_t budget_;
+  const std::function<void(std::int32_t, std::int32_t)>& found_;
+  std::vector<std::size_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace
+
+bool find_crossings(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
+                    const std::function<void(std::int32_t, std::int32_t)>& found) {
+  return BoxTree(points, triangles, budget, found).search();
+}
+
+}  // namespace pd::detail

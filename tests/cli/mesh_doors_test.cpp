@@ -1,0 +1,144 @@
+/// @file
+/// A mesh that is not convex is never answered silently about another body: every door says that it asks the hull, and
+/// `pdepth check` says why.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "mesh/hull_note.hpp"
+#include "mesh/mesh_file.hpp"
+#include "protocol_lines.hpp"
+#include "temporary_folder.hpp"
+
+namespace pd::test {
+namespace {
+
+constexpr const char* kCube =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+/// The L of three unit cubes, counter-clockwise from above.
+constexpr const char* kAngle =
+    "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
+    "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
+
+class MeshDoors : public ::testing::Test, protected TemporaryFolder {
+ protected:
+  std::string mesh(const std::string& path, const std::string& more = "") {
+    return R"({"type":"mesh","path":")" + path + "\"" + more + "}";
+  }
+  struct Outcome {
+    int status = -1;
+    std::string out;
+    std::string err;
+  };
+  Outcome run(const std::string& arguments) {
+    const std::string command = "cd '" + path().string() + "' && '" PDEPTH_PROGRAM "' " + arguments + " > out 2> err";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
+  }
+  static void expect_words(const std::string& text, const std::vector<std::string>& words) {
+    for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " in\n" << text;
+  }
+  const std::string cube_ = write("cube.obj", kCube);
+  const std::string angle_ = write("angle.obj", kAngle);
+  const std::string cloud_ = write("cloud.obj", std::string(kCube).substr(0, std::string(kCube).find('f')));
+  const std::string open_ = write("open.obj", std::string(kCube).substr(0, std::string(kCube).rfind('f')));
+};
+
+TEST_F(MeshDoors, EveryQueryOfAMeshSaysWhenItIsTheHull) {
+  // A cube in the notch of the L: the solids are 0.1 apart, their hulls overlap.
+  const std::string pose = R"("pose_b":{"translation":[1.1,1.1,0]})";
+  const Json found = answer(depth_line(mesh(angle_), mesh(cube_), pose));
+  EXPECT_EQ(found.at("class"), "overlapping");
+  EXPECT_EQ(found.at("a_is"), "hull");
+  EXPECT_FALSE(found.contains("b_is")) << "the cube is convex";
+  const Json other = answer(depth_line(mesh(cube_), mesh(angle_)));
+  EXPECT_FALSE(other.contains("a_is"));
+  EXPECT_EQ(other.at("b_is"), "hull");
+  for (const std::string& hull :
+       {mesh(cloud_), mesh(open_), mesh(cube_, R"(,"as":"hull")"), mesh(angle_, R"(,"margin":0.1)"),
+        R"({"type":"compound","parts":[{"shape":)" + mesh(angle_) + R"(,"pose":{}}]})"}) {
+    EXPECT_EQ(answer(depth_line(hull, kUnitBox)).value("a_is", ""), "hull") << hull;
+  }
+  for (const char* query : {"distance", "intersect", "contact_manifold", "minkowski_difference"}) {
+    const Json told =
+        answer(R"({"id":1,"query":")" + std::string(query) + R"(","a":)" + mesh(angle_) + R"(,"b":)" + kUnitBox + "}");
+    EXPECT_EQ(told.value("a_is", ""), "hull") << told;
+  }
+  const Json hull = answer(R"({"id":1,"query":"hull","a":)" + mesh(angle_) + "}");
+  EXPECT_EQ(hull.value("a_is", ""), "hull");
+  EXPECT_FALSE(answer(R"({"id":1,"query":"hull","a":)" + mesh(cube_) + "}").contains("a_is"));
+  const Json refused = answer(depth_line(mesh(cube_, R"(,"as":"solid")"), kUnitBox));
+  EXPECT_EQ(code_of(refused), "bad_value");
+  EXPECT_EQ(where_of(refused), "a.as");
+}
+
+TEST_F(MeshDoors, TheReasonAndBothVolumes) {
+  const auto note_of = [](const std::string& file) {
+    const query::MeshPoints points = query::read_mesh_points(file, 1000, 1 << 20);
+    const auto note = query::why_hull(points, ConvexPolytope::from_points(points.points).value());
+    return note ? query::in_words(*note) : "";
+  };
+  EXPECT_EQ(note_of(cube_), "");
+  EXPECT_EQ(note_of(angle_),
+            "asked as the convex hull, since the mesh is not convex: 10 vertices, 1.167 times the mesh's volume");
+  EXPECT_EQ(note_of(cloud_), "asked as the convex hull, since the file holds points and no faces: 8 vertices");
+  EXPECT_EQ(note_of(open_), "asked as the convex hull, since the mesh has holes: 8 vertices");
+  std::string stl = "solid\n";
+  for (const char* corners : {"0 0 0,0 1 0,1 0 0", "0 0 0,1 0 0,0 0 1", "0 0 0,0 0 1,0 1 0", "1 0 0,0 1 0,0 0 1"}) {
+    std::string text = corners;
+    for (std::size_t at = 0; at != std::string::npos; at = text.find(',', at + 1)) {
+      const std::size_t from = at == 0 ? 0 : at + 1;
+      stl += "vertex " + text.substr(from, text.find(',', from) - from) + "\n";
+    }
+  }
+  EXPECT_EQ(note_of(write("t.stl", stl + "endsolid\n")), "") << "corners of an STL are one vertex where they are equal";
+}
+
+TEST_F(MeshDoors, TheCommandsSayItToPeople) {
+  const Outcome found = run("depth angle.obj cube.obj --pose-b 1.1,1.1,0");
+  EXPECT_EQ(found.status, 0);
+  expect_words(found.out, {"asked as the convex hull, since the mesh is not convex: 10 vertices, 1.167 times",
+                           "A's hull and B overlap."});
+  const Json told = Json::parse(run("depth angle.obj cube.obj --json").out);
+  EXPECT_EQ(told.value("a_is", ""), "hull");
+  EXPECT_FALSE(told.contains("b_is"));
+  EXPECT_EQ(Json::parse(run("depth angle.obj cube.obj --json --hull").out).value("b_is", ""), "hull");
+  const Outcome convex = run("depth cube.obj cube.obj");
+  EXPECT_EQ(convex.out.find("asked as"), std::string::npos) << convex.out;
+  expect_words(convex.out, {"A and B overlap."});
+}
+
+TEST_F(MeshDoors, CheckNamesFaultsAndPlaces) {
+  const Outcome cube = run("check cube.obj --fail-on solid,not_convex,duplicate_points");
+  EXPECT_EQ(cube.status, 0) << cube.err;
+  expect_words(cube.out, {"The faces bound a solid, and it is convex.", "6 in 1 connected surface", "1 x 1 x 1"});
+  const Outcome angle = run("check angle.obj --fail-on solid,not_convex");
+  EXPECT_EQ(angle.status, 3);
+  expect_words(angle.out, {"The faces bound a solid, which is not convex.", "volume        3\n", "volume 3.5"});
+  expect_words(angle.err, {"not_convex of --fail-on applies"});
+  const Outcome open = run("check open.obj --fail-on open_edge");
+  EXPECT_EQ(open.status, 3);
+  expect_words(open.out,
+               {"The faces do not bound a solid", "no: the surface has holes; 4 edges have a face on one side",
+                "the edge from (1, 0, 0) to (1, 1, 0) of face 1 (line 9)"});
+  expect_words(run("check cloud.obj").out, {"points and no faces"});
+  EXPECT_EQ(run("check none.obj").status, 2);
+  EXPECT_EQ(run("check cube.obj --fail-on magic").status, 2);
+
+  write("two.obj", std::string(kCube) +
+                       "v 0.5 0.5 0.5\nv 0.7 0.5 0.5\nv 0.5 0.7 0.5\nv 0.5 0.5 2\n"
+                       "f 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n");
+  const Json crossed = Json::parse(run("check two.obj --json").out);
+  EXPECT_EQ(crossed.at("solid"), false);
+  EXPECT_EQ(crossed.at("closed"), true);
+  EXPECT_EQ(crossed.at("faults"), Json({{"self_crossing", 3}}));
+  EXPECT_EQ(crossed.at("surfaces"), 2);
+  EXPECT_NE(crossed.at("findings")[0].at("where").get<std::string>().find("face 2 (line 10) and face"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pd::test
