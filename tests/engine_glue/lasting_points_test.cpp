@@ -35,7 +35,7 @@ struct Pair {
   btManifoldResult result;
 };
 
-/// The first point goes through Bullet, and nothing is taken as lasting.
+/// Each point goes through Bullet.
 struct OneByOne : detail::PointSurroundings {
   [[nodiscard]] bool lasting() const override { return false; }
 };
@@ -48,7 +48,6 @@ struct Pieces : detail::PointSurroundings {
     result.setShapeIdentifiersA(step, k);
     result.setShapeIdentifiersB(7, step + k);
   }
-  [[nodiscard]] bool same(int i, int k) const override { return i == k; }
   [[nodiscard]] bool lasting() const override { return false; }
   [[nodiscard]] bool numbers(int k, detail::PieceNumbers& out) const override {
     out = {step, k, 7, step + k};
@@ -121,20 +120,20 @@ void compare(int points, bool pieces, unsigned seed, int& lasting) {
       pair->a.setWorldTransform(pose_a);
       pair->b.setWorldTransform(pose_b);
     }
-    detail::PointOrder order;
+    detail::LastingPoints order;
     lasting += detail::may_all_last(at_once.manifold, at_once.memory, fresh, at_once.result) &&
                        detail::order_by_feature(at_once.memory, fresh, order)
                    ? 1
                    : 0;
     if (pieces) {
       Pieces together(at_once.result, true, step), apart(one_by_one.result, false, step);
-      detail::replace_points(at_once.manifold, at_once.memory, fresh, seconds, at_once.result, together);
-      detail::replace_points(one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result, apart);
+      detail::replace_points({at_once.manifold, at_once.memory, fresh, seconds, at_once.result}, together);
+      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result}, apart);
     } else {
       detail::PointSurroundings whole;
       OneByOne alone;
-      detail::replace_points(at_once.manifold, at_once.memory, fresh, seconds, at_once.result, whole);
-      detail::replace_points(one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result, alone);
+      detail::replace_points({at_once.manifold, at_once.memory, fresh, seconds, at_once.result}, whole);
+      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result}, alone);
     }
     expect_equal(at_once, one_by_one);
     if (testing::Test::HasFatalFailure()) FAIL() << "step " << step;
@@ -176,9 +175,9 @@ TEST(LastingPoints, OrderIsFoundByFeature) {
     memory.points[i].feature_id = 10 + i;
     fresh.points[i].feature_id = 10 + (i * 3 + 2) % 4;
   }
-  detail::PointOrder order;
+  detail::LastingPoints order;
   ASSERT_TRUE(detail::order_by_feature(memory, fresh, order));
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(fresh.points[order[i]].feature_id, memory.points[i].feature_id);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(fresh.points[order.points[i]].feature_id, memory.points[i].feature_id);
   fresh.points[1].feature_id = 12;  // twice, and 11 is missing
   EXPECT_FALSE(detail::order_by_feature(memory, fresh, order));
   memory.points[1].feature_id = 10;  // twice among the old

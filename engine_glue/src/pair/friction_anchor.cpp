@@ -112,10 +112,9 @@ FrictionAnchor anchor_of(const btManifoldPoint& point) {
 }
 
 int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,
-                       const btVector3& normal, const btVector3& point_on_b, btScalar distance, int entry,
-                       const FrictionAnchor& anchor) {
+                       const FreshPoint& point, int entry, const FrictionAnchor& anchor) {
   const btScalar threshold = manifold.getContactBreakingThreshold();
-  if (entry >= 0 && distance <= threshold) {
+  if (entry >= 0 && point.distance <= threshold) {
     // Bullet keeps the old point of a body that asks for anchors itself (CF_HAS_FRICTION_ANCHOR) unless it slid, with
     // last step's depth and normal. So the entry is made to look as if it had.
     btManifoldPoint& old = manifold.getContactPoint(entry);
@@ -125,7 +124,7 @@ int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold,
   const int before = manifold.getNumContacts();
   {
     const OthersOutOfReach hidden(manifold, entry);
-    result.addContactPoint(normal, point_on_b, distance);
+    result.addContactPoint(point.normal, point.point_on_b, point.distance);
   }
   if (manifold.getNumContacts() > before) {
     return before;
@@ -164,30 +163,6 @@ btManifoldPoint pattern_of(const btManifoldResult& result, const btManifoldPoint
   pattern.m_index0 = old.m_index0;
   pattern.m_index1 = old.m_index1;
   return pattern;
-}
-
-void replace_like(const btManifoldPoint& pattern, const ManifoldPoses& poses, btScalar threshold,
-                  const btVector3& local_a, const btVector3& point_on_b, btScalar distance,
-                  const FrictionAnchor& anchor, btManifoldPoint& point) {
-  void* const user_data = point.m_userPersistentData;
-  const btScalar impulse = point.m_appliedImpulse;
-  const btScalar previous = point.m_prevRHS;
-  const int life_time = point.m_lifeTime;
-  point = pattern;
-  point.m_userPersistentData = user_data;
-  point.m_appliedImpulse = impulse;
-  point.m_prevRHS = previous;
-  point.m_lifeTime = life_time;
-  point.m_contactPointFlags &= ~BT_CONTACT_FLAG_FRICTION_ANCHOR;
-  point.m_localPointA = local_a;
-  Lanes on_b, local_b;
-  load_lanes(point_on_b, on_b);
-  poses.b.apply_inverse(on_b, local_b);
-  point.m_localPointB = from_lanes(local_b);
-  point.m_positionWorldOnA = point_on_b + point.m_normalWorldOnB * distance;
-  point.m_positionWorldOnB = point_on_b;
-  point.m_distance1 = distance;
-  hand_on(point, anchor, poses, threshold);
 }
 
 }  // namespace pd::detail

@@ -14,6 +14,7 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "pair/manifold_points.hpp"
 #include "shapes/lane_transform.hpp"
 
 namespace pd::detail {
@@ -50,8 +51,7 @@ struct FrictionAnchor {
 /// @param anchor  of that entry, before this step's points came; not read for a new entry
 /// @return the entry that holds the point now; -1 where `result` keeps its points elsewhere (contact tests)
 int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,
-                       const btVector3& normal, const btVector3& point_on_b, btScalar distance, int entry,
-                       const FrictionAnchor& anchor);
+                       const FreshPoint& point, int entry, const FrictionAnchor& anchor);
 
 /// Whether points of a manifold may be made without Bullet: its own result, no callback that is told of each point and
 /// may change it, and no body that asks for anchors itself.
@@ -61,14 +61,5 @@ int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold,
 /// friction directions. Requires points_are_alike.
 [[nodiscard]] btManifoldPoint pattern_of(const btManifoldResult& result, const btManifoldPoint& old,
                                          const btVector3& normal);
-
-/// What `add_anchored_point` does to an entry, without the way through Bullet.
-/// @param pattern    by `pattern_of`, or a point with the same normal that the pair's result took in this step
-///
-/// @param threshold  of the manifold, at which contacts break
-/// @param local_a    of the point, in the first body's coordinates
-void replace_like(const btManifoldPoint& pattern, const ManifoldPoses& poses, btScalar threshold,
-                  const btVector3& local_a, const btVector3& point_on_b, btScalar distance,
-                  const FrictionAnchor& anchor, btManifoldPoint& point);
 
 }  // namespace pd::detail

@@ -85,7 +85,8 @@ bool may_all_last(const btPersistentManifold& manifold, const PairMemory& memory
   return points_are_alike(result);
 }
 
-bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, PointOrder& order) {
+bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, LastingPoints& all) {
+  all.count = 0;
   unsigned taken = 0;
   // A cut face begins at another corner now and then, so that what follows mostly follows again.
   int k = 0;
@@ -96,7 +97,7 @@ bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, PointO
       k = k + 1 < fresh.count ? k + 1 : 0;
     }
     taken |= 1U << k;
-    order[i] = k;
+    all.add(i, k);
     k = k + 1 < fresh.count ? k + 1 : 0;
   }
   return taken + 1 == 1U << fresh.count;  // none twice
@@ -120,12 +121,16 @@ struct Normals<false> {
 };
 
 template <bool one_piece>
-bool replace_lasting(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
-                     const PointOrder& order, PlacesKnown known, btScalar seconds, const btManifoldResult& result,
+bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known,
                      const PointSurroundings* pieces) {
-  const int count = fresh.count;
-  const auto new_point = [&](int i) -> const FreshPoint& { return fresh.points[order[i < count ? i : 0]]; };
-  const auto old_point = [&](int i) { return &manifold.getContactPoint(i < count ? i : 0); };
+  btPersistentManifold& manifold = step.manifold;
+  PairMemory& memory = step.memory;
+  const btManifoldResult& result = step.result;
+  const int count = lasting.count;
+  const auto new_point = [&](int i) -> const FreshPoint& {
+    return step.fresh.points[lasting.points[i < count ? i : 0]];
+  };
+  const auto old_point = [&](int i) { return &manifold.getContactPoint(lasting.entries[i < count ? i : 0]); };
   const Entries entries{{old_point(0), old_point(1), old_point(2), old_point(3)}};
   const btTransform& pose_a = manifold.getBody0()->getWorldTransform();
   const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
@@ -170,42 +175,40 @@ bool replace_lasting(btPersistentManifold& manifold, PairMemory& memory, const F
     shown_a = select(held, shown_a, world_a);
   }
 
-  // Where all stand in the same surroundings, `replace_points` takes after the entry of the first new one.
-  std::size_t entry_of_first = 0;
-  while (order[entry_of_first] != 0) ++entry_of_first;
-  const btVector3& first_normal = fresh.points[0].normal;
-  btManifoldPoint pattern = pattern_of(result, *entries.at[entry_of_first], first_normal);
-  const bool same_step = seconds == memory.seconds;
+  btManifoldPoint pattern = pattern_of(result, *entries.at[0], points[0]->normal);
+  const bool same_step = step.seconds == memory.seconds;
   PieceNumbers numbers;
   for (int k = 0; k < count; ++k) {
-    btManifoldPoint& point = manifold.getContactPoint(k);
+    btManifoldPoint& point = *entries.at[static_cast<std::size_t>(k)];
+    RememberedPoint& remembered = memory.points[lasting.entries[k]];
     if constexpr (!one_piece) {
-      if (pieces->numbers(order[k], numbers)) set_numbers(numbers, manifold, result, pattern);
+      if (pieces->numbers(lasting.points[k], numbers)) set_numbers(numbers, manifold, result, pattern);
       if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
     }
     copy_kind(pattern, point);
     point.m_distance1 = points[k]->distance;
     point.m_positionWorldOnB = points[k]->point_on_b;
     point.m_contactPointFlags = pattern.m_contactPointFlags | (held[k] != 0 ? BT_CONTACT_FLAG_FRICTION_ANCHOR : 0);
-    memory.points[k].feature_id = points[k]->feature_id;
-    point.m_appliedImpulse = memory.points[k].impulse.next(point.m_appliedImpulse, same_step);
+    remembered.feature_id = points[k]->feature_id;
+    point.m_appliedImpulse = remembered.impulse.next(point.m_appliedImpulse, same_step);
     ++point.m_lifeTime;
   }
   entries.scatter(local_a, &btManifoldPoint::m_localPointA);
   entries.scatter(local_b, &btManifoldPoint::m_localPointB);
   entries.scatter(shown_a, &btManifoldPoint::m_positionWorldOnA);
-  for (int k = 0; k < count; ++k) memory.points[k].local_a = manifold.getContactPoint(k).m_localPointA;
-  memory.seconds = seconds;
+  for (int k = 0; k < count; ++k) {
+    memory.points[lasting.entries[k]].local_a = entries.at[static_cast<std::size_t>(k)]->m_localPointA;
+  }
+  memory.seconds = step.seconds;
   return true;
 }
 
 }  // namespace
 
-bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
-                            const PointOrder& order, PlacesKnown known, btScalar seconds,
-                            const btManifoldResult& result, const PointSurroundings* pieces) {
-  return pieces == nullptr ? replace_lasting<true>(manifold, memory, fresh, order, known, seconds, result, pieces)
-                           : replace_lasting<false>(manifold, memory, fresh, order, known, seconds, result, pieces);
+bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known,
+                            const PointSurroundings* pieces) {
+  return pieces == nullptr ? replace_lasting<true>(step, lasting, known, pieces)
+                           : replace_lasting<false>(step, lasting, known, pieces);
 }
 
 }  // namespace pd::detail

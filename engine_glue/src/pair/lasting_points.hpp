@@ -1,5 +1,6 @@
 /// @file
-/// The commonest step of a manifold: every point of the last one goes on in its place, and all are made alike.
+/// Points of a manifold that go on, all written together. In the commonest step all points of the last one go on in
+/// their places.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
@@ -13,24 +14,33 @@
 
 namespace pd::detail {
 
-/// Of each entry of the manifold, the new point that it goes on as.
-using PointOrder = std::array<int, 4>;
+/// Entries of a manifold that go on, ascending, and the new point that each goes on as.
+struct LastingPoints {
+  int count = 0;
+  std::array<int, 4> entries;
+  std::array<int, 4> points;
+  void add(int entry, int point) {
+    entries[count] = entry;
+    points[count++] = point;
+  }
+};
 
 /// Whether as many points come as there are, all near enough, and memory knows the old ones.
 [[nodiscard]] bool may_all_last(const btPersistentManifold& manifold, const PairMemory& memory,
                                 const FreshPoints& fresh, const btManifoldResult& result);
 
-/// Whether all new points have the old ones' features, wherever they are.
-[[nodiscard]] bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, PointOrder& order);
+/// Whether all new points have the old ones' features, wherever they are. Requires as many as there are.
+/// @param all  set to them
+[[nodiscard]] bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, LastingPoints& all);
 
 /// Whether the new points are known to lie within the breaking threshold of the old ones, or not to matter.
 enum class PlacesKnown : std::uint8_t { no, yes };
 
-/// What `replace_points` does to points that go on, bit for bit and all at once. Requires `may_all_last`.
+/// Writes points that go on as Bullet would, one by one and bit for bit, but all at once. Requires that they are within
+/// the breaking threshold, that `points_are_alike`, and that memory knows the entries by their numbers.
 /// @param pieces  knows each point's numbers; nullptr: all stand in one piece, under one normal
 /// @return false: one may have moved too far to be the same, and nothing has changed.
-bool replace_lasting_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh,
-                            const PointOrder& order, PlacesKnown known, btScalar seconds,
-                            const btManifoldResult& result, const PointSurroundings* pieces);
+bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known,
+                            const PointSurroundings* pieces);
 
 }  // namespace pd::detail

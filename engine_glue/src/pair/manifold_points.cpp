@@ -144,118 +144,98 @@ void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btMani
     const FreshPoint& point = fresh.points[order[i]];
     const int entry = entry_near(manifold, local_on_a(poses, point));
     const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
-    add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, entry, anchor);
+    add_anchored_point(result, manifold, poses, point, entry, anchor);
   }
 }
 
 namespace {
 
-/// What the new points take over from the old ones.
-struct Heritage {
-  std::array<FrictionAnchor, 4> anchors;       ///< of entries
-  std::array<ImpulseTrend, 4> impulses;        ///< of new points
-  std::array<int, 4> entries{-1, -1, -1, -1};  ///< of new points; -1: no old point goes on in it
-};
-
-/// Takes points without an heir out of the manifold, and moves the others to theirs: Bullet's `addContactPoint` hands
-/// impulses, life time and user data to the new point that falls on an old one, which keeps Bullet's contact callbacks
-/// right, as clearing would not.
-void keep_matched(btPersistentManifold& manifold, const PairMemory& memory, Matching& matching, btScalar seconds,
-                  const std::array<btVector3, 4>& local_a, Heritage& heritage) {
+/// Takes points without an heir out of the manifold, and brings memory into the order of those that are left.
+void drop_parted(btPersistentManifold& manifold, PairMemory& memory, Matching& matching) {
+  std::array<RememberedPoint, 4> kept;
   for (int i = manifold.getNumContacts() - 1; i >= 0; --i) {
-    const int heir = matching.heir[i];
-    if (heir < 0) {
-      // Moves the last point into the gap: those behind are dealt with already.
-      const int last = manifold.getNumContacts() - 1;
-      heritage.anchors[i] = heritage.anchors[last];
-      matching.heir[i] = matching.heir[last];
-      manifold.removeContactPoint(i);
-    } else {
-      btManifoldPoint& old = manifold.getContactPoint(i);
-      heritage.anchors[i] = anchor_of(old);
-      ImpulseTrend& impulse = heritage.impulses[heir];
-      if (const int r = matching.known[i]; r >= 0) impulse = memory.points[r].impulse;
-      old.m_appliedImpulse = impulse.next(old.m_appliedImpulse, seconds == memory.seconds);
-      old.m_localPointA = local_a[heir];
-    }
+    if (matching.heir[i] >= 0) continue;
+    // Moves the last point into the gap: those behind are dealt with already.
+    const int last = manifold.getNumContacts() - 1;
+    matching.heir[i] = matching.heir[last];
+    matching.known[i] = matching.known[last];
+    manifold.removeContactPoint(i);
   }
-  for (int i = 0; i < manifold.getNumContacts(); ++i) heritage.entries[matching.heir[i]] = i;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const int r = matching.known[i];
+    kept[i].impulse = r >= 0 ? memory.points[r].impulse : ImpulseTrend();
+  }
+  memory.points = kept;
 }
 
-}  // namespace
-
-namespace {
+/// One point by Bullet's `addContactPoint`. Bullet hands impulses, life time and user data to the new point that falls
+/// on an old one, which keeps its contact callbacks right, as clearing would not; so the old point moves to the new
+/// one.
+/// @param entry  that goes on as the point, or -1
+void add_by_bullet(const PointsOfStep& step, const ManifoldPoses& poses, const FreshPoint& point, int entry,
+                   bool same_step) {
+  ImpulseTrend impulse;
+  FrictionAnchor anchor;
+  if (entry >= 0) {
+    btManifoldPoint& old = step.manifold.getContactPoint(entry);
+    anchor = anchor_of(old);
+    impulse = step.memory.points[entry].impulse;
+    old.m_appliedImpulse = impulse.next(old.m_appliedImpulse, same_step);
+    old.m_localPointA = local_on_a(poses, point);
+  }
+  entry = add_anchored_point(step.result, step.manifold, poses, point, entry, anchor);
+  if (entry < 0) return;
+  step.memory.points[entry].feature_id = point.feature_id;
+  step.memory.points[entry].impulse = impulse;
+  ++step.manifold.getContactPoint(entry).m_lifeTime;
+}
 
 /// Whatever became of the old points.
-/// @param may_last  `may_all_last`
-/// @param pieces    for `replace_lasting_points`
-void replace_any_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, bool may_last,
-                        const PointSurroundings* pieces, btScalar seconds, btManifoldResult& result,
-                        PointSurroundings& surroundings) {
+/// @param pieces  for `replace_lasting_points`
+void replace_any_points(const PointsOfStep& step, const PointSurroundings* pieces, PointSurroundings& surroundings) {
+  const auto& [manifold, memory, fresh, seconds, result] = step;
   const ManifoldPoses poses = poses_of(manifold);
   std::array<btVector3, 4> local_a;
   for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(poses, fresh.points[k]);
   Matching matching = match_points(manifold, memory, fresh, local_a);
-  const auto goes_on = [](int heir) { return heir >= 0; };
-  if (may_last && std::all_of(matching.heir.begin(), matching.heir.begin() + fresh.count, goes_on)) {
-    replace_lasting_points(manifold, memory, fresh, matching.heir, PlacesKnown::yes, seconds, result, pieces);
-    return;
-  }
-  Heritage heritage;
-  keep_matched(manifold, memory, matching, seconds, local_a, heritage);
+  drop_parted(manifold, memory, matching);
+  const bool same_step = seconds == memory.seconds;
   const btScalar threshold = manifold.getContactBreakingThreshold();
-  const bool alike = points_are_alike(result);
-  // What the points have in common: as Bullet gave it to one of them, or as it would.
-  btManifoldPoint pattern;
-  int pattern_of_point = -1;
+  PieceNumbers numbers;
+  const bool together = points_are_alike(result) && (pieces == nullptr || surroundings.numbers(0, numbers));
+  std::array<int, 4> entries{-1, -1, -1, -1};  // of new points; -1: no old point goes on in it
+  std::array<bool, 4> written{};               // new points
+  LastingPoints lasting;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const int k = matching.heir[i];
+    entries[k] = i;
+    written[k] = together && fresh.points[k].distance <= threshold;
+    if (written[k]) lasting.add(i, k);
+  }
+  if (lasting.count > 0) replace_lasting_points(step, lasting, PlacesKnown::yes, pieces);
   for (int k = 0; k < fresh.count; ++k) {
-    const FreshPoint& point = fresh.points[k];
-    int entry = heritage.entries[k];
-    const bool lasts = alike && entry >= 0 && point.distance <= threshold;
-    if (lasts && pattern_of_point < 0 && surroundings.lasting()) {
-      pattern = pattern_of(result, manifold.getContactPoint(entry), point.normal);
-      pattern_of_point = k;
-    }
-    if (lasts && pattern_of_point >= 0 && surroundings.same(k, pattern_of_point) &&
-        point.normal == pattern.m_normalWorldOnB) {
-      replace_like(pattern, poses, threshold, local_a[k], point.point_on_b, point.distance, heritage.anchors[entry],
-                   manifold.getContactPoint(entry));
-    } else {
-      surroundings.enter(k);
-      entry = add_anchored_point(result, manifold, poses, point.normal, point.point_on_b, point.distance, entry,
-                                 heritage.anchors[std::max(entry, 0)]);
-      surroundings.leave();
-      if (alike && entry >= 0 && point.distance <= threshold) {
-        pattern = manifold.getContactPoint(entry);
-        pattern_of_point = k;
-      }
-    }
-    if (entry >= 0) {
-      memory.points[entry].feature_id = point.feature_id;
-      memory.points[entry].impulse = heritage.impulses[k];
-    }
+    if (written[k]) continue;
+    surroundings.enter(k);
+    add_by_bullet(step, poses, fresh.points[k], entries[k], same_step);
+    surroundings.leave();
   }
   memory.seconds = seconds;
   memory.num_points = manifold.getNumContacts();
-  for (int i = 0; i < memory.num_points; ++i) {
-    memory.points[i].local_a = manifold.getContactPoint(i).m_localPointA;
-    ++manifold.getContactPoint(i).m_lifeTime;
-  }
+  for (int i = 0; i < memory.num_points; ++i) memory.points[i].local_a = manifold.getContactPoint(i).m_localPointA;
 }
 
 }  // namespace
 
-void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
-                    btManifoldResult& result, PointSurroundings& surroundings) {
+void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
+  const auto& [manifold, memory, fresh, seconds, result] = step;
   const bool one_piece = surroundings.lasting();
   const PointSurroundings* const pieces = one_piece ? nullptr : &surroundings;
   PieceNumbers numbers;
+  LastingPoints all;
   const bool may_last = fresh.count > 0 && (one_piece || surroundings.numbers(0, numbers)) &&
-                        may_all_last(manifold, memory, fresh, result);
-  PointOrder order;
-  if (!may_last || !order_by_feature(memory, fresh, order) ||
-      !replace_lasting_points(manifold, memory, fresh, order, PlacesKnown::no, seconds, result, pieces)) {
-    replace_any_points(manifold, memory, fresh, may_last, pieces, seconds, result, surroundings);
+                        may_all_last(manifold, memory, fresh, result) && order_by_feature(memory, fresh, all);
+  if (!may_last || !replace_lasting_points(step, all, PlacesKnown::no, pieces)) {
+    replace_any_points(step, pieces, surroundings);
   }
   // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.
   if (gContactProcessedCallback != nullptr) {

@@ -40,20 +40,25 @@ class PointSurroundings {
   virtual ~PointSurroundings() = default;
   virtual void enter(int) {}
   virtual void leave() {}
-  /// Whether two points stand in the same surroundings.
-  [[nodiscard]] virtual bool same(int, int) const { return true; }
   /// What `enter` tells the result. @return false: it does not tell it of both bodies
   [[nodiscard]] virtual bool numbers(int, PieceNumbers&) const { return false; }
   /// Whether all points do, as those of the last step did, and have one normal.
   [[nodiscard]] virtual bool lasting() const { return true; }
 };
 
-/// Puts the points of this step in place of the manifold's, which nobody else writes to. Impulses (with their trend,
-/// impulse_trend.hpp), life times and anchors go from the old points to the new ones by feature, else by place;
-/// `memory` keeps the features.
-/// @param seconds of the step
-void replace_points(btPersistentManifold& manifold, PairMemory& memory, const FreshPoints& fresh, btScalar seconds,
-                    btManifoldResult& result, PointSurroundings& surroundings);
+/// A manifold that nobody else writes to, and the points of this step.
+struct PointsOfStep {
+  btPersistentManifold& manifold;
+  PairMemory& memory;  ///< keeps the features
+  const FreshPoints& fresh;
+  btScalar seconds;  ///< of the step
+  btManifoldResult& result;
+};
+
+/// Puts the points of this step in place of the manifold's. Impulses (with their trend, impulse_trend.hpp), life times
+/// and anchors go from the old points to the new ones by feature, else by place. Points that go on are written together
+/// (lasting_points.hpp), all others by Bullet.
+void replace_points(const PointsOfStep& step, PointSurroundings& surroundings);
 
 /// Adds points to a manifold that other pairs write to as well.
 void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result);

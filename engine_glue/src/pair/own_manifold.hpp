@@ -51,7 +51,7 @@ class OwnManifold {
       return;
     }
     PointSurroundings whole;
-    replace_points(*manifold_, *memory_, fresh, seconds, result, whole);
+    replace_points({*manifold_, *memory_, fresh, seconds, result}, whole);
   }
   /// After Bullet's detector has added points of its own.
   void refresh(btManifoldResult& result) {

@@ -15,9 +15,6 @@ class PieceOfPoint : public PointSurroundings {
   PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
   void enter(int point) override { pieces_.enter(patch_.pieces[static_cast<std::size_t>(point)]); }
   void leave() override { pieces_.leave(); }
-  [[nodiscard]] bool same(int i, int k) const override {
-    return patch_.pieces[static_cast<std::size_t>(i)] == patch_.pieces[static_cast<std::size_t>(k)];
-  }
   [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
     return pieces_.numbers(patch_.pieces[static_cast<std::size_t>(point)], out);
   }
@@ -118,7 +115,7 @@ void PatchManifolds::replace(Patches& patches, btScalar seconds, btManifoldResul
     const Patch& patch = patches[heirs[m]];
     PieceOfPoint around(patch, surroundings);
     result.setPersistentManifold(kept.manifold);
-    replace_points(*kept.manifold, kept.memory, patch.fresh, seconds, result, around);
+    replace_points({*kept.manifold, kept.memory, patch.fresh, seconds, result}, around);
   }
   result.setPersistentManifold(&first);
 }

@@ -20,13 +20,25 @@ class ChildOfPoint : public PointSurroundings {
   ChildOfPoint(const UnionQuestion& question, const std::vector<Child>& children)
       : question_(question), children_(children) {}
   void enter(int place) override {
+    plane_.emplace(question_.result, question_.b);
     inside_.emplace(question_.result, question_.a, children_[static_cast<std::size_t>(place)]);
   }
-  void leave() override { inside_.reset(); }
+  void leave() override {
+    inside_.reset();
+    plane_.reset();
+  }
+  [[nodiscard]] bool numbers(int place, PieceNumbers& out) const override {
+    const Child& child = children_[static_cast<std::size_t>(place)];
+    const btCollisionObjectWrapper& plane = question_.b;
+    out = numbers_in_result(question_.result, question_.a, part_of_child(question_.a, child),
+                            index_of_child(question_.a, child), plane.m_partId, plane.m_index);
+    return true;
+  }
 
  private:
   const UnionQuestion& question_;
   const std::vector<Child>& children_;
+  std::optional<PieceInResult> plane_;
   std::optional<ChildInResult> inside_;
 };
 
