@@ -33,14 +33,14 @@ class Row {
     for (const int child : near) facts_.look_at({compound_, child}, cache_);
   }
   /// How many of a child's facets are covered so.
-  int num_covered(int child, detail::FacetCover cover, double slack = 1e-4) {
+  int num_covered(int child, FacetCover cover, double slack = 1e-4) {
     int count = 0;
     for (std::size_t facet = 0; facet < 6; ++facet) {
       count += facts_.cover_of({compound_, child}, facet, slack, cache_) == cover ? 1 : 0;
     }
     return count;
   }
-  int num_sealed(int child) { return num_covered(child, detail::FacetCover::all); }
+  int num_sealed(int child) { return num_covered(child, FacetCover::all); }
   std::vector<int> neighbours(int child) {
     const std::vector<int>* all = facts_.neighbours({compound_, child}, 1e-4, cache_);
     return all != nullptr ? *all : std::vector<int>{-1};
@@ -103,24 +103,24 @@ TEST(CompoundFacts, OnlyWhatRisesBesideAContactCanCoverIt) {
 TEST(CompoundFacts, FacetsBesideANeighbourAreFreeAndThoseItStandsOnAreNot) {
   Row row(2);
   row.step({0, 1});
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 5);
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 0);
+  EXPECT_EQ(row.num_covered(0, FacetCover::none), 5);
+  EXPECT_EQ(row.num_covered(0, FacetCover::some), 0);
   // A step of half a height: the neighbour rises beside the top, which is free still.
   row.compound().updateChildTransform(1, btTransform(btQuaternion::getIdentity(), btVector3(1, 0, btScalar(.5))));
   row.step({0, 1});
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 5);
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 1);
+  EXPECT_EQ(row.num_covered(0, FacetCover::none), 5);
+  EXPECT_EQ(row.num_covered(0, FacetCover::some), 1);
   // It stands on the middle of the top and into it.
   row.compound().updateChildTransform(1, btTransform(btQuaternion::getIdentity(), btVector3(btScalar(.75), 0, 1)));
   row.step({0, 1});
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 5);
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 1);
+  EXPECT_EQ(row.num_covered(0, FacetCover::none), 5);
+  EXPECT_EQ(row.num_covered(0, FacetCover::some), 1);
   row.compound().updateChildTransform(1, btTransform(btQuaternion::getIdentity(), btVector3(btScalar(.75), 0, .5)));
   row.step({0, 1});
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::none), 4);
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some), 2);
+  EXPECT_EQ(row.num_covered(0, FacetCover::none), 4);
+  EXPECT_EQ(row.num_covered(0, FacetCover::some), 2);
   // Nothing is said for a slack that is wider than neighbours are looked for.
-  EXPECT_EQ(row.num_covered(0, detail::FacetCover::some, 1), 6);
+  EXPECT_EQ(row.num_covered(0, FacetCover::some, 1), 6);
 }
 
 TEST(CompoundFacts, WhatHoldsAPointTouchesIt) {

@@ -2,7 +2,7 @@
 #
 #   cmake -DROOT=<source tree> -P include_rules.cmake
 # Names every line that breaks a rule and fails when there is one. Rules:
-#   1. In pd_core, numeric < shape < structure < depth < compound < contact; planar and dimension stand on numeric alone.
+#   1. In pd_core, numeric < shape < structure < depth < compound < contact < union_contact; planar and dimension stand on numeric alone.
 #      Machinery of depth stands in folders of its own, of which each includes itself and those named in folders_under_* below;
 #      src/depth/X.cpp itself implements include/pd/depth/X.hpp, and no machinery includes a header of a public query. The
 #      arrows between folders close no loop. For them a floor's own sources, which nobody includes, are a folder, and so are the
@@ -18,7 +18,7 @@
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
-set(core_floors numeric shape structure depth compound contact)
+set(core_floors numeric shape structure depth compound contact union_contact)
 set(core_islands planar dimension)
 set(floors_under_numeric numeric)
 set(floors_under_shape numeric shape)
@@ -26,6 +26,7 @@ set(floors_under_structure numeric shape structure)
 set(floors_under_depth numeric shape structure depth)
 set(floors_under_compound numeric shape structure depth compound)
 set(floors_under_contact numeric shape structure depth compound contact)
+set(floors_under_union_contact numeric shape structure depth compound contact union_contact)
 set(floors_under_planar numeric planar)
 set(floors_under_dimension numeric dimension)
 set(all_floors ${core_floors} ${core_islands})

@@ -13,7 +13,7 @@
 #include "pair/solver_core.hpp"
 #include "pair/step_reach.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pieces/covered_contact.hpp"
+#include "pieces/asked_pieces.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/moving_body.hpp"
 #include "shapes/prefetch.hpp"
@@ -133,15 +133,16 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     }
     if (outcome == SolverCore::Outcome::answered) {
       if (of_union) {
-        buffers->cover.near.begin_pair(stamp);
-        const PiecePair pieces{.a = *a,
-                               .b = *b,
-                               .threshold = static_cast<double>(threshold),
-                               .seconds = static_cast<double>(info.m_timeStep),
-                               .shapes = {core.cache, stamp},
-                               .cover = buffers->cover,
-                               .manifold = buffers->manifold};
-        count_covered(keep_uncovered(pieces, answer, AnswerPoints::made, points), *buffers);
+        buffers->near.begin_pair(stamp);
+        AskedPieces pieces(*a, *b,
+                           {.threshold = static_cast<double>(threshold),
+                            .seconds = static_cast<double>(info.m_timeStep),
+                            .shapes = {core.cache, stamp},
+                            .near = buffers->near,
+                            .cover = buffers->cover,
+                            .manifold = buffers->manifold});
+        count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points),
+                      *buffers);
       }
       fresh = fresh_points(points);
     }

@@ -10,8 +10,9 @@
 
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/scratch.hpp"
-#include "pieces/covered_contact.hpp"
-#include "pieces/union_exit.hpp"
+#include "pd/union_contact/covered_contact.hpp"
+#include "pd/union_contact/union_exit.hpp"
+#include "pieces/near_pieces.hpp"
 #include "shapes/triangle_cache.hpp"
 #include "shapes/triangles_around.hpp"
 
@@ -45,6 +46,7 @@ struct ThreadBuffers {
   Scratch scratch;
   ManifoldScratch manifold;
   CoverBuffers cover;
+  NearPieces near;  ///< of the pair at hand
   UnionExit union_exit;
   TriangleCache triangles;
   TrianglesAround around;  ///< the body of the pair at hand

@@ -138,7 +138,7 @@ bool CompoundFacts::may_hold(const ChildOf& of, const NearPoint& near, BulletSha
     if (other.piece.planes.empty()) return !other.source->isConvex();
     // Surfaces lie flush, not cores, where margins differ.
     const double far = near.reach + std::abs(own.piece.margin - other.piece.margin);
-    const auto parts = [&](const Plane& plane) { return plane.height(near.point) > far; };
+    const auto parts = [&](const PiecePlane& plane) { return plane.height(near.point) > far; };
     return std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts);
   });
 }
@@ -160,7 +160,7 @@ bool CompoundFacts::rising_near(const ChildOf& of, const NearPoint& near, const 
     if (std::none_of(other.corners.begin(), other.corners.end(), rises)) continue;
     // Surfaces lie flush, not cores, where margins differ.
     const double far = near.reach + std::abs(own.piece.margin - other.piece.margin);
-    const auto parts = [&](const Plane& plane) { return plane.height(near.point) > far; };
+    const auto parts = [&](const PiecePlane& plane) { return plane.height(near.point) > far; };
     if (std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts)) rising.push_back(i);
   }
   return true;
@@ -190,7 +190,7 @@ FacetCover CompoundFacts::find_cover(const ChildOf& of, Known& known, std::size_
     if (other.piece.planes.empty()) return other.source->isConvex();
     const auto rises = [&](const Vec3& corner) { return n.dot(corner) + other.piece.margin > level; };
     if (std::none_of(other.corners.begin(), other.corners.end(), rises)) return true;
-    return std::any_of(other.piece.planes.begin(), other.piece.planes.end(), [&](const Plane& plane) {
+    return std::any_of(other.piece.planes.begin(), other.piece.planes.end(), [&](const PiecePlane& plane) {
       double least = wide, most = 0;
       for (const auto corner : corners) {
         const double height = plane.height(lifted(corner, other.piece));

@@ -14,7 +14,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pieces/union_piece.hpp"
+#include "pd/union_contact/piece_surroundings.hpp"
+#include "pieces/piece_wrapper.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/step_shapes.hpp"
@@ -24,27 +25,6 @@ namespace pd::detail {
 struct ChildOf {
   const btCompoundShape& compound;
   int number;
-};
-
-/// Around a point of a piece's core, in the frame of its union.
-struct NearPoint {
-  Vec3 point;
-  double reach;
-  double slack;  ///< within which pieces are neighbours, as the reach of `neighbours`
-};
-
-/// The half-space of what covers against n: what does not reach into it has no way that leads on along n.
-struct Beyond {
-  Vec3 n;  ///< unit, outward
-  double level;
-};
-
-/// What the other children of a compound cover of a child's facet.
-enum class FacetCover : std::uint8_t {
-  unknown,  ///< nobody asked yet
-  some,     ///< perhaps a part, or it is not known
-  none,     ///< no more than lines: every contact that pushes off from it holds
-  all       ///< beyond doubt, and one of them all of it
 };
 
 /// One table a thread. What it says follows from the children's shapes and places alone, with a slack of their own, so
@@ -117,7 +97,7 @@ class CompoundFacts {
   FacetCover find_cover(const ChildOf& child, Known& known, std::size_t facet, BulletShapeCache& cache);
 
   std::unordered_map<const btCompoundShape*, Known> compounds_;
-  std::vector<const Plane*> active_;
+  std::vector<const PiecePlane*> active_;
   std::uint64_t stamp_ = 0;
   std::uint64_t visit_ = 0;
   /// Asked for last.

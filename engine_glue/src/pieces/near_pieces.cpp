@@ -145,7 +145,7 @@ void NearPieces::collect_in_frame(const ChildOf& except, const NearPoint& near, 
   const auto visit = [&](int i) {
     if (i == except.number) return;
     const UnionPiece& piece = facts_.piece_of({compound, i}, cache);
-    const auto parts = [&](const Plane& plane) { return plane.height(rounded.point) > rounded.reach; };
+    const auto parts = [&](const PiecePlane& plane) { return plane.height(rounded.point) > rounded.reach; };
     if (std::none_of(piece.planes.begin(), piece.planes.end(), parts)) add(i);
   };
   if (const auto* neighbours = facts_.neighbours(except, rounded.slack, cache)) {

@@ -10,32 +10,16 @@
 #include <deque>
 #include <vector>
 
+#include "pd/union_contact/piece_surroundings.hpp"
 #include "pieces/compound_facts.hpp"
+#include "pieces/piece_wrapper.hpp"
 #include "pieces/shared_edges.hpp"
 #include "pieces/triangle_boxes.hpp"
-#include "pieces/union_piece.hpp"
 #include "shapes/triangles_around.hpp"
 
 class btConvexShape;
 
 namespace pd::detail {
-
-/// Where the pieces of a union are looked at: the children of a body's compound in its frame, in which they stand still
-/// from step to step; all others in the world.
-struct UnionFrame {
-  bool is_world = true;
-  Mat3 rotation = Mat3::Identity();
-  Vec3 translation = Vec3::Zero();
-  [[nodiscard]] Vec3 place(const Vec3& point) const {
-    return is_world ? point : Vec3(rotation.transpose() * (point - translation));
-  }
-  [[nodiscard]] Vec3 turn(const Vec3& direction) const {
-    return is_world ? direction : Vec3(rotation.transpose() * direction);
-  }
-  [[nodiscard]] Vec3 turn_back(const Vec3& direction) const {
-    return is_world ? direction : Vec3(rotation * direction);
-  }
-};
 
 struct PieceInFrame {
   const btCollisionObjectWrapper& wrapper;
@@ -121,6 +105,44 @@ class NearPieces {
   TriangleBoxes known_boxes_;
   SharedEdges known_edges_;
   int known_searches_ = 0;  ///< among these, of the pair at hand
+};
+
+/// One piece by its wrapper.
+class PieceOfBody final : public PieceSurroundings {
+ public:
+  PieceOfBody(const btCollisionObjectWrapper& wrapper, const StepShapes& shapes, NearPieces& near)
+      : wrapper_(wrapper), shapes_(shapes), near_(near) {}
+
+  const UnionFrame& frame() override {
+    frame_ = &near_.frame_of(wrapper_, shapes_.cache, kept_);
+    return *frame_;
+  }
+  const UnionPiece* own() override { return kept_ != nullptr ? kept_ : near_.known_triangle_of(wrapper_); }
+  void find(const NearPoint& near, const Beyond* beyond, std::vector<const UnionPiece*>& found) override {
+    near_.forget_made();
+    near_.find({wrapper_, *frame_}, near, beyond, shapes_, found);
+  }
+  bool may_hold(const NearPoint& near) override {
+    return frame_->is_world || near_.facts().may_hold(child(), near, shapes_.cache);
+  }
+  FacetCover cover_of(std::size_t facet, double slack) override {
+    return frame_->is_world ? FacetCover::some : near_.facts().cover_of(child(), facet, slack, shapes_.cache);
+  }
+  bool neighbour_leads_on(const UnionPiece& own, const Vec3& foot, const Vec3& n, double sine, double slack) override {
+    return near_.neighbour_leads_on(own, foot, n, sine, slack);
+  }
+
+ private:
+  /// Requires: the frame is a compound's.
+  [[nodiscard]] ChildOf child() const {
+    return {static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()), wrapper_.m_index};
+  }
+
+  const btCollisionObjectWrapper& wrapper_;
+  StepShapes shapes_;
+  NearPieces& near_;
+  const UnionPiece* kept_ = nullptr;
+  const UnionFrame* frame_ = nullptr;
 };
 
 }  // namespace pd::detail

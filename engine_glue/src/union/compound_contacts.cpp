@@ -12,7 +12,6 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pieces/compound_facts.hpp"
-#include "pieces/covered_contact.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/moving_body.hpp"
 #include "union/deep_union.hpp"
@@ -167,11 +166,11 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   if (children_b_.empty()) children_a_.clear();
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   auto buffers = core.buffers.lease();
-  buffers->cover.near.begin_pair(stamp);
+  buffers->near.begin_pair(stamp);
   move(children_a_, stamp, core, *buffers, memory.children[0]);
   move(children_b_, stamp, core, *buffers, memory.children[1]);
-  look_at(a, children_a_, buffers->cover.near.facts(), core.cache);
-  look_at(b, children_b_, buffers->cover.near.facts(), core.cache);
+  look_at(a, children_a_, buffers->near.facts(), core.cache);
+  look_at(b, children_b_, buffers->near.facts(), core.cache);
   const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
@@ -261,8 +260,8 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   memory.met = answer.depth.signed_distance() <= gap;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   reach.leave_out_idle(points);
-  const PiecePair pieces = question.of_pieces(pair.a(), pair.b(), core, buffers);
-  count_covered(keep_uncovered(pieces, answer, AnswerPoints::made, points), buffers);
+  AskedPieces pieces = question.of_pieces(pair.a(), pair.b(), core, buffers);
+  count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points), buffers);
   const auto [i, j] = pairs_.back();
   const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
   const int piece_b = children_b_[static_cast<std::size_t>(j)].index;

@@ -8,8 +8,8 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/directional_depth.hpp"
-#include "pieces/union_exit.hpp"
-#include "pieces/union_piece.hpp"
+#include "pd/union_contact/union_exit.hpp"
+#include "pieces/piece_wrapper.hpp"
 #include "shapes/moving_body.hpp"
 #include "union/union_algorithm.hpp"
 
@@ -224,7 +224,7 @@ DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore
     }
     if (a_.posed.size() * b_.posed.size() > kMostPairs) return Outcome::over_budget;
     UnionExit::Way shortest;
-    switch (buffers.union_exit.find(a_.posed, b_.posed, kMostFacets, buffers.scratch, shortest)) {
+    switch (buffers.union_exit.find(a_.posed, b_.posed, {kMostFacets, kPoseRounding}, buffers.scratch, shortest)) {
       case UnionExit::Outcome::over_budget:
         return Outcome::over_budget;
       case UnionExit::Outcome::apart:

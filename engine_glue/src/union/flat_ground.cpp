@@ -7,7 +7,6 @@
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
-#include "pieces/covered_contact.hpp"
 #include "union/union_algorithm.hpp"
 
 namespace pd::detail {
@@ -146,8 +145,8 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
   if (found.manifold.count == 0) return true;
   const PosedShape posed{(part && body.known->sharp ? body.known->sharp : body.known->body).get(), to_pd(body_pose)};
   if (is_piece(body.wrapper)) {
-    const PiecePair pieces = question.of_pieces(body.wrapper, question.b, core, buffers);
-    count_covered(drop_covered(pieces, posed, plane.points), buffers);
+    AskedPieces pieces = question.of_pieces(body.wrapper, question.b, core, buffers);
+    count_covered(drop_covered(pieces.as(posed, posed), plane.points), buffers);
   }
 
   // 3. What is under its points.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pd/bullet/scalar.hpp"
-#include "pieces/union_piece.hpp"
+#include "pieces/piece_wrapper.hpp"
 #include "shapes/met_triangle.hpp"
 
 namespace pd::detail {

@@ -13,7 +13,6 @@
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pieces/compound_facts.hpp"
-#include "pieces/covered_contact.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/met_triangle.hpp"
 #include "shapes/moving_body.hpp"
@@ -169,7 +168,7 @@ void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& low
   const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
   const int skipped = buffers.around.read(mesh, lower, upper);
   if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
-  buffers.cover.near.know(buffers.around, question.b);
+  buffers.near.know(buffers.around, question.b);
 }
 
 SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
@@ -208,7 +207,7 @@ void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQues
       continue;
     }
     const ContactManifold points =
-        along_front(question.of_pieces(a, triangle.wrapper(), core, buffers, behind.front), answer);
+        along_front(question.of_pieces(a, triangle.wrapper(), core, buffers).as(answer.a, answer.b, behind.front));
     patches.add(points, behind.triangle, part_of(children_[static_cast<std::size_t>(met.child)], met), met.index);
   }
 }
@@ -220,8 +219,8 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
   auto buffers = core.buffers.lease();
-  buffers->cover.near.begin_pair(question.stamp);
-  look_at(question.a, children_, buffers->cover.near.facts(), core.cache);
+  buffers->near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers->near.facts(), core.cache);
   if (children_.empty()) return true;
   reach_out(question);
   still_ = stand_still(question, core, *buffers, memory);
@@ -309,7 +308,7 @@ bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQu
 bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question,
                                   std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
   const std::size_t place = places_[triangle];
-  if (!gentle_.ask(buffers.around.triangles()[place], place, buffers.cover.near.shared_edges())) return false;
+  if (!gentle_.ask(buffers.around.triangles()[place], place, buffers.near.shared_edges())) return false;
   buffers.counters.calls.add();
   buffers.counters.support_calls.add();
   const MetTriangle& met = triangles_[triangle];
@@ -321,7 +320,7 @@ bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const Union
       if (depth > 0) one_sided_.add_way(depth * points.normal);
     }
     if (is_piece(a)) {
-      count_covered(drop_covered(question.of_pieces(a, question.b, core, buffers), body_, points), buffers);
+      count_covered(drop_covered(question.of_pieces(a, question.b, core, buffers).as(body_, body_), points), buffers);
     }
     patches.add(points, static_cast<int>(triangle), part_of(child, met), met.index);
   }
@@ -371,8 +370,9 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
     ContactManifold points;
-    const PiecePair pieces = question.of_pieces(a, triangle.wrapper(), core, buffers, front);
-    count_covered(keep_uncovered(pieces, answer, AnswerPoints::to_be_made, points), buffers);
+    AskedPieces pieces = question.of_pieces(a, triangle.wrapper(), core, buffers);
+    const PiecePair pair = pieces.as(answer.a, answer.b, front);
+    count_covered(keep_uncovered(pair, answer.depth, AnswerPoints::to_be_made, points), buffers);
     patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
   }
   if (one_sided) add_fronts(a, question, core, buffers, patches);

@@ -6,7 +6,6 @@
 #include "pair/plane_ground.hpp"
 #include "pair/solver_core.hpp"
 #include "pieces/compound_facts.hpp"
-#include "pieces/covered_contact.hpp"
 #include "shapes/compound_children.hpp"
 #include "union/pieces_in_result.hpp"
 
@@ -63,8 +62,8 @@ bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMe
   const Halfspace3 ground = ground_of(plane);
   const auto threshold = static_cast<double>(question.threshold);
   auto buffers = core.buffers.lease();
-  buffers->cover.near.begin_pair(question.stamp);
-  look_at(question.a, children_, buffers->cover.near.facts(), core.cache);
+  buffers->near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers->near.facts(), core.cache);
   for (std::size_t i = 0; i < children_.size(); ++i) {
     const Child& child = children_[i];
     const auto& shape = static_cast<const btConvexShape&>(*child.shape);
@@ -84,8 +83,8 @@ bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMe
     const ChildInResult piece(question.result, compound, child);
     if (is_piece(piece.wrapper())) {
       const PosedShape posed{(known->sharp ? known->sharp : known->body).get(), to_pd(child.pose)};
-      const PiecePair pieces = question.of_pieces(piece.wrapper(), plane, core, *buffers);
-      count_covered(drop_covered(pieces, posed, found.manifold), *buffers);
+      AskedPieces pieces = question.of_pieces(piece.wrapper(), plane, core, *buffers);
+      count_covered(drop_covered(pieces.as(posed, posed), found.manifold), *buffers);
     }
     patches.add(found.manifold, static_cast<int>(i), child.index, -1);
   }

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "pair/algorithm_shell.hpp"
-#include "pieces/covered_contact.hpp"
+#include "pieces/asked_pieces.hpp"
 #include "union/patch_manifolds.hpp"
 #include "union/patches.hpp"
 
@@ -22,16 +22,16 @@ struct UnionQuestion {
   btManifoldResult& result;
 
   /// Two pieces of the pair, as the rule for covered contacts is asked about them.
-  [[nodiscard]] PiecePair of_pieces(const btCollisionObjectWrapper& piece_a, const btCollisionObjectWrapper& piece_b,
-                                    SolverCore& core, ThreadBuffers& buffers, const Vec3& front = Vec3::Zero()) const {
-    return {.a = piece_a,
-            .b = piece_b,
-            .threshold = static_cast<double>(threshold),
-            .seconds = seconds,
-            .shapes = {core.cache, stamp},
-            .cover = buffers.cover,
-            .manifold = buffers.manifold,
-            .front = front};
+  [[nodiscard]] AskedPieces of_pieces(const btCollisionObjectWrapper& piece_a, const btCollisionObjectWrapper& piece_b,
+                                      SolverCore& core, ThreadBuffers& buffers) const {
+    return {piece_a,
+            piece_b,
+            {.threshold = static_cast<double>(threshold),
+             .seconds = seconds,
+             .shapes = {core.cache, stamp},
+             .near = buffers.near,
+             .cover = buffers.cover,
+             .manifold = buffers.manifold}};
   }
 };
 

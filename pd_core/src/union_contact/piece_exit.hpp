@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pd/contact/manifold.hpp"
-#include "pieces/cover.hpp"
+#include "union_contact/cover.hpp"
 
 namespace pd::detail {
 
@@ -19,11 +19,11 @@ struct PieceExit {
 };
 
 /// @param farthest  the point of the other body's core that lies the farthest against n
-[[nodiscard]] PieceExit exit_along(const Side& side, const Vec3& n, double depth, const Vec3& farthest);
+[[nodiscard]] PieceExit exit_along(const PieceSide& side, const Vec3& n, double depth, const Vec3& farthest);
 
 /// The manifold along an exit, of points that lie on the piece.
 /// @param own, frame  the piece
-[[nodiscard]] ContactManifold points_along(const PieceExit& exit, const Side& side, const UnionFrame& frame,
+[[nodiscard]] ContactManifold points_along(const PieceExit& exit, const PieceSide& side, const UnionFrame& frame,
                                            const UnionPiece& own, double threshold, double slack,
                                            ManifoldScratch& scratch);
 

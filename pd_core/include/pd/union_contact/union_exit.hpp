@@ -3,10 +3,10 @@
 /// slack are closed.
 ///
 /// P is the union of the differences P_ij = B_j + (-A_i); the way leads to the point of P's boundary nearest to the
-/// origin. Facets of the P_ij wait in the order of their distance; of the first, its nearest point is asked for a P_kl
-/// that holds it and leads on; that one is cut out of the facet, and what is left waits again. A P_ij is built when the
-/// search has come as far as the pair is deep, or apart. [A] open problem (ii), as pd/compound/compound_depth.hpp
-/// solves it with exact signs: there the narrowest slot is a way out.
+/// origin. Facets of the P_ij wait in the order of their distance. The first facet's nearest point is asked for a P_kl
+/// that holds it and leads on. Such a P_kl is cut out of the facet, and the rest of the facet waits again. A P_ij is
+/// built when the search has come as far as the pair is deep, or apart. [A] open problem (ii), as
+/// pd/compound/compound_depth.hpp solves it with exact signs: there the narrowest slot is a way out.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
 #pragma once
@@ -20,10 +20,8 @@
 #include "pd/shape/convex_shape.hpp"
 
 namespace pd {
-class Scratch;
-}  // namespace pd
 
-namespace pd::detail {
+class Scratch;
 
 class UnionExit {
  public:
@@ -37,11 +35,14 @@ class UnionExit {
     apart,       ///< the cores do not overlap
     over_budget  ///< more facets than may be built
   };
+  struct Limits {
+    std::int64_t max_facets;  ///< of the P_ij that may be built
+    double pose_rounding;     ///< as of `seam_slack`
+  };
   /// Requires: polytopes; their margins are left aside.
-  /// @param max_facets  of the P_ij that may be built
   /// Time: up to one query of depth a pair of pieces, and O(k f) for each cut in the k P_ij that hold its point and
   /// their f facets.
-  Outcome find(std::span<const PosedShape> a, std::span<const PosedShape> b, std::int64_t max_facets, Scratch& scratch,
+  Outcome find(std::span<const PosedShape> a, std::span<const PosedShape> b, const Limits& limits, Scratch& scratch,
                Way& way);
 
  private:
@@ -61,7 +62,7 @@ class UnionExit {
     std::size_t first = 0;  ///< of its facets
     std::size_t count = 0;
   };
-  /// What waits: a piece (it has no corners), or a part of a facet.
+  /// A piece (it has no corners) or a part of a facet that waits.
   struct Waiting {
     double key;  ///< nothing of it is nearer
     std::int64_t order;
@@ -74,7 +75,7 @@ class UnionExit {
   };
 
   /// Lets all pieces wait.
-  void begin(std::span<const PosedShape> a, std::span<const PosedShape> b, Scratch& scratch);
+  void begin(std::span<const PosedShape> a, std::span<const PosedShape> b, double pose_rounding, Scratch& scratch);
   /// How deep or far apart the pair is, and lets it wait again until it has to be built.
   void measure(std::size_t piece);
   /// @return false beyond the budget
@@ -88,7 +89,7 @@ class UnionExit {
   /// A piece that holds the part's nearest point, leads on from there and was not cut out; nothing: there is none.
   /// @return false beyond the budget
   bool find_cover(const Waiting& part, std::optional<std::size_t>& cover);
-  /// Whether a piece holds a point of a facet and leads on along the facet's normal.
+  /// Tells whether a piece holds a point of a facet and leads on along the facet's normal.
   [[nodiscard]] bool covered_by(const Piece& piece, const Vec3& x, const Vec3& n) const;
   /// Lets what a piece leaves of the part wait.
   void cut(const Waiting& part, std::size_t piece);
@@ -113,4 +114,4 @@ class UnionExit {
   std::vector<double> heights_;
 };
 
-}  // namespace pd::detail
+}  // namespace pd

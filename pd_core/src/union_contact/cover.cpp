@@ -1,6 +1,4 @@
-#include "pieces/cover.hpp"
-
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include "union_contact/cover.hpp"
 
 #include <algorithm>
 
@@ -12,7 +10,7 @@ bool is_flat(const PosedShape& body) {
 }
 
 void Cover::take_own() {
-  const UnionPiece* const kept = kept_ != nullptr ? kept_ : buffers_.near.known_triangle_of(wrapper_);
+  const UnionPiece* const kept = around_.own();
   const bool known = kept != nullptr && !kept->planes.empty();
   buffers_.own = known ? kept : &buffers_.made;
   if (!known) set_piece(own_, buffers_.made);
@@ -22,17 +20,14 @@ bool Cover::look_round(const Vec3& foot, const Vec3& n) {
   // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
   const double reach = 1.5 * window_ + slack_;
   const Beyond beyond{n, n.dot(foot) + own().margin + 2 * slack_};
-  buffers_.near.forget_made();
-  buffers_.near.find({wrapper_, frame_}, {foot, reach, slack_}, n.isZero(0) ? nullptr : &beyond, shapes_,
-                     buffers_.found);
+  around_.find({foot, reach, slack_}, n.isZero(0) ? nullptr : &beyond, buffers_.found);
   return !buffers_.found.empty();
 }
 
 bool Cover::may_be_covered(const Vec3& foot) const {
-  if (frame_.is_world) return true;
   // An edge or vertex is covered only where its foot is, which `touched_at` moves by less than this.
   const double reach = 8 * slack_;
-  return buffers_.near.facts().may_hold(child(), {foot, reach, 4 * slack_}, shapes_.cache);
+  return around_.may_hold({foot, reach, 4 * slack_});
 }
 
 double Cover::covered(Vec3 foot, const Vec3& n) {
@@ -55,13 +50,10 @@ double Cover::covered(Vec3 foot, const Vec3& n) {
 }
 
 bool Cover::led_on_by_neighbour(const Vec3& foot, const Vec3& n) const {
-  return buffers_.near.neighbour_leads_on(*buffers_.own, foot, n, kLedOn, 2 * slack_);
+  return around_.neighbour_leads_on(*buffers_.own, foot, n, kLedOn, 2 * slack_);
 }
 
-FacetCover Cover::cover_of(std::size_t facet) const {
-  if (frame_.is_world) return FacetCover::some;
-  return buffers_.near.facts().cover_of(child(), facet, 4 * slack_, shapes_.cache);
-}
+FacetCover Cover::cover_of(std::size_t facet) const { return around_.cover_of(facet, 4 * slack_); }
 
 double Cover::most_covered(const Vec3& point, const Vec3& n, double enough) {
   double most = -1;
@@ -76,10 +68,10 @@ double Cover::most_covered(const Vec3& point, const Vec3& n, double enough) {
 }
 
 Cover::Touched Cover::touched_at(Vec3& foot, const Vec3& n) const {
-  const std::vector<Plane>& planes = buffers_.own->planes;
+  const std::vector<PiecePlane>& planes = buffers_.own->planes;
   Touched touched;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const Plane& plane = planes[i];
+    const PiecePlane& plane = planes[i];
     const double height = plane.height(foot);
     if (height > 2 * slack_) return {};
     // The edges of a triangle are no facets.
@@ -90,9 +82,9 @@ Cover::Touched Cover::touched_at(Vec3& foot, const Vec3& n) const {
     ++touched.count;
   }
   touched.any = true;
-  for (const Plane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
+  for (const PiecePlane& plane : planes) foot -= std::max(plane.height(foot), 0.0) * plane.normal;
   if (touched.facet >= 0) {
-    const Plane& facet = planes[static_cast<std::size_t>(touched.facet)];
+    const PiecePlane& facet = planes[static_cast<std::size_t>(touched.facet)];
     foot -= facet.height(foot) * facet.normal;
   }
   return touched;
@@ -105,10 +97,10 @@ std::array<Vec3, 4> Cover::window_corners(const Vec3& foot, const Vec3& n) const
 }
 
 bool Cover::has_free_corner(const Vec3& foot, const Vec3& n) {
-  const std::vector<Plane>& planes = buffers_.own->planes;
+  const std::vector<PiecePlane>& planes = buffers_.own->planes;
   const auto corners = window_corners(foot, n);
   return std::any_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
-    const auto beyond = [&](const Plane& plane) { return plane.height(corner) > 0.5 * slack_; };
+    const auto beyond = [&](const PiecePlane& plane) { return plane.height(corner) > 0.5 * slack_; };
     return std::none_of(planes.begin(), planes.end(), beyond) && most_covered(corner, n, kBeyondDoubt) <= kDecided;
   });
 }
@@ -125,7 +117,7 @@ void Cover::set_feature(const Touched& touched, const Vec3& foot, const Vec3& n)
   }
   // Of a triangle, its two sides and one edge; of a solid, two facets.
   if (touched.count != (flat ? 3 : 2)) return;
-  const Plane* second = flat ? edge_of_triangle(foot) : touched.second;
+  const PiecePlane* second = flat ? edge_of_triangle(foot) : touched.second;
   Vec3 along = second != nullptr ? Vec3(touched.first->normal.cross(second->normal)) : Vec3(Vec3::Zero());
   if (along.norm() <= kLevel) return;
   along *= window_ / along.norm();
@@ -133,8 +125,8 @@ void Cover::set_feature(const Touched& touched, const Vec3& foot, const Vec3& n)
   clip_to_piece(*buffers_.own, 0.5 * slack_, feature, buffers_.spare);
 }
 
-const Plane* Cover::edge_of_triangle(const Vec3& foot) const {
-  const std::vector<Plane>& planes = buffers_.own->planes;
+const PiecePlane* Cover::edge_of_triangle(const Vec3& foot) const {
+  const std::vector<PiecePlane>& planes = buffers_.own->planes;
   for (std::size_t i = 2; i < planes.size(); ++i) {
     if (planes[i].height(foot) >= -2 * slack_) return &planes[i];
   }

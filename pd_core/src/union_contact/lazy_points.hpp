@@ -4,28 +4,26 @@
 #pragma once
 
 #include "pd/contact/manifold.hpp"
-#include "pieces/covered_contact.hpp"
-#include "shapes/pair_answer.hpp"
+#include "pd/union_contact/covered_contact.hpp"
 
 namespace pd::detail {
 
 /// In the caller's manifold, whose normal is the answer's from the beginning.
 class LazyPoints {
  public:
-  LazyPoints(const PairAnswer& answer, double threshold, ManifoldScratch& scratch, AnswerPoints given,
-             ContactManifold& points)
-      : answer_(answer), threshold_(threshold), scratch_(scratch), made_(given == AnswerPoints::made), points_(points) {
+  LazyPoints(const PiecePair& pair, const PenetrationDepth& depth, AnswerPoints given, ContactManifold& points)
+      : pair_(pair), depth_(depth), made_(given == AnswerPoints::made), points_(points) {
     if (made_) return;
-    points_.normal = answer.depth.normal;
+    points_.normal = depth.normal;
     points_.count = 0;
-    made_ = answer.depth.signed_distance() > threshold;
+    made_ = depth.signed_distance() > pair.threshold;
   }
   [[nodiscard]] const Vec3& normal() const { return points_.normal; }
   /// Whether there are none.
   [[nodiscard]] bool none() const { return made_ && points_.count == 0; }
   ContactManifold& get() {
     if (!made_) {
-      points_ = contact_manifold(answer_.a, answer_.b, answer_.depth, threshold_, scratch_, DeepestPoint::as_lifted);
+      points_ = contact_manifold(pair_.a, pair_.b, depth_, pair_.threshold, pair_.manifold, DeepestPoint::as_lifted);
       made_ = true;
     }
     return points_;
@@ -36,9 +34,8 @@ class LazyPoints {
   }
 
  private:
-  const PairAnswer& answer_;
-  double threshold_;
-  ManifoldScratch& scratch_;
+  const PiecePair& pair_;
+  const PenetrationDepth& depth_;
   bool made_;
   ContactManifold& points_;
 };

@@ -1,4 +1,4 @@
-#include "pieces/piece_exit.hpp"
+#include "union_contact/piece_exit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,13 +52,13 @@ void drop_point(ContactManifold& points, int i) {
   points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];
 }
 
-PieceExit exit_along(const Side& side, const Vec3& n, double depth, const Vec3& farthest) {
+PieceExit exit_along(const PieceSide& side, const Vec3& n, double depth, const Vec3& farthest) {
   const Vec3 on_other = farthest - side.other.shape->margin() * n;
   return {depth, n, on_other + depth * n, on_other};
 }
 
-ContactManifold points_along(const PieceExit& exit, const Side& side, const UnionFrame& frame, const UnionPiece& own,
-                             double threshold, double slack, ManifoldScratch& scratch) {
+ContactManifold points_along(const PieceExit& exit, const PieceSide& side, const UnionFrame& frame,
+                             const UnionPiece& own, double threshold, double slack, ManifoldScratch& scratch) {
   PenetrationDepth answer;
   answer.contact = exit.depth > 0 ? ContactClass::overlapping : ContactClass::separated;
   answer.depth = std::max(exit.depth, 0.0);
@@ -72,7 +72,7 @@ ContactManifold points_along(const PieceExit& exit, const Side& side, const Unio
   for (int i = points.count - 1; i >= 0; --i) {
     const Vec3 foot = frame.place(side.on_piece(points.points[static_cast<std::size_t>(i)]) - own.margin * exit.n);
     const bool outside = std::any_of(own.planes.begin(), own.planes.end(),
-                                     [&](const Plane& plane) { return plane.height(foot) > 2 * slack; });
+                                     [&](const PiecePlane& plane) { return plane.height(foot) > 2 * slack; });
     if (outside) drop_point(points, i);
   }
   return points;

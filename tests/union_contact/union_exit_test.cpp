@@ -1,5 +1,5 @@
 // The way out of a union in doubles is the exact one, but for slots that are narrower than a seam.
-#include "pieces/union_exit.hpp"
+#include "pd/union_contact/union_exit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace pd::test {
 namespace {
 
-constexpr std::int64_t kManyFacets = 1 << 14;
+constexpr UnionExit::Limits kManyFacets{1 << 14, 0x1p-21};
 
 ConvexShape box(const Vec3& half) {
   std::vector<Vec3> corners;
@@ -62,7 +62,7 @@ std::vector<PosedShape> posed(const std::vector<Compound::Part>& parts) {
 TEST(UnionExit, IsTheExactWay) {
   RandomUnions random(11);
   Scratch scratch;
-  detail::UnionExit exit;
+  UnionExit exit;
   int corners = 0;
   for (int i = 0; i < 200; ++i) {
     SCOPED_TRACE(i);
@@ -70,10 +70,10 @@ TEST(UnionExit, IsTheExactWay) {
     const auto parts_b = random.body(1 + i / 5 % 4, 0.3 * random.vector());
     const Compound a = *Compound::from_parts(parts_a), b = *Compound::from_parts(parts_b);
     const UnionDepth exact = *penetration_depth(PosedCompound{&a, Pose()}, PosedCompound{&b, Pose()}, scratch);
-    detail::UnionExit::Way way;
+    UnionExit::Way way;
     const auto outcome = exit.find(posed(parts_a), posed(parts_b), kManyFacets, scratch, way);
     if (exact.depth < 1e-3) continue;
-    ASSERT_EQ(outcome, detail::UnionExit::Outcome::found);
+    ASSERT_EQ(outcome, UnionExit::Outcome::found);
     EXPECT_NEAR(way.by.norm(), exact.depth, 1e-4 * exact.depth);
     // Between two facets, where neither part's own normal leads straight out.
     const PosedShape last_a = posed(parts_a)[way.a], last_b = posed(parts_b)[way.b];
@@ -87,36 +87,36 @@ TEST(UnionExit, IsTheExactWay) {
 
 TEST(UnionExit, SaysWhatIsApart) {
   Scratch scratch;
-  detail::UnionExit exit;
+  UnionExit exit;
   const ConvexShape shape = box(Vec3(.5, .5, .5));
   const std::vector<PosedShape> a{{&shape, at(Vec3::Zero())}, {&shape, at(Vec3(1, 0, 0))}};
   const std::vector<PosedShape> b{{&shape, at(Vec3(.2, .3, 1.01))}};
-  detail::UnionExit::Way way;
-  EXPECT_EQ(exit.find(a, b, kManyFacets, scratch, way), detail::UnionExit::Outcome::apart);
+  UnionExit::Way way;
+  EXPECT_EQ(exit.find(a, b, kManyFacets, scratch, way), UnionExit::Outcome::apart);
 }
 
 // Exact signs lead a sheet into the slot between two boxes, which is the nearest place.
 TEST(UnionExit, ASeamIsNoWayOut) {
   Scratch scratch;
-  detail::UnionExit exit;
+  UnionExit exit;
   const ConvexShape shape = box(Vec3(.5, .5, .5)), sheet = box(Vec3(0x1p-30, .1, .1));
   const std::vector<Compound::Part> halves{{shape, at(Vec3(-.5 - 1e-7, 0, 0))}, {shape, at(Vec3(.5 + 1e-7, 0, 0))}};
   const std::vector<Compound::Part> beside{{sheet, at(Vec3(-1e-5, .1, .05))}};
   const Compound a = *Compound::from_parts(beside), b = *Compound::from_parts(halves);
   EXPECT_LT(penetration_depth(PosedCompound{&a, Pose()}, PosedCompound{&b, Pose()}, scratch)->depth, 2e-5);
-  detail::UnionExit::Way way;
-  ASSERT_EQ(exit.find(posed(beside), posed(halves), kManyFacets, scratch, way), detail::UnionExit::Outcome::found);
+  UnionExit::Way way;
+  ASSERT_EQ(exit.find(posed(beside), posed(halves), kManyFacets, scratch, way), UnionExit::Outcome::found);
   EXPECT_NEAR(way.by.norm(), .5, 1e-4);
   EXPECT_GT(way.by.y(), .49);
 }
 
 TEST(UnionExit, HasABudget) {
   Scratch scratch;
-  detail::UnionExit exit;
+  UnionExit exit;
   RandomUnions random(3);
   const auto parts_a = random.body(4, Vec3::Zero()), parts_b = random.body(4, Vec3::Zero());
-  detail::UnionExit::Way way;
-  EXPECT_EQ(exit.find(posed(parts_a), posed(parts_b), 20, scratch, way), detail::UnionExit::Outcome::over_budget);
+  UnionExit::Way way;
+  EXPECT_EQ(exit.find(posed(parts_a), posed(parts_b), {20, 0x1p-21}, scratch, way), UnionExit::Outcome::over_budget);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "pieces/union_exit.hpp"
+#include "pd/union_contact/union_exit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include "pd/depth/minkowski_difference.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
-#include "pieces/union_piece.hpp"
+#include "pd/union_contact/union_piece.hpp"
 
-namespace pd::detail {
+namespace pd {
 
 namespace {
 
@@ -74,7 +74,8 @@ UnionExit::Waiting UnionExit::pop() {
   return top;
 }
 
-void UnionExit::begin(std::span<const PosedShape> a, std::span<const PosedShape> b, Scratch& scratch) {
+void UnionExit::begin(std::span<const PosedShape> a, std::span<const PosedShape> b, double pose_rounding,
+                      Scratch& scratch) {
   a_ = a;
   b_ = b;
   scratch_ = &scratch;
@@ -91,7 +92,7 @@ void UnionExit::begin(std::span<const PosedShape> a, std::span<const PosedShape>
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Extent extent = extent_of(a[i]);
     for (std::size_t j = 0; j < b.size(); ++j) {
-      slack_ = std::max(slack_, seam_slack(a[i], b[j]));
+      slack_ = std::max(slack_, seam_slack(a[i], b[j], pose_rounding));
       pieces_.push_back({i, j, -extent.high, -extent.low});
     }
   }
@@ -231,10 +232,10 @@ void UnionExit::cut(const Waiting& part, std::size_t number) {
   }
 }
 
-UnionExit::Outcome UnionExit::find(std::span<const PosedShape> a, std::span<const PosedShape> b,
-                                   std::int64_t max_facets, Scratch& scratch, Way& way) {
-  begin(a, b, scratch);
-  facets_left_ = max_facets;
+UnionExit::Outcome UnionExit::find(std::span<const PosedShape> a, std::span<const PosedShape> b, const Limits& limits,
+                                   Scratch& scratch, Way& way) {
+  begin(a, b, limits.pose_rounding, scratch);
+  facets_left_ = limits.max_facets;
   while (!queue_.empty()) {
     const Waiting top = pop();
     if (top.count == 0) {
@@ -259,4 +260,4 @@ UnionExit::Outcome UnionExit::find(std::span<const PosedShape> a, std::span<cons
   return Outcome::apart;
 }
 
-}  // namespace pd::detail
+}  // namespace pd

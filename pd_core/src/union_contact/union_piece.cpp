@@ -1,15 +1,12 @@
-#include "pieces/union_piece.hpp"
-
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include "pd/union_contact/union_piece.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 
-namespace pd::detail {
+namespace pd {
 
 namespace {
 
@@ -19,7 +16,7 @@ constexpr double kFeasible = 1e-9;
 /// The largest <n, d> over unit d with <normal, d> <= 0 for all of `active`, or one that is enough: the way of n's
 /// projection on the cone, which lies in its inside, on one of its sides or on the line of two, and has non-negative
 /// multipliers there.
-double largest_along(const std::vector<const Plane*>& active, const Vec3& n, double enough) {
+double largest_along(const std::vector<const PiecePlane*>& active, const Vec3& n, double enough) {
   std::array<double, 16> first;
   bool inside = true;
   for (std::size_t i = 0; i < active.size(); ++i) {
@@ -65,14 +62,13 @@ double largest_along(const std::vector<const Plane*>& active, const Vec3& n, dou
 
 }  // namespace
 
-double seam_slack(double size, double farthest) {
-  constexpr double kPoseRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
-  return 0x1p-18 * size + kPoseRounding * farthest;
+double seam_slack(double size, double farthest, double pose_rounding) {
+  return 0x1p-18 * size + pose_rounding * farthest;
 }
 
-double seam_slack(const PosedShape& a, const PosedShape& b) {
+double seam_slack(const PosedShape& a, const PosedShape& b, double pose_rounding) {
   const double farthest = a.pose.translation().cwiseAbs().cwiseMax(b.pose.translation().cwiseAbs()).maxCoeff();
-  return seam_slack(std::min(bounding_radius(*a.shape), bounding_radius(*b.shape)), farthest);
+  return seam_slack(std::min(bounding_radius(*a.shape), bounding_radius(*b.shape)), farthest, pose_rounding);
 }
 
 void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece& piece) {
@@ -128,7 +124,7 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
   double squared = 0;
   for (const Vec3& point : points) squared = std::max(squared, (point - centre).squaredNorm());
   const double reach = (1 + kFeasible) * std::sqrt(squared);
-  for (const Plane& plane : piece.planes) {
+  for (const PiecePlane& plane : piece.planes) {
     if (plane.height(centre) + reach <= slack) continue;
     const std::size_t count = points.size();
     spare.clear();
@@ -148,9 +144,9 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
 }
 
 double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, double slack, double enough,
-                    std::vector<const Plane*>& active) {
+                    std::vector<const PiecePlane*>& active) {
   active.clear();
-  for (const Plane& plane : piece.planes) {
+  for (const PiecePlane& plane : piece.planes) {
     const double height = plane.height(point);
     if (height > slack) return -1;
     if (height >= -slack) active.push_back(&plane);
@@ -164,15 +160,4 @@ double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, d
   return largest_along(active, n, enough);
 }
 
-bool is_part(const btCollisionObjectWrapper& wrapper) {
-  const btCollisionObjectWrapper* parent = wrapper.m_parent;
-  if (parent == nullptr || !parent->getCollisionShape()->isCompound()) return false;
-  return static_cast<const btCompoundShape*>(parent->getCollisionShape())->getNumChildShapes() > 1 || is_part(*parent);
-}
-
-bool is_piece(const btCollisionObjectWrapper& wrapper) {
-  const btCollisionObjectWrapper* parent = wrapper.m_parent;
-  return parent != nullptr && (parent->getCollisionShape()->isConcave() || is_part(wrapper));
-}
-
-}  // namespace pd::detail
+}  // namespace pd

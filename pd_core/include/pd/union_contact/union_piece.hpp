@@ -2,32 +2,30 @@
 /// A piece of a union of convex pieces (a triangle of a mesh, a part of a compound) near a contact, as planes without
 /// its margin, and what it covers.
 ///
-/// A piece covers a point c against a direction n (unit, outward from another piece that touches there) where c lies in
-/// it and it has a way d from c with <n, d> > 0: whoever left the other piece along n still stands in this one. The
-/// largest such <n, d> over unit d is the sine of the angle between n and the piece's normal cone at c.
+/// Let n be a unit direction, outward from another piece that touches at a point c. A piece covers c against n if c
+/// lies in it and it has a way d from c with <n, d> > 0. A body that left the other piece along n still stands in it.
+/// The largest such <n, d> over unit d is the sine of the angle between n and the piece's normal cone at c.
 #pragma once
-
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "pd/numeric/vector.hpp"
 #include "pd/shape/convex_shape.hpp"
-#include "shapes/cached_shape.hpp"
 
-namespace pd::detail {
+namespace pd {
 
-struct Plane {
+/// A half-space that a piece lies in.
+struct PiecePlane {
   Vec3 normal;  ///< unit, outward
   double offset;
   [[nodiscard]] double height(const Vec3& point) const { return normal.dot(point) - offset; }
 };
 
 struct UnionPiece {
-  std::vector<Plane> planes;   ///< the piece is where all heights are <= 0
-  Vec3 middle = Vec3::Zero();  ///< of its corners
+  std::vector<PiecePlane> planes;  ///< the piece is where all heights are <= 0
+  Vec3 middle = Vec3::Zero();      ///< of its corners
   double margin = 0;
   bool flat = false;  ///< a triangle: its first two planes are its two sides, the others its edges, corner to next
   int around = -1;    ///< its place among the triangles around a body; -1: none of them
@@ -41,18 +39,18 @@ inline constexpr double kDecided = 0.02;
 /// More than this is not told apart.
 inline constexpr double kBeyondDoubt = 2 * kDecided;
 
-/// How far the surfaces of pieces that are meant to meet may lie apart: seams agree to 1e-7 of the bodies, poses to
-/// half a unit in the last place.
+/// How far the surfaces of pieces that are meant to meet may lie apart: 2^-18 of the bodies, and the rounding of poses.
 /// @param size  radius of the smaller body
 /// @param farthest  largest coordinate of the poses
-[[nodiscard]] double seam_slack(double size, double farthest);
-[[nodiscard]] double seam_slack(const PosedShape& a, const PosedShape& b);
+/// @param pose_rounding  share of its size by which the host's scalar may be off a coordinate, a few times over
+[[nodiscard]] double seam_slack(double size, double farthest, double pose_rounding);
+[[nodiscard]] double seam_slack(const PosedShape& a, const PosedShape& b, double pose_rounding);
 
 /// Sides first, then edges; no planes where the corners are no triangle.
 void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece& piece);
 /// No planes where the shape is no solid polytope.
 void set_solid(const ConvexShape& shape, const Pose& pose, UnionPiece& piece);
-/// As `set_triangle` or `set_solid`, as the body is one or the other.
+/// Calls `set_triangle` for a triangle and `set_solid` for any other body.
 void set_piece(const PosedShape& body, UnionPiece& piece);
 
 /// The part of segment or polygon `points` (in place) that lies in the piece, each plane moved out by `slack`.
@@ -62,11 +60,6 @@ void clip_to_piece(const UnionPiece& piece, double slack, std::vector<Vec3>& poi
 /// `slack`. Planes within `slack` of the point count as touching it. Time O(k^3) in those. `active` is memory for them.
 /// @param enough  a sine from which on no larger one is looked for.
 [[nodiscard]] double covered_sine(const UnionPiece& piece, const Vec3& point, const Vec3& n, double slack,
-                                  double enough, std::vector<const Plane*>& active);
+                                  double enough, std::vector<const PiecePlane*>& active);
 
-/// Whether the shape behind the wrapper is one piece of several.
-[[nodiscard]] bool is_piece(const btCollisionObjectWrapper& wrapper);
-/// Whether the shape behind the wrapper is a child of a compound.
-[[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
-
-}  // namespace pd::detail
+}  // namespace pd

@@ -2,8 +2,6 @@
 /// Whether the feature of a piece that another body touches lies inside of the other pieces of its union.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,22 +9,10 @@
 #include <vector>
 
 #include "pd/contact/manifold.hpp"
-#include "pieces/near_pieces.hpp"
-#include "pieces/union_piece.hpp"
+#include "pd/union_contact/covered_contact.hpp"
+#include "pd/union_contact/piece_surroundings.hpp"
 
 namespace pd::detail {
-
-/// Memory of `keep_uncovered`, one a thread.
-struct CoverBuffers {
-  UnionPiece made;                ///< of a piece that `near` does not keep
-  const UnionPiece* own = &made;  ///< the piece at hand
-  NearPieces near;
-  std::vector<const UnionPiece*> found;  ///< near the contact
-  std::vector<const Plane*> active;
-  std::vector<Vec3> feature;
-  std::vector<Vec3> spare;
-  std::vector<std::pair<double, int>> facets;
-};
 
 /// A sine that is more than kDecided also where it was found another way.
 inline constexpr double kLedOn = (1 + 1e-6) * kDecided;
@@ -35,8 +21,8 @@ inline constexpr double kLedOn = (1 + 1e-6) * kDecided;
 inline constexpr double kSameNormal = 1e-10;
 
 /// One of the pair's two bodies as a piece of its union, and the other that touches it.
-struct Side {
-  const btCollisionObjectWrapper& wrapper;
+struct PieceSide {
+  PieceSurroundings& around;
   const PosedShape& own;
   const PosedShape& other;
   bool is_b;
@@ -54,14 +40,13 @@ struct Side {
 /// Points and directions are those of `frame()`, in which the piece and what is near it lie.
 class Cover {
  public:
-  Cover(const Side& side, double slack, double window, const StepShapes& shapes, CoverBuffers& buffers)
-      : wrapper_(side.wrapper),
+  Cover(const PieceSide& side, double slack, double window, CoverBuffers& buffers)
+      : around_(side.around),
         own_(side.own),
         slack_(slack),
         window_(window),
-        shapes_(shapes),
         buffers_(buffers),
-        frame_(buffers.near.frame_of(side.wrapper, shapes.cache, kept_)) {}
+        frame_(side.around.frame()) {}
 
   /// Sets the piece at hand: one that is kept, or made anew. To be called first.
   void take_own();
@@ -93,8 +78,8 @@ class Cover {
   struct Touched {
     bool any = false;
     int facet = -1;  ///< that of the normal asked for
-    const Plane* first = nullptr;
-    const Plane* second = nullptr;
+    const PiecePlane* first = nullptr;
+    const PiecePlane* second = nullptr;
     int count = 0;
   };
 
@@ -110,19 +95,13 @@ class Cover {
   /// The part of the feature within the window, by its corners. They lie in the piece up to half the slack, so that a
   /// flush neighbour holds them.
   void set_feature(const Touched& touched, const Vec3& foot, const Vec3& n);
-  [[nodiscard]] const Plane* edge_of_triangle(const Vec3& foot) const;
-  /// Requires: the piece is one of a whole body's compound.
-  [[nodiscard]] ChildOf child() const {
-    return {static_cast<const btCompoundShape&>(*wrapper_.m_parent->getCollisionShape()), wrapper_.m_index};
-  }
+  [[nodiscard]] const PiecePlane* edge_of_triangle(const Vec3& foot) const;
 
-  const btCollisionObjectWrapper& wrapper_;
+  PieceSurroundings& around_;
   const PosedShape& own_;
   double slack_;
   double window_;
-  StepShapes shapes_;
   CoverBuffers& buffers_;
-  const UnionPiece* kept_ = nullptr;
   const UnionFrame& frame_;
 };
 

@@ -1,16 +1,16 @@
-#include "pieces/covered_contact.hpp"
+#include "pd/union_contact/covered_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
-#include "pieces/lazy_points.hpp"
-#include "pieces/piece_exit.hpp"
-#include "shapes/moving_body.hpp"
+#include "union_contact/lazy_points.hpp"
+#include "union_contact/piece_exit.hpp"
 
-namespace pd::detail {
+namespace pd {
+
+using namespace detail;
 
 namespace {
 
@@ -32,14 +32,14 @@ double deepest_of(const ContactManifold& points) {
 /// What one side's piece does to the manifold.
 class SideRule {
  public:
-  SideRule(const Side& side, const PiecePair& pair, double window, double slack)
+  SideRule(const PieceSide& side, const PiecePair& pair, double window, double slack)
       : side_(side),
         threshold_(pair.threshold),
         window_(window),
         slack_(slack),
         buffers_(pair.cover),
         manifold_(pair.manifold),
-        cover_(side_, slack, window, pair.shapes, pair.cover) {}
+        cover_(side_, slack, window, pair.cover) {}
 
   /// @return whether `points` was changed
   bool apply(double depth, const Vec3& witness, LazyPoints& points) {
@@ -126,7 +126,7 @@ class SideRule {
   }
 
   /// Out along a facet of the piece.
-  [[nodiscard]] PieceExit exit_over(const Plane& facet) const {
+  [[nodiscard]] PieceExit exit_over(const PiecePlane& facet) const {
     const Vec3 n = cover_.frame().turn_back(facet.normal);
     const Vec3 farthest = farthest_against(side_.other, n);
     const double depth =
@@ -149,7 +149,7 @@ class SideRule {
     return points_along(exit, side_, cover_.frame(), cover_.own(), threshold_, slack_, manifold_);
   }
 
-  ContactManifold turned(const Plane& facet) {
+  ContactManifold turned(const PiecePlane& facet) {
     const PieceExit exit = exit_over(facet);
     return exit.depth < -threshold_ ? ContactManifold() : manifold_along(exit);
   }
@@ -164,7 +164,7 @@ class SideRule {
     const double limit = std::max(4 * depth, window_);
     const int count = static_cast<int>(own.planes.size()) - (own.flat ? 3 : 0);
     for (int f = 0; f < count; ++f) {
-      const Plane& facet = own.planes[static_cast<std::size_t>(f)];
+      const PiecePlane& facet = own.planes[static_cast<std::size_t>(f)];
       if (facet.normal.dot(n) >= 1 - kSameNormal || facet.normal.dot(side_.front) < 0) continue;
       const double far = exit_over(facet).depth;
       if (far < -threshold_) return {};  // apart along a facet: nothing of this piece is near
@@ -219,7 +219,7 @@ class SideRule {
     return {};
   }
 
-  const Side& side_;
+  const PieceSide& side_;
   double threshold_;
   double window_;
   double slack_;
@@ -229,24 +229,20 @@ class SideRule {
 };
 
 /// How far from a contact a union is looked at: as far as the bodies may move before contacts are found again.
-double window_of(const PiecePair& pair, double depth) {
-  const Vec3 way =
-      pair.seconds * (linear_velocity(*pair.a.getCollisionObject()) - linear_velocity(*pair.b.getCollisionObject()));
-  return pair.threshold + std::abs(depth) + way.norm();
-}
+double window_of(const PiecePair& pair, double depth) { return pair.threshold + std::abs(depth) + pair.way; }
 
 }  // namespace
 
-int keep_uncovered(const PiecePair& pair, const PairAnswer& answer, AnswerPoints given, ContactManifold& points) {
-  LazyPoints lazy(answer, pair.threshold, pair.manifold, given, points);
+int keep_uncovered(const PiecePair& pair, const PenetrationDepth& answer, AnswerPoints given, ContactManifold& points) {
+  LazyPoints lazy(pair, answer, given, points);
   if (lazy.none()) return 0;
-  const double slack = seam_slack(answer.a, answer.b);
-  double depth = -answer.depth.signed_distance();
+  const double slack = seam_slack(pair.a, pair.b, pair.pose_rounding);
+  double depth = -answer.signed_distance();
   const double window = window_of(pair, depth);
-  Vec3 witness_b = answer.depth.witness_b;
+  Vec3 witness_b = answer.witness_b;
   int changed = 0;
-  if (is_piece(pair.b)) {
-    const Side side{pair.b, answer.b, answer.a, true, pair.front};
+  if (pair.around_b != nullptr) {
+    const PieceSide side{*pair.around_b, pair.b, pair.a, true, pair.front};
     SideRule rule(side, pair, window, slack);
     if (rule.apply(depth, witness_b, lazy)) {
       ++changed;
@@ -257,8 +253,8 @@ int keep_uncovered(const PiecePair& pair, const PairAnswer& answer, AnswerPoints
       witness_b = deepest->position_b;
     }
   }
-  if (is_piece(pair.a)) {
-    const Side side{pair.a, answer.a, answer.b, false};
+  if (pair.around_a != nullptr) {
+    const PieceSide side{*pair.around_a, pair.a, pair.b, false};
     SideRule rule(side, pair, window, slack);
     if (rule.apply(depth, witness_b - depth * lazy.normal(), lazy)) ++changed;
   }
@@ -266,13 +262,13 @@ int keep_uncovered(const PiecePair& pair, const PairAnswer& answer, AnswerPoints
   return changed;
 }
 
-int drop_covered(const PiecePair& pair, const PosedShape& body, ContactManifold& points) {
-  const double slack = seam_slack(body, body);
-  const Side side{pair.a, body, body, false};
+int drop_covered(const PiecePair& pair, ContactManifold& points) {
+  const double slack = seam_slack(pair.a, pair.a, pair.pose_rounding);
+  const PieceSide side{*pair.around_a, pair.a, pair.a, false};
   const int before = points.count;
   for (int i = points.count - 1; i >= 0; --i) {
     const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
-    Cover cover(side, slack, window_of(pair, point.depth), pair.shapes, pair.cover);
+    Cover cover(side, slack, window_of(pair, point.depth), pair.cover);
     cover.take_own();
     if (cover.own().planes.empty()) break;
     const Vec3 n = cover.frame().turn(-points.normal);
@@ -282,16 +278,16 @@ int drop_covered(const PiecePair& pair, const PosedShape& body, ContactManifold&
   return before - points.count;
 }
 
-ContactManifold along_front(const PiecePair& pair, const PairAnswer& answer) {
+ContactManifold along_front(const PiecePair& pair) {
   UnionPiece& own = pair.cover.made;
-  set_piece(answer.b, own);
+  set_piece(pair.b, own);
   if (own.planes.empty()) return {};
-  const Plane& side = own.planes[own.planes[0].normal.dot(pair.front) > 0 ? 0 : 1];
-  const Vec3 farthest = farthest_against(answer.a, side.normal);
-  const double depth = answer.a.shape->margin() + own.margin - side.height(farthest);
-  const Side sides{pair.b, answer.b, answer.a, true, pair.front};
+  const PiecePlane& side = own.planes[own.planes[0].normal.dot(pair.front) > 0 ? 0 : 1];
+  const Vec3 farthest = farthest_against(pair.a, side.normal);
+  const double depth = pair.a.shape->margin() + own.margin - side.height(farthest);
+  const PieceSide sides{*pair.around_b, pair.b, pair.a, true, pair.front};
   return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, pair.threshold,
-                      seam_slack(answer.a, answer.b), pair.manifold);
+                      seam_slack(pair.a, pair.b, pair.pose_rounding), pair.manifold);
 }
 
-}  // namespace pd::detail
+}  // namespace pd

@@ -1,0 +1,27 @@
+/// @file
+/// Pieces of unions by their wrappers, and how exactly Bullet's scalar places them.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <LinearMath/btScalar.h>
+
+#include "pd/union_contact/union_piece.hpp"
+
+namespace pd::detail {
+
+/// Poses are known to half a unit in the last place.
+inline constexpr double kPoseRounding = sizeof(btScalar) == sizeof(float) ? 0x1p-21 : 0x1p-46;
+
+[[nodiscard]] inline double seam_slack(double size, double farthest) {
+  return pd::seam_slack(size, farthest, kPoseRounding);
+}
+[[nodiscard]] inline double seam_slack(const PosedShape& a, const PosedShape& b) {
+  return pd::seam_slack(a, b, kPoseRounding);
+}
+
+/// Whether the shape behind the wrapper is one piece of several.
+[[nodiscard]] bool is_piece(const btCollisionObjectWrapper& wrapper);
+/// Whether the shape behind the wrapper is a child of a compound.
+[[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
+
+}  // namespace pd::detail
