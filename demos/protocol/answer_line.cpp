@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <functional>
 #include <new>
+#include <stdexcept>
+#include <utility>
 
 #include "protocol/body_reader.hpp"
 #include "protocol/bounded_line.hpp"
@@ -12,6 +16,9 @@
 namespace pd::query {
 
 namespace {
+
+/// Words of an answer to what no reader has refused and no engine could take: a fault of this program.
+constexpr const char* kUnforeseen = "this line could not be answered: ";
 
 constexpr std::array kQueries{
     QueryEntry{"depth", answer_depth},
@@ -37,15 +44,15 @@ constexpr std::array kQueries{
     QueryEntry{"approx_membership", answer_approx_membership},
 };
 
-std::string error_answer(std::string_view id_text, const Refusal& refusal) {
-  std::string out;
-  JsonWriter writer(out);
+LineAnswer error_answer(std::string_view id_text, const Refusal& refusal) {
+  LineAnswer answer{.text = {}, .unreached = false, .limit_exceeded = refusal.code == "limit_exceeded"};
+  JsonWriter writer(answer.text);
   writer.begin_object().key("id").raw(id_text).key("error").begin_object();
   writer.key("code").string(refusal.code);
   writer.key("message").string(refusal.message);
   writer.key("where").string(refusal.where);
   writer.end_object().end_object();
-  return out;
+  return answer;
 }
 
 Handler find_handler(const Node& line) {
@@ -73,35 +80,87 @@ void write_remarks(const std::vector<Remark>& remarks, JsonWriter& answer) {
   }
 }
 
+LineAnswer answer_parsed(const ParsedLine& parsed, Session& session, Care care) {
+  LineAnswer answer;
+  std::vector<Remark> remarks;
+  const Node root(parsed.object, &remarks);
+  JsonWriter writer(answer.text);
+  writer.begin_object().key("id").raw(parsed.id_text);
+  find_handler(root)(root, session, writer);
+  write_remarks(remarks, writer);
+  if (care == Care::coarse) writer.bracket_unreached();
+  writer.end_object();
+  answer.unreached = writer.is_bracket_unreached();
+  return answer;
+}
+
+/// Runs `answer`, and makes an error object of whatever it throws.
+LineAnswer answered(const std::string& id_text, const std::function<LineAnswer()>& answer) {
+  try {
+    return answer();
+  } catch (const Refusal& refusal) {
+    return error_answer(id_text, refusal);
+  } catch (const std::bad_alloc&) {
+    return refuse_line(id_text, "this line needs more memory than there is");
+  } catch (const std::length_error&) {
+    return refuse_line(id_text, "this line needs more memory than there is");
+  } catch (const std::exception& error) {
+    return error_answer(id_text, {"unsupported", kUnforeseen + std::string(error.what()), ""});
+  }
+}
+
+/// Asks for two rays of a grid, or for a union's widest bracket. False where the line asks for no depth.
+bool coarsen(Json& line) {
+  const auto query = line.find("query");
+  if (query == line.end() || *query != "depth" || line.contains("metric")) return false;
+  const auto convex = [&](const char* body) {
+    const auto shape = line.find(body);
+    if (shape == line.end() || !shape->is_object()) return true;
+    const auto type = shape->find("type");
+    return type == shape->end() || (*type != "compound" && *type != "star");
+  };
+  if (convex("a") && convex("b")) {
+    line["method"] = "grid";
+    line["delta"] = 0.5;
+  } else {
+    line["delta"] = 1;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::span<const QueryEntry> queries() { return kQueries; }
 
-std::string answer_line(std::string_view line, Session& session) {
-  ParsedLine parsed;
-  try {
-    parsed = parse_line_within(line, session.limits.max_vertices);
-    if (parsed.refusal) return error_answer(parsed.id_text, *parsed.refusal);
-    std::vector<Remark> remarks;
-    const Node root(parsed.object, &remarks);
-    std::string out;
-    JsonWriter writer(out);
-    writer.begin_object().key("id").raw(parsed.id_text);
-    find_handler(root)(root, session, writer);
-    write_remarks(remarks, writer);
-    writer.end_object();
-    return out;
-  } catch (const Refusal& refusal) {
-    return error_answer(parsed.id_text, refusal);
-  } catch (const std::bad_alloc&) {
-    return error_answer(parsed.id_text, {"limit_exceeded", "this line needs more memory than there is", ""});
-  }
+LineAnswer answer_line(std::string_view line, Session& session, const IdSeen& id_seen) {
+  std::string id = "null";
+  const auto keep_id = [&](std::string_view text) {
+    id = text;
+    if (id_seen) id_seen(text);
+  };
+  return answered(id, [&] {
+    const ParsedLine parsed = parse_line_within(line, session.limits.max_vertices, keep_id);
+    id = parsed.id_text;
+    return parsed.refusal ? error_answer(id, *parsed.refusal) : answer_parsed(parsed, session, Care::full);
+  });
 }
 
-std::string answer_oversized_line(const Limits& limits) {
-  return error_answer(
-      "null",
-      {"limit_exceeded", "the line is longer than " + std::to_string(limits.max_line) + " bytes (--max-line)", ""});
+std::optional<LineAnswer> answer_coarsely(std::string_view line, Session& session) {
+  std::optional<LineAnswer> coarse;
+  (void)answered("null", [&]() -> LineAnswer {
+    ParsedLine parsed = parse_line_within(line, session.limits.max_vertices);
+    if (!parsed.refusal && coarsen(parsed.object)) coarse = answer_parsed(parsed, session, Care::coarse);
+    return {};
+  });
+  return coarse;
+}
+
+LineAnswer refuse_line(std::string_view id_text, std::string message) {
+  return error_answer(id_text, {"limit_exceeded", std::move(message), ""});
+}
+
+LineAnswer answer_oversized_line(const Limits& limits) {
+  return refuse_line("null", "the line is longer than " + std::to_string(limits.max_line) + " bytes (--max-line)");
 }
 
 }  // namespace pd::query

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -13,12 +14,16 @@
 
 namespace pd::query {
 
+/// Called with the caller's id as it stands in the line, once it is read, before what follows it is.
+using IdSeen = std::function<void(std::string_view id_text)>;
+
 /// `parse_line` with --max-vertices: a longer list under a key "vertices" ends the reading there (limit_exceeded), and
-/// so do more JSON values than a line within that limit can need.
+/// so do more JSON values than a line within that limit can need, and values that together take much more memory than
+/// the line itself.
 ///
 /// A list of triples of numbers under that key is kept as bytes, which `packed_points` reads; every other list is an
 /// array.
-[[nodiscard]] ParsedLine parse_line_within(std::string_view line, std::int64_t max_points);
+[[nodiscard]] ParsedLine parse_line_within(std::string_view line, std::int64_t max_points, const IdSeen& id_seen = {});
 
 /// The points of a list that the reader has packed; nothing where the value is any other JSON.
 [[nodiscard]] std::optional<std::vector<Vec3>> packed_points(const Json& value);

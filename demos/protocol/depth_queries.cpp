@@ -118,7 +118,7 @@ void write_depth_fields(const PenetrationDepth& result, JsonWriter& answer) {
     answer.key("distance_lower").number(result.distance_lower);
     answer.key("distance_upper").number(result.distance_upper);
   }
-  if (!result.bracket_reached) answer.key("bracket_reached").boolean(false);
+  if (!result.bracket_reached) answer.bracket_unreached();
   answer.key("translation").vector(result.translation);
   answer.key("normal").vector(result.normal);
   answer.key("witness_a").vector(result.witness_a);

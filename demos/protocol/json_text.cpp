@@ -2,113 +2,91 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 #include <vector>
 
 #include "protocol/bounded_line.hpp"
+#include "protocol/json_reader.hpp"
 #include "protocol/json_writer.hpp"
 #include "protocol/limits.hpp"
-#include "protocol/quick_json.hpp"
 
 namespace pd::query {
 
 namespace {
 
-/// Doubles as one JSON value of bytes.
-Json pack(const std::vector<double>& numbers) {
-  Json::binary_t::container_type bytes(numbers.size() * sizeof(double));
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  return Json::binary(std::move(bytes));
-}
-
-/// Builds the document from the parser's events, so that duplicate keys are seen and nesting is bounded before memory
+/// Builds the document from the reader's events, so that duplicate keys are seen and nesting is bounded before memory
 /// is spent.
 ///
 /// Invariant: `open_` holds the containers that are not yet closed, outermost first; each is the last element of the
 /// one before it, so none moves while it is open.
 ///
-/// What takes memory is counted as it comes: values, and the points under a key "vertices", which are kept as bare
-/// doubles for as long as they are triples of numbers (a Json of each would take sixteen times its shortest text).
-class StrictBuilder final : public nlohmann::json_sax<Json> {
+/// What takes memory is counted as it comes: values, their bytes, and the points under a key "vertices", which are kept
+/// as bare doubles for as long as they are triples of numbers (a Json of each would take sixteen times its shortest
+/// text).
+class StrictBuilder {
  public:
-  explicit StrictBuilder(std::int64_t max_points) : max_points_(max_points) {}
+  StrictBuilder(std::size_t line_size, std::int64_t max_points, const IdSeen& id_seen)
+      : max_bytes_(kAnyLine + kBytesPerLetter * line_size), max_points_(max_points), id_seen_(id_seen) {}
 
-  bool null() override { return add(Json(nullptr)); }
-  bool boolean(bool value) override { return add(Json(value)); }
-  bool number_integer(number_integer_t value) override {
-    return take_coordinate(static_cast<double>(value)) || add(Json(value));
+  bool null() { return add(Json(nullptr)); }
+  bool boolean(bool value) { return add(Json(value)); }
+  bool number_integer(std::int64_t value) { return take_coordinate(static_cast<double>(value)) || add(Json(value)); }
+  bool number_unsigned(std::uint64_t value) { return take_coordinate(static_cast<double>(value)) || add(Json(value)); }
+  bool number_float(double value) { return take_coordinate(value) || add(Json(value)); }
+  bool string(std::string& value) {
+    bytes_ += kBytesPerString + value.capacity();
+    return add(Json(std::move(value)));
   }
-  bool number_unsigned(number_unsigned_t value) override {
-    return take_coordinate(static_cast<double>(value)) || add(Json(value));
-  }
-  bool number_float(number_float_t value, const string_t& text) override {
-    if (take_coordinate(value)) return true;
-    // An id may be an integer of any length: it goes back as it came.
-    if (open_.size() == 1 && open_.back()->is_object() && key_ == "id") id_number_ = text;
-    return add(Json(value));
-  }
-  bool string(string_t& value) override { return add(Json(std::move(value))); }
-  bool binary(binary_t& /*value*/) override { return false; }
 
-  bool start_object(std::size_t /*size*/) override { return open(Json(Json::value_t::object)); }
-  bool start_array(std::size_t /*size*/) override {
+  bool start_object() { return open(Json(Json::value_t::object)); }
+  bool start_array() {
     if (in_list() && !in_point_) {
       in_point_ = true;
       return true;
     }
-    // An id goes back as it came, whatever it holds.
+    // The caller's id is no shape, whatever it holds.
     const bool list = !open_.empty() && open_.back()->is_object() && key_ == "vertices" && !in_id_;
     if (!open(Json(Json::value_t::array))) return false;
     if (list) list_level_ = open_.size();
     return true;
   }
-  bool end_object() override {
-    if (open_.size() == 1) id_read_ = true;
-    return close();
-  }
-  bool end_array() override {
+  bool end_object() { return close(); }
+  bool end_array() {
     if (in_point_) return end_point();
     if (in_list()) {
-      if (!coordinates_.empty()) *open_.back() = pack(coordinates_);
-      coordinates_ = {};
+      if (!packed_.empty()) *open_.back() = Json::binary(std::move(packed_));
+      packed_ = {};
       list_level_ = 0;
     }
     return close();
   }
 
-  bool key(string_t& value) override {
+  bool key(std::string& value) {
     if (open_.back()->contains(value)) {
       if (!refusal) {
         refusal = Refusal{"bad_json", "the key \"" + shortened(value) + "\" stands twice in one object", ""};
       }
       // The first "id" is no more the caller's than the second.
-      if (open_.size() == 1 && value == "id") id_twice_ = true;
+      if (open_.size() == 1 && value == "id") id_text_.reset();
     }
-    if (open_.size() == 1 && open_.back()->contains("id")) id_read_ = true;
     if (open_.size() == 1) in_id_ = value == "id";
+    bytes_ += kBytesPerMember + value.size();
     key_ = std::move(value);
     return true;
   }
-
-  bool parse_error(std::size_t position, const std::string& /*last_token*/,
-                   const nlohmann::detail::exception& error) override {
-    // The parser's words carry a library tag in brackets in front: the caller needs what follows.
-    std::string words = error.what();
-    if (const std::size_t tag = words.find("] "); tag != std::string::npos) words.erase(0, tag + 2);
-    refusal = Refusal{"bad_json", "not JSON at byte " + std::to_string(position) + ": " + shortened(words, 300), ""};
-    return false;
+  /// The caller's id goes back as it stands, byte for byte.
+  bool member(std::string_view text) {
+    if (!in_id_ || open_.size() != 1) return true;
+    in_id_ = false;
+    if (ids_++ > 0) return true;
+    id_text_ = text;
+    if (id_seen_) id_seen_(text);
+    return true;
   }
 
-  [[nodiscard]] std::string id_text() const {
-    if (id_twice_ || !id_read_) return "null";
-    const auto id = root.find("id");
-    if (id == root.end()) return "null";
-    if (id->is_number_float()) return id_number_;
-    std::string text;
-    append_json(text, *id);
-    return text;
-  }
+  [[nodiscard]] std::string id_text() const { return std::string(id_text_.value_or("null")); }
 
   Json root;
   std::optional<Refusal> refusal;
@@ -122,34 +100,42 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     return true;
   }
   bool end_point() {
-    if (point_size_ != 3) {
-      unpack();
-      return close();
-    }
-    coordinates_.insert(coordinates_.end(), point_.begin(), point_.end());
+    if (point_size_ != 3) return unpack() && close();
+    const std::size_t held = packed_.capacity();
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(point_.data());
+    packed_.insert(packed_.end(), bytes, bytes + sizeof point_);
+    bytes_ += packed_.capacity() - held;
     in_point_ = false;
     point_size_ = 0;
-    if (coordinates_.size() <= 3 * static_cast<std::size_t>(max_points_)) return true;
-    refusal = Refusal{"limit_exceeded",
-                      "more than " + std::to_string(max_points_) + " points; the limit is " +
-                          std::to_string(max_points_) + " (--max-vertices)",
-                      path()};
-    return false;
+    if (packed_.size() > sizeof point_ * static_cast<std::size_t>(max_points_)) {
+      refusal = Refusal{"limit_exceeded",
+                        "more than " + std::to_string(max_points_) + " points; the limit is " +
+                            std::to_string(max_points_) + " (--max-vertices)",
+                        path()};
+      return false;
+    }
+    return !too_many_bytes();
   }
   /// The list holds something else than triples of numbers: from here on it is JSON like any other.
-  void unpack() {
+  bool unpack() {
     list_level_ = 0;
+    const std::size_t count = packed_.size() / sizeof point_;
+    bytes_ += (count + 1) * (kBytesPerArray + 7 * sizeof(Json));
+    if (too_many_bytes()) return false;
     Json& list = *open_.back();
-    for (std::size_t i = 0; i + 2 < coordinates_.size(); i += 3) {
-      list.push_back({coordinates_[i], coordinates_[i + 1], coordinates_[i + 2]});
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<double, 3> point;
+      std::memcpy(point.data(), packed_.data() + i * sizeof point, sizeof point);
+      list.push_back(point);
     }
-    coordinates_ = {};
-    if (!in_point_) return;
+    packed_ = {};
+    if (!in_point_) return true;
     in_point_ = false;
     list.push_back(Json(Json::value_t::array));
     for (std::size_t k = 0; k < point_size_; ++k) list.back().push_back(point_[k]);
     point_size_ = 0;
     open_.push_back(&list.back());
+    return true;
   }
   /// Where the innermost open container stands.
   [[nodiscard]] std::string path() const {
@@ -166,7 +152,24 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     }
     return text;
   }
-  [[nodiscard]] bool too_many_values() {
+  [[nodiscard]] bool too_many_bytes() {
+    if (bytes_ <= max_bytes_) return false;
+    refusal = Refusal{"limit_exceeded",
+                      "the values of this line take more than " + std::to_string(max_bytes_ >> 20) +
+                          " MB, which no query of its length needs",
+                      path()};
+    return true;
+  }
+  /// Counts a value that is about to be placed.
+  [[nodiscard]] bool too_many_values(const Json& value) {
+    if (value.is_object()) bytes_ += kBytesPerObject;
+    if (value.is_array()) bytes_ += kBytesPerArray;
+    if (!open_.empty() && open_.back()->is_array()) {
+      const auto& list = open_.back()->get_ref<const Json::array_t&>();
+      // Such a list doubles when it is full.
+      if (list.size() == list.capacity()) bytes_ += sizeof(Json) * std::max<std::size_t>(1, list.size());
+    }
+    if (too_many_bytes()) return true;
     // A surface of n points has fewer than 2n faces and 6n corners; as much again for what else a line may hold.
     const std::int64_t limit = 12 * max_points_ + kOtherValues;
     if (++values_ <= limit) return false;
@@ -190,14 +193,14 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     return &slot;
   }
   bool add(Json&& value) {
-    if (in_list()) unpack();
-    if (too_many_values()) return false;
+    if (in_list() && !unpack()) return false;
+    if (too_many_values(value)) return false;
     place(std::move(value));
     return true;
   }
   bool open(Json&& container) {
-    if (in_list()) unpack();
-    if (too_many_values()) return false;
+    if (in_list() && !unpack()) return false;
+    if (too_many_values(container)) return false;
     if (open_.size() >= static_cast<std::size_t>(kMaxNesting)) {
       refusal = Refusal{"limit_exceeded",
                         "arrays and objects nest deeper than " + std::to_string(kMaxNesting) + " levels", ""};
@@ -212,10 +215,18 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
   }
 
   static constexpr std::int64_t kOtherValues = 100'000;
+  // What glibc's allocator takes on a 64-bit machine: a node of std::map with a key and a value, an empty map, an empty
+  // vector, a string without its letters.
+  static constexpr std::size_t kBytesPerMember = 96, kBytesPerObject = 64, kBytesPerArray = 32, kBytesPerString = 48;
+  // Faces take some five times their text and are half of a line with short coordinates, which take half of their text.
+  static constexpr std::size_t kAnyLine = std::size_t{32} << 20, kBytesPerLetter = 4;
 
+  std::size_t bytes_ = 0;
+  std::size_t max_bytes_;
   std::int64_t max_points_;
+  const IdSeen& id_seen_;
   std::int64_t values_ = 0;
-  std::vector<double> coordinates_;  ///< of the points read so far, in a list of nothing else
+  Json::binary_t::container_type packed_;  ///< the points read so far, in a list of nothing else
   std::array<double, 3> point_{};
   std::size_t point_size_ = 0;
   std::size_t list_level_ = 0;  ///< open containers where such a list is the innermost; 0: there is none
@@ -223,10 +234,9 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
 
   std::vector<Json*> open_;
   std::string key_;
-  std::string id_number_;
+  std::optional<std::string_view> id_text_;
+  int ids_ = 0;
   bool in_id_ = false;
-  bool id_twice_ = false;
-  bool id_read_ = false;  ///< what follows the id's value is JSON, so that its text is not cut short
 };
 
 }  // namespace
@@ -235,25 +245,21 @@ bool is_blank(std::string_view line) { return line.find_first_not_of(" \t\r\n") 
 
 ParsedLine parse_line(std::string_view line) { return parse_line_within(line, Limits().max_vertices); }
 
-ParsedLine parse_line_within(std::string_view line, std::int64_t max_points) {
+ParsedLine parse_line_within(std::string_view line, std::int64_t max_points, const IdSeen& id_seen) {
   ParsedLine parsed;
-  // The parser would take a zero byte for the end of the text and a byte order mark for nothing.
-  if (line.find('\0') != std::string_view::npos) {
-    parsed.refusal = Refusal{"bad_json", "a zero byte is no JSON", ""};
-    return parsed;
-  }
   if (line.starts_with("\xEF\xBB\xBF")) {
     parsed.refusal = Refusal{"bad_json", "the line begins with a byte order mark; JSON text has none", ""};
     return parsed;
   }
-  std::optional<StrictBuilder> read(std::in_place, max_points);
-  if (read_json_quickly(line, *read) == QuickJson::declined) {
-    read.emplace(max_points);
-    Json::sax_parse(line.begin(), line.end(), &*read);
-  }
-  StrictBuilder& builder = *read;
+  StrictBuilder builder(line.size(), max_points, id_seen);
+  JsonReader<StrictBuilder> reader(line, builder);
+  const JsonEnd end = reader.read();
   parsed.id_text = builder.id_text();
-  if (builder.refusal) {
+  if (end == JsonEnd::broken) {
+    parsed.refusal =
+        Refusal{"bad_json",
+                "not JSON at byte " + std::to_string(reader.error_position()) + ": " + std::string(reader.error()), ""};
+  } else if (builder.refusal) {
     parsed.refusal = std::move(builder.refusal);
   } else if (!builder.root.is_object()) {
     parsed.refusal = Refusal{"bad_json", "a line must be one JSON object, {\"query\": ...}", ""};

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 struct ParsedLine {
   Json object;                     ///< the line's object, whole only where `refusal` is empty
-  std::string id_text = "null";    ///< the caller's id as JSON text; null where there is none or it cannot be read
+  std::string id_text = "null";    ///< the caller's id, byte for byte; null where there is none or it cannot be read
   std::optional<Refusal> refusal;  ///< bad_json, or limit_exceeded for nesting deeper than kMaxNesting
 };
 

@@ -138,6 +138,12 @@ JsonWriter& JsonWriter::vector(const Vec3& value) {
   return end_array();
 }
 
+JsonWriter& JsonWriter::bracket_unreached() {
+  if (unreached_) return *this;
+  unreached_ = true;
+  return key("bracket_reached").boolean(false);
+}
+
 JsonWriter& JsonWriter::raw(std::string_view json) {
   separate();
   out_ += json;

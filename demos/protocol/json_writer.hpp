@@ -43,11 +43,16 @@ class JsonWriter {
   /// Text that is JSON already.
   JsonWriter& raw(std::string_view json);
 
+  /// "bracket_reached": false, once in a text: the answer's bracket is certified, but wider than asked.
+  JsonWriter& bracket_unreached();
+  [[nodiscard]] bool is_bracket_unreached() const { return unreached_; }
+
  private:
   void separate();
 
   std::string& out_;
   bool needs_comma_ = false;
+  bool unreached_ = false;
 };
 
 }  // namespace pd::query

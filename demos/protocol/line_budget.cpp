@@ -14,8 +14,7 @@
 #include <optional>
 #include <utility>
 
-#include "protocol/json_text.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line_source.hpp"
 
 namespace pd::query {
 
@@ -41,28 +40,43 @@ void limit_memory(std::int64_t megabytes) {
   (void)::setrlimit(RLIMIT_CORE, &no_core);
 }
 
-bool write_all(int descriptor, const std::string& text) {
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t wrote = ::write(descriptor, text.data() + done, text.size() - done);
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) return false;
-    done += static_cast<std::size_t>(wrote);
+/// What the child writes into the pipe: the caller's id as soon as it is read, a newline, a letter for what the answer
+/// says, the answer. A line holds no newline, so that an id holds none.
+constexpr char kPlain = 'p', kUnreached = 'u', kLimitExceeded = 'l';
+
+bool write_answer(int pipe, const LineAnswer& answer) {
+  const char letter = answer.limit_exceeded ? kLimitExceeded : answer.unreached ? kUnreached : kPlain;
+  return write_all(pipe, std::string(1, letter) + answer.text);
+}
+
+/// The child's life. @return whether the pipe holds a whole answer
+bool answer_into(int pipe, std::string_view line, Session& session, Care care) {
+  bool named = false;
+  const auto name = [&](std::string_view id_text) { named = write_all(pipe, std::string(id_text) + "\n"); };
+  if (care == Care::coarse) {
+    const std::optional<LineAnswer> answer = answer_coarsely(line, session);
+    return answer && write_all(pipe, "null\n") && write_answer(pipe, *answer);
   }
-  return true;
+  const LineAnswer answer = answer_line(line, session, name);
+  return (named || write_all(pipe, "null\n")) && write_answer(pipe, answer);
 }
 
 /// A child process that answers a line into a pipe. Ended, and waited for, at the latest by its destructor.
 class Answering {
  public:
-  Answering(std::string_view line, Session& session, const LineBudget& budget) {
+  Answering(std::string_view line, Session& session, const LineBudget& budget, Care care) {
     int ends[2] = {-1, -1};
     if (::pipe2(ends, O_CLOEXEC) != 0) return;
     process_ = ::fork();
     if (process_ == 0) {
       ::close(ends[0]);
       if (budget.megabytes > 0) limit_memory(budget.megabytes);
-      ::_exit(write_all(ends[1], answer_line(line, session)) ? 0 : 1);
+      bool whole = false;
+      try {
+        whole = answer_into(ends[1], line, session, care);
+      } catch (...) {  // no memory for the words of a refusal: the parent has them
+      }
+      ::_exit(whole ? 0 : 1);
     }
     ::close(ends[1]);
     pipe_ = ends[0];
@@ -100,13 +114,22 @@ class Answering {
         continue;
       }
       close_pipe();
-      whole_ = reap() == 0 && !text_.empty();
+      whole_ = reap() == 0;
     }
     return true;
   }
 
+  /// The caller's id, as far as the child has come.
+  [[nodiscard]] std::string_view id_text() const {
+    const std::size_t newline = text_.find('\n');
+    return newline == std::string::npos ? std::string_view("null") : std::string_view(text_).substr(0, newline);
+  }
   /// The answer, where the child has ended well.
-  [[nodiscard]] std::optional<std::string> answer() const { return whole_ ? std::optional(text_) : std::nullopt; }
+  [[nodiscard]] std::optional<LineAnswer> answer() const {
+    if (!whole_) return std::nullopt;
+    const std::size_t letter = text_.find('\n') + 1;
+    return LineAnswer{text_.substr(letter + 1), text_[letter] == kUnreached, text_[letter] == kLimitExceeded};
+  }
 
  private:
   void close_pipe() {
@@ -127,65 +150,31 @@ class Answering {
   std::string text_;
 };
 
-std::string refusal_text(std::string_view line, const std::string& message) {
-  std::string out;
-  JsonWriter writer(out);
-  writer.begin_object().key("id").raw(parse_line(line).id_text).key("error").begin_object();
-  writer.key("code").string("limit_exceeded").key("message").string(message).key("where").string("");
-  writer.end_object().end_object();
-  return out;
-}
-
-/// The same depth, coarsely: two rays of a grid tell more than nothing. Empty for other queries.
-std::string coarse_line(std::string_view line) {
-  Json query = Json::parse(line, nullptr, false);
-  if (!query.is_object() || query.value("query", Json()) != "depth" || query.contains("metric")) return {};
-  const auto convex = [&](const char* body) {
-    const Json type = query.value(body, Json::object()).is_object() ? query[body].value("type", Json()) : Json();
-    return type != "compound" && type != "star";
-  };
-  if (convex("a") && convex("b")) {
-    query["method"] = "grid";
-    query["delta"] = 0.5;
-  } else {
-    query["delta"] = 1;
-  }
-  return query.dump();
-}
-
-/// The coarse answer under the caller's id, its bracket said to be unreached; nothing where it is none.
-std::optional<std::string> as_unreached(const std::string& answer) {
-  constexpr std::string_view kBehind = ",\"translation\":";
-  const std::size_t place = answer.find(kBehind);
-  if (place == std::string::npos || answer.find("\"error\":{") < place) return std::nullopt;
-  if (answer.find("\"bracket_reached\":") < place) return answer;
-  return answer.substr(0, place) + ",\"bracket_reached\":false" + answer.substr(place);
-}
-
 }  // namespace
 
-std::string answer_within(std::string_view line, Session& session, const LineBudget& budget) {
+LineAnswer answer_within(std::string_view line, Session& session, const LineBudget& budget) {
   const Clock::time_point start = Clock::now();
   const auto at = [&](double part) {
     return start +
            std::chrono::microseconds(static_cast<std::int64_t>(1000 * part * static_cast<double>(budget.milliseconds)));
   };
-  Answering full(line, session, budget);
-  if (!full.started()) return refusal_text(line, "the system has no process left for this line");
+  Answering full(line, session, budget, Care::full);
+  if (!full.started()) return refuse_line("null", "the system has no process left for this line");
   bool ended = full.gather(budget.milliseconds > 0 ? std::optional(at(0.5)) : std::nullopt);
-  std::optional<std::string> coarse;
+  std::optional<LineAnswer> coarse;
   if (!ended) {
-    const std::string roughly = coarse_line(line);
-    std::optional<Answering> other;
-    if (!roughly.empty()) other.emplace(roughly, session, budget);
+    Answering other(line, session, budget, Care::coarse);
     ended = full.gather(at(1));
     // What the coarse run has by now; it had half the time.
-    if (!ended && other && other->gather(at(1)) && other->answer()) coarse = as_unreached(*other->answer());
+    if (!ended && other.gather(at(1))) coarse = other.answer();
   }
-  if (ended && full.answer()) return *full.answer();
-  if (coarse) return *coarse;
-  return refusal_text(line, ended ? "the process of this line ended before its answer"
-                                  : "not answered within " + std::to_string(budget.milliseconds) + " ms (--max-time)");
+  if (ended) {
+    if (auto answer = full.answer()) return *std::move(answer);
+  }
+  if (coarse) return *std::move(coarse);
+  return refuse_line(full.id_text(),
+                     ended ? "the process of this line ended before its answer"
+                           : "not answered within " + std::to_string(budget.milliseconds) + " ms (--max-time)");
 }
 
 }  // namespace pd::query

@@ -17,10 +17,11 @@ struct LineBudget {
   [[nodiscard]] bool bounded() const { return milliseconds > 0 || megabytes > 0; }
 };
 
-/// Answers a line as `answer_line` does, within the budget. A depth that is not ready by then is answered by the
+/// Answers a line as `answer_line` does, within the budget: reading it counts, too, and happens in the line's process
+/// alone. A depth that is not ready by then is answered by the
 /// certified bracket of a coarse run that starts at half the time, with "bracket_reached": false; every other line by
 /// limit_exceeded. A line that brings its process down is answered so, too. Costs two processes at most, about a
 /// millisecond each.
-[[nodiscard]] std::string answer_within(std::string_view line, Session& session, const LineBudget& budget);
+[[nodiscard]] LineAnswer answer_within(std::string_view line, Session& session, const LineBudget& budget);
 
 }  // namespace pd::query

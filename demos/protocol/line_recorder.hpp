@@ -1,14 +1,16 @@
 /// @file
 /// Lines kept for later: every query, or those that took long or missed their bracket, as they came.
 ///
-/// A record is a file of the protocol: `pdepth query` replays it, and its answers have the same bits.
+/// A record is a file of the protocol: `pdepth query` replays it, and its answers have the same bits. Several processes
+/// may append to one record: a line is one write.
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <mutex>
 #include <string>
 #include <string_view>
+
+#include "protocol/answer_line.hpp"
 
 namespace pd::query {
 
@@ -21,20 +23,24 @@ struct RecordSettings {
 /// Shared by the threads that answer.
 class LineRecorder {
  public:
-  /// Opens the file for appending.
+  /// Opens the file for appending. A last line that was cut short (a full disk, a killed process) is ended first.
   explicit LineRecorder(RecordSettings settings);
+  ~LineRecorder();
+  LineRecorder(const LineRecorder&) = delete;
+  LineRecorder& operator=(const LineRecorder&) = delete;
 
-  /// False when the file could not be opened or written.
-  [[nodiscard]] bool good() const { return settings_.path.empty() || file_.good(); }
+  /// False when the file could not be opened or written; errno says why after the constructor.
+  [[nodiscard]] bool good() const { return settings_.path.empty() || good_; }
   [[nodiscard]] bool active() const { return !settings_.path.empty(); }
 
   /// Keeps the line where the settings ask for it.
-  void keep(std::string_view line, std::string_view answer, double milliseconds);
+  void keep(std::string_view line, const LineAnswer& answer, double milliseconds);
 
  private:
   RecordSettings settings_;
   std::mutex mutex_;
-  std::ofstream file_;
+  int file_ = -1;
+  bool good_ = false;
 };
 
 }  // namespace pd::query

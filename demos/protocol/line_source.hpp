@@ -1,12 +1,17 @@
 /// @file
-/// Lines out of a file descriptor, as soon as they are there, never holding more than one line's limit.
+/// Lines out of a file descriptor, as soon as they are there, never holding more than one line's limit; and text into
+/// one.
 #pragma once
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pd::query {
+
+/// Writes the whole text, in one call where the system takes it so. False, with errno, where it cannot be written.
+[[nodiscard]] bool write_all(int descriptor, std::string_view text);
 
 class LineSource {
  public:

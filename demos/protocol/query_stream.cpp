@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -38,13 +37,7 @@ class AnswerSink {
     return flush_each_ || pending_.size() >= kGathered ? flush() : true;
   }
   bool flush() {
-    std::size_t done = 0;
-    while (done < pending_.size()) {
-      const ssize_t wrote = ::write(descriptor_, pending_.data() + done, pending_.size() - done);
-      if (wrote < 0 && errno == EINTR) continue;
-      if (wrote <= 0) return false;
-      done += static_cast<std::size_t>(wrote);
-    }
+    if (!write_all(descriptor_, pending_)) return false;
     pending_.clear();
     return true;
   }
@@ -64,13 +57,13 @@ class Answerer {
   [[nodiscard]] Session session() const { return {.limits = settings_.limits}; }
 
   std::string operator()(const std::string& line, bool oversized, Session& session) const {
-    if (oversized) return answer_oversized_line(session.limits);
+    if (oversized) return answer_oversized_line(session.limits).text;
     const auto start = std::chrono::steady_clock::now();
-    std::string answer =
+    LineAnswer answer =
         settings_.budget.bounded() ? answer_within(line, session, settings_.budget) : answer_line(line, session);
     const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
     recorder_.keep(line, answer, spent.count());
-    return answer;
+    return std::move(answer.text);
   }
 
  private:

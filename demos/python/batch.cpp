@@ -2,23 +2,28 @@
 
 #include <pybind11/stl.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <memory>
-#include <mutex>
-#include <thread>
 
 #include "pd/depth/derivatives.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/warm_certificate.hpp"
+#include "python/rows.hpp"
 
 namespace pd::python {
 
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// `row(i, workspace)` for every row, on `threads` threads.
+template <class Row>
+void for_each_row(std::int64_t count, int threads, Row&& row) {
+  python::for_each_row(
+      count, threads, []() -> Workspace& { return workspace(); }, row);
+}
 
 /// Bodies or poses of the rows: one for each, or one for all.
 struct Pairs {
@@ -324,34 +329,6 @@ py::dict manifold_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handl
 }
 
 }  // namespace
-
-void for_each_row(std::int64_t count, int threads, const std::function<void(std::int64_t, Workspace&)>& row) {
-  std::atomic<std::int64_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  // Small enough that the last piece keeps nobody waiting, large enough that taking one costs nothing.
-  const std::int64_t piece = std::clamp<std::int64_t>(count / (8 * std::max(threads, 1)), 1, 64);
-  const auto work = [&] {
-    try {
-      Workspace& space = workspace();
-      for (;;) {
-        const std::int64_t begin = next.fetch_add(piece);
-        if (begin >= count) return;
-        for (std::int64_t i = begin; i < std::min(begin + piece, count); ++i) row(i, space);
-      }
-    } catch (...) {
-      const std::scoped_lock lock(mutex);
-      if (!failure) failure = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (std::int64_t t = 1; t < std::min<std::int64_t>(threads, count); ++t) others.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
 
 void bind_batch_queries(py::module_& module) {
   module.def("depth_rows", &depth_rows);

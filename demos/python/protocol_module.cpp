@@ -5,14 +5,10 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
-#include <exception>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "audit/audit_answer.hpp"
@@ -20,6 +16,7 @@
 #include "mesh/mesh_file.hpp"
 #include "protocol/answer_line.hpp"
 #include "python/arrays.hpp"
+#include "python/rows.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::python {
@@ -29,34 +26,19 @@ namespace {
 std::string answer(const std::string& line) {
   const py::gil_scoped_release unlocked;
   thread_local query::Session session;
-  return query::answer_line(line, session);
+  return query::answer_line(line, session).text;
 }
 
 /// Lines answered by several threads, in their order; the same bytes for any number of threads.
 std::vector<std::string> answer_many(const std::vector<std::string>& lines, int threads) {
   const py::gil_scoped_release unlocked;
   std::vector<std::string> answers(lines.size());
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      query::Session session;
-      for (std::size_t i = next++; i < lines.size(); i = next++) answers[i] = query::answer_line(lines[i], session);
-    } catch (...) {
-      const std::scoped_lock lock(mutex);
-      if (!failure) failure = std::current_exception();
-      next = lines.size();
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(threads), lines.size()); ++t) {
-      others.emplace_back(work);
-    }
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  for_each_row(
+      static_cast<std::int64_t>(lines.size()), threads, [] { return query::Session(); },
+      [&](std::int64_t i, query::Session& session) {
+        const auto line = static_cast<std::size_t>(i);
+        answers[line] = query::answer_line(lines[line], session).text;
+      });
   return answers;
 }
 
@@ -75,6 +57,16 @@ py::tuple mesh_points(const std::string& path, bool check) {
   }
 }
 
+struct Input {
+  explicit Input(int opened) : descriptor(opened) {}
+  ~Input() {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+  int descriptor;
+};
+
 /// A record in a file, judged: the JSON answer of the protocol, and the table for people.
 py::tuple audit(const std::string& path, double tolerance, int threads, std::size_t worst, const std::string& fail_on) {
   audit::AuditSettings settings;
@@ -87,14 +79,15 @@ py::tuple audit(const std::string& path, double tolerance, int threads, std::siz
   } catch (const query::Refusal& refusal) {
     refuse(refusal.code, refusal.message, "fail_on");
   }
-  const int input = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (input < 0) refuse("unreadable_file", std::strerror(errno), path);
+  const Input input{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (input.descriptor < 0) refuse("unreadable_file", std::strerror(errno), path);
   audit::Audit result;
   {
     const py::gil_scoped_release unlocked;
-    audit::audit_record(input, settings, {}, result);
+    Interrupts interrupts;
+    const auto seen = [&](const auto&...) { interrupts.hear(); };
+    audit::audit_record(input.descriptor, settings, seen, result);
   }
-  ::close(input);
   if (result.end == audit::Audit::End::unreadable) refuse("unreadable_file", "cannot be read to its end", path);
   py::list refusals;
   for (const audit::RefusedLine& line : result.summary.refusals()) {

@@ -1,5 +1,7 @@
 /// @file
 /// What one line may cost: points counted while they are read, a bound of time and of memory, records of lines, Ctrl-C.
+#include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "protocol/line_budget.hpp"
 #include "protocol_lines.hpp"
@@ -75,7 +78,7 @@ TEST(LineLimits, ListsThatAreNoPointsAreReadAsEver) {
 TEST(LineBudget, AnOrdinaryLineHasItsOrdinaryAnswer) {
   Session session;
   const std::string line = R"({"id":3,"query":"hull","a":)" + std::string(kUnitBox) + "}";
-  Json within = Json::parse(answer_within(line, session, {.milliseconds = 60'000, .megabytes = 2'000}));
+  Json within = Json::parse(answer_within(line, session, {.milliseconds = 60'000, .megabytes = 2'000}).text);
   Json without = answer(line);
   within.erase("stats");
   without.erase("stats");
@@ -88,7 +91,7 @@ TEST(LineBudget, TimeEndsWithTheBracketSoFar) {
   const std::string line =
       R"({"id":"slow","query":"depth","method":"grid","delta":1e-9,"a":{"type":"ellipsoid","radii":[1,1.0001,1.0002]},)"
       R"("b":{"type":"ellipsoid","radii":[1,1.0003,1.0001]},"pose_b":{"quaternion_wxyz":[0.5,0.5,0.5,0.5]}})";
-  const Json cut = Json::parse(answer_within(line, session, {.milliseconds = 100, .megabytes = 0}));
+  const Json cut = Json::parse(answer_within(line, session, {.milliseconds = 100, .megabytes = 0}).text);
   EXPECT_EQ(cut.at("id"), "slow");
   if (code_of(cut).empty()) {
     EXPECT_EQ(cut.at("bracket_reached"), false);
@@ -104,10 +107,65 @@ TEST(LineBudget, TimeEndsWithTheBracketSoFar) {
   // again.
   bool refused = false;
   for (int i = 0; i < 25 && !refused; ++i) {
-    refused =
-        code_of(Json::parse(answer_within(hull, session, {.milliseconds = 2, .megabytes = 0}))) == "limit_exceeded";
+    refused = code_of(Json::parse(answer_within(hull, session, {.milliseconds = 2, .megabytes = 0}).text)) ==
+              "limit_exceeded";
   }
   EXPECT_TRUE(refused);
+}
+
+/// The coarse run starts where half the time is over: before that, a line that asks for no body brought the stream
+/// down.
+TEST(LineBudget, ALineWithoutABodyIsRefused) {
+  Session session;
+  for (const char* rest : {"", R"(,"b":null)", R"(,"b":[])", R"(,"b":{"type":7})"}) {
+    const std::string line =
+        R"({"id":1,"query":"depth","a":{"type":"convex","vertices":)" + list_of_points(5'000) + "}" + rest + "}";
+    for (int i = 0; i < 10; ++i) {
+      const Json reply = Json::parse(answer_within(line, session, {.milliseconds = 2, .megabytes = 100}).text);
+      EXPECT_NE(code_of(reply), "") << reply;
+    }
+  }
+}
+
+TEST(LineBudget, WordsInAnIdAreNoAnswer) {
+  Session session;
+  const LineBudget budget{.milliseconds = 60'000, .megabytes = 0};
+  // What the answer says is set in data: an id that holds the same words changes nothing.
+  const std::string id =
+      R"({"bracket_reached":false,"code":"limit_exceeded","error":{"code":"limit_exceeded"},"translation":[1]})";
+  const std::string line = R"({"id":)" + id + R"(,"query":"hull","a":)" + kUnitBox + "}";
+  for (const query::LineAnswer& answer : {answer_within(line, session, budget), query::answer_line(line, session)}) {
+    EXPECT_TRUE(answer.text.starts_with(R"({"id":)" + id + ",\"vertices\"")) << answer.text;
+    EXPECT_FALSE(answer.unreached);
+    EXPECT_FALSE(answer.limit_exceeded);
+  }
+  const std::string depth = R"({"id":)" + id + R"(,"query":"depth","a":)" + kUnitBox + R"(,"b":)" + kUnitBox + "}";
+  const auto coarse = query::answer_coarsely(depth, session);
+  ASSERT_TRUE(coarse.has_value());
+  EXPECT_TRUE(coarse->unreached);
+  EXPECT_EQ(Json::parse(coarse->text).at("bracket_reached"), false);
+  EXPECT_TRUE(coarse->text.starts_with(R"({"id":)" + id + ",\"class\"")) << coarse->text;
+  session.limits.max_vertices = 2;
+  const query::LineAnswer limited =
+      answer_within(R"({"id":)" + id + R"(,"query":"hull","a":{"type":"convex","vertices":)" + list_of_points(3) + "}}",
+                    session, budget);
+  EXPECT_TRUE(limited.limit_exceeded);
+  EXPECT_TRUE(limited.text.starts_with(R"({"id":)" + id + ",\"error\"")) << limited.text;
+}
+
+/// The parent holds the line and nothing of what it says: the line's own process meets the limits, while it reads.
+TEST(LineBudget, TheIdIsKnownBeforeTheLineIsRead) {
+  Session session;
+  std::string line = R"({"id":[1.0, 2],"query":"hull","x":[)";
+  for (int i = 0; i < 1'500'000; ++i) line += "{},";
+  line += "{}]}";
+  for (int i = 0; i < 25; ++i) {  // a machine may be so quick, or so slow, that another limit ends the line
+    const query::LineAnswer answer = answer_within(line, session, {.milliseconds = 20, .megabytes = 0});
+    EXPECT_EQ(code_of(Json::parse(answer.text)), "limit_exceeded");
+    EXPECT_TRUE(answer.limit_exceeded);
+    if (answer.text.starts_with(R"({"id":[1.0, 2],"error")")) return;
+  }
+  ADD_FAILURE() << "the id was never known";
 }
 
 TEST(LineBudget, MemoryEndsTheLineAndNoOther) {
@@ -117,9 +175,10 @@ TEST(LineBudget, MemoryEndsTheLineAndNoOther) {
   Session session;
   const std::string line =
       R"({"id":1,"query":"hull","a":{"type":"convex","vertices":)" + list_of_points(1'000'000) + "}}";
-  EXPECT_EQ(code_of(Json::parse(answer_within(line, session, {.milliseconds = 0, .megabytes = 1}))), "limit_exceeded");
+  EXPECT_EQ(code_of(Json::parse(answer_within(line, session, {.milliseconds = 0, .megabytes = 1}).text)),
+            "limit_exceeded");
   const std::string next = R"({"id":2,"query":"hull","a":)" + std::string(kUnitBox) + "}";
-  EXPECT_EQ(code_of(Json::parse(answer_within(next, session, {.milliseconds = 0, .megabytes = 400}))), "");
+  EXPECT_EQ(code_of(Json::parse(answer_within(next, session, {.milliseconds = 0, .megabytes = 400}).text)), "");
 }
 
 class ProgramWithFiles : public ::testing::Test, protected TemporaryFolder {
@@ -148,6 +207,43 @@ TEST_F(ProgramWithFiles, ARecordReplaysToTheSameBits) {
   ASSERT_EQ(run(program_ + " query lines --record none --record-above 1e9 > answers"), 0);
   EXPECT_EQ(read("none"), "");
   EXPECT_EQ(run(program_ + " query lines --record /nowhere/to/be > answers 2> words"), 1);
+  // An id that holds the words of a limit is none.
+  write("fooling", R"({"id":{"code":"limit_exceeded","bracket_reached":false},"query":"hull","a":)" +
+                       std::string(kUnitBox) + "}\n");
+  ASSERT_EQ(run(program_ + " query fooling --record fooled --record-unreached > answers"), 0);
+  EXPECT_EQ(read("fooled"), "");
+}
+
+TEST_F(ProgramWithFiles, RecordsAreAppendedLineByLine) {
+  const std::string line = R"({"query":"hull","a":)" + std::string(kUnitBox) + "}\n";
+  // A line that a full disk has cut is not glued to the next.
+  write("record", line.substr(0, 20));
+  write("lines", line);
+  ASSERT_EQ(run(program_ + " query lines --record record > answers"), 0);
+  EXPECT_EQ(read("record"), line.substr(0, 20) + "\n" + line);
+  // Several programs that append to one record.
+  std::string many;
+  const std::string long_line = R"({"id":")" + std::string(5'000, 'x') + R"(","query":"hull","a":)" + kUnitBox + "}\n";
+  for (int i = 0; i < 300; ++i) many += long_line;
+  write("many", many);
+  ASSERT_EQ(run("for i in 1 2 3; do " + program_ + " query many --threads 2 --record shared > answers$i & done; wait"),
+            0);
+  std::istringstream lines(read("shared"));
+  int count = 0;
+  for (std::string each; std::getline(lines, each); ++count) ASSERT_EQ(each + "\n", long_line) << count;
+  EXPECT_EQ(count, 900);
+}
+
+TEST_F(ProgramWithFiles, ARecordIsNotItsOwnInput) {
+  const std::string line = R"({"query":"hull","a":)" + std::string(kUnitBox) + "}\n";
+  for (const char* command : {" query lines --record lines > answers", " query - --record lines < lines > answers",
+                              " query lines --record link > answers", " query lines >> lines"}) {
+    write("lines", line);
+    if (!std::filesystem::exists(path() / "link")) std::filesystem::create_symlink("lines", path() / "link");
+    EXPECT_EQ(run("ulimit -f 1000; " + program_ + command + " 2> words"), 2) << command;
+    EXPECT_EQ(read("lines"), line) << command;
+    EXPECT_NE(read("words").find("is the input"), std::string::npos) << read("words");
+  }
 }
 
 TEST_F(ProgramWithFiles, MinimiseKeepsWhatThePredicateAsksFor) {
@@ -161,6 +257,43 @@ TEST_F(ProgramWithFiles, MinimiseKeepsWhatThePredicateAsksFor) {
             Json::parse(R"({"query":"hull","a":{"type":"convex","vertices":[[0,0,"nan"]]}})"));
   write("fine", R"({"query":"hull","a":{"type":"box","half_extents":[1,1,1]}})");
   EXPECT_EQ(run(program_ + " minimise fine " + predicate + " > small 2> words"), 2);
+}
+
+/// What a run of the program took at its most, and the program's own processes with it, in bytes.
+std::size_t most_memory(const std::string& input, std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), {"pdepth", "query"});
+  arguments.push_back(input.c_str());
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::execv(PDEPTH_PROGRAM, const_cast<char* const*>(arguments.data()));
+    ::_exit(127);
+  }
+  int status = -1;
+  rusage used{};
+  EXPECT_EQ(::wait4(child, &status, 0, &used), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  return static_cast<std::size_t>(used.ru_maxrss) * 1024;
+}
+
+TEST_F(ProgramWithFiles, ALineTakesAFewTimesItsOwnMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's shadow and quarantine take memory of their own";
+#endif
+  constexpr std::size_t kSize = 57'000'000;
+  for (const char* values : {"{},", "[],", "{\"k\":0},", "\"\",", "1,", "[[0,0,0]],"}) {
+    std::string line = R"({"id":1,"query":"hull","x":[)";
+    line.reserve(kSize + 100);
+    while (line.size() < kSize) line += values;
+    line += "0]}";
+    const std::string file = write("long", line);
+    EXPECT_LT(most_memory(file, {}), 8 * kSize) << values;
+    if (values[0] != '{') continue;
+    EXPECT_LT(most_memory(file, {"--max-time", "100", "--max-memory", "100", "--max-vertices", "100"}), 3 * kSize)
+        << values;
+  }
 }
 
 /// A program that waits for its next line: its first answer shows that it is there.

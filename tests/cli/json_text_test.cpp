@@ -92,10 +92,20 @@ TEST(Id, ComesBackAsItCame) {
     const Json reply = Json::parse(text);
     EXPECT_EQ(reply.at("id"), Json::parse(id)) << text;
   }
-  // An integer of any length is not rounded.
-  EXPECT_NE(
-      answer_text(R"({"id":12345678901234567890123456789,"query":"nothing"})").find("12345678901234567890123456789"),
-      std::string::npos);
+}
+
+TEST(Id, ComesBackByteForByte) {
+  for (const char* id :
+       {"12345678901234567890123456789", "-0", "1.0", "1", "1.50", "1E5", "0.1000", "[ 1 , 12345678901234567890123 ]",
+        R"({"z":1.0,"a":{"n":12345678901234567890123,"m":"\u00e9\/"}})", R"("\u0061")", "\"\xC3\xA9\"",
+        R"({"vertices":[[1,2,3.0]],"translation":[1],"bracket_reached":false})"}) {
+    for (const std::string& line : {std::string(R"({"query":"nothing","id": )") + id + " }",
+                                    std::string(R"({"id":)") + id + R"(,"query":"nothing"})",
+                                    std::string(R"({"id":)") + id + R"(,"query":"hull","a":)" + kUnitBox + "}"}) {
+      const std::string text = answer_text(line);
+      EXPECT_TRUE(text.starts_with(std::string(R"({"id":)") + id + ",")) << line << "\n" << text;
+    }
+  }
 }
 
 TEST(Id, IsNullWhereThereIsNone) { EXPECT_TRUE(answer(R"({"query":"nothing"})").at("id").is_null()); }

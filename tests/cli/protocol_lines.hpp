@@ -20,7 +20,7 @@ inline constexpr const char* kUnitBox = R"({"type":"box","half_extents":[1,1,1]}
 inline std::string answer_text(std::string_view line, const query::Limits& limits = {}) {
   query::Session session;
   session.limits = limits;
-  return query::answer_line(line, session);
+  return query::answer_line(line, session).text;
 }
 
 /// The answer to one line. The text is strict JSON, or the test fails here.

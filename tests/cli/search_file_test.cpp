@@ -72,7 +72,7 @@ TEST(SearchFile, ReadsBackWhatWasWritten) {
   // The first line is the query itself.
   Session session;
   const std::string line = recorder.lines().substr(0, recorder.lines().find('\n'));
-  const std::string answered = answer_line(line, session);
+  const std::string answered = answer_line(line, session).text;
   EXPECT_NE(answered.find("\"class\":\"overlapping\""), std::string::npos) << answered;
   std::string depth;
   append_number(depth, answer.depth);
