@@ -1,6 +1,8 @@
 #include "python/arrays.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <type_traits>
 
 namespace pd::python {
 
@@ -32,13 +34,28 @@ void check_dtype(const py::array& array, std::string_view argument) {
          std::string(argument));
 }
 
-void check_integers(const Array& array, std::string_view argument) {
-  for (py::ssize_t i = 0; i < array.size(); ++i) {
-    if (std::abs(array.data()[i]) > 0x1p53) {
-      refuse("bad_value", "integers beyond 2^53 are no doubles; give float64",
-             std::string(argument) + ".flat[" + std::to_string(i) + "]");
-    }
+/// Looks at the integers themselves: 2^53 + 1 as a double is 2^53.
+template <class Integer>
+void check_integers(const py::array& array, std::string_view argument) {
+  constexpr auto kLargest = Integer{1} << 53;
+  const py::array_t<Integer, py::array::c_style> integers(array);
+  for (py::ssize_t i = 0; i < integers.size(); ++i) {
+    const Integer value = integers.data()[i];
+    if (value <= kLargest && (!std::is_signed_v<Integer> || value >= -kLargest)) continue;
+    refuse("bad_value", "integers beyond 2^53 are no doubles; give float64",
+           std::string(argument) + ".flat[" + std::to_string(i) + "]");
   }
+}
+
+/// Whatever numpy makes of a value. @throws Refused where it makes nothing of it, Python's own error where that says
+/// nothing about the value: no memory, Ctrl-C.
+py::array any_array(py::handle value, std::string_view argument, std::initializer_list<py::ssize_t> shape) {
+  try {
+    return py::array(py::reinterpret_borrow<py::object>(value));
+  } catch (py::error_already_set& error) {
+    if (error.matches(PyExc_MemoryError) || !error.matches(PyExc_Exception)) throw;
+  }
+  refuse("bad_value", "no array of numbers; give one of shape " + words_of(shape), std::string(argument));
 }
 
 }  // namespace
@@ -56,11 +73,7 @@ void refuse(const Error& error, std::string_view argument) {
 
 Array read_array(py::handle value, std::string_view argument, std::initializer_list<py::ssize_t> shape) {
   if (value.is_none()) refuse("missing_field", "give an array of shape " + words_of(shape), std::string(argument));
-  const py::array array = py::array::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    refuse("bad_value", "no array of numbers; give one of shape " + words_of(shape), std::string(argument));
-  }
+  const py::array array = any_array(value, argument, shape);
   if (!fits(array, shape, false)) {
     std::string message =
         "has shape " + py::str(array.attr("shape")).cast<std::string>() + ", needs " + words_of(shape);
@@ -68,10 +81,9 @@ Array read_array(py::handle value, std::string_view argument, std::initializer_l
     refuse("bad_value", std::move(message), std::string(argument));
   }
   check_dtype(array, argument);
-  Array doubles = Array::ensure(array);
-  if (!doubles) throw py::error_already_set();
-  if (array.dtype().kind() != 'f' && array.itemsize() == 8) check_integers(doubles, argument);
-  return doubles;
+  if (array.itemsize() == 8 && array.dtype().kind() == 'i') check_integers<std::int64_t>(array, argument);
+  if (array.itemsize() == 8 && array.dtype().kind() == 'u') check_integers<std::uint64_t>(array, argument);
+  return Array(py::object(array));
 }
 
 Vec3 read_vector(py::handle value, std::string_view argument) {
@@ -106,6 +118,8 @@ void use_refused(const py::object& exception_class) {
       instance.attr("code") = error.code;
       instance.attr("where") = error.where;
       PyErr_SetObject(refused.ptr(), instance.ptr());
+    } catch (const py::cast_error& error) {
+      PyErr_SetString(PyExc_TypeError, error.what());
     }
   });
 }

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <typeinfo>
 
 #include "pd/numeric/expected.hpp"
 #include "pd/numeric/vector.hpp"
@@ -51,6 +52,15 @@ T value_of(Expected<T> result, std::string_view argument) {
 /// A numpy array that holds a copy.
 [[nodiscard]] Array array_of(const Vec3& vector);
 [[nodiscard]] Array array_of(const Mat3& matrix);
+
+/// An object of T that `__new__` alone has made holds no value, and raises TypeError wherever one is needed; pybind11
+/// would take fresh memory for it. Requires that T's class is declared.
+template <class T>
+void require_made() {
+  py::detail::get_type_info(typeid(T), true)->operator_new = [](std::size_t) -> void* {
+    throw py::type_error("the object was never made: __new__ alone makes none, call its class");
+  };
+}
 
 /// Declares `Refused` in the module and uses it.
 void bind_refused(py::module_& module);

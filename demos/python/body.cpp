@@ -219,6 +219,7 @@ void bind_shapes(py::module_& module) {
       .def_property_readonly(
           "is_convex", [](const Body& body) { return body.convex() != nullptr; },
           "Whether the shape is one convex body, not a union of parts.");
+  require_made<Body>();
 }
 
 }  // namespace pd::python

@@ -20,7 +20,7 @@ struct PairAnswer {
   py::object b;
 };
 
-const Body& body_of(const py::object& shape) { return *shape.cast<const BodyRef&>(); }
+const Body& body_of(const py::object& shape) { return shape.cast<const Body&>(); }
 
 py::object feature_of(const Body& body, int part, const Feature& feature) {
   if (feature.kind == Feature::Kind::none) return py::none();
@@ -288,6 +288,7 @@ void bind_answer(py::module_& module) {
           "shape_b", [](const PairAnswer& x) { return x.b; }, "B.")
       .def("__repr__", &repr_of_answer)
       .def(py::pickle(&state_of, &answer_of_state));
+  require_made<PairAnswer>();
 }
 
 }  // namespace
@@ -355,6 +356,8 @@ void bind_pair_queries(py::module_& module) {
       .def(py::init<>())
       .def("clear", &WarmCertificate::clear, "Forgets everything.")
       .def_property_readonly("nbytes", &WarmCertificate::memory_bytes, "Bytes held.");
+  require_made<QuerySettings>();
+  require_made<WarmCertificate>();
   module.def("ask", &ask_pair);
   module.def("ask_plain", &ask_plain);
   module.def("directional", &directional_pair);

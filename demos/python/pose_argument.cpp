@@ -131,6 +131,7 @@ void bind_pose(py::module_& module) {
       .def("__hash__", [](const Pose& pose) { return py::hash(py::str(repr_of(pose))); })
       .def("_keywords", &keywords_of)
       .def(py::pickle(&keywords_of, &pose_of_keywords));
+  require_made<Pose>();
 }
 
 }  // namespace pd::python

@@ -9,6 +9,7 @@ import numpy as np
 from ._core import ERRORS
 from ._errors import refused
 from ._queries import CONTACTS, Batch, _rows, _threads
+from ._shapes import shape_fields
 
 #: Fields that are one vector a row: columns of [n, d]. Every other list is joined, with offsets.
 _VECTORS = {"normal", "translation", "witness_a", "witness_b", "direction", "point"}
@@ -148,7 +149,7 @@ def bodies(a, b, pose_a, pose_b):
     def told(shapes):
         for shape in shapes:
             if id(shape) not in known:
-                known[id(shape)] = json.dumps(shape.protocol())
+                known[id(shape)] = json.dumps(shape_fields(shape, "a, b"))
         return spread([known[id(shape)] for shape in shapes], count)
 
     def placed(poses):

@@ -206,11 +206,13 @@ def audit(records, *, tolerance=None, worst=5, fail_on=None, threads=None):
     """
     from . import _protocol
 
+    if not isinstance(records, (str, os.PathLike)) and not hasattr(records, "__iter__"):
+        raise TypeError(f"records: must be a path or an iterable of lines, not {type(records).__name__}")
     if isinstance(records, (str, os.PathLike)):
         return _audit_file(_protocol, os.fspath(records), tolerance, worst, fail_on, threads)
     with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
         for i, record in enumerate(records):
-            plain = record if isinstance(record, str) else _record(record)
+            plain = record if isinstance(record, str) else _record(record, i)
             try:
                 text = plain if isinstance(plain, str) else json.dumps(plain, allow_nan=False)
             except ValueError:
@@ -220,7 +222,9 @@ def audit(records, *, tolerance=None, worst=5, fail_on=None, threads=None):
         return _audit_file(_protocol, file.name, tolerance, worst, fail_on, threads)
 
 
-def _record(record):
+def _record(record, i):
+    if not isinstance(record, dict):
+        raise TypeError(f"records[{i}]: must be a dictionary or a line of JSON, not {type(record).__name__}")
     return {key: _field(key, value) for key, value in record.items()}
 
 

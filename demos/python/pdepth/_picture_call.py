@@ -7,7 +7,7 @@ import os
 import tempfile
 
 from ._errors import refused
-from ._shapes import pose_fields
+from ._shapes import pose_fields, shape_fields
 
 
 def _compiled():
@@ -27,9 +27,9 @@ def picture(a, b=None, pose_a=None, pose_b=None, *, size=(960, 540), azimuth=-58
     """
     if b is None and difference:
         raise refused("b: a difference needs two bodies (missing_field)")
-    line = {"a": a.protocol(), "pose_a": pose_fields(pose_a, "pose_a")}
+    line = {"a": shape_fields(a, "a"), "pose_a": pose_fields(pose_a, "pose_a")}
     if b is not None:
-        line.update(b=b.protocol(), pose_b=pose_fields(pose_b, "pose_b"))
+        line.update(b=shape_fields(b, "b"), pose_b=pose_fields(pose_b, "pose_b"))
     width, height = size
     return _compiled().picture(json.dumps(line), int(width), int(height), float(azimuth), float(elevation), bool(difference))
 

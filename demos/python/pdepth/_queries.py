@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _core
 from ._errors import refused
+from ._files import save_arrays
 from ._core import DEFAULTS
 
 #: What the numbers of a batch's `contact` mean.
@@ -50,7 +51,7 @@ class Batch:
 
     def save(self, path):
         """Writes all arrays to an npz file."""
-        np.savez(path, **{name: self[name] for name in self._names})
+        save_arrays(path, {name: self[name] for name in self._names})
 
     def __repr__(self):
         failed = int(np.count_nonzero(self.error))

@@ -116,6 +116,13 @@ class Shape(_core.Shape):
         return png(picture(self))
 
 
+def shape_fields(shape, argument):
+    """A shape as the line protocol writes it."""
+    if not isinstance(shape, Shape):
+        raise TypeError(f"{argument}: must be a shape of pdepth, not {type(shape).__name__}")
+    return shape.protocol()
+
+
 def _again(kind, arguments):
     return kind(**arguments)
 

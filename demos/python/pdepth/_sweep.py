@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import pathlib
 import sys
 import time
@@ -16,6 +15,7 @@ import numpy as np
 from . import _queries
 from ._core import Shape
 from ._errors import refused
+from ._files import save_arrays
 
 
 class Sweep:
@@ -58,16 +58,6 @@ def _is_done(path, digest):
             return str(chunk["inputs"]) == digest
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):  # missing, or cut short
         return False
-
-
-def _write(path, columns, digest):
-    """Whole or not at all: a reader, and a later sweep, never see half a file."""
-    partial = path.with_suffix(f".{os.getpid()}.partial")
-    with open(partial, "wb") as file:
-        np.savez(file, **columns, inputs=np.array(digest))
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(partial, path)
 
 
 class _Progress:
@@ -185,7 +175,7 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
 
     def finish(path, columns, digest, count):
         nonlocal computed
-        _write(path, columns, digest)
+        save_arrays(path, {**columns, "inputs": np.array(digest)})
         computed += 1
         shown.step(count)
 

@@ -1,0 +1,127 @@
+"""What no caller should do: objects never made, numbers that are no doubles, arrays without end, Ctrl-C, wrong types."""
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pdepth
+import pytest
+
+BOX = pdepth.Box([1, 1, 1])
+PACKAGE = os.path.dirname(os.path.dirname(pdepth.__file__))
+
+
+def run(program, *arguments, **options):
+    return subprocess.Popen([sys.executable, "-c", textwrap.dedent(program), *arguments], stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": PACKAGE}, **options)
+
+
+UNMADE = """
+    import gc, sys, pdepth
+    from pdepth import _core
+    kinds = [pdepth.Pose, pdepth.Depth, pdepth.Warm, pdepth.Box, pdepth.Shape, _core.Shape, _core.Settings]
+    box = pdepth.Box([1, 1, 1])
+    uses = [repr, str, lambda x: x.vertices, lambda x: x.rotation, lambda x: x.translation, lambda x: x.depth,
+            lambda x: x.feature_a, lambda x: x.shape_a, lambda x: x.clear(), lambda x: x.nbytes, lambda x: x.is_convex,
+            lambda x: x.facets, lambda x: pdepth.depth(x, box), lambda x: pdepth.depth(box, box, x),
+            lambda x: pdepth.depth(box, box, warm=x), lambda x: pdepth.depth([x, box], box), lambda x: x.__getstate__(),
+            lambda x: x.__reduce__(), lambda x: pdepth.Compound([x]), lambda x: pdepth.query("hull", a=x),
+            lambda x: pdepth.width(x), lambda x: pdepth.picture(x), lambda x: x == x, lambda x: x.matrix]
+    for kind in kinds:
+        for use in uses:
+            made = kind.__new__(kind)
+            try:
+                use(made)
+            except (TypeError, AttributeError, ValueError):
+                pass
+            del made
+        gc.collect()
+    print("alive")
+"""
+
+
+def test_objects_made_by_new_alone_do_no_harm():
+    for _ in range(3):
+        ran = run(UNMADE)
+        out, err = ran.communicate()
+        assert out == "alive\n" and ran.returncode == 0, err
+
+
+def test_a_pose_made_by_new_alone_is_a_type_error():
+    pose = pdepth.Pose.__new__(pdepth.Pose)
+    with pytest.raises(TypeError, match="never made"):
+        repr(pose)
+    with pytest.raises(TypeError):
+        pdepth.depth(BOX, BOX, pose)
+    shape = pdepth.Box.__new__(pdepth.Box)
+    for call in (lambda: pdepth.depth(shape, BOX), lambda: pdepth.depth([shape], BOX), lambda: shape.vertices):
+        with pytest.raises(TypeError):
+            call()
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("batch", ["pdepth.depth(a, b, poses, threads={0})", "pdepth.width(a, poses, threads={0})"])
+def test_ctrl_c_is_heard_at_once(batch, threads):
+    program = f"""
+        import time, numpy as np, pdepth
+        points = np.random.default_rng(1).normal(size=(60, 3))
+        a, b = pdepth.ConvexPolytope(points), pdepth.ConvexPolytope(points[::-1] * 0.9)
+        poses = np.tile(np.eye(4), (200_000, 1, 1))
+        print("begun", flush=True)
+        try:
+            {batch.format(threads)}
+        except KeyboardInterrupt:
+            print("heard", flush=True)
+    """
+    ran = run(program)
+    assert ran.stdout.readline() == "begun\n"
+    time.sleep(1.5)
+    asked = time.monotonic()
+    ran.send_signal(signal.SIGINT)
+    out, err = ran.communicate(timeout=60)
+    assert out == "heard\n", err
+    assert time.monotonic() - asked < 3  # 0.05 s and a row on a machine with nothing else to do
+
+
+def test_integers_that_are_no_doubles_are_refused():
+    for number in (2**53 + 1, -(2**53) - 1, 2**62 + 1, 2**63 + 1):
+        with pytest.raises(pdepth.Refused, match="2\\^53"):
+            pdepth.Box([1, 1, number])
+    for number in (2**53, 2**53 - 1):
+        assert pdepth.Box([1, 1, number]).vertices[-1, 2] == number
+    with pytest.raises(pdepth.Refused, match="2\\^53"):
+        pdepth.Pose(translation=np.array([0, 0, -(2**53) - 1]))
+
+
+def test_an_array_that_does_not_fit_is_a_memory_error():
+    endless = np.broadcast_to(np.float32(0), (2**44, 3))
+    with pytest.raises(MemoryError):
+        pdepth.ConvexPolytope(endless)
+    with pytest.raises(MemoryError):
+        pdepth.depth(BOX, BOX, np.broadcast_to(np.float32(0), (2**42, 4, 4)))
+
+
+def test_wrong_types_are_type_errors():
+    for call in (lambda: pdepth.audit(3), lambda: pdepth.audit([3]), lambda: pdepth.audit(None), lambda: pdepth.picture(3),
+                 lambda: pdepth.picture(BOX, 3), lambda: pdepth.picture(None), lambda: pdepth.width([3]),
+                 lambda: pdepth.hull(["x"])):
+        with pytest.raises(TypeError, match="must be"):
+            call()
+
+
+def test_a_saved_batch_is_whole_or_not_there(tmp_path):
+    batch = pdepth.depth(BOX, BOX, np.tile(np.eye(4), (10, 1, 1)))
+    target = tmp_path / "batch.npz"
+    target.write_bytes(b"older")
+    batch.save(target)
+    with np.load(target) as loaded:
+        assert (loaded["depth"] == 2).all()
+    batch._names = (*batch._names, "broken")  # fails half way
+    before = target.read_bytes()
+    with pytest.raises(KeyError):
+        batch.save(target)
+    batch.broken = None
+    assert target.read_bytes() == before and [path.name for path in tmp_path.iterdir()] == ["batch.npz"]
