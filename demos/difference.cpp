@@ -17,6 +17,7 @@
 #include "scenes/shape_families.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
+#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 #include "support/search_picture.hpp"
 
@@ -117,7 +118,7 @@ int answer_and_draw(const Bodies& bodies, const DemoOptions& options, const std:
   const query::Stopwatch watch;
   const PenetrationDepth answer =
       penetration_depth({&bodies.a.shape, bodies.pose_a}, {&bodies.b.shape, bodies.pose_b}, scratch);
-  if (!write_text(figures, figures_of(bodies, answer, watch.nanoseconds()))) {
+  if (!write_whole_file(figures, figures_of(bodies, answer, watch.nanoseconds()))) {
     return report_failure({ErrorCode::bad_value, figures.string() + " cannot be written", ""});
   }
   const render::Size size{options.width, options.height};
@@ -163,7 +164,7 @@ int write_search_film(const query::SearchFile& search, const SearchPictures& pic
 /// The steps of a recorded search as a strip of frames.
 int draw_search(const query::SearchFile& search, const DemoOptions& options, const std::filesystem::path& folder) {
   if (search.steps.empty()) {
-    fmt::print(stderr, "pdepth: {} holds no steps: no polytope was expanded for that pair\n", options.trace);
+    complain("{} holds no steps: no polytope was expanded for that pair", options.trace);
     return kDemoBadUsage;
   }
   auto created = render::Renderer::create();
@@ -203,11 +204,11 @@ int draw_search(const query::SearchFile& search, const DemoOptions& options, con
 
 int run_difference(const DemoOptions& options) {
   if (!options.inputs.empty() && options.inputs.size() != 2) {
-    fmt::print(stderr, "pdepth: the demo difference takes two meshes, or none\n");
+    complain("the demo difference takes two meshes, or none");
     return kDemoBadUsage;
   }
   if (!options.trace.empty() && !options.inputs.empty()) {
-    fmt::print(stderr, "pdepth: a trace names its bodies itself: give meshes or --trace, not both\n");
+    complain("a trace names its bodies itself: give meshes or --trace, not both");
     return kDemoBadUsage;
   }
   try {
@@ -219,7 +220,7 @@ int run_difference(const DemoOptions& options) {
     const Bodies bodies = options.inputs.empty() ? own_pair() : read_pair(options.inputs);
     return answer_and_draw(bodies, options, folder);
   } catch (const query::Refusal& refusal) {
-    fmt::print(stderr, "pdepth: {}\n", refusal.message);
+    complain("{}", refusal.message);
     return kDemoBadUsage;
   }
 }

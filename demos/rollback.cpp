@@ -391,11 +391,12 @@ Expected<int> run_course(const scenes::World& plan, SolverKind kind, int steps, 
     const std::string time = fmt::format("{:.0f} ms", 1e3 * i * step);
     if (auto error = film_step(film, first, second, said, telling, telling || i == 0, time)) return *std::move(error);
     if (auto error = draw_impacts(guarded, course, known, close_up, whole, folder)) return *std::move(error);
-    if (!write_text(folder / "rollback.json", to_json(course, guarded).dump(2) + "\n")) {
+    if (!write_whole_file(folder / "rollback.json", to_json(course, guarded).dump(2) + "\n")) {
       return Error{ErrorCode::bad_value, "rollback.json cannot be written", folder.string()};
     }
     progress.show(i);
   }
+  if (!csv.finish()) return Error{ErrorCode::bad_value, "rollback.csv cannot be written", folder.string()};
   for (std::size_t k = 0; options.page != nullptr && k < course.impacts.size(); ++k) {
     if (course.impacts[k].plain_depth > 0) figures.push_back(plain_end_figure(course.impacts[k], k + 1));
   }

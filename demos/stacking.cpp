@@ -20,6 +20,7 @@
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
+#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 #include "support/scene_choice.hpp"
 
@@ -109,7 +110,8 @@ struct Run {
   std::vector<std::size_t> frame_steps;  ///< step shown by each frame
 };
 
-void write_csv(const Run& run, const std::filesystem::path& folder) {
+/// @return false where a table cannot be written.
+bool write_csv(const Run& run, const std::filesystem::path& folder) {
   for (const auto& contender : run.contenders) {
     CsvFile csv(folder / fmt::format("{}_{}.csv", run.plan.name, to_string(contender->kind)),
                 "step,time_s,deepest_penetration_m,total_penetration_m,overlapping_pairs,drift_m,kinetic_energy_J,"
@@ -121,7 +123,9 @@ void write_csv(const Run& run, const std::filesystem::path& folder) {
                static_cast<double>(m.contacts), static_cast<double>(m.solver_calls), m.solver_microseconds,
                m.step_microseconds});
     }
+    if (!csv.finish()) return false;
   }
+  return true;
 }
 
 nlohmann::json summary(const Run& run) {
@@ -403,9 +407,11 @@ int run_stacking(const DemoOptions& options) {
         return report_failure({ErrorCode::bad_value, "a record cannot be written", folder.string()});
       }
     }
-    write_csv(run, folder);
+    if (!write_csv(run, folder)) {
+      return report_failure({ErrorCode::bad_value, "a table cannot be written", folder.string()});
+    }
     figures.push_back(summary(run));
-    if (!write_text(folder / "stacking.json", figures.dump(2) + "\n")) {
+    if (!write_whole_file(folder / "stacking.json", figures.dump(2) + "\n")) {
       return report_failure({ErrorCode::bad_value, "stacking.json cannot be written", folder.string()});
     }
     const auto drawn = draw_run(run, options, folder, device);
@@ -415,7 +421,7 @@ int run_stacking(const DemoOptions& options) {
     print_headline(run);
     if (options.page != nullptr) add_to_page(run, options, folder);
     if (interrupted()) {
-      fmt::print(stderr, "pdepth: stopped; what was done is in {}\n", folder.string());
+      complain("stopped; what was done is in {}", folder.string());
       return kDemoInterrupted;
     }
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,7 +14,11 @@
 #include "audit/mesh_cases.hpp"
 #include "commands.hpp"
 #include "line_input.hpp"
+#include "options.hpp"
+#include "pd/numeric/whole_file.hpp"
 #include "scenes/shape_families.hpp"
+#include "support/printable.hpp"
+#include "support/refusal.hpp"
 
 namespace pd::cli {
 
@@ -46,6 +49,7 @@ struct AccuracyArguments {
   std::string meshes;  ///< a folder
   std::string csv;
   std::string report;  ///< a folder
+  bool force = false;
   audit::AccuracySettings settings;
 };
 
@@ -55,13 +59,6 @@ std::vector<std::string> all_families() {
     names.emplace_back(to_string(static_cast<scenes::PairFamily>(f)));
   }
   return names;
-}
-
-bool write_file(const std::string& path, const std::string& text) {
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  if (file == nullptr) return false;
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  return std::fclose(file) == 0 && written;
 }
 
 /// The command that gives the same page again.
@@ -78,6 +75,10 @@ std::string command_of(const AccuracyArguments& arguments) {
 
 int run_accuracy_command(AccuracyArguments arguments) {
   arguments.settings.threads = number_of_threads(arguments.settings.threads);
+  refuse_to_overwrite({arguments.cases}, arguments.csv, "--csv");
+  if (const std::string words = report::foreign_page(arguments.report); !words.empty() && !arguments.force) {
+    query::refuse("bad_value", "--report: " + words, "");
+  }
   const bool own_pairs = !arguments.cases.empty() || !arguments.meshes.empty();
   const auto families = arguments.only_families.empty() && !own_pairs ? all_families() : arguments.only_families;
   std::vector<audit::AccuracySource> sources;
@@ -88,22 +89,22 @@ int run_accuracy_command(AccuracyArguments arguments) {
   std::optional<audit::MeshCases> meshes;
   if (!arguments.meshes.empty()) {
     meshes.emplace(arguments.meshes, arguments.settings);
-    for (const std::string& complaint : meshes->complaints()) fmt::print(stderr, "pdepth: {}\n", complaint);
+    for (const std::string& complaint : meshes->complaints()) complain("{}", complaint);
     if (!meshes->good()) return kBadUsage;
     sources.push_back({"meshes", meshes->path()});
   }
   std::vector<std::string> complaints;
   const auto engines = audit::find_engines(arguments.recorders, arguments.engines, complaints);
-  for (const std::string& complaint : complaints) fmt::print(stderr, "pdepth: {}\n", complaint);
+  for (const std::string& complaint : complaints) complain("{}", complaint);
   if (engines.empty()) {
-    fmt::print(stderr, "pdepth: no engine to ask; build record_peers (PD_WITH_BENCH) or name a --recorder\n");
+    complain("no engine to ask; build record_peers (PD_WITH_BENCH) or name a --recorder");
     return kBadUsage;
   }
   const audit::AccuracyTable table =
       audit::run_engines(engines, sources, arguments.settings, !arguments.report.empty());
-  fmt::print("{}", audit::accuracy_text(table));
-  if (!arguments.csv.empty() && !write_file(arguments.csv, audit::accuracy_csv(table))) {
-    fmt::print(stderr, "pdepth: {} cannot be written\n", arguments.csv);
+  fmt::print("{}", printable(audit::accuracy_text(table), "\n"));
+  if (!arguments.csv.empty() && !write_whole_file(arguments.csv, audit::accuracy_csv(table))) {
+    complain("{} cannot be written", arguments.csv);
     return kFailed;
   }
   const char* judge =
@@ -112,9 +113,10 @@ int run_accuracy_command(AccuracyArguments arguments) {
   if (!arguments.report.empty() &&
       !report::write_page(arguments.report,
                           audit::accuracy_page(table, arguments.settings, judge, command_of(arguments)))) {
-    fmt::print(stderr, "pdepth: {}/report.html cannot be written\n", arguments.report);
+    complain("{}/report.html cannot be written", arguments.report);
     return kFailed;
   }
+  if (!arguments.report.empty()) fmt::print("\npage: {}/report.html\n", printable(arguments.report));
   return table.any_failed() ? kBadUsage : kDone;
 }
 
@@ -148,6 +150,7 @@ void add_accuracy_command(CLI::App& app, Action& action) {
   command->add_option("--meshes", arguments->meshes, "Pairs of hulls of the meshes of this folder")
       ->check(CLI::ExistingDirectory);
   command->add_option("--report", arguments->report, "Write report.html, a page for people, into this folder");
+  command->add_flag("--force", arguments->force, "Replace a report.html that pdepth did not write");
   add_threads_option(*command, settings.threads, "judge");
   command->callback([arguments, &action] { action = [arguments] { return run_accuracy_command(*arguments); }; });
 }

@@ -5,15 +5,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "audit/audit_answer.hpp"
 #include "audit/audit_report.hpp"
 #include "commands.hpp"
 #include "line_input.hpp"
+#include "pd/numeric/whole_file.hpp"
+#include "report/page.hpp"
+#include "support/printable.hpp"
 
 namespace pd::cli {
 
@@ -46,46 +49,20 @@ struct AuditArguments {
   double tolerance = 0;
   audit::AuditSettings settings;
   bool json = false;
-};
-
-/// A file that is written while the audit goes on; closed and checked once.
-class OutputFile {
- public:
-  explicit OutputFile(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {}
-  ~OutputFile() {
-    if (file_ != nullptr) std::fclose(file_);
-  }
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-
-  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
-  void write(const std::string& text) {
-    if (file_ != nullptr) good_ = std::fwrite(text.data(), 1, text.size(), file_) == text.size() && good_;
-  }
-  /// False when it could not be opened, written or closed.
-  [[nodiscard]] bool close() {
-    if (!is_open()) return false;
-    good_ = std::fclose(file_) == 0 && good_;
-    file_ = nullptr;
-    return good_;
-  }
-
- private:
-  std::FILE* file_;
-  bool good_ = true;
+  bool force = false;
 };
 
 void print_refusals(const std::string& record, const audit::AuditSummary& summary) {
   for (const audit::RefusedLine& line : summary.refusals()) {
-    fmt::print(stderr, "pdepth: {}:{}: {}: {}{}\n", record, line.line, line.refusal.code, line.refusal.message,
-               line.refusal.where.empty() ? "" : " at " + line.refusal.where);
+    complain("{}:{}: {}: {}{}", record, line.line, line.refusal.code, line.refusal.message,
+             line.refusal.where.empty() ? "" : " at " + line.refusal.where);
   }
   const auto more = summary.refused() - static_cast<std::int64_t>(summary.refusals().size());
-  if (more > 0) fmt::print(stderr, "pdepth: {}: {} more lines refused\n", record, more);
+  if (more > 0) complain("{}: {} more lines refused", record, more);
 }
 
 int cannot_write(const std::string& file) {
-  fmt::print(stderr, "pdepth: {} cannot be written\n", file);
+  complain("{} cannot be written", file);
   return kFailed;
 }
 
@@ -101,11 +78,17 @@ std::string command_of(const AuditArguments& arguments) {
 int read_record(const AuditArguments& arguments, audit::Audit& result) {
   const InputFile input(arguments.input);
   if (!input.good()) return cannot_read(arguments.input, errno);
-  std::unique_ptr<OutputFile> csv;
+  for (const auto& [option, output] : {std::pair("--csv", &arguments.csv), std::pair("--junit", &arguments.junit)}) {
+    if (!output->empty() && input.is_also(*output)) {
+      query::refuse("bad_value", std::string(option) + ": " + *output + " is the record itself: write to another file",
+                    "");
+    }
+  }
+  std::unique_ptr<WholeFile> csv;
   audit::ContactSeen seen;
   if (!arguments.csv.empty()) {
-    csv = std::make_unique<OutputFile>(arguments.csv);
-    if (!csv->is_open()) return cannot_write(arguments.csv);  // before an hour of judging, not after
+    csv = std::make_unique<WholeFile>(arguments.csv);
+    if (!csv->good()) return cannot_write(arguments.csv);  // before an hour of judging, not after
     csv->write(audit::csv_header());
     seen = [&csv](const audit::RecordedContact& contact, const audit::Judgement& judgement, std::int64_t line) {
       csv->write(audit::csv_row(contact, judgement, line));
@@ -116,7 +99,7 @@ int read_record(const AuditArguments& arguments, audit::Audit& result) {
   const int reason = errno;
   print_refusals(arguments.input, result.summary);
   if (result.end == audit::Audit::End::unreadable) return cannot_read(arguments.input, reason);
-  if (csv != nullptr && !csv->close()) return cannot_write(arguments.csv);
+  if (csv != nullptr && !csv->finish()) return cannot_write(arguments.csv);
   return kDone;
 }
 
@@ -125,30 +108,30 @@ int run_audit(AuditArguments arguments) {
   settings.threads = number_of_threads(settings.threads);
   if (arguments.tolerance > 0) settings.tolerance = arguments.tolerance;
   std::vector<audit::FailCondition> conditions;
-  try {
-    if (!arguments.fail_on.empty()) conditions = audit::parse_fail_conditions(arguments.fail_on);
-  } catch (const query::Refusal& refusal) {
-    fmt::print(stderr, "pdepth: {}\n", refusal.message);
-    return kBadUsage;
+  if (!arguments.fail_on.empty()) conditions = audit::parse_fail_conditions(arguments.fail_on);
+  if (const std::string words = report::foreign_page(arguments.report); !words.empty() && !arguments.force) {
+    query::refuse("bad_value", "--report: " + words, "");
   }
   audit::Audit result;
   if (const int code = read_record(arguments, result); code != kDone) return code;
   const auto outcomes = audit::check(conditions, result.summary);
-  if (!arguments.junit.empty()) {
-    OutputFile junit(arguments.junit);
-    junit.write(audit::audit_junit(result, outcomes, arguments.input));
-    if (!junit.close()) return cannot_write(arguments.junit);
+  if (!arguments.junit.empty() &&
+      !write_whole_file(arguments.junit, audit::audit_junit(result, outcomes, arguments.input))) {
+    return cannot_write(arguments.junit);
   }
-  if (result.end == audit::Audit::End::no_record) return kBadUsage;
+  if (result.end == audit::Audit::End::no_record) {
+    complain("{} is no record of contacts: `pdepth audit --help` shows what one holds", arguments.input);
+    return kBadUsage;
+  }
   if (!arguments.report.empty()) {
     const report::Page page = audit::audit_report(result, outcomes, arguments.input, command_of(arguments));
     if (!report::write_page(arguments.report, page)) return cannot_write(arguments.report + "/report.html");
   }
   const std::string text = arguments.json ? audit::audit_json(result, outcomes) + "\n"
-                                          : audit::audit_table(result, outcomes, arguments.input);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    return cannot_write("the answer");
-  }
+                                          : printable(audit::audit_table(result, outcomes, arguments.input), "\n");
+  fmt::print("{}", text);
+  if (!arguments.report.empty() && !arguments.json)
+    fmt::print("\npage      {}/report.html\n", printable(arguments.report));
   if (!std::all_of(outcomes.begin(), outcomes.end(), [](const auto& outcome) { return outcome.holds; })) {
     return kConditionFails;
   }
@@ -174,6 +157,7 @@ void add_audit_command(CLI::App& app, Action& action) {
   command->add_option("--csv", arguments->csv, "Write a row for each contact to this file");
   command->add_option("--junit", arguments->junit, "Write the conditions as tests to this file");
   command->add_option("--report", arguments->report, "Write report.html, a page for people, into this folder");
+  command->add_flag("--force", arguments->force, "Replace a report.html that pdepth did not write");
   command->add_option("--fail-on", arguments->fail_on, "What is allowed, e.g. missed=0,phantom=0,depth_error=1e-4");
   command->add_option("--worst", settings.worst_kept, "Contacts to show, the worst first")
       ->check(CLI::Range(0, 10'000))

@@ -11,6 +11,8 @@
 
 #include "commands.hpp"
 #include "support/demo_options.hpp"
+#include "support/printable.hpp"
+#include "support/refusal.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "report/page.hpp"
 #include "support/demo_registry.hpp"
@@ -63,6 +65,9 @@ std::string command_of(const DemoArguments& arguments) {
 
 /// Runs demos into folders of their names and writes the page of them all.
 int run_with_report(const DemoArguments& arguments, std::span<const demo::Demo> chosen) {
+  if (const std::string words = report::foreign_page(arguments.report); !words.empty() && !arguments.options.force) {
+    query::refuse("bad_value", "--report: " + words, "");
+  }
   report::Page page;
   const bool one = chosen.size() == 1;
   page.title = one ? std::string(chosen.front().description) : "Penetration depth, exact and certified: all demos";
@@ -80,10 +85,10 @@ int run_with_report(const DemoArguments& arguments, std::span<const demo::Demo> 
     if (const int code = demo.run(options); code != kDone) return code;
   }
   if (!report::write_page(arguments.report, page)) {
-    fmt::print(stderr, "pdepth: {}/report.html cannot be written\n", arguments.report);
+    complain("{}/report.html cannot be written", arguments.report);
     return kFailed;
   }
-  fmt::print("Page: {}/report.html\n", arguments.report);
+  fmt::print("Page: {}/report.html\n", printable(arguments.report));
   return kDone;
 }
 
@@ -95,23 +100,24 @@ int run_demo(DemoArguments arguments) {
   const demo::Demo* demo = demo::find_demo(arguments.name);
   const bool all = arguments.name == "all";
   if (demo == nullptr && !all) {
-    fmt::print(stderr, "pdepth: there is no demo \"{}\"\n{}", arguments.name, demo_list());
+    complain("there is no demo \"{}\"", arguments.name);
+    fmt::print(stderr, "{}", demo_list());
     return kBadUsage;
   }
   demo::DemoOptions& options = arguments.options;
   if (!arguments.size.empty() && !parse_size(arguments.size, options.width, options.height)) {
-    fmt::print(stderr, "pdepth: --size must be WIDTHxHEIGHT, each from 64 to 7680, e.g. 1280x720\n");
+    complain("--size must be WIDTHxHEIGHT, each from 64 to 7680, e.g. 1280x720");
     return kBadUsage;
   }
   if (!options.scene.empty() && (all || !demo->has_scenes)) {
-    fmt::print(stderr, "pdepth: --scene belongs to the demos stacking and rollback\n");
+    complain("--scene belongs to the demos stacking and rollback");
     return kBadUsage;
   }
   options.out = arguments.out;
   if (all && arguments.report.empty()) arguments.report = "pdepth_out/all";
   if (arguments.report.empty() || options.scene == "list") return demo->run(options);
   if (!arguments.out.empty()) {
-    fmt::print(stderr, "pdepth: --report makes the folder of the files itself: leave --out away\n");
+    complain("--report makes the folder of the files itself: leave --out away");
     return kBadUsage;
   }
   return run_with_report(arguments, all ? demo::demos() : std::span(demo, 1));
@@ -122,7 +128,7 @@ int run_demo(DemoArguments arguments) {
 std::string demo_list() { return "This build has no demos: they need Bullet and render.\n"; }
 
 int run_demo(const DemoArguments& /*arguments*/) {
-  fmt::print(stderr, "pdepth: this build has no demos: they need PD_WITH_BULLET and PD_WITH_RENDER\n");
+  complain("this build has no demos: they need PD_WITH_BULLET and PD_WITH_RENDER");
   return kBadUsage;
 }
 

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -12,8 +11,10 @@
 
 #include "commands.hpp"
 #include "options.hpp"
+#include "pd/numeric/whole_file.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
+#include "support/printable.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
 #endif
@@ -170,66 +171,54 @@ int draw_picture(const DepthArguments& arguments, const query::Pair& pair, const
 #else
   (void)pair;
   (void)result;
-  fmt::print(stderr, "pdepth: {}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)\n",
-             arguments.picture);
+  complain("{}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)", arguments.picture);
   return kBadUsage;
 #endif
 }
 
 /// @return whether the file is complete.
 bool write_trace(const std::string& file, const query::SearchRecorder& recorder) {
-  std::FILE* const out = std::fopen(file.c_str(), "wb");
-  bool written = out != nullptr;
-  if (out != nullptr) {
-    const std::string& lines = recorder.lines();
-    written = std::fwrite(lines.data(), 1, lines.size(), out) == lines.size();
-    written = std::fclose(out) == 0 && written;
-  }
-  if (!written) {
-    fmt::print(stderr, "pdepth: {} cannot be written\n", file);
+  if (!write_whole_file(file, recorder.lines())) {
+    complain("{} cannot be written", file);
     return false;
   }
   if (recorder.steps() == 0) {
-    fmt::print(stderr, "pdepth: no polytope was expanded, so {} holds no steps (--method expansion forces one)\n",
-               file);
+    complain("no polytope was expanded, so {} holds no steps (--method expansion forces one)", file);
   }
   return true;
 }
 
 int run_depth(const DepthArguments& arguments) {
-  try {
-    const query::Limits limits{.max_vertices = 50'000'000};
-    const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
-    const query::Pair pair{query::load_mesh_shape(arguments.file_a, limits, as),
-                           query::load_mesh_shape(arguments.file_b, limits, as),
-                           parse_pose(arguments.pose_a, "--pose-a"), parse_pose(arguments.pose_b, "--pose-b")};
-    Scratch scratch;
-    query::SearchRecorder recorder(pair, arguments.method);
-    if (!arguments.trace.empty()) observe_searches(scratch, &recorder);
-    const query::Stopwatch watch;
-    const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, settings_of(arguments));
-    const std::int64_t nanoseconds = watch.nanoseconds();
-    if (!arguments.trace.empty()) {
-      recorder.add_answer(result, pair, nanoseconds);
-      if (!write_trace(arguments.trace, recorder)) return kFailed;
-    }
-    if (arguments.json) {
-      std::string out;
-      query::JsonWriter writer(out);
-      writer.begin_object();
-      query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
-      if (pair.a.hull_note) writer.key("a_is").string("hull");
-      if (pair.b.hull_note) writer.key("b_is").string("hull");
-      writer.end_object();
-      fmt::print("{}\n", out);
-    } else {
-      print_result(arguments, pair, result, nanoseconds);
-    }
-    return arguments.picture.empty() ? kDone : draw_picture(arguments, pair, result);
-  } catch (const query::Refusal& refusal) {
-    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
-    return kBadUsage;
+  refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
+  refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
+  const query::Limits limits{.max_vertices = 50'000'000};
+  const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
+  const query::Pair pair{query::load_mesh_shape(arguments.file_a, limits, as),
+                         query::load_mesh_shape(arguments.file_b, limits, as), parse_pose(arguments.pose_a, "--pose-a"),
+                         parse_pose(arguments.pose_b, "--pose-b")};
+  Scratch scratch;
+  query::SearchRecorder recorder(pair, arguments.method);
+  if (!arguments.trace.empty()) observe_searches(scratch, &recorder);
+  const query::Stopwatch watch;
+  const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, settings_of(arguments));
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  if (!arguments.trace.empty()) {
+    recorder.add_answer(result, pair, nanoseconds);
+    if (!write_trace(arguments.trace, recorder)) return kFailed;
   }
+  if (arguments.json) {
+    std::string out;
+    query::JsonWriter writer(out);
+    writer.begin_object();
+    query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
+    if (pair.a.hull_note) writer.key("a_is").string("hull");
+    if (pair.b.hull_note) writer.key("b_is").string("hull");
+    writer.end_object();
+    fmt::print("{}\n", out);
+  } else {
+    print_result(arguments, pair, result, nanoseconds);
+  }
+  return arguments.picture.empty() ? kDone : draw_picture(arguments, pair, result);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "support/printable.hpp"
 
 namespace pd::cli {
 
@@ -43,8 +45,28 @@ InputFile::~InputFile() {
   if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
 }
 
+namespace {
+
+bool same_regular_file(int read, const struct stat& written) {
+  struct stat status {};
+  return ::fstat(read, &status) == 0 && S_ISREG(status.st_mode) && status.st_dev == written.st_dev &&
+         status.st_ino == written.st_ino;
+}
+
+}  // namespace
+
+bool InputFile::is_also(int output) const {
+  struct stat status {};
+  return ::fstat(output, &status) == 0 && same_regular_file(descriptor_, status);
+}
+
+bool InputFile::is_also(const std::string& output) const {
+  struct stat status {};
+  return ::stat(output.c_str(), &status) == 0 && same_regular_file(descriptor_, status);
+}
+
 int cannot_read(const std::string& path, int reason) {
-  fmt::print(stderr, "pdepth: {}: {}\n", path, std::strerror(reason));
+  complain("{}: {}", path, std::strerror(reason));
   return kBadUsage;
 }
 

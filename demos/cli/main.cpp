@@ -1,13 +1,25 @@
 /// @file
 /// The command `pdepth`: arguments in, subcommand out.
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
+#include "report/page_files.hpp"
+#include "support/printable.hpp"
+#include "support/refusal.hpp"
 
 namespace {
 
@@ -32,14 +44,99 @@ Exit codes:
 
 `pdepth SUBCOMMAND --help` says more.)";
 
+std::string licenses() {
+  return fmt::format(
+      "pdepth: zlib License, Copyright (c) 2026 the pdepth authors\n\nthree.js, in pages and in pdepth itself:\n\n{}",
+      pd::report::kThreeLicense);
+}
+
+/// The subcommand that was meant, within two letters; empty where none is near.
+std::string nearest_subcommand(const CLI::App& app, const std::string& word) {
+  std::string nearest;
+  std::size_t least = 3;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string& name = command->get_name();
+    std::vector<std::size_t> row(name.size() + 1);
+    for (std::size_t k = 0; k <= name.size(); ++k) row[k] = k;
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t corner = row[0]++;
+      for (std::size_t k = 1; k <= name.size(); ++k) {
+        const std::size_t changed = corner + (word[i] != name[k - 1]);
+        corner = row[k];
+        row[k] = std::min({changed, row[k] + 1, row[k - 1] + 1});
+      }
+    }
+    if (row.back() < least) {
+      least = row.back();
+      nearest = name;
+    }
+  }
+  return nearest;
+}
+
+/// What was typed, `help X` as `X --help`.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  if (words.size() > 1) words.resize(1);
+  words.emplace_back("--help");
+  return words;
+}
+
+/// A standard stream that is closed would be the first file to be opened. In its place stands one that cannot be used,
+/// so that writing to it fails.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+/// Parses and runs. @return an exit code
+int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& action) {
+  if (words.empty()) {
+    fmt::print("{}", app.help());
+    return pd::cli::kBadUsage;
+  }
+  const std::string& first = words.front();
+  const std::string meant = nearest_subcommand(app, first);
+  if (!first.starts_with('-') && meant != first) {
+    pd::complain("there is no subcommand \"{}\"; {}", first,
+                 meant.empty() ? "`pdepth --help` lists them" : "did you mean \"" + meant + "\"?");
+    return pd::cli::kBadUsage;
+  }
+  try {
+    std::reverse(words.begin(), words.end());  // as the parser wants them
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, err;
+    const int code = app.exit(error, out, err);
+    fmt::print("{}", out.str());
+    fmt::print(stderr, "{}", pd::printable(err.str(), "\n"));
+    return code == 0 ? pd::cli::kDone : pd::cli::kBadUsage;
+  }
+  try {
+    return action();
+  } catch (const pd::query::Refusal& refusal) {
+    pd::complain("{}{}", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    return pd::cli::kBadUsage;
+  } catch (const std::exception& error) {
+    pd::complain("{}", error.what());
+    return pd::cli::kFailed;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Whole lines and whole frames are written at once, so that what stands there by then is complete.
+  hold_standard_streams();
+  // Whole lines and whole files are written at once, so that what stands there by then is complete.
   std::signal(SIGINT, [](int) { std::_Exit(pd::cli::kInterrupted); });
   CLI::App app("Penetration depth of convex bodies, exact and certified.", "pdepth");
   app.set_version_flag("--version", "pdepth " PDEPTH_VERSION);
   app.footer(kFooter);
+  app.add_flag_callback(
+      "--licenses", [] { throw CLI::CallForVersion(licenses(), 0); }, "Print the licences of what pdepth contains");
   app.require_subcommand(1);
   pd::cli::Action action;
   pd::cli::add_depth_command(app, action);
@@ -51,15 +148,8 @@ int main(int argc, char** argv) {
   pd::cli::add_audit_command(app, action);
   pd::cli::add_accuracy_command(app, action);
   pd::cli::add_demo_command(app, action);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? pd::cli::kDone : pd::cli::kBadUsage;
-  }
-  try {
-    return action();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "pdepth: {}\n", error.what());
-    return pd::cli::kFailed;
-  }
+  const int code = run(app, words_of(argc, argv), action);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  pd::complain("the answer cannot be written: {}", std::strerror(errno));
+  return pd::cli::kFailed;
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "support/printable.hpp"
 
 namespace pd::cli {
 
@@ -64,6 +65,8 @@ class Minimiser {
     ++asked_;
     std::FILE* const pipe = ::popen(predicate_.c_str(), "w");
     if (pipe == nullptr) throw std::runtime_error("the predicate cannot be started");
+    // Nothing is left to be written when it closes: a predicate that reads nothing would seem to have failed.
+    (void)std::setvbuf(pipe, nullptr, _IONBF, 0);
     const std::string text = line.dump() + "\n";
     (void)std::fwrite(text.data(), 1, text.size(), pipe);
     const int status = ::pclose(pipe);
@@ -145,7 +148,7 @@ int run_minimise(const MinimiseArguments& arguments) {
   if (arguments.input != "-") {
     file.open(arguments.input);
     if (!file) {
-      fmt::print(stderr, "pdepth: {}: cannot be read\n", arguments.input);
+      complain("{}: cannot be read", arguments.input);
       return kBadUsage;
     }
   }
@@ -154,13 +157,13 @@ int run_minimise(const MinimiseArguments& arguments) {
   }
   Json line = Json::parse(text, nullptr, false);
   if (!line.is_object()) {
-    fmt::print(stderr, "pdepth: {}: its first line is no JSON object\n", arguments.input);
+    complain("{}: its first line is no JSON object", arguments.input);
     return kBadUsage;
   }
   std::signal(SIGPIPE, SIG_IGN);  // a predicate need not read its input
   Minimiser minimiser(std::move(line), arguments.predicate);
   if (!minimiser.holds()) {
-    fmt::print(stderr, "pdepth: the predicate does not hold for the line as it stands\n");
+    complain("the predicate does not hold for the line as it stands");
     return kBadUsage;
   }
   fmt::print("{}\n", minimiser.run().dump());

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <system_error>
 
 #include "files/decimal_number.hpp"
+#include "support/printable.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {
@@ -29,7 +32,24 @@ std::string refuse_other_pictures(const std::string& file) {
   return std::filesystem::path(file).extension() == ".png" ? "" : file + ": pictures are written as PNG: name it *.png";
 }
 
-void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, value); }
+std::string refuse_other_meshes(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension.empty() || extension == ".obj" ? "" : file + ": the hull is written as OBJ: name it *.obj";
+}
+
+void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option) {
+  for (const std::string& input : inputs) {
+    std::error_code missing;  // equal to nothing
+    if (!output.empty() && !input.empty() && std::filesystem::equivalent(input, output, missing)) {
+      query::refuse("bad_value", std::string(option) + ": " + output + " is the input itself: write to another file",
+                    "");
+    }
+  }
+}
+
+void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, printable(value)); }
 
 std::string duration_in_words(std::int64_t nanoseconds) {
   const auto t = static_cast<double>(nanoseconds);

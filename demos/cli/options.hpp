@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,13 @@ namespace pd::cli {
 
 /// A check for options: the commands write one format, whatever the file is called.
 [[nodiscard]] std::string refuse_other_pictures(const std::string& file);
+
+/// A check for options: hulls are written as OBJ, whatever the file is called.
+[[nodiscard]] std::string refuse_other_meshes(const std::string& file);
+
+/// Refuses to write over what is read: a Refusal where an output is one of the inputs, by whatever name. `option` is
+/// named in it. An empty name is no file.
+void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option);
 
 /// A line of an answer for people: its name and its value.
 void print_row(std::string_view name, const std::string& value);

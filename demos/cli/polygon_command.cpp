@@ -15,6 +15,7 @@
 #include "pd/planar/polygon_depth.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/polygon_answer.hpp"
+#include "support/printable.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/polygon_picture.hpp"
 #endif
@@ -193,36 +194,34 @@ int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, con
   (void)pair;
   (void)r;
   (void)result;
-  fmt::print(stderr, "pdepth: {}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)\n",
-             arguments.picture);
+  complain("{}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)", arguments.picture);
   return kBadUsage;
 #endif
 }
 
+/// FILE.svg of FILE.svg#ID.
+std::string file_of(const std::string& argument) { return argument.substr(0, argument.rfind('#')); }
+
 int run_polygon(const PolygonArguments& arguments) {
-  try {
-    const PolygonPair pair = read_pair(arguments);
-    const query::Stopwatch watch;
-    const Expected<PolygonDifference> r = PolygonDifference::of(pair.p.polygon, pair.q.polygon);
-    if (!r) query::refuse(to_string(r.error().code), r.error().message, r.error().where);
-    const PolygonDepth result = answer_of(pair, *r);
-    const std::int64_t nanoseconds = watch.nanoseconds();
-    if (arguments.json) {
-      std::string out;
-      query::JsonWriter writer(out);
-      writer.begin_object();
-      query::write_polygon_answers({result}, false, writer);
-      query::write_polygon_statistics(*r, nanoseconds, writer);
-      writer.end_object();
-      fmt::print("{}\n", out);
-    } else {
-      print_result(arguments, pair, *r, result, nanoseconds);
-    }
-    return arguments.picture.empty() ? kDone : draw_picture(arguments, pair, *r, result);
-  } catch (const query::Refusal& refusal) {
-    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
-    return kBadUsage;
+  refuse_to_overwrite({file_of(arguments.file_p), file_of(arguments.file_q)}, arguments.picture, "--picture");
+  const PolygonPair pair = read_pair(arguments);
+  const query::Stopwatch watch;
+  const Expected<PolygonDifference> r = PolygonDifference::of(pair.p.polygon, pair.q.polygon);
+  if (!r) query::refuse(to_string(r.error().code), r.error().message, r.error().where);
+  const PolygonDepth result = answer_of(pair, *r);
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  if (arguments.json) {
+    std::string out;
+    query::JsonWriter writer(out);
+    writer.begin_object();
+    query::write_polygon_answers({result}, false, writer);
+    query::write_polygon_statistics(*r, nanoseconds, writer);
+    writer.end_object();
+    fmt::print("{}\n", out);
+  } else {
+    print_result(arguments, pair, *r, result, nanoseconds);
   }
+  return arguments.picture.empty() ? kDone : draw_picture(arguments, pair, *r, result);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "line_input.hpp"
 #include "protocol/query_stream.hpp"
+#include "support/printable.hpp"
 
 namespace pd::cli {
 
@@ -29,11 +30,20 @@ struct QueryArguments {
   query::StreamSettings settings;
 };
 
+int refuse_input(const std::string& output, const std::string& input) {
+  complain("{} is the input {} itself: write to another file", output, input == "-" ? "on standard input" : input);
+  return kBadUsage;
+}
+
 int run_query(QueryArguments arguments) {
   query::StreamSettings& settings = arguments.settings;
   settings.threads = number_of_threads(settings.threads);
   const InputFile input(arguments.input);
   if (!input.good()) return cannot_read(arguments.input, errno);
+  if (input.is_also(STDOUT_FILENO)) return refuse_input("standard output", arguments.input);
+  if (!settings.record.path.empty() && input.is_also(settings.record.path)) {
+    return refuse_input("--record " + settings.record.path, arguments.input);
+  }
   const query::StreamEnd end = query::answer_stream(input.descriptor(), STDOUT_FILENO, settings);
   const int reason = errno;
   switch (end) {
@@ -42,8 +52,8 @@ int run_query(QueryArguments arguments) {
     case query::StreamEnd::unreadable:
       return cannot_read(arguments.input, reason);
     case query::StreamEnd::unwritable:
-      fmt::print(stderr, "pdepth: the answers{} cannot be written: {}\n",
-                 settings.record.path.empty() ? "" : " or the record", std::strerror(reason));
+      complain("the answers{} cannot be written: {}", settings.record.path.empty() ? "" : " or the record",
+               std::strerror(reason));
       return kFailed;
   }
   return kFailed;

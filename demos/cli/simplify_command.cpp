@@ -4,17 +4,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "mesh/mesh_file.hpp"
+#include "options.hpp"
 #include "pd/dimension/approximate_body.hpp"
+#include "pd/numeric/whole_file.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/pair_reader.hpp"
+#include "support/printable.hpp"
 #include "support/refusal.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/simplify_picture.hpp"
@@ -63,20 +66,19 @@ Excess measure(const ConvexPolytope& hull, const std::vector<Vec3>& points) {
 }
 
 bool write_obj(const ConvexPolytope& hull, const SimplifyArguments& arguments) {
-  std::FILE* file = std::fopen(arguments.output.c_str(), "w");
-  if (file == nullptr) return false;
-  fmt::print(file, "# convex hull of {}, {}, epsilon {}\n", arguments.input, arguments.side, arguments.epsilon);
+  std::string text = fmt::format("# convex hull of {}, {}, epsilon {}\n", printable(arguments.input), arguments.side,
+                                 arguments.epsilon);
+  const auto out = std::back_inserter(text);
   for (int v = 0; v < hull.num_vertices(); ++v) {
     const Vec3 p = hull.vertex(v);
-    fmt::print(file, "v {} {} {}\n", p.x(), p.y(), p.z());
+    fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
   }
   for (int f = 0; f < hull.num_facets(); ++f) {
-    fmt::print(file, "f");
-    for (const std::int32_t v : hull.facet_vertices(f)) fmt::print(file, " {}", v + 1);
-    fmt::print(file, "\n");
+    text += "f";
+    for (const std::int32_t v : hull.facet_vertices(f)) fmt::format_to(out, " {}", v + 1);
+    text += "\n";
   }
-  const bool written = std::ferror(file) == 0;
-  return std::fclose(file) == 0 && written;
+  return write_whole_file(arguments.output, text);
 }
 
 /// The checks over all facets and points are for the eye: a sample of the points where there are many.
@@ -88,47 +90,42 @@ std::vector<Vec3> sample(const std::vector<Vec3>& points, std::size_t most) {
 }
 
 int run_simplify(const SimplifyArguments& arguments) {
-  try {
-    const query::MeshPoints scan = query::read_mesh_points(arguments.input, kMostPoints, query::kMaxMeshBytes);
-    const query::Stopwatch watch;
-    std::vector<dimension::Vector<3>> points(scan.points.begin(), scan.points.end());
-    const auto body = dimension::Body<3>::from_points(std::move(points));
-    if (!body) {
-      query::refuse(to_string(body.error().code), arguments.input + ": " + body.error().message, body.error().where);
-    }
-    const dimension::Side side = arguments.side == "inner" ? dimension::Side::inner : dimension::Side::outer;
-    const auto small =
-        dimension::approximate_body<3>(*body, arguments.epsilon, dimension::Representation::points, side);
-    if (!small) query::refuse(to_string(small.error().code), "--epsilon: " + small.error().message, "");
-    const std::vector<Vec3> vertices(small->points.begin(), small->points.end());
-    const auto hull = ConvexPolytope::from_points(vertices);
-    if (!hull) query::refuse(to_string(hull.error().code), hull.error().message, hull.error().where);
-    const double milliseconds = static_cast<double>(watch.nanoseconds()) / 1e6;
-    if (!write_obj(*hull, arguments)) {
-      fmt::print(stderr, "pdepth: {} cannot be written\n", arguments.output);
-      return kFailed;
-    }
-    constexpr std::size_t kChecked = 200'000;
-    const Excess excess = measure(*hull, sample(scan.points, kChecked));
-    fmt::print("scan      {}  ({} points)\n", arguments.input, scan.points.size());
-    fmt::print("hull      {}  ({} vertices, {} facets, {:.1f} ms)\n", arguments.output, hull->num_vertices(),
-               hull->num_facets(), milliseconds);
-    fmt::print("side      {}, epsilon {}\n", arguments.side, arguments.epsilon);
-    fmt::print(
-        "measured  along the hull's facets{}: points stick out by at most {:.3g}, facets stand off by at most {:.3g}\n",
-        scan.points.size() > kChecked ? " (a sample of the points)" : "", excess.scan_outside, excess.largest_gap);
-    if (arguments.picture.empty()) return kDone;
-#ifdef PDEPTH_WITH_DEMOS
-    return demo::write_simplify_picture(scan.points, *hull, arguments.side, arguments.epsilon, arguments.picture);
-#else
-    fmt::print(stderr, "pdepth: {}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)\n",
-               arguments.picture);
-    return kBadUsage;
-#endif
-  } catch (const query::Refusal& refusal) {
-    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
-    return kBadUsage;
+  refuse_to_overwrite({arguments.input}, arguments.output, "--output");
+  refuse_to_overwrite({arguments.input, arguments.output}, arguments.picture, "--picture");
+  const query::MeshPoints scan = query::read_mesh_points(arguments.input, kMostPoints, query::kMaxMeshBytes);
+  const query::Stopwatch watch;
+  std::vector<dimension::Vector<3>> points(scan.points.begin(), scan.points.end());
+  const auto body = dimension::Body<3>::from_points(std::move(points));
+  if (!body) {
+    query::refuse(to_string(body.error().code), arguments.input + ": " + body.error().message, body.error().where);
   }
+  const dimension::Side side = arguments.side == "inner" ? dimension::Side::inner : dimension::Side::outer;
+  const auto small = dimension::approximate_body<3>(*body, arguments.epsilon, dimension::Representation::points, side);
+  if (!small) query::refuse(to_string(small.error().code), "--epsilon: " + small.error().message, "");
+  const std::vector<Vec3> vertices(small->points.begin(), small->points.end());
+  const auto hull = ConvexPolytope::from_points(vertices);
+  if (!hull) query::refuse(to_string(hull.error().code), hull.error().message, hull.error().where);
+  const double milliseconds = static_cast<double>(watch.nanoseconds()) / 1e6;
+  if (!write_obj(*hull, arguments)) {
+    complain("{} cannot be written", arguments.output);
+    return kFailed;
+  }
+  constexpr std::size_t kChecked = 200'000;
+  const Excess excess = measure(*hull, sample(scan.points, kChecked));
+  fmt::print("scan      {}  ({} points)\n", printable(arguments.input), scan.points.size());
+  fmt::print("hull      {}  ({} vertices, {} facets, {:.1f} ms)\n", printable(arguments.output), hull->num_vertices(),
+             hull->num_facets(), milliseconds);
+  fmt::print("side      {}, epsilon {}\n", arguments.side, arguments.epsilon);
+  fmt::print(
+      "measured  along the hull's facets{}: points stick out by at most {:.3g}, facets stand off by at most {:.3g}\n",
+      scan.points.size() > kChecked ? " (a sample of the points)" : "", excess.scan_outside, excess.largest_gap);
+  if (arguments.picture.empty()) return kDone;
+#ifdef PDEPTH_WITH_DEMOS
+  return demo::write_simplify_picture(scan.points, *hull, arguments.side, arguments.epsilon, arguments.picture);
+#else
+  complain("{}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)", arguments.picture);
+  return kBadUsage;
+#endif
 }
 
 }  // namespace
@@ -138,13 +135,16 @@ void add_simplify_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("simplify", "A small convex hull of a dense scan, with a stated error");
   command->footer(kSimplifyFooter);
   command->add_option("SCAN", arguments->input, "Points or mesh: PLY, OBJ, STL, OFF or glTF")->required();
-  command->add_option("-o,--output", arguments->output, "The hull, as OBJ")->required();
+  command->add_option("-o,--output", arguments->output, "The hull, as OBJ")
+      ->required()
+      ->check(refuse_other_meshes, "FILE.obj");
   command->add_option("--epsilon", arguments->epsilon, "Error, relative to the scan's extent, in [1e-6, 1)")
       ->capture_default_str();
   command->add_option("--side", arguments->side, "Encloses the scan, or is enclosed by it")
       ->check(CLI::IsMember({"outer", "inner"}))
       ->capture_default_str();
-  command->add_option("--picture", arguments->picture, "Draw scan and hull side by side as a PNG");
+  command->add_option("--picture", arguments->picture, "Draw scan and hull side by side as a PNG")
+      ->check(refuse_other_pictures, "FILE.png");
   command->callback([arguments, &action] { action = [arguments] { return run_simplify(*arguments); }; });
 }
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
+#include "pd/numeric/whole_file.hpp"
 #include "report/html_text.hpp"
 
 namespace pd::report {
@@ -147,9 +147,7 @@ bool write_tables(const std::string& folder, const std::vector<CsvTable>& tables
   std::filesystem::create_directories(folder, error);
   bool good = true;
   for (const CsvTable& table : tables) {
-    std::ofstream file(std::filesystem::path(folder) / (table.name + ".csv"), std::ios::binary);
-    file << table.csv;
-    good = file.flush().good() && good;
+    good = write_whole_file(std::filesystem::path(folder) / (table.name + ".csv"), table.csv) && good;
   }
   return good;
 }

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "pd/numeric/whole_file.hpp"
 #include "report/html_text.hpp"
 #include "report/page_files.hpp"
 #include "report_commit.hpp"
@@ -48,6 +49,10 @@ std::string how_to_reproduce(const Page& page) {
   return text + table(rows) + "</section>\n";
 }
 
+/// How a page of this program is known again.
+constexpr std::string_view kGenerator = "<meta name=\"generator\" content=\"pdepth\"/>";
+constexpr const char* kPageName = "report.html";
+
 std::string script(std::string_view text) { return fmt::format("<script>//<![CDATA[\n{}\n//]]></script>\n", text); }
 
 }  // namespace
@@ -81,6 +86,7 @@ std::string to_html(const Page& page) {
   std::string text =
       "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+  text += fmt::format("{}\n", kGenerator);
   text += fmt::format("<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n",
                       escaped(page.title), kPageCss, escaped(page.title));
   if (!page.text.empty()) text += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(page.text));
@@ -101,16 +107,29 @@ std::string to_html(const Page& page) {
   text += how_to_reproduce(page) + "</main>\n";
   if (moves) text += script(kPageJs);
   if (sorts) text += script(kTableJs);
-  if (turns) text += script(kThreeJs) + script(kPairJs);
+  if (turns) text += script(fmt::format("/* three.js\n\n{}*/\n{}", kThreeLicense, kThreeJs)) + script(kPairJs);
   return text + "</body>\n</html>\n";
 }
 
+std::string foreign_page(const std::string& folder) {
+  const std::filesystem::path path = std::filesystem::path(folder) / kPageName;
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (folder.empty() || !std::filesystem::exists(status)) return {};
+  if (std::filesystem::is_symlink(status)) return path.string() + " is a link: replace it with --force";
+  std::string head(4096, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (std::filesystem::is_regular_file(status) && head.find(kGenerator) != std::string::npos) return {};
+  return path.string() + " was not written by pdepth: name another folder, or replace it with --force";
+}
+
 bool write_page(const std::string& folder, const Page& page) {
+  const std::filesystem::path path = std::filesystem::path(folder) / kPageName;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  std::ofstream file(std::filesystem::path(folder) / "report.html", std::ios::binary);
-  file << to_html(page);
-  return file.flush().good();
+  if (std::filesystem::is_symlink(path, error)) std::filesystem::remove(path, error);
+  return write_whole_file(path, to_html(page));
 }
 
 }  // namespace pd::report

@@ -41,8 +41,12 @@ struct Page {
 /// Several pairs' figures side by side.
 [[nodiscard]] std::string pairs(const std::vector<std::string>& figures);
 
-/// Writes DIR/report.html; makes the folder.
-/// @return false where it cannot be written.
+/// Why DIR/report.html shall not be replaced: it is a link, or a page that `write_page` did not write. Empty where it
+/// may be, and for an empty name.
+[[nodiscard]] std::string foreign_page(const std::string& folder);
+
+/// Writes DIR/report.html, in place of what stands there; makes the folder.
+/// @return false where it cannot be written; then nothing has changed.
 [[nodiscard]] bool write_page(const std::string& folder, const Page& page);
 
 }  // namespace pd::report

@@ -8,6 +8,8 @@
 #include <csignal>
 #include <system_error>
 
+#include "support/printable.hpp"
+
 namespace pd::demo {
 
 namespace {
@@ -26,17 +28,16 @@ int open_output_folder(const DemoOptions& options, std::string_view demo, std::f
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) {
-    fmt::print(stderr, "pdepth: --out: {} cannot be made: {}\n", folder.string(), failure.message());
+    complain("--out: {} cannot be made: {}", folder.string(), failure.message());
     return kDemoFailed;
   }
   const bool empty = std::filesystem::is_empty(folder, failure);
   if (failure) {
-    fmt::print(stderr, "pdepth: --out: {} cannot be read: {}\n", folder.string(), failure.message());
+    complain("--out: {} cannot be read: {}", folder.string(), failure.message());
     return kDemoFailed;
   }
   if (!empty && !options.force) {
-    fmt::print(stderr, "pdepth: --out: {} holds files already: name another folder, or replace them with --force\n",
-               folder.string());
+    complain("--out: {} holds files already: name another folder, or replace them with --force", folder.string());
     return kDemoBadUsage;
   }
   return kDemoDone;
@@ -81,37 +82,15 @@ void Progress::show(int done) {
   std::fflush(stderr);
 }
 
-CsvFile::CsvFile(const std::filesystem::path& path, std::string_view header)
-    : file_(std::fopen(path.string().c_str(), "w")) {
-  if (file_ != nullptr) {
-    fmt::print(file_, "{}\n", header);
-  }
-}
-
-CsvFile::~CsvFile() {
-  if (file_ != nullptr) {
-    std::fclose(file_);
-  }
+CsvFile::CsvFile(const std::filesystem::path& path, std::string_view header) : file_(path) {
+  file_.write(header);
+  file_.write("\n");
 }
 
 void CsvFile::row(const std::vector<double>& numbers) {
-  if (file_ == nullptr) {
-    return;
-  }
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    fmt::print(file_, "{}{}", i == 0 ? "" : ",", numbers[i]);
-  }
-  fmt::print(file_, "\n");
-  std::fflush(file_);
-}
-
-bool write_text(const std::filesystem::path& path, std::string_view text) {
-  std::FILE* file = std::fopen(path.string().c_str(), "w");
-  if (file == nullptr) {
-    return false;
-  }
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  return std::fclose(file) == 0 && written;
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ",") + fmt::format("{}", number);
+  file_.write(text + "\n");
 }
 
 namespace {
@@ -149,7 +128,7 @@ std::string energy_text(double joules) {
 }
 
 int report_failure(const Error& error) {
-  fmt::print(stderr, "pdepth: {}{}{}\n", error.where, error.where.empty() ? "" : ": ", error.message);
+  complain("{}{}{}", error.where, error.where.empty() ? "" : ": ", error.message);
   return kDemoFailed;
 }
 

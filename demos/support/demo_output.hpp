@@ -3,13 +3,13 @@
 #pragma once
 
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pd/numeric/expected.hpp"
+#include "pd/numeric/whole_file.hpp"
 #include "support/demo_options.hpp"
 
 namespace pd::demo {
@@ -41,23 +41,18 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// A CSV file, complete after every row.
+/// A table of numbers, there whole once it is finished.
 class CsvFile {
  public:
   CsvFile(const std::filesystem::path& path, std::string_view header);
-  ~CsvFile();
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
   /// Numbers are written so that they read back to the same bits.
   void row(const std::vector<double>& numbers);
-  [[nodiscard]] bool good() const { return file_ != nullptr; }
+  /// @return false where the file cannot be written.
+  [[nodiscard]] bool finish() { return file_.finish(); }
 
  private:
-  std::FILE* file_;
+  WholeFile file_;
 };
-
-/// @return false where the file cannot be written.
-bool write_text(const std::filesystem::path& path, std::string_view text);
 
 /// A length with a fitting unit and three digits: "1.24 mm", "0.310 µm".
 [[nodiscard]] std::string length_text(double metres);

@@ -20,6 +20,20 @@ function(pd_compile_options target)
   if(PD_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+  pd_harden(${target})
+endfunction()
+
+# pd_harden(<target>): programs and shared libraries are bound when they start, so that no table of functions can be written to
+# afterwards. With PD_HARDENED a function with an array checks its frame, and the C library checks the sizes that it is given.
+function(pd_harden target)
+  if(NOT APPLE AND NOT WIN32)
+    target_link_options(${target} PRIVATE LINKER:-z,relro LINKER:-z,now)
+  endif()
+  if(PD_HARDENED)
+    target_compile_options(${target} PRIVATE -fstack-protector-strong
+                                             $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE>
+                                             $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=2>)
+  endif()
 endfunction()
 
 # pd_unity_by_folder(<target>): where CMAKE_UNITY_BUILD is on, the sources of one folder are compiled as one, whatever batch size

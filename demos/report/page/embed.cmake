@@ -4,7 +4,7 @@
 #   cmake -DSOURCE=<source tree> -DOUT=<folder> -DVERSION=<version> -P embed.cmake       the commit
 if(PAGE)
   set(text "#include \"report/page_files.hpp\"\n\nnamespace pd::report {\n\n")
-  foreach(entry kPageCss:page.css kPageJs:page.js kTableJs:table.js kPairJs:pair.js kThreeJs:three.min.js)
+  foreach(entry kPageCss:page.css kPageJs:page.js kTableJs:table.js kPairJs:pair.js kThreeJs:three.min.js kThreeLicense:three.LICENSE)
     string(REPLACE ":" ";" entry ${entry})
     list(GET entry 0 name)
     list(GET entry 1 file)

@@ -2,19 +2,14 @@
 /// PNG through libpng's simplified reader and a writer set for speed: frames are written by the hundred.
 #include <png.h>
 
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <system_error>
 
+#include "pd/numeric/whole_file.hpp"
 #include "pd/render/image.hpp"
 
 namespace pd::render {
 namespace {
-
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 Error refusal(const std::filesystem::path& path, const std::string& reason) {
   return Error{ErrorCode::bad_value, reason, path.string()};
@@ -27,8 +22,8 @@ Expected<std::filesystem::path> write_png(const Image& image, const std::filesys
     std::error_code ignored;  // the open below tells
     std::filesystem::create_directories(path.parent_path(), ignored);
   }
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "wb"));
-  if (!file) {
+  WholeFile file(path);
+  if (!file.good()) {
     return refusal(path, "cannot be written");
   }
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -37,7 +32,7 @@ Expected<std::filesystem::path> write_png(const Image& image, const std::filesys
     png_destroy_write_struct(&png, &info);
     return refusal(path, "writing stopped (disk full?)");
   }
-  png_init_io(png, file.get());
+  png_init_io(png, file.stream());
   png_set_IHDR(png, info, static_cast<png_uint_32>(image.width()), static_cast<png_uint_32>(image.height()), 8,
                PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -51,7 +46,7 @@ Expected<std::filesystem::path> write_png(const Image& image, const std::filesys
   }
   png_write_end(png, nullptr);
   png_destroy_write_struct(&png, &info);
-  if (std::fflush(file.get()) != 0) {
+  if (!file.finish()) {
     return refusal(path, "writing stopped (disk full?)");
   }
   return path;
