@@ -6,10 +6,13 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <system_error>
+
+#include "files/decimal_number.hpp"
 
 namespace pd::query {
 
@@ -223,39 +226,12 @@ class JsonReader {
   }
   bool real(const char* first) {
     double value = 0;
-    if (!fits(first, value)) {
-      if (magnitude_exceeds_one(first)) {
-        at_ = first;
-        return broken("a number is past the range of doubles");
-      }
-      value = *first == '-' ? -0.0 : 0.0;
+    (void)read_decimal(first, at_, value);
+    if (!std::isfinite(value)) {
+      at_ = first;
+      return broken("a number is past the range of doubles");
     }
     return told(handler_.number_float(value));
-  }
-  /// Whether a number that no double stands for is too large, not too small. Requires the text of a number in
-  /// [first, at_).
-  [[nodiscard]] bool magnitude_exceeds_one(const char* first) const {
-    std::int64_t before_point = 0, zeros_behind = 0, exponent = 0;
-    bool nonzero = false, behind = false;
-    const char* digit = *first == '-' ? first + 1 : first;
-    for (; digit != at_ && *digit != 'e' && *digit != 'E'; ++digit) {
-      if (*digit == '.') {
-        behind = true;
-        continue;
-      }
-      nonzero = nonzero || *digit != '0';
-      before_point += nonzero && !behind;
-      zeros_behind += !nonzero && behind;
-    }
-    if (digit != at_) {
-      constexpr std::int64_t kEnough = std::int64_t{1} << 40;  // more digits than a text has
-      const bool down = *++digit == '-';
-      for (digit += *digit == '-' || *digit == '+'; digit != at_ && exponent < kEnough; ++digit) {
-        exponent = 10 * exponent + (*digit - '0');
-      }
-      if (down) exponent = -exponent;
-    }
-    return nonzero && (before_point > 0 ? before_point : -zeros_behind) + exponent > 0;
   }
 
   // ---- containers ------------------------------------------------------------------------------------------------
