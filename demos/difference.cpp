@@ -15,9 +15,9 @@
 #include "protocol/pair_reader.hpp"
 #include "report/page.hpp"
 #include "scenes/shape_families.hpp"
+#include "support/complain.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
-#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 #include "support/search_picture.hpp"
 

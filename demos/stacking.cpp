@@ -16,11 +16,11 @@
 #include "report/page.hpp"
 #include "report/scene_section.hpp"
 #include "scenes/union_worlds.hpp"
+#include "support/complain.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
-#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 #include "support/scene_choice.hpp"
 

@@ -17,7 +17,7 @@
 #include "options.hpp"
 #include "pd/numeric/whole_file.hpp"
 #include "scenes/shape_families.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {

@@ -16,7 +16,7 @@
 #include "line_input.hpp"
 #include "pd/numeric/whole_file.hpp"
 #include "report/page.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 
 namespace pd::cli {
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "commands.hpp"
+#include "support/complain.hpp"
 #include "support/demo_options.hpp"
-#include "support/printable.hpp"
 #include "support/refusal.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "report/page.hpp"

@@ -14,7 +14,7 @@
 #include "pd/numeric/whole_file.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
 #endif

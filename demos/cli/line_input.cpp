@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "commands.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 
 namespace pd::cli {
 

@@ -18,7 +18,7 @@
 
 #include "commands.hpp"
 #include "report/page_files.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 #include "support/refusal.hpp"
 
 namespace {

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 
 namespace pd::cli {
 

@@ -15,7 +15,7 @@
 #include "pd/planar/polygon_depth.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/polygon_answer.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/polygon_picture.hpp"
 #endif

@@ -12,7 +12,7 @@
 #include "commands.hpp"
 #include "line_input.hpp"
 #include "protocol/query_stream.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 
 namespace pd::cli {
 

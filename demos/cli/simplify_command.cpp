@@ -17,7 +17,7 @@
 #include "pd/shape/convex_polytope.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/pair_reader.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 #include "support/refusal.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/simplify_picture.hpp"

@@ -118,8 +118,8 @@ void use_refused(const py::object& exception_class) {
       instance.attr("code") = error.code;
       instance.attr("where") = error.where;
       PyErr_SetObject(refused.ptr(), instance.ptr());
-    } catch (const py::cast_error& error) {
-      PyErr_SetString(PyExc_TypeError, error.what());
+    } catch (const py::cast_error&) {
+      PyErr_SetString(PyExc_TypeError, "an argument is of another type, or was never made: __new__ alone makes none");
     }
   });
 }

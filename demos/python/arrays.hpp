@@ -53,13 +53,24 @@ T value_of(Expected<T> result, std::string_view argument) {
 [[nodiscard]] Array array_of(const Vec3& vector);
 [[nodiscard]] Array array_of(const Mat3& matrix);
 
-/// An object of T that `__new__` alone has made holds no value, and raises TypeError wherever one is needed; pybind11
-/// would take fresh memory for it. Requires that T's class is declared.
-template <class T>
-void require_made() {
+/// Python's own ways around the making of a T, closed.
+///
+/// An object that `__new__` alone has made holds no value, and raises TypeError wherever one is needed; pybind11 would
+/// take fresh memory for it. Pickles of protocols 0 and 1 are those of protocol 2; Python would make a bare pybind11
+/// object for them, which ends the process.
+template <class T, class... Options>
+void require_made(py::class_<T, Options...>& type) {
   py::detail::get_type_info(typeid(T), true)->operator_new = [](std::size_t) -> void* {
     throw py::type_error("the object was never made: __new__ alone makes none, call its class");
   };
+  type.def("__reduce__", [](const py::object& self) {
+    if (!py::hasattr(self, "__setstate__")) {
+      throw py::type_error("no pickle holds a '" + py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
+                           "' object");
+    }
+    return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(py::type::of(self)),
+                          self.attr("__getstate__")());
+  });
 }
 
 /// Declares `Refused` in the module and uses it.

@@ -208,7 +208,9 @@ void bind_shapes(py::module_& module) {
   // Python's shapes have arguments of their own: help() would show these for theirs.
   py::options options;
   options.disable_function_signatures();
-  py::class_<Body, BodyRef>(module, "Shape", py::dynamic_attr(), "A body in a frame of its own. Immutable.")
+  py::class_<Body, BodyRef> shape(module, "Shape", py::dynamic_attr(), "A body in a frame of its own. Immutable.");
+  require_made(shape);
+  shape
       .def(py::init(&make_body), py::arg("kind"), py::arg("numbers"), py::arg("margin"),
            "Arguments and errors: see the class.")
       .def_property_readonly("vertices", &vertices_of,
@@ -219,7 +221,6 @@ void bind_shapes(py::module_& module) {
       .def_property_readonly(
           "is_convex", [](const Body& body) { return body.convex() != nullptr; },
           "Whether the shape is one convex body, not a union of parts.");
-  require_made<Body>();
 }
 
 }  // namespace pd::python

@@ -230,9 +230,12 @@ PairAnswer answer_of_state(const py::tuple& state) {
 }
 
 void bind_answer(py::module_& module) {
-  py::class_<PairAnswer>(module, "Depth",
-                         "The answer for one pair. Lengths in the unit of the input, points and directions in the\n"
-                         "frame that A and B share. A moves by `translation`, B stays.")
+  py::class_<PairAnswer> depth(
+      module, "Depth",
+      "The answer for one pair. Lengths in the unit of the input, points and directions in the\n"
+      "frame that A and B share. A moves by `translation`, B stays.");
+  require_made(depth);
+  depth
       .def_property_readonly(
           "contact", [](const PairAnswer& x) { return std::string(to_string(x.depth.contact)); },
           "'overlapping', 'touching' or 'separated', exact for polytopes.")
@@ -288,7 +291,6 @@ void bind_answer(py::module_& module) {
           "shape_b", [](const PairAnswer& x) { return x.b; }, "B.")
       .def("__repr__", &repr_of_answer)
       .def(py::pickle(&state_of, &answer_of_state));
-  require_made<PairAnswer>();
 }
 
 }  // namespace
@@ -347,17 +349,18 @@ Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const
 
 void bind_pair_queries(py::module_& module) {
   bind_answer(module);
-  py::class_<QuerySettings>(module, "Settings", "Settings of a query, read once.");
+  py::class_<QuerySettings> settings(module, "Settings", "Settings of a query, read once.");
+  require_made(settings);
   module.def("settings", &read_settings);
   module.attr("DEFAULTS") = QuerySettings();
-  py::class_<WarmCertificate>(module, "Warm",
-                              "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
-                              "trusted; a warm answer has the same proof as a cold one. Not for two threads at once.")
-      .def(py::init<>())
+  py::class_<WarmCertificate> warm(
+      module, "Warm",
+      "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
+      "trusted; a warm answer has the same proof as a cold one. Not for two threads at once.");
+  require_made(warm);
+  warm.def(py::init<>())
       .def("clear", &WarmCertificate::clear, "Forgets everything.")
       .def_property_readonly("nbytes", &WarmCertificate::memory_bytes, "Bytes held.");
-  require_made<QuerySettings>();
-  require_made<WarmCertificate>();
   module.def("ask", &ask_pair);
   module.def("ask_plain", &ask_plain);
   module.def("directional", &directional_pair);

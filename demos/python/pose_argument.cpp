@@ -113,12 +113,14 @@ Pose read_pose(py::handle value, std::string_view argument) {
 }
 
 void bind_pose(py::module_& module) {
-  py::class_<Pose>(module, "Pose",
-                   "A rigid placement: world point = R * local + translation.\n\n"
-                   "Pose(matrix) of a 4x4 matrix; Pose(rotation=R, translation=t); Pose(wxyz=q, translation=t) or\n"
-                   "Pose(xyzw=q, translation=t): the order of a quaternion is always named. A matrix is used as given\n"
-                   "(|R^T R - I| <= 1e-6, det > 0), a quaternion stands for R(q) / |q|^2, exactly.")
-      .def(py::init(&make_pose), py::arg("matrix") = py::none(), py::kw_only(), py::arg("rotation") = py::none(),
+  py::class_<Pose> type(
+      module, "Pose",
+      "A rigid placement: world point = R * local + translation.\n\n"
+      "Pose(matrix) of a 4x4 matrix; Pose(rotation=R, translation=t); Pose(wxyz=q, translation=t) or\n"
+      "Pose(xyzw=q, translation=t): the order of a quaternion is always named. A matrix is used as given\n"
+      "(|R^T R - I| <= 1e-6, det > 0), a quaternion stands for R(q) / |q|^2, exactly.");
+  require_made(type);
+  type.def(py::init(&make_pose), py::arg("matrix") = py::none(), py::kw_only(), py::arg("rotation") = py::none(),
            py::arg("translation") = py::none(), py::arg("wxyz") = py::none(), py::arg("xyzw") = py::none())
       .def_property_readonly("matrix", &matrix4_of, "[4, 4] float64.")
       .def_property_readonly(
@@ -131,7 +133,6 @@ void bind_pose(py::module_& module) {
       .def("__hash__", [](const Pose& pose) { return py::hash(py::str(repr_of(pose))); })
       .def("_keywords", &keywords_of)
       .def(py::pickle(&keywords_of, &pose_of_keywords));
-  require_made<Pose>();
 }
 
 }  // namespace pd::python

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <system_error>
 
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 
 namespace pd::demo {
 

@@ -3,12 +3,8 @@
 /// file.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <string>
 #include <string_view>
-#include <utility>
 
 namespace pd {
 
@@ -29,19 +25,13 @@ namespace pd {
       out += text.substr(i, rest + 1);
       i += rest;
     } else if ((control && kept.find(text[i]) == std::string_view::npos) || byte >= 0x80) {
-      out += fmt::format("\\x{:02x}", byte);
+      constexpr const char* kDigits = "0123456789abcdef";
+      out += {'\\', 'x', kDigits[byte / 16], kDigits[byte % 16]};
     } else {
       out += text[i];
     }
   }
   return out;
-}
-
-/// Says on standard error what is wrong: "pdepth: " and the words, which may hold names of files.
-template <class... Arguments>
-void complain(fmt::format_string<Arguments...> words, Arguments&&... arguments) {
-  const std::string text = printable(fmt::format(words, std::forward<Arguments>(arguments)...));
-  fmt::print(stderr, "pdepth: {}\n", text);
 }
 
 }  // namespace pd

@@ -1,5 +1,6 @@
 """What no caller should do: objects never made, numbers that are no doubles, arrays without end, Ctrl-C, wrong types."""
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -35,7 +36,7 @@ UNMADE = """
             made = kind.__new__(kind)
             try:
                 use(made)
-            except (TypeError, AttributeError, ValueError):
+            except (TypeError, AttributeError, ValueError):  # Refused is a ValueError
                 pass
             del made
         gc.collect()
@@ -48,6 +49,16 @@ def test_objects_made_by_new_alone_do_no_harm():
         ran = run(UNMADE)
         out, err = ran.communicate()
         assert out == "alive\n" and ran.returncode == 0, err
+
+
+@pytest.mark.parametrize("protocol", range(6))
+def test_every_protocol_of_pickle_keeps_the_bits(protocol):
+    pose = pdepth.Pose(translation=[0.1, 0.2, 0.3], wxyz=[0.5, 0.5, 0.5, 0.5])
+    assert repr(pickle.loads(pickle.dumps(pose, protocol))) == repr(pose)
+    found = pdepth.depth(BOX, BOX, pose)
+    assert pickle.loads(pickle.dumps(found, protocol)).depth == found.depth
+    with pytest.raises(TypeError):
+        pickle.dumps(pdepth.Warm(), protocol)
 
 
 def test_a_pose_made_by_new_alone_is_a_type_error():
