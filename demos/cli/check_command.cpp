@@ -17,6 +17,7 @@
 #include "pd/shape/convex_polytope.hpp"
 #include "protocol/json_writer.hpp"
 #include "protocol/limits.hpp"
+#include "support/complain.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {
@@ -227,11 +228,11 @@ int run_check(const CheckArguments& arguments) {
       print_report(checked);
     }
     if (failed.empty()) return kDone;
-    fmt::print(stderr, "pdepth: {} of --fail-on {}: {}\n", fmt::join(failed, ", "),
-               failed.size() == 1 ? "applies" : "apply", arguments.file);
+    complain("{} of --fail-on {}: {}", fmt::join(failed, ", "), failed.size() == 1 ? "applies" : "apply",
+             arguments.file);
     return kConditionFails;
   } catch (const query::Refusal& refusal) {
-    fmt::print(stderr, "pdepth: {}{}\n", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    complain("{}{}", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
     return kBadUsage;
   }
 }
