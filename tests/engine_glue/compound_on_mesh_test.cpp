@@ -191,7 +191,7 @@ TEST(CompoundOnMesh, AReplayIsBitForBit) {
   std::vector<btTransform> first;
   world.step(30);
   for (const btRigidBody* body : bodies) first.push_back(body->getWorldTransform());
-  saved.restore();
+  ASSERT_EQ(saved.restore(), Restored::yes);
   world.step(30);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     EXPECT_TRUE(bodies[i]->getWorldTransform() == first[i]) << i;

@@ -138,5 +138,37 @@ TEST(DeepUnions, BeyondTheBudgetPiecesAnswerAndItIsCounted) {
   EXPECT_TRUE(std::isfinite(static_cast<double>(body->getWorldTransform().getOrigin().length())));
 }
 
+/// A plate (a flat cylinder in a compound, with Bullet's default margin) that is spawned inside of a robot's arm of
+/// boxes. @return the steps until it is no deeper than a millimetre
+int steps_to_leave(bool ours, double x, double y, double z) {
+  UnionWorld world(ours);
+  world.bullet.world().setGravity(at(0, 0, 0));
+  auto* arm = world.bullet.shape<btCompoundShape>();
+  for (int i = 0; i < 3; ++i) {
+    arm->addChildShape(btTransform(btQuaternion::getIdentity(), at(0, 0.2 * i, 0)),
+                       world.bullet.shape<btBoxShape>(at(0.08, 0.12, 0.08)));
+  }
+  auto* disc = world.bullet.shape<btCylinderShape>(at(0.1, 0.0025, 0.1));
+  disc->setMargin(btScalar(0.04));
+  auto* plate = world.bullet.shape<btCompoundShape>();
+  plate->addChildShape(btTransform::getIdentity(), disc);
+  world.fixed(arm);
+  world.moving(plate, at(x, y, z), at(0, 0, 0));
+  for (int step = 1; step <= 240; ++step) {
+    world.step();
+    if (world.bullet.least_distance() > -1e-3) return step;
+  }
+  return 1000;
+}
+
+TEST(DeepUnions, APlateInsideOfARobotComesOutInBulletsTime) {
+  for (const double x : {0.0, 0.02, 0.05}) {
+    for (const double y : {0.1, 0.17, 0.2, 0.45}) {
+      const int bullet = steps_to_leave(false, x, y, 0.01), ours = steps_to_leave(true, x, y, 0.01);
+      EXPECT_LE(ours, std::max(bullet, 10)) << x << ' ' << y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

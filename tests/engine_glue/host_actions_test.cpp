@@ -4,6 +4,9 @@
 #include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <vector>
+
 #include "engine_glue/bullet_world.hpp"
 #include "pd/bullet/install.hpp"
 #include "pd/bullet/rollback.hpp"
@@ -130,6 +133,75 @@ TEST_F(HostActions, ACharacterWalksByItsTime) {
   scene.world().removeCollisionObject(&ghost);
   scene.world().getPairCache()->setInternalGhostPairCallback(nullptr);
 }
+
+/// Takes bodies out of the world and deletes them, and puts others in their place, as games do.
+struct Replace : btActionInterface {
+  explicit Replace(btDiscreteDynamicsWorld& of) : world(of) {}
+  ~Replace() override {
+    for (const auto& body : bodies) world.removeRigidBody(body.get());
+  }
+  void add(double x, bool kinematic) {
+    btRigidBody::btRigidBodyConstructionInfo info(kinematic ? 0 : 1, nullptr, &ball, btVector3(1, 1, 1));
+    info.m_startWorldTransform.setIdentity();
+    info.m_startWorldTransform.setOrigin(btVector3(btScalar(x), 20, 0));
+    bodies.push_back(std::make_unique<btRigidBody>(info));
+    btRigidBody& body = *bodies.back();
+    if (kinematic) body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    body.setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(&body);
+    if (!kinematic) body.applyCentralForce(btVector3(0, 3, 0));
+  }
+  void replace() {
+    ++calls;
+    world.removeRigidBody(bodies.front().get());
+    bodies.erase(bodies.begin());
+    if (calls % 3 != 0) add(calls % 7, calls % 2 == 0);
+    if (bodies.size() < 2) add(calls % 5, false);
+  }
+  void updateAction(btCollisionWorld*, btScalar) override {
+    if (in_action) replace();
+  }
+  void debugDraw(btIDebugDraw*) override {}
+  btDiscreteDynamicsWorld& world;
+  btSphereShape ball{btScalar(0.2)};
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  bool in_action = true;
+  int calls = 0;
+};
+
+enum class CalledBy { action, pre_tick, tick };
+
+/// Bullet lets actions and tick callbacks take bodies out of the world, also in the middle of a step that is cut. The
+/// address sanitizer watches here.
+class HostActionsReplace : public HostActions, public ::testing::WithParamInterface<CalledBy> {};
+
+TEST_P(HostActionsReplace, BodiesInStepsThatAreCut) {
+  Replace host(scene.world());
+  host.in_action = GetParam() == CalledBy::action;
+  for (int i = 0; i < 6; ++i) host.add(i, i % 2 == 0);
+  cut_steps();
+  if (host.in_action) {
+    scene.world().addAction(&host);
+  } else {
+    const auto callback = [](btDynamicsWorld* world, btScalar) {
+      static_cast<Replace*>(world->getWorldUserInfo())->replace();
+    };
+    scene.world().setInternalTickCallback(callback, &host, GetParam() == CalledBy::pre_tick);
+  }
+  RollbackStepper stepper(scene.world(), solver);
+  int cuts = 0;
+  for (int i = 0; i < 60; ++i) {
+    host.bodies.back()->applyCentralForce(btVector3(1, 0, 0));
+    cuts += stepper.step(kStep).parts - 1;
+  }
+  EXPECT_GT(cuts, 5);
+  EXPECT_GT(host.calls, 60);
+  scene.world().removeAction(&host);
+  scene.world().setInternalTickCallback(nullptr, nullptr, GetParam() == CalledBy::pre_tick);
+}
+
+INSTANTIATE_TEST_SUITE_P(Everywhere, HostActionsReplace,
+                         ::testing::Values(CalledBy::action, CalledBy::pre_tick, CalledBy::tick));
 
 }  // namespace
 }  // namespace pd::test

@@ -10,6 +10,8 @@
 
 #include "engine_glue/bullet_world.hpp"
 
+double height_in_cpp14();  // client_in_cpp14.cc
+
 namespace pd::test {
 namespace {
 
@@ -275,6 +277,8 @@ TEST(OneShot, StretchedMultispheresGoTheNamedWay) {
   EXPECT_GT(solver.statistics().unsupported, 0);
   EXPECT_NEAR(-scene.least_distance(), 0.2, 1e-2);
 }
+
+TEST(Install, ServesClientsThatAreCompiledAsCpp14) { EXPECT_NEAR(height_in_cpp14(), 2, 1e-3); }
 
 }  // namespace
 }  // namespace pd::test

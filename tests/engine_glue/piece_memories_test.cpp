@@ -89,7 +89,7 @@ TEST(PieceMemories, CurvedBodiesOnAMeshReplay) {
   std::vector<btTransform> first;
   scene.world.step(30);
   for (const btRigidBody* body : scene.bodies) first.push_back(body->getWorldTransform());
-  saved.restore();
+  ASSERT_EQ(saved.restore(), Restored::yes);
   scene.world.step(30);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     EXPECT_TRUE(scene.bodies[i]->getWorldTransform() == first[i]) << i;

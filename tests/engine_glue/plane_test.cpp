@@ -196,7 +196,7 @@ TEST(Plane, AReplayIsBitForBit) {
     return result;
   };
   const std::vector<btTransform> first = poses();
-  saved.restore();
+  ASSERT_EQ(saved.restore(), Restored::yes);
   const std::vector<btTransform> second = poses();
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_TRUE(first[i] == second[i]) << i;
 }

@@ -52,6 +52,28 @@ TEST(ShapeCache, BoundedLeastRecentlyUsedFirst) {
   EXPECT_EQ(cache.conversions(), 5);
 }
 
+/// The shapes of a world with more of them than the table is made for: pairs hold their entries and do not ask for them
+/// in each step. Once the world is gone, others take their places, and the table shrinks.
+TEST(ShapeCache, GrowsWithWhatIsInUse) {
+  pd::BulletShapeCache cache(100);
+  std::vector<std::unique_ptr<btSphereShape>> spheres;
+  std::vector<std::shared_ptr<pd::detail::CachedShape>> held;
+  for (int i = 0; i < 1000; ++i) {
+    spheres.push_back(std::make_unique<btSphereShape>(btScalar(i + 1)));
+    held.push_back(cache.find(*spheres.back(), 0));
+  }
+  EXPECT_EQ(cache.size(), spheres.size());
+  for (std::size_t i = 0; i < held.size(); ++i) EXPECT_EQ(cache.find(*spheres[i], 0), held[i]);
+  EXPECT_EQ(cache.conversions(), 1000);
+  held.clear();
+  std::vector<std::unique_ptr<btSphereShape>> others;
+  for (int i = 0; i < 2000; ++i) {
+    others.push_back(std::make_unique<btSphereShape>(btScalar(5000 + i)));
+    ASSERT_NE(cache.find_or_convert(*others.back()), nullptr);
+  }
+  EXPECT_LE(cache.size(), cache.capacity());
+}
+
 TEST(ShapeCache, EqualShapesShareOneBody) {
   pd::BulletShapeCache cache(2);
   btBoxShape one(btVector3(1, 2, 3)), same(btVector3(1, 2, 3)), other(btVector3(1, 2, 4));

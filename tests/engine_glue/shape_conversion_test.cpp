@@ -217,11 +217,36 @@ TEST(ShapeConversion, RefusesWhatHasNoExactForm) {
   btMinkowskiSumShape smooth(&box, &cylinder);
   EXPECT_EQ(pd::to_convex_shape(smooth).error().code, pd::ErrorCode::unsupported);
 
-  cylinder.setMargin(1);
-  EXPECT_EQ(pd::to_convex_shape(cylinder).error().code, pd::ErrorCode::unsupported);
-
   const btConvexHullShape empty;
   EXPECT_EQ(pd::to_convex_shape(empty).error().code, pd::ErrorCode::too_few_points);
+}
+
+/// A margin that reaches a half extent leaves the extents as they are: that is where Bullet has such bodies rest.
+TEST(ShapeConversion, LargeMarginsKeepTheExtents) {
+  const auto half = [](double x, double y, double z) {
+    return btVector3(static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z));
+  };
+  btBoxShape box(half(0.05, 0.0025, 0.03));
+  btBox2dShape flat(half(0.05, 0.0025, 0.03));
+  btCylinderShape plate(half(0.05, 0.0025, 0.05)), rod(half(0.0025, 0.05, 0.0025));
+  btCylinderShapeX x(half(0.0025, 0.05, 0.05));
+  btCylinderShapeZ z(half(0.05, 0.05, 0.0025));
+  for (btConvexInternalShape* shape :
+       std::initializer_list<btConvexInternalShape*>{&box, &flat, &plate, &rod, &x, &z}) {
+    for (const double margin : {0.0025, 0.04, 1.0}) {
+      shape->setMargin(static_cast<btScalar>(margin));
+      const auto body = pd::to_convex_shape(*shape);
+      ASSERT_TRUE(body) << shape->getName() << ' ' << margin << ": " << body.error().message;
+      for (int axis = 0; axis < 3; ++axis) {
+        pd::Vec3 d = pd::Vec3::Zero();
+        d[axis] = 1;
+        btVector3 lower, upper;
+        shape->getAabb(btTransform::getIdentity(), lower, upper);
+        EXPECT_NEAR(support_value(*body, d), static_cast<double>(upper[axis]), 1e-6)
+            << shape->getName() << ' ' << margin;
+      }
+    }
+  }
 }
 
 TEST(ShapeConversion, FingerprintFollowsEveryChange) {

@@ -96,7 +96,7 @@ TEST_P(Replay, BitForBit) {
       };
       const Record first = run();
       for (int replay = 0; replay < 2; ++replay) {
-        snapshot.restore();
+        ASSERT_EQ(snapshot.restore(), Restored::yes);
         const Record again = run();
         ASSERT_EQ(again.numbers.size(), first.numbers.size()) << save_at << "+" << length;
         EXPECT_EQ(std::memcmp(again.numbers.data(), first.numbers.data(), sizeof(btScalar) * first.numbers.size()), 0)
@@ -124,9 +124,9 @@ TEST_P(Replay, AStepOfAnotherLengthInBetweenLeavesNoTrace) {
   scene.world().stepSimulation(h, 0);
   const Record plain = record(scene);
   for (const double share : {0.9, 0.37, 0.01}) {
-    snapshot.restore();
+    ASSERT_EQ(snapshot.restore(), Restored::yes);
     scene.world().stepSimulation(static_cast<btScalar>(share) * h, 0);
-    snapshot.restore();
+    ASSERT_EQ(snapshot.restore(), Restored::yes);
     scene.world().stepSimulation(h, 0);
     EXPECT_EQ(record(scene).numbers, plain.numbers) << share;
   }
@@ -145,7 +145,7 @@ TEST(Snapshot, ForcesComeBackThroughTheFactors) {
   const BulletSnapshot snapshot(scene.world(), nullptr);
   body->clearForces();
   body->applyCentralForce(btVector3(9, 9, 9));
-  snapshot.restore();
+  ASSERT_EQ(snapshot.restore(), Restored::yes);
   EXPECT_EQ(body->getTotalForce(), force);
   EXPECT_EQ(body->getTotalTorque(), torque);
   EXPECT_EQ(body->getLinearFactor(), btVector3(btScalar(0.5), 1, 0));
@@ -153,6 +153,61 @@ TEST(Snapshot, ForcesComeBackThroughTheFactors) {
 
 INSTANTIATE_TEST_SUITE_P(AllContacts, Replay,
                          ::testing::Values(Contacts::bullet, Contacts::persistent, Contacts::one_shot));
+
+/// A world with other bodies or joints than the saved one is left as it is, and the refusal says why.
+TEST(BulletSnapshot, RefusesAWorldWithOtherBodiesOrJoints) {
+  BulletPenetrationDepthSolver solver;
+  BulletWorld scene;
+  install(scene.world(), solver);
+  fill(scene, 3);
+  const auto step = [&] { scene.world().stepSimulation(btScalar(1) / 60, 0); };
+  for (int i = 0; i < 30; ++i) step();
+  const BulletSnapshot saved(scene.world(), &solver);
+  btRigidBody& last = *scene.bodies().back();
+  const auto stays = [&](Restored refusal) {
+    step();
+    const Record before = record(scene);
+    EXPECT_EQ(saved.restore(), refusal) << message_of(saved.restore());
+    EXPECT_EQ(before.numbers, record(scene).numbers);
+    step();
+  };
+  scene.world().removeRigidBody(&last);
+  stays(Restored::objects_differ);
+  // Taken out and put back: its proxy is another one.
+  scene.world().addRigidBody(&last);
+  stays(Restored::objects_differ);
+  const BulletSnapshot again(scene.world(), &solver);
+  {
+    btRigidBody added(1, nullptr, last.getCollisionShape(), btVector3(1, 1, 1));
+    added.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 30, 0)));
+    scene.world().addRigidBody(&added);
+    EXPECT_EQ(again.restore(), Restored::objects_differ);
+    scene.world().removeRigidBody(&added);
+  }
+  EXPECT_EQ(again.restore(), Restored::yes);
+  {
+    btPoint2PointConstraint joint(last, btVector3(0, 0, 0));
+    scene.world().addConstraint(&joint);
+    EXPECT_EQ(again.restore(), Restored::joints_differ);
+    scene.world().removeConstraint(&joint);
+  }
+  EXPECT_EQ(again.restore(), Restored::yes);
+}
+
+/// What a snapshot saved of the pairs is there although the solver is gone.
+TEST(BulletSnapshot, MayBeRestoredAfterTheSolver) {
+  auto solver = std::make_unique<BulletPenetrationDepthSolver>();
+  BulletWorld scene;
+  install(scene.world(), *solver);
+  fill(scene, 4);
+  for (int i = 0; i < 60; ++i) scene.world().stepSimulation(btScalar(1) / 60, 0);
+  const BulletSnapshot saved(scene.world(), solver.get());
+  const Record before = record(scene);
+  for (int i = 0; i < 10; ++i) scene.world().stepSimulation(btScalar(1) / 60, 0);
+  solver.reset();
+  ASSERT_EQ(saved.restore(), Restored::yes);
+  EXPECT_EQ(before.numbers, record(scene).numbers);
+}
 
 }  // namespace
 }  // namespace pd::test

@@ -24,7 +24,7 @@ void expect_replayed(const std::function<btCollisionShape*(UnionWorld&)>& ground
   std::vector<btTransform> first;
   world.step(15);
   for (const btRigidBody* body : bodies) first.push_back(body->getWorldTransform());
-  saved.restore();
+  ASSERT_EQ(saved.restore(), Restored::yes);
   world.step(15);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     EXPECT_TRUE(bodies[i]->getWorldTransform() == first[i]) << i;

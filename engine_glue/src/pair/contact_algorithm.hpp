@@ -16,7 +16,7 @@ class ContactAlgorithm final : public AlgorithmShell {
     ContactTable table;  ///< of the dispatcher, in which the algorithm stands
     [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
                                     const btCollisionObjectWrapper& b) {
-      return world.dispatcher() == nullptr || world.takes(a, b);
+      return world.installed_in() == InstalledIn::hosts_own_table || world.takes(a, b);
     }
   };
   ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 
 #include "pair/thread_buffers.hpp"
 #include "pd/depth/depth_answer.hpp"
@@ -12,8 +11,8 @@ namespace pd::detail {
 
 class QueryMeter {
  public:
-  explicit QueryMeter(ThreadBuffers& held) : held_(held) {
-    if (held.queries++ % kClockSample == 0) start_ = std::chrono::steady_clock::now();
+  explicit QueryMeter(ThreadBuffers& held) : held_(held), sampled_(held.queries++ % kClockSample == 0) {
+    if (sampled_) start_ = std::chrono::steady_clock::now();
   }
 
   /// The query is answered: it ends here.
@@ -30,8 +29,8 @@ class QueryMeter {
         counters.separated.add();
         break;
     }
-    if (!start_) return;
-    const auto spent = std::chrono::steady_clock::now() - *start_;
+    if (!sampled_) return;
+    const auto spent = std::chrono::steady_clock::now() - start_;
     counters.nanoseconds.add(kClockSample * std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count());
   }
 
@@ -40,7 +39,8 @@ class QueryMeter {
   static constexpr unsigned kClockSample = 16;
 
   ThreadBuffers& held_;
-  std::optional<std::chrono::steady_clock::time_point> start_;
+  bool sampled_;
+  std::chrono::steady_clock::time_point start_{};
 };
 
 }  // namespace pd::detail

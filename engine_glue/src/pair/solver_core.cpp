@@ -188,18 +188,27 @@ bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& s
   return false;
 }
 
-SolverInWorld* SolverCore::find_world(const btCollisionDispatcher* dispatcher) {
+SolverInWorld* SolverCore::world_at(std::size_t place) {
   const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(worlds_.begin(), worlds_.end(),
-                                  [&](const auto& world) { return world->dispatcher() == dispatcher; });
-  return found == worlds_.end() ? nullptr : found->get();
+  return worlds_[place].get();
 }
 
-void SolverCore::add_world(std::unique_ptr<SolverInWorld> world) {
+SolverInWorld& SolverCore::add_world(std::size_t place, std::unique_ptr<SolverInWorld> world) {
   const std::lock_guard lock(mutex_);
   if (!installed_) warm_up(*buffers.lease());
   installed_ = true;
-  worlds_.push_back(std::move(world));
+  if (!worlds_[place]) worlds_[place] = std::move(world);
+  return *worlds_[place];
+}
+
+void SolverCore::note_lone(const btCollisionDispatcher* dispatcher) {
+  const std::lock_guard lock(mutex_);
+  lone_dispatchers_.insert(dispatcher);
+}
+
+bool SolverCore::forget_lone(const btCollisionDispatcher* dispatcher) {
+  const std::lock_guard lock(mutex_);
+  return lone_dispatchers_.erase(dispatcher) > 0;
 }
 
 void SolverCore::close() {

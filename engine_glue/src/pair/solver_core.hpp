@@ -5,12 +5,13 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <vector>
+#include <unordered_set>
 
 #include "pair/pair_registry.hpp"
 #include "pair/thread_buffers.hpp"
@@ -104,10 +105,17 @@ class SolverCore {
   /// A number that no step of any world had before.
   [[nodiscard]] std::uint64_t next_stamp() { return 1 + stamps_.fetch_add(1, std::memory_order_relaxed); }
 
-  /// The world of a dispatcher, or nullptr.
-  SolverInWorld* find_world(const btCollisionDispatcher* dispatcher);
-  /// Keeps it as long as the core lives.
-  void add_world(std::unique_ptr<SolverInWorld> world);
+  /// Solvers may serve any number of worlds one after another, whose end Bullet tells nobody: they share this many
+  /// places. Worlds that step at the same time should not share one.
+  static constexpr std::size_t kWorlds = 256;
+  /// The world at a place, or nullptr.
+  SolverInWorld* world_at(std::size_t place);
+  /// Keeps it as long as the core lives. @return the one that is there, which another thread may have added first
+  SolverInWorld& add_world(std::size_t place, std::unique_ptr<SolverInWorld> world);
+  /// Notes a dispatcher without a world that steps, in which the solver is installed.
+  void note_lone(const btCollisionDispatcher* dispatcher);
+  /// @return whether it was noted
+  bool forget_lone(const btCollisionDispatcher* dispatcher);
   [[nodiscard]] bool installed() const { return installed_; }
 
   /// The solver is gone: from now on Bullet's EPA answers.
@@ -131,7 +139,8 @@ class SolverCore {
   std::atomic<std::uint64_t> warned_{0};  ///< a bit for each Bullet type
   std::atomic<bool> closed_{false};
   std::mutex mutex_;
-  std::vector<std::unique_ptr<SolverInWorld>> worlds_;
+  std::array<std::unique_ptr<SolverInWorld>, kWorlds> worlds_;
+  std::unordered_set<const btCollisionDispatcher*> lone_dispatchers_;
   bool installed_ = false;
 };
 

@@ -13,7 +13,7 @@ bool SolverInWorld::takes(const btCollisionObjectWrapper& a, const btCollisionOb
 btCollisionAlgorithm* SolverInWorld::bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
                                                        const btCollisionObjectWrapper* a,
                                                        const btCollisionObjectWrapper* b, ContactTable table) const {
-  btCollisionConfiguration& own = *dispatcher_->getCollisionConfiguration();
+  btCollisionConfiguration& own = *static_cast<btCollisionDispatcher*>(info.m_dispatcher1)->getCollisionConfiguration();
   const int type_a = a->getCollisionShape()->getShapeType(), type_b = b->getCollisionShape()->getShapeType();
   btCollisionAlgorithmCreateFunc* const create = table == ContactTable::contacts
                                                      ? own.getCollisionAlgorithmCreateFunc(type_a, type_b)

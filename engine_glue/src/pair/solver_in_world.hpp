@@ -1,5 +1,5 @@
 /// @file
-/// A solver in one dispatcher, as the algorithms of its pairs know it.
+/// A solver in dispatchers, as the algorithms of their pairs know it.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
@@ -15,23 +15,32 @@ namespace pd::detail {
 /// Which of a dispatcher's two tables of algorithms a pair comes from.
 enum class ContactTable : std::uint8_t { contacts, closest_points };
 
-/// Never moves and, once a dispatcher knows it, never dies: see SolverCore.
+/// Whose create functions there are.
+enum class InstalledIn : std::uint8_t {
+  hosts_own_table,  ///< a host registers them itself: all pairs are taken
+  dispatchers,      ///< of dispatchers whose worlds do not tell when a step has ended
+  stepping_worlds   ///< of worlds that do
+};
+
+/// Never moves and, once a dispatcher knows it, never dies: see SolverCore. Bullet tells nobody when a dispatcher dies,
+/// so nothing is kept here of those that are served.
 class SolverInWorld {
  public:
-  /// @param dispatcher  nullptr: create functions that a host registers itself
-  SolverInWorld(SolverCore& core, btCollisionDispatcher* dispatcher) : core_(core), dispatcher_(dispatcher) {}
+  SolverInWorld(SolverCore& core, InstalledIn in) : core_(core), in_(in) {}
   virtual ~SolverInWorld() = default;
   SolverInWorld(const SolverInWorld&) = delete;
   SolverInWorld& operator=(const SolverInWorld&) = delete;
 
   [[nodiscard]] SolverCore& core() const { return core_; }
-  [[nodiscard]] btCollisionDispatcher* dispatcher() const { return dispatcher_; }
-  /// Of the present step; 0 until the world has made its first step.
+  [[nodiscard]] InstalledIn installed_in() const { return in_; }
+  /// Of the present step; 0 until a world has made its first step. Where worlds share this, a step of one of them ends
+  /// the stamp of all: shapes are compared more often than needed then, and never less.
   [[nodiscard]] std::uint64_t stamp() const { return stamp_.load(std::memory_order_relaxed); }
 
   /// Whether the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
   [[nodiscard]] bool takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const;
-  /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a dispatcher.
+  /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a
+  /// btCollisionDispatcher.
   [[nodiscard]] btCollisionAlgorithm* bullets_algorithm(btCollisionAlgorithmConstructionInfo& info,
                                                         const btCollisionObjectWrapper* a,
                                                         const btCollisionObjectWrapper* b,
@@ -42,7 +51,7 @@ class SolverInWorld {
 
  private:
   SolverCore& core_;
-  btCollisionDispatcher* dispatcher_;
+  InstalledIn in_;
   std::atomic<std::uint64_t> stamp_{0};
 };
 

@@ -295,14 +295,28 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   btVector3 lower;
   btVector3 upper;
   swept_box(a, pa, b, pb, lower, upper);
-  const std::vector<BoxedTriangle> triangles = triangles_in_box(*pb.concave, lower, upper);
   const MovingShape moving_a = moving_piece(*pa.cached->body, a.start, pa.local, a.motion);
+  // No point of the body comes farther than this against the surface.
+  const double arm = moving_a.arm.norm();
+  const double far = to_pd(a.start.getOrigin() - b.start.getOrigin()).norm() + arm + a.travel + pa.radius;
+  const double way =
+      duration_ * ((a.motion.linear_velocity - b.motion.linear_velocity).norm() +
+                   a.motion.angular_velocity.norm() * (arm + pa.radius) + b.motion.angular_velocity.norm() * far);
+  const double within = std::max(way + settings.gap, settings.in_contact);
+  const Pose surface = to_pd(b.start * pb.local);
+  const Whereabouts near{surface.rotation().transpose() * (moving_a.start.pose.translation() - surface.translation()),
+                         pa.radius + within};
+  const std::vector<BoxedTriangle> triangles = triangles_in_box(*pb.concave, lower, upper, &near);
   // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
   // their edges, no deeper than it lies on this one. So one depth is allowed for all.
+  DepthSettings quick = kQuick;
+  quick.beyond = within;
   double deepest = -HUGE_VAL;
+  starts_.clear();
   for (const BoxedTriangle& triangle : triangles) {
     const PosedShape posed = moving_piece(*triangle.shape, b.start, pb.local, b.motion).start;
-    deepest = std::max(deepest, -penetration_depth(moving_a.start, posed, scratch_, kQuick).signed_distance());
+    starts_.push_back(penetration_depth(moving_a.start, posed, scratch_, quick).signed_distance());
+    deepest = std::max(deepest, -starts_.back());
   }
   TimeOfImpactSettings impact;
   impact.distance_tolerance = 0.5 * settings.gap;
@@ -310,12 +324,13 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   impact.depth = kQuick;
   const double depth = std::max(deepest, 0.0);
   if (deepest >= -settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
-  for (const BoxedTriangle& triangle : triangles) {
-    const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (starts_[i] > way + settings.gap) continue;
+    const MovingShape moving_b = moving_piece(*triangles[i].shape, b.start, pb.local, b.motion);
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
-      found.b.triangle = triangle.shape;
+      found.b.triangle = triangles[i].shape;
       if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
     }
   }

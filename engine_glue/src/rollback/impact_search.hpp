@@ -110,6 +110,7 @@ class ImpactSearch {
   std::vector<Piece> pieces_;
   std::vector<Body> bodies_;
   std::vector<int> order_;
+  std::vector<double> starts_;  ///< signed distances of the triangles at hand where the motion begins
   /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.
   std::unordered_map<std::size_t, double> first_depths_;
   Scratch scratch_;

@@ -41,6 +41,28 @@ void MultiBodyState::save(btDiscreteDynamicsWorld& world) {
   }
 }
 
+bool MultiBodyState::same(btDiscreteDynamicsWorld& world) const {
+  auto* articulated = dynamic_cast<btMultiBodyDynamicsWorld*>(&world);
+  if (articulated == nullptr) return bodies_.empty() && impulses_.empty();
+  if (static_cast<std::size_t>(articulated->getNumMultibodies()) != bodies_.size()) return false;
+  for (int i = 0; i < articulated->getNumMultibodies(); ++i) {
+    const Body& saved = bodies_[static_cast<std::size_t>(i)];
+    const btMultiBody* const present = articulated->getMultiBody(i);
+    if (present != saved.body || static_cast<std::size_t>(present->getNumLinks()) != saved.links.size() ||
+        static_cast<std::size_t>(6 + present->getNumDofs()) != saved.velocities.size()) {
+      return false;
+    }
+  }
+  std::size_t place = 0;
+  for (int i = 0; i < articulated->getNumMultiBodyConstraints(); ++i) {
+    const btMultiBodyConstraint* const present = articulated->getMultiBodyConstraint(i);
+    for (int row = 0; row < present->getNumRows(); ++row, ++place) {
+      if (place >= impulses_.size() || impulses_[place].constraint != present) return false;
+    }
+  }
+  return place == impulses_.size();
+}
+
 void MultiBodyState::restore() const {
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> origins;

@@ -3,6 +3,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "pd/bullet/scalar.hpp"
 #include "rollback/impact_search.hpp"
 #include "rollback/substep.hpp"
+#include "rollback/world_objects.hpp"
 #include "rollback/world_step.hpp"
 
 namespace pd {
@@ -57,6 +59,7 @@ struct RollbackStepper::State {
   RollbackSettings settings;
   detail::ImpactSearch search;
   detail::SubStepper parts;
+  detail::WorldObjects objects;
   std::unique_ptr<BulletSnapshot> start;
   bool is_cut = false;        ///< the present part is not the frame's first
   int unrecorded_trials = 0;  ///< of parts that ended before the contact that they were about
@@ -73,6 +76,20 @@ struct RollbackStepper::State {
     }
   }
 
+  /// The state at which the present part began. Bullet lets nobody add or remove objects within a step, in which the
+  /// objects were the saved ones.
+  void take_back() const {
+    [[maybe_unused]] const Restored back = start->restore();
+    assert(back == Restored::yes);
+  }
+
+  /// Forgets what the host's callbacks and actions have taken out of the world since the frame began.
+  void follow_objects() {
+    if (objects.same(world, detail::WorldObjects::Shapes::compared)) return;
+    parts.keep_only(objects.renew(world));
+    search.begin_frame();
+  }
+
   [[nodiscard]] detail::ImpactSearch::Settings search_settings() const {
     const double in_contact = detail::kInContactGaps * settings.gap;
     // In whole steps Bullet brakes what is slower than the slop, and most bodies of most worlds are.
@@ -83,7 +100,7 @@ struct RollbackStepper::State {
     parts.move(from, length, settings.gap, settings.contact_slop);
     ++report.simulation_steps;
     while (parts.must_repeat(length)) {
-      start->restore();
+      take_back();
       parts.move(from, length, settings.gap, settings.contact_slop);
       ++report.simulation_steps;
     }
@@ -167,7 +184,7 @@ double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double fr
   double time = std::max(least, foresee(impact, duration));
   bool at_contact = false;
   const auto make = [&] {
-    start->restore();
+    take_back();
     try_part(from, time, report);
     ++unrecorded_trials;
   };
@@ -240,6 +257,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
   const auto whole = static_cast<double>(step);
   const double least = settings.least_part * whole;
   const int known = report.contacts.size();
+  objects.note(world);
   search.begin_frame();
   parts.begin_frame(step);
   unrecorded_trials = 0;
@@ -249,6 +267,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     const double remaining = whole - done;
     is_cut = cuts > 0;
     detail::WorldStep::pre_tick(world, static_cast<btScalar>(remaining));
+    follow_objects();
     save();
     parts.begin_part();
     search.mark_start();
@@ -263,7 +282,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     ++cuts;
     double part = least;
     if (impact.time < least) {
-      start->restore();
+      take_back();
       try_part(done, least, report);
       parts.expect_impact(impact.a.body, impact.b.body);
       ++report.least_parts;

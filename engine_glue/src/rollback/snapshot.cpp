@@ -13,9 +13,11 @@
 #include <vector>
 
 #include "pair/pair_registry.hpp"
+#include "pair/solver_core.hpp"
 #include "rollback/broadphase_state.hpp"
 #include "rollback/multibody_state.hpp"
 #include "rollback/substep.hpp"
+#include "rollback/world_objects.hpp"
 
 namespace pd {
 
@@ -150,6 +152,8 @@ Likeness compare(const btPersistentManifold& manifold, const detail::PairMemory*
 struct BulletSnapshot::State {
   btDiscreteDynamicsWorld& world;
   BulletPenetrationDepthSolver* solver;
+  detail::PairRegistry* pairs = nullptr;  ///< of an installed solver: it outlives the solver
+  detail::WorldObjects objects;
   std::vector<BodyState> bodies;
   std::vector<ManifoldState> manifolds;
   std::vector<btManifoldPoint> points;
@@ -158,7 +162,11 @@ struct BulletSnapshot::State {
   detail::BroadphaseState broadphase;
   unsigned long seed = 0;
 
+  State(btDiscreteDynamicsWorld& of, BulletPenetrationDepthSolver* installed) : world(of), solver(installed) {}
+
   void save();
+  /// Whether the world still has what was saved.
+  [[nodiscard]] Restored compare_world() const;
 
   /// Puts the present manifolds into the saved order, those that the saved state does not know behind them.
   /// @return for each manifold in the new order its saved state, or nullptr.
@@ -172,7 +180,7 @@ struct BulletSnapshot::State {
       int found = -1;
       for (int i = placed; i < count; ++i) {
         const Likeness likeness =
-            compare(*present[i], solver ? solver->pairs().find(present[i]) : nullptr, wanted, points);
+            compare(*present[i], pairs != nullptr ? pairs->find(present[i]) : nullptr, wanted, points);
         if (likeness == Likeness::same || (likeness == Likeness::possible && found < 0)) {
           found = i;
         }
@@ -195,12 +203,12 @@ struct BulletSnapshot::State {
   /// Patches that were found later are found again, in the order in which the solver met them then. Requires: those
   /// of saved pairs stand in the saved order, the others behind them.
   void release_later_patches(const std::vector<const ManifoldState*>& saved) const {
-    if (solver == nullptr) return;
+    if (pairs == nullptr) return;
     btCollisionDispatcher& dispatcher = dispatcher_of(world);
     for (int i = dispatcher.getNumManifolds() - 1; i >= 0; --i) {
       // Releasing one takes those of higher numbers along, which are behind the saved ones as well.
       if (i >= dispatcher.getNumManifolds() || saved[static_cast<std::size_t>(i)] != nullptr) continue;
-      const detail::PairMemory* memory = solver->pairs().find(dispatcher.getManifoldByIndexInternal(i));
+      const detail::PairMemory* memory = pairs->find(dispatcher.getManifoldByIndexInternal(i));
       if (memory != nullptr && memory->patch > 0) memory->owner->release_from(memory->patch);
     }
   }
@@ -214,7 +222,7 @@ struct BulletSnapshot::State {
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
         manifold->getContactPoint(k) = points[saved[i]->first + static_cast<std::size_t>(k)];
       }
-      if (detail::PairMemory* memory = solver ? solver->pairs().find(manifold) : nullptr) {
+      if (detail::PairMemory* memory = pairs != nullptr ? pairs->find(manifold) : nullptr) {
         const int patch = memory->patch;
         detail::ManifoldOwner* const owner = memory->owner;
         *memory = saved[i] != nullptr && saved[i]->memory ? *saved[i]->memory : detail::PairMemory();
@@ -226,13 +234,16 @@ struct BulletSnapshot::State {
 };
 
 void BulletSnapshot::State::save() {
+  objects.note(world);
   broadphase.save(world);
   multibodies.save(world);
   points.clear();
   joints.clear();
-  const auto& objects = world.getCollisionObjectArray();
-  bodies.resize(static_cast<std::size_t>(objects.size()));
-  for (int i = 0; i < objects.size(); ++i) save_body(objects[i], bodies[static_cast<std::size_t>(i)]);
+  const auto& present_objects = world.getCollisionObjectArray();
+  bodies.resize(static_cast<std::size_t>(present_objects.size()));
+  for (int i = 0; i < present_objects.size(); ++i) {
+    save_body(present_objects[i], bodies[static_cast<std::size_t>(i)]);
+  }
   btCollisionDispatcher& dispatcher = dispatcher_of(world);
   const int count = dispatcher.getNumManifolds();
   btPersistentManifold** const present = dispatcher.getInternalManifoldPointer();
@@ -240,8 +251,9 @@ void BulletSnapshot::State::save() {
   const auto save_manifold = [&](int i, const detail::PairMemory* memory) {
     manifolds[static_cast<std::size_t>(i)].save(*present[i], memory, points);
   };
-  if (solver != nullptr) {
-    solver->pairs().visit_all(present, count, save_manifold);
+  if (pairs == nullptr && solver != nullptr && solver->core().installed()) pairs = &solver->pairs();
+  if (pairs != nullptr) {
+    pairs->visit_all(present, count, save_manifold);
   } else {
     for (int i = 0; i < count; ++i) save_manifold(i, nullptr);
   }
@@ -254,8 +266,32 @@ void BulletSnapshot::State::save() {
   }
 }
 
+Restored BulletSnapshot::State::compare_world() const {
+  if (!objects.same(world, detail::WorldObjects::Shapes::left_alone)) return Restored::objects_differ;
+  if (static_cast<std::size_t>(world.getNumConstraints()) != joints.size()) return Restored::joints_differ;
+  for (int i = 0; i < world.getNumConstraints(); ++i) {
+    if (world.getConstraint(i) != joints[static_cast<std::size_t>(i)].joint) return Restored::joints_differ;
+  }
+  return multibodies.same(world) ? Restored::yes : Restored::multibodies_differ;
+}
+
+const char* message_of(Restored restored) {
+  switch (restored) {
+    case Restored::objects_differ:
+      return "a collision object was added to the world or removed from it since it was saved: save it again";
+    case Restored::joints_differ:
+      return "a joint was added to the world or removed from it since it was saved: save it again";
+    case Restored::multibodies_differ:
+      return "a multibody, a link or a multibody's constraint was added or removed since the world was saved: save it "
+             "again";
+    case Restored::yes:
+      break;
+  }
+  return "restored";
+}
+
 BulletSnapshot::BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver) : state_(nullptr) {
-  auto state = std::make_unique<State>(State{world, solver, {}, {}, {}, {}, {}, {}});
+  auto state = std::make_unique<State>(world, solver);
   state->save();
   state_ = state.release();
 }
@@ -269,8 +305,10 @@ BulletSnapshot& BulletSnapshot::operator=(BulletSnapshot&& other) noexcept {
   return *this;
 }
 
-void BulletSnapshot::restore() const {
+Restored BulletSnapshot::restore() const {
   btDiscreteDynamicsWorld& world = state_->world;
+  const Restored possible = state_->compare_world();
+  if (possible != Restored::yes) return possible;
   for (const BodyState& body : state_->bodies) {
     restore_body(body);
   }
@@ -286,6 +324,7 @@ void BulletSnapshot::restore() const {
   if (auto* seeded = seeded_solver(world)) {
     seeded->setRandSeed(state_->seed);
   }
+  return Restored::yes;
 }
 
 }  // namespace pd

@@ -66,6 +66,15 @@ void SubStepper::begin_frame(btScalar frame) {
   }
 }
 
+void SubStepper::keep_only(const std::vector<const btCollisionObject*>& present) {
+  const auto gone = [&](const auto& noted) {
+    return !std::binary_search(present.begin(), present.end(), static_cast<const btCollisionObject*>(noted.body),
+                               std::less<>());
+  };
+  forces_.erase(std::remove_if(forces_.begin(), forces_.end(), gone), forces_.end());
+  kinematics_.erase(std::remove_if(kinematics_.begin(), kinematics_.end(), gone), kinematics_.end());
+}
+
 void SubStepper::place_kinematics(double time) {
   for (const Kinematic& moved : kinematics_) {
     btRigidBody& body = *btRigidBody::upcast(moved.body);

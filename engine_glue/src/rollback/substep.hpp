@@ -45,6 +45,9 @@ class SubStepper {
 
   /// Notes the forces that the host has applied and where kinematic bodies are and are to be.
   void begin_frame(btScalar frame);
+  /// Forgets what was noted of objects that are none of these, which are sorted by address: the host has taken them out
+  /// of the world since the frame began.
+  void keep_only(const std::vector<const btCollisionObject*>& present);
   /// A part begins, of which all moves are trials.
   void begin_part();
   /// Moves from `from` to `from + step` seconds of the frame: Bullet's own step where that is all of it, no kinematic

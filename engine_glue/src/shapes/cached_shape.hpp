@@ -26,7 +26,7 @@ struct CachedShape {
   std::shared_ptr<const ConvexShape> body;   ///< null: the shape has none
   std::shared_ptr<const ConvexShape> sharp;  ///< of a btBoxShape: as a partner of another one
   Error refusal{ErrorCode::unsupported, {}, {}};
-  std::atomic<std::uint64_t> last_use{0};
+  std::atomic<bool> used{false};           ///< found since the cache last looked for entries to drop
   std::atomic<std::uint64_t> compared{0};  ///< the stamp under which all points were last compared
 };
 

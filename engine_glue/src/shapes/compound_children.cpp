@@ -1,5 +1,6 @@
 #include "shapes/compound_children.hpp"
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
@@ -9,6 +10,13 @@
 #include "shapes/child_tree.hpp"
 
 namespace pd::detail {
+
+namespace {
+
+/// Importers put a `btEmptyShape` where a link has nothing to collide with.
+bool is_empty(const btCollisionShape& child) { return child.getShapeType() == EMPTY_SHAPE_PROXYTYPE; }
+
+}  // namespace
 
 Box box_of(const btCollisionShape& shape, const btTransform& pose) {
   Box box;
@@ -34,6 +42,7 @@ void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, co
   }
   const auto& compound = static_cast<const btCompoundShape&>(shape);
   const auto visit = [&](int i) {
+    if (is_empty(*compound.getChildShape(i))) return;
     Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i, {}};
     child.box = box_of(*child.shape, child.pose);
     if (!apart(child.box, world, reach)) children.push_back(child);
@@ -59,6 +68,7 @@ bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShap
   const auto& compound = static_cast<const btCompoundShape&>(shape);
   for (int i = 0; i < compound.getNumChildShapes(); ++i) {
     const btCollisionShape& child = *compound.getChildShape(i);
+    if (is_empty(child)) continue;
     if (!child.isConvex()) return false;
     if (gCompoundChildShapePairCallback != nullptr && !gCompoundChildShapePairCallback(&other, &child)) continue;
     const btTransform place = pose * compound.getChildTransform(i);

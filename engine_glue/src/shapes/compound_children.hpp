@@ -27,13 +27,13 @@ Box box_of(const btCollisionShape& shape, const btTransform& pose);
 
 bool apart(const Box& a, const Box& b, btScalar reach);
 
-/// The children whose boxes come within `reach` of a box (`local`: in the compound's frame), by number. Of a shape that
-/// is no compound: itself.
+/// The children whose boxes come within `reach` of a box (`local`: in the compound's frame), by number, but empty ones.
+/// Of a shape that is no compound: itself.
 void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
                    std::vector<Child>& children);
 
 /// The children that the host lets meet `other` (`gCompoundChildShapePairCallback`), wherever they are and without
-/// their boxes, but those whose place is no number. Of a shape that is no compound: itself.
+/// their boxes, but empty ones and those whose place is no number. Of a shape that is no compound: itself.
 /// @return whether all children are convex
 bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShape& other, std::vector<Child>& children);
 

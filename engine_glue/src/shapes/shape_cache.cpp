@@ -11,6 +11,10 @@ namespace pd {
 
 namespace {
 
+/// Entries of a full table that are looked at for each new one. Each look drops an entry or takes its mark of use away,
+/// so that two looks for each new entry would do to keep a table from growing whose entries are used once.
+constexpr int kLooks = 4;
+
 std::shared_ptr<detail::CachedShape> convert(const btConvexShape& shape) {
   auto result = std::make_shared<detail::CachedShape>();
   result->source = &shape;
@@ -41,14 +45,13 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape&
     return convert(shape);
   }
   const std::uint64_t signature = shape_signature(shape);
-  const std::uint64_t now = clock_.fetch_add(1, std::memory_order_relaxed);
   std::shared_ptr<detail::CachedShape> known;
   {
     const std::shared_lock lock(mutex_);
-    const auto found = entries_.find(&shape);
-    if (found != entries_.end() && found->second->signature == signature) {
-      known = found->second;
-      known->last_use.store(now, std::memory_order_relaxed);
+    const auto found = places_.find(&shape);
+    if (found != places_.end() && (*found->second)->signature == signature) {
+      known = *found->second;
+      known->used.store(true, std::memory_order_relaxed);
       if (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp) {
         return known;
       }
@@ -62,22 +65,17 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape&
   auto entry = make_entry(shape, fingerprint);
   entry->signature = signature;
   entry->compared.store(stamp, std::memory_order_relaxed);
-  entry->last_use.store(now, std::memory_order_relaxed);
   const std::unique_lock lock(mutex_);
-  const auto present = entries_.find(&shape);
-  if (present != entries_.end()) {
-    if (present->second->fingerprint == fingerprint && present->second->signature == signature) {
-      return present->second;  // another thread was first: one body for all, so that warm pairs recognise it
+  const auto present = places_.find(&shape);
+  if (present != places_.end()) {
+    const std::shared_ptr<detail::CachedShape>& other = *present->second;
+    if (other->fingerprint == fingerprint && other->signature == signature) {
+      return other;  // another thread was first: one body for all, so that warm pairs recognise it
     }
     erase(&shape);
   }
-  if (entries_.size() >= capacity_) {
-    erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
-            return a.second->last_use.load(std::memory_order_relaxed) <
-                   b.second->last_use.load(std::memory_order_relaxed);
-          })->first);
-  }
-  entries_.emplace(&shape, entry);
+  make_room();
+  places_.emplace(&shape, entries_.insert(next_look_, entry));
   std::weak_ptr<detail::CachedShape>& like = by_content_[fingerprint];
   if (like.expired()) like = entry;
   return entry;
@@ -108,11 +106,29 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::make_entry(const btConvex
 }
 
 void BulletShapeCache::erase(const btCollisionShape* shape) {
-  const auto entry = entries_.find(shape);
-  if (entry == entries_.end()) return;
-  const auto like = by_content_.find(entry->second->fingerprint);
-  if (like != by_content_.end() && like->second.lock() == entry->second) by_content_.erase(like);
-  entries_.erase(entry);
+  const auto found = places_.find(shape);
+  if (found == places_.end()) return;
+  const Entries::iterator place = found->second;
+  const auto like = by_content_.find((*place)->fingerprint);
+  if (like != by_content_.end() && like->second.lock() == *place) by_content_.erase(like);
+  places_.erase(found);
+  const bool is_next = next_look_ == place;
+  const Entries::iterator next = entries_.erase(place);
+  if (is_next) next_look_ = next;
+}
+
+void BulletShapeCache::make_room() {
+  for (int look = 0; look < kLooks && entries_.size() >= capacity_; ++look) {
+    if (next_look_ == entries_.end()) next_look_ = entries_.begin();
+    const std::shared_ptr<detail::CachedShape>& entry = *next_look_;
+    // A pair holds the entries of its shapes, and does not ask for them in each step.
+    const bool held = entry.use_count() > 1;
+    if (entry->used.exchange(false, std::memory_order_relaxed) || held) {
+      ++next_look_;
+    } else {
+      erase(entry->source);
+    }
+  }
 }
 
 void BulletShapeCache::forget(const btCollisionShape* shape) {
@@ -122,7 +138,9 @@ void BulletShapeCache::forget(const btCollisionShape* shape) {
 
 void BulletShapeCache::clear() {
   const std::unique_lock lock(mutex_);
+  places_.clear();
   entries_.clear();
+  next_look_ = entries_.end();
   by_content_.clear();
 }
 

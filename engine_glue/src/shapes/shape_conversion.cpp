@@ -52,6 +52,27 @@ class CornerVisitor : public btInternalTriangleIndexCallback {
   Visit& visit_;
 };
 
+/// The core of a box or cylinder, whose margin lies inside of it.
+struct InsideMargin {
+  btVector3 half_extents;
+  btScalar margin;
+};
+
+/// A margin that reaches a half extent would leave no core on that axis. Bullet goes on with half extents below zero:
+/// its support then picks the opposite corner and comes out at the right place again, straight along an axis. So the
+/// outer extents are those that Bullet rests on, and the margin is as large as they allow.
+InsideMargin inside_margin(const btConvexInternalShape& shape) {
+  const btVector3& half = shape.getImplicitShapeDimensions();
+  const btScalar margin = shape.getMarginNonVirtual();
+  const btScalar least = std::min({half.x(), half.y(), half.z()});
+  const btScalar outer = least + margin;
+  if (least > 0 || !(outer > 0)) return {half, margin};
+  /// The core keeps this share of the least outer half extent.
+  constexpr btScalar kCore = btScalar(0x1p-10);
+  const btScalar excess = kCore * outer - least;
+  return {half + btVector3(excess, excess, excess), margin - excess};
+}
+
 /// Calls `visit` with the points whose hull is the core of a polyhedral shape, scaled as Bullet's support scales them.
 /// @return false where the type is not polyhedral.
 template <class Visit>
@@ -59,11 +80,9 @@ bool for_each_point(const btConvexShape& shape, Visit&& visit) {
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
     case BOX_2D_SHAPE_PROXYTYPE: {
-      const auto& dimensions = static_cast<const btConvexInternalShape&>(shape).getImplicitShapeDimensions();
-      // A margin larger than a half extent leaves no core on that axis; Bullet's support would then pick opposite
-      // corners.
-      const btVector3 h(std::max(dimensions.x(), btScalar(0)), std::max(dimensions.y(), btScalar(0)),
-                        std::max(dimensions.z(), btScalar(0)));
+      const btVector3 core = inside_margin(static_cast<const btConvexInternalShape&>(shape)).half_extents;
+      const btVector3 h(std::max(core.x(), btScalar(0)), std::max(core.y(), btScalar(0)),
+                        std::max(core.z(), btScalar(0)));
       for (int i = 0; i < 8; ++i) {
         visit(btVector3((i & 1) ? h.x() : -h.x(), (i & 2) ? h.y() : -h.y(), (i & 4) ? h.z() : -h.z()));
       }
@@ -115,6 +134,13 @@ bool for_each_point(const btConvexShape& shape, Visit&& visit) {
 /// The margin with which Bullet's narrow phase sees the shape.
 double bullet_margin(const btConvexShape& shape) { return static_cast<double>(shape.getMarginNonVirtual()); }
 
+/// The margin around the core of a polyhedral shape.
+double margin_around_core(const btConvexShape& shape) {
+  const int type = shape.getShapeType();
+  if (type != BOX_SHAPE_PROXYTYPE && type != BOX_2D_SHAPE_PROXYTYPE) return bullet_margin(shape);
+  return static_cast<double>(inside_margin(static_cast<const btConvexInternalShape&>(shape)).margin);
+}
+
 Expected<ConvexShape> swept_hull(const btConvexShape& shape, const std::vector<Vec3>& points, double margin) {
   auto polytope = ConvexPolytope::from_points(points);
   if (!polytope) {
@@ -129,21 +155,21 @@ Expected<ConvexShape> with_bullet_margin(Expected<ConvexShape> core, const btCon
 }
 
 Expected<ConvexShape> from_cylinder(const btCylinderShape& shape) {
-  const btVector3& h = shape.getImplicitShapeDimensions();
+  const InsideMargin inside = inside_margin(shape);
   const int axis = shape.getUpAxis();
-  const double radius = static_cast<double>(h[axis == 0 ? 1 : 0]);
-  const double half_height = static_cast<double>(h[axis]);
+  const auto radius = static_cast<double>(inside.half_extents[axis == 0 ? 1 : 0]);
+  const auto half_height = static_cast<double>(inside.half_extents[axis]);
+  const auto margin = static_cast<double>(inside.margin);
   if (half_height <= 0) {
-    return unsupported(
-        shape,
-        "the margin reaches the cylinder's half height, so that its core would be a disc: give it a smaller margin");
+    return unsupported(shape, "a cylinder without height has no exact form: give it a half height above zero");
   }
   if (radius <= 0) {
     Vec3 end = Vec3::Zero();
     end[axis] = half_height;
-    return swept_hull(shape, {-end, end}, bullet_margin(shape));
+    return swept_hull(shape, {-end, end}, margin);
   }
-  return with_bullet_margin(ConvexShape::cylinder(radius, half_height, axis), shape);
+  const auto core = ConvexShape::cylinder(radius, half_height, axis);
+  return core ? core->with_margin(margin) : core;
 }
 
 Expected<ConvexShape> from_capsule(const btCapsuleShape& shape) {
@@ -259,7 +285,7 @@ class Fingerprint {
 Expected<ConvexShape> to_convex_shape(const btConvexShape& shape) {
   std::vector<Vec3> points;
   if (for_each_point(shape, [&](const btVector3& point) { points.push_back(to_pd(point)); })) {
-    return swept_hull(shape, points, bullet_margin(shape));
+    return swept_hull(shape, points, margin_around_core(shape));
   }
   switch (shape.getShapeType()) {
     case SPHERE_SHAPE_PROXYTYPE:

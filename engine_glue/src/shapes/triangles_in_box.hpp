@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "pd/numeric/vector.hpp"
 #include "pd/shape/convex_shape.hpp"
 
 namespace pd::detail {
@@ -17,9 +18,17 @@ struct BoxedTriangle {
   int index;
 };
 
+/// Where a body may come to, in a concave shape's frame: no point of it gets farther from the centre than the radius.
+struct Whereabouts {
+  Vec3 centre;
+  double radius;
+};
+
 /// @param lower, upper  in the concave shape's frame. Triangles whose corners are no numbers are left out, as Bullet's
 /// own contacts leave them out.
+/// @param near  null, or: triangles that do not come near, margin included, are left out, which is quicker than to
+/// convert them
 [[nodiscard]] std::vector<BoxedTriangle> triangles_in_box(const btConcaveShape& concave, const btVector3& lower,
-                                                          const btVector3& upper);
+                                                          const btVector3& upper, const Whereabouts* near = nullptr);
 
 }  // namespace pd::detail

@@ -76,10 +76,12 @@ bool DeepUnion::collect(const btCollisionObjectWrapper& body, const btCollisionO
                 static_cast<btScalar>(reach), side.children);
   side.posed.clear();
   side.held.clear();
+  side.polytopes = true;
   for (const Child& child : side.children) {
     if (!child.shape->isConvex()) return false;
     const auto found = core.cache.find(static_cast<const btConvexShape&>(*child.shape), question.stamp);
-    if (!found->body || found->body->polytope() == nullptr) return false;
+    if (!found->body) return false;
+    side.polytopes = side.polytopes && found->body->polytope() != nullptr;
     const bool part = child.index >= 0;
     side.held.push_back(found);
     side.posed.push_back({(part && found->sharp ? found->sharp : found->body).get(), to_pd(child.pose)});
@@ -219,7 +221,7 @@ DeepUnion::Outcome DeepUnion::find_way(const UnionQuestion& question, SolverCore
   // A way of length d meets no child that is farther than d from the other body now.
   for (double reach = 2 * deepest_;;) {
     if (!collect(question.a, question.b, reach, question, core, a_) ||
-        !collect(question.b, question.a, reach, question, core, b_)) {
+        !collect(question.b, question.a, reach, question, core, b_) || !a_.polytopes || !b_.polytopes) {
       return Outcome::unsupported;
     }
     if (a_.posed.size() * b_.posed.size() > kMostPairs) return Outcome::over_budget;

@@ -41,7 +41,7 @@ class DeepUnion {
     nearly,       ///< one that is at most half as long again
     apart,        ///< only margins meet
     over_budget,  ///< more pairs of children within reach, or facets of their differences, than one answer may take
-    unsupported   ///< a child within reach is smooth
+    unsupported   ///< a child within reach has no exact form, or one is smooth and no short way was found
   };
   /// The shortest way out of b's cores for a's, all children that it could meet included, or one that is little longer
   /// (`nearly`); rounded children go on by their margins. Time as said in union_exit.hpp for the children within reach.
@@ -53,8 +53,9 @@ class DeepUnion {
     std::vector<Child> children;
     std::vector<PosedShape> posed;
     std::vector<std::shared_ptr<CachedShape>> held;  ///< as long as they are posed
+    bool polytopes = true;                           ///< none of them is smooth
   };
-  /// @return whether all children within `reach` of the other body are polytopes
+  /// @return whether all children within `reach` of the other body have an exact form
   static bool collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach,
                       const UnionQuestion& question, SolverCore& core, Side& side);
 

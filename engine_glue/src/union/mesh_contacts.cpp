@@ -3,6 +3,7 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btSdfCollisionShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
@@ -387,6 +388,10 @@ bool takes_mesh(int proxy_type) {
   return proxy_type == TRIANGLE_MESH_SHAPE_PROXYTYPE || proxy_type == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
          proxy_type == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE || proxy_type == FAST_CONCAVE_MESH_PROXYTYPE ||
          proxy_type == TERRAIN_SHAPE_PROXYTYPE || proxy_type == CUSTOM_CONCAVE_SHAPE_TYPE;
+}
+
+bool is_distance_field(const btCollisionShape& shape) {
+  return shape.getShapeType() == SDF_SHAPE_PROXYTYPE && dynamic_cast<const btSdfCollisionShape*>(&shape) != nullptr;
 }
 
 }  // namespace pd::detail

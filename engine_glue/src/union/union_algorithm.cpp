@@ -6,6 +6,7 @@
 
 #include "pair/bullets_stand_in.hpp"
 #include "pair/solver_core.hpp"
+#include "union/mesh_contacts.hpp"
 
 namespace pd::detail {
 
@@ -26,6 +27,12 @@ struct UnionAlgorithm::State {
   BulletsStandIn bullets;
   bool used = false;
 };
+
+bool UnionAlgorithm::Kind::takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
+                                 const btCollisionObjectWrapper& b) {
+  const bool field = is_distance_field(*a.getCollisionShape()) || is_distance_field(*b.getCollisionShape());
+  return !field && world.takes(a, b) && world.core().settings.unions_as_one;
+}
 
 UnionAlgorithm::UnionAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                                const btCollisionObjectWrapper* b, const SolverInWorld& world, const Kind& kind)

@@ -60,9 +60,7 @@ class UnionAlgorithm final : public AlgorithmShell {
     bool swapped;  ///< b is asked as the question's a
     static constexpr ContactTable table = ContactTable::contacts;
     [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
-                                    const btCollisionObjectWrapper& b) {
-      return world.takes(a, b) && world.core().settings.unions_as_one;
-    }
+                                    const btCollisionObjectWrapper& b);
   };
   UnionAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                  const btCollisionObjectWrapper* b, const SolverInWorld& world, const Kind& kind);

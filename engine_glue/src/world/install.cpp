@@ -3,7 +3,7 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
-#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include "union/mesh_contacts.hpp"
 #include "world/installation.hpp"
@@ -58,10 +58,8 @@ void renew_pairs(btCollisionWorld& world) {
   }
 }
 
-}  // namespace
-
-void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
-  detail::Installation& installation = detail::Installation::of(solver.core(), &dispatcher);
+/// Has a dispatcher ask the solver.
+void take_tables(btCollisionDispatcher& dispatcher, detail::Installation& installation, BulletContacts contacts) {
   const bool whole = contacts == BulletContacts::one_shot;
   for_each_convex_pair([&](int i, int j) {
     dispatcher.registerCollisionCreateFunc(i, j, whole ? installation.one_shot(false) : installation.persistent());
@@ -82,16 +80,36 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
   });
 }
 
+/// Bullet offers a world's actions to derived classes only.
+class ActionsOfWorld : private btDiscreteDynamicsWorld {
+ public:
+  ActionsOfWorld() = delete;
+
+  static bool has(btDiscreteDynamicsWorld& world, btActionInterface* action) {
+    const btAlignedObjectArray<btActionInterface*>& actions = world.*(&ActionsOfWorld::m_actions);
+    return actions.findLinearSearch(action) < actions.size();
+  }
+};
+
+}  // namespace
+
+void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
+  detail::SolverCore& core = solver.core();
+  take_tables(dispatcher, detail::Installation::of(core, detail::InstalledIn::dispatchers), contacts);
+  core.note_lone(&dispatcher);
+}
+
 bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
   auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
-  if (dispatcher == nullptr) {
-    return false;
-  }
-  install(*dispatcher, solver, contacts);
-  if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
-    btActionInterface* action = detail::Installation::of(solver.core(), dispatcher).step_action();
-    dynamics->removeAction(action);  // of an earlier installation, if there was one
-    dynamics->addAction(action);
+  if (dispatcher == nullptr) return false;
+  if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world)) {
+    detail::Installation& installation = detail::Installation::of_world(solver.core(), dispatcher);
+    take_tables(*dispatcher, installation, contacts);
+    dynamics->removeAction(installation.step_action());  // of an earlier installation, if there was one
+    dynamics->addAction(installation.step_action());
+    solver.core().forget_lone(dispatcher);
+  } else {
+    install(*dispatcher, solver, contacts);
   }
   renew_pairs(world);
   return true;
@@ -99,10 +117,15 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
 
 bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
-  detail::Installation* installation = detail::Installation::find(solver.core(), dispatcher);
-  if (dispatcher == nullptr || installation == nullptr) {
-    return false;
+  if (dispatcher == nullptr) return false;
+  detail::SolverCore& core = solver.core();
+  bool installed = core.forget_lone(dispatcher);
+  if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world); dynamics != nullptr && core.installed()) {
+    btActionInterface* const action = detail::Installation::of_world(core, dispatcher).step_action();
+    installed = ActionsOfWorld::has(*dynamics, action) || installed;
+    dynamics->removeAction(action);
   }
+  if (!installed) return false;
   btCollisionConfiguration* configuration = dispatcher->getCollisionConfiguration();
   for_each_convex_pair([&](int i, int j) {
     dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
@@ -113,9 +136,6 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   };
   for_each_ground_pair([&](int i, int j, bool) { give_back(i, j); });
   for_each_compound_pair(give_back);
-  if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
-    dynamics->removeAction(installation->step_action());
-  }
   renew_pairs(world);
   return true;
 }
@@ -126,7 +146,7 @@ bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolv
   if (general == nullptr) {
     return false;
   }
-  general->m_pdSolver = detail::Installation::of(solver.core(), nullptr).depth_solver();
+  general->m_pdSolver = detail::Installation::of(solver.core(), detail::InstalledIn::hosts_own_table).depth_solver();
   return true;
 }
 

@@ -1,7 +1,8 @@
 #include "world/installation.hpp"
 
+#include <bit>
+#include <cstdint>
 #include <memory>
-#include <utility>
 
 #include "union/compound_contacts.hpp"
 #include "union/mesh_contacts.hpp"
@@ -9,8 +10,15 @@
 
 namespace pd::detail {
 
-Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
-    : SolverInWorld(core, dispatcher),
+namespace {
+
+/// Places of installations in the core.
+constexpr std::size_t kOfHosts = 0, kOfDispatchers = 1, kOfWorlds = 2;
+
+}  // namespace
+
+Installation::Installation(SolverCore& core, InstalledIn in)
+    : SolverInWorld(core, in),
       depth_solver_(*this),
       step_action_(*this),
       contacts_(*this, {ContactTable::contacts}),
@@ -24,16 +32,21 @@ Installation::Installation(SolverCore& core, btCollisionDispatcher* dispatcher)
       swapped_plane_(*this, {true}),
       persistent_(&depth_solver_) {}
 
-Installation* Installation::find(SolverCore& core, const btCollisionDispatcher* dispatcher) {
-  return static_cast<Installation*>(core.find_world(dispatcher));  // no other kind is added
+Installation& Installation::of(SolverCore& core, InstalledIn in) {
+  return at(core, in == InstalledIn::hosts_own_table ? kOfHosts : kOfDispatchers, in);
 }
 
-Installation& Installation::of(SolverCore& core, btCollisionDispatcher* dispatcher) {
-  if (Installation* const known = find(core, dispatcher)) return *known;
-  auto made = std::make_unique<Installation>(core, dispatcher);
-  Installation& result = *made;
-  core.add_world(std::move(made));
-  return result;
+Installation& Installation::of_world(SolverCore& core, const btCollisionDispatcher* dispatcher) {
+  // The dispatchers of worlds that live at the same time lie at different addresses.
+  const auto address = static_cast<std::uint64_t>(std::bit_cast<std::uintptr_t>(dispatcher));
+  const std::uint64_t mixed = (address * 0x9E3779B97F4A7C15ULL) >> 32U;
+  return at(core, kOfWorlds + mixed % (SolverCore::kWorlds - kOfWorlds), InstalledIn::stepping_worlds);
+}
+
+Installation& Installation::at(SolverCore& core, std::size_t place, InstalledIn in) {
+  SolverInWorld* world = core.world_at(place);
+  if (world == nullptr) world = &core.add_world(place, std::make_unique<Installation>(core, in));
+  return static_cast<Installation&>(*world);  // no other kind is added
 }
 
 bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a,

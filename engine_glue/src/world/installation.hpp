@@ -1,5 +1,5 @@
 /// @file
-/// A solver in one dispatcher: the create functions that the dispatcher points to, and the count of the world's steps.
+/// A solver in dispatchers: the create functions that they point to, and the count of their worlds' steps.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
@@ -15,12 +15,12 @@ namespace pd::detail {
 
 class Installation final : public SolverInWorld {
  public:
-  /// That of a dispatcher, made where there is none; nullptr: the one of no dispatcher.
-  static Installation& of(SolverCore& core, btCollisionDispatcher* dispatcher);
-  /// That of a dispatcher, or nullptr.
-  static Installation* find(SolverCore& core, const btCollisionDispatcher* dispatcher);
+  /// For the world of a dispatcher, which tells of its steps: one of a fixed number, in constant time.
+  static Installation& of_world(SolverCore& core, const btCollisionDispatcher* dispatcher);
+  /// For all dispatchers whose steps nobody counts, or for the tables of hosts.
+  static Installation& of(SolverCore& core, InstalledIn in);
 
-  Installation(SolverCore& core, btCollisionDispatcher* dispatcher);
+  Installation(SolverCore& core, InstalledIn in);
 
   /// For the table of contacts (`closest` false) or that of closest points.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
@@ -61,6 +61,8 @@ class Installation final : public SolverInWorld {
    private:
     Installation& installation_;
   };
+
+  static Installation& at(SolverCore& core, std::size_t place, InstalledIn in);
 
   DepthSolver depth_solver_;
   StepAction step_action_;

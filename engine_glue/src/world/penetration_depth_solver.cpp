@@ -1,6 +1,7 @@
 #include "pd/bullet/penetration_depth_solver.hpp"
 
 #include <cstdio>
+#include <vector>
 
 #include "pair/solver_core.hpp"
 #include "pd/bullet/pair_answer.hpp"
@@ -105,11 +106,11 @@ void BulletPenetrationDepthSolver::reset_statistics() {
 }
 
 btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::one_shot_create_func() {
-  return detail::Installation::of(*core_, nullptr).one_shot(false);
+  return detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).one_shot(false);
 }
 
 btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::persistent_create_func() {
-  return detail::Installation::of(*core_, nullptr).persistent();
+  return detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).persistent();
 }
 
 }  // namespace pd

@@ -64,6 +64,18 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
 /// @return false, and nothing changed, where the solver is not installed in this world's dispatcher.
 bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver);
 
+/// What `prepare` did.
+struct PreparedShapes {
+  int shapes = 0;        ///< convex shapes of the world's bodies, children of compounds included, each counted once
+  int without_form = 0;  ///< of those: shapes that `to_convex_shape` refuses, which Bullet's own solver answers
+};
+
+/// Converts the shapes of a world ahead of its first step, in which hulls of many points would take most of the time.
+/// In a world of multibodies it also has Bullet's constraint solver reserve its memory, which otherwise grows row by
+/// row. The solver need not be installed yet. Shapes that are added or changed later are converted when they first meet
+/// another body, as ever.
+PreparedShapes prepare(btCollisionWorld& world, BulletPenetrationDepthSolver& solver);
+
 /// Only exchanges the penetration solver of Bullet's convex-convex algorithm, before a dispatcher is made from the
 /// configuration: for hosts that build their world elsewhere. Pairs with an algorithm of their own (box/box,
 /// sphere/sphere, sphere/triangle) do not ask it.

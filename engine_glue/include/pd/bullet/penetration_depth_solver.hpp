@@ -1,6 +1,9 @@
 /// @file
 /// Penetration depth for Bullet: exact, certified, and safe to share between the threads of a dispatcher.
 ///
+/// What a client of Bullet includes parses as C++14: this header, install.hpp, rollback.hpp, snapshot.hpp,
+/// stack_solver.hpp, solver_settings.hpp and contact_recorder.hpp. `query` and its answer need C++17 and C++20.
+///
 /// Bullet's convention is met here and nowhere else. pd_core's `normal` is the direction in which A leaves B, and so is
 /// Bullet's `normalOnBInWorld`; Bullet's distance is minus the depth.
 #pragma once
@@ -9,7 +12,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#if __cplusplus >= 201703L
 #include <optional>
+#endif
 
 class btCollisionAlgorithm;
 class btCollisionObject;
@@ -110,12 +115,14 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
                     const btTransform& transform_a, const btTransform& transform_b, btVector3& v, btVector3& witness_a,
                     btVector3& witness_b, btIDebugDraw* debug_draw) override;
 
+#if __cplusplus >= 201703L
   /// The full answer for two posed Bullet shapes as the contact algorithm sees them (two btBoxShapes sharp, see
   /// install.hpp), in the frame of the transforms; empty where a shape has no exact form or a transform is not finite.
   /// `warm`: the memory of this pair, or nullptr.
   [[nodiscard]] std::optional<BulletPairAnswer> query(const btConvexShape& a, const btTransform& transform_a,
                                                       const btConvexShape& b, const btTransform& transform_b,
                                                       WarmCertificate* warm = nullptr);
+#endif
 
   /// Contact points for an answer of `query` (`contact_manifold`).
   [[nodiscard]] ContactManifold manifold(const BulletPairAnswer& answer, double breaking_threshold);

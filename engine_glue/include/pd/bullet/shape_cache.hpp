@@ -3,8 +3,10 @@
 ///
 /// Bullet tells nobody when a shape is scaled, edited or freed (and its address used again). So a look-up compares the
 /// shape's present fingerprint with that of its entry (`shape_fingerprint`: type, margin, scaling, every point) and
-/// converts afresh when they differ; a shape that died is never read, and its entry leaves when the table is full
-/// (least recently used first) or by `forget`. Shapes of the same fingerprint share one body: a wall of equal bricks is
+/// converts afresh when they differ; a shape that died is never read, and its entry leaves once the table is full or by
+/// `forget`. A full table is looked through from one end to the other, a few entries for each new one: entries that
+/// nobody has asked for since the last look go, and the others stay. So the table grows with the shapes of a world,
+/// shrinks after it, and each new entry takes constant time. Shapes of the same fingerprint share one body: a wall of equal bricks is
 /// converted once, and its queries read one body's memory. A fingerprint has 64 bits; an edit or another shape that has
 /// the same one by chance is not noticed.
 ///
@@ -16,6 +18,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <list>
 #include <memory>
 #include <shared_mutex>
 #include <unordered_map>
@@ -30,7 +33,7 @@ struct CachedShape;
 
 class BulletShapeCache {
  public:
-  /// @param capacity  entries kept, at least 1.
+  /// @param capacity  entries kept although nobody asks for them any more, at least 1. Entries in use are kept beyond.
   explicit BulletShapeCache(std::size_t capacity = 4096);
 
   /// The body of `shape`, or nullptr where it has none (`to_convex_shape` says why). Shared with the cache: it stays
@@ -58,14 +61,18 @@ class BulletShapeCache {
   [[nodiscard]] std::shared_ptr<detail::CachedShape> make_entry(const btConvexShape& shape, std::uint64_t fingerprint);
   /// Requires the mutex to be held.
   void erase(const btCollisionShape* shape);
+  /// Looks at a few entries of a full table and drops those that nobody uses. Requires the mutex to be held.
+  void make_room();
+
+  using Entries = std::list<std::shared_ptr<detail::CachedShape>>;
 
   const std::size_t capacity_;
   mutable std::shared_mutex mutex_;
-  std::unordered_map<const btCollisionShape*, std::shared_ptr<detail::CachedShape>>
-      entries_;  // looked up only; never iterated into a result
+  Entries entries_;
+  Entries::iterator next_look_ = entries_.end();  ///< entries before it were looked at last
+  std::unordered_map<const btCollisionShape*, Entries::iterator> places_;
   /// By fingerprint, as long as their entries stand.
   std::unordered_map<std::uint64_t, std::weak_ptr<detail::CachedShape>> by_content_;
-  std::atomic<std::uint64_t> clock_{0};
   std::atomic<std::int64_t> conversions_{0};
 };
 

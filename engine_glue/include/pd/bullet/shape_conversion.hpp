@@ -18,9 +18,12 @@
 /// | uniform scaling, 2D convex | the child's, scaled | the child's, scaled |
 /// | Minkowski sum (Bullet's is A - B) of polyhedral cores | hull of all vertex differences | sum of both |
 ///
+/// A box or cylinder whose margin reaches one of its half extents keeps its extents: its margin is taken as a
+/// thousandth less than the least of them.
+///
 /// Refused as `ErrorCode::unsupported`, with the reason in the message: a multisphere of non-uniform scaling, a
-/// Minkowski sum with a smooth core or more than 65,536 vertex pairs, a cylinder whose margin eats its whole
-/// half height, and convex types of the host's own that are not polyhedral.
+/// Minkowski sum with a smooth core or more than 65,536 vertex pairs, a cylinder without height, and convex types of
+/// the host's own that are not polyhedral.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>

@@ -13,8 +13,18 @@
 
 namespace pd {
 
-/// Holds for the world it was taken of, as long as no body, shape or joint is added or removed; body pointers are kept,
-/// not owned. May be restored any number of times.
+/// What came of `BulletSnapshot::restore`.
+enum class Restored : unsigned char {
+  yes,
+  objects_differ,      ///< a collision object was added to the world or removed from it
+  joints_differ,       ///< a joint was added to the world or removed from it
+  multibodies_differ,  ///< a multibody, one of its links or one of its constraints was added or removed
+};
+/// In one line, for a log: what differs, and what to do.
+const char* message_of(Restored restored);
+
+/// Holds for the world it was taken of, as long as no body or joint is added or removed; body pointers are kept, not
+/// owned. May be restored any number of times, also after the solver is gone.
 ///
 /// Bit for bit means: the same calls of `stepSimulation(h, 0)` after `restore` give the same transforms, velocities and
 /// contact points. The broadphase's trees and pairs belong to it (of btDbvtBroadphase; other broadphases are updated to
@@ -37,12 +47,12 @@ class BulletSnapshot {
   BulletSnapshot(BulletSnapshot&&) noexcept;
   BulletSnapshot& operator=(BulletSnapshot&&) noexcept;
 
-  /// Saves the world's present state in place of the one held, in the same memory.
+  /// Saves the world's present state in place of the one held, in the same memory. Requires: the solver lives.
   void save_again();
 
-  /// Brings the world back. Time: that of a broadphase update, plus one collision detection where pairs have to be made
-  /// again.
-  void restore() const;
+  /// Brings the world back, or changes nothing where the world has other bodies or joints than the one saved.
+  /// Time: that of a broadphase update, plus one collision detection where pairs have to be made again.
+  [[nodiscard]] Restored restore() const;
 
  private:
   struct State;

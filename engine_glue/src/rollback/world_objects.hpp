@@ -1,0 +1,36 @@
+/// @file
+/// The collision objects of a world at one moment, and which of them are still there at a later one.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace pd::detail {
+
+/// An object is known by its address and by the number that the broadphase gave it when it was added: a new object may
+/// lie where one was deleted.
+class WorldObjects {
+ public:
+  /// Whether an object that has another shape now counts as changed.
+  enum class Shapes : std::uint8_t { compared, left_alone };
+
+  void note(const btCollisionWorld& world);
+  /// Whether the world has the noted objects in the noted order. Time: O(objects).
+  [[nodiscard]] bool same(const btCollisionWorld& world, Shapes shapes) const;
+  /// Notes the present objects. @return those that were noted before, too, sorted by address
+  [[nodiscard]] std::vector<const btCollisionObject*> renew(const btCollisionWorld& world);
+
+ private:
+  struct Noted {
+    const btCollisionObject* object;
+    const btCollisionShape* shape;
+    int number;  ///< the broadphase's
+  };
+  [[nodiscard]] static Noted noted(const btCollisionObject& object);
+
+  std::vector<Noted> objects_;
+};
+
+}  // namespace pd::detail
