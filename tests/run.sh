@@ -85,14 +85,12 @@ run_python() {
   skipped=$((skipped + left_out))
 }
 
-# The demos folder by folder: their headers are dear, and nobody measures their speed.
-set -- -DPD_UNITY_DEMOS=ON "$@"
 run_preset release -- "$@"
 run_python
 # Of the undefined behaviours, null pointers and alignment are left out: looked for at every access, they double the time that
 # Eigen's templates take to compile; the address sanitizer stops at null, and x86 at a misaligned vector. So are object sizes and
 # virtual tables, a fifth of a test's time to compile: tests/long/fuzz.sh looks for them, and the address sanitizer at every access.
-run_preset asan-ubsan -- -DPD_UNITY_DEMOS=ON
+run_preset asan-ubsan --
 # With the same options, so that the objects that do not see Bullet are the release build's.
 run_preset double-bullet --target test_engine_glue -- "$@"
 
