@@ -15,11 +15,11 @@
 namespace pd::test {
 namespace {
 
-constexpr const char* kCube =
+constexpr const char* kCubeText =
     "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
     "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-constexpr const char* kSquare = R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})";
-constexpr const char* kRecord =
+constexpr const char* kSquareText = R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})";
+constexpr const char* kFaultyRecord =
     R"({"record":"pdepth-contacts/1","engine":"none","scalar":"float64"})"
     "\n"
     R"({"shape":"s","is":{"type":"box","half_extents":[1,1,1]}})"
@@ -30,9 +30,9 @@ constexpr const char* kRecord =
 class Outputs : public ::testing::Test, protected TemporaryFolder {
  protected:
   void SetUp() override {
-    write("cube.obj", kCube);
-    write("square.json", kSquare);
-    write("record.jsonl", kRecord);
+    write("cube.obj", kCubeText);
+    write("square.json", kSquareText);
+    write("record.jsonl", kFaultyRecord);
     write("lines.jsonl", std::string(R"({"query":"hull","a":)") + kUnitBox + "}\n");
   }
 
@@ -96,8 +96,8 @@ TEST_F(Outputs, NoCommandWritesOverItsInput) {
                                 "audit record.jsonl --junit soft.jsonl", "audit - --csv record.jsonl < record.jsonl"}) {
     EXPECT_EQ(run(arguments + std::string(" > out")), 2) << arguments;
     EXPECT_NE(read("err").find("itself"), std::string::npos) << arguments << read("err");
-    EXPECT_EQ(read("cube.obj"), kCube) << arguments;
-    EXPECT_EQ(read("record.jsonl"), kRecord) << arguments;
+    EXPECT_EQ(read("cube.obj"), kCubeText) << arguments;
+    EXPECT_EQ(read("record.jsonl"), kFaultyRecord) << arguments;
   }
 }
 
@@ -125,7 +125,7 @@ TEST_F(Outputs, AForeignPageStays) {
 
 TEST_F(Outputs, NamesAreShownWithoutControlCharacters) {
   const std::string name = "a\nv 9 9 9\x1b[31m\xC2\x9B.obj";
-  write(name, kCube);
+  write(name, kCubeText);
   EXPECT_EQ(run("simplify \"$(printf 'a\\nv 9 9 9\\033[31m\\302\\233.obj')\" -o small.obj > out"), 0) << read("err");
   const auto harmless = [](const std::string& text) {
     return text.find('\x1b') == std::string::npos && text.find("\xC2\x9B") == std::string::npos;
