@@ -31,13 +31,15 @@ struct StackSolverStatistics {
 /// up (contacts, friction, joints) are solved at once first (`src/stack/impulse_newton.hpp`), and its sweeps begin
 /// there; they alone decide rolling friction and split impulses, as ever. Ten sweeps are enough, with two friction
 /// directions
-/// (`apply_recommended`) and contacts that do not come and go (`install`). Time: a sparse factorisation a step and
-/// group while the same points carry, some more where points come, go or slip: of a tower of n bodies O(n), of a heap
-/// as its blocks fill in (measured for 5 to 435 bodies: n^1.13 and n^1.21, `stack_growth`). Where pairs of bodies come
-/// or go, the order of elimination is found anew, which takes about as long as a factorisation.
+/// (`apply_recommended`) and contacts that do not come and go (`install`).
+///
+/// Time: one sparse factorisation a step and group while the same points carry, and a few more where points come, go or
+/// slip. A factorisation takes O(n) for a tower of n bodies, and longer for a heap as its blocks fill in:
+/// `stack_growth` measured n^1.13 and n^1.21 for 5 to 435 bodies. Where pairs of bodies come or go, the order of
+/// elimination is found anew, which takes about as long as a factorisation.
 ///
 /// Bodies with angular factors other than 0 and 1 are solved with the square root of the factor on both sides of the
-/// inertia, which differs from Bullet's one-sided product unless it is diagonal; the sweeps decide.
+/// inertia. This differs from Bullet's one-sided product unless the product is diagonal; the sweeps decide.
 ///
 /// Not for `btMultiBodyDynamicsWorld`, which takes a `btMultiBodyConstraintSolver`. Threads: as Bullet's, one solver a
 /// world.

@@ -15,16 +15,16 @@ namespace pd {
 
 /// Lengths in the world's unit, positions in its frame.
 struct WorldQuerySettings {
-  /// As in Bullet's callbacks: an object is asked if its group is in this mask and this group in its mask.
+  /// Bullet's rule for callbacks: an object is asked if its group is in this mask and this group in its mask.
   int filter_group = btBroadphaseProxy::DefaultFilter;
   int filter_mask = btBroadphaseProxy::AllFilter;
   /// The gap that a cast may leave before a hit, > 0.
   double tolerance = 1e-6;
-  /// Where converted shapes are kept (`BulletPenetrationDepthSolver::cache()`); nullptr: converted at each call.
+  /// Keeps converted shapes (`BulletPenetrationDepthSolver::cache()`); nullptr: converted at each call.
   BulletShapeCache* cache = nullptr;
 };
 
-/// What a shape meets or is nearest to.
+/// An object that a shape meets or is nearest to.
 struct WorldHit {
   const btCollisionObject* object = nullptr;
   /// Of meshes and heightfields Bullet's numbers of the triangle, of compounds -1 and the child's number (of nested
