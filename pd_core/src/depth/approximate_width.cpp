@@ -1,6 +1,5 @@
 #include "pd/depth/approximate_width.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/small_decompositions.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/depth/width.hpp"
@@ -155,9 +155,10 @@ class WidthSearch {
       }
       // Not thinner than rounding.
       moments += 0x1p-80 * Mat3::Identity() + 0x1p-48 * moments.trace() * Mat3::Identity();
-      const Eigen::LLT<Mat3> root(moments);
-      if (root.info() != Eigen::Success) return;
-      to_fat_ = root.matrixL().solve(Mat3::Identity());
+      const detail::SmallCholesky root(moments.data(), 3);
+      if (!root.positive()) return;
+      to_fat_ = Mat3::Identity();
+      for (int k = 0; k < 3; ++k) root.solve_lower(to_fat_.col(k).data());
     }
   }
 

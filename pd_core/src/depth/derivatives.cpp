@@ -1,13 +1,14 @@
 #include "pd/depth/derivatives.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "depth/features/direction_search.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/small_decompositions.hpp"
 #include "pd/depth/scratch.hpp"
 
 namespace pd {
@@ -94,6 +95,26 @@ PlaneFace face_of(Side& side, const Meeting& m) {
   return face;
 }
 
+/// The shortest x for which x[0] columns[0] + x[1] columns[1] comes nearest to `goal`: the longer column is made an
+/// axis, and a second column that hardly leaves this axis counts as parallel to it.
+PlanePoint shortest_solution(const PlanePoint (&columns)[2], const PlanePoint& goal) {
+  const int first = columns[1].squaredNorm() > columns[0].squaredNorm() ? 1 : 0, second = 1 - first;
+  const double length = columns[first].norm();
+  PlanePoint solution = PlanePoint::Zero();
+  if (length == 0) return solution;
+  const PlanePoint axis = columns[first] / length, aside(-axis.y(), axis.x());
+  const double along = axis.dot(columns[second]), across = aside.dot(columns[second]);
+  if (std::abs(across) > 2 * std::numeric_limits<double>::epsilon() * length) {
+    solution[second] = aside.dot(goal) / across;
+    solution[first] = (axis.dot(goal) - along * solution[second]) / length;
+  } else {
+    const double scale = axis.dot(goal) / (length * length + along * along);
+    solution[first] = scale * length;
+    solution[second] = scale * along;
+  }
+  return solution;
+}
+
 /// Witnesses anew, from the supports in the normal's direction and the flats: the weights of a nearly flat triangle of
 /// P, from which a search at 1e-12 takes them, may be off by far more than the depth.
 void place_witnesses(Meeting& m) {
@@ -104,15 +125,15 @@ void place_witnesses(Meeting& m) {
   const int flats = a.flats + b.flats;
   if (flats > 2) return;
   const Vec3 on_a = a.core.support(a.outward), on_b = b.core.support(b.outward);
-  Eigen::Matrix<double, 2, 2, Eigen::DontAlign> along = Eigen::Matrix<double, 2, 2, Eigen::DontAlign>::Zero();
+  PlanePoint along[2] = {PlanePoint::Zero(), PlanePoint::Zero()};
   PlanePoint miss;
   for (int row = 0; row < 2; ++row) {
     const Vec3& across = m.across[static_cast<std::size_t>(row)];
     miss[row] = -(on_b - on_a).dot(across);
-    for (int k = 0; k < a.flats; ++k) along(row, k) = -a.flat[k].dot(across);
-    for (int k = 0; k < b.flats; ++k) along(row, a.flats + k) = b.flat[k].dot(across);
+    for (int k = 0; k < a.flats; ++k) along[k][row] = -a.flat[k].dot(across);
+    for (int k = 0; k < b.flats; ++k) along[a.flats + k][row] = b.flat[k].dot(across);
   }
-  const PlanePoint moves = along.completeOrthogonalDecomposition().solve(miss);
+  const PlanePoint moves = shortest_solution(along, miss);
   const auto place = [&](Side& side, Vec3 point, int first) {
     for (int k = 0; k < side.flats; ++k) point += moves[first + k] * side.flat[k];
     side.arm += point - side.witness;
@@ -155,23 +176,21 @@ class FirstOrder {
       for (int k = 0; k < side.flats; ++k) flats_.push_back({&side, side.flat[k]});
     }
     const int count = static_cast<int>(flats_.size());
-    System system = System::Zero(2 + count, 2 + count);
+    double system[4 * 4] = {};
+    const auto entry = [&](int row, int column) -> double& { return system[row + (2 + count) * column]; };
     const Mat3 bend = (curvature_[0] + curvature_[1] - m.core_depth * Mat3::Identity()) / m.size;
     for (int row = 0; row < 2; ++row) {
-      for (int column = 0; column < 2; ++column) system(row, column) = across(row).dot(bend * across(column));
+      for (int column = 0; column < 2; ++column) entry(row, column) = across(row).dot(bend * across(column));
       for (int k = 0; k < count; ++k) {
-        system(row, 2 + k) = flats_[at(k)].side->sign * flats_[at(k)].along.dot(across(row));
-        system(2 + k, row) = flats_[at(k)].along.dot(across(row));
+        entry(row, 2 + k) = flats_[at(k)].side->sign * flats_[at(k)].along.dot(across(row));
+        entry(2 + k, row) = flats_[at(k)].along.dot(across(row));
       }
     }
-    solver_.compute(system);
+    solver_.emplace(system, 2 + count);
   }
 
   /// Whether the conditions determine everything (a relative pivot of 1e-9 leaves derivatives half of their digits).
-  [[nodiscard]] bool determined() {
-    solver_.setThreshold(1e-9);
-    return solver_.isInvertible();
-  }
+  [[nodiscard]] bool determined() const { return solver_->regular(1e-9); }
 
   struct Change {
     Vec3 normal;
@@ -184,13 +203,13 @@ class FirstOrder {
     const Vec3 carried = velocity + turn.cross(mover.arm);
     const Vec3 swung = turn.cross(m_.normal);
     const Vec3 known = mover.sign * carried - curvature_[moving] * swung;
-    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, 4, 1> right(2 + count);
-    for (int row = 0; row < 2; ++row) right[row] = -known.dot(across(row)) / m_.size;
+    double solution[4] = {};
+    for (int row = 0; row < 2; ++row) solution[row] = -known.dot(across(row)) / m_.size;
     for (int k = 0; k < count; ++k) {
       const Flat& flat = flats_[at(k)];
-      right[2 + k] = flat.side == &mover ? -turn.cross(flat.along).dot(m_.normal) : 0;
+      solution[2 + k] = flat.side == &mover ? -turn.cross(flat.along).dot(m_.normal) : 0;
     }
-    const auto solution = solver_.solve(right).eval();
+    solver_->solve(solution);
     Change change;
     change.normal = solution[0] * across(0) + solution[1] * across(1);
     for (int i = 0; i < 2; ++i) {
@@ -209,15 +228,13 @@ class FirstOrder {
     const Side* side;
     Vec3 along;
   };
-  using System = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, 4, 4>;
-
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   [[nodiscard]] const Vec3& across(int k) const { return m_.across[at(k)]; }
 
   const Meeting& m_;
   Mat3 curvature_[2];
   std::vector<Flat> flats_;
-  Eigen::FullPivLU<System> solver_;
+  std::optional<detail::SmallElimination> solver_;
 };
 
 /// Within `kCurvedLean` of the normal a curved body shows arcs, too: a rim next to its disc, a flat ellipsoid. They

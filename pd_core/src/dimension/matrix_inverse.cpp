@@ -1,19 +1,25 @@
 #include "pd/dimension/matrix_inverse.hpp"
 
-#include <Eigen/LU>
+#include <limits>
+
+#include "numeric/small_decompositions.hpp"
 
 namespace pd::dimension {
 
 template <int D>
 Matrix<D> inverse_of(const Matrix<D>& matrix) {
-  return matrix.inverse();
+  Matrix<D> inverse;
+  pd::detail::SmallElimination(matrix.data(), D).inverse(inverse.data());
+  return inverse;
 }
 
 template <int D>
 std::optional<Matrix<D>> inverse_if_regular(const Matrix<D>& matrix) {
-  const Eigen::FullPivLU<Eigen::Matrix<double, D, D>> decomposition(matrix);
-  if (!decomposition.isInvertible()) return std::nullopt;
-  return Matrix<D>(decomposition.inverse());
+  const pd::detail::SmallElimination elimination(matrix.data(), D);
+  if (!elimination.regular(D * std::numeric_limits<double>::epsilon())) return std::nullopt;
+  Matrix<D> inverse;
+  elimination.inverse(inverse.data());
+  return inverse;
 }
 
 #define PD_INSTANTIATE(D)                             \

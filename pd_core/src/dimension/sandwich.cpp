@@ -1,11 +1,10 @@
 #include "pd/dimension/sandwich.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "numeric/small_decompositions.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension {
@@ -19,18 +18,16 @@ constexpr int kLewisSteps = 60;
 
 template <int D>
 SandwichBox<D> sandwich_box(const Sandwich<D>& ellipsoid) {
-  using Plain = Eigen::Matrix<double, D, D>;
-  const Eigen::JacobiSVD<Plain> svd(Plain(ellipsoid.axes), Eigen::ComputeFullU);
+  const pd::detail::SmallSingularValues singular(ellipsoid.axes.data(), D);
   SandwichBox<D> box;
   box.centre = ellipsoid.centre;
-  box.axes = svd.matrixU() * svd.singularValues().asDiagonal() / std::sqrt(static_cast<double>(D));
+  box.axes = Eigen::Map<const Matrix<D>>(singular.scaled_left()) / std::sqrt(static_cast<double>(D));
   box.ratio = ellipsoid.ratio * std::sqrt(static_cast<double>(D));
   return box;
 }
 
 template <int D>
 FatteningMap<D> fatten_sum(std::span<const SandwichBox<D>> boxes) {
-  using Plain = Eigen::Matrix<double, D, D>;
   Vector<D> centre = Vector<D>::Zero();
   double ratio = 1;
   std::vector<Vector<D>> generators;
@@ -40,23 +37,22 @@ FatteningMap<D> fatten_sum(std::span<const SandwichBox<D>> boxes) {
     for (int k = 0; k < D; ++k) generators.push_back(box.axes.col(k));
   }
   // Whitened first: needles would cost the weights their digits.
-  Plain moments = Plain::Zero();
+  Matrix<D> moments = Matrix<D>::Zero();
   for (const Vector<D>& g : generators) moments += g * g.transpose();
-  const Eigen::JacobiSVD<Plain> svd(moments, Eigen::ComputeFullU);
-  const double largest = svd.singularValues()[0];
-  const Plain whitening = svd.singularValues().cwiseMax(1e-30 * largest).cwiseSqrt().cwiseInverse().asDiagonal() *
-                          svd.matrixU().transpose();
+  const pd::detail::SmallSingularValues singular(moments.data(), D);
+  Matrix<D> whitening = Eigen::Map<const Matrix<D>>(singular.right()).transpose();
+  for (int k = 0; k < D; ++k) whitening.row(k) /= std::sqrt(std::max(singular.value(k), 1e-30 * singular.value(0)));
   for (Vector<D>& g : generators) g = whitening * g;
 
   std::vector<double> weights(generators.size(), 1);
-  Plain metric;
+  Matrix<D> metric;
   double lower = 0, total = 0;
   for (int step = 0; step < kLewisSteps; ++step) {
     metric.setZero();
     for (std::size_t i = 0; i < generators.size(); ++i) {
       if (weights[i] > 0) metric += generators[i] * generators[i].transpose() / weights[i];
     }
-    const Plain inverse = inverse_of<D>(metric);
+    const Matrix<D> inverse = inverse_of<D>(metric);
     lower = 1;
     total = 0;
     std::vector<double> next;
@@ -69,9 +65,10 @@ FatteningMap<D> fatten_sum(std::span<const SandwichBox<D>> boxes) {
     if (step + 1 < kLewisSteps) weights = next;
   }
   // The ellipsoid {metric^(1/2) u} / lower lies in the zonotope.
-  const Eigen::LLT<Plain> root(metric);
+  const pd::detail::SmallCholesky root(metric.data(), D);
+  for (int k = 0; k < D; ++k) root.solve_lower(whitening.col(k).data());
   FatteningMap<D> r;
-  r.map.linear = lower * Plain(root.matrixL().solve(whitening));
+  r.map.linear = lower * whitening;
   r.map.translation = -(r.map.linear * centre);
   r.outer_radius = ratio * lower * std::sqrt(total) * (1 + 1e-9);
   return r;

@@ -1,9 +1,9 @@
 #include "dimension/weighted_ellipsoid.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/small_decompositions.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension::detail {
@@ -68,7 +68,7 @@ class Ascent {
   void refresh() {
     Moments moments = Moments::Zero();
     for (std::size_t i = 0; i < lifted_.size(); ++i) moments += weights_[i] * lifted_[i] * lifted_[i].transpose();
-    inverse_ = moments.llt().solve(Moments::Identity());
+    pd::detail::SmallElimination(moments.data(), L).inverse(inverse_.data());
     w_.resize(lifted_.size());
     for (std::size_t i = 0; i < lifted_.size(); ++i) w_[i] = lifted_[i].dot(inverse_ * lifted_[i]);
   }
@@ -158,14 +158,18 @@ bool core_ellipsoid(std::span<const Vector<D>> points, double eta, Sandwich<D>& 
     const Vector<D> x = y[i] - mean;
     covariance += ascent.weights()[i] * x * x.transpose();
   }
-  const Eigen::LLT<Eigen::Matrix<double, D, D>> root(covariance);
-  if (root.info() != Eigen::Success) return false;
+  const pd::detail::SmallCholesky root(covariance.data(), D);
+  if (!root.positive()) return false;
   double squared = 0;
-  for (const Vector<D>& x : y) squared = std::max(squared, root.matrixL().solve(x - mean).squaredNorm());
+  for (const Vector<D>& p : y) {
+    Vector<D> x = p - mean;
+    root.solve_lower(x.data());
+    squared = std::max(squared, x.squaredNorm());
+  }
   squared *= 1 + 1e-9;  // the roundings of the solve, in a frame where the covariance is well conditioned
   const Matrix<D> from_frame = inverse_of<D>(frame.to_frame.linear);
   sandwich.centre = origin + from_frame * mean;
-  sandwich.axes = from_frame * Matrix<D>(root.matrixL()) / std::sqrt(squared);
+  sandwich.axes = from_frame * Eigen::Map<const Matrix<D>>(root.lower()) / std::sqrt(squared);
   sandwich.ratio = squared;
   return true;
 }

@@ -1,8 +1,6 @@
 #include "pd/shape/pose.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,6 +8,7 @@
 #include "numeric/double_double.hpp"
 #include "numeric/dyadic.hpp"
 #include "numeric/number_text.hpp"
+#include "numeric/small_decompositions.hpp"
 
 namespace pd {
 namespace {
@@ -181,10 +180,13 @@ Mat3 Pose::nearest_rotation() const {
   // Far from a rotation (trusted host matrices only): U diag(1, 1, +-1) V^T of the singular value decomposition.
   const double scale = rotation_.cwiseAbs().maxCoeff();
   if (scale == 0) return Mat3::Identity();
-  const Eigen::JacobiSVD<Mat3> svd(rotation_ / scale, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  const Mat3 v = svd.matrixV();
-  if ((u * v.transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  const Mat3 scaled = rotation_ / scale;
+  const detail::SmallSingularValues singular(scaled.data(), 3);
+  const Eigen::Map<const Mat3> left(singular.scaled_left()), v(singular.right());
+  Mat3 u;
+  u.col(0) = left.col(0) / singular.value(0);
+  u.col(1) = singular.value(1) > 0 ? Vec3(left.col(1) / singular.value(1)) : Vec3(u.col(0).unitOrthogonal());
+  u.col(2) = v.col(0).cross(v.col(1)).dot(v.col(2)) * u.col(0).cross(u.col(1));
   return u * v.transpose();
 }
 

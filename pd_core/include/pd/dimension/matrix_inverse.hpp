@@ -1,6 +1,5 @@
 /// @file
-/// Inverses of D x D matrices. They are compiled once for each D: Eigen's decompositions are templates over the size,
-/// and every source that called them would pay for five sizes again.
+/// Inverses of D x D matrices.
 #pragma once
 
 #include <optional>
@@ -9,7 +8,7 @@
 
 namespace pd::dimension {
 
-/// matrix^-1. Requires a regular matrix: elimination with partial pivoting does not look. O(D^3).
+/// matrix^-1. Requires a regular matrix: whether it is regular is not checked. O(D^3).
 template <int D>
 [[nodiscard]] Matrix<D> inverse_of(const Matrix<D>& matrix);
 
