@@ -134,6 +134,11 @@ class BoxTree {
           const std::function<void(std::int32_t, std::int32_t)>& found)
       : points_(points), triangles_(triangles), budget_(budget), found_(found), order_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0);
+    boxes_.reserve(triangles.size());
+    for (const SurfaceTriangle& triangle : triangles) {
+      const Triangle t = corners(points, triangle);
+      boxes_.push_back({t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])});
+    }
     if (!order_.empty()) build(0, order_.size());
   }
 
@@ -150,15 +155,10 @@ class BoxTree {
     std::size_t left = 0, right = 0;  ///< 0: a leaf
   };
 
-  [[nodiscard]] Box box_of(std::size_t triangle) const {
-    const Triangle t = corners(points_, triangles_[triangle]);
-    return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
-  }
-
   std::size_t build(std::size_t first, std::size_t last) {
-    Box box = box_of(order_[first]);
+    Box box = boxes_[order_[first]];
     for (std::size_t i = first + 1; i < last; ++i) {
-      const Box other = box_of(order_[i]);
+      const Box& other = boxes_[order_[i]];
       box = {box.low.cwiseMin(other.low), box.high.cwiseMax(other.high)};
     }
     const std::size_t at = nodes_.size();
@@ -168,7 +168,7 @@ class BoxTree {
     (box.high - box.low).maxCoeff(&axis);
     const std::size_t middle = first + (last - first) / 2;
     const auto place = [&](std::size_t triangle) {
-      const Box b = box_of(triangle);
+      const Box& b = boxes_[triangle];
       return 0.5 * b.low[axis] + 0.5 * b.high[axis];
     };
     const auto begin = order_.begin();
@@ -188,7 +188,7 @@ class BoxTree {
   void test(std::size_t i, std::size_t j) {
     if (--budget_ < 0) return;
     const SurfaceTriangle &s = triangles_[order_[i]], &t = triangles_[order_[j]];
-    if (s.face != t.face && box_of(order_[i]).meets(box_of(order_[j])) && cross(points_, s, t)) {
+    if (s.face != t.face && boxes_[order_[i]].meets(boxes_[order_[j]]) && cross(points_, s, t)) {
       found_(std::min(s.face, t.face), std::max(s.face, t.face));
     }
   }
@@ -232,6 +232,7 @@ class BoxTree {
   std::int64_t budget_;
   const std::function<void(std::int32_t, std::int32_t)>& found_;
   std::vector<std::size_t> order_;
+  std::vector<Box> boxes_;  ///< of the triangles
   std::vector<Node> nodes_;
 };
 
