@@ -158,7 +158,7 @@ void print_report(const CheckedMesh& checked) {
     print_judged(checked, "flat", MeshFault::not_planar, "", "no:#polygons whose corners lie in no plane");
   }
   if (report.count(MeshFault::degenerate_face) > 0) {
-    print_judged(checked, "slivers", MeshFault::degenerate_face, "", "#faces have no area, which does no harm");
+    print_judged(checked, "slivers", MeshFault::degenerate_face, "", "yes:#faces have no area, which does no harm");
   }
   if (checked.encloses()) print_row("volume", fmt::format("{:.10g}", checked.volume(report.relative_volume)));
   print_row("hull", fmt::format("{} vertices, volume {:.10g}", checked.hull.num_vertices(),
