@@ -119,7 +119,8 @@ TEST(RevolutionDepth, IsThatOfASweepOfDirections) {
     }
   }
   EXPECT_GT(questions.overlapping, 600);
-  EXPECT_GT(questions.by_places, questions.overlapping * 99 / 100);
+  // The others' foot on an edge's arc is settled by further supports, so that witnesses lie on both bodies.
+  EXPECT_GT(questions.by_places, questions.overlapping * 95 / 100);
 }
 
 /// Along each other's axes, in the middle of each other or moved along one, two or three axes: facets, discs, edges and

@@ -46,10 +46,10 @@ enum class Bracket : std::uint8_t {
   /// - overlapping: [-upper, -lower], below 0;
   /// - touching: [-upper, distance_upper], which holds 0; depth, distance, lower and distance_lower are 0.
   /// The plane across `normal` proves the lower end, a point of P or a ball inside P the upper one. Moving A by
-  /// upper * normal leaves no more overlap than rounding; no translation is searched on the grid of doubles. Normal,
-  /// witnesses and features are those of an answer within the bracket. `bracket_reached` is false where the interval is
-  /// wider than promised, but certified still. Holds for Method::automatic and expansion, and where |b - a| stays
-  /// within 2^-100 to 2^100 or a power of two brings the pair there exactly; the others take it for `certified`.
+  /// upper * normal leaves no more overlap than rounding. Normal, witnesses and features are those of an answer within
+  /// the bracket. `bracket_reached` is false where the interval is certified but wider than promised. If it holds 0 and
+  /// lies mostly below, the class is then overlapping with lower = 0. Holds for Method::automatic and expansion, where
+  /// |b - a| stays in [2^-100, 2^100] or a power of two brings it there exactly; others take it for `certified`.
   contact,
 };
 

@@ -91,6 +91,15 @@ SmoothDifference::SmoothDifference(const PosedShape& a, const PosedShape& b, std
   points_.clear();
 }
 
+SmoothDifference SmoothDifference::moved(const Vec3& way) const {
+  SmoothDifference there = *this;
+  const double length = way.norm();
+  there.offset_ -= way;
+  there.reach_ += length;
+  there.point_error_ += 32 * kUnitRoundoff * length;
+  return there;
+}
+
 DifferenceVertex SmoothDifference::support(const Vec3& direction, const DifferenceVertex*) const {
   return vertex(support_of_rest(a_, -(a_.rotation.transpose() * direction)),
                 support_of_rest(b_, b_.rotation.transpose() * direction));

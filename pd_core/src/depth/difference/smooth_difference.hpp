@@ -42,6 +42,9 @@ class SmoothDifference {
   SmoothDifference(const PosedShape& a, const PosedShape& b, std::vector<PointPair>& points,
                    Rolling rolling = Rolling::kept);
 
+  /// The difference after A moved by `way`; both share the buffer of points.
+  [[nodiscard]] SmoothDifference moved(const Vec3& way) const;
+
   /// The difference of two points of the cores, each in its body's frame.
   [[nodiscard]] DifferenceVertex vertex(const Vec3& local_a, const Vec3& local_b) const;
   [[nodiscard]] DifferenceVertex support(const Vec3& direction, const DifferenceVertex* near) const;

@@ -9,6 +9,8 @@ namespace pd::detail {
 
 namespace {
 
+constexpr double kLeastWideContact = 1e-6;
+
 /// The face of one body that a face of the surface uses: one, two or three of its vertices.
 Feature feature(const ConvexPolytope& body, const DifferenceVertex (&corners)[3], std::int32_t DifferenceVertex::*id) {
   const std::int32_t ids[3] = {corners[0].*id, corners[1].*id, corners[2].*id};
@@ -69,6 +71,16 @@ void set_signed_distance(double margin, double core_lower, double core_upper, Pe
     out.upper = -lower * (1 + 0x1p-50);
     out.distance_upper = upper;
   }
+}
+
+void keep_wide_contact(double size, PenetrationDepth& out) {
+  if (out.bracket_reached || out.contact != ContactClass::touching || out.distance_upper > out.upper) return;
+  if (!(out.upper > kLeastWideContact * size)) return;
+  out.contact = ContactClass::overlapping;
+  out.depth = out.upper * (1 - 0x1p-50);
+  out.distance_upper = 0;
+  out.translation = out.depth * out.normal;
+  out.witness_b = out.witness_a + out.translation;
 }
 
 void set_witnesses(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,

@@ -23,6 +23,11 @@ void set_depth(const PolytopePair& pair, double lower, double upper, const Vec3&
 /// the margins is `touching` (`Bracket::contact`). Normal and witnesses of the swept surfaces are set.
 void set_signed_distance(double margin, double core_lower, double core_upper, PenetrationDepth& out);
 
+/// An interval that holds 0 and is far wider than asked is no touching contact. Where most of it is overlap, the answer
+/// is the plane that proves it: `overlapping` with lower = 0, so that nobody loses a contact of that depth.
+/// @param size  of the pair: below a millionth of it a contact is touching for every engine.
+void keep_wide_contact(double size, PenetrationDepth& out);
+
 /// Witnesses: the combinations of the corners' vertices on A and on B. Weights need not sum to 1; negative ones count
 /// as 0. `out.normal` is set.
 void set_witnesses(const PolytopePair& pair, const DifferenceVertex* corners, const double* weights, int count,

@@ -162,6 +162,7 @@ void answer_near_boundary(PolytopeQuery& query, const ExpansionResult& surface, 
   set_contact_along(query.pair, nearest, limit, out);
   set_signed_distance(query.pair.margins.both(), cores.lower, nearest.upper, out);
   out.bracket_reached = narrow();
+  keep_wide_contact(largest, out);
 }
 
 /// P lies in a ball that is smaller than what may be left open: two balls about one centre, say.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
@@ -9,8 +10,10 @@
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
 #include "depth/distance/gjk_double_double.hpp"
+#include "depth/distance/settled_foot.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/features/inscribed_balls.hpp"
+#include "depth/features/point_off_core.hpp"
 #include "depth/features/revolution_depth.hpp"
 #include "depth/features/same_core.hpp"
 #include "depth/features/thinnest_axis.hpp"
@@ -38,6 +41,14 @@ constexpr double kAcross = 1e-9;
 /// Of L: how far below the supporting plane points of its face may be.
 constexpr double kAside = 0.05;
 
+/// Of the reach: how far witnesses may lie outside their bodies.
+constexpr double kOffBody = 1e-10;
+/// Planes that may be tried until they do not: all of them, or where a wide bracket is enough.
+constexpr int kMostFeet = 16;
+constexpr int kFewFeet = 2;
+/// Steps in double-double where doubles do not bring witnesses that near.
+constexpr int kFineSteps = 64;
+
 /// Beside a margin that is 2^400 times as large, squares of the cores' distances underflow, and what was divided by
 /// their roots is no unit vector. What the plane's height misses by that is nothing beside the margin.
 Vec3 unit_of(const Vec3& normal) {
@@ -55,6 +66,7 @@ class SmoothQuery {
         out_(out),
         for_contact_(settings.bracket == Bracket::contact &&
                      (settings.method == Method::automatic || settings.method == Method::expansion)),
+        rough_witnesses_(for_contact_ || settings.bracket == Bracket::certified),
         difference_(a, b, buffers.points, for_contact_ ? Rolling::kept : rolling),
         width_(for_contact_ ? settings.contact_tolerance : 0),
         delta_(settings.delta > 0 ? settings.delta : kDefaultDelta),
@@ -76,6 +88,7 @@ class SmoothQuery {
     out_.bracket_reached = upper <= (1 + delta_) * lower * (1 + 0x1p-48);
     if (!for_contact_) return;
     out_.bracket_reached |= signed_width() <= contact_width();
+    keep_wide_contact(size(), out_);
     if (warm_ == nullptr) return;
     for (const int of : {0, 1}) {
       const PosedShape& owner = of == 0 ? a_ : b_;
@@ -97,14 +110,8 @@ class SmoothQuery {
     const ExpansionResult& core = nearest.found;
     switch (core.status) {
       case ExpansionStatus::separated:
-        solve_apart(core);
-        return;
       case ExpansionStatus::touching:
-        if (margin_ > 0 || for_contact_) {
-          solve_apart(core);
-        } else {
-          fill_touching(core.normal);
-        }
+        solve_apart(core);
         return;
       default:
         if (core.face >= 0 && core.lower > 0) {
@@ -141,10 +148,10 @@ class SmoothQuery {
     auto balls = ball_in_core_depth(a_, b_, difference_, calls);
     if (!is_narrow(balls)) balls = inscribed_balls_depth(a_, b_, difference_, calls);
     if (!is_narrow(balls)) return false;
-    out_.contact = ContactClass::overlapping;
-    set_depth(balls->lower + margin_, balls->upper + margin_, balls->normal);
-    out_.witness_a = balls->on_a - a_.shape->margin() * out_.normal;
-    out_.witness_b = out_.witness_a + out_.translation;
+    const Vec3& normal = balls->normal;
+    answer_overlapping(balls->lower,
+                       foot_between({normal, balls->upper}, balls->on_a + difference_.taken_out(0) * normal,
+                                    balls->on_b - difference_.taken_out(1) * normal));
     return true;
   }
 
@@ -158,11 +165,18 @@ class SmoothQuery {
       return true;
     }
     buffers_.surface.vertices.push_back({found->touched, -1, -1});
-    out_.contact = ContactClass::overlapping;
-    set_depth(found->lower + margin_, found->upper + margin_, found->normal);
-    out_.witness_a = found->on_a - margin_a_ * out_.normal;
-    out_.witness_b = out_.witness_a + out_.translation;
+    answer_overlapping(found->lower, foot_at({found->normal, found->upper}, found->on_a));
     return true;
+  }
+
+  /// A point of A's core, and how far it and its partner on B lie outside.
+  [[nodiscard]] Foot foot_at(const WayOut& plane, const Vec3& on_a) const {
+    const Vec3 on_b = on_a + plane.upper * plane.normal - difference_.offset();
+    const Vec3 local_a = difference_.rotation_of(0).transpose() * on_a;
+    const Vec3 local_b = difference_.rotation_of(1).transpose() * on_b;
+    return {plane.normal, plane.upper, on_a,
+            std::max(std::visit(PointOffCore{local_a}, difference_.core_of(0)),
+                     std::visit(PointOffCore{local_b}, difference_.core_of(1)))};
   }
 
   /// Where the cores were apart, the points round the nearest one of P are there still, or nearly. False, and nothing
@@ -180,8 +194,10 @@ class SmoothQuery {
     if (!nearest.certified) return false;
     const double unclear = 2 * kAbsolute * difference_.reach();
     if (!for_contact_ && nearest.lower - margin_ <= unclear && nearest.upper - margin_ >= -unclear) return false;
-    const Vec3 unit = unit_of(nearest.normal);
-    answer_apart(nearest, unit, {unit, -nearest.lower});
+    const ClosestPoint fine = fine_in_margins(nearest);
+    const ClosestPoint& found = fine.certified ? fine : nearest;
+    const Vec3 unit = unit_of(found.normal);
+    answer_apart(found, unit, {unit, -found.lower});
     out_.warm = true;
     return true;
   }
@@ -200,31 +216,51 @@ class SmoothQuery {
 
   void fill_overlapping(SmoothFace& nearest) {
     const ExpansionResult& core = nearest.found;
-    out_.contact = ContactClass::overlapping;
-    set_depth(core.lower + margin_, core.upper + margin_, core.normal);
-    if (nearest.foot_known) {
-      set_witnesses(nearest.corners, nearest.weights, 3);
-      out_.witness_b = out_.witness_a + out_.translation;
-      return;
-    }
     double weights[3];
-    project_origin(nearest.corners, core.normal, weights);
-    const double near = kAcross * size();
-    if (miss_across(nearest.corners, core.normal, weights) > near) {
-      // The last triangle is thin, one of several in a plane, or not across the normal that proves the depth, which is
-      // open by the root of the bracket's width: kAside covers its corners all the same.
-      double least_height = core.lower - near;
-      for (DifferenceVertex& corner : nearest.corners) {
-        const double height = corner.x.dot(core.normal);
-        if (height < core.lower - kAside * size()) {
-          corner = difference_.support(core.normal, nullptr);
-        } else {
-          least_height = std::min(least_height, height);
-        }
-      }
-      find_foot(*nearest.searched, core.normal, least_height, nearest.corners, weights);
+    if (nearest.foot_known) {
+      std::copy(std::begin(nearest.weights), std::end(nearest.weights), weights);
+    } else {
+      project_origin(nearest.corners, core.normal, weights);
+      const double near = kAcross * size();
+      if (miss_across(nearest.corners, core.normal, weights) > near) find_corners(nearest, near, weights);
     }
-    set_witnesses(nearest.corners, weights, 3);
+    const auto [on_a, on_b] = combination(nearest.corners, weights, 3);
+    answer_overlapping(core.lower, foot_between({core.normal, core.upper}, on_a, on_b));
+  }
+
+  /// The last triangle is thin, one of several in a plane, or not across the normal that proves the depth, which is
+  /// open by the root of the bracket's width: kAside covers its corners all the same.
+  void find_corners(SmoothFace& nearest, double near, double (&weights)[3]) {
+    const ExpansionResult& core = nearest.found;
+    double least_height = core.lower - near;
+    for (DifferenceVertex& corner : nearest.corners) {
+      const double height = corner.x.dot(core.normal);
+      if (height < core.lower - kAside * size()) {
+        corner = difference_.support(core.normal, nullptr);
+      } else {
+        least_height = std::min(least_height, height);
+      }
+    }
+    find_foot(*nearest.searched, core.normal, least_height, nearest.corners, weights);
+  }
+
+  /// Points of the cores whose difference should be the foot on the plane.
+  [[nodiscard]] static Foot foot_between(const WayOut& plane, const Vec3& on_a, const Vec3& on_b) {
+    const Vec3 unit = unit_of(plane.normal);
+    return {unit, plane.upper, on_a, (on_b - on_a - plane.upper * unit).norm()};
+  }
+
+  void answer_overlapping(double lower, Foot foot) {
+    double allowed = kOffBody * difference_.reach();
+    if (rough_witnesses_) allowed = std::max({allowed, width_, 2 * (foot.height - lower)});
+    if (!(foot.missed <= allowed)) {
+      if (!std::isfinite(foot.missed)) foot.missed = std::numeric_limits<double>::infinity();
+      foot = settled_foot(difference_, foot, allowed, rough_witnesses_ ? kFewFeet : kMostFeet, buffers_.stack,
+                          out_.statistics.support_calls);
+    }
+    out_.contact = ContactClass::overlapping;
+    set_depth(lower + margin_, foot.height + margin_, foot.normal);
+    out_.witness_a = foot.on_a - margin_a_ * out_.normal;
     out_.witness_b = out_.witness_a + out_.translation;
   }
 
@@ -236,7 +272,9 @@ class SmoothQuery {
     out_.translation = out_.depth * out_.normal;
   }
 
-  void set_witnesses(const DifferenceVertex* corners, const double* weights, int count) {
+  /// The combinations of A's and B's points of these corners.
+  [[nodiscard]] std::pair<Vec3, Vec3> combination(const DifferenceVertex* corners, const double* weights,
+                                                  int count) const {
     Vec3 a = Vec3::Zero();
     Vec3 b = Vec3::Zero();
     double total = 0;
@@ -246,16 +284,21 @@ class SmoothQuery {
       b += w * difference_.points(corners[i]).b;
       total += w;
     }
-    out_.witness_a = a / total - margin_a_ * out_.normal;
-    out_.witness_b = b / total + margin_b_ * out_.normal;
+    return {a / total, b / total};
   }
 
-  void fill_touching(const Vec3& normal) {
+  void set_witnesses(const ClosestPoint& nearest) {
+    const auto [a, b] = combination(nearest.simplex, nearest.weights, nearest.count);
+    out_.witness_a = a - margin_a_ * out_.normal;
+    out_.witness_b = b + margin_b_ * out_.normal;
+  }
+
+  /// A support of P along the normal would be a corner of each body where many are tied; the nearest point of P is one
+  /// that they share.
+  void fill_touching(const Vec3& normal, const ClosestPoint& nearest) {
     out_.contact = ContactClass::touching;
     out_.normal = unit_of(normal);
-    const DifferenceVertex s = difference_.support(normal, nullptr);
-    const double one = 1;
-    set_witnesses(&s, &one, 1);
+    set_witnesses(nearest);
     out_.witness_b = out_.witness_a;
   }
 
@@ -266,6 +309,25 @@ class SmoothQuery {
     return taken_out_ > 0 ? kShareOfDelta * delta_ : delta_;
   }
   BracketWidth width_of_distance() const { return {0.25 * kAbsolute, 0.5 * width_, margin_}; }
+
+  /// The translation of bodies that overlap by their margins is as long as the lower end says, their points are as far
+  /// apart as the upper one: both are brought together, so that witnesses lie on the bodies. Not certified where they
+  /// need not be.
+  [[nodiscard]] ClosestPoint fine_in_margins(const ClosestPoint& nearest) {
+    const double allowed = kOffBody * difference_.reach();
+    const bool wide = nearest.upper - nearest.lower > allowed;
+    if (rough_witnesses_ || !wide || !(nearest.lower > 0 && nearest.upper < margin_) || nearest.count > 3) return {};
+    const BracketWidth width{0, 0.5 * allowed, 0};
+    std::int64_t& calls = out_.statistics.support_calls;
+    const auto count = static_cast<std::size_t>(nearest.count);
+    const ClosestPoint fine =
+        closest_point(difference_, std::span(nearest.simplex).first(count), 0, width, buffers_.stack, calls);
+    if (fine.certified) return fine;
+    ClosestPointWithNormal finest =
+        closest_point_double_double(difference_, nearest.simplex[0], 0, width, kFineSteps, buffers_.stack, calls);
+    finest.nearest.normal = finest.normal;
+    return finest.nearest;
+  }
 
   /// The cores are apart, or so close that only their distance (within kAbsolute of zero) is known.
   void solve_apart(const ExpansionResult& core) {
@@ -283,18 +345,24 @@ class SmoothQuery {
       nearest = near.nearest;
       proven = near.normal;
     }
+    if (const ClosestPoint fine = fine_in_margins(nearest); fine.certified) {
+      nearest = fine;
+      proven = fine.normal;
+    }
     // The cores' signed distance is at most h(normal), certified by the expansion where they are not apart.
-    const bool directed = nearest.lower > 0;
+    const bool touches = core.status == ExpansionStatus::touching && margin_ == 0;
+    const bool directed = nearest.lower > 0 && !touches;
     WayOut out{unit_of(directed ? proven : core.normal), directed ? -nearest.lower : std::max(0.0, core.upper)};
-    if (!directed && !for_contact_) {
+    if (!directed && !touches && !for_contact_) {
       const WayOut thin = thinnest_axis(a_, b_, difference_);
       if (thin.upper < out.upper) out = thin;
     }
-    answer_apart(nearest, out.normal, out);
+    answer_apart(nearest, out.normal, out, touches);
   }
 
   /// From the bracket of the cores' distance. `normal` is its direction; `out` leads out where margins overlap.
-  void answer_apart(const ClosestPoint& nearest, const Vec3& normal, WayOut out) {
+  /// @param touches  the cores are known to touch, and have no margins.
+  void answer_apart(const ClosestPoint& nearest, const Vec3& normal, WayOut out, bool touches = false) {
     const double touching = kAbsolute * std::max(size(), nearest.point.cwiseAbs().maxCoeff());
     if (nearest.lower > 0) remember_apart(nearest);
     const double round = 4 * kUnitRoundoff * (nearest.upper + margin_);
@@ -304,14 +372,14 @@ class SmoothQuery {
       answer_contact(nearest, normal, out);
       return;
     }
-    if (distance_upper <= touching && distance_lower >= -touching) {
-      fill_touching(normal);
+    if (touches || (distance_upper <= touching && distance_lower >= -touching)) {
+      fill_touching(normal, nearest);
       return;
     }
     if (distance_lower > 0 || distance_upper > touching) {
       out_.contact = ContactClass::separated;
       out_.normal = normal;
-      set_witnesses(nearest.simplex, nearest.weights, nearest.count);
+      set_witnesses(nearest);
       out_.distance_lower = std::max(0.0, distance_lower);
       out_.distance_upper = distance_upper;
       out_.distance = std::clamp((out_.witness_a - out_.witness_b).norm(), out_.distance_lower, out_.distance_upper);
@@ -320,7 +388,7 @@ class SmoothQuery {
     out_.contact = ContactClass::overlapping;
     if (!std::isfinite(out.upper)) out = thinnest_axis(a_, b_, difference_);
     set_depth(margin_ - nearest.upper, margin_ + out.upper, out.normal);
-    set_witnesses(nearest.simplex, nearest.weights, nearest.count);
+    set_witnesses(nearest);
     out_.witness_b = out_.witness_a + out_.translation;
   }
 
@@ -329,7 +397,7 @@ class SmoothQuery {
     if (!std::isfinite(out.upper)) out = thinnest_axis(a_, b_, difference_);
     const bool apart = nearest.lower > 0;
     out_.normal = apart ? normal : out.normal;
-    set_witnesses(nearest.simplex, nearest.weights, nearest.count);
+    set_witnesses(nearest);
     set_signed_distance(margin_, apart ? nearest.lower : -out.upper, nearest.upper, out_);
   }
   double contact_width() const { return std::max(2 * kAbsolute * size(), width_) * (1 + 0x1p-48); }
@@ -343,6 +411,7 @@ class SmoothQuery {
   ScratchBuffers& buffers_;
   PenetrationDepth& out_;
   bool for_contact_;
+  bool rough_witnesses_;  ///< as near to their bodies as the bracket is wide
   SmoothDifference difference_;
   double width_;  ///< Bracket::contact: of the interval
   double delta_;
