@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "compound/part_bounds.hpp"
 #include "compound/union_boundary.hpp"
 #include "numeric/root_sum.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -19,6 +20,15 @@ namespace {
 
 /// Pairs up to this many are tried together where none covers a cell alone.
 constexpr std::size_t kMaxTriedTogether = 12;
+/// Times that the polytopes in and around the parts are refined: the first suffice in most cases, and each takes two
+/// exact answers.
+constexpr int kMostBounds = 8;
+/// Of exact searches for those: cells looked at and polygons cut, each some microseconds.
+constexpr std::int64_t kMostBoundWork = 20'000;
+/// Pairs that the octree may ask: each takes 5 to 50 microseconds.
+constexpr std::int64_t kMostPairs = 8192;
+/// The same for polytopes, which are answered so only where the octree is asked for: exact answers take less.
+constexpr std::int64_t kMostPolytopes = std::int64_t{1} << 20;
 
 /// One pair of parts; `piece` is its P_ij among the built differences, -1 when it was not built or is flat.
 struct PartPair {
@@ -54,8 +64,13 @@ class Octree {
     const double exit = pair_.box_exit();
     build_differences(exit);
     start_from_boxes();
-    const double known_lower = deepest.nearest.lower;
     try_placement(deepest.nearest.translation, all_pairs());
+    double known_lower = deepest.nearest.lower;
+    if (!pair_.polytopes) known_lower = bound_by_polytopes(known_lower);
+    if (upper_ <= (1 + settings_.delta) * known_lower) {
+      finish(std::min(known_lower, upper_));
+      return;
+    }
     const double smallest = settings_.resolution > 0 ? settings_.resolution : 0x1p-20 * pair_.size;
 
     std::priority_queue<Cell, std::vector<Cell>, Later> queue;
@@ -63,15 +78,18 @@ class Octree {
     const auto wait = [&](const Vec3& centre, double half, std::vector<std::int32_t> pairs) {
       const Vec3 nearest = (centre.cwiseAbs().array() - half).max(0.0).matrix();
       const double key = std::max(known_lower, nearest.norm() * (1 - 0x1p-48));
-      if (key < upper_) queue.push({key, order++, centre, half, std::move(pairs)});
+      const double farthest = (centre.cwiseAbs().array() + half).matrix().norm() * (1 + 0x1p-48);
+      if (key < upper_ && farthest > known_lower) queue.push({key, order++, centre, half, std::move(pairs)});
     };
     // No nearer placement lies outside the ball of the first upper bound.
     wait(Vec3::Zero(), exit, all_pairs());
     double unresolved = HUGE_VAL;
     double lower = upper_;
+    const std::int64_t most_pairs = out_.work.pairs + (pair_.polytopes ? kMostPolytopes : kMostPairs);
     while (!queue.empty()) {
       lower = std::min({queue.top().key, unresolved, upper_});
       if (upper_ <= (1 + settings_.delta) * lower || unresolved <= queue.top().key) break;
+      if (out_.work.pairs >= most_pairs) break;
       Cell cell = queue.top();
       queue.pop();
       lower = upper_;
@@ -97,6 +115,61 @@ class Octree {
     std::vector<std::int32_t> all(pairs_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int32_t>(i);
     return all;
+  }
+
+  /// The exact depths of unions of polytopes inside and around the parts are bounds of the depth. They are made more
+  /// like the parts where they were nearest, until the bounds meet.
+  /// @return the better lower bound; a better placement is taken over.
+  double bound_by_polytopes(double known_lower) {
+    std::vector<PartBounds> of_a(pair_.a.begin(), pair_.a.end()), of_b(pair_.b.begin(), pair_.b.end());
+    UnionSettings exactly;
+    exactly.max_facets = settings_.max_facets;
+    std::int64_t work = 0;
+    const auto look_along = [&](const Vec3& unit) {
+      for (PartBounds& part : of_a) part.look_along(-unit);
+      for (PartBounds& part : of_b) part.look_along(unit);
+    };
+    for (int round = 0; round < kMostBounds && work <= kMostBoundWork; ++round) {
+      const std::optional<UnionDepth> inner = depth_between(of_a, of_b, &PartBounds::inner, exactly);
+      const std::optional<UnionDepth> outer = depth_between(of_a, of_b, &PartBounds::outer, exactly);
+      for (const std::optional<UnionDepth>& bound : {inner, outer}) {
+        if (!bound || bound->contact != ContactClass::overlapping) return known_lower;
+        work += bound->work.cells + bound->work.polygons + bound->work.cuts;
+        out_.work.cells += bound->work.cells;
+        out_.work.facets += bound->work.facets;
+        out_.work.polygons += bound->work.polygons;
+        out_.work.cuts += bound->work.cuts;
+      }
+      known_lower = std::max(known_lower, inner->lower);
+      accept(outer->translation);
+      try_placement(inner->translation, all_pairs());
+      if (upper_ <= (1 + settings_.delta) * known_lower) break;
+      for (const UnionDepth* bound : {&*inner, &*outer}) {
+        look_along(bound->normal);
+        look_along(bound->translation.normalized());
+      }
+    }
+    if (translation_.norm() > known_lower) slide(all_pairs());
+    return known_lower;
+  }
+
+  /// Of the polytopes in the parts, or of those around them.
+  std::optional<UnionDepth> depth_between(const std::vector<PartBounds>& of_a, const std::vector<PartBounds>& of_b,
+                                          std::optional<Compound::Part> (PartBounds::*polytope)() const,
+                                          const UnionSettings& exactly) {
+    std::optional<Compound> bodies[2];
+    for (const auto& [body, parts] : {std::pair{&bodies[0], &of_a}, std::pair{&bodies[1], &of_b}}) {
+      std::vector<Compound::Part> polytopes;
+      for (const PartBounds& part : *parts) {
+        std::optional<Compound::Part> bound = (part.*polytope)();
+        if (!bound) return std::nullopt;
+        polytopes.push_back(*std::move(bound));
+      }
+      body->emplace(*Compound::from_parts(std::move(polytopes)));
+    }
+    auto answer = penetration_depth({&*bodies[0], Pose()}, {&*bodies[1], Pose()}, scratch_, exactly);
+    if (!answer) return std::nullopt;
+    return *std::move(answer);
   }
 
   void build_differences(double reach) {
@@ -201,8 +274,12 @@ class Octree {
   void try_placement(const Vec3& t, const std::vector<std::int32_t>& pairs) {
     if (!(t.norm() < upper_) || !is_free(t, pairs)) return;
     accept(t);
-    const std::vector<std::int32_t> all = all_pairs();
-    Vec3 x = t;
+    slide(all_pairs());
+  }
+
+  /// The best placement, towards the origin as far as it is free.
+  void slide(const std::vector<std::int32_t>& all) {
+    Vec3 x = translation_;
     for (int step = 0; step < 64; ++step) {
       double gap = HUGE_VAL;
       for (const std::int32_t p : all) {
@@ -247,6 +324,7 @@ class Octree {
     out_.normal = translation_.normalized();
     out_.distance = out_.distance_lower = out_.distance_upper = 0;
     out_.closed = upper_ <= (1 + settings_.delta) * lower;
+    out_.bracket_reached = out_.closed;
     // The pair that holds A back there gives witnesses and features.
     double least = HUGE_VAL;
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
