@@ -104,6 +104,21 @@ TEST(Shallow, CostFollowsTheFacetsNearTheOrigin) {
   }
 }
 
+/// The answer is exact whatever delta is, so that a fine one takes no more rays than pay.
+TEST(Shallow, AFineDeltaTakesNoMoreRays) {
+  scenes::Random random(9);
+  Scratch scratch;
+  const ConvexShape a(*ConvexPolytope::from_points(scenes::sphere_hull(32, random)));
+  const ConvexShape b(*ConvexPolytope::from_points(scenes::sphere_hull(32, random)));
+  const Pose aside = *Pose::from_quaternion({1, 0, 0, 0}, {0.5, 0.25, 0});
+  const PenetrationDepth exact = penetration_depth({&a, Pose()}, {&b, aside}, scratch);
+  const PenetrationDepth fine =
+      penetration_depth({&a, Pose()}, {&b, aside}, scratch, {.method = Method::shallow, .delta = 1.1e-5});
+  EXPECT_EQ(fine.lower, exact.lower);
+  EXPECT_EQ(fine.upper, exact.upper);
+  EXPECT_LT(fine.statistics.support_calls, 100'000);
+}
+
 TEST(Shallow, Refusals) {
   Scratch scratch;
   const ConvexShape box(*ConvexPolytope::box(Vec3(1, 1, 1)));

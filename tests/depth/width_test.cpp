@@ -127,5 +127,34 @@ TEST(Width, SmoothNormalsAttainIt) {
   }
 }
 
+/// Directions that cover the sphere evenly see nothing of the box but its two faces: they are laid out as thin as it
+/// is.
+TEST(Width, GridOfABoxThinnerThanRounding) {
+  Scratch scratch;
+  for (const double thickness : {1e-3, 1e-18, 1e-100, 1e-150}) {
+    const ConvexShape box(*ConvexPolytope::box({0.5, 0.5, 0.5 * thickness}));
+    const Width found = width({&box, Pose()}, scratch, Method::grid, 1e-2);
+    EXPECT_TRUE(found.bracket_reached) << thickness;
+    EXPECT_LE(found.lower, thickness);
+    EXPECT_GE(found.upper, thickness);
+    EXPECT_LE(found.upper, 1.01 * found.lower * (1 + 1e-12)) << thickness;
+    EXPECT_LT(found.statistics.facets_visited, 2000) << thickness;
+  }
+}
+
+/// A turned box that is thinner than the rounding of its corners: what rounding leaves of the bracket is said.
+TEST(Width, GridsSayWhatTheyDoNotReach) {
+  Scratch scratch;
+  for (const double thickness : {1e-6, 1e-10, 1e-14}) {
+    const ConvexShape box(*ConvexPolytope::box({1, 1, thickness}));
+    const Pose turned = *Pose::from_quaternion({0.5, 0.5, 0.1, 0.7}, {3, 0, 0});
+    const Width found = width({&box, turned}, scratch, Method::grid, 1e-2), exact = width({&box, turned}, scratch);
+    EXPECT_LE(found.lower, exact.upper);
+    EXPECT_GE(found.upper, exact.lower);
+    EXPECT_EQ(found.bracket_reached, found.upper <= 1.01 * found.lower * (1 + 1e-12)) << thickness;
+    EXPECT_LE(found.statistics.facets_visited, 1 << 15) << thickness;
+  }
+}
+
 }  // namespace
 }  // namespace pd

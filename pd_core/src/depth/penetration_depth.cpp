@@ -1,5 +1,6 @@
 #include "pd/depth/penetration_depth.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "depth/pair/beyond.hpp"
@@ -28,7 +29,9 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
   if (settings.method == Method::grid) {
     detail::grid_depth(a, b, settings, buffers, out);
   } else if (settings.method == Method::shallow) {
-    const double delta = settings.delta > 0 ? settings.delta : detail::kDefaultShallowDelta;
+    // The answer is exact whatever delta is: more rays only spare facets.
+    const double delta =
+        std::max(settings.delta > 0 ? settings.delta : detail::kDefaultShallowDelta, detail::kLeastShallowDelta);
     const Expected<DirectionGrid> grid =
         direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere, std::numeric_limits<std::int64_t>::max());
     ShallowCounts counts;

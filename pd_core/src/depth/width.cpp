@@ -7,6 +7,7 @@
 #include "depth/facets/overlay_depth.hpp"
 #include "depth/pair/grid_depth.hpp"
 #include "depth/pair/scratch_buffers.hpp"
+#include "depth/rays/round_frame.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
@@ -50,7 +51,10 @@ void grid_width(const PosedPair& pair, const Dyadic& margins, double delta, Widt
   detail::PolytopeShooter shooter(pair);
   constexpr std::size_t kHalfTheFaces = 10;
   const detail::DirectionRefinementResult found =
-      detail::DirectionRefinement(shooter, delta > 0 ? delta : detail::kDefaultGridDelta, kHalfTheFaces).run();
+      detail::DirectionRefinement(shooter, delta > 0 ? delta : detail::kDefaultGridDelta, kHalfTheFaces,
+                                  detail::round_frame(pair))
+          .run();
+  out.bracket_reached = found.reached;
   const detail::PolytopeShooter::Plane& plane = shooter.kept();
   const Dyadic& factor = pair.homogeneous_factor();
   fill(margins, plane.offset * plane.offset, dot(plane.normal, plane.normal) * factor * factor, out);
@@ -129,6 +133,7 @@ Width width_by_depth(const PosedShape& body, Scratch& scratch, double delta) {
   out.width = self.depth;
   out.lower = self.lower;
   out.upper = self.upper;
+  out.bracket_reached = self.bracket_reached;
   out.normal = self.normal;
   out.statistics = self.statistics;
   return out;

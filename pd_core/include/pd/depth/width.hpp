@@ -19,6 +19,8 @@ struct Width {
   /// lower <= exact width <= upper; neighbouring doubles (or equal) but for Method::grid and hulls of spheres.
   double lower = 0;
   double upper = 0;
+  /// False: rounding, or the budget, ended a search with upper > (1 + delta) lower; both are certified still.
+  bool bracket_reached = true;
   Vec3 normal = Vec3::UnitX();  ///< unit normal of the two planes, in the common frame
   Statistics statistics;
 };
@@ -32,7 +34,8 @@ struct Width {
 ///
 /// @param method  automatic or overlay (every facet of P + (-P): O(m + K)), expansion, or grid. Grid gives upper <=
 /// (1 + delta) lower for polytopes by rays along directions that cover half the sphere, P + (-P) being symmetric ([A]
-/// Corollary 3.3, its grid refined where it matters).
+/// Corollary 3.3, its grid refined where it matters). It shoots 2^14 rays at most, and fewer where they need long
+/// numbers.
 /// @param delta   for Method::grid, in (0, 1]; 0 means 1e-2.
 /// Requires one of those methods.
 [[nodiscard]] Width width(const PosedShape& body, Scratch& scratch, Method method = Method::automatic,

@@ -5,6 +5,7 @@
 #include "depth/pair/core_class.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "depth/pair/smooth_depth.hpp"
+#include "depth/rays/round_frame.hpp"
 
 namespace pd::detail {
 
@@ -21,7 +22,7 @@ void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& 
   }
   const PosedPair posed(*pair.a, *pair.pose_a, *pair.b, *pair.pose_b);
   PolytopeShooter shooter(posed);
-  const DirectionRefinementResult found = DirectionRefinement(shooter, delta, 20).run();
+  const DirectionRefinementResult found = DirectionRefinement(shooter, delta, 20, round_frame(posed)).run();
   answer_overlapping(posed, facet_of_direction(posed, ExactDirection(shooter.kept().normal)), pair.margins,
                      settings.bracket, buffers.faces, out);
   // Among planes that doubles cannot distinguish, the projection of the origin may lie on another one's facet: the ray

@@ -5,7 +5,8 @@
 /// A cell is a triangle of directions u_i. The points Delta(u_i) u_i lie on the boundary of P, so their triangle lies
 /// in P, and the boundary point nearest to the origin, if its direction is in the cell's cone, is at least as far as
 /// that triangle: a lower bound that is never below the paper's cos(alpha) min Delta(u_i), and exact where the three
-/// rays meet one facet. The cell with the least bound is cut in four until the least plane distance met so far is
+/// rays meet one facet. Directions are laid out in a linear frame (`round_frame`): a thin P is covered as fast as a
+/// round one. The cell with the least bound is cut in four until the least plane distance met so far is
 /// within (1 + delta) of it. Every shot's plane gives an upper bound; where one improves the best, a ray along its
 /// normal follows, so that the projection of the origin on the best plane lies on P itself.
 ///
@@ -31,11 +32,11 @@ namespace pd::detail {
 /// Below this a bracket is dominated by rounding.
 inline constexpr double kLeastDelta = 1e-12;
 
-/// Rays of one search. A covering of the sphere at 1 part in 10^4 takes as many; a ray takes 5 to 50 microseconds.
-inline constexpr std::int64_t kMaxRays = 100'000;
-/// The same for rays whose signs need long numbers, as coordinates of 600 decades do: a second or two
+/// Rays of one search. A covering of the sphere at 2 parts in 10^4 takes as many; a ray takes 5 to 50 microseconds.
+inline constexpr std::int64_t kMaxRays = std::int64_t{1} << 14;
+/// The same for rays whose signs need long numbers, as coordinates of 600 decades do: some two tenths of a second
 /// (PosedPair::exact_work).
-inline constexpr std::int64_t kMaxExactWork = std::int64_t{1} << 26;
+inline constexpr std::int64_t kMaxExactWork = std::int64_t{1} << 23;
 
 struct DirectionRefinementResult {
   bool reached = true;  ///< false: rounding or the budget ended the search with a wider bracket
@@ -49,8 +50,13 @@ template <class Shooter>
 class DirectionRefinement {
  public:
   /// @param faces  20, or 10 where P is symmetric about the origin.
-  DirectionRefinement(Shooter& shooter, double delta, std::size_t faces)
-      : shooter_(shooter), delta_(std::max(delta, kLeastDelta)) {
+  /// @param frame  L of `round_frame`: directions are L v for v that cover the sphere.
+  DirectionRefinement(Shooter& shooter, double delta, std::size_t faces, const Mat3& frame = Mat3::Identity())
+      : shooter_(shooter),
+        delta_(std::max(delta, kLeastDelta)),
+        is_framed_(!frame.isIdentity(0)),
+        frame_(frame),
+        dual_(is_framed_ ? Mat3(frame.triangularView<Eigen::Lower>().solve(Mat3::Identity()).transpose()) : frame) {
     const Icosahedron body = icosahedron();
     for (const Vec3& v : body.vertices) add_corner(v);
     for (std::size_t f = 0; f < faces; ++f) push({body.faces[f][0], body.faces[f][1], body.faces[f][2], 0, 0});
@@ -96,15 +102,17 @@ class DirectionRefinement {
     }
   };
   struct Corner {
-    Vec3 direction;
+    Vec3 round;      ///< unit, in the frame
+    Vec3 direction;  ///< unit
     double lower;
   };
 
   [[nodiscard]] bool is_spent() const { return shooter_.shots() >= kMaxRays || shooter_.exact_work() >= kMaxExactWork; }
 
-  std::int32_t add_corner(const Vec3& direction) {
+  std::int32_t add_corner(const Vec3& round) {
+    const Vec3 direction = is_framed_ ? Vec3((frame_ * round).normalized()) : round;
     const RayShot shot = shooter_.shoot(direction);
-    corners_.push_back({direction, shot.lower});
+    corners_.push_back({round, direction, shot.lower});
     improve(shot);
     return static_cast<std::int32_t>(corners_.size()) - 1;
   }
@@ -126,8 +134,7 @@ class DirectionRefinement {
     const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
     const auto [place, fresh] = middles_.try_emplace(key, 0);
     if (fresh) {
-      const Vec3 sum =
-          corners_[static_cast<std::size_t>(low)].direction + corners_[static_cast<std::size_t>(high)].direction;
+      const Vec3 sum = corners_[static_cast<std::size_t>(low)].round + corners_[static_cast<std::size_t>(high)].round;
       place->second = add_corner(sum.normalized());
     }
     return place->second;
@@ -135,6 +142,11 @@ class DirectionRefinement {
 
   void push(Cell cell) {
     const auto corner = [&](std::int32_t i) -> const Corner& { return corners_[static_cast<std::size_t>(i)]; };
+    if (is_framed_) {
+      cell.lower = distance_in_frame(corner(cell.a), corner(cell.b), corner(cell.c));
+      cells_.push(cell);
+      return;
+    }
     // Relative to the longest of the three, so that nothing under- or overflows.
     const double scale = std::max({corner(cell.a).lower, corner(cell.b).lower, corner(cell.c).lower});
     const auto point = [&](std::int32_t i) { return Vec3(corner(i).lower / scale * corner(i).direction); };
@@ -150,6 +162,31 @@ class DirectionRefinement {
     if (!(length > 0)) return 0;
     const double least = std::min({a.dot(n), b.dot(n), c.dot(n)}) / length;
     return std::max(0.0, least - 16 * kUnitRoundoff);
+  }
+
+  /// The same where lengths of several orders meet: the nearest point and the triangle's normal are found in the frame,
+  /// and each product counts with its own rounding.
+  [[nodiscard]] double distance_in_frame(const Corner& a, const Corner& b, const Corner& c) const {
+    const Corner* const corners[3] = {&a, &b, &c};
+    Vec3 round[3];
+    for (int i = 0; i < 3; ++i) round[i] = corners[i]->lower * (dual_.transpose() * corners[i]->direction);
+    const double scale = std::max({round[0].norm(), round[1].norm(), round[2].norm()});
+    if (!(scale > 0)) return 0;
+    for (Vec3& y : round) y /= scale;
+    const auto least_height = [&](const Vec3& of_round) {
+      const Vec3 n = dual_ * of_round;
+      const double length = n.stableNorm();
+      double least = std::numeric_limits<double>::infinity();
+      for (const Corner* corner : corners) {
+        const Vec3 products = corner->direction.cwiseProduct(n / length);
+        least = std::min(least, corner->lower * (products.sum() - 16 * kUnitRoundoff * products.cwiseAbs().sum()));
+      }
+      return std::isfinite(least) ? least : 0;
+    };
+    const Vec3 across = (round[1] - round[0]).cross(round[2] - round[0]);
+    double best = least_height(nearest(round[0], round[1], round[2]));
+    best = std::max(best, least_height(across.dot(round[0]) < 0 ? Vec3(-across) : across));
+    return std::max(0.0, best) * (1 - 0x1p-48);
   }
 
   /// The point of a triangle nearest to the origin, up to rounding.
@@ -172,6 +209,9 @@ class DirectionRefinement {
 
   Shooter& shooter_;
   double delta_;
+  bool is_framed_;
+  Mat3 frame_;
+  Mat3 dual_;  ///< the inverse of the frame, transposed
   std::vector<Corner> corners_;
   std::priority_queue<Cell, std::vector<Cell>, Later> cells_;
   std::unordered_map<std::uint64_t, std::int32_t> middles_;
