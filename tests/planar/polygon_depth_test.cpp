@@ -10,6 +10,8 @@
 #include "pd/planar/direction_set.hpp"
 #include "planar/polygon_oracle.hpp"
 #include "planar/small_polygons.hpp"
+#include "scenes/polygon_families.hpp"
+#include "scenes/polygon_families.hpp"
 
 namespace {
 
@@ -243,6 +245,15 @@ TEST(PolygonDepth, NeitherConvexIsRefusedByTheImplicitMethod) {
   ASSERT_FALSE(r.has_value());
   EXPECT_EQ(r.error().code, pd::ErrorCode::unsupported);
   EXPECT_EQ(PolygonDifference::of(f, f)->depth({0, 0}).depth, 10);
+}
+
+/// Most edges of sums of two triangles lie inside the whole sum for what is next to them, and are never cut.
+TEST(PolygonDepth, TwoPolygonsOfManyCornersTakeFewCuts) {
+  pd::scenes::Random random(5);
+  const Polygon comb = pd::scenes::comb_polygon(64), star = pd::scenes::star_polygon(64, random);
+  const auto combs = *PolygonDifference::of(comb, comb), stars = *PolygonDifference::of(star, star);
+  EXPECT_LT(combs.statistics().pairs, 60 * combs.statistics().sums);
+  EXPECT_LT(stars.statistics().pairs, 60 * stars.statistics().sums);
 }
 
 }  // namespace

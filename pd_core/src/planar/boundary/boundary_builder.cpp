@@ -3,15 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_set>
 #include <utility>
 
 #include "numeric/at.hpp"
+#include "planar/boundary/rough_sums.hpp"
 
 namespace pd::detail {
 
 namespace {
 
 double along(const Point2& direction, const Point2& p) { return direction[0] * p[0] + direction[1] * p[1]; }
+
+/// Whether no neighbour of a polygon's vertex lies to the right of the line through the vertex along d, the polygon's
+/// inside being on the left.
+bool is_farthest(const Polygon& polygon, int vertex, const Direction& d) {
+  if (polygon.turn(vertex) < 0) return false;
+  const Point2& at_vertex = polygon.point(vertex);
+  return cross_sign({polygon.point(polygon.previous(vertex)), at_vertex}, d) >= 0 &&
+         cross_sign(d, {at_vertex, polygon.point(polygon.next(vertex))}) >= 0;
+}
+
+/// Sums that are tried first.
+constexpr std::size_t kMostRecent = 8;
+
+void move_to_front(std::vector<std::int32_t>& recent, std::int32_t sum) {
+  std::erase(recent, sum);
+  if (recent.size() == kMostRecent) recent.pop_back();
+  recent.insert(recent.begin(), sum);
+}
 
 }  // namespace
 
@@ -283,36 +303,74 @@ void BoundaryBuilder::build_explicit() {
     boxes.push_back(box.widened());
   }
   const BoxTree tree(boxes);
+  const RoughSums rough(r_.sums_);
+  std::vector<std::int32_t> recent;  // sums that covered candidates just before this one: neighbours lie in the same
   for (const Candidate& candidate : r_.candidates_) {
     ArcCover cutter(
         r_, candidate, [&](int sum, int) { return sum < candidate.sum; }, r_.counts_);
     CandidateCover cover{{r_, candidate}, {}};
-    Box2 box;
     const Span e = r_.edge(candidate, 0);
-    for (const SumPoint& x : {e.s, e.z}) box.add(Point2{x.p[0] - x.q[0], x.p[1] - x.q[1]});
+    const Point2 start = RoughSums::rounded(e.s), end = RoughSums::rounded(e.z);
+    Box2 box;
+    box.add(start);
+    box.add(end);
     box = box.widened();
+    std::int32_t last = -1;
+    const auto cut = [&](std::int32_t sum) {
+      if (sum == candidate.sum || cover.covered.whole()) return;
+      const RoughSums::Where where = rough.place(sum, start, end);
+      if (where == RoughSums::Where::apart) return;
+      last = sum;
+      if (where == RoughSums::Where::holds) {
+        cover.covered.add({{0, {}}, {candidate.count, {}}});
+        return;
+      }
+      near_.push_back({index_of(candidate), sum});
+      cutter.cut(sum, cover);
+    };
+    for (const std::int32_t sum : recent) cut(sum);
     tree.visit([&](const Box2& b) { return b.meets(box) && !cover.covered.whole(); },
                [&](std::int32_t sum) {
-                 if (sum == candidate.sum || !boxes[at(sum)].meets(box)) return;
-                 near_.push_back({index_of(candidate), sum});
-                 cutter.cut(sum, cover);
+                 if (boxes[at(sum)].meets(box) && std::find(recent.begin(), recent.end(), sum) == recent.end()) {
+                   cut(sum);
+                 }
                });
     keep(candidate, cover);
+    if (cover.covered.whole()) move_to_front(recent, last);
   }
   compact();
 }
 
-/// Every edge of every sum, but those of diagonals alone: they lie inside.
+/// What may lie on the boundary: an edge of one polygon displaced by a convex vertex of the other one, if no edge at
+/// that vertex reaches farther across the edge, or two parallel edges. Next to any other point of a sum's edge lies
+/// more of the other polygon, beyond the edge: the point is inside.
+///
+/// Of edges that several sums share, that of the first sum is enough: the others give way to it.
 void BoundaryBuilder::add_edge_candidates() {
+  std::unordered_set<std::uint64_t> known;
+  const auto is_new = [&](int moving, int fixed, bool edge_of_p) {
+    return known
+        .insert(static_cast<std::uint64_t>(moving) << 32 | static_cast<std::uint64_t>(fixed) << 1 |
+                static_cast<std::uint64_t>(edge_of_p))
+        .second;
+  };
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(r_.sums_.size()); ++i) {
     const ConvexSum& sum = r_.sums_[at(i)];
     const auto& q_vertex = r_.chain_vertices_[at(i) % r_.chains_.size()];
     for (int t = 0; t < sum.size(); ++t) {
       const ConvexSum::Parts parts = sum.parts(t);
-      const bool p_edge =
-          parts.of_triangle && p_.next(sum.corners()[at(parts.a)]) == sum.corners()[at((parts.a + 1) % 3)];
-      const bool q_edge = parts.of_chain && q_.next(q_vertex[at(parts.b)]) == q_vertex[at(parts.b + 1)];
-      if (p_edge || q_edge) r_.candidates_.push_back({i, t, 1, static_cast<std::int32_t>(r_.candidates_.size())});
+      const std::int32_t p_from = sum.corners()[at(parts.a)], q_from = q_vertex[at(parts.b)];
+      const bool p_edge = parts.of_triangle && p_.next(p_from) == sum.corners()[at((parts.a + 1) % 3)];
+      const bool q_edge = parts.of_chain && q_.next(q_from) == q_vertex[at(parts.b + 1)];
+      bool kept = false;
+      if (parts.of_triangle && parts.of_chain) {
+        kept = p_edge && q_edge;
+      } else if (parts.of_triangle) {
+        kept = p_edge && is_farthest(q_, q_from, sum.direction(t).reversed()) && is_new(p_from, q_from, true);
+      } else {
+        kept = q_edge && is_farthest(p_, p_from, sum.direction(t)) && is_new(q_from, p_from, false);
+      }
+      if (kept) r_.candidates_.push_back({i, t, 1, static_cast<std::int32_t>(r_.candidates_.size())});
     }
   }
 }
