@@ -1,5 +1,7 @@
 #include "dimension/macbeath_structure.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,47 @@ std::vector<SupportPoint<D>> kernel_points(const Body<D>& body, double epsilon) 
   return points;
 }
 
+/// A descent in R^4 and R^5 looks into hundreds of regions, each as dear as D + 1 points: so few points are scanned,
+/// and no region is built for them.
+constexpr std::size_t kFewPoints = 256;
+
+template <int D>
+class ScannedPoints final : public WidthStructure<D> {
+ public:
+  explicit ScannedPoints(std::vector<SupportPoint<D>> points) : points_(std::move(points)) {}
+
+  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override {
+    const auto count = static_cast<std::int64_t>(points_.size());
+    ++counters.queries;
+    counters.nodes += count;
+    counters.dot_products += count;
+    counters.deepest = std::max(counters.deepest, count);
+    const SupportPoint<D>* best = nullptr;
+    double most = -std::numeric_limits<double>::infinity();
+    for (const SupportPoint<D>& p : points_) {
+      const double value = direction.dot(p.point);
+      if (best != nullptr && !(value > most)) continue;
+      best = &p;
+      most = value;
+    }
+    SupportPoint<D> r = *best;
+    r.value = most;
+    return r;
+  }
+
+  [[nodiscard]] StructureSize size() const override {
+    StructureSize r;
+    r.points = static_cast<std::int64_t>(points_.size());
+    r.nodes = r.points;
+    r.depth = 1;
+    r.bytes = static_cast<std::int64_t>(points_.size() * sizeof(SupportPoint<D>));
+    return r;
+  }
+
+ private:
+  std::vector<SupportPoint<D>> points_;
+};
+
 }  // namespace
 
 template <int D>
@@ -37,8 +80,11 @@ Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body
     return Error{ErrorCode::bad_value,
                  std::string("the macbeath backend needs epsilon >= ") + (D < 4 ? "2e-7" : "8e-7"), "epsilon"};
   }
-  auto hierarchy = build_macbeath_hierarchy<D>(kernel_points(body, kKernelShare * epsilon), body.sandwich().fattening(),
-                                               (1 - kKernelShare) * epsilon);
+  std::vector<SupportPoint<D>> points = kernel_points(body, kKernelShare * epsilon);
+  if (D > 3 && points.size() <= kFewPoints) {
+    return std::shared_ptr<const WidthStructure<D>>(std::make_shared<ScannedPoints<D>>(std::move(points)));
+  }
+  auto hierarchy = build_macbeath_hierarchy<D>(points, body.sandwich().fattening(), (1 - kKernelShare) * epsilon);
   if (!hierarchy) return hierarchy.error();
   return std::shared_ptr<const WidthStructure<D>>(std::move(hierarchy).value());
 }

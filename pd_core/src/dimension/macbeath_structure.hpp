@@ -1,5 +1,6 @@
 /// @file
-/// The macbeath backend of directional width queries: the hierarchy of Macbeath regions over a kernel.
+/// The macbeath backend of directional width queries: the hierarchy of Macbeath regions over a kernel. In R^4 and R^5 a
+/// kernel of 256 points or fewer is scanned instead, which takes less than a descent.
 #pragma once
 
 #include <memory>
