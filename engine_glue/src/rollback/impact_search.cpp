@@ -4,6 +4,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -11,13 +12,14 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/bullet/shape_cache.hpp"
 #include "shapes/moving_body.hpp"
-#include "shapes/triangles_in_box.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-constexpr DepthSettings kQuick{.bracket = Bracket::certified};
+/// What queries may leave open, as a share of the gap at which bodies meet. Bodies that rest are 0 apart up to
+/// rounding: the sign of such a distance takes exact arithmetic, a hundred times the query, and is of no use here.
+constexpr double kLeftOpen = 0x1p-10;
 
 /// What a pair in contact may sink by in a part of a step is the slop less what it has sunk in the step already, and
 /// this share of the slop at the least: a pair that sinks on and on is cut at finite lengths.
@@ -159,6 +161,7 @@ bool ImpactSearch::may_meet(const Body& a, const Body& b) const {
 
 bool ImpactSearch::earliest(double duration, const Settings& settings, FoundImpact& found) {
   duration_ = duration;
+  quick_.contact_tolerance = kLeftOpen * settings.gap;
   found = FoundImpact();
   found.time = HUGE_VAL;
   if (farthest_way() <= settings.searched) return false;
@@ -221,13 +224,13 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
                        travel(a, pa, moving_a) + travel(b, pb, moving_b);
   const double centres = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
   if (centres > reach + pa.radius + pb.radius + settings.gap) return;
-  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, kQuick);
+  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, quick_);
   const double start = before.signed_distance();
   if (start > reach + settings.gap) return;
   TimeOfImpactSettings impact;
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
-  impact.depth = kQuick;
+  impact.depth = quick_;
   // From where it is, a pair in contact may sink; then the step is cut, and Bullet sees it there.
   const double depth = std::max(-start, 0.0);
   if (start <= settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
@@ -248,7 +251,7 @@ void ImpactSearch::end_where_it_came_in(const MovingShape& a, const MovingShape&
   const double allowed = depth + kNotIn * settings.slop;
   const auto is_out = [&](double time) {
     const PenetrationDepth answer =
-        penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch_, kQuick);
+        penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch_, quick_);
     return allowed + answer.signed_distance() > 0;
   };
   double low = 0;
@@ -290,11 +293,41 @@ void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, cons
   upper += btVector3(grown, grown, grown);
 }
 
-void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
-                                  const Settings& settings, FoundImpact& found) {
+Level ImpactSearch::level_of(const TriangleCorners& triangle, double margin, const Vec3& towards) {
+  const std::array<Vec3, 3>& corners = triangle.corners;
+  Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double length = normal.norm();
+  if (!(length > 0)) return {Vec3::UnitX(), HUGE_VAL};
+  normal /= normal.dot(towards - corners[0]) < 0 ? -length : length;
+  double level = -HUGE_VAL;
+  for (const Vec3& corner : corners) level = std::max(level, normal.dot(corner));
+  return {normal, level + margin};
+}
+
+void ImpactSearch::read_surface(const Body& a, const Piece& pa, const Body& b, const Piece& pb, double within) {
   btVector3 lower;
   btVector3 upper;
   swept_box(a, pa, b, pb, lower, upper);
+  const Pose surface = to_pd(b.start * pb.local);
+  const Pose start = to_pd(a.start * pa.local);
+  const Whereabouts near{surface.rotation().transpose() * (start.translation() - surface.translation()),
+                         pa.radius + within};
+  const double margin = margin_of_triangles(*pb.concave);
+  surface_.clear();
+  for (const TriangleCorners& local : corners_in_box(*pb.concave, lower, upper, &near)) {
+    TriangleCorners world = local;
+    for (Vec3& corner : world.corners) corner = surface.apply(corner);
+    Surface triangle{local, level_of(world, margin, start.translation()), 0, -HUGE_VAL, nullptr};
+    triangle.bound = apart_along(triangle.level, *pa.cached->body, start);
+    surface_.push_back(std::move(triangle));
+  }
+  // The nearest first: it says whether the body is in contact.
+  std::stable_sort(surface_.begin(), surface_.end(),
+                   [](const Surface& x, const Surface& y) { return x.bound < y.bound; });
+}
+
+void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
+                                  const Settings& settings, FoundImpact& found) {
   const MovingShape moving_a = moving_piece(*pa.cached->body, a.start, pa.local, a.motion);
   // No point of the body comes farther than this against the surface.
   const double arm = moving_a.arm.norm();
@@ -302,35 +335,58 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   const double way =
       duration_ * ((a.motion.linear_velocity - b.motion.linear_velocity).norm() +
                    a.motion.angular_velocity.norm() * (arm + pa.radius) + b.motion.angular_velocity.norm() * far);
-  const double within = std::max(way + settings.gap, settings.in_contact);
-  const Pose surface = to_pd(b.start * pb.local);
-  const Whereabouts near{surface.rotation().transpose() * (moving_a.start.pose.translation() - surface.translation()),
-                         pa.radius + within};
-  const std::vector<BoxedTriangle> triangles = triangles_in_box(*pb.concave, lower, upper, &near);
+  DepthSettings quick = quick_;
+  quick.beyond = std::max(way + settings.gap, settings.in_contact);
+  read_surface(a, pa, b, pb, quick.beyond);
+  const double margin = margin_of_triangles(*pb.concave);
+  double deepest = -HUGE_VAL;
+  const auto ask_start = [&](Surface& triangle) {
+    triangle.shape = to_shape(triangle.corners, margin);
+    if (triangle.shape == nullptr) return;
+    const PosedShape posed = moving_piece(*triangle.shape, b.start, pb.local, b.motion).start;
+    triangle.start = penetration_depth(moving_a.start, posed, scratch_, quick).signed_distance();
+    deepest = std::max(deepest, -triangle.start);
+  };
+  const bool still = b.travel == 0;
+  const auto proved = [&](const Surface& triangle, double least) {
+    return triangle.bound > quick.beyond ||
+           (still && triangle.bound >= least && stays_apart(triangle.level, moving_a, pa.radius, least, duration_));
+  };
+  // Pairs in contact may sink by this at the least, whatever they have sunk.
+  const double sinks = -0.9 * kLeastSlop * settings.slop;
+  unproved_.clear();
+  for (std::size_t i = 0; i < surface_.size(); ++i) {
+    if (proved(surface_[i], deepest >= -settings.in_contact ? sinks : settings.gap)) continue;
+    ask_start(surface_[i]);
+    if (surface_[i].shape != nullptr) unproved_.push_back(i);
+  }
+  const bool in_contact = deepest >= -settings.in_contact;
+  // The first one was asked before it was known that the body is in contact.
+  if (in_contact) {
+    const auto rests = [&](std::size_t i) { return proved(surface_[i], sinks); };
+    unproved_.erase(std::remove_if(unproved_.begin(), unproved_.end(), rests), unproved_.end());
+  }
+  if (unproved_.empty()) return;
   // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
   // their edges, no deeper than it lies on this one. So one depth is allowed for all.
-  DepthSettings quick = kQuick;
-  quick.beyond = within;
-  double deepest = -HUGE_VAL;
-  starts_.clear();
-  for (const BoxedTriangle& triangle : triangles) {
-    const PosedShape posed = moving_piece(*triangle.shape, b.start, pb.local, b.motion).start;
-    starts_.push_back(penetration_depth(moving_a.start, posed, scratch_, quick).signed_distance());
-    deepest = std::max(deepest, -starts_.back());
+  for (Surface& triangle : surface_) {
+    if (triangle.shape == nullptr && triangle.bound <= settings.in_contact) ask_start(triangle);
   }
   TimeOfImpactSettings impact;
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
-  impact.depth = kQuick;
+  impact.depth = quick_;
   const double depth = std::max(deepest, 0.0);
-  if (deepest >= -settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (starts_[i] > way + settings.gap) continue;
-    const MovingShape moving_b = moving_piece(*triangles[i].shape, b.start, pb.local, b.motion);
+  if (in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
+  for (const std::size_t i : unproved_) {
+    const Surface& triangle = surface_[i];
+    if (triangle.start > way + settings.gap) continue;
+    if (impact.allowed_depth > 0 && proved(triangle, -0.9 * impact.allowed_depth)) continue;
+    const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
-      found.b.triangle = triangles[i].shape;
+      found.b.triangle = triangle.shape;
       if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
     }
   }
@@ -338,7 +394,7 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
 
 PenetrationDepth ImpactSearch::measure(const FoundImpact& impact, const btTransform& a, const btTransform& b) {
   return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.with_body_at(a)},
-                           {&impact.b.shape_beside(impact.a), impact.b.with_body_at(b)}, scratch_, kQuick);
+                           {&impact.b.shape_beside(impact.a), impact.b.with_body_at(b)}, scratch_, quick_);
 }
 
 btTransform ImpactSearch::pose_on_the_way(const btCollisionObject& object, double time) const {

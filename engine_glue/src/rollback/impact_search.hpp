@@ -13,7 +13,9 @@
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/scratch.hpp"
+#include "rollback/stays_apart.hpp"
 #include "shapes/cached_shape.hpp"
+#include "shapes/triangles_in_box.hpp"
 
 namespace pd::detail {
 
@@ -99,6 +101,9 @@ class ImpactSearch {
                             FoundImpact& found);
   void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
                       FoundImpact& found);
+  [[nodiscard]] static Level level_of(const TriangleCorners& triangle, double margin, const Vec3& towards);
+  /// The triangles that a convex piece comes `within` reach of, into `surface_`.
+  void read_surface(const Body& a, const Piece& pa, const Body& b, const Piece& pb, double within);
   /// The box of a convex piece's motion in the frame of a concave one.
   void swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
                  btVector3& upper) const;
@@ -106,11 +111,21 @@ class ImpactSearch {
   btDiscreteDynamicsWorld& world_;
   BulletPenetrationDepthSolver& solver_;
   double duration_ = 0;
+  DepthSettings quick_{.bracket = Bracket::contact};
   bool collected_ = false;
   std::vector<Piece> pieces_;
   std::vector<Body> bodies_;
   std::vector<int> order_;
-  std::vector<double> starts_;  ///< signed distances of the triangles at hand where the motion begins
+  /// A triangle that a body may come to.
+  struct Surface {
+    TriangleCorners corners;                   ///< in the concave piece's frame
+    Level level;                               ///< along its normal, towards the body
+    double bound;                              ///< by which the body is apart along it where the motion begins
+    double start;                              ///< the signed distance there, where it was asked for
+    std::shared_ptr<const ConvexShape> shape;  ///< where it was asked for
+  };
+  std::vector<Surface> surface_;
+  std::vector<std::size_t> unproved_;  ///< of these, those that the body may meet
   /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.
   std::unordered_map<std::size_t, double> first_depths_;
   Scratch scratch_;

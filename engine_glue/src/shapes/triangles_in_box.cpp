@@ -52,13 +52,10 @@ class Collector : public btTriangleCallback {
     // Poses in single precision turn lengths by less.
     constexpr double kTurned = 1 + 1e-5;
     if (near_ != nullptr && distance_from(near_->centre, points) > kTurned * (near_->radius + margin_)) return;
-    auto hull = ConvexPolytope::from_points(points);
-    if (!hull) return;
-    auto shape = ConvexShape(std::move(hull).value()).with_margin(margin_);
-    if (shape) triangles.push_back({std::make_shared<const ConvexShape>(std::move(shape).value()), part, index});
+    triangles.push_back({points, part, index});
   }
 
-  std::vector<BoxedTriangle> triangles;
+  std::vector<TriangleCorners> triangles;
 
  private:
   btVector3 lower_;
@@ -69,13 +66,32 @@ class Collector : public btTriangleCallback {
 
 }  // namespace
 
-std::vector<BoxedTriangle> triangles_in_box(const btConcaveShape& concave, const btVector3& lower,
+double margin_of_triangles(const btConcaveShape& concave) {
+  return concave.getShapeType() == STATIC_PLANE_PROXYTYPE ? 0 : static_cast<double>(concave.getMargin());
+}
+
+std::vector<TriangleCorners> corners_in_box(const btConcaveShape& concave, const btVector3& lower,
                                             const btVector3& upper, const Whereabouts* near) {
-  // A plane has no margin in Bullet's contacts; a mesh's triangles have its own.
-  const bool plane = concave.getShapeType() == STATIC_PLANE_PROXYTYPE;
-  Collector collector(lower, upper, plane ? 0 : static_cast<double>(concave.getMargin()), near);
+  Collector collector(lower, upper, margin_of_triangles(concave), near);
   concave.processAllTriangles(&collector, lower, upper);
   return std::move(collector.triangles);
+}
+
+std::shared_ptr<const ConvexShape> to_shape(const TriangleCorners& triangle, double margin) {
+  auto hull = ConvexPolytope::from_points(triangle.corners);
+  if (!hull) return nullptr;
+  auto shape = ConvexShape(std::move(hull).value()).with_margin(margin);
+  return shape ? std::make_shared<const ConvexShape>(std::move(shape).value()) : nullptr;
+}
+
+std::vector<BoxedTriangle> triangles_in_box(const btConcaveShape& concave, const btVector3& lower,
+                                            const btVector3& upper) {
+  std::vector<BoxedTriangle> triangles;
+  for (const TriangleCorners& corners : corners_in_box(concave, lower, upper)) {
+    auto shape = to_shape(corners, margin_of_triangles(concave));
+    if (shape) triangles.push_back({std::move(shape), corners.part, corners.index});
+  }
+  return triangles;
 }
 
 }  // namespace pd::detail
