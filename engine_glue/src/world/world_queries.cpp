@@ -134,69 +134,94 @@ bool passes(const btBroadphaseProxy& proxy, const WorldQuerySettings& settings) 
          (settings.filter_group & proxy.m_collisionFilterMask) != 0;
 }
 
-/// A box around the shape on all of its way.
-void swept_box(const btConvexShape& shape, const btTransform& from, const btTransform& to, const RigidMotion& motion,
-               double radius, double margin, btVector3& lower, btVector3& upper) {
+struct Box {
+  btVector3 lower;
+  btVector3 upper;
+};
+
+/// A box around the shape at both ends of its way, wider by `margin`; boxes of floats are rounded.
+Box box_around(const btConvexShape& shape, const btTransform& from, const btTransform& to, double margin) {
+  Box box;
   btVector3 low;
   btVector3 high;
-  shape.getAabb(from, lower, upper);
+  shape.getAabb(from, box.lower, box.upper);
   shape.getAabb(to, low, high);
-  lower.setMin(low);
-  upper.setMax(high);
-  // Between its ends a turning point leaves the chord by r (1 - cos(turn / 2)) at most; boxes of floats are rounded.
-  const double bulge = radius * (1 - std::cos(0.5 * motion.angular_velocity.norm()));
-  const auto grown = static_cast<btScalar>((bulge + margin) * 1.001);
-  lower -= btVector3(grown, grown, grown);
-  upper += btVector3(grown, grown, grown);
+  box.lower.setMin(low);
+  box.upper.setMax(high);
+  const auto grown = static_cast<btScalar>(margin * 1.001);
+  box.lower -= btVector3(grown, grown, grown);
+  box.upper += btVector3(grown, grown, grown);
+  return box;
 }
 
-/// The first hit of one object before `limit`, if there is one.
-std::optional<SweepHit> first_hit(const Body& body, const RigidMotion& motion, const btTransform& from,
-                                  const btCollisionObject& object, const std::vector<Piece>& pieces, double limit,
-                                  double tolerance, Scratch& scratch) {
-  std::optional<SweepHit> best;
-  TimeOfImpactSettings settings;
-  settings.distance_tolerance = tolerance;
-  settings.contact_at_end = false;
-  settings.depth.bracket = Bracket::certified;
-  for (const Piece& piece : pieces) {
-    const TimeOfImpact found = time_of_impact({{&body.beside(piece.body), to_pd(from)}, motion},
-                                              {{&piece.body.beside(body), to_pd(piece.pose)}, {}},
-                                              best ? best->fraction : limit, scratch, settings);
-    if (!found.hit || !(found.time < (best ? best->fraction : limit))) continue;
-    best.emplace();
-    fill(*best, object, piece, found.contact);
-    best->fraction = found.time;
+/// A shape on its way through the world.
+class Cast {
+ public:
+  Cast(const Body& body, const btTransform& from, const btTransform& to, double tolerance)
+      : body_(body), from_(to_pd(from)), motion_(detail::motion_between(from, to, 1)) {
+    settings_.distance_tolerance = tolerance;
+    settings_.contact_at_end = false;
+    settings_.depth.bracket = Bracket::certified;
   }
-  return best;
-}
+
+  /// How far a point leaves the chord between its ends at most: a turning one by r (1 - cos(turn / 2)).
+  [[nodiscard]] double bulge() const {
+    const double radius = bounding_radius(body_.sharp ? *body_.sharp : *body_.rounded);
+    return radius * (1 - std::cos(0.5 * motion_.angular_velocity.norm()));
+  }
+
+  /// The first hit of one object before `limit`, if there is one.
+  std::optional<SweepHit> first_hit(const btCollisionObject& object, const std::vector<Piece>& pieces, double limit) {
+    std::optional<SweepHit> best;
+    for (const Piece& piece : pieces) {
+      const TimeOfImpact found = time_of_impact({{&body_.beside(piece.body), from_}, motion_},
+                                                {{&piece.body.beside(body_), to_pd(piece.pose)}, {}},
+                                                best ? best->fraction : limit, scratch_, settings_);
+      if (!found.hit || !(found.time < (best ? best->fraction : limit))) continue;
+      best.emplace();
+      fill(*best, object, piece, found.contact);
+      best->fraction = found.time;
+    }
+    return best;
+  }
+
+ private:
+  const Body& body_;
+  Pose from_;
+  RigidMotion motion_;
+  TimeOfImpactSettings settings_;
+  Scratch scratch_;
+};
+
+/// A question to a whole world.
+struct Sweep {
+  btCollisionWorld& world;
+  const btConvexShape& shape;
+  const btTransform& from;
+  const btTransform& to;
+  const WorldQuerySettings& settings;
+};
 
 /// @param needs    bool(btBroadphaseProxy&): who is asked.
 /// @param limit    double(): hits from here on are of no interest.
 /// @param answer   void(const SweepHit&).
 template <class Needs, class Limit, class Answer>
-Expected<int> sweep(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from, const btTransform& to,
-                    const WorldQuerySettings& settings, const Needs& needs, const Limit& limit, const Answer& answer) {
-  const Expected<Body> body = convert(shape, settings.cache);
+Expected<int> ask(const Sweep& sweep, const Needs& needs, const Limit& limit, const Answer& answer) {
+  const Expected<Body> body = convert(sweep.shape, sweep.settings.cache);
   if (!body) return body.error();
-  const RigidMotion motion = detail::motion_between(from, to, 1);
-  const double radius = bounding_radius(body->sharp ? *body->sharp : *body->rounded);
-  btVector3 lower;
-  btVector3 upper;
-  swept_box(shape, from, to, motion, radius, settings.tolerance, lower, upper);
+  Cast cast(*body, sweep.from, sweep.to, sweep.settings.tolerance);
+  const Box box = box_around(sweep.shape, sweep.from, sweep.to, cast.bulge() + sweep.settings.tolerance);
   int unanswered = 0;
-  Scratch scratch;
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!needs(proxy)) return;
-    Pieces found(lower, upper, settings.cache);
+    Pieces found(box.lower, box.upper, sweep.settings.cache);
     if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++unanswered;
-    const auto hit =
-        first_hit(*body, motion, from, object, found.pieces, std::min(1.0, limit()), settings.tolerance, scratch);
+    const auto hit = cast.first_hit(object, found.pieces, std::min(1.0, limit()));
     if (hit) answer(*hit);
   };
   Neighbours neighbours(visit);
-  world.getBroadphase()->aabbTest(lower, upper, neighbours);
+  sweep.world.getBroadphase()->aabbTest(box.lower, box.upper, neighbours);
   return unanswered;
 }
 
@@ -205,8 +230,8 @@ Expected<int> sweep(btCollisionWorld& world, const btConvexShape& shape, const b
 Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from,
                                  const btTransform& to, const WorldQuerySettings& settings) {
   SweepResult result;
-  const auto unanswered = sweep(
-      world, shape, from, to, settings, [&](const btBroadphaseProxy& proxy) { return passes(proxy, settings); },
+  const auto unanswered = ask(
+      {world, shape, from, to, settings}, [&](const btBroadphaseProxy& proxy) { return passes(proxy, settings); },
       // A hit at the very end counts, and of two at the same time the one that is found first.
       [&] { return result.hit ? result.hit->fraction : 1.0; }, [&](const SweepHit& hit) { result.hit = hit; });
   if (!unanswered) return unanswered.error();
@@ -217,8 +242,8 @@ Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& s
 Expected<int> sweep_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from,
                          const btTransform& to, btCollisionWorld::ConvexResultCallback& callback,
                          const WorldQuerySettings& settings) {
-  return sweep(
-      world, shape, from, to, settings, [&](btBroadphaseProxy& proxy) { return callback.needsCollision(&proxy); },
+  return ask(
+      {world, shape, from, to, settings}, [&](btBroadphaseProxy& proxy) { return callback.needsCollision(&proxy); },
       [&] { return static_cast<double>(callback.m_closestHitFraction); },
       [&](const SweepHit& hit) {
         btCollisionWorld::LocalShapeInfo info{hit.part, hit.index};
@@ -232,16 +257,14 @@ Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexSh
                                        double reach, const WorldQuerySettings& settings) {
   const Expected<Body> body = convert(shape, settings.cache);
   if (!body) return body.error();
-  btVector3 lower;
-  btVector3 upper;
-  swept_box(shape, pose, pose, {}, 0, reach + settings.tolerance, lower, upper);
+  const Box box = box_around(shape, pose, pose, reach + settings.tolerance);
   DistanceResult result;
   Scratch scratch;
   double least = reach;
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!passes(proxy, settings)) return;
-    Pieces found(lower, upper, settings.cache);
+    Pieces found(box.lower, box.upper, settings.cache);
     if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
     for (const Piece& piece : found.pieces) {
       const PenetrationDepth answer = penetration_depth({&body->beside(piece.body), to_pd(pose)},
@@ -254,7 +277,7 @@ Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexSh
     }
   };
   Neighbours neighbours(visit);
-  world.getBroadphase()->aabbTest(lower, upper, neighbours);
+  world.getBroadphase()->aabbTest(box.lower, box.upper, neighbours);
   return result;
 }
 
