@@ -17,7 +17,7 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
   const auto vertex = [&](std::int32_t v) { return Vec3(s.x[v], s.y[v], s.z[v]); };
   out.facets = static_cast<std::uint8_t>(s.num_facets);
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < SmallGaussMap::kMostFacets; ++i) {
+  for (int i = 0; i < SmallGaussMap::kFacetSlots; ++i) {
     const int f = i < s.num_facets ? i : 0;
     const Vec3& n = s.facet_normals[f];
     out.nx[i] = n.x();
@@ -25,7 +25,6 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
     out.nz[i] = n.z();
     const std::int32_t on = s.facet_vertices[s.facet_offsets[f]];
     out.height[i] = n.dot(vertex(on));
-    out.on_facet[i] = static_cast<std::uint8_t>(on);
     least = std::min(least, out.height[i] - n.dot(s.centre));
   }
   out.inner_radius = std::max(0.0, least - kCentreError * s.radius);
@@ -34,28 +33,11 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
     const HalfEdge& e = s.half_edges[h];
     if (e.twin < h) continue;
     const HalfEdge& back = s.half_edges[e.twin];
-    out.from[count] = static_cast<std::uint8_t>(e.origin);
-    out.to[count] = static_cast<std::uint8_t>(back.origin);
-    out.left[count] = static_cast<std::uint8_t>(e.facet);
-    out.right[count] = static_cast<std::uint8_t>(back.facet);
+    out.edge[count] = {static_cast<std::uint8_t>(e.origin), static_cast<std::uint8_t>(back.origin),
+                       static_cast<std::uint8_t>(e.facet), static_cast<std::uint8_t>(back.facet)};
     ++count;
   }
   out.edges = static_cast<std::uint8_t>(count);
-  std::uint64_t edges_of[SmallGaussMap::kMostFacets] = {};
-  for (int e = 0; e < count; ++e) {
-    edges_of[out.left[e]] |= std::uint64_t{1} << e;
-    edges_of[out.right[e]] |= std::uint64_t{1} << (32 + e);
-  }
-  for (int g = 0; g < SmallGaussMap::kMostFacets / SmallGaussMap::kFacetGroup; ++g) {
-    std::uint64_t* const of_set = out.edges_of_facets[g];
-    of_set[0] = 0;
-    for (unsigned facet = 0; facet < SmallGaussMap::kFacetGroup; ++facet) {
-      const unsigned sets = 1U << facet;  // those of the facets before
-      for (unsigned set = 0; set < sets; ++set) {
-        of_set[sets + set] = of_set[set] | edges_of[SmallGaussMap::kFacetGroup * static_cast<unsigned>(g) + facet];
-      }
-    }
-  }
 }
 
 }  // namespace pd::detail

@@ -1,6 +1,6 @@
 /// @file
 /// The Gauss map (normal diagram) of a solid of few vertices as arrays: facets' normals are its points, edges its arcs.
-/// For kernels that try all facets and edges of two bodies against each other (depth/facets/small_sat.hpp).
+/// For kernels that try all facets and edges of two bodies against each other (depth/facets/gauss_sat.hpp).
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace pd::detail {
 
+/// An edge by its vertices, and the facets to its left and right, as seen along it from outside.
+struct GaussEdge {
+  std::uint8_t from, to, left, right;
+};
+
 /// Lanes beyond the last facet repeat the first.
 struct SmallGaussMap {
   // Euler: F <= 2 V - 4, E <= 3 V - 6.
   static constexpr int kMostVertices = 8;
   static constexpr int kMostFacets = 12;
   static constexpr int kMostEdges = 18;
-  static constexpr int kFacetGroup = 4;
+  static constexpr int kFacetSlots = 16;
 
   /// Outward, as `ConvexPolytope::facet_normal`, and their product with a vertex of the facet.
-  alignas(32) double nx[kMostFacets], ny[kMostFacets], nz[kMostFacets], height[kMostFacets];
-  /// A set of facets as the edges whose left facet is in it, and 32 bits higher those whose right one is: entry g holds
-  /// that of each set of facets 4 g to 4 g + 3, by its bits.
-  std::uint64_t edges_of_facets[kMostFacets / kFacetGroup][1 << kFacetGroup];
-  std::uint8_t from[kMostEdges], to[kMostEdges];     ///< an edge's vertices
-  std::uint8_t left[kMostEdges], right[kMostEdges];  ///< its facets, as seen along it from outside
-  std::uint8_t on_facet[kMostFacets];                ///< a vertex of it
+  alignas(32) double nx[kFacetSlots], ny[kFacetSlots], nz[kFacetSlots], height[kFacetSlots];
+  GaussEdge edge[kMostEdges];
   std::uint8_t facets, edges;
   double inner_radius;  ///< of a ball round the body's centre that it holds, rounded down
 };

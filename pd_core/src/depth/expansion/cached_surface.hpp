@@ -78,14 +78,11 @@ struct WarmFacets {
   int pause = 0;
 };
 
-/// A facet of P for two solids of at most eight vertices: of a facet of one body and a vertex of the other, or of two
-/// edges, by the numbers of their Gauss maps.
+/// A facet of P for two solids of at most eight vertices, as GaussPiece (facets/gauss_sat_kernels.hpp) has it.
 struct WarmPiece {
-  double distance;                 ///< of its plane from the origin, rounded down
-  std::int8_t facet_a, facet_b;    ///< -1: none
-  std::int8_t vertex_a, vertex_b;  ///< of a facet: where it lies, and the other body's vertex
-  std::int8_t edge_a, edge_b;      ///< -1: none
-  std::int8_t sign;                ///< of edge of B x edge of A, to point outwards
+  double distance;               ///< of its plane from the origin, rounded down
+  std::int8_t facet_a, facet_b;  ///< -1: none
+  std::int8_t a[2], b[2];        ///< vertices
 };
 
 /// The facets of P that were near the origin when all were last looked at (facets/remembered_pieces.hpp).

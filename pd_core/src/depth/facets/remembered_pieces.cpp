@@ -5,8 +5,7 @@
 #include <cstring>
 #include <tuple>
 
-#include "depth/facets/foot_in_piece.hpp"
-#include "depth/facets/small_piece.hpp"
+#include "depth/facets/gauss_foot.hpp"
 #include "numeric/lanes.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "shape/small_gauss_map.hpp"
@@ -80,18 +79,17 @@ double inner_radius(const PolytopeDifference& difference) {
 }
 
 /// A total order: the same pieces are kept by every library.
-bool is_nearer(const SmallNearPieces::Piece& x, const SmallNearPieces::Piece& y) {
-  return std::tie(x.key, x.facet_a, x.facet_b, x.edge_a, x.edge_b) <
-         std::tie(y.key, y.facet_a, y.facet_b, y.edge_a, y.edge_b);
+bool is_nearer(const NearGaussPieces::Measured& x, const NearGaussPieces::Measured& y) {
+  const GaussPiece &p = x.piece, &q = y.piece;
+  return std::tie(x.key, p.facet_a, p.facet_b, p.a[0], p.a[1], p.b[0], p.b[1]) <
+         std::tie(y.key, q.facet_a, q.facet_b, q.a[0], q.a[1], q.b[0], q.b[1]);
 }
 
 bool is_rotation(const Mat3& m) {
   return std::abs(m.squaredNorm() - 3) < kNoRotation && std::abs(m.determinant() - 1) < kNoRotation;
 }
 
-SmallPiece piece_of(const WarmPiece& p) {
-  return {p.facet_a, p.facet_b, p.edge_a, p.edge_b, static_cast<double>(p.sign)};
-}
+GaussPiece piece_of(const WarmPiece& p) { return {p.facet_a, p.facet_b, {p.a[0], p.a[1]}, {p.b[0], p.b[1]}}; }
 
 /// A remembered facet at the present poses.
 struct PlaneNow {
@@ -101,19 +99,16 @@ struct PlaneNow {
 };
 
 /// Distances are NaN where there is no normal.
-PlaneNow plane_of(const WarmPiece& piece, const SmallPieces& pieces, const PolytopeDifference& difference,
+PlaneNow plane_of(const GaussPiece& piece, const TurnedNormals& turned, const PolytopeDifference& difference,
                   const Vec3& inner) {
-  const bool of_edges = piece.edge_a >= 0;
-  const Vec3 normal = pieces.normal(piece_of(piece));
-  const Vec3 corner = of_edges
-                          ? difference.vertex(pieces.map_a().from[piece.edge_a], pieces.map_b().from[piece.edge_b]).x
-                          : difference.vertex(piece.vertex_a, piece.vertex_b).x;
+  const Vec3 normal = normal_of_piece(piece, turned, difference);
+  const Vec3 corner = difference.vertex(piece.a[0], piece.b[0]).x;
   const double share = 1 / normal.norm();
   double height = normal.dot(corner);
   // The other corners, which rounding moves off the plane.
-  if (of_edges) {
-    height +=
-        std::min(0.0, normal.dot(pieces.edge_b(piece.edge_b))) - std::max(0.0, normal.dot(pieces.edge_a(piece.edge_a)));
+  if (piece.is_of_edges()) {
+    height += std::min(0.0, normal.dot(difference.vertex(piece.a[0], piece.b[1]).x - corner)) +
+              std::min(0.0, normal.dot(difference.vertex(piece.a[1], piece.b[0]).x - corner));
   }
   return {share * normal, share * height, share * (height - normal.dot(inner))};
 }
@@ -125,7 +120,7 @@ double remembered_band(const PolytopeDifference& difference) {
   return std::min(kBand * difference.reach(), 2 * inner_radius(difference));
 }
 
-bool remember_pieces(const SmallSatDepth& found, SmallNearPieces& near, const PolytopeDifference& difference,
+bool remember_pieces(const GaussSatDepth& found, NearGaussPieces& near, const PolytopeDifference& difference,
                      WarmPieces& out) {
   if (!near.complete || near.count == 0) return false;
   if (!is_rotation(difference.rotation_a()) || !is_rotation(difference.rotation_b())) return false;
@@ -145,21 +140,16 @@ bool remember_pieces(const SmallSatDepth& found, SmallNearPieces& near, const Po
   out.beyond = beyond - kSlack * reach;
   out.nearest = 0;
   for (int i = 0; i < out.count; ++i) {
-    const SmallNearPieces::Piece& from = near.pieces[i];
-    out.pieces[i] = {std::sqrt(from.key) - kSmallPieceLowerError * reach,
+    const auto& [key, from] = near.pieces[i];
+    out.pieces[i] = {std::sqrt(key) - kGaussLowerError * reach,
                      from.facet_a,
                      from.facet_b,
-                     from.vertex_a,
-                     from.vertex_b,
-                     from.edge_a,
-                     from.edge_b,
-                     from.sign};
+                     {from.a[0], from.a[1]},
+                     {from.b[0], from.b[1]}};
     if (out.pieces[i].distance < out.pieces[out.nearest].distance) out.nearest = i;
   }
   const WarmPiece& nearest = out.pieces[out.nearest];
-  const SmallGaussMap &map_a = small_gauss_map(difference.a()), &map_b = small_gauss_map(difference.b());
-  out.base = nearest.edge_a >= 0 ? VertexPair{map_a.from[nearest.edge_a], map_b.from[nearest.edge_b]}
-                                 : VertexPair{nearest.vertex_a, nearest.vertex_b};
+  out.base = {nearest.a[0], nearest.b[0]};
   // Deep inside, or else the origin itself.
   const double clearance = inner_radius(difference);
   out.inner = clearance > nearest.distance ? difference.centre() : Vec3::Zero();
@@ -175,14 +165,14 @@ NearFacets certify_remembered_pieces(const WarmPieces& then, const Pose& pose_a,
   const double moved = movement(then, difference) + slack;
   if (!(moved < then.clearance)) return out;
 
-  const SmallPieces pieces(pose_a, pose_b, difference);
+  const TurnedNormals turned(pose_a, pose_b);
   int winner = then.nearest;
-  PlaneNow best = plane_of(then.pieces[winner], pieces, difference, then.inner);
+  PlaneNow best = plane_of(piece_of(then.pieces[winner]), turned, difference, then.inner);
   ++looked_at;
   if (!(then.beyond - moved >= best.distance && best.distance > slack && best.from_inner > slack)) return out;
   for (int i = 0; i < then.count; ++i) {
     if (i == then.nearest || then.pieces[i].distance - moved >= best.distance) continue;
-    const PlaneNow next = plane_of(then.pieces[i], pieces, difference, then.inner);
+    const PlaneNow next = plane_of(piece_of(then.pieces[i]), turned, difference, then.inner);
     ++looked_at;
     if (!(next.distance > slack && next.from_inner > slack)) return out;
     if (next.distance >= best.distance) continue;
@@ -193,12 +183,11 @@ NearFacets certify_remembered_pieces(const WarmPieces& then, const Pose& pose_a,
   const DifferenceVertex s = difference.support(best.normal, nullptr);
   const double height = s.x.dot(best.normal);
   out.normal = best.normal;
-  out.upper = height + kSmallPieceUpperError * reach;
-  out.lower = best.distance - kSmallPieceLowerError * reach;
+  out.upper = height + kGaussUpperError * reach;
+  out.lower = best.distance - kGaussLowerError * reach;
   if (!(out.lower > 0 && out.upper - out.lower <= width.limit(then.largest - moved))) return out;
-  const SmallPiece piece = piece_of(then.pieces[winner]);
-  pieces.name(piece, s, out);
-  out.certified = holds_foot(difference, s, height, out);
+  name_piece(piece_of(then.pieces[winner]), s, out);
+  out.certified = foot_inside(difference, s, height, out).has_value();
   return out;
 }
 

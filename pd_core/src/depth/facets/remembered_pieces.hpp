@@ -16,8 +16,8 @@
 #include "depth/difference/bracket_width.hpp"
 #include "depth/difference/polytope_difference.hpp"
 #include "depth/expansion/cached_surface.hpp"
+#include "depth/facets/gauss_sat.hpp"
 #include "depth/facets/near_facets.hpp"
-#include "depth/facets/small_sat.hpp"
 #include "pd/shape/pose.hpp"
 
 namespace pd::detail {
@@ -27,7 +27,7 @@ namespace pd::detail {
 
 /// What is remembered of a certified answer: of `near`, which may be put in another order, those that are nearest.
 /// False where there is nothing: `near` is not complete, or the bodies' poses are no rotations.
-bool remember_pieces(const SmallSatDepth& found, SmallNearPieces& near, const PolytopeDifference& difference,
+bool remember_pieces(const GaussSatDepth& found, NearGaussPieces& near, const PolytopeDifference& difference,
                      WarmPieces& out);
 
 /// `certified` false where the bodies have moved too far. Requires `then` to be of the difference's bodies,

@@ -65,8 +65,7 @@ constexpr StageBeforeSearch kBeforeSearch[] = {
     answer_boxes,               // two boxes by their fifteen axes
     prove_boxes,                // the same on the stored numbers: the tightest bracket
     answer_few_vertices_apart,  // a support shows bodies of few vertices apart: their closest points
-    answer_small_solids,        // two solids of few vertices by all facets of P
-    answer_deep_solids,         // the same of some more vertices, deep in each other
+    answer_by_gauss_maps,       // two solids of few facets by all facets of P
 };
 
 // Then the expansion (EPA) grows a surface inside P, from the last one where that serves (`grow_surface`).

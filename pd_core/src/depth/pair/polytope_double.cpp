@@ -6,11 +6,10 @@
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
 #include "depth/distance/closest_of_few.hpp"
-#include "depth/facets/all_facets.hpp"
 #include "depth/facets/box_sat.hpp"
+#include "depth/facets/gauss_sat.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/facets/remembered_pieces.hpp"
-#include "depth/facets/small_sat.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
@@ -133,10 +132,12 @@ bool have_same_normals(const SmallGaussMap& a, const SmallGaussMap& b) {
   return a.facets == b.facets && same(a.nx, b.nx) && same(a.ny, b.ny) && same(a.nz, b.nz);
 }
 
-/// Whether many facets of two solids of few vertices meet in common planes, which leaves them to the surface: what was
-/// built along axes that they share, and copies of one shape that are turned alike.
+/// Whether many facets of two solids meet in common planes, which leaves them to the surface: it meets few faces where
+/// the Gauss maps leave many arcs in doubt. So do what was built along axes that both share, copies of one shape that
+/// are turned alike, and solids of many facets whose frames share axes.
 bool many_flush_facets(const PolytopePair& pair, const PolytopeDifference& difference) {
   if (!along_same_axes(difference.rotation_a(), difference.rotation_b())) return false;
+  if (!has_small_gauss_map(*pair.a) || !has_small_gauss_map(*pair.b)) return true;
   const SmallGaussMap &a = small_gauss_map(*pair.a), &b = small_gauss_map(*pair.b);
   return (built_along_axes(a) && built_along_axes(b)) || have_same_normals(a, b);
 }
@@ -232,53 +233,38 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
   return true;
 }
 
-bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.settings.method != Method::automatic || (query.for_contact() && !query.warm)) return false;
-  if (!small_sat_applies(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
-  if (query.warm && !query.doubles_suffice()) return false;  // the surface has a memory
-  if (many_flush_facets(query.pair, query.difference) || pauses_small_solids(query)) return false;
-  if (query.bracket == Bracket::tightest && apart_between_places(query.with_supports())) return false;
-  SmallNearPieces near;
-  if (query.warm) near.band = remembered_band(query.difference);
-  const SmallSatDepth found = small_sat_depth(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(),
-                                              query.width(), query.warm ? &near : nullptr);
+bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out) {
+  if (query.settings.method != Method::automatic || !query.within_range()) return false;
+  const PolytopePair& pair = query.pair;
+  if (!gauss_sat_applies(*pair.a, *pair.b) || !gauss_sat_pays(query.difference)) return false;
+  // The surface has a memory of any pair; what the Gauss maps tell is remembered of small solids, of doubles.
+  const bool remembers = query.warm && has_small_gauss_map(*pair.a) && has_small_gauss_map(*pair.b);
+  if (query.warm && !(remembers && query.doubles_suffice())) return false;
+  if (many_flush_facets(pair, query.difference) || (remembers && pauses_small_solids(query))) return false;
+  const bool tightest = query.bracket == Bracket::tightest;
+  if (tightest && apart_between_places(query.with_supports())) return false;
+  NearGaussPieces near;
+  if (remembers) near.band = remembered_band(query.difference);
+  const GaussSatDepth found =
+      gauss_sat_depth(*pair.pose_a, *pair.pose_b, query.with_supports(), query.width(), remembers ? &near : nullptr);
   out.method = Method::overlay;
-  out.statistics.facets_visited += found.pieces;
-  ++out.statistics.support_calls;
-  if (query.bracket == Bracket::tightest) {
-    return found.status == SmallSatStatus::certified && !found.meeting && prove_near_facet(query, found.nearest, out);
+  out.statistics.facets_visited += found.nearest.facets;
+  out.statistics.support_calls += found.nearest.support_calls;
+  if (tightest) {
+    return found.status == GaussSatStatus::certified && !found.meeting && prove_near_facet(query, found.nearest, out);
   }
-  if (found.status == SmallSatStatus::separated) {
+  if (found.status == GaussSatStatus::separated) {
     DifferenceVertex corners[4];
     const std::size_t count = corners_of_piece(query, found.nearest, corners);
     return answer_apart(query, closest_point(query, std::span(corners).first(count), out.statistics), out);
   }
-  if (query.warm) save_pieces(query, found, near);
-  if (found.status == SmallSatStatus::undecided) return false;
+  if (remembers) save_pieces(query, found, near);
+  if (found.status == GaussSatStatus::undecided) return false;
   set_answer(query, found.nearest, out);
   if (found.meeting) {
-    out.witness_b = *found.meeting + query.pair.pose_b->translation() + query.pair.margins.b * out.normal;
+    out.witness_b = *found.meeting + pair.pose_b->translation() + pair.margins.b * out.normal;
     out.witness_a = out.witness_b - out.translation;
   }
-  return true;
-}
-
-bool answer_deep_solids(PolytopeQuery& query, PenetrationDepth& out) {
-  // The surface has a memory, and a budget for contacts.
-  if (query.settings.method != Method::automatic || query.warm != nullptr || query.for_contact()) return false;
-  if (!all_facets_apply(*query.pair.a, *query.pair.b) || !query.within_range()) return false;
-  const PolytopeDifference& difference = query.difference;
-  if (!all_facets_pay(difference)) return false;
-  // Edges that are parallel, or run along facets, leave signs open.
-  if (along_same_axes(difference.rotation_a(), difference.rotation_b())) return false;
-  const NearFacets found =
-      nearest_of_all_facets(*query.pair.pose_a, *query.pair.pose_b, query.with_supports(), query.width());
-  out.statistics.support_calls += found.support_calls;
-  out.statistics.facets_visited += found.facets;
-  if (!found.certified) return false;
-  out.method = Method::overlay;
-  if (query.bracket == Bracket::tightest) return prove_near_facet(query, found, out);
-  set_answer(query, found, out);
   return true;
 }
 

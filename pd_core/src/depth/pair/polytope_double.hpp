@@ -20,12 +20,9 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
 /// Bodies of few vertices that a support towards P's centre shows apart, by the closest points at once.
 bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Two solids of few vertices by all facets of P (facets/small_sat.hpp); for the tightest bracket the nearest one is
+/// Two solids of few facets by all facets of P (facets/gauss_sat.hpp); for the tightest bracket the nearest one is
 /// proved.
-bool answer_small_solids(PolytopeQuery& query, PenetrationDepth& out);
-
-/// The same of two solids of some more vertices that lie deep in each other (facets/all_facets.hpp).
-bool answer_deep_solids(PolytopeQuery& query, PenetrationDepth& out);
+bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out);
 
 /// The same of small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);

@@ -179,11 +179,11 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
   }
 }
 
-void save_pieces(PolytopeQuery& query, const SmallSatDepth& found, SmallNearPieces& near) {
+void save_pieces(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near) {
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   WarmSmallSolids& small = state.small;
   small.known = false;
-  if (found.status == SmallSatStatus::certified) {
+  if (found.status == GaussSatStatus::certified) {
     state.direction = found.nearest.normal;
     state.vertices.clear();
     state.faces.clear();

@@ -7,7 +7,7 @@
 
 #include "depth/distance/gjk.hpp"
 #include "depth/expansion/expanding_polytope.hpp"
-#include "depth/facets/small_sat.hpp"
+#include "depth/facets/gauss_sat.hpp"
 #include "depth/pair/polytope_query.hpp"
 
 namespace pd::detail {
@@ -37,7 +37,7 @@ void save_surface(PolytopeQuery& query, const ExpansionResult& result);
 /// The restored surface held as it was: saves how far its planes are now, for `answer_from_cached_faces`.
 void save_reference(PolytopeQuery& query, const ExpansionResult& result);
 /// All facets of P were looked at: saves those near for `answer_from_remembered_pieces`, or a pause.
-void save_pieces(PolytopeQuery& query, const SmallSatDepth& found, SmallNearPieces& near);
+void save_pieces(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near);
 /// The simplex of P that holds its closest point, and the direction from there.
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest);
 

@@ -1,7 +1,7 @@
 /// @file
-/// Faces of two small solids that lie in one plane once A has left B: the point that both have, and the answers that
+/// Faces of two solids that lie in one plane once A has left B: the point that both have, and the answers that
 /// need no surface for it.
-#include "depth/facets/flush_faces.hpp"
+#include "depth/facets/gauss_foot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ std::optional<Vec3> meeting_on_top(const ConvexPolytope& a, const ConvexPolytope
   PolytopeDifference difference(a, pose_a, b, pose_b);
   PosedVerticesPair posed;
   difference.prepare_supports(posed);
-  const std::optional<Vec3> found = meeting_point(difference, Vec3::UnitZ(), sunk);
+  const std::optional<Vec3> found = meeting_point(difference, Vec3::UnitZ(), sunk, foot_rounding(difference));
   if (found) {
     EXPECT_TRUE(holds(b, pose_b, *found, 1e-13));
     EXPECT_TRUE(holds(a, pose_a, *found - sunk * Vec3::UnitZ(), 1e-13));

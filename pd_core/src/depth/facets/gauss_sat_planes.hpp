@@ -1,0 +1,301 @@
+/// @file
+/// The first half of the kernel for Gauss maps: the planes of both bodies' facets in P, the heights of vertices along
+/// them, the nearest facet, and the edges that may belong to a facet of P as near.
+///
+/// Everything here becomes a part of the function that uses it (numeric/lanes.hpp).
+#pragma once
+
+#include <bit>
+#include <limits>
+
+#include "depth/facets/gauss_sat_lanes.hpp"
+
+namespace pd::detail::gauss_sat {
+
+inline constexpr double kNone = std::numeric_limits<double>::infinity();
+inline constexpr std::uint32_t kSign = 0x80000000U;
+
+/// Where the vertices of one body lie along the facets' normals of the other, in single precision; rows beyond the last
+/// vertex lie below all.
+template <class Size>
+struct Heights {
+  alignas(32) float row[Size::kVertices][Size::kFacets];
+};
+
+PD_INLINE void turn(LaneVectors& n, const double (&m)[9]) {
+  const LaneVectors v = n;
+  n.x = v.x * m[0] + v.y * m[1] + v.z * m[2];
+  n.y = v.x * m[3] + v.y * m[4] + v.z * m[5];
+  n.z = v.x * m[6] + v.y * m[7] + v.z * m[8];
+}
+
+template <class Size>
+PD_INLINE void store_planes(Planes<Size>& out, int f, const LaneVectors& n, const Lanes& own) {
+  store(out.nx + f, n.x);
+  store(out.ny + f, n.y);
+  store(out.nz + f, n.z);
+  store(out.own + f, own);
+  store(out.squared + f, n.x * n.x + n.y * n.y + n.z * n.z);
+}
+
+PD_INLINE void place_planes(Planes<Small>& out, const GaussSatBody& body, const double (&offset)[3]) {
+  const SmallGaussMap& map = static_cast<const SmallBodyStorage&>(body.storage).gauss_map;
+  for (int f = 0; f < Small::kFacets; f += kLanes) {
+    LaneVectors n;
+    Lanes own;
+    load(n.x, map.nx + f);
+    load(n.y, map.ny + f);
+    load(n.z, map.nz + f);
+    load(own, map.height + f);
+    turn(n, body.turn);
+    store_planes(out, f, n, own * body.growth + (n.x * offset[0] + n.y * offset[1] + n.z * offset[2]));
+  }
+}
+
+PD_INLINE void place_planes(Planes<Middle>& out, const GaussSatBody& body, const double (&offset)[3]) {
+  const ConvexPolytope::Storage& s = body.storage;
+  out.used = (s.num_facets + 2 * kFloats - 1) / (2 * kFloats) * 2;
+  const int end = kFloats * out.used;
+  alignas(32) double x[Middle::kFacets], y[Middle::kFacets], z[Middle::kFacets];
+  for (int f = 0; f < end; ++f) {
+    const int i = f < s.num_facets ? f : 0;
+    const double* const n = s.facet_normals[i].data();
+    out.nx[f] = n[0];
+    out.ny[f] = n[1];
+    out.nz[f] = n[2];
+    const std::int32_t on = s.facet_vertices[s.facet_offsets[i]];
+    x[f] = body.posed.x[on];
+    y[f] = body.posed.y[on];
+    z[f] = body.posed.z[on];
+  }
+  for (int f = 0; f < end; f += kLanes) {
+    LaneVectors n, p;
+    load(n.x, out.nx + f);
+    load(n.y, out.ny + f);
+    load(n.z, out.nz + f);
+    load(p.x, x + f);
+    load(p.y, y + f);
+    load(p.z, z + f);
+    turn(n, body.turn);
+    store_planes(out, f, n, n.x * (p.x + offset[0]) + n.y * (p.y + offset[1]) + n.z * (p.z + offset[2]));
+  }
+}
+
+PD_INLINE void narrow(Floats& out, const double* from) {
+  Lanes low, high;
+  load(low, from);
+  load(high, from + kLanes);
+  const HalfFloats halves[2] = {__builtin_convertvector(low, HalfFloats), __builtin_convertvector(high, HalfFloats)};
+  __builtin_memcpy(&out, halves, sizeof(halves));
+}
+
+template <class Size>
+PD_INLINE void take_heights(Heights<Size>& heights, Planes<Size>& planes, const VertexArrays& other) {
+  alignas(32) float x[Size::kVertices], y[Size::kVertices], z[Size::kVertices];
+  for (int v = 0; v < other.count; v += kFloats) {
+    Floats of_x, of_y, of_z;
+    narrow(of_x, other.x + v);
+    narrow(of_y, other.y + v);
+    narrow(of_z, other.z + v);
+    __builtin_memcpy(x + v, &of_x, sizeof(of_x));
+    __builtin_memcpy(y + v, &of_y, sizeof(of_y));
+    __builtin_memcpy(z + v, &of_z, sizeof(of_z));
+  }
+  for (int f = 0; f < kFloats * planes.blocks(); f += 2 * kFloats) {
+    Floats nx[2], ny[2], nz[2], top[2];
+    for (int i = 0; i < 2; ++i) {
+      narrow(nx[i], planes.nx + f + kFloats * i);
+      narrow(ny[i], planes.ny + f + kFloats * i);
+      narrow(nz[i], planes.nz + f + kFloats * i);
+      top[i] = Floats{} - std::numeric_limits<float>::max();
+    }
+    for (int v = 0; v < other.count; ++v) {
+      for (int i = 0; i < 2; ++i) {
+        const Floats height = nx[i] * x[v] + ny[i] * y[v] + nz[i] * z[v];
+        top[i] = height > top[i] ? height : top[i];
+        __builtin_memcpy(heights.row[v] + f + kFloats * i, &height, sizeof(height));
+      }
+    }
+    __builtin_memcpy(planes.top + f, &top, sizeof(top));
+    const Floats none = Floats{} - std::numeric_limits<float>::max();
+    for (int v = other.count; v < Size::kVertices; ++v) {
+      for (int i = 0; i < 2; ++i) __builtin_memcpy(heights.row[v] + f + kFloats * i, &none, sizeof(none));
+    }
+  }
+}
+
+struct Nearest {
+  double key, others;
+  int id;
+};
+
+/// Rough heights, and the least of them.
+template <class Size>
+PD_INLINE void rough_planes(Lanes& least, Planes<Size>& planes) {
+  for (int f = 0; f < kFloats * planes.blocks(); f += kLanes) {
+    Lanes own;
+    HalfFloats top;
+    load(own, planes.own + f);
+    __builtin_memcpy(&top, planes.top + f, sizeof(top));
+    const Lanes height = own + __builtin_convertvector(top, Lanes);
+    store(planes.rough + f, height);
+    least = height < least ? height : least;
+  }
+}
+
+/// How far the other body reaches along facet f.
+template <class Size>
+PD_INLINE double top_along(int f, const Planes<Size>& planes, const VertexArrays& other) {
+  Lanes top = Lanes{} - std::numeric_limits<double>::max();
+  for (int v = 0; v < other.count; v += kLanes) {
+    Lanes x, y, z;
+    load(x, other.x + v);
+    load(y, other.y + v);
+    load(z, other.z + v);
+    const Lanes height = x * planes.nx[f] + y * planes.ny[f] + z * planes.nz[f];
+    top = height > top ? height : top;
+  }
+  return greatest(top);
+}
+
+/// Facets that may be the nearest, or near, are measured; the others are bounded.
+/// @param first_id  of these facets; those of A come first
+template <class Size>
+PD_INLINE void nearest_facet(Nearest& best, const Planes<Size>& planes, int facets, const VertexArrays& other,
+                             double level, double error, int first_id, int& measured) {
+  Lanes least_other = Lanes{} + kNone;
+  std::uint64_t near = 0;
+  for (int f = 0; f < kFloats * planes.blocks(); f += kLanes) {
+    Lanes rough;
+    load(rough, planes.rough + f);
+    const Lanes far = rough > level ? rough : least_other;
+    least_other = far < least_other ? far : least_other;
+    near |= std::uint64_t{mask_of_four(rough <= level)} << f;
+  }
+  const double bound = key_of(least(least_other) - error, 1);
+  best.others = bound < best.others ? bound : best.others;
+  for (; near != 0; near &= near - 1) {
+    const int f = std::countr_zero(near);
+    if (f >= facets) break;
+    ++measured;
+    const double key = key_of(planes.own[f] + top_along(f, planes, other), planes.squared[f]);
+    const double lost = key < best.key ? best.key : key;
+    best.others = lost < best.others ? lost : best.others;
+    if (key < best.key) {
+      best.key = key;
+      best.id = first_id + f;
+    }
+  }
+}
+
+/// Lists the facets of one body that are near.
+template <class Size>
+PD_INLINE void list_near_facets(NearGaussPieces& near, bool of_a, const GaussSatBody& body, const Planes<Size>& planes,
+                                const Heights<Size>& heights, const VertexArrays& other, double error) {
+  for (int f = 0; f < body.storage.num_facets; ++f) {
+    if (planes.rough[f] > (near.radius + error) * (planes.squared[f] > 1 ? planes.squared[f] : 1)) continue;
+    const double key = key_of(planes.own[f] + top_along(f, planes, other), planes.squared[f]);
+    if (!(key <= near.radius * near.radius)) continue;
+    int vertex = 0;
+    for (int v = 1; v < other.count; ++v) vertex = heights.row[v][f] > heights.row[vertex][f] ? v : vertex;
+    GaussPiece piece{-1, -1, {0, 0}, {0, 0}};
+    (of_a ? piece.facet_a : piece.facet_b) = static_cast<std::int8_t>(f);
+    (of_a ? piece.a : piece.b)[0] =
+        static_cast<std::int8_t>(body.storage.facet_vertices[body.storage.facet_offsets[f]]);
+    (of_a ? piece.b : piece.a)[0] = static_cast<std::int8_t>(vertex);
+    near.add(key, piece);
+  }
+}
+
+/// How low the other body may lie along a facet whose plane is no farther than `radius`.
+template <class Size>
+PD_INLINE void levels_of(Floats& out, const Planes<Size>& planes, int first, double radius, double slack) {
+  const Lanes one = Lanes{} + 1.0;
+  alignas(32) double level[kFloats];
+  for (int i = 0; i < kFloats; i += kLanes) {
+    Lanes squared, own;
+    load(squared, planes.squared + first + i);
+    load(own, planes.own + first + i);
+    // No normal is longer than 1 or than its square.
+    const Lanes length = squared > one ? squared : one;
+    store(level + i, length * radius - own + slack);
+  }
+  narrow(out, level);
+}
+
+PD_INLINE void take_sign(Bits& bits, const Floats& value) {
+  Bits sign;
+  __builtin_memcpy(&sign, &value, sizeof(sign));
+  bits = bits >> 1 | (sign & kSign);
+}
+
+/// By facet: the vertices of the other body, as bits, that show it too far.
+template <class Size>
+PD_INLINE void mark_far_facets(std::uint32_t (&far)[Size::kFacets], const Planes<Size>& planes,
+                               const Heights<Size>& other, double radius, double slack) {
+  // Four chains of bits, as each waits for itself: two blocks of facets, and two halves of the vertices.
+  constexpr int kTogether = 2, kHalfway = Size::kVertices / 2;
+  for (int f = 0; f < kFloats * planes.blocks(); f += kTogether * kFloats) {
+    Floats level[kTogether], height;
+    Bits first[kTogether] = {}, second[kTogether] = {};
+    for (int i = 0; i < kTogether; ++i) levels_of(level[i], planes, f + kFloats * i, radius, slack);
+    for (int v = 0; v < kHalfway; ++v) {
+      for (int i = 0; i < kTogether; ++i) {
+        load(height, other.row[v] + f + kFloats * i);
+        take_sign(first[i], level[i] - height);
+        load(height, other.row[v + kHalfway] + f + kFloats * i);
+        take_sign(second[i], level[i] - height);
+      }
+    }
+    for (int i = 0; i < kTogether; ++i) {
+      const Bits both = first[i] >> kHalfway | second[i];
+      __builtin_memcpy(far + f + kFloats * i, &both, sizeof(both));
+    }
+  }
+}
+
+/// Edges that may belong to a facet of P no farther than `radius`. A vertex of P, of facet f with vertex v of the other
+/// body, may show f too far; where one v does so for both facets of an edge, it does for all directions of its arc
+/// (arc_culling.hpp). False: there are more than there is room for.
+template <class Size>
+PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, const Planes<Size>& planes,
+                               const Heights<Size>& other, double radius, double slack) {
+  alignas(32) std::uint32_t far[Size::kFacets];
+  mark_far_facets(far, planes, other, radius, slack);
+  int count = 0;
+  if constexpr (kIsSmall<Size>) {
+    const SmallGaussMap& map = static_cast<const SmallBodyStorage&>(body.storage).gauss_map;
+    for (int e = 0; e < map.edges; ++e) {
+      // Written in any case and counted where it stays: no branch to guess.
+      out.edge[count] = map.edge[e];
+      count += static_cast<int>((far[map.edge[e].left] & far[map.edge[e].right]) == 0);
+    }
+  } else {
+    // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
+    const ConvexPolytope::Storage& s = body.storage;
+    std::uint8_t kept[2 * Size::kEdges + 1];
+    int both_ways = 0;
+    for (int v = 0; v < s.num_vertices; ++v) {
+      const int end = s.neighbour_offsets[v + 1];
+      std::uint32_t right = far[s.half_edges[end - 1].facet];
+      for (int h = s.neighbour_offsets[v]; h < end; ++h) {
+        const std::uint32_t left = far[s.half_edges[h].facet];
+        kept[both_ways] = static_cast<std::uint8_t>(h);
+        both_ways += static_cast<int>((left & right) == 0);
+        right = left;
+      }
+    }
+    for (int k = 0; k < both_ways; ++k) {
+      const HalfEdge& e = s.half_edges[kept[k]];
+      if (e.twin < kept[k]) continue;
+      const HalfEdge& back = s.half_edges[e.twin];
+      out.edge[count] = {static_cast<std::uint8_t>(e.origin), static_cast<std::uint8_t>(back.origin),
+                         static_cast<std::uint8_t>(e.facet), static_cast<std::uint8_t>(back.facet)};
+      ++count;
+    }
+  }
+  out.count = count;
+  return count <= Size::kKept;
+}
+
+}  // namespace pd::detail::gauss_sat

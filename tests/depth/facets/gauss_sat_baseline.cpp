@@ -1,0 +1,10 @@
+/// @file
+/// The kernel of gauss_sat_kernels.cpp once more, for the instruction set that every machine has.
+#ifndef PD_ISA_BASELINE
+#define PD_ISA_BASELINE
+#endif
+#define nearest_by_gauss_maps nearest_by_gauss_maps_baseline
+#define list_in_double_precision list_in_double_precision_baseline
+#define bound_thin_pairs bound_thin_pairs_baseline
+#include "depth/facets/gauss_sat_doubts.cpp"
+#include "depth/facets/gauss_sat_kernels.cpp"
