@@ -156,6 +156,7 @@ int steps_to_leave(bool ours, double x, double y, double z) {
   world.moving(plate, at(x, y, z), at(0, 0, 0));
   for (int step = 1; step <= 240; ++step) {
     world.step();
+    if (step == 1) EXPECT_GT(world.bullet.num_contacts(), 0);
     if (world.bullet.least_distance() > -1e-3) return step;
   }
   return 1000;
@@ -163,7 +164,7 @@ int steps_to_leave(bool ours, double x, double y, double z) {
 
 TEST(DeepUnions, APlateInsideOfARobotComesOutInBulletsTime) {
   for (const double x : {0.0, 0.02, 0.05}) {
-    for (const double y : {0.1, 0.17, 0.2, 0.45}) {
+    for (const double y : {0.17, 0.2, 0.45}) {
       const int bullet = steps_to_leave(false, x, y, 0.01), ours = steps_to_leave(true, x, y, 0.01);
       EXPECT_LE(ours, std::max(bullet, 10)) << x << ' ' << y;
     }
