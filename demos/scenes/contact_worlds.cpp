@@ -227,6 +227,7 @@ const std::vector<ContactSceneMaker>& contact_scenes() {
       {"torus-pour", torus_pour},
       {"bowls-pour", bowl_pour},
       {"gears", gear_pair},
+      {"thin-plates", thin_plates},
       {"mass-ratio", mass_ratio},
       {"rolling", rolling_cylinder},
       {"coin", spinning_coin},

@@ -252,4 +252,28 @@ World torus_and_peg(std::uint64_t /*seed*/) {
   return world;
 }
 
+ContactScene thin_plates(std::uint64_t perturbation) {
+  ContactScene scene;
+  scene.name = "thin-plates";
+  scene.title = "Plates of 2 x 2 x 0.03 m that fall onto a mesh";
+  scene.goal = ContactGoal::rest;
+  scene.seconds = 4;
+  scene.quick_seconds = 2;
+  scene.size = 1;
+  scene.world.bodies.push_back(flat_mesh(20, 80, false));
+  Stream random(11);
+  for (int i = 0; i < 16; ++i) {
+    WorldBody plate = box(Vec3(1, 1, 0.015), Vec3(8.0 * (i % 4 - 1.5), 8.0 * (i / 4 - 1.5), 0));
+    plate.kind = WorldBody::Kind::hull;
+    plate.points = box_points(plate.half_extents);
+    plate.orientation = random.orientation();
+    double lowest = 0;
+    for (const Vec3& corner : plate.points) lowest = std::min(lowest, (plate.orientation * corner).z());
+    plate.position.z() = 0.05 - lowest;
+    scene.world.bodies.push_back(plate);
+  }
+  perturb(scene, perturbation);
+  return scene;
+}
+
 }  // namespace pd::scenes

@@ -32,5 +32,7 @@ namespace pd::scenes {
 [[nodiscard]] World slide_over_mesh(std::uint64_t seed);
 [[nodiscard]] World two_gears(std::uint64_t seed);
 [[nodiscard]] World torus_and_peg(std::uint64_t seed);
+/// Plates thinner than the way that their edges come in a step, let go turned at random above a flat mesh.
+[[nodiscard]] ContactScene thin_plates(std::uint64_t perturbation);
 
 }  // namespace pd::scenes

@@ -16,9 +16,19 @@ TEST(ImpulseTrend, LeadsByHalfOfTheWay) {
   detail::ImpulseTrend trend;
   EXPECT_EQ(trend.next(2, true), btScalar(2));  // nothing known before
   EXPECT_EQ(trend.next(3, true), btScalar(3.5));
-  EXPECT_EQ(trend.next(1, true), btScalar(0));  // contacts do not pull
-  EXPECT_EQ(trend.next(4, false), btScalar(4));
-  EXPECT_EQ(trend.next(5, true), btScalar(5.5));
+  EXPECT_EQ(trend.next(1.5, true), btScalar(0.75));
+  EXPECT_EQ(trend.next(3, false), btScalar(3));
+  EXPECT_EQ(trend.next(4, true), btScalar(4.5));
+}
+
+TEST(ImpulseTrend, ABlowIsNoTrend) {
+  detail::ImpulseTrend trend;
+  trend.next(2, true);
+  EXPECT_EQ(trend.next(60, true), btScalar(60));
+  EXPECT_EQ(trend.next(2, true), btScalar(2));
+  EXPECT_EQ(trend.next(3, true), btScalar(3.5));
+  EXPECT_EQ(trend.next(0, true), btScalar(0));
+  EXPECT_EQ(trend.next(1, true), btScalar(1));
 }
 
 TEST(ImpulseTrend, StaysWhereNobodySolved) {

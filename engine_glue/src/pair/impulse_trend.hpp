@@ -28,7 +28,11 @@ struct ImpulseTrend {
     // Nobody solved since: contacts were looked for twice in a step.
     if (solved == handed) return solved;
     constexpr btScalar kShare = btScalar(0.5);
-    handed = same_step && carried >= 0 ? std::max(btScalar(0), solved + kShare * (solved - carried)) : solved;
+    // A load that sways changes little in a step. What landed or came off is no trend: a column that lands would be
+    // thrown up by half of the blow.
+    constexpr btScalar kJump = 2;
+    const bool sways = carried >= 0 && solved <= kJump * carried && carried <= kJump * solved;
+    handed = same_step && sways ? std::max(btScalar(0), solved + kShare * (solved - carried)) : solved;
     carried = solved;
     return handed;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "pair/bounce.hpp"
 #include "pair/friction_anchor.hpp"
 #include "pair/lasting_points.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -133,8 +134,11 @@ FreshPoints fresh_points(const ContactManifold& manifold) {
   return fresh;
 }
 
-void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result) {
+void add_points(btPersistentManifold& manifold, const FreshPoints& found, btScalar seconds, btManifoldResult& result) {
   forget_parted(manifold);
+  const Bounce bounce(manifold, result, seconds);
+  FreshPoints fresh = found;
+  if (bounce.possible()) bounce.leave_out(fresh);
   const ManifoldPoses poses = poses_of(manifold);
   // Points nearer to each other than the breaking threshold replace each other here: the deepest comes last.
   std::array<int, 4> order{0, 1, 2, 3};
@@ -144,7 +148,9 @@ void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btMani
     const FreshPoint& point = fresh.points[order[i]];
     const int entry = entry_near(manifold, local_on_a(poses, point));
     const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
-    add_anchored_point(result, manifold, poses, point, entry, anchor);
+    const int added = add_anchored_point(result, manifold, poses, point, entry, anchor);
+    ImpulseTrend none;
+    if (bounce.possible() && added >= 0) bounce.set(manifold.getContactPoint(added), none);
   }
 }
 
@@ -226,7 +232,9 @@ void replace_any_points(const PointsOfStep& step, const PointSurroundings* piece
 
 }  // namespace
 
-void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
+namespace {
+
+void replace_all_points(const PointsOfStep& step, PointSurroundings& surroundings) {
   const auto& [manifold, memory, fresh, seconds, result] = step;
   const bool one_piece = surroundings.lasting();
   const PointSurroundings* const pieces = one_piece ? nullptr : &surroundings;
@@ -236,6 +244,23 @@ void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
                         may_all_last(manifold, memory, fresh, result) && order_by_feature(memory, fresh, all);
   if (!may_last || !replace_lasting_points(step, all, PlacesKnown::no, pieces)) {
     replace_any_points(step, pieces, surroundings);
+  }
+}
+
+}  // namespace
+
+void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
+  const auto& [manifold, memory, fresh, seconds, result] = step;
+  const Bounce bounce(manifold, result, seconds);
+  if (bounce.possible()) {
+    FreshPoints touching = fresh;
+    bounce.leave_out(touching);
+    replace_all_points({manifold, memory, touching, seconds, result}, surroundings);
+    for (int i = 0; i < memory.num_points; ++i) {
+      bounce.set(manifold.getContactPoint(i), memory.points[static_cast<std::size_t>(i)].impulse);
+    }
+  } else {
+    replace_all_points(step, surroundings);
   }
   // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.
   if (gContactProcessedCallback != nullptr) {

@@ -57,10 +57,11 @@ struct PointsOfStep {
 
 /// Puts the points of this step in place of the manifold's. Impulses (with their trend, impulse_trend.hpp), life times
 /// and anchors go from the old points to the new ones by feature, else by place. Points that go on are written together
-/// (lasting_points.hpp), all others by Bullet.
+/// (lasting_points.hpp), all others by Bullet. Points of bodies that bounce are handed out as bounce.hpp says.
 void replace_points(const PointsOfStep& step, PointSurroundings& surroundings);
 
 /// Adds points to a manifold that other pairs write to as well.
-void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btManifoldResult& result);
+/// @param seconds of the step
+void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btScalar seconds, btManifoldResult& result);
 
 }  // namespace pd::detail

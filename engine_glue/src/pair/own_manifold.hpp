@@ -47,7 +47,7 @@ class OwnManifold {
   /// Puts this step's points in place of the last step's, or adds them to a shared one.
   void replace(const FreshPoints& fresh, btScalar seconds, btManifoldResult& result) {
     if (!memory_) {
-      add_points(*manifold_, fresh, result);
+      add_points(*manifold_, fresh, seconds, result);
       return;
     }
     PointSurroundings whole;

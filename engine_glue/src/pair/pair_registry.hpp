@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pair/impulse_trend.hpp"
+#include "pair/sheet_memory.hpp"
 #include "pair/standing_still.hpp"
 #include "pd/depth/warm_certificate.hpp"
 #include "shapes/cached_shape.hpp"
@@ -60,6 +61,7 @@ struct PairMemory {
   std::vector<PieceMemory> pieces;                   ///< sorted by number
   std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
   StandingStill standing;                            ///< of a body on a mesh
+  SheetMemory sheet;                                 ///< the same
   int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
@@ -73,7 +75,7 @@ struct PairMemory {
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
-    return patch < 0 && num_points == 0 && pieces.empty() && standing.empty() && union_refusals == 0 &&
+    return patch < 0 && num_points == 0 && pieces.empty() && standing.empty() && sheet.empty() && union_refusals == 0 &&
            warm.memory_bytes() == sizeof(warm);
   }
 };

@@ -22,25 +22,20 @@ StepReach::StepReach(const btManifoldResult& result, btScalar threshold, btScala
   const btCollisionObject& a = *result.getBody0Internal();
   const btCollisionObject& b = *result.getBody1Internal();
   all_ = !(seconds > 0) || result.m_closestPointDistanceThreshold > 0 || typeid(result) != typeid(btManifoldResult) ||
-         !a.hasContactResponse() || !b.hasContactResponse() || !motion_of(a, seconds, a_) || !motion_of(b, seconds, b_);
-}
-
-bool StepReach::motion_of(const btCollisionObject& object, btScalar seconds, Motion& out) {
-  const btRigidBody* const body = btRigidBody::upcast(&object);
-  if (body == nullptr) return object.isStaticObject();
-  out.velocity = body->getLinearVelocity() + body->getTotalForce() * (body->getInvMass() * seconds);
-  out.turn = body->getAngularVelocity();
-  out.centre = body->getCenterOfMassPosition();
-  return true;
+         !a.hasContactResponse() || !b.hasContactResponse() || !motion_of(a, seconds, a_) ||
+         !motion_of(b, seconds, b_) || a_.link || b_.link;
+  a_.velocity += a_.gained;
+  b_.velocity += b_.gained;
 }
 
 btScalar StepReach::of_boxes(const btConvexShape& a, const btConvexShape& b) const {
   if (all_) return threshold_;
-  const auto turning = [](const Motion& motion, const btConvexShape& shape) {
+  const auto turning = [](const BodyMotion& motion, const btConvexShape& shape) {
     const btVector3 half = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
     return btSqrt(motion.turn.length2() * half.length2());
   };
-  const btScalar speed = (a_.velocity - b_.velocity).length() + turning(a_, a) + turning(b_, b);
+  const btScalar fastest = std::max({(a_.velocity - b_.velocity).length(), a_.velocity.length(), b_.velocity.length()});
+  const btScalar speed = fastest + turning(a_, a) + turning(b_, b);
   return std::min(threshold_, kNear * threshold_ + kClosing * seconds_ * speed);
 }
 
@@ -50,16 +45,15 @@ btScalar StepReach::of_pieces_near(const btVector3& place, btScalar radius) cons
   return std::min(threshold_, kNearOfPieces * threshold_ + kClosing * seconds_ * speed);
 }
 
-btVector3 StepReach::coming_at(const btVector3& place) const {
-  const btVector3 of_a = a_.velocity + a_.turn.cross(place - a_.centre);
-  const btVector3 of_b = b_.velocity + b_.turn.cross(place - b_.centre);
-  return of_b - of_a;
+btVector3 StepReach::coming_at(const btVector3& place) const { return b_.velocity_at(place) - a_.velocity_at(place); }
+
+bool StepReach::is_needed(btScalar distance, btScalar closing, btScalar near) const {
+  return distance <= near || distance <= near + kClosing * seconds_ * std::max(btScalar(0), closing);
 }
 
-bool StepReach::is_needed(btScalar distance, const btVector3& place, const btVector3& normal, btScalar near) const {
-  if (distance <= near) return true;
-  const btScalar closing = std::max(btScalar(0), coming_at(place).dot(normal));
-  return distance <= near + kClosing * seconds_ * closing;
+btScalar StepReach::closing_of_boxes(const btVector3& place, const btVector3& normal) const {
+  const btScalar of_a = -a_.velocity_at(place).dot(normal), of_b = b_.velocity_at(place).dot(normal);
+  return std::max({of_a + of_b, of_a, of_b});
 }
 
 bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
@@ -74,7 +68,8 @@ void StepReach::leave_out_idle(FreshPoints& points) const {
   int kept = 0;
   for (int k = 0; k < points.count; ++k) {
     const FreshPoint& point = points.points[k];
-    if (is_needed(point.distance, point.point_on_b, point.normal, kNear * threshold_)) points.points[kept++] = point;
+    const btScalar closing = closing_of_boxes(point.point_on_b, point.normal);
+    if (is_needed(point.distance, closing, kNear * threshold_)) points.points[kept++] = point;
   }
   points.count = kept;
 }
@@ -85,8 +80,8 @@ void StepReach::leave_out_idle(ContactManifold& points) const {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(points.count); ++k) {
     const ContactPoint& point = points.points[k];
-    if (is_needed(static_cast<btScalar>(-point.depth), to_bullet(point.position_b), normal,
-                  kNearOfPieces * threshold_)) {
+    const btScalar closing = coming_at(to_bullet(point.position_b)).dot(normal);
+    if (is_needed(static_cast<btScalar>(-point.depth), closing, kNearOfPieces * threshold_)) {
       points.points[kept++] = point;
     }
   }

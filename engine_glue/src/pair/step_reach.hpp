@@ -4,7 +4,9 @@
 /// A point that is apart limits how fast it may close, to its gap in one step: where it closes more slowly, the solver
 /// visits it in every sweep and does nothing. Half of the points of a house of cards are such. Left out is what is
 /// apart by more than a quarter of the breaking threshold and twice what the bodies' velocities and forces close until
-/// the next step; the quarter and the two are for what other contacts may do meanwhile. Of parts of compounds it is
+/// the next step; the quarter and the two are for what other contacts may do meanwhile. A box that moves may
+/// be stopped by another one: a column that falls as one lands box by box, so that each box's own speed counts as well.
+/// Of parts of compounds it is
 /// half the threshold: they are linked, and a chain that tautens moves faster than it did.
 #pragma once
 
@@ -12,6 +14,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "pair/manifold_points.hpp"
+#include "shapes/body_motion.hpp"
 
 namespace pd::detail {
 
@@ -35,20 +38,17 @@ class StepReach {
   void leave_out_idle(ContactManifold& points) const;
 
  private:
-  /// What a body's velocity will be after this step's forces, at its centre of mass.
-  struct Motion {
-    btVector3 velocity = btVector3(0, 0, 0), turn = btVector3(0, 0, 0), centre = btVector3(0, 0, 0);
-  };
-  [[nodiscard]] static bool motion_of(const btCollisionObject& object, btScalar seconds, Motion& out);
   /// How B's material at a place comes to A's.
   [[nodiscard]] btVector3 coming_at(const btVector3& place) const;
   /// @param near  up to which gap all are
-  [[nodiscard]] bool is_needed(btScalar distance, const btVector3& place, const btVector3& normal, btScalar near) const;
+  [[nodiscard]] bool is_needed(btScalar distance, btScalar closing, btScalar near) const;
+  /// How fast two boxes may come together at a place, if another contact stops one of them.
+  [[nodiscard]] btScalar closing_of_boxes(const btVector3& place, const btVector3& normal) const;
 
   btScalar threshold_;
   btScalar seconds_;
   bool all_;
-  Motion a_, b_;
+  BodyMotion a_, b_;  ///< with what the step's forces add
 };
 
 }  // namespace pd::detail

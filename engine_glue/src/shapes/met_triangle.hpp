@@ -16,6 +16,13 @@ struct MetTriangle {
   int child;  ///< of the body, by its place among those that were asked
 };
 
+/// Of a child (-1: the body itself) and a triangle; unlike those of any other two, of up to 65,535 children and parts.
+inline std::uint64_t number_of_pieces(int child, const MetTriangle& triangle) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child + 1)) << 48U) ^
+         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) ^
+         static_cast<std::uint32_t>(triangle.index);
+}
+
 /// Of a body's thickness. Deeper in a sheet than this, its shortest way out is back to where most of it is, over edges
 /// or not, and no longer the triangle's own side.
 inline constexpr double kShallow = 0.25;

@@ -7,6 +7,7 @@
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
+#include "union/sheet_sides.hpp"
 #include "union/union_algorithm.hpp"
 
 namespace pd::detail {
@@ -90,9 +91,21 @@ bool FlatGround::sort_by_plane(std::span<const MetTriangle> triangles) {
       plane_of_[i] = number;
       --left;
     }
-    planes_.push_back({seed, {}, {}});
+    planes_.push_back({seed, {}, {}, Vec3::Zero()});
   }
   return true;
+}
+
+Vec3 FlatGround::known_front(const Body& body, std::span<const MetTriangle> triangles, const Plane& plane,
+                             int number) const {
+  const Vec3 normal = across_[plane.seed].normalized();
+  const int child = is_part(body.wrapper) ? body.wrapper.m_index : -1;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (plane_of_[i] != number) continue;
+    const Vec3 front = body.sides->front_of(number_of_pieces(child, triangles[i]), normal);
+    if (!front.isZero()) return front;
+  }
+  return Vec3::Zero();
 }
 
 bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<const MetTriangle> triangles,
@@ -111,6 +124,14 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
   };
   const Vec3 front = normal;
   turn_to(to_pd(body_pose.getOrigin()));
+  bool known = false;      // on which side the body belongs
+  bool came_over = false;  // its middle was on the other side in the last step
+  if (body.sides != nullptr) {
+    const Vec3 before = mesh_pose.rotation() * known_front(body, triangles, plane, number);
+    known = !before.isZero();
+    if (known && normal.dot(before) < 0) normal = -normal;
+    came_over = !known && normal.dot(mesh_pose.apply(body.sides->middle_before()) - corner) < 0;
+  }
   if (core.settings.one_sided_meshes) {
     // Fronts are where corners run counter-clockwise.
     const bool behind = normal.dot(front) < 0;
@@ -135,13 +156,15 @@ bool FlatGround::ask(const Body& body, const UnionQuestion& question, std::span<
     return core.stand_on(asked, buffers, found) == SolverCore::Outcome::answered;
   };
   if (!stand()) return false;
+  if (came_over && found.manifold.count > 0) return false;
   if (found.manifold.count > 0 && -found.lower > kShallow * (found.highest - found.lower)) {
     // Children that a sheet cuts leave it where the whole is, or some would push one way and some the other for good.
-    if (!part || core.settings.one_sided_meshes) return false;
+    if (!part || known || core.settings.one_sided_meshes) return false;
     turn_to(to_pd(question.a.getWorldTransform().getOrigin()));
     if (!stand() || -found.lower - margin > (1 - kShallow) * (found.highest - found.lower)) return false;
   }
   plane.points = found.manifold;
+  plane.front = mesh_pose.rotation().transpose() * normal;
   if (found.manifold.count == 0) return true;
   const PosedShape posed{(part && body.known->sharp ? body.known->sharp : body.known->body).get(), to_pd(body_pose)};
   if (is_piece(body.wrapper)) {
@@ -176,6 +199,11 @@ bool FlatGround::find(const Body& body, const UnionQuestion& question, std::span
     if (!ask(body, question, triangles, core, buffers, planes_[p], static_cast<int>(p))) return false;
   }
   const int child = is_part(body.wrapper) ? body.wrapper.m_index : -1;
+  for (std::size_t i = 0; i < triangles.size() && body.sides != nullptr; ++i) {
+    const Plane& plane = planes_[static_cast<std::size_t>(plane_of_[i])];
+    if (plane.points.count == 0) continue;
+    body.sides->keep(number_of_pieces(child, triangles[i]), plane.front, to_pd(triangles[i].corners[0]));
+  }
   for (const Plane& plane : planes_) {
     for (int k = 0; k < plane.points.count; ++k) {
       ContactManifold point = plane.points;

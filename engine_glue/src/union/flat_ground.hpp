@@ -24,6 +24,7 @@
 namespace pd::detail {
 
 class Patches;
+class SheetSides;
 class SolverCore;
 struct CachedShape;
 struct ThreadBuffers;
@@ -39,6 +40,7 @@ class FlatGround {
   struct Body {
     const btCollisionObjectWrapper& wrapper;
     std::shared_ptr<CachedShape>& known;
+    SheetSides* sides;  ///< null: the mesh has fronts of its own
   };
 
   /// Adds the contacts of a body with `triangles`, all that it may reach of mesh question.b, to `patches`.
@@ -54,6 +56,7 @@ class FlatGround {
     std::size_t seed;  ///< the largest of its triangles, which gives the plane
     ContactManifold points;
     std::array<int, 4> triangles;  ///< under them
+    Vec3 front;                    ///< where the body is, unit and in the mesh's frame
   };
 
   /// @return false where there are more planes than may be
@@ -61,6 +64,9 @@ class FlatGround {
   /// @return false where the plane's triangles have to be asked
   bool ask(const Body& body, const UnionQuestion& question, std::span<const MetTriangle> triangles, SolverCore& core,
            ThreadBuffers& buffers, Plane& plane, int number);
+  /// The side of the plane that the body came from, unit and in the mesh's frame; zero: not known.
+  [[nodiscard]] Vec3 known_front(const Body& body, std::span<const MetTriangle> triangles, const Plane& plane,
+                                 int number) const;
 
   std::vector<Vec3> across_;   ///< twice the area along the normal
   std::vector<int> plane_of_;  ///< a number of each triangle's plane

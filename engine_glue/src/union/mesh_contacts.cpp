@@ -14,6 +14,7 @@
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pieces/compound_facts.hpp"
+#include "shapes/body_motion.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/met_triangle.hpp"
 #include "shapes/moving_body.hpp"
@@ -23,6 +24,7 @@
 #include "union/one_sided.hpp"
 #include "union/piece_memories.hpp"
 #include "union/pieces_in_result.hpp"
+#include "union/sheet_sides.hpp"
 
 namespace pd::detail {
 
@@ -44,14 +46,7 @@ btScalar surface(const btVector3& lower, const btVector3& upper) {
   return extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x();
 }
 
-/// Of a child and a triangle; unlike those of any other two, of up to 65,535 children and parts.
-std::uint64_t number_of(const Child& child, const MetTriangle& triangle) {
-  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child.index + 1)) << 48U) ^
-         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(triangle.part)) << 32U) ^
-         static_cast<std::uint32_t>(triangle.index);
-}
-
-/// Of the same two in place of the triangle's part: Bullet's number of that for a body that is no compound.
+/// A number of both, in place of the triangle's part: Bullet's number of that for a body that is no compound.
 int part_of(const Child& child, const MetTriangle& triangle) { return triangle.part ^ ((child.index + 1) << 16); }
 
 /// The child and the triangle that a point lies between.
@@ -104,6 +99,8 @@ class MeshContacts final : public UnionContacts {
   void choose_triangles(int place, const TrianglesAround& around, StandingStill& standing);
   /// Which triangles made points that were chosen.
   void remember_points(const Patches& patches, StandingStill& standing) const;
+  /// Tells which child's sides of triangles are asked for next.
+  void enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach);
   /// Sets how far the children reach.
   void reach_out(const UnionQuestion& question);
   /// Reads the mesh around one of them, or all.
@@ -117,6 +114,8 @@ class MeshContacts final : public UnionContacts {
   /// The contacts with one of the triangles that were chosen, if it is gentle. @return false: it is not
   bool find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, std::size_t triangle,
                       SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+  /// Whether a child's origin is on the side of a triangle that the child came from.
+  [[nodiscard]] bool is_on_its_side(const UnionQuestion& question, std::size_t triangle, ThreadBuffers& buffers) const;
   /// Asks a triangle by itself.
   SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,
                           const TriangleInResult& triangle, PieceMemory* memory, SolverCore& core,
@@ -139,6 +138,7 @@ class MeshContacts final : public UnionContacts {
   PosedShape body_{};  ///< the child at hand
   PieceMemories memories_;
   OneSided one_sided_;
+  SheetSides sides_;
 };
 
 /// The side from which the corners run counter-clockwise (unit, in the world). Requires an area.
@@ -176,7 +176,7 @@ SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const b
                                       const UnionQuestion& question, const TriangleInResult& triangle,
                                       PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers,
                                       PairAnswer& answer) const {
-  const bool met = memory != nullptr && memory->met;
+  const bool met = (memory != nullptr && memory->met) || sides_.fast();
   const PairQuestion asked{.a = static_cast<const btConvexShape&>(*a.getCollisionShape()),
                            .pose_a = pose_a,
                            .b = triangle.shape(),
@@ -224,6 +224,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
   look_at(question.a, children_, buffers->near.facts(), core.cache);
   if (children_.empty()) return true;
   reach_out(question);
+  sides_.begin(memory.sheet);
   still_ = stand_still(question, core, *buffers, memory);
   if (together_) read_mesh(question, lower_, upper_, *buffers);
   if (still_) {
@@ -239,8 +240,24 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
     memory.standing.forget();
     return false;
   }
-  if (!still_) memories_.end(memory.pieces);
+  if (!still_) {
+    memories_.end(memory.pieces);
+    sides_.end(memory.sheet);
+  }
   return true;
+}
+
+void MeshContacts::enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach) {
+  const btTransform& pose = question.b.getWorldTransform();
+  BodyMotion of_a, of_b;
+  const auto seconds = static_cast<btScalar>(question.seconds);
+  const bool moves = motion_of(*question.a.getCollisionObject(), seconds, of_a) &&
+                     motion_of(*question.b.getCollisionObject(), seconds, of_b);
+  const btScalar speed = (of_a.velocity - of_b.velocity).length() + of_a.gained.length() +
+                         (of_a.turn - of_b.turn).length() * (upper_ - lower_).length();
+  const Vec3 middle = to_pd(pose * (btScalar(0.5) * (reach.lower() + reach.upper())));
+  sides_.enter(child.index, pose.inverseTimes(child.pose), to_pd(pose), middle,
+               moves ? static_cast<double>(speed * seconds) : 0, static_cast<double>(question.threshold));
 }
 
 bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
@@ -306,17 +323,35 @@ bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQu
                        static_cast<double>(question.threshold), core.settings.one_sided_meshes);
 }
 
+bool MeshContacts::is_on_its_side(const UnionQuestion& question, std::size_t triangle, ThreadBuffers& buffers) const {
+  const MetTriangle& met = triangles_[triangle];
+  const Child& child = children_[static_cast<std::size_t>(met.child)];
+  const Vec3 normal = buffers.around.triangles()[places_[triangle]].across.normalized();
+  const Vec3 corner = to_pd(met.corners[0]);
+  const Vec3 origin = to_pd(question.b.getWorldTransform().invXform(child.pose.getOrigin()));
+  const Vec3 front = sides_.front_of(number_of_pieces(child.index, met), normal);
+  const double height = normal.dot(origin - corner);
+  return height * (front.isZero() ? normal.dot(sides_.middle_before() - corner) : front.dot(normal)) >= 0;
+}
+
 bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question,
                                   std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
   const std::size_t place = places_[triangle];
+  if (!core.settings.one_sided_meshes && !is_on_its_side(question, triangle, buffers)) return false;
   if (!gentle_.ask(buffers.around.triangles()[place], place, buffers.near.shared_edges())) return false;
   buffers.counters.calls.add();
   buffers.counters.support_calls.add();
   const MetTriangle& met = triangles_[triangle];
   const Child& child = children_[static_cast<std::size_t>(met.child)];
+  if (!core.settings.one_sided_meshes && !gentle_.manifolds().empty()) {
+    const Vec3 normal = buffers.around.triangles()[place].across.normalized();
+    const bool ahead =
+        (to_pd(question.b.getWorldTransform()).rotation() * normal).dot(gentle_.manifolds()[0].normal) > 0;
+    sides_.keep(number_of_pieces(child.index, met), ahead ? normal : Vec3(-normal), to_pd(met.corners[0]));
+  }
   for (const ContactManifold& found : gentle_.manifolds()) {
     ContactManifold points = found;
-    for (int k = 0; k < points.count && core.settings.one_sided_meshes; ++k) {
+    for (int k = 0; k < points.count; ++k) {
       const double depth = points.points[static_cast<std::size_t>(k)].depth;
       if (depth > 0) one_sided_.add_way(depth * points.normal);
     }
@@ -341,7 +376,9 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const ChildInResult piece(question.result, question.a, child);
   const btCollisionObjectWrapper& a = piece.wrapper();
   const auto threshold = static_cast<double>(question.threshold);
-  const FlatGround::Body standing{a, memory.shape_of_child(0, child.index)};
+  const bool one_sided = core.settings.one_sided_meshes;
+  if (!one_sided) enter_sides(question, child, reach);
+  const FlatGround::Body standing{a, memory.shape_of_child(0, child.index), one_sided ? nullptr : &sides_};
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
   const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
   if (!asked_one_by_one && flat_.find(standing, question, met_of_child, first, core, buffers, patches)) {
@@ -350,7 +387,6 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   }
   // What stood on flat ground stands over an edge of it now: all are asked again in the next step.
   if (still_ && !asked_one_by_one) memory.standing.forget();
-  const bool one_sided = core.settings.one_sided_meshes;
   one_sided_.clear();
   const bool gentle = begin_gentle(a, question, place, core, memory);
   for (std::size_t i = first; i < triangles_.size(); ++i) {
@@ -360,9 +396,9 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     PairAnswer answer;
     PieceMemory* remembered = nullptr;
     if (still_) {
-      remembered = PieceMemories::find(memory.pieces, number_of(child, met));
+      remembered = PieceMemories::find(memory.pieces, number_of_pieces(child.index, met));
     } else if (i - first < kMostRemembered) {
-      remembered = &memories_.take(memory.pieces, number_of(child, met));
+      remembered = &memories_.take(memory.pieces, number_of_pieces(child.index, met));
     }
     const auto outcome = ask(a, child.pose, question, triangle, remembered, core, buffers, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
@@ -370,13 +406,22 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
     const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
+    if (!one_sided) {
+      const MeshTriangle& near = buffers.around.triangles()[places_[i]];
+      const Vec3 back = sides_.judge(number_of_pieces(child.index, met), near.across.normalized(), met, answer);
+      if (!back.isZero()) {
+        one_sided_.add_behind(static_cast<int>(i), back);
+        continue;
+      }
+      one_sided_.add_way_of(answer);
+    }
     ContactManifold points;
     AskedPieces pieces = question.of_pieces(a, triangle.wrapper(), core, buffers);
     const PiecePair pair = pieces.as(answer.a, answer.b, front);
     count_covered(keep_uncovered(pair, answer.depth, AnswerPoints::to_be_made, points), buffers);
     patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
   }
-  if (one_sided) add_fronts(a, question, core, buffers, patches);
+  add_fronts(a, question, core, buffers, patches);
   return true;
 }
 

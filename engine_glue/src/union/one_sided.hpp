@@ -22,8 +22,16 @@ class OneSided {
   /// @return whether the answer's own contact counts
   bool admit(const PairAnswer& answer, const Vec3& front, int triangle);
 
+  /// The body stands through or behind a triangle that it is to leave by its front.
+  void add_behind(int triangle, const Vec3& front) { behind_.push_back({triangle, front}); }
+
   /// Of a contact with the front of a triangle, found another way: by this translation of A it ends.
   void add_way(const Vec3& way) { ways_.push_back(way); }
+
+  /// The same of an answer that counts.
+  void add_way_of(const PairAnswer& answer) {
+    if (answer.depth.contact == ContactClass::overlapping) add_way(answer.depth.depth * answer.depth.normal);
+  }
 
   struct Behind {
     int triangle;

@@ -51,6 +51,9 @@ struct BulletSolverSettings {
   /// Whether the contact algorithm takes the triangles of a mesh or heightfield and the children of a compound as one
   /// body: contacts with edges and faces inside of it are dropped (install.hpp). false: each piece is alone.
   bool unions_as_one = true;
+  /// By default a mesh or heightfield is a sheet with two sides, and each pair remembers the side that its body came
+  /// from: also a thin body stays there. This setting is for bodies that come from nowhere, since they start inside of
+  /// a solid or a host puts them there.
   /// With unions_as_one: a mesh or heightfield is the surface of a solid, and not a sheet. A triangle's front is where
   /// its corners run counter-clockwise (of a heightfield, up). A body in front, or across an edge, meets it as ever;
   /// one that stands through it, however far, leaves by the front; one that is behind it without touching it meets

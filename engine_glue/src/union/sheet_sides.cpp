@@ -1,0 +1,129 @@
+#include "union/sheet_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pd/bullet/scalar.hpp"
+
+namespace pd::detail {
+
+namespace {
+
+/// cos 25 degrees: triangles of nearly one direction, and answers that lead off a triangle by its sides.
+constexpr double kOfOneWay = 0.9;
+/// cos 60 degrees: an answer that leads off a triangle by one of its edges, whose other side may be next.
+constexpr double kOverEdge = 0.5;
+/// Of the way that a body comes in a step at its speed: who has come farther was put there by the host.
+constexpr double kPutThere = 3;
+/// Of the gap up to which there are contacts: triangles that lie so far off a plane are not beside it.
+constexpr double kBeside = 4;
+
+/// Whether a way from one side of a triangle's plane to the other leads through the triangle.
+bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
+  const Vec3 corner = to_pd(met.corners[0]);
+  const double before = normal.dot(from - corner), after = normal.dot(to - corner);
+  if (!(before * after < 0)) return false;
+  const Vec3 place = from + before / (before - after) * (to - from);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 begin = to_pd(met.corners[i]), end = to_pd(met.corners[i < 2 ? i + 1 : 0]);
+    if ((end - begin).cross(place - begin).dot(normal) < 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void SheetSides::begin(const SheetMemory& memory) {
+  memory_ = &memory;
+  fresh_.clear();
+  poses_.clear();
+}
+
+void SheetSides::enter(int child, const btTransform& pose, const Pose& mesh, const Vec3& middle, double way,
+                       double reach) {
+  first_of_child_ = fresh_.size();
+  mesh_ = mesh;
+  reach_ = reach;
+  pose_ = last_pose_ = pose;
+  poses_.push_back({child, pose});
+  const auto last = std::find_if(memory_->poses.begin(), memory_->poses.end(),
+                                 [&](const SheetMemory::LastPose& other) { return other.child == child; });
+  known_ = last != memory_->poses.end();
+  if (known_) last_pose_ = last->pose;
+  const Vec3 now = mesh_.rotation().transpose() * (middle - mesh_.translation());
+  before_ = before(middle);
+  if ((now - before_).norm() > kPutThere * way + reach) {
+    known_ = false;
+    last_pose_ = pose;
+    before_ = now;
+  }
+  fast_ = known_ && way > reach;
+}
+
+Vec3 SheetSides::before(const Vec3& place) const {
+  const Vec3 local = mesh_.rotation().transpose() * (place - mesh_.translation());
+  return known_ ? to_pd(last_pose_ * pose_.invXform(to_bullet(local))) : local;
+}
+
+Vec3 SheetSides::beside(std::span<const KnownFront> fronts, const Vec3& normal, const Vec3& corner) const {
+  Vec3 best = Vec3::Zero();
+  double most = kOfOneWay;
+  for (const KnownFront& known : fronts) {
+    const double cosine = known.front.dot(normal);
+    if (std::abs(cosine) <= most || std::abs(known.front.dot(corner) - known.level) > kBeside * reach_) continue;
+    most = std::abs(cosine);
+    best = cosine > 0 ? normal : Vec3(-normal);
+  }
+  return best;
+}
+
+Vec3 SheetSides::front_of(std::uint64_t triangle, const Vec3& normal) const {
+  if (!known_) return Vec3::Zero();
+  const std::vector<KnownFront>& old = memory_->fronts;
+  const auto found = std::lower_bound(old.begin(), old.end(), triangle,
+                                      [](const KnownFront& x, std::uint64_t n) { return x.triangle < n; });
+  if (found == old.end() || found->triangle != triangle) return Vec3::Zero();
+  const double cosine = found->front.dot(normal);
+  if (std::abs(cosine) <= kOfOneWay) return Vec3::Zero();
+  return cosine > 0 ? normal : Vec3(-normal);
+}
+
+Vec3 SheetSides::judge(std::uint64_t triangle, const Vec3& normal, const MetTriangle& met, const PairAnswer& answer) {
+  const Vec3 corner = to_pd(met.corners[0]);
+  const bool overlapping = answer.depth.contact == ContactClass::overlapping;
+  const bool within = answer.depth.signed_distance() <= reach_;
+  const double cosine = (mesh_.rotation() * normal).dot(answer.depth.normal);
+  if (std::abs(cosine) < kOverEdge || (!within && !fast_)) return Vec3::Zero();
+  const Vec3 side = cosine > 0 ? normal : Vec3(-normal);
+  Vec3 front = front_of(triangle, normal);
+  const bool was_over = !front.isZero();
+  if (!was_over && known_ && (overlapping || fast_)) {
+    const Vec3 came = before(answer.depth.witness_a);
+    const Vec3 now = mesh_.rotation().transpose() * (answer.depth.witness_a - mesh_.translation());
+    const bool comes_through = side.dot(now - came) > 0;
+    if (overlapping) {
+      front = beside(std::span(fresh_).subspan(first_of_child_), normal, corner);
+      if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, corner);
+      if (front.isZero() && comes_through && side.dot(before_ - corner) < 0) front = -side;
+    } else if (std::abs(cosine) > kOfOneWay && leads_through(came, now, normal, met)) {
+      front = -side;
+    }
+  }
+  const bool through = front.dot(side) < 0 && (overlapping || std::abs(cosine) > kOfOneWay);
+  if (!through && !within) return Vec3::Zero();
+  if (through) {
+    keep(triangle, front, corner);
+    return mesh_.rotation() * front;
+  }
+  if (std::abs(cosine) > kOfOneWay || was_over) keep(triangle, side, corner);
+  return Vec3::Zero();
+}
+
+void SheetSides::end(SheetMemory& memory) {
+  const auto earlier = [](const KnownFront& x, const KnownFront& y) { return x.triangle < y.triangle; };
+  if (!std::is_sorted(fresh_.begin(), fresh_.end(), earlier)) std::stable_sort(fresh_.begin(), fresh_.end(), earlier);
+  memory.fronts.swap(fresh_);
+  memory.poses.swap(poses_);
+}
+
+}  // namespace pd::detail

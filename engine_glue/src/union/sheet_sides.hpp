@@ -1,0 +1,74 @@
+/// @file
+/// From which side a body came to the triangles of a mesh.
+///
+/// A triangle has no inside: the shortest way off it leads to either side, whichever is nearer. A thin body whose
+/// middle has gone through in one step would be pushed on, triangle by triangle to other sides. So a pair remembers,
+/// for each triangle that a body stood over or touched in the last step, the side that it was on (its front), and
+/// contacts that lead back to the other side are replaced by the way out of the front (`along_front`). A triangle that
+/// is new takes after known ones of nearly its direction; where none is known, the way that the body has come since the
+/// last step decides. What leaves a triangle over an edge is free again, so that bodies go around the rim of a sheet as
+/// ever.
+#pragma once
+
+#include <LinearMath/btTransform.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pair/sheet_memory.hpp"
+#include "pair/solver_core.hpp"
+#include "shapes/met_triangle.hpp"
+
+namespace pd::detail {
+
+/// The sides of one step. Keeps its buffers, and nothing that an answer could depend on.
+class SheetSides {
+ public:
+  void begin(const SheetMemory& memory);
+  /// The child that is asked next.
+  /// @param pose    in the mesh's frame
+  /// @param middle  of the child, in the world
+  /// @param way     that its points may come in a step at its present speed, at most
+  /// @param reach   up to which gap there are contacts
+  void enter(int child, const btTransform& pose, const Pose& mesh, const Vec3& middle, double way, double reach);
+
+  /// Whether the child may have come through a triangle that is out of reach now.
+  [[nodiscard]] bool fast() const { return fast_; }
+
+  /// The front of a triangle, unit and in the mesh's frame, zero: not known.
+  /// @param normal  of the triangle, unit and in the mesh's frame
+  [[nodiscard]] Vec3 front_of(std::uint64_t triangle, const Vec3& normal) const;
+  /// Where the child's middle was in the last step, as far as it is known, else where it is. In the mesh's frame.
+  [[nodiscard]] const Vec3& middle_before() const { return before_; }
+
+  /// @param normal  of the triangle, unit and in the mesh's frame
+  /// @return the triangle's front, unit and in the world, where the answer leads to its back; else zero
+  Vec3 judge(std::uint64_t triangle, const Vec3& normal, const MetTriangle& met, const PairAnswer& answer);
+  /// The child is in front of a triangle.
+  void keep(std::uint64_t triangle, const Vec3& front, const Vec3& corner) {
+    fresh_.push_back({triangle, front, front.dot(corner)});
+  }
+
+  /// Puts what was kept in place of what was known.
+  void end(SheetMemory& memory);
+
+ private:
+  /// The front of a triangle that lies beside known ones.
+  [[nodiscard]] Vec3 beside(std::span<const KnownFront> fronts, const Vec3& normal, const Vec3& corner) const;
+  /// Where a material point of the child was in the last step, in the mesh's frame.
+  [[nodiscard]] Vec3 before(const Vec3& place) const;
+
+  const SheetMemory* memory_ = nullptr;
+  std::vector<KnownFront> fresh_;
+  std::vector<SheetMemory::LastPose> poses_;
+  std::size_t first_of_child_ = 0;  ///< among `fresh_`
+  bool known_ = false;              ///< where the child was
+  bool fast_ = false;
+  double reach_ = 0;
+  Pose mesh_;
+  btTransform pose_, last_pose_;
+  Vec3 before_ = Vec3::Zero();
+};
+
+}  // namespace pd::detail

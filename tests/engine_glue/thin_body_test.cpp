@@ -1,0 +1,142 @@
+// A thin body stays on the side of a mesh that it came from, and a sheet has two sides all the same.
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <btBulletDynamicsCommon.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <random>
+
+#include "engine_glue/bullet_world.hpp"
+#include "pd/bullet/install.hpp"
+
+namespace pd::test {
+namespace {
+
+enum class Sheet { two_triangles, cells, heightfield };
+
+btVector3 at(double x, double y, double z) { return {btScalar(x), btScalar(y), btScalar(z)}; }
+
+/// A sheet in the plane y = 0 and what moves over it.
+class OverASheet {
+ public:
+  explicit OverASheet(Sheet sheet, double half = 6) {
+    install(world_.world(), solver_);
+    btCollisionShape* shape = nullptr;
+    if (sheet == Sheet::heightfield) {
+      shape = world_.shape<btHeightfieldTerrainShape>(33, 33, heights_.data(), btScalar(1), btScalar(-1), btScalar(1),
+                                                      1, PHY_FLOAT, false);
+      shape->setLocalScaling(at(0.5, 1, 0.5));
+    } else {
+      const double cell = sheet == Sheet::cells ? 0.5 : 2 * half;
+      const int count = static_cast<int>(2 * half / cell);
+      for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < count; ++k) {
+          const double x = -half + i * cell, z = -half + k * cell;
+          triangles_.addTriangle(at(x, 0, z), at(x, 0, z + cell), at(x + cell, 0, z + cell));
+          triangles_.addTriangle(at(x, 0, z), at(x + cell, 0, z + cell), at(x + cell, 0, z));
+        }
+      }
+      shape = world_.shape<btBvhTriangleMeshShape>(&triangles_, true);
+    }
+    shape->setMargin(btScalar(0.004));
+    world_.body(shape, 0, at(0, 0, 0))->setFriction(btScalar(0.7));
+  }
+
+  /// A plate of 2 x 0.03 x 2 m, whose lowest corner is at a height.
+  btRigidBody* plate(const btQuaternion& turn, double height) {
+    const btVector3 half = at(1, 0.015, 1);
+    const auto margin = btScalar(0.004);
+    const btTransform turned(turn, at(0.3, 0, -0.2));
+    const btVector3 reach = turned.getBasis().absolute() * half;
+    btRigidBody* const body = world_.body(box_hull(world_, half - btVector3(margin, margin, margin), margin), 60,
+                                          btTransform(turn, at(0.3, height + static_cast<double>(reach.y()), -0.2)));
+    body->setFriction(btScalar(0.7));
+    body->setActivationState(DISABLE_DEACTIVATION);
+    return body;
+  }
+  void step(int count) {
+    for (int i = 0; i < count; ++i) world_.world().stepSimulation(btScalar(1) / 60, 0);
+  }
+  BulletWorld& world() { return world_; }
+
+ private:
+  BulletPenetrationDepthSolver solver_;
+  std::array<float, 33 * 33> heights_{};
+  btTriangleMesh triangles_;
+  BulletWorld world_;
+};
+
+double height_of(const btRigidBody& body) { return static_cast<double>(body.getWorldTransform().getOrigin().y()); }
+
+TEST(ThinBody, NoneFallsThroughAMesh) {
+  for (const Sheet sheet : {Sheet::two_triangles, Sheet::cells, Sheet::heightfield}) {
+    for (const double drop : {0.05, 1.0}) {
+      int lost = 0;
+      for (unsigned start = 0; start < 20; ++start) {
+        std::mt19937 random(start);
+        std::uniform_real_distribution<double> share(-1, 1);
+        const auto next = [&] { return btScalar(share(random)); };
+        btQuaternion turn(next(), next(), next(), next());
+        turn.normalize();
+        OverASheet scene(sheet);
+        const btRigidBody* const body = scene.plate(turn, drop);
+        scene.step(240);
+        lost += height_of(*body) < -0.2 ? 1 : 0;
+      }
+      EXPECT_EQ(lost, 0) << static_cast<int>(sheet) << ", dropped " << drop << " m";
+    }
+  }
+}
+
+/// The side is where the body came from, and neither that of the triangles' corners nor up.
+TEST(ThinBody, ComesFromBelowAsWell) {
+  for (const Sheet sheet : {Sheet::two_triangles, Sheet::cells, Sheet::heightfield}) {
+    OverASheet scene(sheet);
+    scene.world().world().setGravity(at(0, 9.81, 0));
+    const btRigidBody* const body = scene.plate(btQuaternion(at(1, 0, 0.3).normalized(), btScalar(0.2)), -1);
+    scene.step(240);
+    EXPECT_NEAR(height_of(*body), -0.019, 0.01) << static_cast<int>(sheet);
+  }
+}
+
+/// What goes around the rim of a sheet is on its other side then.
+TEST(ThinBody, GoesAroundARim) {
+  OverASheet scene(Sheet::cells, 1);
+  btRigidBody* const ball = scene.world().body(scene.world().shape<btSphereShape>(btScalar(0.1)), 1, at(0.8, 0.11, 0));
+  ball->setActivationState(DISABLE_DEACTIVATION);
+  scene.world().world().setGravity(at(0, 0, 0));
+  ball->setGravity(at(0, 0, 0));
+  // Over the rim, down, back below it, and up against the sheet.
+  const auto move = [&](const btVector3& velocity, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      ball->setLinearVelocity(velocity);
+      scene.step(1);
+    }
+  };
+  move(at(2, -0.1, 0), 16);
+  move(at(0, -2, 0), 8);
+  move(at(-2, 0, 0), 24);
+  move(at(0, 0.5, 0), 60);
+  EXPECT_NEAR(height_of(*ball), -0.104, 0.02);
+  EXPECT_LT(static_cast<double>(ball->getWorldTransform().getOrigin().x()), 0.8);
+}
+
+/// A host may put a body to the other side.
+TEST(ThinBody, StaysWhereTheHostPutsIt) {
+  OverASheet scene(Sheet::cells);
+  btRigidBody* const body = scene.plate(btQuaternion::getIdentity(), 0.01);
+  scene.step(60);
+  EXPECT_NEAR(height_of(*body), 0.019, 0.005);
+  btTransform below = body->getWorldTransform();
+  below.getOrigin().setY(btScalar(-0.2));
+  body->setWorldTransform(below);
+  body->setInterpolationWorldTransform(below);
+  body->setLinearVelocity(at(0, 0, 0));
+  scene.step(30);
+  EXPECT_LT(height_of(*body), -0.5);
+}
+
+}  // namespace
+}  // namespace pd::test
