@@ -1,5 +1,5 @@
 /// @file
-/// What a Bullet world says of its contacts, recorded for `pdepth audit`: one line, in any world, with any solver.
+/// Records the contacts of a Bullet world for `pdepth audit`: one object, in any world, with any solver.
 ///
 ///   pd::ContactRecorder recorder(world, "contacts.jsonl");
 ///
@@ -36,9 +36,9 @@ struct ContactRecorderSettings {
 /// A is the manifold's first body.
 ///
 /// Shapes are what Bullet's narrow phase means by them (`shape_conversion.hpp`); boxes are sharp where Bullet takes
-/// them so: against planes (boxes of the plane and scaled ones, too), against boxes under Bullet's own box/box
-/// algorithm or ours, and as children of compounds under ours (`BulletSolverSettings::unions_as_one`). A child or
-/// triangle is judged as if it were alone, although our contacts are those of the whole. A sphere meets a triangle
+/// them so. That is against planes (boxes of the plane and scaled ones, too), against boxes under Bullet's own
+/// box/box algorithm or ours, and as children of compounds under ours (`BulletSolverSettings::unions_as_one`). A child
+/// or triangle is judged as if it were alone, although our contacts are those of the whole. A sphere meets a triangle
 /// under Bullet's own algorithm for these without the mesh's margin. The trial steps of a `RollbackStepper` are steps,
 /// too, and are recorded.
 ///

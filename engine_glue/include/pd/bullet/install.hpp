@@ -15,11 +15,11 @@ enum class BulletContacts {
   persistent,  ///< Bullet's convex-convex algorithm (GJK, one point a step) with our solver for what penetrates
 };
 
-/// Every pair of convex shapes of the world, in both of the dispatcher's tables, and (one_shot) in that of contacts
-/// every convex shape and compound against a mesh or heightfield: box/box, sphere and capsule pairs, the convex
-/// children of compounds, and the triangles of meshes and heightfields included; and against a `btStaticPlaneShape`,
-/// all of whose contact points are there from the first step. Works at any time, also between steps: pairs that have an
-/// algorithm already lose it and get a new one (with their contact points) at the next step.
+/// Takes every pair of convex shapes of the world, in both of the dispatcher's tables: box/box, sphere and capsule
+/// pairs included. With `one_shot` it also takes, in the table of contacts, every convex shape and compound against a
+/// mesh, heightfield or `btStaticPlaneShape`. All contact points on a plane are there from the first step. Works at any
+/// time, also between steps: pairs that have an algorithm already lose it and get a new one (with their contact points)
+/// at the next step.
 ///
 /// Not covered, because Bullet decides without asking the tables: soft bodies, ray and sweep queries
 /// (`convexSweepTest`; use `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the
@@ -35,17 +35,17 @@ enum class BulletContacts {
 /// | hulls, point clouds, triangles, cones | rounded by the margin, which lies outside | the same |
 /// | spheres, capsules, multispheres | exact; the margin is the (least) radius | the same |
 ///
-/// Meshes, heightfields and compounds are one body each (one_shot; `BulletSolverSettings::unions_as_one`): a contact
-/// with an edge or face that other triangles or children cover, as far as the bodies move in a step, is dropped, or
-/// turned to the nearest facet of the same piece that is not covered. Compounds that are deep in each other leave by
-/// the shortest way of the whole, within a budget. Flush children, seams that meet up to 1e-7 and T-junctions are flat;
-/// steps, valleys and corners keep every wall. Children of compounds are btBoxShapes without margin there: rounded,
-/// flush boxes would have grooves between them. Separate bodies that lie flush, and children without flat faces, are
-/// not looked at. Contacts of a mesh, heightfield (of triangles; not GImpact or SDF) or compound (of convex children
-/// with exact form) are chosen from all its pieces together, up to four for each of up to eight directions, each
-/// direction in a manifold of its own, and begin at the breaking threshold from the surface, margins included.
-/// Triangles without area or with corners that are no numbers are left out and counted; `pd::check_mesh`
-/// (mesh_check.hpp) finds them, and what Bullet would read past, beforehand.
+/// Meshes, heightfields and compounds are one body each (one_shot; `BulletSolverSettings::unions_as_one`). A contact
+/// with an edge or face may be covered by other triangles or children, as far as the bodies move in a step. Such a
+/// contact is dropped, or turned to the nearest facet of its piece that is not covered. Compounds that are deep in each
+/// other leave by the shortest way of the whole, within a budget. Flush children, seams that meet up to 1e-7 and
+/// T-junctions are flat; steps, valleys and corners keep every wall. Children of compounds are btBoxShapes without
+/// margin there: rounded, flush boxes would have grooves between them. Separate bodies that lie flush, and children
+/// without flat faces, are not looked at. Contacts of a mesh, heightfield (of triangles; not GImpact or SDF) or
+/// compound (of convex children with exact form) are chosen from all its pieces together. There are up to four for each
+/// of up to eight directions, each direction in a manifold of its own. They begin at the breaking threshold from the
+/// surface, margins included. Triangles without area or with corners that are no numbers are left out and counted;
+/// `pd::check_mesh` (mesh_check.hpp) finds them, and what Bullet would read past, beforehand.
 ///
 /// A world that steps (btDynamicsWorld) gets an action (`addAction`) that tells the solver when a step has ended;
 /// shapes are compared with what they were converted from once a step (shape_cache.hpp).
@@ -54,7 +54,7 @@ enum class BulletContacts {
 bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 
-/// The same for a dispatcher that has no world yet. Its shapes are compared at every pair.
+/// Installs the solver in a dispatcher that has no world yet. Shapes are then compared at every pair.
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 
@@ -64,7 +64,7 @@ void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& so
 /// @return false, and nothing changed, where the solver is not installed in this world's dispatcher.
 bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver);
 
-/// What `prepare` did.
+/// The counts of `prepare`.
 struct PreparedShapes {
   int shapes = 0;        ///< convex shapes of the world's bodies, children of compounds included, each counted once
   int without_form = 0;  ///< of those: shapes that `to_convex_shape` refuses, which Bullet's own solver answers

@@ -48,8 +48,8 @@ struct BulletSolverSettings {
   bool (*takes_pair)(const btCollisionObject& a, const btCollisionObject& b, void* user) = nullptr;
   /// Handed to both.
   void* user = nullptr;
-  /// Whether the contact algorithm takes the triangles of a mesh or heightfield and the children of a compound as one
-  /// body: contacts with edges and faces inside of it are dropped (install.hpp). false: each piece is alone.
+  /// True: the contact algorithm takes the triangles of a mesh or heightfield and the children of a compound as one
+  /// body, and drops contacts with edges and faces inside of it (install.hpp). False: each piece is alone.
   bool unions_as_one = true;
   /// By default a mesh or heightfield is a sheet with two sides, and each pair remembers the side that its body came
   /// from: also a thin body stays there. This setting is for bodies that come from nowhere, since they start inside of
@@ -66,7 +66,7 @@ struct BulletSolverSettings {
   static void print_warning(const char* line, void* user);
 };
 
-/// What a solver has done so far.
+/// Counts of a solver since it began.
 struct BulletSolverStatistics {
   std::int64_t calls = 0;        ///< pairs asked for, by Bullet's detector or by the contact algorithm
   std::int64_t overlapping = 0;  ///< answers by class
@@ -90,10 +90,11 @@ struct BulletSolverStatistics {
   std::int64_t skipped_triangles = 0;
   /// Pairs of bodies with compounds, deep in each other, that were answered as whole unions.
   std::int64_t deep_unions = 0;
-  /// The same, left to their pieces since the whole would take more than its budget of pairs or facets, or lately did.
+  /// Deep pairs that were left to their pieces, because the whole would take more than its budget of pairs or facets,
+  /// or lately did.
   std::int64_t deep_unions_left = 0;
-  /// Of `deep_unions`, those led out by a way that is at most half as long again as the shortest; the others by the
-  /// shortest.
+  /// Those among `deep_unions` that were led out by a way that is at most half as long again as the shortest. The
+  /// others took the shortest way.
   std::int64_t deep_unions_nearly = 0;
 };
 
@@ -120,7 +121,7 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
 
 #if __cplusplus >= 201703L
   /// The full answer for two posed Bullet shapes as the contact algorithm sees them (two btBoxShapes sharp, see
-  /// install.hpp), in the frame of the transforms; empty where a shape has no exact form or a transform is not finite.
+  /// install.hpp), in the frame of the transforms. Empty where a shape has no exact form or a transform is not finite.
   /// `warm`: the memory of this pair, or nullptr.
   [[nodiscard]] std::optional<BulletPairAnswer> query(const btConvexShape& a, const btTransform& transform_a,
                                                       const btConvexShape& b, const btTransform& transform_b,

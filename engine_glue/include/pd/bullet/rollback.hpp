@@ -2,8 +2,9 @@
 /// Steps that end at the first contact instead of inside it.
 ///
 /// Bullet looks for contacts at the start of a step and then moves; fast bodies end the step deep inside each other, or
-/// past each other, and no contact tells. Here a step is tried, the motion that it made is searched for first contacts
-/// (`time_of_impact`), and where there is one the state is restored and advanced to just before it; Bullet then meets
+/// past each other, and no contact tells. Here a step is tried, and the motion that it made is searched for first
+/// contacts (`time_of_impact`). Where there is one, the state is restored and advanced to just before it. Bullet then
+/// meets
 /// the pair at distance about 0 and answers with its own impulse. The rest of the step follows the same way.
 ///
 /// What is watched: convex shapes, compounds, meshes, heightfields and planes (their triangles that a swept box meets),
@@ -41,8 +42,8 @@ struct RollbackSettings {
   /// times that part.
   double least_part = 1.0 / 4096;
   /// Bodies that no contact and no joint touches in a step, or part of one, move by the law of free flight: the
-  /// parabola of the forces on them, and the turning of a body without torque, of which Bullet's own steps are the
-  /// first order
+  /// parabola of the forces on them, and the turning of a body without torque. Bullet's own steps are the first order
+  /// of it
   /// (`src/free_flight.hpp`). A ball dropped from 1 m is where Galilei has it, g h^2 / 2 a step above Bullet's, and
   /// comes back as high. False: Bullet's own motion throughout.
   bool exact_flight = true;
@@ -87,7 +88,7 @@ class RollbackStepper {
   RollbackStepper(const RollbackStepper&) = delete;
   RollbackStepper& operator=(const RollbackStepper&) = delete;
 
-  /// Advances the world by `step` > 0 seconds, stopping at first contacts on the way: in place of
+  /// Advances the world by `step` > 0 seconds, stopping at first contacts on the way. It stands in place of
   /// `stepSimulation(step, 0)`, which it equals bit for bit where nothing meets and nothing is in flight, or
   /// `exact_flight` is off.
   ///
@@ -95,18 +96,19 @@ class RollbackStepper {
   /// coordinates) that was apart whenever a part of the step began. Pairs in contact then (nearer than 2.25 gaps) are
   /// Bullet's, and at most 2 `contact_slop` deeper than when the step began, or than 0. Excepted are steps that report
   /// `least_parts` (up to the relative speed times such a part) or `bounded` (their rest is made in one piece). In
-  /// 180,000 steps of random rooms one of 8.4 million pairs was deeper for another reason, by .00002 m (README.md).
+  /// 180,000 steps of random rooms one of 8.4 million pairs was deeper for another reason, by 0.00002 m
+  /// (`rollback_law`).
   ///
-  /// Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken
-  /// per unit of time (`src/substep.hpp`), and where friction with restitution would add energy, as Bullet's law of
+  /// Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken per unit of
+  /// time (`src/rollback/substep.hpp`). Where friction with restitution would add energy, as Bullet's law of
   /// impact allows, the impact has so much less restitution that it does not (`src/impact_energy.hpp`). Time: Bullet's
-  /// own for each simulation step; a snapshot a part; a collision query or more for each pair whose swept boxes meet
+  /// own for each simulation step. A snapshot a part. A collision query or more for each pair whose swept boxes meet
   /// and that moves by more than the slop (in steps that are cut: 2.25 gaps).
   RollbackReport step(btScalar step);
 
-  /// As `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most `max_steps`, and
-  /// motion states moved on by the remainder, which is kept for the next call. The report sums up all steps; times of
-  /// contacts count from the first.
+  /// Advances like `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most
+  /// `max_steps`, and motion states moved on by the remainder, which is kept for the next call. The report sums up all
+  /// steps; times of contacts count from the first.
   RollbackReport step(btScalar time, int max_steps, btScalar fixed);
 
  private:

@@ -3,14 +3,14 @@
 ///
 /// Bullet tells nobody when a shape is scaled, edited or freed (and its address used again). So a look-up compares the
 /// shape's present fingerprint with that of its entry (`shape_fingerprint`: type, margin, scaling, every point) and
-/// converts afresh when they differ; a shape that died is never read, and its entry leaves once the table is full or by
+/// converts afresh when they differ. A shape that died is never read, and its entry leaves once the table is full or by
 /// `forget`. A full table is looked through from one end to the other, a few entries for each new one: entries that
 /// nobody has asked for since the last look go, and the others stay. So the table grows with the shapes of a world,
-/// shrinks after it, and each new entry takes constant time. Shapes of the same fingerprint share one body: a wall of equal bricks is
-/// converted once, and its queries read one body's memory. A fingerprint has 64 bits; an edit or another shape that has
-/// the same one by chance is not noticed.
+/// shrinks after it, and each new entry takes constant time. Shapes of the same fingerprint share one body: a wall of
+/// equal bricks is converted once, and its queries read one body's memory. A fingerprint has 64 bits; an edit or
+/// another shape that has the same one by chance is not noticed.
 ///
-/// In a dynamics world that steps, all points are compared once a step and shape; further look-ups of the same step
+/// In a dynamics world that steps, all points are compared once a step and shape. Further look-ups of the same step
 /// compare what takes no time: type, margin, scaling, sizes, the number of points and where they lie
 /// (`shape_signature`). A point that is moved in place between two steps is so noticed at the next step. Where nobody
 /// tells of steps (a dispatcher without a dynamics world, this class alone) every look-up compares all points.

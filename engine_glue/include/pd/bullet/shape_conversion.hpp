@@ -1,5 +1,5 @@
 /// @file
-/// What a Bullet shape means as a convex body: its core (Bullet's support without margin) swept by a ball of its
+/// The convex body that a Bullet shape means: its core (Bullet's support without margin) swept by a ball of its
 /// margin.
 ///
 /// Bullet's narrow phase sees `localGetSupportVertexNonVirtual(d) = core(d) + margin * d/|d|`, so the body is the

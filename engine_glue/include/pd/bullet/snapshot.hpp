@@ -2,9 +2,9 @@
 /// The state of a Bullet world between two steps, saved and restored so that a replay gives the same bits.
 ///
 /// Transforms and velocities are not enough (replays were up to 0.115 m off): a step also reads last step's contact
-/// points with their impulses, push and turn velocities, interpolation state, forces, activation, the constraint
-/// solver's random seed, and the multibodies' joints. The order of the manifolds matters too, since the solver works
-/// them in that order.
+/// points with their impulses, push and turn velocities, interpolation state and forces. It reads activation, the
+/// constraint solver's random seed, and the multibodies' joints, too. The order of the manifolds matters too, since the
+/// solver works them in that order.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -13,7 +13,7 @@
 
 namespace pd {
 
-/// What came of `BulletSnapshot::restore`.
+/// The outcome of `BulletSnapshot::restore`.
 enum class Restored : unsigned char {
   yes,
   objects_differ,      ///< a collision object was added to the world or removed from it
@@ -30,8 +30,8 @@ const char* message_of(Restored restored);
 /// contact points. The broadphase's trees and pairs belong to it (of btDbvtBroadphase; other broadphases are updated to
 /// the restored poses, so that pairs found later may come in another order). Bullet's trees follow the addresses of
 /// their nodes: where a body fell asleep or woke in between, a later pair may come in another order too. A compound's
-/// children have a manifold each, made and dropped in an order that Bullet keeps nowhere: worlds with compounds come
-/// back with all their contact points, but where such a manifold is made or dropped in the replayed steps, the last
+/// children have a manifold each, made and dropped in an order that Bullet keeps nowhere. Worlds with compounds come
+/// back with all their contact points. But where such a manifold is made or dropped in the replayed steps, the last
 /// bits may differ.
 ///
 /// Not saved: the remainder of time that `stepSimulation(h, n > 0)` carries, the inner impulses of joints beyond their

@@ -27,7 +27,7 @@ struct WorldQuerySettings {
 /// An object that a shape meets or is nearest to.
 struct WorldHit {
   const btCollisionObject* object = nullptr;
-  /// Of meshes and heightfields Bullet's numbers of the triangle, of compounds -1 and the child's number (of nested
+  /// For meshes and heightfields Bullet's numbers of the triangle, for compounds -1 and the child's number (of nested
   /// ones the outermost child's); else -1, -1.
   int part = -1;
   int index = -1;
@@ -38,7 +38,8 @@ struct WorldHit {
 };
 
 struct SweepHit : WorldHit {
-  /// Of the way from `from` to `to`: nothing is met in [0, fraction), proved. 0 where the shape overlaps at the start.
+  /// Share of the way from `from` to `to`: nothing is met in [0, fraction), proved. 0 where the shape overlaps at the
+  /// start.
   double fraction = 1;
 };
 
@@ -58,12 +59,12 @@ struct DistanceResult {
 /// (`updateAabbs`, or a step), as for Bullet's own queries. Objects without contact response are asked, too.
 /// @return an error where `shape` has no exact body; hits with points, normal and distance as of `SweepHit`.
 /// Time: a time of impact (`pd/contact/time_of_impact.hpp`, whose proof this is) for each convex piece, and for each
-/// triangle of a mesh, that meets the box of the whole way; without a cache a conversion of each.
+/// triangle of a mesh, that meets the box of the whole way. Without a cache each is converted, too.
 [[nodiscard]] Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& shape,
                                                const btTransform& from, const btTransform& to,
                                                const WorldQuerySettings& settings = {});
 
-/// The same for Bullet's callbacks, with `convexSweepTest`'s contract: `callback.needsCollision` decides who is asked
+/// Sweeps for Bullet's callbacks, with `convexSweepTest`'s contract: `callback.needsCollision` decides who is asked
 /// (its filters by default), and `addSingleResult` gets each object's first hit below `m_closestHitFraction`, normal in
 /// the world. The settings' filters are not used.
 /// @return how many objects are unanswered.

@@ -1,6 +1,6 @@
 /// @file
-/// What one pair of unions of convex parts keeps between frames: the pair of parts that told their class, the way out,
-/// and which P_ij held which cube of translations.
+/// The memory of one pair of unions of convex parts between frames: the pair of parts that told their class, the way
+/// out, and which P_ij held which cube of translations.
 ///
 /// Nothing in it is trusted: every cube, pair and placement is judged at the present poses, so that a warm answer
 /// carries the same proof as a cold one.

@@ -1,5 +1,5 @@
 /// @file
-/// Where two bodies touch, as at most four pairs of points: the two faces that face each other, intersected.
+/// The contact of two bodies as at most four pairs of points: the two faces that face each other, intersected.
 ///
 /// Let n be the answer's normal (A leaves B along n). The face of A that looks along -n and the face of B that looks
 /// along n are projected on the plane across n and intersected there. Each corner of the intersection is lifted back

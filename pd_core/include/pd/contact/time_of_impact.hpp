@@ -9,9 +9,10 @@
 ///     s(t) >= linear interpolation - (t - t0) (t1 - t) / 2 * (|omega_a|^2 r_a + |omega_b|^2 r_b),
 ///
 /// which costs two supports a body for a whole span of time. Without rotation s is concave and the span may have any
-/// length. n is the normal of the distance at the span's start. s is followed to where it has nearly vanished, and
-/// the next distance gives the next n. This is B. Mirtich's conservative advancement ("Impulse-based dynamic
-/// simulation", 1996), with a bound of second order in place of his of first, along E. Catto's separation functions
+/// length. The normal of the distance at the span's start is n. The function s is followed to where it has nearly
+/// vanished, and the next distance gives the next n. This is B. Mirtich's conservative advancement ("Impulse-based
+/// dynamic simulation", 1996), with a bound of second order in place of his of first, along E. Catto's separation
+/// functions
 /// ("Continuous collision", GDC 2013), with a proof in place of his root finding.
 #pragma once
 

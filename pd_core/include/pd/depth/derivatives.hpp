@@ -10,7 +10,7 @@
 ///
 /// where the least direction is unique and, for the rotations, the pair of witnesses is, too. Two parallel faces have
 /// the first and not the second: s has one-sided derivatives by rotations then, but none. Normal and witnesses are
-/// differentiated through the conditions that define them, as long as the same flats meet: each witness lies on the
+/// differentiated through the conditions that define them, as long as the same flats meet. Each witness lies on the
 /// flat of its face, the normal is across both flats, and smooth parts are curved.
 ///
 /// Danskin, "The theory of max-min, with applications", 1966 (envelope theorem).
@@ -78,8 +78,8 @@ struct TieTolerance {
 /// Doubles show a plane's distance to about 1e-15 L, poses that were rounded once hold parallel faces to 1e-16: a
 /// thousand times that. A facet through which the origin's foot lies farther than 1e-6 L inside its rim is told apart.
 inline constexpr TieTolerance kPolytopeTie{1e-12, 1e-6, 1e-6};
-/// A depth within (1 + 1e-12) of the least leaves the normal of a curved body open by sqrt(2e-12) radians. 1e-4
-/// radians from it a body that curves like a ball of L / 500 is a tie deeper. Faces that lean by 1e-5 radians count as
+/// A depth within (1 + 1e-12) of the least leaves the normal of a curved body open by sqrt(2e-12) radians. A body
+/// 1e-4 radians from it that curves like a ball of L / 500 is a tie deeper. Faces that lean by 1e-5 radians count as
 /// across the normal, where curved ones have points up to 1e-5 L aside.
 inline constexpr TieTolerance kCurvedTie{1e-11, 1e-4, 1e-4};
 

@@ -1,5 +1,5 @@
 /// @file
-/// Whether two convex polytopes meet, by linear programming: the test that [A] section 2 and [D] section 5 put before
+/// Decides by linear programming if two convex polytopes meet: the test that [A] section 2 and [D] section 5 put before
 /// every depth.
 ///
 /// The unknown is a plane {x : <n, x> = c} with <n, a> <= c <= <n, b> for every vertex a of A and b of B. These are m

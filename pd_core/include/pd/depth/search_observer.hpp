@@ -1,5 +1,5 @@
 /// @file
-/// What an expanding polytope does, step by step, for whoever wants to see a search: to draw it, to write it to a file,
+/// Shows an expanding polytope step by step to whoever wants to see a search: to draw it, to write it to a file,
 /// to find out why it took long.
 ///
 /// Given to `observe_searches`. A search that is observed answers the same bits; one that is not pays a comparison a

@@ -42,8 +42,8 @@ class Body {
  public:
   /// The hull of n points.
   /// @return ErrorCode::too_few_points (n <= D), non_finite or out_of_range ("points[i]"), not_full_dimensional. The
-  /// last one means that all points lie in a hyperplane, or within 2^-40 of the largest distance between points of it
-  /// (an aspect at which doubles no longer tell a body from a flat one). O(n) time, a few passes
+  /// last one means that all points lie in a hyperplane, or within 2^-40 of the largest distance between points of
+  /// it. At this aspect doubles no longer tell a body from a flat one. O(n) time, a few passes
   /// (`enclosing_ellipsoid.hpp`).
   static Expected<Body> from_points(std::vector<Vector<D>> points);
 

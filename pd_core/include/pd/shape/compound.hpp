@@ -4,9 +4,9 @@
 /// A part stands where its pose in the compound's frame puts it, and the compound where its own pose puts that:
 /// x -> R (R_part x + t_part) + t. The composition is exact where one of the two rotations is the identity and the
 /// translations combine without rounding. This is always so under the identity. It is so under any pose for parts
-/// that are only translated within the compound by a vector that their vertices take exactly, so a stack of boxes
-/// stays a stack of boxes when it is turned. Elsewhere the composed pose is rounded, each number once, and that pose is
-/// the body that all answers are about; posed alike, the same compound is always the same body.
+/// that are only translated within the compound by a vector that their vertices take exactly. A stack of boxes stays a
+/// stack of boxes when it is turned. Elsewhere the composed pose is rounded, each number once, and that pose is the
+/// body that all answers are about; posed alike, the same compound is always the same body.
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000, open
 /// problem (ii).

@@ -2,7 +2,7 @@
 /// Finite sets of directions that cover the unit sphere: every direction is within the covering radius of one of them.
 ///
 /// A grid for a relative error delta has covering radius arccos(1 / (1 + delta)). Then a convex surface around the
-/// origin, at distance pi along the nearest grid direction's neighbour, is met within (1 + delta) pi along the grid
+/// origin, at distance pi along the nearest grid direction's neighbour, is met within (1 + delta) pi along the grid.
 /// ([A] Lemma 3.1, whose sqrt(delta) is a bound of this arc cosine's first term only).
 ///
 /// [A] Agarwal, Guibas, Har-Peled, Rabinovitch, Sharir, "Penetration depth of two convex polytopes in 3D", 2000.
