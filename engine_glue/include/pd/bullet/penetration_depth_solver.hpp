@@ -52,7 +52,7 @@ struct BulletSolverSettings {
   /// body, and drops contacts with edges and faces inside of it (install.hpp). False: each piece is alone.
   bool unions_as_one = true;
   /// By default a mesh or heightfield is a sheet with two sides, and each pair remembers the side that its body came
-  /// from: also a thin body stays there. This setting is for bodies that come from nowhere, since they start inside of
+  /// from: also a thin body nearly always stays there. This setting is for bodies that come from nowhere, since they start inside of
   /// a solid or a host puts them there.
   /// With unions_as_one: a mesh or heightfield is the surface of a solid, and not a sheet. A triangle's front is where
   /// its corners run counter-clockwise (of a heightfield, up). A body in front, or across an edge, meets it as ever;
