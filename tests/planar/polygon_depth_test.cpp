@@ -11,7 +11,6 @@
 #include "planar/polygon_oracle.hpp"
 #include "planar/small_polygons.hpp"
 #include "scenes/polygon_families.hpp"
-#include "scenes/polygon_families.hpp"
 
 namespace {
 
