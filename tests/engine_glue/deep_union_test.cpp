@@ -156,7 +156,9 @@ int steps_to_leave(bool ours, double x, double y, double z) {
   world.moving(plate, at(x, y, z), at(0, 0, 0));
   for (int step = 1; step <= 240; ++step) {
     world.step();
-    if (step == 1) EXPECT_GT(world.bullet.num_contacts(), 0);
+    if (step == 1) {
+      EXPECT_GT(world.bullet.num_contacts(), 0);
+    }
     if (world.bullet.least_distance() > -1e-3) return step;
   }
   return 1000;
