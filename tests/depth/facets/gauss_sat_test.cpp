@@ -239,7 +239,7 @@ TEST_P(SolidsOfFewFacets, PairsWithOpenSidesAreNoFartherThanTheDepth) {
     in.errors.fine_side_a = in.errors.fine_side_b = 0;
     EXPECT_EQ(in.nearest(nullptr, thin).pieces, certain);
   }
-  EXPECT_GT(more, is_middle(GetParam()) ? 10 : 30);
+  EXPECT_GT(more, is_middle(GetParam()) ? 5 : 30);  // in so many answers the widened errors leave sides open
 }
 
 bool same(const Feature& x, const Feature& y) { return x.kind == y.kind && x.first == y.first && x.second == y.second; }
