@@ -46,7 +46,7 @@ constexpr const char* kWholeLines[] = {
     R"({"id":1,"query":"decomposition","a":{"type":"box","half_extents":[1,1,1]},)"
     R"("b":{"type":"box","half_extents":[1,1,1]},"verify":true})",
     R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[4,0],[4,4],[0,4]],"holes":[[[1,1],[1,2],[2,2],[2,1]]]},)"
-    R"("q":{"outer":[[0,0],[1,0],[0,1]],"margin":0.25},"placements":[[1,1],[9,9]],"direction":[1,0],)"
+    R"("q":{"outer":[[0,0],[1,0],[0,1]]},"placements":[[1,1],[9,9]],"direction":[1,0],)"
     R"("complete":"straight","slots":true})",
     R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[4,0],[4,4],[0,4]]},"q":{"outer":[[0,0],[1,0],[0,1]]},)"
     R"("direction_set":[[1,0],[0,1]],"method":"explicit"})",
