@@ -8,7 +8,8 @@ set(wrong 0)
 # expect(<script> <file> <content> <text that the report has to hold; empty = the tree keeps the rules>)
 macro(expect script file content report)
   file(REMOVE_RECURSE ${WORK})
-  foreach(entry CMakeLists.txt README.md pyproject.toml CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff engine_glue/CMakeLists.txt
+  foreach(entry CMakeLists.txt README.md pyproject.toml CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff
+                SECURITY.md engine_glue/CMakeLists.txt
                 demos/CMakeLists.txt tests/CMakeLists.txt render/CMakeLists.txt pd_core/CMakeLists.txt)
     file(WRITE ${WORK}/${entry} "")
   endforeach()

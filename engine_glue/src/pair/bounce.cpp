@@ -1,5 +1,7 @@
 #include "pair/bounce.hpp"
 
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
 #include <algorithm>
 #include <typeinfo>
 
@@ -22,8 +24,11 @@ constexpr btScalar kStepsOut = 5;
 
 }  // namespace
 
-Bounce::Bounce(const btPersistentManifold& manifold, const btManifoldResult& result, btScalar seconds)
-    : seconds_(seconds) {
+StepTime time_of(const btDispatcherInfo& info) { return {info.m_timeStep, !(info.m_timeOfImpact > 0)}; }
+
+Bounce::Bounce(const btPersistentManifold& manifold, const btManifoldResult& result, const StepTime& time)
+    : seconds_(time.seconds) {
+  if (time.at_impact) return;
   const btCollisionObject& a = *manifold.getBody0();
   const btCollisionObject& b = *manifold.getBody1();
   const int flags = a.getCollisionFlags() | b.getCollisionFlags();
@@ -32,11 +37,11 @@ Bounce::Bounce(const btPersistentManifold& manifold, const btManifoldResult& res
   if (!told_ && !(restitution_ >= kLeastRestitution)) return;
   // A spring between the bodies, which the host asked for, has its own law.
   if ((flags & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) != 0) return;
-  if (!(seconds > 0) || result.m_closestPointDistanceThreshold > 0 || typeid(result) != typeid(btManifoldResult)) {
+  if (!(seconds_ > 0) || result.m_closestPointDistanceThreshold > 0 || typeid(result) != typeid(btManifoldResult)) {
     return;
   }
   possible_ =
-      a.hasContactResponse() && b.hasContactResponse() && motion_of(a, seconds, a_) && motion_of(b, seconds, b_);
+      a.hasContactResponse() && b.hasContactResponse() && motion_of(a, seconds_, a_) && motion_of(b, seconds_, b_);
 }
 
 Bounce::Approach Bounce::approach_of(btScalar distance, const btVector3& normal, const btVector3& place_a,

@@ -24,14 +24,27 @@
 #include "pair/impulse_trend.hpp"
 #include "shapes/body_motion.hpp"
 
+struct btDispatcherInfo;
+
 namespace pd::detail {
 
 struct FreshPoints;
 
+/// The length of a step. A `RollbackStepper` ends its parts where bodies meet, and Bullet's own restitution is exact
+/// there: it sets `btDispatcherInfo::m_timeOfImpact`, which a discrete world leaves at 1, to 0.
+struct StepTime {
+  btScalar seconds;
+  bool at_impact = false;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): most readers ask for the length alone.
+  operator btScalar() const { return seconds; }
+};
+[[nodiscard]] StepTime time_of(const btDispatcherInfo& info);
+
 class Bounce {
  public:
   /// @param manifold  whose bodies' order the points' normals follow
-  Bounce(const btPersistentManifold& manifold, const btManifoldResult& result, btScalar seconds);
+  Bounce(const btPersistentManifold& manifold, const btManifoldResult& result, const StepTime& time);
 
   /// False: neither body bounces, and nothing is to be done.
   [[nodiscard]] bool possible() const { return possible_; }

@@ -148,7 +148,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     }
   }
   if (own_boxes && StepReach::may_be_idle(fresh, threshold)) this_step().leave_out_idle(fresh);
-  manifold_.replace(fresh, info.m_timeStep, *result);
+  manifold_.replace(fresh, time_of(info), *result);
 }
 
 void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btCollisionObjectWrapper& of_a,

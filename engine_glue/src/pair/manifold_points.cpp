@@ -134,7 +134,8 @@ FreshPoints fresh_points(const ContactManifold& manifold) {
   return fresh;
 }
 
-void add_points(btPersistentManifold& manifold, const FreshPoints& found, btScalar seconds, btManifoldResult& result) {
+void add_points(btPersistentManifold& manifold, const FreshPoints& found, const StepTime& seconds,
+                btManifoldResult& result) {
   forget_parted(manifold);
   const Bounce bounce(manifold, result, seconds);
   FreshPoints fresh = found;

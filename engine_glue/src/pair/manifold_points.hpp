@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "pair/bounce.hpp"
 #include "pair/pair_registry.hpp"
 #include "pd/contact/manifold.hpp"
 
@@ -51,7 +52,7 @@ struct PointsOfStep {
   btPersistentManifold& manifold;
   PairMemory& memory;  ///< keeps the features
   const FreshPoints& fresh;
-  btScalar seconds;  ///< of the step
+  StepTime seconds;  ///< of the step
   btManifoldResult& result;
 };
 
@@ -62,6 +63,7 @@ void replace_points(const PointsOfStep& step, PointSurroundings& surroundings);
 
 /// Adds points to a manifold that other pairs write to as well.
 /// @param seconds of the step
-void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, btScalar seconds, btManifoldResult& result);
+void add_points(btPersistentManifold& manifold, const FreshPoints& fresh, const StepTime& seconds,
+                btManifoldResult& result);
 
 }  // namespace pd::detail

@@ -45,7 +45,7 @@ class OwnManifold {
     if (memory_) manifold_->clearManifold();
   }
   /// Puts this step's points in place of the last step's, or adds them to a shared one.
-  void replace(const FreshPoints& fresh, btScalar seconds, btManifoldResult& result) {
+  void replace(const FreshPoints& fresh, const StepTime& seconds, btManifoldResult& result) {
     if (!memory_) {
       add_points(*manifold_, fresh, seconds, result);
       return;

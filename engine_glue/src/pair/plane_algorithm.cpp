@@ -59,7 +59,7 @@ void PlaneAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
   FreshPoints fresh;
   if (find(body, plane, first, *result, fresh)) {
     bullets_->release();
-    manifold_.replace(fresh, info.m_timeStep, *result);
+    manifold_.replace(fresh, time_of(info), *result);
     return;
   }
   manifold_.clear();

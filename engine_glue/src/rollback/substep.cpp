@@ -123,7 +123,12 @@ void SubStepper::step_world(btScalar step) {
   world_.applyGravity();
   if (exact_flight_) flight_.take_forces();
   const HostActions::Aside aside(world_, actions_);
+  // Contact algorithms leave impacts to Bullet's restitution here (StepTime, pair/bounce.hpp).
+  btScalar& time_of_impact = world_.getDispatchInfo().m_timeOfImpact;
+  const btScalar saved = time_of_impact;
+  time_of_impact = 0;
   WorldStep::move(world_, step);
+  time_of_impact = saved;
 }
 
 void SubStepper::move_bodies(double from, double step, double gap, double slop) {

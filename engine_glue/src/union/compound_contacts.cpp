@@ -106,7 +106,7 @@ class CompoundContacts final : public UnionContacts {
   bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     ChildrenOfPoint around(question.result, question.a, children_a_, question.b, children_b_, pairs_);
-    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+    manifolds.replace(patches, question.time, question.result, around);
   }
 
  private:

@@ -85,7 +85,7 @@ class MeshContacts final : public UnionContacts {
   bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     PiecesOfPoint around(question, children_, triangles_);
-    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+    manifolds.replace(patches, question.time, question.result, around);
     if (!still_) remember_points(patches, manifolds.memory().standing);
   }
 
@@ -250,7 +250,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMem
 void MeshContacts::enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach) {
   const btTransform& pose = question.b.getWorldTransform();
   BodyMotion of_a, of_b;
-  const auto seconds = static_cast<btScalar>(question.seconds);
+  const btScalar seconds = question.time;
   const bool moves = motion_of(*question.a.getCollisionObject(), seconds, of_a) &&
                      motion_of(*question.b.getCollisionObject(), seconds, of_b);
   const btScalar speed = (of_a.velocity - of_b.velocity).length() + of_a.gained.length() +
@@ -279,8 +279,8 @@ bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, 
 }
 
 bool MeshContacts::may_come_to_rest(const UnionQuestion& question) {
-  const Vec3 way = question.seconds * (linear_velocity(*question.a.getCollisionObject()) -
-                                       linear_velocity(*question.b.getCollisionObject()));
+  const Vec3 way = static_cast<double>(question.time.seconds) * (linear_velocity(*question.a.getCollisionObject()) -
+                                                                 linear_velocity(*question.b.getCollisionObject()));
   return way.squaredNorm() <= static_cast<double>(question.threshold) * static_cast<double>(question.threshold);
 }
 

@@ -83,7 +83,7 @@ std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& 
   return {last_.data(), count};
 }
 
-void PatchManifolds::replace(Patches& patches, btScalar seconds, btManifoldResult& result,
+void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifoldResult& result,
                              PointSurroundings& surroundings) {
   btPersistentManifold& first = *manifolds_[0]->manifold;
   if (patches.empty()) {

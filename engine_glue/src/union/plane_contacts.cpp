@@ -46,7 +46,7 @@ class PlaneContacts final : public UnionContacts {
   bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     ChildOfPoint around(question, children_);
-    manifolds.replace(patches, static_cast<btScalar>(question.seconds), question.result, around);
+    manifolds.replace(patches, question.time, question.result, around);
   }
 
  private:

@@ -56,7 +56,7 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
     const std::uint64_t stamp = std::exchange(s.used, true) ? s.world.stamp() : 0;
     const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
-    const UnionQuestion question{one, other, static_cast<double>(info.m_timeStep), threshold, stamp, *result};
+    const UnionQuestion question{one, other, time_of(info), threshold, stamp, *result};
     s.patches.clear();
     if (s.contacts->find(question, s.world.core(), s.manifolds.memory(), s.patches)) {
       s.bullets.release();

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "pair/algorithm_shell.hpp"
+#include "pair/bounce.hpp"
 #include "pieces/asked_pieces.hpp"
 #include "union/patch_manifolds.hpp"
 #include "union/patches.hpp"
@@ -16,7 +17,7 @@ namespace pd::detail {
 struct UnionQuestion {
   const btCollisionObjectWrapper& a;
   const btCollisionObjectWrapper& b;
-  double seconds;      ///< of the step
+  StepTime time;
   btScalar threshold;  ///< up to which gap points are contacts
   std::uint64_t stamp;
   btManifoldResult& result;
@@ -27,7 +28,7 @@ struct UnionQuestion {
     return {piece_a,
             piece_b,
             {.threshold = static_cast<double>(threshold),
-             .seconds = seconds,
+             .seconds = static_cast<double>(time.seconds),
              .shapes = {core.cache, stamp},
              .near = buffers.near,
              .cover = buffers.cover,
