@@ -127,13 +127,13 @@ void compare(int points, bool pieces, unsigned seed, int& lasting) {
                    : 0;
     if (pieces) {
       Pieces together(at_once.result, true, step), apart(one_by_one.result, false, step);
-      detail::replace_points({at_once.manifold, at_once.memory, fresh, seconds, at_once.result}, together);
-      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result}, apart);
+      detail::replace_points({at_once.manifold, at_once.memory, fresh, {seconds}, at_once.result}, together);
+      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, {seconds}, one_by_one.result}, apart);
     } else {
       detail::PointSurroundings whole;
       OneByOne alone;
-      detail::replace_points({at_once.manifold, at_once.memory, fresh, seconds, at_once.result}, whole);
-      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, seconds, one_by_one.result}, alone);
+      detail::replace_points({at_once.manifold, at_once.memory, fresh, {seconds}, at_once.result}, whole);
+      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, {seconds}, one_by_one.result}, alone);
     }
     expect_equal(at_once, one_by_one);
     if (testing::Test::HasFatalFailure()) FAIL() << "step " << step;
