@@ -87,7 +87,8 @@ TEST(ThinBody, HardlyAnyFallsThroughAMesh) {
       }
       // On small triangles one start in twenty still goes through, with Bullet in double precision two.
       const int most = sizeof(btScalar) == sizeof(double) ? 2 : 1;
-      EXPECT_LE(lost, sheet == Sheet::two_triangles ? 0 : most) << static_cast<int>(sheet) << ", dropped " << drop << " m";
+      EXPECT_LE(lost, sheet == Sheet::two_triangles ? 0 : most)
+          << static_cast<int>(sheet) << ", dropped " << drop << " m";
     }
   }
 }
