@@ -52,12 +52,12 @@ struct BulletSolverSettings {
   /// body, and drops contacts with edges and faces inside of it (install.hpp). False: each piece is alone.
   bool unions_as_one = true;
   /// By default a mesh or heightfield is a sheet with two sides, and each pair remembers the side that its body came
-  /// from: also a thin body nearly always stays there. This setting is for bodies that come from nowhere, since they start inside of
-  /// a solid or a host puts them there.
-  /// With unions_as_one: a mesh or heightfield is the surface of a solid, and not a sheet. A triangle's front is where
-  /// its corners run counter-clockwise (of a heightfield, up). A body in front, or across an edge, meets it as ever;
-  /// one that stands through it, however far, leaves by the front; one that is behind it without touching it meets
-  /// nothing. Contact tests, sweeps and the search of a RollbackStepper take meshes as sheets all the same.
+  /// from: also a thin body nearly always stays there. This setting is for bodies that come from nowhere, since they
+  /// start inside of a solid or a host puts them there. With unions_as_one: a mesh or heightfield is the surface of a
+  /// solid, and not a sheet. A triangle's front is where its corners run counter-clockwise (of a heightfield, up). A
+  /// body in front, or across an edge, meets it as ever; one that stands through it, however far, leaves by the front;
+  /// one that is behind it without touching it meets nothing. Contact tests, sweeps and the search of a RollbackStepper
+  /// take meshes as sheets all the same.
   bool one_sided_meshes = false;
   /// Entries of the shape cache.
   std::size_t cache_capacity = 4096;
