@@ -28,7 +28,7 @@ class InputFile {
   /// False where the file cannot be opened; errno says why.
   [[nodiscard]] bool good() const { return descriptor_ >= 0; }
   [[nodiscard]] int descriptor() const { return descriptor_; }
-  /// Whether an output is the regular file that is read here, by whatever name: what is written would be read again.
+  /// True if an output is the regular file that is read here, by whatever name: what is written would be read again.
   [[nodiscard]] bool is_also(int output) const;
   [[nodiscard]] bool is_also(const std::string& output) const;
 

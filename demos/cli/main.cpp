@@ -74,7 +74,7 @@ std::string nearest_subcommand(const CLI::App& app, const std::string& word) {
   return nearest;
 }
 
-/// What was typed, `help X` as `X --help`.
+/// The words that were typed, with `help X` as `X --help`.
 std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words.empty() || words.front() != "help") return words;

@@ -58,7 +58,7 @@ class GltfBuffers {
   [[nodiscard]] GltfValues values(std::int64_t accessor, std::string_view type);
 
  private:
-  /// What an accessor, or a part of a sparse one, takes out of its view.
+  /// The bytes that an accessor, or a part of a sparse one, takes out of its view.
   struct Wanted {
     std::int64_t count = 0;
     std::int64_t element_bytes = 0;

@@ -8,7 +8,7 @@ namespace pd::query {
 
 namespace {
 
-/// What a person needs to know of the first thing that keeps a mesh from being convex; empty for a convex mesh.
+/// Tells a person the first thing that keeps a mesh from being convex; empty for a convex mesh.
 std::string reason_of(const MeshReport& report) {
   if (report.faces == 0) return "the file holds points and no faces";
   if (!report.closed()) return "the mesh has holes";

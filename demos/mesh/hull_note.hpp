@@ -18,12 +18,12 @@ struct HullNote {
   double times_as_large = 0;  ///< volume of the hull in volumes of the mesh; 0: the mesh encloses none
 };
 
-/// What keeps a mesh from being convex, in a few words; empty for a mesh that is.
+/// Says in a few words why a mesh is not convex; empty for a mesh that is.
 [[nodiscard]] std::string not_convex_because(const MeshPoints& mesh);
 
 /// Nothing where the file's faces are the boundary of its hull, to kMeshPrecision.
 [[nodiscard]] std::optional<HullNote> why_hull(const MeshPoints& mesh, const ConvexPolytope& hull);
-/// The same for a mesh whose report is there.
+/// Says it for a mesh whose report is there.
 [[nodiscard]] std::optional<HullNote> why_hull(const MeshReport& report, const ConvexPolytope& hull);
 
 /// Volume of a hull divided by the cube of `size`.

@@ -1,5 +1,5 @@
 /// @file
-/// What the readers of mesh formats share: vertices and faces being collected, and a cursor over text.
+/// The readers of mesh formats share this: vertices and faces being collected, and a cursor over text.
 #pragma once
 
 #include <algorithm>

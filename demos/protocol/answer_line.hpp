@@ -39,7 +39,7 @@ enum class Care : std::uint8_t {
 /// by an error object.
 [[nodiscard]] LineAnswer answer_line(std::string_view line, Session& session, const IdSeen& id_seen = {});
 
-/// The same depth, coarsely, as an answer that is `unreached`: two rays of a grid tell more than nothing. Nothing for
+/// A coarse depth as an answer that is `unreached`: two rays of a grid tell more than nothing. Nothing for
 /// other queries, and where the line cannot be answered.
 [[nodiscard]] std::optional<LineAnswer> answer_coarsely(std::string_view line, Session& session);
 

@@ -1,5 +1,5 @@
 /// @file
-/// What the command says when something is wrong.
+/// The words of the command when something is wrong.
 #pragma once
 
 #include <fmt/format.h>

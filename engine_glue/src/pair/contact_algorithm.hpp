@@ -29,7 +29,7 @@ class ContactAlgorithm final : public AlgorithmShell {
   btScalar calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo& info,
                                  btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;
-  /// Whether boxes that are children of compounds are taken without their margin.
+  /// True if boxes that are children of compounds are taken without their margin.
   [[nodiscard]] bool sharp_parts() const;
 
  private:

@@ -29,7 +29,7 @@ struct LastingPoints {
 [[nodiscard]] bool may_all_last(const btPersistentManifold& manifold, const PairMemory& memory,
                                 const FreshPoints& fresh, const btManifoldResult& result);
 
-/// Whether all new points have the old ones' features, wherever they are. Requires as many as there are.
+/// True if all new points have the old ones' features, wherever they are. Requires as many as there are.
 /// @param all  set to them
 [[nodiscard]] bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, LastingPoints& all);
 

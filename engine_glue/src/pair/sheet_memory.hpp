@@ -18,7 +18,7 @@ struct KnownFront {
   double level;            ///< of the triangle's plane along it
 };
 
-/// What a pair keeps from step to step.
+/// The memory that a pair keeps from step to step.
 struct SheetMemory {
   struct LastPose {
     int child;

@@ -37,7 +37,7 @@ class SolverInWorld {
   /// the stamp of all: shapes are compared more often than needed then, and never less.
   [[nodiscard]] std::uint64_t stamp() const { return stamp_.load(std::memory_order_relaxed); }
 
-  /// Whether the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
+  /// True if the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
   [[nodiscard]] bool takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const;
   /// The algorithm of the dispatcher's own configuration, for pairs that are left to it. Requires a
   /// btCollisionDispatcher.

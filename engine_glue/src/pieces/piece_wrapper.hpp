@@ -19,9 +19,9 @@ inline constexpr double kPoseRounding = sizeof(btScalar) == sizeof(float) ? 0x1p
   return pd::seam_slack(a, b, kPoseRounding);
 }
 
-/// Whether the shape behind the wrapper is one piece of several.
+/// True if the shape behind the wrapper is one piece of several.
 [[nodiscard]] bool is_piece(const btCollisionObjectWrapper& wrapper);
-/// Whether the shape behind the wrapper is a child of a compound.
+/// True if the shape behind the wrapper is a child of a compound.
 [[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
 
 }  // namespace pd::detail

@@ -13,7 +13,7 @@ class MultiBodyState {
  public:
   /// Saves every multibody of the world; none where it is no btMultiBodyDynamicsWorld.
   void save(btDiscreteDynamicsWorld& world);
-  /// Whether the world still has the saved multibodies, links and constraints.
+  /// True if the world still has the saved multibodies, links and constraints.
   [[nodiscard]] bool same(btDiscreteDynamicsWorld& world) const;
   /// Brings them back, the transforms of their colliders included. Bullet offers no access to the time that a multibody
   /// has been at rest: after `restore` it may fall asleep by the steps taken back earlier.

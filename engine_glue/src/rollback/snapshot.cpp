@@ -165,7 +165,7 @@ struct BulletSnapshot::State {
   State(btDiscreteDynamicsWorld& of, BulletPenetrationDepthSolver* installed) : world(of), solver(installed) {}
 
   void save();
-  /// Whether the world still has what was saved.
+  /// True if the world still has what was saved.
   [[nodiscard]] Restored compare_world() const;
 
   /// Puts the present manifolds into the saved order, those that the saved state does not know behind them.

@@ -1,5 +1,5 @@
 /// @file
-/// Whether a moving body stays apart from one that stands still, proved by supports along one direction.
+/// True if a moving body stays apart from one that stands still, proved by supports along one direction.
 ///
 /// Along a unit direction n the bodies are apart by s(t) = min <p(t), n> - level, p in the moving one and `level` the
 /// support of the other. Between two times t0, t1 whose s is known
@@ -23,7 +23,7 @@ struct Level {
 /// s at a pose; -HUGE_VAL where the shape has too many corners for a look at each.
 [[nodiscard]] double apart_along(const Level& direction, const ConvexShape& shape, const Pose& pose);
 
-/// Whether s(t) >= least is proved for all of [0, duration].
+/// True if s(t) >= least is proved for all of [0, duration].
 /// @param radius  `bounding_radius` of the moving shape
 [[nodiscard]] bool stays_apart(const Level& direction, const MovingShape& body, double radius, double least,
                                double duration);

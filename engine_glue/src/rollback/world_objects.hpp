@@ -13,11 +13,11 @@ namespace pd::detail {
 /// lie where one was deleted.
 class WorldObjects {
  public:
-  /// Whether an object that has another shape now counts as changed.
+  /// True if an object that has another shape now counts as changed.
   enum class Shapes : std::uint8_t { compared, left_alone };
 
   void note(const btCollisionWorld& world);
-  /// Whether the world has the noted objects in the noted order. Time: O(objects).
+  /// True if the world has the noted objects in the noted order. Time: O(objects).
   [[nodiscard]] bool same(const btCollisionWorld& world, Shapes shapes) const;
   /// Notes the present objects. @return those that were noted before, too, sorted by address
   [[nodiscard]] std::vector<const btCollisionObject*> renew(const btCollisionWorld& world);

@@ -114,7 +114,7 @@ class MeshContacts final : public UnionContacts {
   /// The contacts with one of the triangles that were chosen, if it is gentle. @return false: it is not
   bool find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, std::size_t triangle,
                       SolverCore& core, ThreadBuffers& buffers, Patches& patches);
-  /// Whether a child's origin is on the side of a triangle that the child came from.
+  /// True if a child's origin is on the side of a triangle that the child came from.
   [[nodiscard]] bool is_on_its_side(const UnionQuestion& question, std::size_t triangle, ThreadBuffers& buffers) const;
   /// Asks a triangle by itself.
   SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,

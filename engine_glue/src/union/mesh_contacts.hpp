@@ -18,7 +18,7 @@ namespace pd::detail {
 
 /// Whether meshes of this Bullet type are taken: those that are triangles and nothing else.
 [[nodiscard]] bool takes_mesh(int proxy_type);
-/// Whether a shape is a signed distance field. Its type is that of the host's own meshes, and it has no triangles.
+/// True if a shape is a signed distance field. Its type is that of the host's own meshes, and it has no triangles.
 [[nodiscard]] bool is_distance_field(const btCollisionShape& shape);
 
 }  // namespace pd::detail

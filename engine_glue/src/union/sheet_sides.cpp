@@ -18,7 +18,7 @@ constexpr double kPutThere = 3;
 /// Of the gap up to which there are contacts: triangles that lie so far off a plane are not beside it.
 constexpr double kBeside = 4;
 
-/// Whether a way from one side of a triangle's plane to the other leads through the triangle.
+/// True if a way from one side of a triangle's plane to the other leads through the triangle.
 bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
   const Vec3 corner = to_pd(met.corners[0]);
   const double before = normal.dot(from - corner), after = normal.dot(to - corner);

@@ -33,7 +33,7 @@ class SheetSides {
   /// @param reach   up to which gap there are contacts
   void enter(int child, const btTransform& pose, const Pose& mesh, const Vec3& middle, double way, double reach);
 
-  /// Whether the child may have come through a triangle that is out of reach now.
+  /// True if the child may have come through a triangle that is out of reach now.
   [[nodiscard]] bool fast() const { return fast_; }
 
   /// The front of a triangle, unit and in the mesh's frame, zero: not known.

@@ -57,7 +57,7 @@ class Certificate {
   Certificate(const TurnedNormals& turned, const PolytopeDifference& difference, NearFacets& winner, double inside)
       : turned_(turned), difference_(difference), winner_(winner), inside_(inside) {}
 
-  /// Whether a sliver lies no nearer than the winner whose foot lies inside of it.
+  /// True if a sliver lies no nearer than the winner whose foot lies inside of it.
   /// @param height  of the winner
   [[nodiscard]] bool is_no_nearer(const ThinPair& pair, double height) const {
     const double sine = std::min({sine_of_arc(difference_.a(), turned_.of_a, pair.facets_a),

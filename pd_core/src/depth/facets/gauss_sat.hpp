@@ -39,10 +39,10 @@ struct GaussSatDepth {
   std::optional<Vec3> meeting;
 };
 
-/// Whether both bodies are solids of so few facets.
+/// True if both bodies are solids of so few facets.
 [[nodiscard]] bool gauss_sat_applies(const ConvexPolytope& a, const ConvexPolytope& b);
 
-/// Whether it is worth it, measured: both are small, or the bodies' centres are close to each other and neither is long
+/// True if it is worth it, measured: both are small, or the bodies' centres are close to each other and neither is long
 /// or flat, nor far from its frame's origin. A surface needs 15 supports or more then, against 10 where bodies meet by
 /// their rims.
 [[nodiscard]] bool gauss_sat_pays(const PolytopeDifference& difference);

@@ -132,7 +132,7 @@ bool have_same_normals(const SmallGaussMap& a, const SmallGaussMap& b) {
   return a.facets == b.facets && same(a.nx, b.nx) && same(a.ny, b.ny) && same(a.nz, b.nz);
 }
 
-/// Whether many facets of two solids meet in common planes, which leaves them to the surface: it meets few faces where
+/// True if many facets of two solids meet in common planes, which leaves them to the surface: it meets few faces where
 /// the Gauss maps leave many arcs in doubt. So do what was built along axes that both share, copies of one shape that
 /// are turned alike, and solids of many facets whose frames share axes.
 bool many_flush_facets(const PolytopePair& pair, const PolytopeDifference& difference) {

@@ -15,7 +15,7 @@ namespace {
 
 double along(const Point2& direction, const Point2& p) { return direction[0] * p[0] + direction[1] * p[1]; }
 
-/// Whether no neighbour of a polygon's vertex lies to the right of the line through the vertex along d, the polygon's
+/// True if no neighbour of a polygon's vertex lies to the right of the line through the vertex along d, the polygon's
 /// inside being on the left.
 bool is_farthest(const Polygon& polygon, int vertex, const Direction& d) {
   if (polygon.turn(vertex) < 0) return false;
