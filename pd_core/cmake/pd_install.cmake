@@ -42,6 +42,13 @@ function(pd_install_component target)
   install(EXPORT pdepth-${component} NAMESPACE pdepth:: FILE pdepth-${component}-targets.cmake
           DESTINATION ${PD_INSTALL_CMAKEDIR} COMPONENT ${component})
 
+  pd_install_pkg_config(${arg_PC_NAME} REQUIRES "${arg_PC_REQUIRES}" LIBS "-l${library} ${arg_PC_LIBS}"
+                        DESCRIPTION "${arg_DESCRIPTION} (C++20: compile with -std=c++20)" COMPONENT ${component})
+endfunction()
+
+# pd_install_pkg_config(<name> REQUIRES <modules> LIBS <flags> DESCRIPTION <text> COMPONENT <component>)
+function(pd_install_pkg_config name)
+  cmake_parse_arguments(pc "" "REQUIRES;LIBS;DESCRIPTION;COMPONENT" "" ${ARGN})
   # Relative to the file itself, so that an installed tree can be moved.
   file(RELATIVE_PATH prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
   cmake_path(IS_ABSOLUTE CMAKE_INSTALL_LIBDIR absolute_libdir)
@@ -54,9 +61,8 @@ function(pd_install_component target)
   cmake_path(APPEND pc_libdir ${CMAKE_INSTALL_LIBDIR})
   set(pc_includedir "\${prefix}")
   cmake_path(APPEND pc_includedir ${CMAKE_INSTALL_INCLUDEDIR})
-  configure_file(${PD_CMAKE_SOURCE_DIR}/component.pc.in ${PROJECT_BINARY_DIR}/${arg_PC_NAME}.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/${arg_PC_NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
-          COMPONENT ${component})
+  configure_file(${PD_CMAKE_SOURCE_DIR}/component.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${pc_COMPONENT})
 endfunction()
 
 # The package configuration, its version file and what they include; the command pdepth where it is built.

@@ -1,0 +1,85 @@
+/// @file
+/// Structs of `pdepth.h` read: sizes, poses, settings, questions.
+#pragma once
+
+#include <cstdint>
+
+#include "c_interface/handles.hpp"
+#include "pd/compound/compound_depth.hpp"
+#include "pd/depth/depth_answer.hpp"
+#include "pd/shape/convex_shape.hpp"
+
+namespace pd::c_interface {
+
+[[noreturn]] void refuse_size(std::uint32_t size, std::size_t expected, const char* argument);
+[[noreturn]] void refuse_newer_fields(const char* argument);
+
+/// A struct of the caller, which may be one of a newer header where its new fields are 0.
+template <class Struct>
+const Struct& read_struct(const Struct* pointer, const char* argument) {
+  const Struct& found = given(pointer, argument);
+  if (found.size == sizeof(Struct)) return found;
+  if (found.size < sizeof(Struct)) refuse_size(found.size, sizeof(Struct), argument);
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(pointer);
+  for (std::size_t i = sizeof(Struct); i < found.size; ++i) {
+    if (bytes[i] != 0) refuse_newer_fields(argument);
+  }
+  return found;
+}
+
+/// A struct for an answer, checked before the work is done.
+template <class Struct>
+Struct& answer_struct(Struct* pointer, const char* argument) {
+  Struct& found = given(pointer, argument);
+  if (found.size < sizeof(Struct)) refuse_size(found.size, sizeof(Struct), argument);
+  return found;
+}
+
+/// `answer`, which has the size of this header, into the caller's struct, whose size stays.
+template <class Struct>
+void write_answer(const Struct& answer, Struct& out) {
+  const std::uint32_t size = out.size;
+  out = answer;
+  out.size = size;
+  if (size == sizeof(Struct)) return;
+  auto* const bytes = reinterpret_cast<unsigned char*>(&out);
+  for (std::size_t i = sizeof(Struct); i < size; ++i) bytes[i] = 0;
+}
+
+/// A number of the caller that has to be finite and not below 0.
+void require_length(double value, const char* argument);
+
+/// @param numbers  as many as the form has.
+[[nodiscard]] Pose read_pose(std::int32_t form, const double* numbers, const char* argument);
+[[nodiscard]] inline Pose read_pose(const pdepth_pose& pose, const char* argument) {
+  return read_pose(pose.form, pose.numbers, argument);
+}
+/// NULL is the identity.
+[[nodiscard]] Pose read_pose(const pdepth_pose* pose, const char* argument);
+[[nodiscard]] Vec3 read_vector(const double* numbers, const char* argument);
+
+struct Settings {
+  DepthSettings depth;
+  UnionSettings of_unions;
+};
+
+/// The settings by default where the pointer is NULL. @param room  holds the others.
+[[nodiscard]] const Settings& read_settings(const pdepth_settings* settings, Settings& room);
+
+/// Two bodies and how they are asked about. The shape of a posed body is nullptr for a compound.
+struct Question {
+  const pdepth_shape& a;
+  const pdepth_shape& b;
+  PosedShape posed_a;
+  PosedShape posed_b;
+  const Settings& settings;
+  pdepth_pair* pair;
+
+  [[nodiscard]] bool is_convex() const { return posed_a.shape != nullptr && posed_b.shape != nullptr; }
+  /// Refuses compounds.
+  void require_convex() const;
+};
+
+[[nodiscard]] Question read_question(const pdepth_question* question, Settings& room);
+
+}  // namespace pd::c_interface

@@ -1,0 +1,239 @@
+/// @file
+/// Shapes of `pdepth.h`: the core's factories.
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "c_interface/handles.hpp"
+#include "c_interface/reading.hpp"
+#include "pd/shape/halfspaces.hpp"
+
+namespace pd::c_interface {
+
+namespace {
+
+constexpr std::int64_t kMostRows = 300'000'000;
+
+void require_count(std::int64_t count, const char* argument) {
+  if (count < 0) refuse(PDEPTH_BAD_VALUE, "must be 0 or more, not " + std::to_string(count), argument);
+  if (count > kMostRows) refuse(PDEPTH_LIMIT_EXCEEDED, "at most 3e8", argument);
+}
+
+/// [count x width] numbers.
+std::span<const double> read_rows(const double* numbers, std::int64_t count, int width, const char* argument) {
+  require_count(count, "count");
+  if (count > 0) given(numbers, argument);
+  return {numbers, static_cast<std::size_t>(count) * static_cast<std::size_t>(width)};
+}
+
+std::vector<Vec3> read_points(const double* numbers, std::int64_t count) {
+  const std::span<const double> rows = read_rows(numbers, count, 3, "points");
+  std::vector<Vec3> points;
+  points.reserve(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < rows.size(); i += 3) points.emplace_back(rows[i], rows[i + 1], rows[i + 2]);
+  return points;
+}
+
+/// The core calls points of a polytope its vertices.
+ConvexPolytope polytope_of(Expected<ConvexPolytope>&& made) {
+  if (!made && made.error().where.starts_with("vertices")) {
+    refuse({made.error().code, made.error().message, "points" + made.error().where.substr(8)}, "");
+  }
+  return value_of(std::move(made), "");
+}
+
+/// Makes a convex shape at the border.
+template <class Make>
+pdepth_status make_convex(pdepth_context* context, pdepth_shape** shape, Make&& make) {
+  return at_border(context, [&] {
+    given(shape, "shape");
+    *shape = new pdepth_shape(Compound(ConvexShape(make())), true);
+  });
+}
+
+using RoundFactory = Expected<ConvexShape> (*)(double radius, double half_height, int axis);
+
+pdepth_status make_round(pdepth_context* context, pdepth_shape** shape, RoundFactory factory, const double (&sizes)[2],
+                         std::int32_t axis) {
+  return make_convex(context, shape, [&] { return value_of(factory(sizes[0], sizes[1], axis), ""); });
+}
+
+const Compound::Part& part_of(const pdepth_shape& shape, std::int32_t part, const char* argument) {
+  const std::vector<Compound::Part>& parts = shape.whole.parts();
+  if (part < 0 || static_cast<std::size_t>(part) >= parts.size()) {
+    refuse(PDEPTH_OUT_OF_RANGE, "the shape has the parts 0 to " + std::to_string(parts.size() - 1), argument);
+  }
+  return parts[static_cast<std::size_t>(part)];
+}
+
+void require_below(std::int32_t number, int count, const char* argument) {
+  if (number >= 0 && number < count) return;
+  refuse(PDEPTH_OUT_OF_RANGE, "must lie in 0 to " + std::to_string(count - 1), argument);
+}
+
+/// The vertices of a feature in the numbers of the core.
+void for_each_vertex(const ConvexPolytope& body, const pdepth_feature& feature, auto&& visit) {
+  switch (feature.kind) {
+    case PDEPTH_FEATURE_EDGE:
+      require_below(feature.second, body.num_vertices(), "feature.second");
+      [[fallthrough]];
+    case PDEPTH_FEATURE_VERTEX:
+      require_below(feature.first, body.num_vertices(), "feature.first");
+      visit(feature.first);
+      if (feature.kind == PDEPTH_FEATURE_EDGE) visit(feature.second);
+      return;
+    case PDEPTH_FEATURE_FACET:
+      require_below(feature.first, body.num_facets(), "feature.first");
+      for (const std::int32_t vertex : body.facet_vertices(feature.first)) visit(vertex);
+      return;
+    default:
+      refuse(PDEPTH_BAD_VALUE, "must be one of PDEPTH_FEATURE_...", "feature.kind");
+  }
+}
+
+}  // namespace
+
+}  // namespace pd::c_interface
+
+using namespace pd;               // NOLINT(google-build-using-namespace): the functions of C stand in no namespace
+using namespace pd::c_interface;  // NOLINT(google-build-using-namespace)
+
+pdepth_status pdepth_box(pdepth_context* context, const double half_extents[3], pdepth_shape** shape) {
+  return make_convex(context, shape, [&] {
+    const double* const h = &given(half_extents, "half_extents");
+    return value_of(ConvexPolytope::box({h[0], h[1], h[2]}), "");
+  });
+}
+
+pdepth_status pdepth_sphere(pdepth_context* context, double radius, pdepth_shape** shape) {
+  return make_convex(context, shape, [&] { return value_of(ConvexShape::sphere(radius), ""); });
+}
+
+pdepth_status pdepth_ellipsoid(pdepth_context* context, const double radii[3], pdepth_shape** shape) {
+  return make_convex(context, shape, [&] {
+    const double* const r = &given(radii, "radii");
+    return value_of(ConvexShape::ellipsoid({r[0], r[1], r[2]}), "");
+  });
+}
+
+pdepth_status pdepth_capsule(pdepth_context* context, double radius, double half_height, int32_t axis,
+                             pdepth_shape** shape) {
+  return make_round(context, shape, &ConvexShape::capsule, {radius, half_height}, axis);
+}
+
+pdepth_status pdepth_cylinder(pdepth_context* context, double radius, double half_height, int32_t axis,
+                              pdepth_shape** shape) {
+  return make_round(context, shape, &ConvexShape::cylinder, {radius, half_height}, axis);
+}
+
+pdepth_status pdepth_cone(pdepth_context* context, double radius, double half_height, int32_t axis,
+                          pdepth_shape** shape) {
+  return make_round(context, shape, &ConvexShape::cone, {radius, half_height}, axis);
+}
+
+pdepth_status pdepth_convex_hull(pdepth_context* context, const double* points, int64_t count, pdepth_shape** shape) {
+  return make_convex(context, shape,
+                     [&] { return polytope_of(ConvexPolytope::from_points(read_points(points, count))); });
+}
+
+pdepth_status pdepth_convex_faces(pdepth_context* context, const pdepth_faces* faces, pdepth_shape** shape) {
+  return make_convex(context, shape, [&] {
+    const pdepth_faces& read = read_struct(faces, "faces");
+    require_count(read.num_faces, "faces.num_faces");
+    const std::vector<Vec3> points = read_points(read.points, read.num_points);
+    const auto loops = static_cast<std::size_t>(read.num_faces);
+    const std::span<const std::int32_t> offsets(&given(read.offsets, "faces.offsets"), loops + 1);
+    if (offsets.back() < 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
+      refuse(PDEPTH_BAD_FACES, "offsets rise from 0 to the number of corners", "faces.offsets");
+    }
+    const std::span<const std::int32_t> corners(&given(read.vertices, "faces.vertices"),
+                                                static_cast<std::size_t>(offsets.back()));
+    return polytope_of(ConvexPolytope::from_faces(points, offsets, corners));
+  });
+}
+
+pdepth_status pdepth_halfspaces(pdepth_context* context, const double* planes, int64_t count, pdepth_shape** shape) {
+  return make_convex(context, shape, [&] {
+    const std::span<const double> rows = read_rows(planes, count, 4, "planes");
+    std::vector<Halfspace3> read;
+    for (std::size_t i = 0; i < rows.size(); i += 4) read.push_back({{rows[i], rows[i + 1], rows[i + 2]}, rows[i + 3]});
+    return value_of(polytope_of_halfspaces(read), "");
+  });
+}
+
+pdepth_status pdepth_hull_of_spheres(pdepth_context* context, const double* spheres, int64_t count,
+                                     pdepth_shape** shape) {
+  return make_convex(context, shape, [&] {
+    const std::span<const double> rows = read_rows(spheres, count, 4, "spheres");
+    std::vector<Sphere> read;
+    for (std::size_t i = 0; i < rows.size(); i += 4) read.push_back({{rows[i], rows[i + 1], rows[i + 2]}, rows[i + 3]});
+    return value_of(ConvexShape::hull_of_spheres(read), "");
+  });
+}
+
+pdepth_status pdepth_with_margin(pdepth_context* context, const pdepth_shape* body, double margin,
+                                 pdepth_shape** shape) {
+  return at_border(context, [&] {
+    const pdepth_shape& from = given(body, "body");
+    given(shape, "shape");
+    *shape = new pdepth_shape(value_of(from.whole.with_margin(margin), ""), from.is_convex);
+  });
+}
+
+pdepth_status pdepth_compound(pdepth_context* context, const pdepth_part* parts, int64_t count, pdepth_shape** shape) {
+  return at_border(context, [&] {
+    require_count(count, "count");
+    given(shape, "shape");
+    std::vector<Compound::Placed> placed;
+    for (std::int64_t i = 0; i < count; ++i) {
+      const pdepth_part& part = (&given(parts, "parts"))[i];
+      const std::string where = "parts[" + std::to_string(i) + "]";
+      placed.push_back(
+          {given(part.shape, (where + ".shape").c_str()).whole, read_pose(part.pose, (where + ".pose").c_str())});
+    }
+    *shape = new pdepth_shape(value_of(Compound::from_compounds(placed), ""), false);
+  });
+}
+
+pdepth_status pdepth_shape_describe(pdepth_context* context, const pdepth_shape* shape, int32_t part,
+                                    pdepth_shape_info* info) {
+  return at_border(context, [&] {
+    const pdepth_shape& body = given(shape, "shape");
+    pdepth_shape_info& out = answer_struct(info, "info");
+    const ConvexShape& core = part_of(body, part, "part").shape;
+    pdepth_shape_info found{};
+    found.is_convex = body.is_convex ? 1 : 0;
+    found.parts = static_cast<std::int32_t>(body.whole.parts().size());
+    found.dimension = 3;
+    found.margin = core.margin();
+    if (const ConvexPolytope* const polytope = core.polytope()) {
+      found.dimension = polytope->affine_dimension();
+      found.vertices = polytope->num_vertices();
+      found.facets = polytope->num_facets();
+    }
+    write_answer(found, out);
+  });
+}
+
+pdepth_status pdepth_feature_points(pdepth_context* context, const pdepth_shape* shape, const pdepth_feature* feature,
+                                    int32_t* points, int32_t* count) {
+  return at_border(context, [&] {
+    const pdepth_feature& asked = given(feature, "feature");
+    const std::int32_t room = given(count, "count");
+    if (room < 0) refuse(PDEPTH_BAD_VALUE, "must be the room in `points`, 0 or more", "count");
+    if (room > 0) given(points, "points");
+    const ConvexShape& core = part_of(given(shape, "shape"), asked.part, "feature.part").shape;
+    std::int32_t found = 0;
+    if (asked.kind != PDEPTH_FEATURE_NONE) {
+      const ConvexPolytope* const polytope = core.polytope();
+      if (polytope == nullptr) refuse(PDEPTH_OUT_OF_RANGE, "a curved core has no features", "feature.kind");
+      for_each_vertex(*polytope, asked, [&](std::int32_t vertex) {
+        if (found < room) points[found] = polytope->caller_id(vertex);
+        ++found;
+      });
+    }
+    *count = found;
+  });
+}

@@ -1,0 +1,5 @@
+// The header with nothing before it, twice.
+#include <pdepth/pdepth.h>
+#include <pdepth/pdepth.h>
+
+int header_alone_in_cpp() { return static_cast<int>(sizeof(pdepth_question)) + PDEPTH_OK; }
