@@ -105,7 +105,7 @@ def on_page_markdown(markdown, page, config, files):
             raise PluginError(f"{page.file.src_path}: there is no {name}")
         text = source.read_text()
         if kind == "code":
-            language = {".cpp": "cpp", ".py": "python"}[source.suffix]
+            language = {".cpp": "cpp", ".h": "c", ".py": "python"}[source.suffix]
             return f"```{language}\n{text.rstrip()}\n```"
         if heading:
             text = section_of(text, heading, name)

@@ -78,7 +78,7 @@ TEST_F(CErrors, OfFaces) {
   corners[4] = 1, offsets[2] = 20;
   refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_FACES, "faces.offsets");
   offsets[2] = 6, faces.num_faces = 3;
-  refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_NOT_CLOSED, "faces[0]");
+  refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_NOT_CLOSED, "faces[2]");
   faces.size = 4;
   refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_VALUE, "faces.size");
 }

@@ -1,20 +1,20 @@
 """Holds documents to programs that are compiled: `check_samples.py FOLDERS_OF_PROGRAMS -- DOCUMENTS`.
 
-Each block marked `cpp` in a document must stand in one of the programs, word for word but for its indentation.
+Each block marked `cpp` or `c` in a document must stand in one of the programs, word for word but for its indentation.
 """
 import pathlib
 import re
 import sys
 import textwrap
 
-BLOCK = re.compile(r"^```cpp\n(.*?)^```$", re.M | re.S)
-MARKED = re.compile(r"^ *// \[(\w+)\]\n(.*?)^ *// \[/\1\]$", re.M | re.S)
+BLOCK = re.compile(r"^```(?:cpp|c)\n(.*?)^```$", re.M | re.S)
+MARKED = re.compile(r"^ *(?://|/\*) \[(\w+)\](?: \*/)?\n(.*?)^ *(?://|/\*) \[/\1\](?: \*/)?$", re.M | re.S)
 
 
 def main(folders, documents):
     wholes, parts = [], set()
     for folder in folders:
-        for program in sorted(pathlib.Path(folder).rglob("*.cpp")):
+        for program in sorted(path for path in pathlib.Path(folder).rglob("*.c*") if path.suffix in (".c", ".cpp")):
             text = program.read_text()
             wholes.append(text)
             parts.update(textwrap.dedent(found[2]).strip() for found in MARKED.finditer(text))

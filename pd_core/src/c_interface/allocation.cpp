@@ -59,11 +59,12 @@ const MemorySource& malloc_source() {
   return kMalloc;
 }
 
-AllocationScope::AllocationScope(const MemorySource& source) noexcept : previous_(current_source) {
-  current_source = &source;
+AllocationScope::AllocationScope(const MemorySource& source) noexcept
+    : source_of_thread_(&current_source), previous_(*source_of_thread_) {
+  *source_of_thread_ = &source;
 }
 
-AllocationScope::~AllocationScope() { current_source = previous_; }
+AllocationScope::~AllocationScope() { *source_of_thread_ = previous_; }
 
 }  // namespace pd::c_interface
 

@@ -26,6 +26,7 @@ class AllocationScope {
   AllocationScope& operator=(const AllocationScope&) = delete;
 
  private:
+  const MemorySource** source_of_thread_;  ///< looked up once
   const MemorySource* previous_;
 };
 

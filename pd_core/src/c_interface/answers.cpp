@@ -73,10 +73,8 @@ pdepth_feature feature_of(const Feature& feature, std::int32_t part) {
   return {static_cast<std::int32_t>(feature.kind), part, feature.first, feature.second};
 }
 
-pdepth_answer answer_of(const PenetrationDepth& answer) {
+void write_depth(const PenetrationDepth& answer, pdepth_answer& out) {
   static_assert(static_cast<int>(ContactClass::overlapping) == PDEPTH_OVERLAPPING);
-  pdepth_answer out;
-  out.size = sizeof out;
   out.status = PDEPTH_OK;
   out.contact = static_cast<std::int32_t>(answer.contact);
   out.method = static_cast<std::int32_t>(answer.method);
@@ -97,7 +95,7 @@ pdepth_answer answer_of(const PenetrationDepth& answer) {
   out.support_calls = answer.statistics.support_calls;
   out.facets_visited = answer.statistics.facets_visited;
   out.exact_signs = answer.statistics.exact_signs;
-  return out;
+  clear_newer_fields(out);
 }
 
 void require_supported(const Question& question) {
@@ -107,42 +105,45 @@ void require_supported(const Question& question) {
          "settings.method");
 }
 
-pdepth_answer ask_depth(const Question& question, Workspace& space) {
-  if (question.is_convex()) return answer_of(convex_depth(question, space));
+void ask_depth(const Question& question, Workspace& space, pdepth_answer& out) {
+  if (question.is_convex()) {
+    write_depth(convex_depth(question, space), out);
+    return;
+  }
   const UnionDepth found = union_depth(question, space);
-  pdepth_answer out = answer_of(found);
+  write_depth(found, out);
   out.bracket_reached = found.bracket_reached && found.closed ? 1 : 0;
   out.feature_a.part = found.part_a;
   out.feature_b.part = found.part_b;
-  return out;
 }
 
-pdepth_manifold ask_manifold(const Question& question, double breaking_threshold, Workspace& space) {
+void ask_manifold(const Question& question, double breaking_threshold, Workspace& space, pdepth_manifold& out) {
   question.require_convex();
   require_length(breaking_threshold, "breaking_threshold");
   const PenetrationDepth answer = convex_depth(question, space);
   const ContactManifold found =
       contact_manifold(question.posed_a, question.posed_b, answer, breaking_threshold, space.manifold);
-  pdepth_manifold out{};
-  out.size = sizeof out;
+  out.status = PDEPTH_OK;
   out.contact = static_cast<std::int32_t>(answer.contact);
   out.count = found.count;
   write_vector(found.normal, out.normal);
-  for (int i = 0; i < found.count; ++i) {
+  for (int i = 0; i < 4; ++i) {
+    out.points[i] = {};
+    if (i >= found.count) continue;
     const ContactPoint& point = found.points[static_cast<std::size_t>(i)];
     write_vector(point.position_a, out.points[i].position_a);
     write_vector(point.position_b, out.points[i].position_b);
     out.points[i].depth = point.depth;
     out.points[i].feature_id = point.feature_id;
   }
-  return out;
+  clear_newer_fields(out);
 }
 
-pdepth_derivatives ask_derivatives(const Question& question, Workspace& space, pdepth_answer* answer) {
+void ask_derivatives(const Question& question, Workspace& space, pdepth_derivatives& out, pdepth_answer* answer) {
   question.require_convex();
   const DepthDerivatives found = depth_derivatives(question.posed_a, question.posed_b, space.scratch);
-  pdepth_derivatives out{};
-  out.size = sizeof out;
+  out.status = PDEPTH_OK;
+  out.reserved = 0;
   out.unique_direction = found.unique_direction ? 1 : 0;
   out.unique_witness = found.unique_witness ? 1 : 0;
   out.stable_features = found.stable_features ? 1 : 0;
@@ -155,8 +156,8 @@ pdepth_derivatives ask_derivatives(const Question& question, Workspace& space, p
   write_jacobian(found.witness_a_by_b, out.witness_a_by_b);
   write_jacobian(found.witness_b_by_a, out.witness_b_by_a);
   write_jacobian(found.witness_b_by_b, out.witness_b_by_b);
-  if (answer != nullptr) *answer = answer_of(found.answer);
-  return out;
+  clear_newer_fields(out);
+  if (answer != nullptr) write_depth(found.answer, *answer);
 }
 
 }  // namespace pd::c_interface

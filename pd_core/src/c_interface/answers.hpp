@@ -8,16 +8,18 @@
 
 namespace pd::c_interface {
 
-[[nodiscard]] pdepth_answer answer_of(const PenetrationDepth& answer);
+/// Everything but the size, which the caller has set.
+void write_depth(const PenetrationDepth& answer, pdepth_answer& out);
 [[nodiscard]] pdepth_feature feature_of(const Feature& feature, std::int32_t part);
 void write_vector(const Vec3& vector, double* out);
 
 /// Refuses a method that does not answer for the two convex shapes.
 void require_supported(const Question& question);
 
-[[nodiscard]] pdepth_answer ask_depth(const Question& question, Workspace& space);
-[[nodiscard]] pdepth_manifold ask_manifold(const Question& question, double breaking_threshold, Workspace& space);
+/// Answers are written in place, since a copy of what was just written would wait for the stores.
+void ask_depth(const Question& question, Workspace& space, pdepth_answer& out);
+void ask_manifold(const Question& question, double breaking_threshold, Workspace& space, pdepth_manifold& out);
 /// @param answer  or nullptr.
-[[nodiscard]] pdepth_derivatives ask_derivatives(const Question& question, Workspace& space, pdepth_answer* answer);
+void ask_derivatives(const Question& question, Workspace& space, pdepth_derivatives& out, pdepth_answer* answer);
 
 }  // namespace pd::c_interface

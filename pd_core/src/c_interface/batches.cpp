@@ -68,7 +68,7 @@ struct Failure {
   ErrorRecord error;
 };
 
-/// Calls `answer(row, workspace)`, which returns a row's struct, for every row, and writes it.
+/// Calls `answer(row, workspace, out)`, which writes a row's struct, for every row.
 template <class Struct, class Answer>
 pdepth_status for_each_row(pdepth_context& context, const Rows& rows, Struct* first, std::ptrdiff_t stride,
                            Answer&& answer) {
@@ -93,7 +93,7 @@ pdepth_status for_each_row(pdepth_context& context, const Rows& rows, Struct* fi
         Struct& out = *at_stride(first, stride, row);
         out.size = size;
         try {
-          write_answer(answer(row, *context.workspaces[thread]), out);
+          answer(row, *context.workspaces[thread], out);
         } catch (...) {
           ErrorRecord error;
           out.status = error.take_exception(row);
@@ -135,8 +135,9 @@ pdepth_status ask_rows(pdepth_context* context, const pdepth_batch* batch, Struc
   const pdepth_status status = at_border(context, [&] {
     Settings room;
     const Rows rows(batch, room);
-    of_rows = for_each_row(*context, rows, answers, stride,
-                           [&](std::int64_t row, Workspace& space) { return answer(rows.question(row), space); });
+    of_rows = for_each_row(*context, rows, answers, stride, [&](std::int64_t row, Workspace& space, Struct& out) {
+      answer(rows.question(row), space, out);
+    });
   });
   return status != PDEPTH_OK ? status : of_rows;
 }
@@ -145,19 +146,23 @@ pdepth_status ask_rows(pdepth_context* context, const pdepth_batch* batch, Struc
 
 pdepth_status pdepth_depth_batch(pdepth_context* context, const pdepth_batch* batch, pdepth_answer* answers,
                                  ptrdiff_t stride) {
-  return ask_rows(context, batch, answers, stride,
-                  [](const Question& question, Workspace& space) { return ask_depth(question, space); });
+  return ask_rows(context, batch, answers, stride, [](const Question& question, Workspace& space, pdepth_answer& out) {
+    ask_depth(question, space, out);
+  });
 }
 
 pdepth_status pdepth_manifold_batch(pdepth_context* context, const pdepth_batch* batch, double breaking_threshold,
                                     pdepth_manifold* manifolds, ptrdiff_t stride) {
-  return ask_rows(context, batch, manifolds, stride, [&](const Question& question, Workspace& space) {
-    return ask_manifold(question, breaking_threshold, space);
-  });
+  return ask_rows(context, batch, manifolds, stride,
+                  [&](const Question& question, Workspace& space, pdepth_manifold& out) {
+                    ask_manifold(question, breaking_threshold, space, out);
+                  });
 }
 
 pdepth_status pdepth_derivatives_batch(pdepth_context* context, const pdepth_batch* batch,
                                        pdepth_derivatives* derivatives, ptrdiff_t stride) {
   return ask_rows(context, batch, derivatives, stride,
-                  [](const Question& question, Workspace& space) { return ask_derivatives(question, space, nullptr); });
+                  [](const Question& question, Workspace& space, pdepth_derivatives& out) {
+                    ask_derivatives(question, space, out, nullptr);
+                  });
 }

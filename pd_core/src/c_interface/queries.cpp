@@ -119,7 +119,7 @@ pdepth_status pdepth_depth(pdepth_context* context, const pdepth_question* quest
   return at_border(context, [&] {
     pdepth_answer& out = answer_struct(answer, "answer");
     Settings room;
-    write_answer(ask_depth(read_question(question, room), workspace_of(*context)), out);
+    ask_depth(read_question(question, room), workspace_of(*context), out);
   });
 }
 
@@ -132,8 +132,9 @@ pdepth_status pdepth_apart(pdepth_context* context, const pdepth_question* quest
     Settings settings = read.settings;
     if (question->settings == nullptr) settings.depth.bracket = Bracket::contact;
     settings.depth.beyond = distance;
-    const pdepth_answer answer =
-        ask_depth({read.a, read.b, read.posed_a, read.posed_b, settings, read.pair}, workspace_of(*context));
+    pdepth_answer answer{};
+    answer.size = sizeof answer;
+    ask_depth({read.a, read.b, read.posed_a, read.posed_b, settings, read.pair}, workspace_of(*context), answer);
     *apart = answer.contact == PDEPTH_SEPARATED && answer.distance_lower > distance ? 1 : 0;
   });
 }
@@ -153,7 +154,7 @@ pdepth_status pdepth_contact_manifold(pdepth_context* context, const pdepth_ques
   return at_border(context, [&] {
     pdepth_manifold& out = answer_struct(manifold, "manifold");
     Settings room;
-    write_answer(ask_manifold(read_question(question, room), breaking_threshold, workspace_of(*context)), out);
+    ask_manifold(read_question(question, room), breaking_threshold, workspace_of(*context), out);
   });
 }
 
@@ -173,7 +174,7 @@ pdepth_status pdepth_time_of_impact(pdepth_context* context, const pdepth_questi
                                               workspace_of(*context).scratch, settings);
     write_answer({sizeof out, found.hit ? 1 : 0, found.reached ? 1 : 0, found.queries, found.time, found.certified},
                  out);
-    if (contact != nullptr) write_answer(answer_of(found.contact), *contact);
+    if (contact != nullptr) write_depth(found.contact, *contact);
   });
 }
 
@@ -183,9 +184,7 @@ pdepth_status pdepth_depth_derivatives(pdepth_context* context, const pdepth_que
     pdepth_derivatives& out = answer_struct(derivatives, "derivatives");
     if (answer != nullptr) answer_struct(answer, "answer");
     Settings room;
-    pdepth_answer depth;
-    write_answer(ask_derivatives(read_question(question, room), workspace_of(*context), &depth), out);
-    if (answer != nullptr) write_answer(depth, *answer);
+    ask_derivatives(read_question(question, room), workspace_of(*context), out, answer);
   });
 }
 

@@ -15,7 +15,9 @@ void require_finite(const double* numbers, int count, const char* argument, cons
 }
 
 Pose translated(const Vec3& translation, const char* argument) {
-  if (!(translation.cwiseAbs().maxCoeff() <= kMaxCoordinate)) {
+  bool in_range = true;
+  for (int i = 0; i < 3; ++i) in_range &= std::abs(translation[i]) <= kMaxCoordinate;  // false for NaN, too
+  if (!in_range) {
     return value_of(Pose::from_matrix(Mat3::Identity(), translation), argument);  // which names the number
   }
   return Pose::from_trusted_matrix(Mat3::Identity(), translation);

@@ -35,15 +35,20 @@ Struct& answer_struct(Struct* pointer, const char* argument) {
   return found;
 }
 
+/// Fields of a newer header, which this library does not know, become 0.
+template <class Struct>
+void clear_newer_fields(Struct& out) {
+  auto* const bytes = reinterpret_cast<unsigned char*>(&out);
+  for (std::size_t i = sizeof(Struct); i < out.size; ++i) bytes[i] = 0;
+}
+
 /// `answer`, which has the size of this header, into the caller's struct, whose size stays.
 template <class Struct>
 void write_answer(const Struct& answer, Struct& out) {
   const std::uint32_t size = out.size;
   out = answer;
   out.size = size;
-  if (size == sizeof(Struct)) return;
-  auto* const bytes = reinterpret_cast<unsigned char*>(&out);
-  for (std::size_t i = sizeof(Struct); i < size; ++i) bytes[i] = 0;
+  clear_newer_fields(out);
 }
 
 /// A number of the caller that has to be finite and not below 0.
