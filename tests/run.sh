@@ -15,6 +15,7 @@ pd_use_ccache
 passed=0
 failed=0
 skipped=0
+failures_by_name=()
 
 # Configures, builds and tests one preset. A preset that does not build counts as one failed test.
 #   run_preset NAME [--target T...] -- [CMAKE_OPTION...]
@@ -31,6 +32,7 @@ run_preset() {
          cmake --build --preset "${preset}" "${targets[@]}"; }; then
     printf '%s: the build failed\n' "${preset}" >&2
     failed=$((failed + 1))
+    failures_by_name+=("${preset}: build")
     return
   fi
   printf '== %s: test\n' "${preset}"
@@ -46,8 +48,13 @@ run_preset() {
   fi
   if [[ -s ${failures} ]]; then
     bad=$(wc -l <"${failures}")
+    local line
+    while read -r line; do
+      failures_by_name+=("${preset}: ${line#*:}")
+    done <"${failures}"
   elif ((status != 0 || total == 0)); then
     bad=1
+    failures_by_name+=("${preset}: ctest itself, exit ${status}")
   fi
   passed=$((passed + good))
   failed=$((failed + bad))
@@ -67,6 +74,7 @@ run_python() {
   if [[ ! -d build/release/python ]]; then
     printf 'the Python package was not built\n' >&2
     failed=$((failed + 1))
+    failures_by_name+=('Python: not built')
     return
   fi
   /usr/bin/python3 -B -m pytest -q -p no:cacheprovider --junitxml="${report}" tests/python || status=$?
@@ -82,6 +90,9 @@ run_python() {
   fi
   passed=$((passed + total - bad - left_out))
   failed=$((failed + bad))
+  if ((bad > 0)); then
+    failures_by_name+=("Python: ${bad} of ${total}, named above")
+  fi
   skipped=$((skipped + left_out))
 }
 
@@ -96,6 +107,9 @@ run_preset double-bullet --target test_engine_glue -- "$@"
 
 if ((skipped > 0)); then
   printf '%d skipped (listed above)\n' "${skipped}"
+fi
+if ((failed > 0)); then
+  printf 'failed: %s\n' "${failures_by_name[@]}"
 fi
 printf '%d passed, %d failed\n' "${passed}" "${failed}"
 ((failed == 0))
