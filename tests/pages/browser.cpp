@@ -16,7 +16,7 @@ namespace pd::test {
 
 namespace {
 
-constexpr int kSecondsOfPatience = 60;
+constexpr int kSecondsOfPatience = 240;
 
 std::string from_base64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
