@@ -5,16 +5,23 @@ A line of its own in a page:
     {{ include FILE # HEADING }}  one section of it, without its heading
     {{ opening FILE }}            what stands between its first heading and its first section
     {{ code FILE }}               the file as a block of code
+In a line: {{ api WORDS }} links to the reference of the C++ headers, and {{ api WORDS # FILE.hpp }} to one header's page there.
+Doxygen writes the reference into the site's folder api, where it is installed; without it the words stand alone.
 Links to files of the project become links to the page that shows the file, pictures come along, and what no page shows
 is named instead of linked. A link to nothing ends the build.
 """
+import json
+import logging
 import os
 import posixpath
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
+from mkdocs.structure.nav import Link
 
 ROOT = Path(__file__).resolve().parents[2]
 # Which page shows a file.
@@ -29,6 +36,8 @@ SHOWN = {
 }
 # Pages whose file need not be there: a part of the project that was left out.
 OPTIONAL = {"python.md": "demos/python/README.md"}
+DOXYGEN = shutil.which("doxygen")
+API = re.compile(r"\{\{ api ([^#}]+?)(?: # ([\w./]+))? \}\}")
 DIRECTIVE = re.compile(r"^\{\{ (include|opening|code) ([^#}]+?)(?: # ([^}]+?))? \}\}$", re.M)
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```.*?^```$)", re.M | re.S)
@@ -53,6 +62,61 @@ def on_files(files, config):
         path = picture.relative_to(ROOT).as_posix()
         files.append(File(path, str(ROOT), config["site_dir"], config["use_directory_urls"]))
     return files
+
+
+def on_nav(nav, config, files):
+    if DOXYGEN:
+        nav.items.append(Link("C++ reference", "api/files.html"))
+    return nav
+
+
+# A page that was opened from the disk may neither fetch the index of the search nor start the theme's worker. It finds both in
+# a script, as the theme allows.
+SEARCH = """if (location.protocol === "file:") {
+  var __search = {index: Promise.resolve(%s), worker: URL.createObjectURL(new Blob([%s]))}
+}
+"""
+
+
+def on_post_page(output, page, config):
+    before = '<script src="assets/javascripts/bundle'
+    if output.count(before) != 1:
+        raise PluginError(f"{page.file.src_path}: the theme starts its script otherwise, so that searching from the disk would fail")
+    return output.replace(before, '<script src="search/offline.js"></script>' + before)
+
+
+def write_offline_search(site):
+    worker, = (site / "assets/javascripts/workers").glob("search.*.min.js")
+    index = json.dumps(json.loads((site / "search/search_index.json").read_text())).replace("</", "<\\/")
+    (site / "search/offline.js").write_text(SEARCH % (index, json.dumps(worker.read_text())))
+
+
+def on_post_build(config):
+    write_offline_search(Path(config["site_dir"]))
+    if not DOXYGEN:
+        logging.getLogger("mkdocs.hooks").info("The reference of the C++ headers is left out: doxygen is not installed")
+        return
+    version = re.search(r"^project\(pdepth VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(), re.M)[1]
+    settings = (ROOT / "pd_core/docs/Doxyfile").read_text()
+    settings += f"PROJECT_NUMBER = {version}\nOUTPUT_DIRECTORY = \"{Path(config['site_dir']).resolve()}\"\n"
+    done = subprocess.run([DOXYGEN, "-"], input=settings, cwd=ROOT, capture_output=True, text=True)
+    if done.returncode or done.stderr:
+        raise PluginError(f"doxygen: {done.stderr}")
+
+
+def api_link(match):
+    """The page that Doxygen makes of a header; a name that no public header has ends the build."""
+    words, header = match.groups()
+    namesakes = [path.relative_to(ROOT).as_posix() for path in ROOT.glob(f"*/include/pd/**/{(header or '').split('/')[-1]}")]
+    meant = [path for path in namesakes if header and path.endswith("/" + header)]
+    if header and len(meant) != 1:
+        raise PluginError(f"{header} names no public header, or several: a folder before it tells which")
+    if not DOXYGEN:
+        return words
+    # As Doxygen names pages: by the file, by its path where two have the same name, with what is no letter escaped.
+    page = "files" if not header else header if len(namesakes) == 1 else meant[0]
+    page = page.replace("_", "__").replace(".", "_8").replace("/", "_2") + ".html"
+    return f'<a href="api/{page}">{words}</a>'
 
 
 def outside_code(text, change):
@@ -115,4 +179,4 @@ def on_page_markdown(markdown, page, config, files):
             text = re.split(r"^## ", text, flags=re.M)[0]
         return linked_from(text, os.path.dirname(name), page.file.src_path)
 
-    return DIRECTIVE.sub(expanded, markdown)
+    return outside_code(DIRECTIVE.sub(expanded, markdown), lambda part: API.sub(api_link, part))

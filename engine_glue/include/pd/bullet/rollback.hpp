@@ -63,7 +63,7 @@ struct FirstContact {
   btVector3 normal = {0, 0, 0}, point_a = {0, 0, 0}, point_b = {0, 0, 0};
 };
 
-/// Bullet's array, which its headers bring along (<vector> and <memory> would double what a host parses), as a range.
+/// Bullet's array, which its headers bring along (`<vector>`, `<memory>` would double what a host parses), as a range.
 struct FirstContacts : btAlignedObjectArray<FirstContact> {
   [[nodiscard]] const FirstContact* begin() const { return size() > 0 ? &(*this)[0] : nullptr; }
   [[nodiscard]] const FirstContact* end() const { return begin() + size(); }

@@ -40,8 +40,8 @@ class ConvexPolytope {
   /// measured by `bench_hull`.
   static Expected<ConvexPolytope> from_points(std::span<const Vec3> points);
 
-  /// A closed convex surface, checked and not trusted: face f is the loop
-  /// `face_vertices[face_offsets[f] .. face_offsets[f + 1])` of indices into `points`, counter-clockwise from outside.
+  /// A closed convex surface, checked and not trusted: face f is a loop of indices into `points`, which stand in
+  /// `face_vertices` from `face_offsets[f]` up to, and without, `face_offsets[f + 1]`; counter-clockwise from outside.
   /// Coplanar neighbours are merged, equal points count as one, and points that no face uses are no part of the body.
   /// The result is that of `from_points` for the points used. Time as there, and O(f log f) for f face corners.
   /// @return as `from_points`, and bad_faces (index, repeated vertex, fewer than 3, orientation), not_closed,
