@@ -1,20 +1,20 @@
 #include "audit/accuracy_engines.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <optional>
+#include <utility>
+
+#include "files/companion.hpp"
 
 namespace pd::audit {
 
 namespace {
 
-std::vector<std::string> recorders_beside() {
-  std::error_code error;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+std::vector<std::string> installed_recorders() {
   std::vector<std::string> found;
   for (const char* name : {"record_peers", "record_peers_double"}) {
-    if (std::filesystem::exists(here / name, error)) found.push_back(here / name);
+    if (std::string program = companion_program(name); !program.empty()) found.push_back(std::move(program));
   }
   return found;
 }
@@ -24,7 +24,7 @@ std::vector<std::string> recorders_beside() {
 std::vector<AccuracyEngine> find_engines(const std::vector<std::string>& programs, const std::vector<std::string>& only,
                                          std::vector<std::string>& complaints) {
   std::vector<AccuracyEngine> engines;
-  for (const std::string& program : programs.empty() ? recorders_beside() : programs) {
+  for (const std::string& program : programs.empty() ? installed_recorders() : programs) {
     const std::vector<std::string> names = engines_of(program);
     if (names.empty()) complaints.push_back(program + " names no engines (--list)");
     for (const std::string& name : names) {
@@ -46,6 +46,7 @@ AccuracyTable run_engines(const std::vector<AccuracyEngine>& engines, const std:
     double worst = draw ? 0 : std::numeric_limits<double>::infinity();
     std::optional<report::PairFigure> figure;
     for (const AccuracySource& source : sources) {
+      if (settings.begins) settings.begins(engine.name, source.family);
       table.rows.push_back(run_accuracy(engine.program, engine.name, source, settings, worst, judge));
       AccuracyRow& row = table.rows.back();
       if (!row.figure) continue;

@@ -15,7 +15,7 @@ struct AccuracyEngine {
 };
 
 /// The engines that the programs name, each name once.
-/// @param programs  empty: the recorders that the build put beside this program
+/// @param programs  empty: the recorders beside this program, or installed with it
 /// @param only  names that are wanted; empty: all
 [[nodiscard]] std::vector<AccuracyEngine> find_engines(const std::vector<std::string>& programs,
                                                        const std::vector<std::string>& only,

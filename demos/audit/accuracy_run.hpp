@@ -25,6 +25,8 @@ struct AccuracySettings {
   std::uint64_t seed = 1;
   double tolerance = 1e-6;  ///< of missed and phantom, relative to L, for every engine
   int threads = 1;          ///< that audit
+  /// Told of each engine and family before it is asked; may be empty.
+  std::function<void(const std::string& engine, const std::string& family)> begins = {};
 };
 
 /// Largest errors that count as small and as large, relative to L: a contact's is the larger of depth error and normal

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "line_input.hpp"
 #include "options.hpp"
 #include "pd/numeric/whole_file.hpp"
+#include "progress.hpp"
 #include "scenes/shape_families.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"
@@ -97,11 +99,23 @@ int run_accuracy_command(AccuracyArguments arguments) {
   const auto engines = audit::find_engines(arguments.recorders, arguments.engines, complaints);
   for (const std::string& complaint : complaints) complain("{}", complaint);
   if (engines.empty()) {
-    complain("no engine to ask; build record_peers (PD_WITH_BENCH) or name a --recorder");
+    complain(
+        "no engine to ask: install Debian's package pdepth-recorders, build record_peers (PD_WITH_RECORDERS), or name "
+        "a "
+        "--recorder");
     return kBadUsage;
   }
+  int started = 0;
+  std::atomic<double> asked = 0;
+  const double all = static_cast<double>(engines.size() * sources.size());
+  Progress progress("accuracy", [&] { return asked / all; });
+  arguments.settings.begins = [&](const std::string& engine, const std::string& family) {
+    progress.begin(fmt::format("{}: {}", engine, family));
+    asked = started++;
+  };
   const audit::AccuracyTable table =
       audit::run_engines(engines, sources, arguments.settings, !arguments.report.empty());
+  progress.end();
   fmt::print("{}", printable(audit::accuracy_text(table), "\n"));
   if (!arguments.csv.empty() && !write_whole_file(arguments.csv, audit::accuracy_csv(table))) {
     complain("{} cannot be written", arguments.csv);
@@ -128,7 +142,9 @@ void add_accuracy_command(CLI::App& app, Action& action) {
   audit::AccuracySettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand("accuracy", "Who fails what: engines over generated families of hard pairs");
   command->footer(kAccuracyFooter);
-  command->add_option("--recorder", arguments->recorders, "Programs that record (default: those built beside this one)")
+  command
+      ->add_option("--recorder", arguments->recorders,
+                   "Programs that record (default: those beside this one, or installed with it)")
       ->delimiter(',');
   command->add_option("--engines", arguments->engines, "Only these")->delimiter(',');
   command->add_option("--families", arguments->only_families, "Only these")

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "line_input.hpp"
 #include "pd/numeric/whole_file.hpp"
+#include "progress.hpp"
 #include "report/page.hpp"
 #include "support/complain.hpp"
 
@@ -71,7 +72,7 @@ std::string command_of(const AuditArguments& arguments) {
   std::string text = fmt::format("pdepth audit '{}' --worst {}", arguments.input, arguments.settings.worst_kept);
   if (arguments.tolerance > 0) text += fmt::format(" --tolerance {}", arguments.tolerance);
   if (!arguments.fail_on.empty()) text += fmt::format(" --fail-on {}", arguments.fail_on);
-  return text + fmt::format(" --report '{}'    # pdepth {}", arguments.report, PDEPTH_VERSION);
+  return text + fmt::format(" --report '{}'    # pdepth {}", arguments.report, report::program_version());
 }
 
 /// The audit itself. @return a code other than kDone where there is nothing to report.
@@ -94,9 +95,11 @@ int read_record(const AuditArguments& arguments, audit::Audit& result) {
       csv->write(audit::csv_row(contact, judgement, line));
     };
   }
+  Progress progress("audit " + arguments.input, [&input] { return share_read(input.descriptor()); });
   errno = 0;
   audit::audit_record(input.descriptor(), arguments.settings, seen, result);
   const int reason = errno;
+  progress.end();
   print_refusals(arguments.input, result.summary);
   if (result.end == audit::Audit::End::unreadable) return cannot_read(arguments.input, reason);
   if (csv != nullptr && !csv->finish()) return cannot_write(arguments.csv);
@@ -130,8 +133,10 @@ int run_audit(AuditArguments arguments) {
   const std::string text = arguments.json ? audit::audit_json(result, outcomes) + "\n"
                                           : printable(audit::audit_table(result, outcomes, arguments.input), "\n");
   fmt::print("{}", text);
-  if (!arguments.report.empty() && !arguments.json)
-    fmt::print("\npage      {}/report.html\n", printable(arguments.report));
+  // Programs that read the JSON find the page's path where words for people go.
+  if (!arguments.report.empty()) {
+    fmt::print(arguments.json ? stderr : stdout, "\npage      {}/report.html\n", printable(arguments.report));
+  }
   if (!std::all_of(outcomes.begin(), outcomes.end(), [](const auto& outcome) { return outcome.holds; })) {
     return kConditionFails;
   }

@@ -125,10 +125,12 @@ int run_demo(DemoArguments arguments) {
 
 #else
 
-std::string demo_list() { return "This build has no demos: they need Bullet and render.\n"; }
+std::string demo_list() { return "This command has no demos: they are in the package pdepth-pictures.\n"; }
 
 int run_demo(const DemoArguments& /*arguments*/) {
-  complain("this build has no demos: they need PD_WITH_BULLET and PD_WITH_RENDER");
+  complain(
+      "this command has no demos; Debian's package pdepth-pictures, or a build with PD_WITH_RENDER and PD_WITH_BULLET, "
+      "has");
   return kBadUsage;
 }
 

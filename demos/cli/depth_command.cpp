@@ -1,16 +1,19 @@
 /// @file
-/// `pdepth depth A B`: two meshes, answered for people or, with --json, for programs.
+/// `pdepth depth A B`: two bodies, answered for people or, with --json, for programs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "body_argument.hpp"
 #include "commands.hpp"
 #include "options.hpp"
+#include "pd/depth/directional_depth.hpp"
 #include "pd/numeric/whole_file.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
@@ -24,13 +27,16 @@ namespace pd::cli {
 namespace {
 
 constexpr const char* kDepthFooter =
-    R"(Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
+    R"(
+Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
 x,y,z,r11,r12,r13,r21,...,r33 turns by a matrix. World point = R * point + (x,y,z).
 
 A moves by the translation, B stays. A mesh that is not convex is asked as the convex hull of its vertices, and the answer
 says so; --hull says that the hull is meant. `pdepth check FILE` tells why a mesh is not convex.
 
 Examples:
+  pdepth depth box:1,1,1 sphere:0.5 --pose-b 1.25,0,0
+  pdepth depth cup.obj box:0.4,0.4,0.02 --margin 0.001 --direction 0,0,1
   pdepth depth cup.obj table.stl --pose-a 0,0,0.74
   pdepth depth a.off b.off --pose-b=-1.5,0,0,0.7071067811865476,0,0,0.7071067811865476 --json)";
 
@@ -39,6 +45,8 @@ struct DepthArguments {
   std::string file_b;
   std::string pose_a;
   std::string pose_b;
+  std::string direction;
+  std::vector<double> margins;  ///< none, one for both, or one each
   std::string method = "auto";
   double delta = 0.25;
   std::string picture;
@@ -112,10 +120,14 @@ std::string feature_in_words(const Feature& feature, const query::NamedShape& sh
   return "none";
 }
 
-void print_body(std::string_view name, const std::string& file, const query::NamedShape& shape) {
-  const ConvexPolytope& hull = *shape.shape.polytope();
-  print_row(name, fmt::format("{}  (hull: {} vertices, {} edges, {} facets)", file, hull.num_vertices(),
-                              hull.num_edges(), hull.num_facets()));
+void print_body(std::string_view name, const std::string& word, const query::NamedShape& shape) {
+  std::string facts;
+  // A sphere is a point that is swept, and a capsule a segment.
+  if (const ConvexPolytope* const hull = shape.shape.polytope(); hull != nullptr && hull->num_facets() > 0) {
+    facts = fmt::format("  (hull: {} vertices, {} edges, {} facets)", hull->num_vertices(), hull->num_edges(),
+                        hull->num_facets());
+  }
+  print_row(name, (word == "-" ? "standard input" : word) + facts);
   if (shape.hull_note) print_row("", in_words(*shape.hull_note));
 }
 
@@ -124,27 +136,40 @@ std::string subjects(const query::Pair& pair) {
   return std::string(pair.a.hull_note ? "A's hull" : "A") + " and " + (pair.b.hull_note ? "B's hull" : "B");
 }
 
-void print_result(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result,
-                  std::int64_t nanoseconds) {
+/// The bodies, and in one sentence how they lie.
+void print_pair(const DepthArguments& arguments, const query::Pair& pair, ContactClass contact) {
   fmt::print("\n");
   print_body("A", arguments.file_a, pair.a);
   print_body("B", arguments.file_b, pair.b);
+  const char* const words = contact == ContactClass::overlapping ? "overlap"
+                            : contact == ContactClass::touching  ? "touch: they share boundary points, but no inside"
+                                                                 : "are apart";
+  fmt::print("\n{} {}.\n\n", subjects(pair), words);
+}
+
+void print_statistics(std::string_view method, const Statistics& statistics, std::int64_t nanoseconds) {
   fmt::print("\n");
+  print_row("method",
+            fmt::format("{}, {} support calls, {} facets, {} exact decisions, {}", method, statistics.support_calls,
+                        statistics.facets_visited, statistics.exact_signs, duration_in_words(nanoseconds)));
+  fmt::print("\n");
+}
+
+void print_result(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result,
+                  std::int64_t nanoseconds) {
+  print_pair(arguments, pair, result.contact);
   switch (result.contact) {
     case ContactClass::overlapping:
-      fmt::print("{} overlap.\n\n", subjects(pair));
       print_row("depth", in_full(result.depth));
       print_row("bracket", fmt::format("[{}, {}]", in_full(result.lower), in_full(result.upper)));
       print_row("translation", in_words(result.translation) + "  moves A clear of B");
       print_row("direction", in_words(result.normal));
       break;
     case ContactClass::touching:
-      fmt::print("{} touch: they share boundary points, but no inside.\n\n", subjects(pair));
       print_row("depth", "0, exactly");
       print_row("direction", in_words(result.normal) + "  a way out for A");
       break;
     case ContactClass::separated:
-      fmt::print("{} are apart.\n\n", subjects(pair));
       print_row("distance", in_full(result.distance));
       print_row("bracket", fmt::format("[{}, {}]", in_full(result.distance_lower), in_full(result.distance_upper)));
       print_row("direction", in_words(result.normal) + "  from B to A");
@@ -156,11 +181,7 @@ void print_result(const DepthArguments& arguments, const query::Pair& pair, cons
     print_row("of A", feature_in_words(result.feature_a, pair.a));
     print_row("of B", feature_in_words(result.feature_b, pair.b));
   }
-  fmt::print("\n");
-  print_row("method", fmt::format("{}, {} support calls, {} facets, {} exact decisions, {}", to_string(result.method),
-                                  result.statistics.support_calls, result.statistics.facets_visited,
-                                  result.statistics.exact_signs, duration_in_words(nanoseconds)));
-  fmt::print("\n");
+  print_statistics(to_string(result.method), result.statistics, nanoseconds);
 }
 
 int draw_picture(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result) {
@@ -171,8 +192,7 @@ int draw_picture(const DepthArguments& arguments, const query::Pair& pair, const
 #else
   (void)pair;
   (void)result;
-  complain("{}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)", arguments.picture);
-  return kBadUsage;
+  return refuse_picture(arguments.picture);
 #endif
 }
 
@@ -188,23 +208,79 @@ bool write_trace(const std::string& file, const query::SearchRecorder& recorder)
   return true;
 }
 
+/// Both are for two polytopes without margins.
+void require_polytopes(const query::Pair& pair, const std::string& option) {
+  const auto bare = [](const ConvexShape& shape) { return shape.polytope() != nullptr && shape.margin() == 0; };
+  if (!bare(pair.a.shape) || !bare(pair.b.shape)) {
+    query::refuse("unsupported", option + ": both bodies must be meshes or boxes, without a margin", "");
+  }
+}
+
+query::Pair read_pair(const DepthArguments& arguments) {
+  if (arguments.file_a == "-" && arguments.file_b == "-") {
+    query::refuse("bad_value", "A and B: standard input holds one mesh, so only one of them may be -", "");
+  }
+  const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
+  const std::vector<double>& margins = arguments.margins;
+  const double margin_a = margins.empty() ? 0 : margins.front(), margin_b = margins.empty() ? 0 : margins.back();
+  return {read_body_argument({arguments.file_a, margin_a, as}), read_body_argument({arguments.file_b, margin_b, as}),
+          parse_pose(arguments.pose_a, "--pose-a"), parse_pose(arguments.pose_b, "--pose-b")};
+}
+
+/// --direction: how far A must move that way.
+int run_along(const DepthArguments& arguments, const query::Pair& pair) {
+  const std::vector<double> n = parse_numbers(arguments.direction, "--direction");
+  if (n.size() != 3) {
+    query::refuse("bad_value", fmt::format("--direction: three numbers are expected, X,Y,Z, not {}", n.size()), "");
+  }
+  const Vec3 direction(n[0], n[1], n[2]);
+  Scratch scratch;
+  const query::Stopwatch watch;
+  const auto result = directional_depth(pair.posed_a(), pair.posed_b(), direction, scratch);
+  if (!result) query::refuse(to_string(result.error().code), "--direction: " + result.error().message, "");
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  if (arguments.json) {
+    std::string out;
+    query::JsonWriter writer(out);
+    writer.begin_object();
+    query::write_directional_answer(*result, nanoseconds, writer);
+    writer.end_object();
+    fmt::print("{}\n", out);
+    return kDone;
+  }
+  print_pair(arguments, pair, result->contact);
+  print_row("depth", in_full(result->depth) + "  along the direction");
+  print_row("bracket", fmt::format("[{}, {}]", in_full(result->lower), in_full(result->upper)));
+  if (result->contact == ContactClass::overlapping) {
+    print_row("translation", in_words(Vec3(direction.stableNormalized() * result->depth)) + "  moves A clear of B");
+  }
+  print_statistics("portal", result->statistics, nanoseconds);
+  return kDone;
+}
+
 int run_depth(const DepthArguments& arguments) {
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
-  const query::Limits limits{.max_vertices = 50'000'000};
-  const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
-  const query::Pair pair{query::load_mesh_shape(arguments.file_a, limits, as),
-                         query::load_mesh_shape(arguments.file_b, limits, as), parse_pose(arguments.pose_a, "--pose-a"),
-                         parse_pose(arguments.pose_b, "--pose-b")};
+  const query::Pair pair = read_pair(arguments);
+  if (!arguments.picture.empty()) require_polytopes(pair, "--picture");
+  if (!arguments.direction.empty()) return run_along(arguments, pair);
+  const DepthSettings settings = settings_of(arguments);
+  if (!supports(settings.method, pair.a.shape, pair.b.shape)) {
+    query::refuse("unsupported",
+                  fmt::format("--method: \"{}\" does not answer for these shapes; auto does", arguments.method), "");
+  }
   Scratch scratch;
-  query::SearchRecorder recorder(pair, arguments.method);
-  if (!arguments.trace.empty()) observe_searches(scratch, &recorder);
-  const query::Stopwatch watch;
-  const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, settings_of(arguments));
-  const std::int64_t nanoseconds = watch.nanoseconds();
+  std::optional<query::SearchRecorder> recorder;
   if (!arguments.trace.empty()) {
-    recorder.add_answer(result, pair, nanoseconds);
-    if (!write_trace(arguments.trace, recorder)) return kFailed;
+    require_polytopes(pair, "--trace");
+    observe_searches(scratch, &recorder.emplace(pair, arguments.method));
+  }
+  const query::Stopwatch watch;
+  const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, settings);
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  if (recorder) {
+    recorder->add_answer(result, pair, nanoseconds);
+    if (!write_trace(arguments.trace, *recorder)) return kFailed;
   }
   if (arguments.json) {
     std::string out;
@@ -225,12 +301,19 @@ int run_depth(const DepthArguments& arguments) {
 
 void add_depth_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<DepthArguments>();
-  CLI::App* command = app.add_subcommand("depth", "Penetration depth (or distance) of two meshes");
-  command->footer(kDepthFooter);
-  command->add_option("A", arguments->file_a, "Mesh that moves: OBJ, STL, PLY, OFF or glTF")->required();
-  command->add_option("B", arguments->file_b, "Mesh that stays")->required();
+  CLI::App* command = app.add_subcommand("depth", "Penetration depth (or distance) of two bodies");
+  command->footer(kBodyWords + std::string(kDepthFooter));
+  command->add_option("A", arguments->file_a, "Body that moves: a mesh's file, - or a primitive as box:1,1,1")
+      ->required();
+  command->add_option("B", arguments->file_b, "Body that stays")->required();
   command->add_option("--pose-a", arguments->pose_a, "Where A stands [the identity]");
   command->add_option("--pose-b", arguments->pose_b, "Where B stands [the identity]");
+  command->add_option("--margin", arguments->margins, "Radius of a ball that sweeps both bodies, or two for A,B")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->check(CLI::NonNegativeNumber);
+  CLI::Option* const direction =
+      command->add_option("--direction", arguments->direction, "How far A must move along X,Y,Z [the best direction]");
   command->add_option("--method", arguments->method, "Engine")
       ->check(CLI::IsMember(method_words()))
       ->capture_default_str();
@@ -243,6 +326,7 @@ void add_depth_command(CLI::App& app, Action& action) {
                       "Write the search step by step, as JSON lines (`pdepth demo difference --trace` draws them)");
   command->add_flag("--hull", arguments->hull, "Meshes that are not convex are meant as their convex hulls");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");
+  for (const char* other : {"--method", "--trace", "--picture"}) direction->excludes(command->get_option(other));
   command->callback([arguments, &action] { action = [arguments] { return run_depth(*arguments); }; });
 }
 

@@ -17,6 +17,9 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "files/companion.hpp"
+#include "manual.hpp"
+#include "report/page.hpp"
 #include "report/page_files.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"
@@ -42,7 +45,8 @@ Exit codes:
   3    for `audit`: a condition of --fail-on does not hold; for `check`: a fault of --fail-on is there
   130  stopped by Ctrl-C
 
-`pdepth SUBCOMMAND --help` says more.)";
+`pdepth SUBCOMMAND --help` says more; `pdepth help --man FOLDER` writes manual pages, and
+`pdepth help --completion bash` prints a script that completes what is typed.)";
 
 std::string licenses() {
   return fmt::format(
@@ -74,14 +78,40 @@ std::string nearest_subcommand(const CLI::App& app, const std::string& word) {
   return nearest;
 }
 
+/// `help --man FOLDER` or `help --completion bash`.
+bool asks_for_manual(const std::vector<std::string>& words) {
+  return words.size() == 3 && words[0] == "help" &&
+         (words[1] == "--man" || (words[1] == "--completion" && words[2] == "bash"));
+}
+
+int write_manual(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words[1] == "--man") return pd::cli::write_manual_pages(app, words[2]);
+  fmt::print("{}", pd::cli::bash_completion(app));
+  return pd::cli::kDone;
+}
+
 /// The words that were typed, with `help X` as `X --help`.
 std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  if (words.empty() || words.front() != "help") return words;
+  if (words.empty() || words.front() != "help" || asks_for_manual(words)) return words;
   words.erase(words.begin());
   if (words.size() > 1) words.resize(1);
   words.emplace_back("--help");
   return words;
+}
+
+/// A command without a renderer and Bullet starts the one that has them, where it is installed. Returns where it is
+/// not: then the subcommand says what is missing.
+void hand_over_pictures([[maybe_unused]] const std::vector<std::string>& words, [[maybe_unused]] char** argv) {
+#ifndef PDEPTH_WITH_DEMOS
+  const bool draws =
+      !words.empty() && (words.front() == "demo" || std::any_of(words.begin(), words.end(), [](const auto& word) {
+                           return word == "--picture" || word.starts_with("--picture=");
+                         }));
+  if (!draws) return;
+  const std::string program = pd::companion_program("pdepth-pictures");
+  if (!program.empty()) ::execv(program.c_str(), argv);
+#endif
 }
 
 /// A standard stream that is closed would be the first file to be opened. In its place stands one that cannot be used,
@@ -98,6 +128,7 @@ int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& ac
     fmt::print("{}", app.help());
     return pd::cli::kBadUsage;
   }
+  if (asks_for_manual(words)) return write_manual(app, words);
   const std::string& first = words.front();
   const std::string meant = nearest_subcommand(app, first);
   if (!first.starts_with('-') && meant != first) {
@@ -130,10 +161,12 @@ int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& ac
 
 int main(int argc, char** argv) {
   hold_standard_streams();
+  const std::vector<std::string> words = words_of(argc, argv);
+  hand_over_pictures(words, argv);
   // Whole lines and whole files are written at once, so that what stands there by then is complete.
   std::signal(SIGINT, [](int) { std::_Exit(pd::cli::kInterrupted); });
   CLI::App app("Penetration depth of convex bodies, exact and certified.", "pdepth");
-  app.set_version_flag("--version", "pdepth " PDEPTH_VERSION);
+  app.set_version_flag("--version", "pdepth " + pd::report::program_version());
   app.footer(kFooter);
   app.add_flag_callback(
       "--licenses", [] { throw CLI::CallForVersion(licenses(), 0); }, "Print the licences of what pdepth contains");
@@ -148,7 +181,7 @@ int main(int argc, char** argv) {
   pd::cli::add_audit_command(app, action);
   pd::cli::add_accuracy_command(app, action);
   pd::cli::add_demo_command(app, action);
-  const int code = run(app, words_of(argc, argv), action);
+  const int code = run(app, words, action);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   pd::complain("the answer cannot be written: {}", std::strerror(errno));
   return pd::cli::kFailed;

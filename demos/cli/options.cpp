@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "commands.hpp"
 #include "files/decimal_number.hpp"
-#include "support/printable.hpp"
+#include "support/complain.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {
@@ -30,6 +31,14 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& op
 
 std::string refuse_other_pictures(const std::string& file) {
   return std::filesystem::path(file).extension() == ".png" ? "" : file + ": pictures are written as PNG: name it *.png";
+}
+
+int refuse_picture(const std::string& file) {
+  complain(
+      "{}: this command draws no pictures; Debian's package pdepth-pictures, or a build with PD_WITH_RENDER and "
+      "PD_WITH_BULLET, does",
+      file);
+  return kBadUsage;
 }
 
 std::string refuse_other_meshes(const std::string& file) {

@@ -16,6 +16,9 @@ namespace pd::cli {
 /// A check for options: the commands write one format, whatever the file is called.
 [[nodiscard]] std::string refuse_other_pictures(const std::string& file);
 
+/// Says how a command that cannot draw comes to draw. @return kBadUsage
+int refuse_picture(const std::string& file);
+
 /// A check for options: hulls are written as OBJ, whatever the file is called.
 [[nodiscard]] std::string refuse_other_meshes(const std::string& file);
 

@@ -24,7 +24,8 @@ namespace pd::cli {
 
 namespace {
 
-constexpr const char* kPolygonFooter = R"(P stays, Q moves. A file is
+constexpr const char* kPolygonFooter =
+    R"(P stays and Q moves, as in the paper; everywhere else the first body moves. A file is
   FILE.json     {"outer":[[x,y],...],"holes":[[[x,y],...],...]}, in P's unit
   FILE.svg#ID   an element of a drawing: path, rect, circle, ellipse, polygon or polyline, with the transforms above it;
                 #ID may be left out where there is one. The inside follows fill-rule; fill and stroke do not matter
@@ -167,8 +168,8 @@ void print_result(const PolygonArguments& arguments, const PolygonPair& pair, co
   print_row("depth", fmt::format("{}{}", result.depth, unit));
   if (result.depth > 0) {
     print_row("bracket", fmt::format("[{}, {}]", result.lower, result.upper));
-    print_row("translation",
-              fmt::format("({:.10g}, {:.10g})  moves Q", result.translation[0] + 0.0, result.translation[1] + 0.0));
+    print_row("translation", fmt::format("({:.10g}, {:.10g})  moves Q, P stays", result.translation[0] + 0.0,
+                                         result.translation[1] + 0.0));
   }
   if (result.normal != Point2{0, 0}) {
     print_row("direction", fmt::format("({:.10g}, {:.10g})", result.normal[0] + 0.0, result.normal[1] + 0.0));
@@ -194,8 +195,7 @@ int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, con
   (void)pair;
   (void)r;
   (void)result;
-  complain("{}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)", arguments.picture);
-  return kBadUsage;
+  return refuse_picture(arguments.picture);
 #endif
 }
 
@@ -231,7 +231,7 @@ void add_polygon_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("polygon", "How far one polygon must move to leave another, in the plane");
   command->footer(kPolygonFooter);
   command->add_option("P", arguments->file_p, "Polygon that stays: FILE.svg, FILE.svg#ID or FILE.json")->required();
-  command->add_option("Q", arguments->file_q, "Polygon that moves")->required();
+  command->add_option("Q", arguments->file_q, "Polygon that moves (elsewhere the first body moves)")->required();
   command->add_option("--direction", arguments->direction, "Move along X,Y [the best direction]");
   // A flag, so that a file may follow --complete alone; a word comes behind "=".
   command

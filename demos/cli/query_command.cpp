@@ -7,11 +7,16 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "commands.hpp"
 #include "line_input.hpp"
+#include "progress.hpp"
+#include "protocol/handlers.hpp"
 #include "protocol/query_stream.hpp"
+#include "protocol/schema.hpp"
 #include "support/complain.hpp"
 
 namespace pd::cli {
@@ -23,10 +28,15 @@ constexpr const char* kQueryFooter = R"(One JSON object a line in, one out, in t
   {"id":1,"class":"overlapping","depth":...,"lower":...,"upper":...,"translation":[...],...}
 A line that cannot be answered is answered by {"id":1,"error":{"code":...,"message":...,"where":...}}.
 
+--list names the queries; --schema prints a JSON Schema of their lines and answers, of contact records, and of all error
+codes with their meanings.
+
 For input from strangers: --no-files, --max-time, --max-memory, and small --max-line and --max-vertices.)";
 
 struct QueryArguments {
   std::string input = "-";
+  bool list = false;
+  bool schema = false;
   query::StreamSettings settings;
 };
 
@@ -35,7 +45,19 @@ int refuse_input(const std::string& output, const std::string& input) {
   return kBadUsage;
 }
 
+/// The queries with what they ask for, in the words of the schema.
+void print_queries() {
+  const auto schema = nlohmann::json::parse(query::kSchema);
+  for (const query::QueryEntry& entry : query::queries()) {
+    const auto& definition = schema.at("$defs").at("line." + std::string(entry.name));
+    fmt::print("  {:<24} {}\n", entry.name, definition.at("description").get<std::string>());
+  }
+}
+
 int run_query(QueryArguments arguments) {
+  if (arguments.list) print_queries();
+  if (arguments.schema) fmt::print("{}", query::kSchema);
+  if (arguments.list || arguments.schema) return kDone;
   query::StreamSettings& settings = arguments.settings;
   settings.threads = number_of_threads(settings.threads);
   const InputFile input(arguments.input);
@@ -44,8 +66,18 @@ int run_query(QueryArguments arguments) {
   if (!settings.record.path.empty() && input.is_also(settings.record.path)) {
     return refuse_input("--record " + settings.record.path, arguments.input);
   }
+  if (::isatty(input.descriptor()) != 0) {
+    complain("reading lines from {}; Ctrl-D ends them, and `pdepth query --help` shows one",
+             arguments.input == "-" ? "standard input" : arguments.input);
+  }
+  // Answers on a terminal are progress enough.
+  std::optional<Progress> progress;
+  if (::isatty(STDOUT_FILENO) == 0 && share_read(input.descriptor()) >= 0) {
+    progress.emplace("query " + arguments.input, [&input] { return share_read(input.descriptor()); });
+  }
   const query::StreamEnd end = query::answer_stream(input.descriptor(), STDOUT_FILENO, settings);
   const int reason = errno;
+  progress.reset();
   switch (end) {
     case query::StreamEnd::answered:
       return kDone;
@@ -67,6 +99,8 @@ void add_query_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("query", "Answer queries of the line protocol, one JSON object a line");
   command->footer(kQueryFooter);
   command->add_option("FILE", arguments->input, "Lines to answer; - is standard input")->capture_default_str();
+  command->add_flag("--list", arguments->list, "Name the queries and what they ask for");
+  command->add_flag("--schema", arguments->schema, "Print the JSON Schema of lines, answers, records and error codes");
   add_threads_option(*command, settings.threads, "answer");
   add_limit_options(*command, settings.limits);
   command

@@ -15,6 +15,7 @@
 #include "pd/dimension/approximate_body.hpp"
 #include "pd/numeric/whole_file.hpp"
 #include "pd/shape/convex_polytope.hpp"
+#include "progress.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/pair_reader.hpp"
 #include "support/complain.hpp"
@@ -92,7 +93,9 @@ std::vector<Vec3> sample(const std::vector<Vec3>& points, std::size_t most) {
 int run_simplify(const SimplifyArguments& arguments) {
   refuse_to_overwrite({arguments.input}, arguments.output, "--output");
   refuse_to_overwrite({arguments.input, arguments.output}, arguments.picture, "--picture");
+  Progress progress("reading " + arguments.input);
   const query::MeshPoints scan = query::read_mesh_points(arguments.input, kMostPoints, query::kMaxMeshBytes);
+  progress.begin(fmt::format("looking for a hull of {} points", scan.points.size()));
   const query::Stopwatch watch;
   std::vector<dimension::Vector<3>> points(scan.points.begin(), scan.points.end());
   const auto body = dimension::Body<3>::from_points(std::move(points));
@@ -111,7 +114,9 @@ int run_simplify(const SimplifyArguments& arguments) {
     return kFailed;
   }
   constexpr std::size_t kChecked = 200'000;
+  progress.begin(fmt::format("measuring {} facets", hull->num_facets()));
   const Excess excess = measure(*hull, sample(scan.points, kChecked));
+  progress.end();
   fmt::print("scan      {}  ({} points)\n", printable(arguments.input), scan.points.size());
   fmt::print("hull      {}  ({} vertices, {} facets, {:.1f} ms)\n", printable(arguments.output), hull->num_vertices(),
              hull->num_facets(), milliseconds);
@@ -123,8 +128,7 @@ int run_simplify(const SimplifyArguments& arguments) {
 #ifdef PDEPTH_WITH_DEMOS
   return demo::write_simplify_picture(scan.points, *hull, arguments.side, arguments.epsilon, arguments.picture);
 #else
-  complain("{}: this build draws no pictures (PD_WITH_RENDER and PD_WITH_BULLET)", arguments.picture);
-  return kBadUsage;
+  return refuse_picture(arguments.picture);
 #endif
 }
 

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "files/regular_file.hpp"
@@ -30,7 +31,31 @@ MeshPoints read_by_ending(const std::string& path, const std::string& ending, st
   return read_stl(bytes, max_vertices);
 }
 
+MeshPoints read_by_first_bytes(const std::string& bytes, std::int64_t max_vertices) {
+  const std::string_view text = bytes;
+  const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n"));
+  if (text.starts_with("glTF") || text.starts_with("{")) {
+    refuse("unsupported", "glTF may name files beside it: give its file's name", "");
+  }
+  if (word.ends_with("OFF")) return read_off(text, max_vertices);
+  if (word == "ply") return read_ply(text, max_vertices);
+  // An STL of bytes: 80 of any kind, the number of triangles, 50 for each.
+  constexpr std::size_t kHead = 84, kTriangle = 50;
+  const bool binary = text.size() >= kHead && (text.size() - kHead) % kTriangle == 0 && text.find('\0') != text.npos;
+  if (word == "solid" || binary) return read_stl(text, max_vertices);
+  return read_obj(text, max_vertices);
+}
+
+MeshPoints require_vertices(MeshPoints mesh) {
+  if (mesh.points.empty()) refuse("unreadable_file", "the file holds no vertices", "");
+  return mesh;
+}
+
 }  // namespace
+
+MeshPoints read_mesh_bytes(const std::string& bytes, std::int64_t max_vertices) {
+  return require_vertices(read_by_first_bytes(bytes, max_vertices));
+}
 
 MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes) {
   static constexpr const char* kEndings[] = {".obj", ".off", ".ply", ".stl", ".gltf", ".glb"};
@@ -39,9 +64,7 @@ MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, 
     refuse("unreadable_file", path + ": the file ending must be .obj, .off, .ply, .stl, .gltf or .glb", "");
   }
   try {
-    MeshPoints mesh = read_by_ending(path, ending, max_vertices, max_bytes);
-    if (mesh.points.empty()) refuse("unreadable_file", "the file holds no vertices", "");
-    return mesh;
+    return require_vertices(read_by_ending(path, ending, max_vertices, max_bytes));
   } catch (const Refusal& refusal) {
     const bool named = refusal.message.starts_with(path);
     refuse(refusal.code, named ? refusal.message : path + ": " + refusal.message, "");

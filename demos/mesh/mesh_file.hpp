@@ -46,4 +46,8 @@ struct MeshPoints {
 /// than `max_vertices`, more bytes than `max_bytes`, nodes or JSON nested too deep).
 [[nodiscard]] MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes);
 
+/// Reads a mesh that has no name, from a pipe. Its first bytes tell its kind; text that is no OFF, PLY or STL is OBJ.
+/// @throws Refusal as `read_mesh_points`; unsupported for glTF, which names files beside it.
+[[nodiscard]] MeshPoints read_mesh_bytes(const std::string& bytes, std::int64_t max_vertices);
+
 }  // namespace pd::query

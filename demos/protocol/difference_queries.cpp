@@ -96,12 +96,15 @@ void answer_directional_depth(const Node& line, Session& session, JsonWriter& an
       directional_depth(pair.posed_a(), pair.posed_b(), direction, session.scratch, method);
   if (!result && result.error().where.empty()) line.refuse(to_string(result.error().code), result.error().message);
   if (!result) direction_node.refuse(to_string(result.error().code), result.error().message);
-  const std::int64_t nanoseconds = watch.nanoseconds();
-  answer.key("depth").number(result->depth);
-  answer.key("lower").number(result->lower);
-  answer.key("upper").number(result->upper);
-  answer.key("class").string(to_string(result->contact));
-  write_statistics(result->statistics, nanoseconds, answer);
+  write_directional_answer(*result, watch.nanoseconds(), answer);
+}
+
+void write_directional_answer(const DirectionalDepth& result, std::int64_t nanoseconds, JsonWriter& answer) {
+  answer.key("depth").number(result.depth);
+  answer.key("lower").number(result.lower);
+  answer.key("upper").number(result.upper);
+  answer.key("class").string(to_string(result.contact));
+  write_statistics(result.statistics, nanoseconds, answer);
 }
 
 void answer_minkowski_difference(const Node& line, Session& session, JsonWriter& answer) {

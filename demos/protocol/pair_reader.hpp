@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "pd/contact/manifold.hpp"
+#include "pd/depth/directional_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "protocol/handlers.hpp"
 
@@ -46,6 +47,9 @@ class Stopwatch {
 /// The fields of a depth answer from "class" to "stats". `method`: its word, where it is no `Method`.
 void write_depth_answer(const PenetrationDepth& result, const NamedShape& a, const NamedShape& b,
                         std::int64_t nanoseconds, JsonWriter& answer, std::string_view method = {});
+
+/// The fields of an answer along a direction.
+void write_directional_answer(const DirectionalDepth& result, std::int64_t nanoseconds, JsonWriter& answer);
 
 /// The field "stats".
 void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, JsonWriter& answer);

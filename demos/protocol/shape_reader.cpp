@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/mesh_file.hpp"
 #include "pd/shape/halfspaces.hpp"
 
 namespace pd::query {
@@ -222,9 +221,12 @@ Pose read_pose(const Node& node) {
 }
 
 NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs as) {
-  MeshPoints mesh = read_mesh_points(path, limits.max_vertices, kMaxMeshBytes);
+  return hull_of_mesh(read_mesh_points(path, limits.max_vertices, kMaxMeshBytes), path, as);
+}
+
+NamedShape hull_of_mesh(MeshPoints mesh, const std::string& name, MeshAs as) {
   auto hull = ConvexPolytope::from_points(mesh.points);
-  if (!hull) refuse(to_string(hull.error().code), path + ": " + hull.error().message, hull.error().where);
+  if (!hull) refuse(to_string(hull.error().code), name + ": " + hull.error().message, hull.error().where);
   std::optional<HullNote> note;
   if (as == MeshAs::found) note = why_hull(mesh, *hull);
   if (as == MeshAs::hull) note = HullNote{"that is what was asked for", hull->num_vertices(), 0};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/hull_note.hpp"
+#include "mesh/mesh_file.hpp"
 #include "pd/shape/convex_shape.hpp"
 #include "protocol/field_reader.hpp"
 #include "protocol/limits.hpp"
@@ -49,5 +50,8 @@ enum class MeshAs {
 /// The hull of a mesh file's referenced vertices, with a note where the file holds something else. @throws Refusal
 /// unreadable_file or limit_exceeded without a path, or a refusal of the hull.
 [[nodiscard]] NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs as = MeshAs::found);
+
+/// The same of points that were read already. @param name  begins what is said when the hull is refused
+[[nodiscard]] NamedShape hull_of_mesh(MeshPoints mesh, const std::string& name, MeshAs as = MeshAs::found);
 
 }  // namespace pd::query

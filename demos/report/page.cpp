@@ -42,7 +42,7 @@ std::string how_to_reproduce(const Page& page) {
   for (const std::string& command : page.commands) text += escaped(command) + "\n";
   text += "</pre>\n";
   std::vector<std::vector<std::string>> rows{{"what", "which"},
-                                             {"pdepth", escaped(fmt::format("{}, commit {}", kVersion, kCommit))},
+                                             {"pdepth", escaped(program_version())},
                                              {"compiler", escaped(__VERSION__)},
                                              {"machine", escaped(machine())}};
   if (!page.seed.empty()) rows.push_back({"seed", escaped(page.seed)});
@@ -56,6 +56,8 @@ constexpr const char* kPageName = "report.html";
 std::string script(std::string_view text) { return fmt::format("<script>//<![CDATA[\n{}\n//]]></script>\n", text); }
 
 }  // namespace
+
+std::string program_version() { return fmt::format("{}, commit {}", kVersion, kCommit); }
 
 std::string table(const std::vector<std::vector<std::string>>& rows, bool sortable) {
   std::string text =

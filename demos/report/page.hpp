@@ -9,6 +9,9 @@
 
 namespace pd::report {
 
+/// The version of this program and the commit that it was built from: "0.1.0, commit 0123456789ab".
+[[nodiscard]] std::string program_version();
+
 /// A headline figure.
 struct Card {
   enum class Rank { plain, good, bad };

@@ -2,7 +2,10 @@
 /// Every query with every field left out, of another type or of another length: an answer or an error object, never an
 /// exception, whichever limits bound the line. What no reader refused and no engine could take would be answered in
 /// words of its own ("could not be answered"), and is a fault.
+#include <fstream>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "protocol/handlers.hpp"
 #include "protocol/line_budget.hpp"
@@ -11,58 +14,13 @@
 namespace pd::test {
 namespace {
 
-constexpr const char* kWholeLines[] = {
-    R"({"id":1,"query":"depth","a":{"type":"box","half_extents":[1,1,1]},"b":{"type":"sphere","radius":1},)"
-    R"("pose_b":{"translation":[1.5,0,0]},"method":"auto","delta":0.5})",
-    R"({"id":1,"query":"depth","a":{"type":"ellipsoid","radii":[1,2,3]},"b":{"type":"capsule","radius":1,)"
-    R"("half_height":1,"axis":"x","margin":0.5},"pose_a":{"quaternion_wxyz":[1,0,0,0]},"delta":0.5})",
-    R"({"id":1,"query":"depth","a":{"type":"compound","parts":[{"shape":{"type":"box","half_extents":[1,1,1]},)"
-    R"("pose":{"translation":[1,0,0]}}]},"b":{"type":"cone","radius":1,"half_height":1,"axis":"y"},"delta":0.5})",
-    R"({"id":1,"query":"depth","a":{"type":"star","vertices":[[1,0,0],[0,1,0],[0,0,1],[-1,-1,-1]],)"
-    R"("faces":[[0,1,2],[0,2,3],[0,3,1],[1,3,2]],"center":[0,0,0]},"b":{"type":"box","half_extents":[1,1,1]}})",
-    R"({"id":1,"query":"depth","a":{"type":"box","half_extents":[1,1,1]},"b":{"type":"box","half_extents":[1,1,1]},)"
-    R"("metric":{"vertices":[[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]]},"seed":7})",
-    R"({"id":1,"query":"distance","a":{"type":"cylinder","radius":1,"half_height":1,"axis":"z"},)"
-    R"("b":{"type":"box","half_extents":[1,1,1]},"pose_b":{"translation":[5,0,0],"rotation_row_major":[1,0,0,0,1,0,0,0,1]}})",
-    R"({"id":1,"query":"intersect","a":{"type":"halfspaces","planes":[[1,0,0,1],[-1,0,0,1],[0,1,0,1],[0,-1,0,1],)"
-    R"([0,0,1,1],[0,0,-1,1]]},"b":{"type":"box","half_extents":[1,1,1]}})",
-    R"({"id":1,"query":"hull","a":{"type":"convex","vertices":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],)"
-    R"("faces":[[0,2,1],[0,1,3],[1,2,3],[0,3,2]]},"pose_a":{"translation":[1,2,3]}})",
-    R"({"id":1,"query":"directional_depth","a":{"type":"box","half_extents":[1,1,1]},)"
-    R"("b":{"type":"box","half_extents":[1,1,1]},"direction":[1,2,3],"method":"portal"})",
-    R"({"id":1,"query":"support_of_difference","a":{"type":"box","half_extents":[1,1,1]},)"
-    R"("b":{"type":"sphere","radius":1},"directions":[[1,0,0],[0,1,0]]})",
-    R"({"id":1,"query":"point_in_difference","a":{"type":"box","half_extents":[1,1,1]},)"
-    R"("b":{"type":"box","half_extents":[1,1,1]},"points":[[1,0,0],[0,9,0]]})",
-    R"({"id":1,"query":"width","a":{"type":"box","half_extents":[1,1,1]},"method":"grid","delta":0.5})",
-    R"({"id":1,"query":"minkowski_difference","a":{"type":"box","half_extents":[1,1,1]},)"
-    R"("b":{"type":"convex","vertices":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}})",
-    R"({"id":1,"query":"contact_manifold","a":{"type":"box","half_extents":[1,1,1]},)"
-    R"("b":{"type":"box","half_extents":[1,1,1]},"pose_b":{"translation":[1.5,0,0]},"breaking_threshold":0.1})",
-    R"({"id":1,"query":"time_of_impact","a":{"type":"box","half_extents":[1,1,1]},"b":{"type":"sphere","radius":1},)"
-    R"("pose_b":{"translation":[5,0,0]},"velocity_a":[1,0,0],"angular_velocity_a":[0,0,1],"velocity_b":[0,0,0],)"
-    R"("angular_velocity_b":[0,0,0],"duration":3,"tolerance":0.001})",
-    R"({"id":1,"query":"hierarchy","a":{"type":"box","half_extents":[1,1,1]},"kind":"inner"})",
-    R"({"id":1,"query":"decomposition","a":{"type":"box","half_extents":[1,1,1]},)"
-    R"("b":{"type":"box","half_extents":[1,1,1]},"verify":true})",
-    R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[4,0],[4,4],[0,4]],"holes":[[[1,1],[1,2],[2,2],[2,1]]]},)"
-    R"("q":{"outer":[[0,0],[1,0],[0,1]]},"placements":[[1,1],[9,9]],"direction":[1,0],)"
-    R"("complete":"straight","slots":true})",
-    R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[4,0],[4,4],[0,4]]},"q":{"outer":[[0,0],[1,0],[0,1]]},)"
-    R"("direction_set":[[1,0],[0,1]],"method":"explicit"})",
-    R"({"id":1,"query":"approx_directional_width","a":{"points":[[0,0],[1,0],[0,1]],"affine":{"matrix":[[1,0],[0,1]],)"
-    R"("translation":[1,1]}},"epsilon":0.25,"directions":[[1,0]],"method":"kernel"})",
-    R"({"id":1,"query":"approx_intersect","a":{"points":[[0,0],[1,0],[0,1]]},"b":[{"halfspaces":[[1,0,1],[-1,0,1],)"
-    R"([0,1,1],[0,-1,1]]}],"epsilon":0.25,"backend":"kernel"})",
-    R"({"id":1,"query":"approx_minkowski_sum","a":{"sum_of":[{"points":[[0,0],[1,0],[0,1]]}]},)"
-    R"("b":{"hull_of":[{"points":[[0,0],[1,0],[1,1]]},{"points":[[0,1],[0,2],[1,2]]}]},"epsilon":0.25,"representation":"points"})",
-    R"({"id":1,"query":"approx_width","a":{"points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]},"epsilon":0.25})",
-    R"({"id":1,"query":"approximate","a":{"intersection_of":[{"points":[[0,0],[1,0],[0,1]]},)"
-    R"({"points":[[0,0],[1,0],[1,1]]}]},"epsilon":0.25,"representation":"points","side":"outer","backend":"macbeath"})",
-    R"({"id":1,"query":"epsilon_kernel","a":{"points":[[0,0],[1,0],[0,1]]},"epsilon":0.25})",
-    R"({"id":1,"query":"approx_membership","a":{"points":[[0,0],[1,0],[0,1]]},"epsilon":0.25,"points":[[0.1,0.1]],)"
-    R"("backend":"exact"})",
-};
+/// A line or more for every query, with all of its fields between them.
+std::vector<std::string> whole_lines() {
+  std::ifstream file(PROJECT_SOURCE_DIR "/tests/corpus/protocol_lines.jsonl");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
 
 /// Pointers to everything below the line's object, its id left out.
 std::vector<Json::json_pointer> places_of(const Json& line) {
@@ -137,7 +95,7 @@ void expect_an_answer(const std::string& text, const std::string& line) {
 
 TEST(SpoiltLines, EveryQueryHasALineHereThatIsAnswered) {
   std::set<std::string> asked;
-  for (const char* line : kWholeLines) {
+  for (const std::string& line : whole_lines()) {
     const Json reply = answer(line);
     EXPECT_EQ(code_of(reply), "") << line << "\n" << reply;
     asked.insert(Json::parse(line).at("query"));
@@ -149,7 +107,7 @@ TEST(SpoiltLines, AreAnsweredInFullAndCoarsely) {
   query::Session session;
   session.limits.files = false;
   int lines = 0, refused = 0;
-  for (const char* whole : kWholeLines) {
+  for (const std::string& whole : whole_lines()) {
     for (const std::string& line : spoilt(Json::parse(whole))) {
       const query::LineAnswer full = query::answer_line(line, session);
       expect_an_answer(full.text, line);
@@ -176,7 +134,7 @@ TEST(SpoiltLines, AreAnsweredWithinABudget) {
 #endif
   query::Session session;
   session.limits.files = false;
-  for (const char* whole : kWholeLines) {
+  for (const std::string& whole : whole_lines()) {
     const Json line = Json::parse(whole);
     std::vector<std::string> lines;
     for (const auto& [name, value] : line.items()) {

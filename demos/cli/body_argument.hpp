@@ -1,0 +1,29 @@
+/// @file
+/// A body as a word of the command line: a mesh's file, `-` for a mesh on standard input, or a primitive.
+#pragma once
+
+#include <string>
+
+#include "protocol/shape_reader.hpp"
+
+namespace pd::cli {
+
+/// What the word may be, for help.
+inline constexpr const char* kBodyWords =
+    R"(A body is a mesh's file (OBJ, STL, PLY, OFF or glTF), - for a mesh on standard input, or a primitive about the origin:
+  box:X,Y,Z        half extents
+  sphere:R         radius
+  ellipsoid:X,Y,Z  radii
+  capsule:R,H      radius and half the height, along z; a capsule's height is that of its segment
+  cylinder:R,H     cone:R,H)";
+
+struct BodyArgument {
+  std::string word;
+  double margin = 0;                        ///< radius of a ball that sweeps the body
+  query::MeshAs as = query::MeshAs::found;  ///< of meshes
+};
+
+/// Reads the body. @throws query::Refusal that begins with the word
+[[nodiscard]] query::NamedShape read_body_argument(const BodyArgument& argument);
+
+}  // namespace pd::cli

@@ -1,0 +1,167 @@
+/// @file
+/// The command as a newcomer types it: bodies without a file, what a terminal shows, manual pages and completion.
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "protocol/handlers.hpp"
+#include "protocol_lines.hpp"
+#include "temporary_folder.hpp"
+
+namespace pd::test {
+namespace {
+
+constexpr const char* kCubeText =
+    "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
+    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+class Newcomer : public ::testing::Test, protected TemporaryFolder {
+ protected:
+  void SetUp() override { write("cube.obj", kCubeText); }
+
+  /// Runs a command of the shell, in which `pdepth` is the program. @return its exit code
+  int shell(const std::string& command) {
+    const int status = std::system(in_folder("(" + command + ") > out 2> err").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  Json json_of(const std::string& command) {
+    EXPECT_EQ(shell(command), 0) << command << "\n" << read("err");
+    return Json::parse(read("out"), nullptr, false);
+  }
+  /// What a command writes to a terminal on which nothing but the end of the input is typed.
+  std::string on_terminal(const std::string& command) {
+    int terminal = -1;
+    const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+    if (child == 0) {
+      ::execl("/bin/sh", "sh", "-c", in_folder(command).c_str(), nullptr);
+      ::_exit(127);
+    }
+    constexpr char kEndOfInput = 4;
+    EXPECT_EQ(::write(terminal, &kEndOfInput, 1), 1);
+    std::string text;
+    char buffer[1024];
+    for (ssize_t got = 0; (got = ::read(terminal, buffer, sizeof(buffer))) > 0;) {
+      text.append(buffer, static_cast<std::size_t>(got));
+    }
+    ::close(terminal);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return text;
+  }
+  [[nodiscard]] bool says(const std::string& words) const { return read("err").find(words) != std::string::npos; }
+
+ private:
+  [[nodiscard]] std::string in_folder(const std::string& command) const {
+    return "cd '" + path().string() + "'; pdepth() { '" PDEPTH_PROGRAM "' \"$@\"; }; " + command;
+  }
+};
+
+TEST_F(Newcomer, AsksAboutBodiesWithoutAFile) {
+  EXPECT_EQ(json_of("pdepth depth box:1,1,1 sphere:0.5 --pose-b 1.25,0,0 --json").at("depth"), 0.25);
+  EXPECT_EQ(json_of("pdepth depth cube.obj box:1,1,1 --pose-b 1.5,0,0 --json").at("depth"), 0.5);
+  EXPECT_NEAR(json_of("pdepth depth capsule:0.2,1 cylinder:1,1 --pose-b 0,0,2 --json").at("depth").get<double>(), 0.2,
+              1e-6);
+  EXPECT_EQ(json_of("pdepth depth cone:1,1 ellipsoid:1,2,3 --pose-b 9,0,0 --json").at("class"), "separated");
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 sphere:0.5"), 0);
+  EXPECT_NE(read("out").find("sphere:0.5"), std::string::npos);
+  EXPECT_NE(read("out").find("overlap"), std::string::npos);
+  for (const char* bad : {"box:1,1", "box:1,1,0", "sphere:", "sphere:x", "capsule:1", "cone:1,2,3", "sphere:nan"}) {
+    EXPECT_EQ(shell(std::string("pdepth depth box:1,1,1 ") + bad), 2) << bad;
+    EXPECT_TRUE(says(bad)) << bad << ": " << read("err");
+  }
+  EXPECT_TRUE(says("sphere:nan"));
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 ellipsoid:1,2,3 --method overlay"), 2);
+  EXPECT_TRUE(says("auto does")) << read("err");
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 sphere:1 --trace t.jsonl"), 2);
+  EXPECT_TRUE(says("--trace: both bodies must be meshes or boxes")) << read("err");
+}
+
+TEST_F(Newcomer, SweepsBodiesAndAsksAlongADirection) {
+  const std::string pair = "pdepth depth box:1,1,1 box:1,1,1 --pose-b 2.25,0,0 --json ";
+  EXPECT_EQ(json_of(pair).at("distance"), 0.25);
+  EXPECT_EQ(json_of(pair + "--margin 0.25").at("depth"), 0.25);
+  EXPECT_EQ(json_of(pair + "--margin 0.5,0").at("depth"), 0.25);
+  EXPECT_EQ(shell(pair + "--margin -1"), 2);
+  EXPECT_EQ(shell(pair + "--margin 1,2,3"), 2);
+  EXPECT_EQ(json_of("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0,3 --json").at("depth"), 2.0);
+  EXPECT_EQ(json_of("pdepth depth box:1,1,1 box:1,1,1 --pose-b 1,0,0 --direction=-1,0,0 --json").at("depth"), 1.0);
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0,3"), 0);
+  EXPECT_NE(read("out").find("along the direction"), std::string::npos) << read("out");
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0,0"), 2);
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0"), 2);
+  EXPECT_TRUE(says("X,Y,Z")) << read("err");
+  EXPECT_EQ(shell("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0,1 --method grid"), 2);
+}
+
+TEST_F(Newcomer, ReadsAMeshFromStandardInput) {
+  write("spike.off", "OFF\n4 4 6\n0 0 0.5\n2 0 4\n-1 2 4\n-1 -2 4\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n");
+  write("flat.stl",
+        "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+        "0\nendloop\nendfacet\nendsolid x\n");
+  EXPECT_EQ(json_of("pdepth depth - box:1,1,1 --pose-b 1.5,0,0 --json < cube.obj").at("depth"), 0.5);
+  EXPECT_EQ(json_of("pdepth depth box:1,1,1 - --json < spike.off").at("depth"), 0.5);
+  EXPECT_EQ(json_of("pdepth depth - box:1,1,1 --hull --json < flat.stl").at("class"), "overlapping");
+  EXPECT_EQ(shell("pdepth depth - - < cube.obj"), 2);
+  EXPECT_EQ(shell("pdepth depth - box:1,1,1 < /dev/null"), 2);
+  EXPECT_TRUE(says("standard input: the file holds no vertices")) << read("err");
+  EXPECT_EQ(shell("echo '{\"asset\":{}}' | pdepth depth - box:1,1,1"), 2);
+  EXPECT_TRUE(says("standard input: glTF")) << read("err");
+}
+
+TEST_F(Newcomer, IsToldOnATerminalWhatTheCommandWaitsFor) {
+  EXPECT_NE(on_terminal("pdepth query").find("reading lines from standard input"), std::string::npos);
+  EXPECT_EQ(shell("pdepth query < /dev/null"), 0);
+  EXPECT_EQ(read("err"), "");
+  // Longer than the half second after which a line says how far the work is.
+  write("record.jsonl", R"({"record":"pdepth-contacts/1","engine":"none","scalar":"float64"})"
+                        "\n");
+  const std::string slow = "(cat record.jsonl; sleep 0.7) | pdepth audit - > out";
+  const std::string shown = on_terminal(slow);
+  EXPECT_NE(shown.find("audit -"), std::string::npos) << shown;
+  EXPECT_TRUE(shown.ends_with("\r\x1b[K")) << "the line is taken away: " << shown;
+  EXPECT_EQ(shell(slow), 0);
+  EXPECT_EQ(read("err"), "") << "nothing where no terminal is";
+}
+
+TEST_F(Newcomer, FindsQueriesVersionAndSchema) {
+  EXPECT_EQ(shell("pdepth query --list"), 0);
+  for (const query::QueryEntry& entry : query::queries()) {
+    EXPECT_NE(read("out").find("  " + std::string(entry.name) + " "), std::string::npos) << entry.name;
+  }
+  EXPECT_TRUE(json_of("pdepth query --schema").at("$defs").contains("error_code"));
+  EXPECT_EQ(shell("pdepth --version"), 0);
+  EXPECT_NE(read("out").find(", commit "), std::string::npos) << read("out");
+}
+
+TEST_F(Newcomer, HasManualPagesAndCompletion) {
+  EXPECT_EQ(shell("pdepth help --man pages"), 0);
+  EXPECT_EQ(shell("pdepth --help | sed -n 's/^  \\([a-z]*\\)  .*/\\1/p'"), 0);
+  std::set<std::string> pages;
+  for (const auto& entry : std::filesystem::directory_iterator(path() / "pages")) pages.insert(entry.path().filename());
+  for (const char* name : {"pdepth.1", "pdepth-depth.1", "pdepth-query.1", "pdepth-audit.1", "pdepth-simplify.1"}) {
+    EXPECT_TRUE(pages.contains(name)) << name;
+  }
+  const std::string page = read("pages/pdepth-simplify.1");
+  for (const char* words : {".TH pdepth-simplify 1", "\\fB\\-\\-epsilon\\fR", "outer|inner", "[0.001]", "Examples:"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words << "\n" << page;
+  }
+  EXPECT_EQ(shell("pdepth help --completion bash"), 0);
+  write("complete.sh", read("out") + R"(
+complete_words() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _pdepth; echo "${COMPREPLY[*]}"; }
+complete_words pdepth dep
+complete_words pdepth simplify --ep
+complete_words pdepth simplify scan.ply --side ''
+complete_words pdepth check cube
+complete_words pdepth help aud
+)");
+  EXPECT_EQ(shell("bash complete.sh"), 0);
+  EXPECT_EQ(read("out"), "depth\n--epsilon\nouter inner\ncube.obj\naudit\n") << read("err");
+}
+
+}  // namespace
+}  // namespace pd::test
