@@ -7,11 +7,18 @@ pd_build_packages=(
 # Loaded or run, not linked: the rasteriser, the fonts of the captions, the video encoder.
 pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)
 # chromium opens the pages of --report.
-# mkdocs and its theme build the documentation's site; luajit runs a client of the C interface, abigail-tools guard its ABI.
+# mkdocs, its theme and Doxygen build the documentation's site; luajit runs a client of the C interface, abigail-tools guard its ABI.
 pd_test_packages=(
-  libgtest-dev libqhull-dev ccache chromium mkdocs mkdocs-material luajit abigail-tools
+  libgtest-dev libqhull-dev ccache chromium mkdocs mkdocs-material doxygen luajit abigail-tools
   python3-dev pybind11-dev python3-numpy python3-pytest python3-venv python3-pip python3-setuptools python3-wheel python3-build
-  python3-distributed
+  python3-distributed python3-jsonschema
+)
+
+# What packaging/debian.sh and packaging/try_debian.sh need beside them: the tools that make and check packages, and the peers
+# whose answers pdepth-recorders records.
+pd_package_packages=(
+  dpkg-dev fakeroot debhelper dh-python lintian mmdebstrap git doxygen mkdocs mkdocs-material libccd-dev libfcl-dev libode-dev
+  python3-dev pybind11-dev python3-numpy
 )
 
 # Prints those of the named packages that are not installed.

@@ -8,8 +8,10 @@ set(PD_CMAKE_SOURCE_DIR ${CMAKE_CURRENT_LIST_DIR})
 # pd_add_library(<target> <sources>...): static, or with BUILD_SHARED_LIBS shared: then its file carries the version under which
 # binaries stay compatible (0.x: the minor one) and exports namespace pd alone, without pd::detail. The archive
 # <target>_internals holds the same objects for tests of internals; without BUILD_SHARED_LIBS it is the library itself.
+# PD_STATIC_LIBRARIES names targets that stay static all the same: Debian's package of the glue holds an archive, since its
+# interface is Bullet's.
 function(pd_add_library target)
-  if(NOT BUILD_SHARED_LIBS)
+  if(NOT BUILD_SHARED_LIBS OR target IN_LIST PD_STATIC_LIBRARIES)
     add_library(${target} STATIC ${ARGN})
     add_library(${target}_internals ALIAS ${target})
     return()
@@ -76,5 +78,25 @@ function(pd_install_package)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT pd_core)
   if(TARGET pdepth)
     install(TARGETS pdepth RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT pdepth)
+    if(NOT CMAKE_CROSSCOMPILING)
+      pd_install_manual()
+    endif()
   endif()
+  # Programs that the command starts: it looks beside itself and in ../libexec/pdepth.
+  foreach(program pdepth-pictures record_peers record_peers_double)
+    if(TARGET ${program})
+      install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/pdepth COMPONENT ${program} OPTIONAL)
+    endif()
+  endforeach()
+endfunction()
+
+# Manual pages and completion, which the command writes itself. It may have been built without a path to its libraries.
+function(pd_install_manual)
+  set(command "${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=$<TARGET_FILE_DIR:pd_core>:$ENV{LD_LIBRARY_PATH} $<TARGET_FILE:pdepth>")
+  string(REPLACE " " "\" \"" command "\"${command}\"")
+  install(CODE "set(share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATAROOTDIR}\")
+execute_process(COMMAND ${command} help --man \"\${share}/man/man1\" COMMAND_ERROR_IS_FATAL ANY)
+file(MAKE_DIRECTORY \"\${share}/bash-completion/completions\")
+execute_process(COMMAND ${command} help --completion bash OUTPUT_FILE \"\${share}/bash-completion/completions/pdepth\"
+                COMMAND_ERROR_IS_FATAL ANY)" COMPONENT pdepth)
 endfunction()

@@ -32,5 +32,7 @@ def test_a_wheel_and_pip_install_run_without_the_source_tree(tmp_path):
             *source)
         place, depth, facets = run(python, "-c", script).split()
         assert place.startswith(str(tmp_path)) and (depth, facets) == ("0.5", "6")
+        answer = run(tmp_path / "venv" / "bin" / "pdepth", "depth", "box:1,1,1", "sphere:1", "--pose-b", "1.5,0,0", "--json")
+        assert '"depth":0.5,' in answer
     linked = run("ldd", *(tmp_path / "venv").glob("lib/python*/site-packages/pdepth/_core*.so"))
     assert "Bullet" not in linked and "not found" not in linked and str(TOP) not in linked

@@ -12,7 +12,7 @@
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
-set(rooms CMakeLists.txt engine_glue pd_core demos tests render README.md)
+set(rooms CMakeLists.txt engine_glue pd_core packaging demos tests render README.md)
 set(tool_files CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff pyproject.toml SECURITY.md)
 set(ignored_by_git build out compile_commands.json)
 set(max_lines 500)
@@ -39,7 +39,7 @@ foreach(entry ${rooms} ${tool_files})
 endforeach()
 
 set(patterns "")
-foreach(room pd_core engine_glue render demos tests)
+foreach(room pd_core engine_glue render demos tests packaging)
   foreach(kind *.cpp *.hpp *.py *.pyi *.cmake *.in *.sh CMakeLists.txt)
     list(APPEND patterns ${ROOT}/${room}/${kind})
   endforeach()
