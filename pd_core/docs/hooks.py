@@ -66,7 +66,7 @@ def on_files(files, config):
 
 def on_nav(nav, config, files):
     if DOXYGEN:
-        nav.items.append(Link("C++ reference", "api/files.html"))
+        nav.items.append(Link("Reference of the headers", "api/files.html"))
     return nav
 
 
@@ -107,7 +107,7 @@ def on_post_build(config):
 def api_link(match):
     """The page that Doxygen makes of a header; a name that no public header has ends the build."""
     words, header = match.groups()
-    namesakes = [path.relative_to(ROOT).as_posix() for path in ROOT.glob(f"*/include/pd/**/{(header or '').split('/')[-1]}")]
+    namesakes = [path.relative_to(ROOT).as_posix() for path in ROOT.glob(f"*/include/pd*/**/{(header or '').split('/')[-1]}")]
     meant = [path for path in namesakes if header and path.endswith("/" + header)]
     if header and len(meant) != 1:
         raise PluginError(f"{header} names no public header, or several: a folder before it tells which")
