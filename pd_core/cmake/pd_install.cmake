@@ -92,11 +92,11 @@ endfunction()
 
 # Manual pages and completion, which the command writes itself. It may have been built without a path to its libraries.
 function(pd_install_manual)
-  set(command "${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=$<TARGET_FILE_DIR:pd_core>:$ENV{LD_LIBRARY_PATH} $<TARGET_FILE:pdepth>")
-  string(REPLACE " " "\" \"" command "\"${command}\"")
+  set(command ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=$<TARGET_FILE_DIR:pd_core>:$ENV{LD_LIBRARY_PATH} $<TARGET_FILE:pdepth>)
+  list(JOIN command "\" \"" command)
   install(CODE "set(share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATAROOTDIR}\")
-execute_process(COMMAND ${command} help --man \"\${share}/man/man1\" COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND \"${command}\" help --man \"\${share}/man/man1\" COMMAND_ERROR_IS_FATAL ANY)
 file(MAKE_DIRECTORY \"\${share}/bash-completion/completions\")
-execute_process(COMMAND ${command} help --completion bash OUTPUT_FILE \"\${share}/bash-completion/completions/pdepth\"
+execute_process(COMMAND \"${command}\" help --completion bash OUTPUT_FILE \"\${share}/bash-completion/completions/pdepth\"
                 COMMAND_ERROR_IS_FATAL ANY)" COMPONENT pdepth)
 endfunction()
