@@ -1,6 +1,6 @@
 #!/bin/sh
 # abi.sh check|update LIBRARY: compares libpdepth.so and the types of pdepth.h with the stored description of the ABI, abi.xml,
-# or writes that anew. Exit code 77: abidw (Debian: abigail-tools) or a C compiler is not installed.
+# or writes that anew. Exit code 77: abidw (Debian: abigail-tools) or a C compiler is not installed, or this is not x86-64.
 #
 # The library is built without debug information, which alone knows types. A stub with the functions of the header has it; the
 # compiler has already held the library's functions to the header's declarations.
@@ -12,6 +12,7 @@ core=$here/../../pd_core
 for tool in abidw abidiff "$CC"; do
   command -v "$tool" >/dev/null || { echo "skipped: $tool is not installed"; exit 77; }
 done
+[ "$(uname -m)" = x86_64 ] || { echo "skipped: abi.xml describes x86-64"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

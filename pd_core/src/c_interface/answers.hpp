@@ -11,7 +11,9 @@ namespace pd::c_interface {
 /// Everything but the size, which the caller has set.
 void write_depth(const PenetrationDepth& answer, pdepth_answer& out);
 [[nodiscard]] pdepth_feature feature_of(const Feature& feature, std::int32_t part);
-void write_vector(const Vec3& vector, double* out);
+inline void write_vector(const Vec3& vector, double* out) {
+  for (int k = 0; k < 3; ++k) out[k] = vector[k];
+}
 
 /// Refuses a method that does not answer for the two convex shapes.
 void require_supported(const Question& question);

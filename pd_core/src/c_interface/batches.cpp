@@ -33,7 +33,7 @@ Pose read_pose_of(const pdepth_pose_array& poses, std::int64_t row, const char* 
 /// The rows of a batch, read one at a time.
 class Rows {
  public:
-  Rows(const pdepth_batch* batch, Settings& room)
+  Rows(const pdepth_batch* batch, SettingsRoom& room)
       : batch_(read_struct(batch, "batch")), settings_(read_settings(batch_.settings, room)) {
     if (batch_.count < 0) refuse(PDEPTH_BAD_VALUE, "must be 0 or more", "batch.count");
     if (batch_.threads < 0 || batch_.threads > kMostThreads) {
@@ -133,7 +133,7 @@ pdepth_status ask_rows(pdepth_context* context, const pdepth_batch* batch, Struc
                        Answer&& answer) {
   pdepth_status of_rows = PDEPTH_OK;
   const pdepth_status status = at_border(context, [&] {
-    Settings room;
+    SettingsRoom room;
     const Rows rows(batch, room);
     of_rows = for_each_row(*context, rows, answers, stride, [&](std::int64_t row, Workspace& space, Struct& out) {
       answer(rows.question(row), space, out);

@@ -118,7 +118,7 @@ using namespace pd::c_interface;  // NOLINT(google-build-using-namespace)
 pdepth_status pdepth_depth(pdepth_context* context, const pdepth_question* question, pdepth_answer* answer) {
   return at_border(context, [&] {
     pdepth_answer& out = answer_struct(answer, "answer");
-    Settings room;
+    SettingsRoom room;
     ask_depth(read_question(question, room), workspace_of(*context), out);
   });
 }
@@ -127,7 +127,7 @@ pdepth_status pdepth_apart(pdepth_context* context, const pdepth_question* quest
   return at_border(context, [&] {
     given(apart, "apart");
     require_length(distance, "distance");
-    Settings room;
+    SettingsRoom room;
     const Question read = read_question(question, room);
     Settings settings = read.settings;
     if (question->settings == nullptr) settings.depth.bracket = Bracket::contact;
@@ -143,7 +143,7 @@ pdepth_status pdepth_depth_along(pdepth_context* context, const pdepth_question*
                                  pdepth_directional* answer) {
   return at_border(context, [&] {
     pdepth_directional& out = answer_struct(answer, "answer");
-    Settings room;
+    SettingsRoom room;
     const Question read = read_question(question, room);
     write_answer(ask_directional(read, read_vector(direction, "direction"), workspace_of(*context)), out);
   });
@@ -153,7 +153,7 @@ pdepth_status pdepth_contact_manifold(pdepth_context* context, const pdepth_ques
                                       double breaking_threshold, pdepth_manifold* manifold) {
   return at_border(context, [&] {
     pdepth_manifold& out = answer_struct(manifold, "manifold");
-    Settings room;
+    SettingsRoom room;
     ask_manifold(read_question(question, room), breaking_threshold, workspace_of(*context), out);
   });
 }
@@ -164,7 +164,7 @@ pdepth_status pdepth_time_of_impact(pdepth_context* context, const pdepth_questi
     const pdepth_movement& moves = read_struct(movement, "movement");
     pdepth_impact& out = answer_struct(impact, "impact");
     if (contact != nullptr) answer_struct(contact, "contact");
-    Settings room;
+    SettingsRoom room;
     const Question read = read_question(question, room);
     read.require_convex();
     require_supported(read);
@@ -183,7 +183,7 @@ pdepth_status pdepth_depth_derivatives(pdepth_context* context, const pdepth_que
   return at_border(context, [&] {
     pdepth_derivatives& out = answer_struct(derivatives, "derivatives");
     if (answer != nullptr) answer_struct(answer, "answer");
-    Settings room;
+    SettingsRoom room;
     ask_derivatives(read_question(question, room), workspace_of(*context), out, answer);
   });
 }
@@ -192,7 +192,7 @@ pdepth_status pdepth_width(pdepth_context* context, const pdepth_shape* shape, c
                            const pdepth_settings* settings, pdepth_width_answer* answer) {
   return at_border(context, [&] {
     pdepth_width_answer& out = answer_struct(answer, "answer");
-    Settings room;
+    SettingsRoom room;
     const DepthSettings& read = read_settings(settings, room).depth;
     const Method method = read.method;
     if (method != Method::automatic && method != Method::overlay && method != Method::expansion &&

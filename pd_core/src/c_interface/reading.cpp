@@ -97,22 +97,23 @@ Pose read_pose(const pdepth_pose* pose, const char* argument) {
   return pose == nullptr ? Pose() : read_pose(*pose, argument);
 }
 
-const Settings& read_settings(const pdepth_settings* settings, Settings& room) {
+const Settings& read_settings(const pdepth_settings* settings, SettingsRoom& room) {
   static const Settings by_default;
   if (settings == nullptr) return by_default;
   const pdepth_settings& read = read_struct(settings, "settings");
+  Settings& made = room.emplace();
   require_length(read.contact_tolerance, "settings.contact_tolerance");
-  room.depth.method = read_method(read.method);
-  room.depth.bracket = read_bracket(read.bracket);
-  room.depth.delta = read_share(read.delta);
-  room.depth.seed = read.seed;
-  room.depth.contact_tolerance = read.contact_tolerance;
+  made.depth.method = read_method(read.method);
+  made.depth.bracket = read_bracket(read.bracket);
+  made.depth.delta = read_share(read.delta);
+  made.depth.seed = read.seed;
+  made.depth.contact_tolerance = read.contact_tolerance;
   if (read.use_beyond != 0) {
     if (!(read.beyond >= 0)) refuse(PDEPTH_BAD_VALUE, "must be a length >= 0", "settings.beyond");
-    room.depth.beyond = read.beyond;
+    made.depth.beyond = read.beyond;
   }
-  if (read.delta > 0) room.of_unions.delta = read.delta;
-  return room;
+  if (read.delta > 0) made.of_unions.delta = read.delta;
+  return made;
 }
 
 void Question::require_convex() const {
@@ -121,7 +122,7 @@ void Question::require_convex() const {
          posed_a.shape == nullptr ? "question.a" : "question.b");
 }
 
-Question read_question(const pdepth_question* question, Settings& room) {
+Question read_question(const pdepth_question* question, SettingsRoom& room) {
   const pdepth_question& read = read_struct(question, "question");
   const pdepth_shape& a = given(read.a, "question.a");
   const pdepth_shape& b = given(read.b, "question.b");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "c_interface/handles.hpp"
 #include "pd/compound/compound_depth.hpp"
@@ -68,8 +69,11 @@ struct Settings {
   UnionSettings of_unions;
 };
 
+/// Room for settings that a call brings along, filled only then.
+using SettingsRoom = std::optional<Settings>;
+
 /// The settings by default where the pointer is NULL. @param room  holds the others.
-[[nodiscard]] const Settings& read_settings(const pdepth_settings* settings, Settings& room);
+[[nodiscard]] const Settings& read_settings(const pdepth_settings* settings, SettingsRoom& room);
 
 /// Two bodies and how they are asked about. The shape of a posed body is nullptr for a compound.
 struct Question {
@@ -85,6 +89,6 @@ struct Question {
   void require_convex() const;
 };
 
-[[nodiscard]] Question read_question(const pdepth_question* question, Settings& room);
+[[nodiscard]] Question read_question(const pdepth_question* question, SettingsRoom& room);
 
 }  // namespace pd::c_interface
