@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "options.hpp"
+#include "protocol/solid_reader.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {
@@ -81,10 +82,16 @@ std::string read_standard_input() {
   }
 }
 
+/// Read once: a mesh is looked at as a solid and then as a hull.
+const std::string& standard_input() {
+  static const std::string bytes = read_standard_input();
+  return bytes;
+}
+
 query::NamedShape shape_of_standard_input(query::MeshAs as) {
   const std::string name = "standard input";
   try {
-    return query::hull_of_mesh(query::read_mesh_bytes(read_standard_input(), kLimits.max_vertices), name, as);
+    return query::hull_of_mesh(query::read_mesh_bytes(standard_input(), kLimits.max_vertices), name, as);
   } catch (const query::Refusal& refusal) {
     query::refuse(refusal.code, refusal.message.starts_with(name) ? refusal.message : name + ": " + refusal.message,
                   "");
@@ -92,6 +99,13 @@ query::NamedShape shape_of_standard_input(query::MeshAs as) {
 }
 
 }  // namespace
+
+std::optional<MeshSolid> read_solid_argument(const std::string& word) {
+  if (find_primitive(word) != nullptr) return std::nullopt;
+  const query::SolidWish wish{.hull_words = "--hull"};
+  if (word != "-") return query::load_solid(word, kLimits, wish);
+  return query::solid_of_mesh(query::read_mesh_bytes(standard_input(), kLimits.max_vertices), "standard input", wish);
+}
 
 query::NamedShape read_body_argument(const BodyArgument& argument) {
   const Primitive* const primitive = find_primitive(argument.word);

@@ -2,8 +2,10 @@
 /// A body as a word of the command line: a mesh's file, `-` for a mesh on standard input, or a primitive.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "pd/shape/mesh_solid.hpp"
 #include "protocol/shape_reader.hpp"
 
 namespace pd::cli {
@@ -22,6 +24,10 @@ struct BodyArgument {
   double margin = 0;                        ///< radius of a ball that sweeps the body
   query::MeshAs as = query::MeshAs::found;  ///< of meshes
 };
+
+/// The solid of a mesh that is closed and not convex; nothing for other bodies. @throws query::Refusal that names the
+/// fault of a mesh with holes, or one that crosses itself
+[[nodiscard]] std::optional<MeshSolid> read_solid_argument(const std::string& word);
 
 /// Reads the body. @throws query::Refusal that begins with the word
 [[nodiscard]] query::NamedShape read_body_argument(const BodyArgument& argument);

@@ -17,6 +17,7 @@
 #include "pd/numeric/whole_file.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
+#include "protocol/solid_queries.hpp"
 #include "support/complain.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
@@ -31,8 +32,9 @@ constexpr const char* kDepthFooter =
 Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar first);
 x,y,z,r11,r12,r13,r21,...,r33 turns by a matrix. World point = R * point + (x,y,z).
 
-A moves by the translation, B stays. A mesh that is not convex is asked as the convex hull of its vertices, and the answer
-says so; --hull says that the hull is meant. `pdepth check FILE` tells why a mesh is not convex.
+A moves by the translation, B stays. A closed mesh that is not convex is asked as the solid that it bounds; --hull asks
+for the convex hull of its vertices instead, and the answer says so. A mesh with holes bounds no solid and is refused;
+`pdepth check FILE` tells every fault.
 
 Examples:
   pdepth depth box:1,1,1 sphere:0.5 --pose-b 1.25,0,0
@@ -136,15 +138,19 @@ std::string subjects(const query::Pair& pair) {
   return std::string(pair.a.hull_note ? "A's hull" : "A") + " and " + (pair.b.hull_note ? "B's hull" : "B");
 }
 
+void print_sentence(const std::string& who, ContactClass contact) {
+  const char* const words = contact == ContactClass::overlapping ? "overlap"
+                            : contact == ContactClass::touching  ? "touch: they share boundary points, but no inside"
+                                                                 : "are apart";
+  fmt::print("\n{} {}.\n\n", who, words);
+}
+
 /// The bodies, and in one sentence how they lie.
 void print_pair(const DepthArguments& arguments, const query::Pair& pair, ContactClass contact) {
   fmt::print("\n");
   print_body("A", arguments.file_a, pair.a);
   print_body("B", arguments.file_b, pair.b);
-  const char* const words = contact == ContactClass::overlapping ? "overlap"
-                            : contact == ContactClass::touching  ? "touch: they share boundary points, but no inside"
-                                                                 : "are apart";
-  fmt::print("\n{} {}.\n\n", subjects(pair), words);
+  print_sentence(subjects(pair), contact);
 }
 
 void print_statistics(std::string_view method, const Statistics& statistics, std::int64_t nanoseconds) {
@@ -155,12 +161,10 @@ void print_statistics(std::string_view method, const Statistics& statistics, std
   fmt::print("\n");
 }
 
-void print_result(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result,
-                  std::int64_t nanoseconds) {
-  print_pair(arguments, pair, result.contact);
+void print_answer(const PenetrationDepth& result) {
   switch (result.contact) {
     case ContactClass::overlapping:
-      print_row("depth", in_full(result.depth));
+      print_row("depth", in_full(result.depth) + (result.bracket_reached ? "" : "  at most; the bracket is wide"));
       print_row("bracket", fmt::format("[{}, {}]", in_full(result.lower), in_full(result.upper)));
       print_row("translation", in_words(result.translation) + "  moves A clear of B");
       print_row("direction", in_words(result.normal));
@@ -177,6 +181,12 @@ void print_result(const DepthArguments& arguments, const query::Pair& pair, cons
   }
   print_row("point on A", in_words(result.witness_a));
   print_row("point on B", in_words(result.witness_b));
+}
+
+void print_result(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result,
+                  std::int64_t nanoseconds) {
+  print_pair(arguments, pair, result.contact);
+  print_answer(result);
   if (!query::feature_kind(result).empty()) {
     print_row("of A", feature_in_words(result.feature_a, pair.a));
     print_row("of B", feature_in_words(result.feature_b, pair.b));
@@ -258,9 +268,89 @@ int run_along(const DepthArguments& arguments, const query::Pair& pair) {
   return kDone;
 }
 
+// ---- solids ------------------------------------------------------------------------------------------------------
+
+/// A mesh as a solid; a convex body is one, too.
+struct SolidBody {
+  MeshSolid solid;
+  bool convex = false;
+};
+
+SolidBody solid_of(std::optional<MeshSolid> loaded, const std::string& word) {
+  if (loaded) return {*std::move(loaded), false};
+  const query::NamedShape shape = read_body_argument({word});
+  if (shape.shape.polytope() == nullptr || shape.shape.margin() > 0) {
+    query::refuse("unsupported", word + ": beside a solid stand meshes and boxes; `pdepth query` takes other bodies",
+                  "");
+  }
+  auto solid = MeshSolid::from_polytope(*shape.shape.polytope());
+  if (!solid) query::refuse(to_string(solid.error().code), word + ": " + solid.error().message, "");
+  return {*std::move(solid), true};
+}
+
+void print_body(std::string_view name, const std::string& word, const SolidBody& body) {
+  print_row(name,
+            fmt::format("{}  ({}: {} vertices, {} triangles{})", word == "-" ? "standard input" : word,
+                        body.convex ? "convex" : "solid", body.solid.vertices().size(), body.solid.triangles().size(),
+                        body.solid.num_shells() > 1 ? fmt::format(", {} shells", body.solid.num_shells()) : ""));
+}
+
+void print_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b, const SolidDepth& result,
+                  std::int64_t nanoseconds) {
+  fmt::print("\n");
+  print_body("A", arguments.file_a, a);
+  print_body("B", arguments.file_b, b);
+  print_sentence("A and B", result.contact);
+  print_answer(result);
+  if (result.face_a >= 0 && result.face_b >= 0) {
+    print_row("of A", fmt::format("face {}", result.face_a));
+    print_row("of B", fmt::format("face {}", result.face_b));
+  }
+  fmt::print("\n");
+  print_row("method", fmt::format("solid, {} pairs of triangles, {} by {} convex parts, {}", result.work.triangle_pairs,
+                                  result.work.parts_a, result.work.parts_b, duration_in_words(nanoseconds)));
+  fmt::print("\n");
+}
+
+int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b) {
+  if (arguments.method != "auto") query::refuse("unsupported", "--method: solids are answered by auto", "");
+  if (!arguments.picture.empty() || !arguments.trace.empty() || !arguments.margins.empty() ||
+      !arguments.direction.empty()) {
+    query::refuse("unsupported",
+                  "--picture, --trace, --margin and --direction are for convex bodies here; --hull asks for the hulls",
+                  "");
+  }
+  const PosedSolid posed_a{&a.solid, parse_pose(arguments.pose_a, "--pose-a")};
+  const PosedSolid posed_b{&b.solid, parse_pose(arguments.pose_b, "--pose-b")};
+  Scratch scratch;
+  const query::Stopwatch watch;
+  const SolidDepth result = *penetration_depth(posed_a, posed_b, scratch);
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  if (!arguments.json) {
+    print_solids(arguments, a, b, result, nanoseconds);
+    return kDone;
+  }
+  std::string out;
+  query::JsonWriter writer(out);
+  writer.begin_object();
+  query::write_solid_answer(result, nanoseconds, writer);
+  if (!a.convex) writer.key("a_is").string("solid");
+  if (!b.convex) writer.key("b_is").string("solid");
+  writer.end_object();
+  fmt::print("{}\n", out);
+  return kDone;
+}
+
 int run_depth(const DepthArguments& arguments) {
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
+  if (!arguments.hull && !(arguments.file_a == "-" && arguments.file_b == "-")) {
+    auto solid_a = read_solid_argument(arguments.file_a), solid_b = read_solid_argument(arguments.file_b);
+    if (solid_a || solid_b) {
+      return run_solids(arguments, solid_of(std::move(solid_a), arguments.file_a),
+                        solid_of(std::move(solid_b), arguments.file_b));
+    }
+  }
   const query::Pair pair = read_pair(arguments);
   if (!arguments.picture.empty()) require_polytopes(pair, "--picture");
   if (!arguments.direction.empty()) return run_along(arguments, pair);
@@ -324,7 +414,7 @@ void add_depth_command(CLI::App& app, Action& action) {
       ->check(refuse_other_pictures, "FILE.png");
   command->add_option("--trace", arguments->trace,
                       "Write the search step by step, as JSON lines (`pdepth demo difference --trace` draws them)");
-  command->add_flag("--hull", arguments->hull, "Meshes that are not convex are meant as their convex hulls");
+  command->add_flag("--hull", arguments->hull, "Ask for the convex hulls of the vertices, not for solids");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");
   for (const char* other : {"--method", "--trace", "--picture"}) direction->excludes(command->get_option(other));
   command->callback([arguments, &action] { action = [arguments] { return run_depth(*arguments); }; });

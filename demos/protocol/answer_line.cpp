@@ -11,6 +11,8 @@
 #include "protocol/body_reader.hpp"
 #include "protocol/bounded_line.hpp"
 #include "protocol/handlers.hpp"
+#include "protocol/solid_queries.hpp"
+#include "protocol/solid_reader.hpp"
 #include "protocol/union_queries.hpp"
 
 namespace pd::query {
@@ -55,14 +57,15 @@ LineAnswer error_answer(std::string_view id_text, const Refusal& refusal) {
   return answer;
 }
 
-Handler find_handler(const Node& line) {
+Handler find_handler(const Node& line, const Limits& limits) {
   const Node name_node = line.at("query");
   const std::string name = read_string(name_node);
   std::string known;
   for (const QueryEntry& entry : kQueries) {
     if (entry.name == name) {
-      const Handler non_convex = names_non_convex(line) ? find_union_handler(name) : nullptr;
-      return non_convex ? non_convex : entry.handler;
+      const Handler of_unions = find_union_handler(name);
+      if (of_unions != nullptr && names_solid(line, limits)) return find_solid_handler(name);
+      return of_unions != nullptr && names_non_convex(line) ? of_unions : entry.handler;
     }
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
@@ -86,7 +89,7 @@ LineAnswer answer_parsed(const ParsedLine& parsed, Session& session, Care care) 
   const Node root(parsed.object, &remarks);
   JsonWriter writer(answer.text);
   writer.begin_object().key("id").raw(parsed.id_text);
-  find_handler(root)(root, session, writer);
+  find_handler(root, session.limits)(root, session, writer);
   write_remarks(remarks, writer);
   if (care == Care::coarse) writer.bracket_unreached();
   writer.end_object();

@@ -6,6 +6,7 @@
 
 #include "pd/shape/star_body.hpp"
 #include "protocol/pair_reader.hpp"
+#include "protocol/solid_reader.hpp"
 
 namespace pd::query {
 
@@ -75,12 +76,15 @@ NamedBody read_star(const Node& node, const Limits& limits) {
 NamedBody read_nested(const Node& node, const Limits& limits, int depth) {
   require_object(node);
   const std::string type = read_string(node.at("type"));
-  if (type != "compound" && type != "star") {
+  const auto solid = type == "mesh" ? read_solid(node, limits) : std::nullopt;
+  if (type != "compound" && type != "star" && !solid) {
     NamedShape shape = read_shape(node, limits);
     Compound compound(shape.shape);
     return {std::move(compound), {std::move(shape)}};
   }
-  NamedBody body = type == "compound" ? read_compound(node, limits, depth) : read_star(node, limits);
+  NamedBody body = solid                ? parts_of_solid(*solid, node)
+                   : type == "compound" ? read_compound(node, limits, depth)
+                                        : read_star(node, limits);
   if (const auto margin_node = node.find("margin")) {
     const double margin = read_number(*margin_node);
     if (margin < 0) margin_node->refuse("bad_value", "a margin must be 0 or greater");

@@ -123,10 +123,17 @@ NamedShape read_sphere_hull(const Node& node, const Limits& limits) {
 }
 
 NamedShape read_mesh(const Node& node, const Limits& limits) {
-  allow_only(node, {"type", "margin", "path", "as"});
+  allow_only(node, {"type", "margin", "path", "as", "turn_faces"});
   const Node path = node.at("path");
   const auto as = node.find("as");
-  if (as && read_string(*as) != "hull") as->refuse("bad_value", "must be \"hull\"");
+  const std::string word = as ? read_string(*as) : "";
+  if (as && word == "solid") {
+    as->refuse(
+        "unsupported",
+        "this query is for convex shapes; for solids there are depth, distance, intersect and, where their convex "
+        "parts have exact corners, the queries of compounds");
+  }
+  if (as && word != "hull") as->refuse("bad_value", "must be \"solid\" or \"hull\"");
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
   try {

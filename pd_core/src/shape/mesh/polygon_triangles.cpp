@@ -19,17 +19,21 @@ class EarCutter {
     mirrored_ = normal[axis_] < 0;
   }
 
+  /// Every corner turns left; a corner in the middle of an edge asks for ears, since a fan leaves it out.
   [[nodiscard]] bool is_convex() const {
     for (std::size_t k = 0; k < left_.size(); ++k) {
-      if (turn(at(k), at(k + 1), at(k + 2)) < 0) return false;
+      if (turn(at(k), at(k + 1), at(k + 2)) <= 0) return false;
     }
     return true;
   }
 
   bool cut(std::vector<std::array<std::int32_t, 3>>& triangles) {
     while (left_.size() > 3) {
+      // Ears with an area first: what lies on a line shares no edge with its neighbours.
       std::size_t ear = 0;
-      while (ear < left_.size() && !is_ear(ear)) ++ear;
+      while (ear < left_.size() && !is_ear(ear, 1)) ++ear;
+      if (ear == left_.size()) ear = 0;
+      while (ear < left_.size() && !is_ear(ear, 1) && !is_ear(ear, 0)) ++ear;
       if (ear == left_.size()) return false;
       append(at(ear + left_.size() - 1), at(ear), at(ear + 1), triangles);
       left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
@@ -48,11 +52,12 @@ class EarCutter {
     const int side = orient2d(shadow(a), shadow(b), shadow(c));
     return mirrored_ ? -side : side;
   }
-  /// A corner is an ear when it turns left, or not at all, and no other corner lies in its triangle.
-  [[nodiscard]] bool is_ear(std::size_t k) const {
+  /// A corner is an ear when it turns left (1), or not at all (0), and no other corner lies in its triangle.
+  [[nodiscard]] bool is_ear(std::size_t k, int wanted) const {
     const std::int32_t a = at(k + left_.size() - 1), b = at(k), c = at(k + 1);
     const int here = turn(a, b, c);
-    if (here <= 0) return here == 0;
+    if (here != wanted) return false;
+    if (here == 0) return true;
     return std::none_of(left_.begin(), left_.end(), [&](std::int32_t v) {
       return v != a && v != b && v != c && turn(a, b, v) >= 0 && turn(b, c, v) >= 0 && turn(c, a, v) >= 0;
     });

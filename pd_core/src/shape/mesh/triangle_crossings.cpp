@@ -1,10 +1,10 @@
 #include "shape/mesh/triangle_crossings.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "pd/numeric/predicates.hpp"
+#include "shape/mesh/triangle_tree.hpp"
 
 namespace pd::detail {
 
@@ -120,104 +120,63 @@ bool cross(std::span<const Vec3> points, const SurfaceTriangle& s, const Surface
 
 namespace {
 
-struct Box {
-  Vec3 low, high;
-  [[nodiscard]] bool meets(const Box& other) const {
-    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
-  }
-};
-
-/// A tree of boxes over the triangles, split at the median of the longest axis; leaves of up to kLeaf triangles.
-class BoxTree {
+/// Pairs of triangles whose boxes meet, found in one tree.
+class CrossingSearch {
  public:
-  BoxTree(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
-          const std::function<void(std::int32_t, std::int32_t)>& found)
-      : points_(points), triangles_(triangles), budget_(budget), found_(found), order_(triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
+  CrossingSearch(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
+                 const std::function<void(std::int32_t, std::int32_t)>& found)
+      : points_(points), triangles_(triangles), budget_(budget), found_(found) {
     boxes_.reserve(triangles.size());
-    for (const SurfaceTriangle& triangle : triangles) {
-      const Triangle t = corners(points, triangle);
-      boxes_.push_back({t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])});
-    }
-    if (!order_.empty()) build(0, order_.size());
+    for (const SurfaceTriangle& triangle : triangles) boxes_.push_back(box_of(points, triangle.vertices));
+    tree_ = TriangleTree(boxes_);
   }
 
   bool search() {
-    if (!nodes_.empty()) within(0);
+    if (!tree_.nodes().empty()) within(0);
     return budget_ >= 0;
   }
 
  private:
-  static constexpr std::size_t kLeaf = 4;
-  struct Node {
-    Box box;
-    std::size_t first, last;          ///< of the triangles in `order_`
-    std::size_t left = 0, right = 0;  ///< 0: a leaf
-  };
-
-  std::size_t build(std::size_t first, std::size_t last) {
-    Box box = boxes_[order_[first]];
-    for (std::size_t i = first + 1; i < last; ++i) {
-      const Box& other = boxes_[order_[i]];
-      box = {box.low.cwiseMin(other.low), box.high.cwiseMax(other.high)};
-    }
-    const std::size_t at = nodes_.size();
-    nodes_.push_back({box, first, last});
-    if (last - first <= kLeaf) return at;
-    int axis = 0;
-    (box.high - box.low).maxCoeff(&axis);
-    const std::size_t middle = first + (last - first) / 2;
-    const auto place = [&](std::size_t triangle) {
-      const Box& b = boxes_[triangle];
-      return 0.5 * b.low[axis] + 0.5 * b.high[axis];
-    };
-    const auto begin = order_.begin();
-    std::nth_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
-                     begin + static_cast<std::ptrdiff_t>(last), [&](std::size_t i, std::size_t j) {
-                       const double x = place(i), y = place(j);
-                       return x < y || (x == y && i < j);
-                     });
-    const std::size_t left = build(first, middle), right = build(middle, last);
-    nodes_[at].left = left;
-    nodes_[at].right = right;
-    return at;
+  using Node = TriangleTree::Node;
+  [[nodiscard]] const Node& node(std::int32_t at) const { return tree_.nodes()[static_cast<std::size_t>(at)]; }
+  [[nodiscard]] std::size_t triangle(std::int32_t place) const {
+    return static_cast<std::size_t>(tree_.order()[static_cast<std::size_t>(place)]);
   }
 
-  [[nodiscard]] bool is_leaf(const Node& node) const { return node.right == 0; }
-
-  void test(std::size_t i, std::size_t j) {
+  void test(std::int32_t i, std::int32_t j) {
     if (--budget_ < 0) return;
-    const SurfaceTriangle &s = triangles_[order_[i]], &t = triangles_[order_[j]];
-    if (s.face != t.face && boxes_[order_[i]].meets(boxes_[order_[j]]) && cross(points_, s, t)) {
+    const std::size_t at = triangle(i), other = triangle(j);
+    const SurfaceTriangle &s = triangles_[at], &t = triangles_[other];
+    if (s.face != t.face && boxes_[at].meets(boxes_[other]) && cross(points_, s, t)) {
       found_(std::min(s.face, t.face), std::max(s.face, t.face));
     }
   }
 
   /// Pairs inside of one node.
-  void within(std::size_t at) {
-    const Node& node = nodes_[at];
-    if (is_leaf(node)) {
-      for (std::size_t i = node.first; i < node.last; ++i) {
-        for (std::size_t j = i + 1; j < node.last; ++j) test(i, j);
+  void within(std::int32_t at) {
+    const Node& inner = node(at);
+    if (inner.is_leaf()) {
+      for (std::int32_t i = inner.first; i < inner.last; ++i) {
+        for (std::int32_t j = i + 1; j < inner.last; ++j) test(i, j);
       }
       return;
     }
-    within(node.left);
-    within(node.right);
-    between_nodes(node.left, node.right);
+    within(inner.left);
+    within(inner.right);
+    between_nodes(inner.left, inner.right);
   }
 
-  void between_nodes(std::size_t a, std::size_t b) {
+  void between_nodes(std::int32_t a, std::int32_t b) {
     if (--budget_ < 0) return;
-    const Node &s = nodes_[a], &t = nodes_[b];
-    if (!s.box.meets(t.box)) return;
-    if (is_leaf(s) && is_leaf(t)) {
-      for (std::size_t i = s.first; i < s.last; ++i) {
-        for (std::size_t j = t.first; j < t.last; ++j) test(i, j);
+    const Node &s = node(a), &t = node(b);
+    if (!TriangleBox{s.low, s.high}.meets({t.low, t.high})) return;
+    if (s.is_leaf() && t.is_leaf()) {
+      for (std::int32_t i = s.first; i < s.last; ++i) {
+        for (std::int32_t j = t.first; j < t.last; ++j) test(i, j);
       }
       return;
     }
-    const bool split_first = !is_leaf(s) && (is_leaf(t) || s.last - s.first >= t.last - t.first);
+    const bool split_first = !s.is_leaf() && (t.is_leaf() || s.last - s.first >= t.last - t.first);
     if (split_first) {
       between_nodes(s.left, b);
       between_nodes(s.right, b);
@@ -231,16 +190,15 @@ class BoxTree {
   const std::vector<SurfaceTriangle>& triangles_;
   std::int64_t budget_;
   const std::function<void(std::int32_t, std::int32_t)>& found_;
-  std::vector<std::size_t> order_;
-  std::vector<Box> boxes_;  ///< of the triangles
-  std::vector<Node> nodes_;
+  std::vector<TriangleBox> boxes_;
+  TriangleTree tree_;
 };
 
 }  // namespace
 
 bool find_crossings(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
                     const std::function<void(std::int32_t, std::int32_t)>& found) {
-  return BoxTree(points, triangles, budget, found).search();
+  return CrossingSearch(points, triangles, budget, found).search();
 }
 
 }  // namespace pd::detail

@@ -1,0 +1,107 @@
+#include "protocol/solid_queries.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "protocol/pair_reader.hpp"
+#include "protocol/solid_reader.hpp"
+#include "protocol/union_queries.hpp"
+
+namespace pd::query {
+
+void write_solid_answer(const SolidDepth& result, std::int64_t nanoseconds, JsonWriter& answer) {
+  write_depth_fields(result, answer);
+  answer.key("feature");
+  if (result.face_a < 0 || result.face_b < 0) {
+    answer.null();
+  } else {
+    answer.begin_object().key("kind").string("face-face");
+    answer.key("a").begin_array().integer(result.face_a).end_array();
+    answer.key("b").begin_array().integer(result.face_b).end_array();
+    answer.end_object();
+  }
+  answer.key("method").string("solid");
+  answer.key("exact").boolean(result.exact);
+  answer.key("stats").begin_object();
+  answer.key("triangle_pairs").integer(result.work.triangle_pairs);
+  answer.key("parts_a").integer(result.work.parts_a);
+  answer.key("parts_b").integer(result.work.parts_b);
+  answer.key("nanoseconds").integer(nanoseconds);
+  answer.end_object();
+}
+
+namespace {
+
+/// Two solids where they stand; one of them is missing where it is neither a mesh nor a polytope.
+struct SolidPair {
+  std::optional<MeshSolid> a, b;
+  Pose pose_a, pose_b;
+
+  [[nodiscard]] bool complete() const { return a && b; }
+  [[nodiscard]] PosedSolid posed_a() const { return {&*a, pose_a}; }
+  [[nodiscard]] PosedSolid posed_b() const { return {&*b, pose_b}; }
+};
+
+SolidPair read_solids(const Node& line, const Limits& limits) {
+  return {read_as_solid(line.at("a"), limits), read_as_solid(line.at("b"), limits), read_optional_pose(line, "pose_a"),
+          read_optional_pose(line, "pose_b")};
+}
+
+void answer_by_union(std::string_view query, const Node& line, Session& session, JsonWriter& answer) {
+  find_union_handler(query)(line, session, answer);
+}
+
+void answer_solids(const SolidPair& pair, double delta, const Node& line, Session& session, JsonWriter& answer) {
+  SolidSettings settings;
+  if (delta > 0) settings.delta = delta;
+  const Stopwatch watch;
+  const SolidDepth result =
+      value_or_refuse(penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, settings), line);
+  write_solid_answer(result, watch.nanoseconds(), answer);
+}
+
+void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed"});
+  if (const auto node = line.find("method"); node && read_method(*node) != Method::automatic) {
+    node->refuse("unsupported", "solids are answered by \"auto\"");
+  }
+  if (const auto node = line.find("metric")) {
+    node->refuse("unsupported", "a polyhedral metric is for convex polytopes; here lengths are Euclidean");
+  }
+  if (const auto seed = line.find("seed")) (void)read_integer(*seed, 0, std::int64_t{1} << 53);
+  const auto delta = line.find("delta");
+  const SolidPair pair = read_solids(line, session.limits);
+  if (!pair.complete()) return answer_by_union("depth", line, session, answer);
+  answer_solids(pair, delta ? read_delta(*delta) : 0, line, session, answer);
+}
+
+void answer_solid_distance(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
+  const SolidPair pair = read_solids(line, session.limits);
+  if (!pair.complete()) return answer_by_union("distance", line, session, answer);
+  answer_solids(pair, 0, line, session, answer);
+}
+
+void answer_solid_intersect(const Node& line, Session& session, JsonWriter& answer) {
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
+  const SolidPair pair = read_solids(line, session.limits);
+  if (!pair.complete()) return answer_by_union("intersect", line, session, answer);
+  answer.key("class").string(to_string(classify(pair.posed_a(), pair.posed_b())));
+}
+
+constexpr std::array kSolidQueries{
+    QueryEntry{"depth", answer_solid_depth},
+    QueryEntry{"distance", answer_solid_distance},
+    QueryEntry{"intersect", answer_solid_intersect},
+};
+
+}  // namespace
+
+Handler find_solid_handler(std::string_view query) {
+  const auto found = std::find_if(kSolidQueries.begin(), kSolidQueries.end(),
+                                  [&](const QueryEntry& entry) { return entry.name == query; });
+  return found == kSolidQueries.end() ? find_union_handler(query) : found->handler;
+}
+
+}  // namespace pd::query

@@ -1,0 +1,18 @@
+/// @file
+/// The queries that answer for solids.
+#pragma once
+
+#include <string_view>
+
+#include "pd/solid/solid_depth.hpp"
+#include "protocol/handlers.hpp"
+
+namespace pd::query {
+
+/// The fields of a depth answer about solids from "class" to "stats".
+void write_solid_answer(const SolidDepth& result, std::int64_t nanoseconds, JsonWriter& answer);
+
+/// The handler of a query of two bodies of which one is a mesh asked as a solid; nullptr where the query has none.
+[[nodiscard]] Handler find_solid_handler(std::string_view query);
+
+}  // namespace pd::query

@@ -1,0 +1,166 @@
+#include "protocol/solid_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "pd/solid/solid_parts.hpp"
+
+namespace pd::query {
+
+namespace {
+
+bool is_mesh(const Node& node) {
+  if (!node.json().is_object()) return false;
+  const auto type = node.json().find("type");
+  return type != node.json().end() && *type == "mesh";
+}
+
+/// "faces 3 and 5 stand in lines 12 and 14"
+std::string lines_of(const MeshFinding& finding, const MeshFaces& faces) {
+  std::string words;
+  for (const std::int32_t face : finding.faces) {
+    if (face < 0 || static_cast<std::size_t>(face) >= faces.lines.size()) continue;
+    words += (words.empty() ? " (face " : ", face ") + std::to_string(face) + ": line " +
+             std::to_string(faces.lines[static_cast<std::size_t>(face)]);
+  }
+  return words.empty() ? words : words + ")";
+}
+
+/// The caller's vertices stand for those that the report names.
+MeshFinding as_in_file(MeshFinding finding, const MeshPoints& mesh) {
+  for (std::int32_t& v : finding.edge) {
+    if (v >= 0 && !mesh.ids.empty()) v = mesh.ids[static_cast<std::size_t>(v)];
+  }
+  return finding;
+}
+
+[[noreturn]] void refuse_fault(const std::string& path, const MeshFinding& finding, const MeshPoints& mesh,
+                               const SolidWish& wish) {
+  const bool inside_out = finding.fault == MeshFault::inside_out;
+  const std::string way_out = inside_out ? "ask for the mesh turned (\"turn_faces\":true)" : "mend the mesh";
+  refuse(to_string(finding.fault),
+         path + ": " + in_words(as_in_file(finding, mesh)) + lines_of(finding, mesh.faces) + "; " + way_out +
+             ", or ask for the convex hull of its vertices (" + wish.hull_words + "). `pdepth check` names every fault",
+         "");
+}
+
+}  // namespace
+
+std::optional<MeshSolid> load_solid(const std::string& path, const Limits& limits, const SolidWish& wish) {
+  return solid_of_mesh(read_mesh_points(path, limits.max_vertices, kMaxMeshBytes), path, wish);
+}
+
+std::optional<MeshSolid> solid_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish) {
+  const MeshView view{mesh.points, mesh.faces.offsets, mesh.faces.corners};
+  if (mesh.faces.size() == 0 && !wish.always) return std::nullopt;
+  // Crossings are the dearest part, and a convex mesh has none.
+  const auto quick = check_mesh(view, {.crossings = false});
+  if (!quick) return std::nullopt;  // the hull's factory refuses the points by name
+  if (quick->convex && !wish.always) return std::nullopt;
+  if (const auto fault = fault_of_solid(*quick, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
+  const auto report = check_mesh(view);
+  if (!report) refuse(to_string(report.error().code), name + ": " + report.error().message, report.error().where);
+  if (const auto fault = fault_of_solid(*report, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
+  auto solid = MeshSolid::from_checked(view, *report, {.turn_faces = wish.turn_faces});
+  if (!solid) {
+    refuse(
+        to_string(solid.error().code),
+        name + ": " + solid.error().message + "; or ask for the convex hull of its vertices (" + wish.hull_words + ")",
+        solid.error().where);
+  }
+  return *std::move(solid);
+}
+
+std::optional<MeshSolid> read_solid(const Node& node, const Limits& limits) {
+  if (!is_mesh(node)) return std::nullopt;
+  allow_only(node, {"type", "margin", "path", "as", "turn_faces"});
+  SolidWish wish;
+  if (const auto as = node.find("as")) {
+    const std::string word = read_string(*as);
+    if (word == "hull") return std::nullopt;
+    if (word != "solid") as->refuse("bad_value", "must be \"solid\" or \"hull\"");
+    wish.always = true;
+  }
+  if (const auto turn = node.find("turn_faces")) {
+    if (!turn->json().is_boolean()) turn->refuse("bad_value", "must be true or false");
+    wish.turn_faces = turn->json().get<bool>();
+  }
+  const Node path = node.at("path");
+  const std::string file = read_string(path);
+  if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
+  try {
+    return load_solid(file, limits, wish);
+  } catch (const Refusal& refusal) {
+    path.refuse(refusal.code, refusal.message);
+  }
+}
+
+namespace {
+
+bool holds_solid(const Node& node, const Limits& limits, int depth) {
+  if (!node.json().is_object() || depth > kMaxCompoundNesting) return false;
+  const auto type = node.json().find("type");
+  if (type == node.json().end()) return false;
+  if (*type == "mesh") return read_solid(node, limits).has_value();
+  if (*type != "compound") return false;
+  const auto parts = node.find("parts");
+  if (!parts || !parts->json().is_array()) return false;
+  for (std::size_t i = 0; i < parts->size(); ++i) {
+    const Node part = parts->element(i);
+    if (!part.json().is_object()) continue;
+    const auto shape = part.find("shape");
+    if (shape && holds_solid(*shape, limits, depth + 1)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool names_solid(const Node& line, const Limits& limits) {
+  for (const std::string_view key : {"a", "b"}) {
+    const auto body = line.find(key);
+    if (body && holds_solid(*body, limits, 1)) return true;
+  }
+  return false;
+}
+
+std::optional<MeshSolid> read_as_solid(const Node& node, const Limits& limits) {
+  if (node.find("margin")) return std::nullopt;
+  if (const auto type = node.find("type")) {
+    if (type->json() == "compound" || type->json() == "star") return std::nullopt;
+  }
+  if (auto solid = read_solid(node, limits)) {
+    node.remark("solid");
+    return solid;
+  }
+  const NamedShape shape = read_shape(node, limits);
+  if (shape.shape.polytope() == nullptr) return std::nullopt;
+  auto solid = MeshSolid::from_polytope(*shape.shape.polytope());
+  if (!solid) return std::nullopt;
+  return *std::move(solid);
+}
+
+NamedBody parts_of_solid(const MeshSolid& solid, const Node& node) {
+  const auto parts = SolidParts::from_solid(solid);
+  const std::string way_out =
+      "; depth, distance and intersect of solids and convex polytopes need no parts, and \"as\":\"hull\" asks for the "
+      "convex hull";
+  if (!parts) node.refuse(to_string(parts.error().code), parts.error().message + way_out);
+  if (!parts->exact()) {
+    node.refuse("unsupported",
+                "this query needs the solid as convex parts, whose corners no doubles hold here" + way_out);
+  }
+  node.remark("solid");
+  NamedBody body{parts->inner(), {}};
+  for (const Compound::Part& part : body.compound.parts()) {
+    // Corners of parts are no vertices of the file.
+    std::int32_t most = 0;
+    for (int v = 0; v < part.shape.polytope()->num_vertices(); ++v) {
+      most = std::max<std::int32_t>(most, part.shape.polytope()->caller_id(v));
+    }
+    body.parts.push_back({part.shape, std::vector<std::int32_t>(static_cast<std::size_t>(most) + 1, -1)});
+  }
+  return body;
+}
+
+}  // namespace pd::query

@@ -1,0 +1,45 @@
+/// @file
+/// Meshes that are asked as the solids that they bound.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mesh/mesh_file.hpp"
+#include "pd/shape/mesh_solid.hpp"
+#include "protocol/body_reader.hpp"
+
+namespace pd::query {
+
+/// How a file's mesh is asked as a solid.
+struct SolidWish {
+  bool always = false;      ///< also where the mesh is convex
+  bool turn_faces = false;  ///< a mesh that is wholly inside out is turned
+  /// What a person or a program writes to ask for the hull instead, for refusals.
+  std::string hull_words = "\"as\":\"hull\"";
+};
+
+/// The solid of a mesh; nothing where its file holds a convex mesh, or points without faces, which are asked as
+/// their hull.
+/// @throws Refusal by the word of the fault (open_edge, ...) with the faces, their lines of the file, and the ways out;
+/// those of `read_mesh_points`.
+[[nodiscard]] std::optional<MeshSolid> solid_of_mesh(const MeshPoints& mesh, const std::string& name,
+                                                     const SolidWish& wish);
+/// Reads the mesh from a file.
+[[nodiscard]] std::optional<MeshSolid> load_solid(const std::string& path, const Limits& limits, const SolidWish& wish);
+
+/// The solid of a shape {"type":"mesh"}, as above; nothing for other shapes, meshes asked as their hull or with a
+/// margin.
+[[nodiscard]] std::optional<MeshSolid> read_solid(const Node& node, const Limits& limits);
+
+/// Whether "a" or "b" of a line is, or holds in a compound, a mesh that is asked as a solid.
+[[nodiscard]] bool names_solid(const Node& line, const Limits& limits);
+
+/// Either body of a query about solids: a mesh's, or a convex polytope's without a margin; nothing for others.
+[[nodiscard]] std::optional<MeshSolid> read_as_solid(const Node& node, const Limits& limits);
+
+/// The union of the convex parts of a solid.
+/// @throws Refusal unsupported where the parts are not the solid exactly, limit_exceeded for too many of them.
+[[nodiscard]] NamedBody parts_of_solid(const MeshSolid& solid, const Node& node);
+
+}  // namespace pd::query

@@ -1,0 +1,59 @@
+/// @file
+/// Class, distance and depth of two solids that closed meshes bound.
+///
+/// The class is exact on the stored numbers and poses. Solids are overlapping when their interiors meet, touching when
+/// they have boundary points alone in common, separated else. A slot of zero width belongs to the forbidden placements
+/// (`compound_depth.hpp`).
+#pragma once
+
+#include <cstdint>
+
+#include "pd/depth/depth_answer.hpp"
+#include "pd/numeric/expected.hpp"
+#include "pd/shape/mesh_solid.hpp"
+#include "pd/shape/pose.hpp"
+
+namespace pd {
+
+class Scratch;
+
+/// A solid and where it stands. Refers to the solid: it must outlive the query.
+struct PosedSolid {
+  const MeshSolid* solid;
+  Pose pose;
+};
+
+struct SolidSettings {
+  /// The bracket of the depth closes to upper <= (1 + delta) lower; in (0, 1].
+  double delta = 1e-2;
+};
+
+struct SolidStatistics {
+  std::int64_t triangle_pairs = 0;  ///< pairs of triangles that were looked at
+  std::int64_t parts_a = 0;         ///< convex parts that a depth was told by; 0: none
+  std::int64_t parts_b = 0;
+};
+
+/// The answer of `penetration_depth`, and the faces of the callers' meshes that give it; -1: unknown.
+struct SolidDepth : PenetrationDepth {
+  std::int32_t face_a = -1;
+  std::int32_t face_b = -1;
+  /// Class and depth are those of the stored numbers; upper - lower is rounding.
+  bool exact = true;
+  SolidStatistics work;
+};
+
+/// The class alone.
+[[nodiscard]] ContactClass classify(const PosedSolid& a, const PosedSolid& b);
+
+/// Depth of two solids, or their distance when apart.
+///
+/// Separated: witnesses are points of the surfaces, `distance_lower <= exact <= distance_upper`, within 1e-12 of each
+/// other relative to the distance (`bracket_reached` is false where they are not).
+/// Overlapping: lower <= depth <= upper, and the stored translation separates exactly. `bracket_reached` is false where
+/// upper > (1 + delta) lower.
+/// @return bad_value ("delta").
+[[nodiscard]] Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedSolid& b, Scratch& scratch,
+                                                     const SolidSettings& settings = {});
+
+}  // namespace pd
