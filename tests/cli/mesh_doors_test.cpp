@@ -1,8 +1,9 @@
 /// @file
-/// A mesh that is not convex is never answered silently about another body: every door says that it asks the hull, and
-/// `pdepth check` says why.
+/// A mesh that is not convex is asked as the solid that it bounds, and refused by name where it bounds none. Where the
+/// hull is asked, the answer says so; `pdepth check` says why.
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -47,32 +48,77 @@ class MeshDoors : public ::testing::Test, protected TemporaryFolder {
   const std::string open_ = write("open.obj", std::string(kCube).substr(0, std::string(kCube).rfind('f')));
 };
 
-TEST_F(MeshDoors, EveryQueryOfAMeshSaysWhenItIsTheHull) {
+TEST_F(MeshDoors, AMeshThatIsNotConvexIsAskedAsTheSolid) {
   // A cube in the notch of the L: the solids are 0.1 apart, their hulls overlap.
   const std::string pose = R"("pose_b":{"translation":[1.1,1.1,0]})";
   const Json found = answer(depth_line(mesh(angle_), mesh(cube_), pose));
-  EXPECT_EQ(found.at("class"), "overlapping");
-  EXPECT_EQ(found.at("a_is"), "hull");
+  EXPECT_EQ(found.at("class"), "separated");
+  EXPECT_NEAR(found.at("distance").get<double>(), 0.1, 1e-15);
+  EXPECT_LE(found.at("distance_lower"), found.at("distance"));
+  EXPECT_EQ(found.at("a_is"), "solid");
   EXPECT_FALSE(found.contains("b_is")) << "the cube is convex";
-  const Json other = answer(depth_line(mesh(cube_), mesh(angle_)));
-  EXPECT_FALSE(other.contains("a_is"));
-  EXPECT_EQ(other.at("b_is"), "hull");
-  for (const std::string& hull :
-       {mesh(cloud_), mesh(open_), mesh(cube_, R"(,"as":"hull")"), mesh(angle_, R"(,"margin":0.1)"),
-        R"({"type":"compound","parts":[{"shape":)" + mesh(angle_) + R"(,"pose":{}}]})"}) {
-    EXPECT_EQ(answer(depth_line(hull, kUnitBox)).value("a_is", ""), "hull") << hull;
+  EXPECT_EQ(found.at("feature").at("kind"), "face-face");
+  const Json flush = answer(depth_line(mesh(cube_), mesh(angle_), R"("pose_a":{"translation":[1,1,0]})"));
+  EXPECT_EQ(flush.at("class"), "touching");
+  EXPECT_EQ(flush.at("b_is"), "solid");
+  const Json deep = answer(depth_line(mesh(angle_), kUnitBox, R"("pose_b":{"translation":[1,1,0.5]})"));
+  EXPECT_EQ(deep.at("class"), "overlapping");
+  EXPECT_EQ(deep.at("exact"), true);
+  EXPECT_NEAR(deep.at("depth").get<double>(), 0.5, 1e-15);
+  for (const char* query : {"distance", "intersect"}) {
+    const Json told = answer(R"({"id":1,"query":")" + std::string(query) + R"(","a":)" + mesh(angle_) + R"(,"b":)" +
+                             mesh(cube_) + "," + pose + "}");
+    EXPECT_EQ(told.at("class"), "separated") << told;
+    EXPECT_EQ(told.value("a_is", ""), "solid") << told;
   }
-  for (const char* query : {"distance", "intersect", "contact_manifold", "minkowski_difference"}) {
+  // Beside other bodies, and where the query is one of unions, the solid's convex parts are asked.
+  for (const std::string& other : {std::string(R"({"type":"sphere","radius":0.2})"),
+                                   R"({"type":"compound","parts":[{"shape":)" + mesh(angle_) + R"(,"pose":{}}]})"}) {
     const Json told =
-        answer(R"({"id":1,"query":")" + std::string(query) + R"(","a":)" + mesh(angle_) + R"(,"b":)" + kUnitBox + "}");
-    EXPECT_EQ(told.value("a_is", ""), "hull") << told;
+        answer(depth_line(other, mesh(angle_, R"(,"margin":0.05)"), R"("pose_a":{"translation":[1.5,1.5,0.5]})"));
+    EXPECT_EQ(told.value("b_is", ""), "solid") << told;
+    EXPECT_TRUE(told.contains("closed")) << told;
+  }
+  const Json manifold =
+      answer(R"({"id":1,"query":"contact_manifold","a":)" + mesh(angle_) + R"(,"b":)" + mesh(cube_) + "}");
+  EXPECT_EQ(manifold.value("a_is", ""), "solid") << manifold;
+}
+
+TEST_F(MeshDoors, HullsSayThatTheyAreHulls) {
+  for (const std::string& hull : {mesh(cloud_), mesh(cube_, R"(,"as":"hull")"), mesh(angle_, R"(,"as":"hull")"),
+                                  mesh(angle_, R"(,"margin":0.1,"as":"hull")")}) {
+    EXPECT_EQ(answer(depth_line(hull, kUnitBox)).value("a_is", ""), "hull") << hull;
   }
   const Json hull = answer(R"({"id":1,"query":"hull","a":)" + mesh(angle_) + "}");
   EXPECT_EQ(hull.value("a_is", ""), "hull");
   EXPECT_FALSE(answer(R"({"id":1,"query":"hull","a":)" + mesh(cube_) + "}").contains("a_is"));
-  const Json refused = answer(depth_line(mesh(cube_, R"(,"as":"solid")"), kUnitBox));
+}
+
+TEST_F(MeshDoors, MeshesThatBoundNoSolidAreRefusedByName) {
+  const Json open = answer(depth_line(mesh(open_), kUnitBox));
+  EXPECT_EQ(code_of(open), "open_edge");
+  EXPECT_EQ(where_of(open), "a.path");
+  expect_words(open.dump(), {"line", "hull", "mend the mesh"});
+  const std::string text(kCube);
+  const auto changed = [&](const std::string& name, const std::string& from, const std::string& to) {
+    std::string more = text;
+    more.replace(more.find(from), from.size(), to);
+    return write(name, more);
+  };
+  EXPECT_EQ(code_of(answer(depth_line(mesh(changed("flip.obj", "f 5 6 8 7", "f 7 8 6 5")), kUnitBox))), "flipped_face");
+  std::string turned = std::string(kAngle).substr(0, std::string(kAngle).find("f 6"));
+  turned += "f 1 2 3 4 5 6\nf 12 11 10 9 8 7\nf 7 8 2 1\nf 8 9 3 2\nf 9 10 4 3\nf 10 11 5 4\nf 11 12 6 5\nf 12 7 1 6\n";
+  const std::string inside_out = write("turned.obj", turned);
+  EXPECT_EQ(code_of(answer(depth_line(mesh(inside_out), kUnitBox))), "inside_out");
+  EXPECT_EQ(answer(depth_line(mesh(inside_out, R"(,"turn_faces":true)"), kUnitBox)).value("class", ""), "overlapping");
+  const std::string crossing = write("two.obj", text +
+                                                    "v 0.5 0.5 0.5\nv 0.7 0.5 0.5\nv 0.5 0.7 0.5\nv 0.5 0.5 2\n"
+                                                    "f 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n");
+  EXPECT_EQ(code_of(answer(depth_line(mesh(crossing), kUnitBox))), "self_crossing");
+  const Json refused = answer(depth_line(mesh(cube_, R"(,"as":"magic")"), kUnitBox));
   EXPECT_EQ(code_of(refused), "bad_value");
   EXPECT_EQ(where_of(refused), "a.as");
+  EXPECT_EQ(answer(depth_line(mesh(cube_, R"(,"as":"solid")"), kUnitBox)).value("a_is", ""), "solid");
 }
 
 TEST_F(MeshDoors, TheReasonAndBothVolumes) {
@@ -100,15 +146,20 @@ TEST_F(MeshDoors, TheReasonAndBothVolumes) {
 TEST_F(MeshDoors, TheCommandsSayItToPeople) {
   const Outcome found = run("depth angle.obj cube.obj --pose-b 1.1,1.1,0");
   EXPECT_EQ(found.status, 0);
-  expect_words(found.out, {"asked as the convex hull, since the mesh is not convex: 10 vertices, 1.167 times",
-                           "A's hull and B overlap."});
-  const Json told = Json::parse(run("depth angle.obj cube.obj --json").out);
-  EXPECT_EQ(told.value("a_is", ""), "hull");
+  expect_words(found.out, {"angle.obj  (solid: 12 vertices, 20 triangles)", "A and B are apart."});
+  const Json told = Json::parse(run("depth angle.obj cube.obj --json --pose-b 1.1,1.1,0").out);
+  EXPECT_EQ(told.value("a_is", ""), "solid");
+  EXPECT_EQ(told.value("class", ""), "separated");
   EXPECT_FALSE(told.contains("b_is"));
+  const Outcome hull = run("depth angle.obj cube.obj --pose-b 1.1,1.1,0 --hull");
+  expect_words(hull.out, {"A's hull and B's hull overlap."});
   EXPECT_EQ(Json::parse(run("depth angle.obj cube.obj --json --hull").out).value("b_is", ""), "hull");
   const Outcome convex = run("depth cube.obj cube.obj");
   EXPECT_EQ(convex.out.find("asked as"), std::string::npos) << convex.out;
   expect_words(convex.out, {"A and B overlap."});
+  const Outcome open = run("depth open.obj cube.obj");
+  EXPECT_EQ(open.status, 2);
+  expect_words(open.err, {"open_edge", "--hull"});
 }
 
 TEST_F(MeshDoors, CheckNamesFaultsAndPlaces) {

@@ -2,7 +2,7 @@
 #
 #   cmake -DROOT=<source tree> -P include_rules.cmake
 # Names every line that breaks a rule and fails when there is one. Rules:
-#   1. In pd_core, numeric < shape < structure < depth < compound < contact < union_contact; planar and dimension stand on numeric alone.
+#   1. In pd_core, numeric < shape < structure < depth < compound < solid < contact < union_contact; planar and dimension stand on numeric alone.
 #      c_interface stands on top: nobody includes it, and it alone includes pdepth/pdepth.h.
 #      Machinery of depth stands in folders of its own, of which each includes itself and those named in folders_under_* below;
 #      src/depth/X.cpp itself implements include/pd/depth/X.hpp, and no machinery includes a header of a public query. The
@@ -19,16 +19,17 @@
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
-set(core_floors numeric shape structure depth compound contact union_contact c_interface)
+set(core_floors numeric shape structure depth compound solid contact union_contact c_interface)
 set(core_islands planar dimension)
 set(floors_under_numeric numeric)
 set(floors_under_shape numeric shape)
 set(floors_under_structure numeric shape structure)
 set(floors_under_depth numeric shape structure depth)
 set(floors_under_compound numeric shape structure depth compound)
-set(floors_under_contact numeric shape structure depth compound contact)
-set(floors_under_union_contact numeric shape structure depth compound contact union_contact)
-set(floors_under_c_interface numeric shape structure depth compound contact union_contact c_interface)
+set(floors_under_solid numeric shape structure depth compound solid)
+set(floors_under_contact numeric shape structure depth compound solid contact)
+set(floors_under_union_contact numeric shape structure depth compound solid contact union_contact)
+set(floors_under_c_interface numeric shape structure depth compound solid contact union_contact c_interface)
 set(floors_under_planar numeric planar)
 set(floors_under_dimension numeric dimension)
 set(all_floors ${core_floors} ${core_islands})

@@ -26,7 +26,7 @@ TEST(SolidClass, CellsOfAGrid) {
   std::mt19937_64 random(71);
   Scratch scratch;
   std::array<int, 3> seen{};
-  for (int pair = 0; pair < 400; ++pair) {
+  for (int pair = 0; pair < 200; ++pair) {
     const Cells cells_a = random_cells(random, 1 + static_cast<int>(random() % 6));
     const Cells cells_b = random_cells(random, 1 + static_cast<int>(random() % 6));
     const MeshSolid a = solid_of(mesh_of(cells_a)), b = solid_of(mesh_of(cells_b));
@@ -67,7 +67,7 @@ TEST(SolidClass, CellsOfAGrid) {
     const Pose turn = *Pose::from_quaternion({0.36, 0.48, -0.64, 0.48}, Vec3::Zero());
     ASSERT_EQ(classify({&a, turn}, {&placed, turn}), expected) << "turned, pair " << pair;
   }
-  for (const int count : seen) EXPECT_GT(count, 10);
+  for (const int count : seen) EXPECT_GT(count, 5);
 }
 
 TEST(SolidClass, CavitiesHoldBodiesApart) {

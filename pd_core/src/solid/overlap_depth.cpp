@@ -14,95 +14,118 @@ namespace pd::detail {
 
 namespace {
 
-/// Pairs of convex parts that a depth may be told by; more take seconds and minutes.
-constexpr std::int64_t kMostPairs = 4096;
+/// Pairs of convex parts that a depth may be told by: some ten milliseconds each where corners are rounded, since faces
+/// that nearly coincide ask for long numbers, and a tenth of that elsewhere.
+constexpr std::int64_t kMostExactPairs = 1024;
+constexpr std::int64_t kMostRoundedPairs = 160;
+/// Cutting a solid takes the square of its triangles.
+constexpr std::size_t kMostTriangles = 2000;
 
 void take(const PenetrationDepth& from, SolidDepth& out) {
   static_cast<PenetrationDepth&>(out) = from;
   out.feature_a = out.feature_b = {};
 }
 
-/// The depth of the unions of convex parts that lie in the solids is a lower bound, that of the unions that cover them
-/// an upper one.
-bool set_by_parts(const PosedSolid& a, const PosedSolid& b, const SolidSettings& settings, Scratch& scratch,
-                  SolidDepth& out) {
-  const auto parts_of = [](const MeshSolid& solid) {
-    return SolidParts::from_solid(solid, {.parts = kMostPairs / 4, .polygons = 10'000});
-  };
-  const Expected<SolidParts> parts_a = parts_of(*a.solid);
-  if (!parts_a) return false;
-  const Expected<SolidParts> parts_b = parts_of(*b.solid);
-  if (!parts_b) return false;
-  const auto count = [](const Compound& compound) { return static_cast<std::int64_t>(compound.parts().size()); };
-  if (count(parts_a->outer()) * count(parts_b->outer()) > kMostPairs) return false;
-  UnionSettings exactly;
-  exactly.delta = settings.delta;
-  const Expected<UnionDepth> outer =
-      penetration_depth({&parts_a->outer(), a.pose}, {&parts_b->outer(), b.pose}, scratch, exactly);
-  if (!outer || outer->contact != ContactClass::overlapping) return false;
-  take(*outer, out);
-  out.work.parts_a = count(parts_a->outer());
-  out.work.parts_b = count(parts_b->outer());
-  out.exact = parts_a->exact() && parts_b->exact();
-  if (out.exact) return true;
-  const Expected<UnionDepth> inner =
-      penetration_depth({&parts_a->inner(), a.pose}, {&parts_b->inner(), b.pose}, scratch, exactly);
-  out.lower = inner && inner->contact == ContactClass::overlapping ? std::min(inner->lower, out.upper) : 0;
-  return true;
-}
-
-// ---- without parts -----------------------------------------------------------------------------------------------
-
-/// Balls about one point, one inside of each solid, of radii r and s: the solids overlap while A moves by less than
-/// r + s.
-class BallSearch {
+/// The bracket of two solids that overlap, narrowed from both ends.
+class Bracketing {
  public:
-  explicit BallSearch(const PosedSolids& solids) : solids_(solids) {}
+  Bracketing(const OverlapQuestion& question, Scratch& scratch, SolidDepth& out)
+      : a_(question.a),
+        b_(question.b),
+        solids_(question.solids),
+        settings_(question.settings),
+        scratch_(scratch),
+        out_(out) {}
 
-  double run() {
+  void run() {
+    set_by_hulls();
+    if (reached() || narrow_by_parts(0)) return;
+    // Parts within a share of the depth of the solids: fewer of them, and a bracket as wide as that.
+    for (const double share : {1.0 / 32, 1.0 / 4, 1.0}) {
+      if (narrow_by_parts(share * settings_.delta * out_.upper)) break;
+    }
+    if (!reached()) raise_by_balls();
+  }
+
+ private:
+  [[nodiscard]] bool reached() const { return out_.upper <= (1 + settings_.delta) * out_.lower; }
+
+  /// A translation that separates the hulls separates the solids; two convex solids are their hulls.
+  void set_by_hulls() {
+    const ConvexShape hull_a = *ConvexPolytope::from_points(a_.solid->vertices());
+    const ConvexShape hull_b = *ConvexPolytope::from_points(b_.solid->vertices());
+    take(penetration_depth({&hull_a, a_.pose}, {&hull_b, b_.pose}, scratch_, {.bracket = Bracket::tightest}), out_);
+    out_.exact = false;
+    out_.lower = 0;
+  }
+
+  /// The depth of the unions of convex parts that lie in the solids is a lower bound, that of the unions that cover
+  /// them an upper one.
+  /// @return whether there were parts, few enough.
+  bool narrow_by_parts(double tolerance) {
+    const auto parts_of = [&](const MeshSolid& solid) -> Expected<SolidParts> {
+      if (solid.triangles().size() > kMostTriangles) return Error{ErrorCode::limit_exceeded, "too many triangles", ""};
+      return SolidParts::from_solid(solid, {.parts = kMostExactPairs, .tolerance = tolerance, .polygons = 10'000});
+    };
+    const Expected<SolidParts> parts_a = parts_of(*a_.solid);
+    if (!parts_a) return false;
+    const Expected<SolidParts> parts_b = parts_of(*b_.solid);
+    if (!parts_b) return false;
+    const auto count = [](const Compound& compound) { return static_cast<std::int64_t>(compound.parts().size()); };
+    const bool exact = parts_a->exact() && parts_b->exact();
+    const std::int64_t pairs = count(parts_a->outer()) * count(parts_b->outer());
+    if (pairs > (exact ? kMostExactPairs : kMostRoundedPairs)) return false;
+    UnionSettings union_settings;
+    union_settings.delta = settings_.delta;
+    const Expected<UnionDepth> outer =
+        penetration_depth({&parts_a->outer(), a_.pose}, {&parts_b->outer(), b_.pose}, scratch_, union_settings);
+    if (!outer || outer->contact != ContactClass::overlapping) return false;
+    const double known_lower = out_.lower;
+    if (exact || outer->upper <= out_.upper) take(*outer, out_);
+    out_.work.parts_a = count(parts_a->outer());
+    out_.work.parts_b = count(parts_b->outer());
+    out_.exact = exact;
+    if (exact) return true;
+    out_.lower = known_lower;
+    const Expected<UnionDepth> inner =
+        penetration_depth({&parts_a->inner(), a_.pose}, {&parts_b->inner(), b_.pose}, scratch_, union_settings);
+    if (inner && inner->contact == ContactClass::overlapping) raise(inner->lower);
+    return true;
+  }
+
+  /// A vertex that lies in the other solid, at a distance r from its surface, stays there while A moves by less than r.
+  void raise_by_balls() {
+    constexpr std::size_t kMostVertices = 400;
+    double best = std::ldexp(out_.lower, -solids_.scale_exponent());
     for (const Body body : {Body::a, Body::b}) {
       const auto& vertices = solids_.solid(body).vertices();
       const std::size_t step = std::max<std::size_t>(1, vertices.size() / kMostVertices);
       for (std::size_t v = 0; v < vertices.size(); v += step) {
-        try_vertex(body, static_cast<std::int32_t>(v));
+        const PosedPoint p = solids_.point(body, static_cast<std::int32_t>(v));
+        const double radius = distance_to_surface(solids_, other(body), p.x, best);
+        if (radius <= best) continue;
+        const PointPlace place = place_in(solids_, other(body), p);
+        if (!place.on_surface && place.winding > 0) best = radius;
       }
     }
-    return best_;
+    raise(std::ldexp(best, solids_.scale_exponent()));
   }
 
- private:
-  static constexpr std::size_t kMostVertices = 400;
+  void raise(double lower) { out_.lower = std::min(std::max(out_.lower, lower), out_.upper); }
 
-  /// A vertex belongs to its own closed solid.
-  void try_vertex(Body body, std::int32_t vertex) {
-    const PosedPoint p = solids_.point(body, vertex);
-    const double radius = distance_to_surface(solids_, other(body), p.x, best_);
-    if (radius <= best_) return;
-    const PointPlace place = place_in(solids_, other(body), p);
-    if (!place.on_surface && place.winding > 0) best_ = radius;
-  }
-
+  const PosedSolid& a_;
+  const PosedSolid& b_;
   const PosedSolids& solids_;
-  double best_ = 0;
+  const SolidSettings& settings_;
+  Scratch& scratch_;
+  SolidDepth& out_;
 };
-
-/// A translation that separates the hulls separates the solids.
-void set_by_hulls(const PosedSolid& a, const PosedSolid& b, const PosedSolids& solids, Scratch& scratch,
-                  SolidDepth& out) {
-  const ConvexShape hull_a = *ConvexPolytope::from_points(a.solid->vertices());
-  const ConvexShape hull_b = *ConvexPolytope::from_points(b.solid->vertices());
-  take(penetration_depth({&hull_a, a.pose}, {&hull_b, b.pose}, scratch, {.bracket = Bracket::tightest}), out);
-  out.exact = false;
-  out.lower = std::min(out.upper, std::ldexp(BallSearch(solids).run(), solids.scale_exponent()));
-}
 
 }  // namespace
 
-std::optional<Error> set_depth(const PosedSolid& a, const PosedSolid& b, const PosedSolids& solids,
-                               const SolidSettings& settings, Scratch& scratch, SolidDepth& out) {
-  if (!set_by_parts(a, b, settings, scratch, out)) set_by_hulls(a, b, solids, scratch, out);
-  out.bracket_reached = out.upper <= (1 + settings.delta) * out.lower;
-  return std::nullopt;
+void set_depth(const OverlapQuestion& question, Scratch& scratch, SolidDepth& out) {
+  Bracketing(question, scratch, out).run();
+  out.bracket_reached = out.upper <= (1 + question.settings.delta) * out.lower;
 }
 
 }  // namespace pd::detail

@@ -72,7 +72,7 @@ Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedSolid& b,
       set_touching(solids, found, scratch, out);
       break;
     case ContactClass::overlapping:
-      if (auto refused = detail::set_depth(a, b, solids, settings, scratch, out)) return *std::move(refused);
+      detail::set_depth({a, b, solids, settings}, scratch, out);
       break;
   }
   detail::clear_negative_zeros(out);

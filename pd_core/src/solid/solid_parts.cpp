@@ -34,32 +34,30 @@ class Partition {
   Partition(const MeshSolid& solid, const SolidPartsLimits& limits)
       : solid_(solid), limits_(limits), planes_(exponent_of(solid)) {}
 
-  struct Cells {
-    std::vector<ConvexCell> solid;
-    std::vector<ConvexCell> unknown;  ///< too thin for doubles to tell whether they belong to the solid
+  /// A convex piece: what lies in the solid for certain, and what covers it.
+  struct Piece {
+    std::optional<ConvexCell> inner;
+    std::optional<ConvexCell> outer;  ///< nothing: that of the inner one
   };
   /// The convex cells of the solid; nothing where there are more than the limits allow.
-  std::optional<Cells> run() {
+  std::optional<std::vector<Piece>> run() {
     std::vector<Open> open;
     open.push_back({ConvexCell::cube(planes_, std::ldexp(1.0, exponent_of(solid_) + 2)), {}, {}});
     for (const MeshSolid::Triangle& t : solid_.triangles()) open.back().faces.push_back(polygon_of(t));
-    Cells parts;
+    std::vector<Piece> parts;
     while (!open.empty()) {
       Open here = std::move(open.back());
       open.pop_back();
+      std::optional<Side> plane;
       if (here.faces.empty()) {
         const std::optional<bool> told = is_solid(here);
-        if (told.value_or(true)) (told ? parts.solid : parts.unknown).push_back(std::move(here.cell));
-      } else if (const auto plane = best_cut(here.faces)) {
-        split(std::move(here), *plane, open);
-      } else {
-        // Every face has all others below it, so that the solid is what their planes leave of the cell.
-        std::optional<ConvexCell> part = std::move(here.cell);
-        for (std::size_t i = 0; part && i < here.faces.size(); ++i) part = part->inside(planes_, here.faces[i].plane);
-        if (part) parts.solid.push_back(*std::move(part));
+        if (!told) parts.push_back({std::nullopt, std::move(here.cell)});
+        if (told.value_or(false)) parts.push_back({std::move(here.cell), std::nullopt});
+      } else if (!(plane = best_cut(here.faces))) {
+        plane = add_piece(here, parts);
       }
-      if (static_cast<std::int64_t>(parts.solid.size() + parts.unknown.size() + open.size()) > limits_.parts ||
-          polygons_ > limits_.polygons) {
+      if (plane) split(std::move(here), *plane, open);
+      if (static_cast<std::int64_t>(parts.size() + open.size()) > limits_.parts || polygons_ > limits_.polygons) {
         return std::nullopt;
       }
     }
@@ -97,8 +95,58 @@ class Partition {
     return polygon;
   }
 
-  /// Where a polygon lies about a plane; in doubles where these are sure.
+  /// At least the height of a polygon above a plane.
+  [[nodiscard]] double rise(const PlanePolygon& polygon, Side plane) const {
+    double most = -HUGE_VAL;
+    for (const Vec3& x : polygon.corners) most = std::max(most, planes_.height(plane, x));
+    return most + 2 * polygon.error + 0x1p-46;
+  }
+
+  /// Adds what the planes of the faces leave of the cell.
+  /// @return a plane beyond which the cell is solid although all faces lie below it: the cell has to be cut there.
+  std::optional<Side> add_piece(const Open& here, std::vector<Piece>& pieces) {
+    Piece piece{here.cell, std::nullopt};
+    std::optional<ConvexCell> outer = here.cell;
+    std::vector<Side> done;
+    for (const PlanePolygon& face : here.faces) {
+      const Side plane = face.plane;
+      if (std::find(done.begin(), done.end(), plane) != done.end()) continue;
+      done.push_back(plane);
+      if (piece.inner) piece.inner = piece.inner->inside(planes_, plane);
+      if (limits_.tolerance == 0) continue;
+      double most = 0x1p-46;
+      for (const PlanePolygon& other : here.faces) most = std::max(most, rise(other, plane));
+      const Side shifted = above(plane, most);
+      if (const auto beyond = here.cell.inside(planes_, shifted.opposite())) {
+        if (middle_is_solid(*beyond).value_or(true)) return plane;
+      }
+      if (outer) outer = outer->inside(planes_, shifted);
+    }
+    if (limits_.tolerance > 0) piece.outer = std::move(outer);
+    if (piece.inner || piece.outer) pieces.push_back(std::move(piece));
+    return std::nullopt;
+  }
+
+  /// The plane shifted outwards by at least a length.
+  [[nodiscard]] Side above(Side plane, double length) {
+    const detail::Dyadic3 normal = planes_.exact_normal(plane);
+    const double size = planes_.normal(plane).norm() * (1 + 0x1p-40);
+    const detail::Dyadic offset = planes_.exact_offset(plane) + detail::Dyadic(size) * detail::Dyadic(length);
+    return planes_.add(normal, offset.scaled(exponent_of(solid_)));
+  }
+
+  /// Where a polygon lies about a plane; exactly without a tolerance, else in doubles.
   [[nodiscard]] Height height_of(const PlanePolygon& polygon, Side plane) const {
+    if (limits_.tolerance > 0) {
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (const Vec3& x : polygon.corners) {
+        const double height = planes_.height(plane, x);
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      const double tolerance = limits_.tolerance / scale();
+      return high <= tolerance ? Height::below : low >= -tolerance ? Height::above : Height::both;
+    }
     PlanePolygon inner;
     switch (cut(planes_, polygon, plane, inner, nullptr)) {
       case Cut::inside:
@@ -259,7 +307,7 @@ class PartCorners {
 
   /// A polytope that holds the part.
   [[nodiscard]] ConvexPolytope outer() const {
-    for (const double share : {0x1p-46, 0x1p-40, 0x1p-32, 0x1p-24}) {
+    for (const double share : {0x1p-40, 0x1p-32, 0x1p-24}) {
       std::optional<ConvexPolytope> out = hull(moved(share));
       if (out && holds_corners(*out)) return *std::move(out);
     }
@@ -311,38 +359,71 @@ class PartCorners {
 
 }  // namespace
 
+namespace {
+
+/// Whether a polytope lies inside of another, for certain.
+bool lies_within(const ConvexPolytope& small, const ConvexPolytope& large, double rounding) {
+  for (int f = 0; f < large.num_facets(); ++f) {
+    const Vec3& normal = large.facet_normal(f);
+    double offset = HUGE_VAL;
+    for (const std::int32_t v : large.facet_vertices(f)) offset = std::min(offset, normal.dot(large.vertex(v)));
+    for (int v = 0; v < small.num_vertices(); ++v) {
+      if (!(normal.dot(small.vertex(v)) < offset - rounding)) return false;
+    }
+  }
+  return true;
+}
+
+/// Slivers between faces that rounding keeps from one plane are covered by their neighbours.
+std::vector<Compound::Part> without_covered(std::vector<Compound::Part> parts, double size) {
+  std::vector<char> covered(parts.size(), 0);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (std::size_t j = 0; j < parts.size() && covered[i] == 0; ++j) {
+      if (i == j || covered[j] != 0) continue;
+      covered[i] = lies_within(*parts[i].shape.polytope(), *parts[j].shape.polytope(), 0x1p-48 * size) ? 1 : 0;
+    }
+  }
+  std::vector<Compound::Part> kept;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (covered[i] == 0) kept.push_back(std::move(parts[i]));
+  }
+  return kept;
+}
+
+}  // namespace
+
 Expected<SolidParts> SolidParts::from_solid(const MeshSolid& solid, const SolidPartsLimits& limits) {
   const detail::FloatingPointGuard guard;
   Partition partition(solid, limits);
-  const auto cells = partition.run();
-  if (!cells) {
+  const auto pieces = partition.run();
+  if (!pieces) {
     return Error{ErrorCode::limit_exceeded,
                  "the solid has more than " + std::to_string(limits.parts) + " convex parts, or faces of more than " +
                      std::to_string(limits.polygons) + " pieces",
                  "limits"};
   }
   std::vector<Compound::Part> inner, outer;
-  bool all_exact = cells->unknown.empty();
-  for (const ConvexCell& cell : cells->unknown) {
-    outer.push_back({PartCorners(partition.planes(), cell, partition.scale()).outer(), Pose()});
-  }
-  for (const ConvexCell& cell : cells->solid) {
-    const PartCorners corners(partition.planes(), cell, partition.scale());
+  bool all_exact = true;
+  for (const Partition::Piece& piece : *pieces) {
     std::optional<ConvexPolytope> polytope;
-    if (corners.exact()) polytope = corners.polytope();
-    if (polytope) {
-      inner.push_back({*polytope, Pose()});
-      outer.push_back({*std::move(polytope), Pose()});
-      continue;
+    if (piece.inner) {
+      const PartCorners corners(partition.planes(), *piece.inner, partition.scale());
+      if (corners.exact()) polytope = corners.polytope();
+      if (!polytope) polytope = corners.inner();
+      if (polytope) inner.push_back({*polytope, Pose()});
+      if (polytope && corners.exact() && !piece.outer) {
+        outer.push_back({*std::move(polytope), Pose()});
+        continue;
+      }
     }
     all_exact = false;
-    if (auto part = corners.inner()) inner.push_back({*std::move(part), Pose()});
-    outer.push_back({corners.outer(), Pose()});
+    const ConvexCell& cell = piece.outer ? *piece.outer : *piece.inner;
+    outer.push_back({PartCorners(partition.planes(), cell, partition.scale()).outer(), Pose()});
   }
   if (inner.empty()) return Error{ErrorCode::limit_exceeded, "the solid is thinner than rounding everywhere", ""};
   SolidParts parts(*Compound::from_parts(std::move(inner)));
   parts.exact_ = all_exact;
-  if (!all_exact) parts.outer_ = *Compound::from_parts(std::move(outer));
+  if (!all_exact) parts.outer_ = *Compound::from_parts(without_covered(std::move(outer), partition.scale()));
   return parts;
 }
 

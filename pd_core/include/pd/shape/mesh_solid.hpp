@@ -40,7 +40,7 @@ class MeshSolid {
   /// Time O(n log n) as of `check_mesh`.
   static Expected<MeshSolid> from_faces(const MeshView& mesh, const MeshSolidSettings& settings = {});
 
-  /// The same for a mesh whose report is there, with its crossings searched.
+  /// Takes a report of the mesh, whose crossings were searched, instead of checking it again.
   static Expected<MeshSolid> from_checked(const MeshView& mesh, const MeshReport& report,
                                           const MeshSolidSettings& settings = {});
 
@@ -72,7 +72,7 @@ class MeshSolid {
 /// @param turn_faces  a mesh that is wholly inside out counts as a solid.
 [[nodiscard]] std::optional<MeshFinding> fault_of_solid(const MeshReport& report, bool turn_faces = false);
 
-/// What is wrong at a fault, as a sentence for people, and what would be right.
+/// Says for people what is wrong at a fault, and where.
 [[nodiscard]] std::string in_words(const MeshFinding& finding);
 
 }  // namespace pd

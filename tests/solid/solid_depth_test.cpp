@@ -1,0 +1,68 @@
+/// @file
+/// Depth of solids beside the same bodies as unions of boxes and of tetrahedra.
+#include "pd/solid/solid_depth.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pd/compound/compound_depth.hpp"
+#include "pd/depth/penetration_depth.hpp"
+#include "pd/depth/scratch.hpp"
+#include "pd/solid/solid_parts.hpp"
+#include "solid_families.hpp"
+
+namespace pd::test {
+namespace {
+
+Pose moved(const Vec3& translation) { return *Pose::from_matrix(Mat3::Identity(), translation); }
+
+TEST(SolidDepth, CellsOfAGrid) {
+  std::mt19937_64 random(9);
+  Scratch scratch;
+  int overlapping = 0;
+  for (int pair = 0; pair < 60; ++pair) {
+    const Cells cells_a = random_cells(random, 2 + static_cast<int>(random() % 6));
+    const Cells cells_b = random_cells(random, 2 + static_cast<int>(random() % 6));
+    const MeshSolid a = solid_of(mesh_of(cells_a)), b = solid_of(mesh_of(cells_b));
+    const Compound boxes_a = boxes_of(cells_a), boxes_b = boxes_of(cells_b);
+    const auto step = [&] { return 0.25 * static_cast<double>(static_cast<int>(random() % 9) - 4); };
+    const Pose pose = moved({step(), step(), step()});
+    const SolidDepth found = *penetration_depth({&a, Pose()}, {&b, pose}, scratch);
+    const UnionDepth known = *penetration_depth({&boxes_a, Pose()}, {&boxes_b, pose}, scratch);
+    if (known.contact != ContactClass::overlapping) continue;
+    ++overlapping;
+    ASSERT_EQ(found.contact, ContactClass::overlapping) << pair;
+    EXPECT_TRUE(found.exact);
+    EXPECT_TRUE(found.bracket_reached);
+    EXPECT_EQ(found.lower, known.lower) << pair;
+    EXPECT_NEAR(found.upper, known.upper, 1e-14);
+    const Pose away = moved(pose.translation() - found.translation);
+    EXPECT_NE(classify({&a, Pose()}, {&b, away}), ContactClass::overlapping) << pair;
+  }
+  EXPECT_GT(overlapping, 20);
+}
+
+TEST(SolidDepth, StarsWithinTheirBracket) {
+  std::mt19937_64 random(31);
+  Scratch scratch;
+  int overlapping = 0;
+  for (int pair = 0; pair < 12; ++pair) {
+    const StarBody star_a = random_star(random, pair % 2, Vec3::Zero()), star_b = random_star(random, 0, Vec3::Zero());
+    const MeshSolid a = solid_of(mesh_of(star_a)), b = solid_of(mesh_of(star_b));
+    const Compound parts_a = star_a.tetrahedra(), parts_b = star_b.tetrahedra();
+    const Pose pose = moved({0.3, 0.1 * pair, -0.2});
+    const UnionDepth known = *penetration_depth({&parts_a, Pose()}, {&parts_b, pose}, scratch);
+    const SolidDepth found = *penetration_depth({&a, Pose()}, {&b, pose}, scratch);
+    ASSERT_EQ(found.contact, known.contact) << pair;
+    if (known.contact != ContactClass::overlapping) continue;
+    ++overlapping;
+    EXPECT_TRUE(found.bracket_reached) << pair;
+    EXPECT_LE(found.lower, known.upper) << pair;
+    EXPECT_GE(found.upper, known.lower) << pair;
+    EXPECT_NEAR(found.upper, known.upper, 1e-9) << pair;
+    EXPECT_NEAR(found.lower, known.lower, 1e-9) << pair;
+  }
+  EXPECT_GT(overlapping, 5);
+}
+
+}  // namespace
+}  // namespace pd::test
