@@ -64,7 +64,7 @@ TEST_F(MeshDoors, AMeshThatIsNotConvexIsAskedAsTheSolid) {
   const Json deep = answer(depth_line(mesh(angle_), kUnitBox, R"("pose_b":{"translation":[1,1,0.5]})"));
   EXPECT_EQ(deep.at("class"), "overlapping");
   EXPECT_EQ(deep.at("exact"), true);
-  EXPECT_NEAR(deep.at("depth").get<double>(), 0.5, 1e-15);
+  EXPECT_NEAR(deep.at("depth").get<double>(), std::sqrt(2.0), 1e-15);
   for (const char* query : {"distance", "intersect"}) {
     const Json told = answer(R"({"id":1,"query":")" + std::string(query) + R"(","a":)" + mesh(angle_) + R"(,"b":)" +
                              mesh(cube_) + "," + pose + "}");

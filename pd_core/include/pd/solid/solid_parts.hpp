@@ -7,8 +7,8 @@
 /// there are two unions: parts that lie in the solid, and parts that cover it. The gap between the two is some rounding
 /// errors wide but for parts thinner than that, and as wide as a tolerance where one is given.
 ///
-/// Why inner parts lie in the solid: let x lie in a cell below the planes of all faces there, and y in the solid and the
-/// cell. If x were outside, the way from x to y would enter the solid through the front of a face. Then x would lie
+/// Why inner parts lie in the solid: let x lie in a cell below the planes of all faces there, and y in the solid and
+/// the cell. If x were outside, the way from x to y would enter the solid through the front of a face. Then x would lie
 /// above that face's plane. Why outer parts cover the solid: no face rises beyond the planes that bound such a part. So
 /// the cell is solid beyond a plane as a whole, or empty there. The place of one point tells which, and a cell that is
 /// solid there is cut once more.
