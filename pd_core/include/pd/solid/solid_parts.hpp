@@ -15,6 +15,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "pd/numeric/expected.hpp"
 #include "pd/shape/compound.hpp"
