@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <pd/bullet/contact_recorder.hpp>
+#include <pd/bullet/debug_draw.hpp>
 #include <pd/bullet/install.hpp>
 #include <pd/bullet/mesh_check.hpp>
 #include <pd/bullet/rollback.hpp>
@@ -196,6 +197,31 @@ void record() {
   std::remove("contacts.jsonl");
 }
 
+struct CountingDrawer final : btIDebugDraw {
+  int lines = 0;
+  void drawLine(const btVector3&, const btVector3&, const btVector3&) override { ++lines; }
+  void drawContactPoint(const btVector3&, const btVector3&, btScalar, int, const btVector3&) override {}
+  void reportErrorWarning(const char*) override {}
+  void draw3dText(const btVector3&, const char*) override {}
+  void setDebugMode(int) override {}
+  int getDebugMode() const override { return DBG_DrawContactPoints; }
+};
+
+void draw() {
+  World<btSequentialImpulseConstraintSolver> w;
+  btDiscreteDynamicsWorld& world = w.world;
+  pd::BulletPenetrationDepthSolver solver;
+  pd::install(world, solver);
+  CountingDrawer drawer;
+  // [draw]
+  world.stepSimulation(1.0f / 60, 0);
+  pd::ContactDrawing drawing;
+  drawing.depth_scale = 100;                  // a box at rest is some 1e-5 deep
+  pd::draw_contacts(world, drawer, drawing);  // `drawer` is your btIDebugDraw
+  // [/draw]
+  expect(drawer.lines == 11, "four depths, four edges and an arrow are drawn");
+}
+
 }  // namespace
 
 int main() {
@@ -208,5 +234,6 @@ int main() {
   snapshot();
   queries();
   record();
+  draw();
   std::printf("every sample of the guide holds\n");
 }

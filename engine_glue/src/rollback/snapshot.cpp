@@ -14,6 +14,7 @@
 
 #include "pair/pair_registry.hpp"
 #include "pair/solver_core.hpp"
+#include "pd/bullet/stack_solver.hpp"
 #include "rollback/broadphase_state.hpp"
 #include "rollback/multibody_state.hpp"
 #include "rollback/substep.hpp"
@@ -161,6 +162,7 @@ struct BulletSnapshot::State {
   detail::MultiBodyState multibodies;
   detail::BroadphaseState broadphase;
   unsigned long seed = 0;
+  btAlignedObjectArray<unsigned> stack_memory;
 
   State(btDiscreteDynamicsWorld& of, BulletPenetrationDepthSolver* installed) : world(of), solver(installed) {}
 
@@ -264,6 +266,9 @@ void BulletSnapshot::State::save() {
   if (const auto* seeded = seeded_solver(world)) {
     seed = seeded->getRandSeed();
   }
+  if (const auto* stacks = dynamic_cast<const StackSolver*>(world.getConstraintSolver())) {
+    stack_memory = stacks->memory();
+  }
 }
 
 Restored BulletSnapshot::State::compare_world() const {
@@ -324,6 +329,7 @@ Restored BulletSnapshot::restore() const {
   if (auto* seeded = seeded_solver(world)) {
     seeded->setRandSeed(state_->seed);
   }
+  if (auto* stacks = dynamic_cast<StackSolver*>(world.getConstraintSolver())) stacks->set_memory(state_->stack_memory);
   return Restored::yes;
 }
 

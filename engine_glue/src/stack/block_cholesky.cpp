@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace pd::detail {
 
@@ -14,7 +15,7 @@ void BlockCholesky::set_pattern(int num_bodies, const std::vector<std::pair<int,
   pairs_ = pairs;
   choose_order();
   find_columns();
-  place_products();
+  products_are_placed_ = false;
   diagonal_.resize(static_cast<std::size_t>(num_bodies));
   below_.resize(row_.size());
 }
@@ -42,6 +43,7 @@ void BlockCholesky::find_columns() {
     const auto [first, second] = std::minmax(rank_[static_cast<std::size_t>(a)], rank_[static_cast<std::size_t>(b)]);
     columns[static_cast<std::size_t>(first)].push_back(second);
   }
+  products_ = 0;
   column_start_.assign(1, 0);
   row_.clear();
   for (std::vector<int>& column : columns) {
@@ -49,6 +51,7 @@ void BlockCholesky::find_columns() {
     column.erase(std::unique(column.begin(), column.end()), column.end());
     row_.insert(row_.end(), column.begin(), column.end());
     column_start_.push_back(static_cast<int>(row_.size()));
+    products_ += static_cast<long long>(column.size() * (column.size() + 1) / 2);
     if (column.size() < 2) continue;
     std::vector<int>& heir = columns[static_cast<std::size_t>(column.front())];
     heir.insert(heir.end(), column.begin() + 1, column.end());
@@ -81,6 +84,7 @@ void BlockCholesky::place_products() {
 }
 
 void BlockCholesky::factorise(const std::vector<Block>& own, const std::vector<Block>& shared) {
+  if (!std::exchange(products_are_placed_, true)) place_products();
   for (std::size_t rank = 0; rank < order_.size(); ++rank) {
     diagonal_[rank] = own[static_cast<std::size_t>(order_[rank])];
   }

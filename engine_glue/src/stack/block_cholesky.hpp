@@ -2,9 +2,10 @@
 /// Cholesky factorisation of sparse symmetric positive definite matrices of blocks of 6 x 6, one row of blocks a body.
 ///
 /// Bodies are eliminated by approximate minimum degree (Amestoy, Davis and Duff 1996, by `Eigen::AMDOrdering`). Which
-/// blocks fill in and where each product goes is found once a pattern, so that a factorisation is a straight run
-/// through lists. A factorisation of a tower of n bodies takes time O(n). That of a heap takes as many products as half
-/// the squares of its columns' blocks. A new pattern takes time in proportion to those products, times a logarithm.
+/// blocks fill in is found once a pattern, and where each product goes in the first factorisation, so that later ones
+/// are straight runs through lists. A factorisation of a tower of n bodies takes time O(n). That of a heap takes as
+/// many products as half the squares of its columns' blocks. The first one takes another share of that, times a
+/// logarithm.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,6 +22,9 @@ class BlockCholesky {
   ///               pattern of the last call.
   void set_pattern(int num_bodies, const std::vector<std::pair<int, int>>& pairs);
 
+  /// Products of blocks that a factorisation takes; less than the bodies only where these form trees.
+  [[nodiscard]] long long products() const { return products_; }
+
   /// @param own     the diagonal's blocks, by body
   /// @param shared  by pair, rows of b and columns of a
   void factorise(const std::vector<Block>& own, const std::vector<Block>& shared);
@@ -34,6 +38,8 @@ class BlockCholesky {
   void place_products();
 
   int num_bodies_ = 0;
+  long long products_ = 0;
+  bool products_are_placed_ = false;
   std::vector<std::pair<int, int>> pairs_;
   std::vector<int> order_;            ///< the bodies as they are eliminated
   std::vector<int> rank_;             ///< of a body in `order_`

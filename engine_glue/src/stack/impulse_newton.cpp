@@ -5,13 +5,18 @@
 
 namespace pd::detail {
 
-ImpulseNewton::Outcome ImpulseNewton::solve() {
+ImpulseNewton::Outcome ImpulseNewton::solve(const Limits& limits) {
   Outcome outcome;
   if (masses.empty() || rows.empty()) {
     outcome.settled = true;
     return outcome;
   }
   find_pattern();
+  if (factor_.products() > limits.products) {
+    outcome.given_up = true;
+    return outcome;
+  }
+  const bool is_spared = limits.spares_trees && factor_.products() < static_cast<long long>(masses.size());
   impulses_.clear();
   for (const Row& row : rows) impulses_.push_back(row.impulse);
   reached_ = impulses_;
@@ -29,6 +34,10 @@ ImpulseNewton::Outcome ImpulseNewton::solve() {
     const double share = step == 0 ? 1 : share_of_step();
     move(share);
     factor_fits = !classify(share == 1 ? kNegligible : 0);
+    if (step == 0 && !is_spared && amiss_ > limits.amiss_at_first) {
+      outcome.given_up = true;
+      return outcome;
+    }
     if (!factor_fits || share < 1) continue;
     const bool last = ++rounds == kMostRounds || !round_changed_much();
     reached_ = impulses_;
@@ -144,6 +153,7 @@ bool ImpulseNewton::classify(double negligible) {
     if (hold != holds_[i]) amiss += std::abs(impulses_[i] - held);
     next_holds_.push_back(hold);
   }
+  amiss_ = all > 0 ? amiss / all : 0;
   if (!(amiss > negligible * all) && (negligible > 0 || holds_ == next_holds_)) return false;
   std::swap(holds_, next_holds_);
   return true;

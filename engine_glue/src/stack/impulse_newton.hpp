@@ -20,6 +20,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -50,13 +51,25 @@ class ImpulseNewton {
     /// At least one round ended: the equations hold, with friction's bounds from the round before. Else `kMostSteps`
     /// were not enough, or an impulse is no number, and impulses are as they were.
     bool settled = false;
+    bool given_up = false;  ///< by one of `Limits`; impulses are as they were
+  };
+
+  /// What rows may cost. Counts and shares, never times, so that the answer is the same on every machine.
+  struct Limits {
+    /// Of a factorisation.
+    long long products = std::numeric_limits<long long>::max();
+    /// Share of the impulses that the first step may show to be amiss. It is below 0.03 where a stack stands, also in
+    /// its first step. It is near 1 where contacts come and go, and then more factorisations follow than pay.
+    double amiss_at_first = std::numeric_limits<double>::infinity();
+    bool spares_trees = false;  ///< `amiss_at_first` does not bind where the bodies form trees
   };
 
   std::vector<Matrix6> masses;  ///< positive definite
   std::vector<Row> rows;
 
   /// Solves for all `impulse`. Deterministic: the same bits for the same rows in the same order.
-  Outcome solve();
+  Outcome solve(const Limits& limits);
+  Outcome solve() { return solve(Limits()); }
 
  private:
   enum class Hold : unsigned char { within, at_lower, at_upper };
@@ -83,6 +96,7 @@ class ImpulseNewton {
   std::vector<double> impulses_, reached_;  ///< of rows: at `x_`; at the end of the last round
   std::vector<double> targets_;             ///< r + d lambda'
   std::vector<Matrix6> own_, shared_;       ///< what is factorised: bodies' blocks, and those of `pairs_`
+  double amiss_ = 0;  ///< share of the impulses that the last `classify` found on another side of their bounds
   BlockCholesky factor_;
   Eigen::VectorXd x_, aim_, step_;
   std::vector<double> speeds_, turns_;  ///< of rows: at `x_`, and along the step
