@@ -18,6 +18,9 @@ namespace pd::cli {
 
 namespace {
 
+/// Characters of a choice that still stand in the line of its option.
+constexpr std::size_t kLongestChoice = 60;
+
 std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
@@ -59,7 +62,9 @@ std::string heading_of(const CLI::Option& option) {
   }
   const std::vector<std::string> words = choices_of(option);
   const bool flag = option.get_expected_max() == 0 || option.get_type_size_max() == 0;
-  if (!words.empty()) return names + roff(fmt::format(" {}", fmt::join(words, "|")));
+  if (const std::string list = fmt::format("{}", fmt::join(words, "|")); !words.empty()) {
+    return names + (list.size() <= kLongestChoice ? roff(" " + list) : " \\fIWORD\\fR");
+  }
   if (flag) return names;
   std::string type = option.get_type_name();
   if (const std::size_t colon = type.rfind(':'); colon != std::string::npos) type.erase(0, colon + 1);
@@ -72,6 +77,10 @@ std::string options_of(const CLI::App& app, bool positional) {
     if (option->nonpositional() == positional) continue;
     std::string words = option->get_description();
     if (const std::string usual = option->get_default_str(); !usual.empty()) words += fmt::format(" [{}]", usual);
+    if (const std::string list = fmt::format("{}", fmt::join(choices_of(*option), ", "));
+        list.size() > kLongestChoice) {
+      words += ": " + list;
+    }
     text += ".TP\n" + heading_of(*option) + "\n" + roff(words.empty() ? "No description." : words) + "\n";
   }
   return text;
