@@ -3,6 +3,7 @@
 /// line's.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -21,11 +22,25 @@ using IdSeen = std::function<void(std::string_view id_text)>;
 /// so do more JSON values than a line within that limit can need, and values that together take much more memory than
 /// the line itself.
 ///
-/// A list of triples of numbers under that key is kept as bytes, which `packed_points` reads; every other list is an
-/// array.
+/// A list of rows of equally many numbers under "vertices", "faces", "outer" or "points" is kept as bytes, which
+/// `packed_rows` reads; every other list is an array.
 [[nodiscard]] ParsedLine parse_line_within(std::string_view line, std::int64_t max_points, const IdSeen& id_seen = {});
 
-/// The points of a list that the reader has packed; nothing where the value is any other JSON.
+/// A list of rows that the reader has packed. Refers to the value.
+struct PackedRows {
+  const std::uint8_t* bytes;
+  std::size_t count;
+  std::size_t length;  ///< of each row
+  bool of_indices;     ///< whole numbers
+
+  /// A row as JSON.
+  [[nodiscard]] Json row(std::size_t index) const;
+};
+
+/// Nothing where the value is any other JSON.
+[[nodiscard]] std::optional<PackedRows> packed_rows(const Json& value);
+
+/// The points of a packed list of triples of numbers; nothing where the value is any other JSON.
 [[nodiscard]] std::optional<std::vector<Vec3>> packed_points(const Json& value);
 
 }  // namespace pd::query

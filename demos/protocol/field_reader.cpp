@@ -14,7 +14,7 @@ namespace {
 std::string shown(const Json& value) {
   if (value.is_array()) return "an array of " + std::to_string(value.size());
   if (value.is_object()) return "an object";
-  if (value.is_binary()) return "an array of " + std::to_string(value.get_binary().size() / (3 * sizeof(double)));
+  if (const auto rows = packed_rows(value)) return "an array of " + std::to_string(rows->count);
   std::string text;
   if (value.is_string()) {
     append_string(text, shortened(value.get_ref<const std::string&>()));
@@ -62,6 +62,20 @@ Node Node::at(std::string_view key) const {
   return {*member, this, member.key(), 0};
 }
 
+Node Node::element(std::size_t index) const {
+  const auto rows = packed_rows(*value_);
+  if (!rows) return {(*value_)[index], this, {}, index};
+  auto made = std::make_shared<const Json>(rows->row(index));
+  Node node(*made, this, {}, index);
+  node.made_ = std::move(made);
+  return node;
+}
+
+std::size_t Node::size() const {
+  const auto rows = packed_rows(*value_);
+  return rows ? rows->count : value_->size();
+}
+
 void Node::remark(std::string word) const {
   const Node* root = this;
   while (root->parent_ != nullptr) root = root->parent_;
@@ -81,7 +95,7 @@ void require_object(const Node& node) {
 }
 
 void require_array(const Node& node, std::string_view meaning) {
-  if (!node.json().is_array()) {
+  if (!node.is_array()) {
     node.refuse("bad_value", "must be " + std::string(meaning) + ", is " + shown(node.json()));
   }
 }

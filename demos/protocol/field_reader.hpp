@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,7 +24,7 @@ struct Remark {
 };
 
 /// A JSON value and its place in the line. Refers to its parent, which must outlive it; no path is built before a
-/// refusal.
+/// refusal. A list that the reader has packed is an array here: its rows are made on demand.
 class Node {
  public:
   /// @param remarks  where `remark` writes; may be null
@@ -37,8 +38,9 @@ class Node {
   [[nodiscard]] std::optional<Node> find(std::string_view key) const;
   /// The member of that name; refused as missing_field where there is none. Requires an object.
   [[nodiscard]] Node at(std::string_view key) const;
-  [[nodiscard]] Node element(std::size_t index) const { return {(*value_)[index], this, {}, index}; }
-  [[nodiscard]] std::size_t size() const { return value_->size(); }
+  [[nodiscard]] bool is_array() const { return value_->is_array() || value_->is_binary(); }
+  [[nodiscard]] Node element(std::size_t index) const;
+  [[nodiscard]] std::size_t size() const;
 
   /// Has the answer say a word about this node.
   void remark(std::string word) const;
@@ -50,6 +52,7 @@ class Node {
   Node(const Json& value, const Node* parent, std::string_view key, std::size_t index)
       : value_(&value), parent_(parent), key_(key), index_(index) {}
 
+  std::shared_ptr<const Json> made_;  ///< a row of a packed list
   const Json* value_;
   const Node* parent_ = nullptr;
   std::string_view key_;

@@ -16,15 +16,20 @@ namespace pd::query {
 
 namespace {
 
+/// How the bytes of a packed list are to be read.
+std::uint64_t packed_rows_subtype(std::size_t row_length, bool of_indices) {
+  return 2 * row_length + (of_indices ? 1 : 0);
+}
+
 /// Builds the document from the reader's events, so that duplicate keys are seen and nesting is bounded before memory
 /// is spent.
 ///
 /// Invariant: `open_` holds the containers that are not yet closed, outermost first; each is the last element of the
 /// one before it, so none moves while it is open.
 ///
-/// What takes memory is counted as it comes: values, their bytes, and the points under a key "vertices", which are kept
-/// as bare doubles for as long as they are triples of numbers (a Json of each would take sixteen times its shortest
-/// text).
+/// What takes memory is counted as it comes: values, their bytes, and the rows under the keys of kRowKeys, which are
+/// kept as bare doubles for as long as they are equally many numbers each (a Json of each would take sixteen times its
+/// shortest text).
 class StrictBuilder {
  public:
   StrictBuilder(std::size_t line_size, std::int64_t max_points, const IdSeen& id_seen)
@@ -32,9 +37,13 @@ class StrictBuilder {
 
   bool null() { return add(Json(nullptr)); }
   bool boolean(bool value) { return add(Json(value)); }
-  bool number_integer(std::int64_t value) { return take_coordinate(static_cast<double>(value)) || add(Json(value)); }
-  bool number_unsigned(std::uint64_t value) { return take_coordinate(static_cast<double>(value)) || add(Json(value)); }
-  bool number_float(double value) { return take_coordinate(value) || add(Json(value)); }
+  bool number_integer(std::int64_t value) {
+    return take_number(static_cast<double>(value), value >= -kMostIndex && value <= kMostIndex) || add(Json(value));
+  }
+  bool number_unsigned(std::uint64_t value) {
+    return take_number(static_cast<double>(value), value <= kMostIndex) || add(Json(value));
+  }
+  bool number_float(double value) { return take_number(value, false) || add(Json(value)); }
   bool string(std::string& value) {
     bytes_ += kBytesPerString + value.capacity();
     return add(Json(std::move(value)));
@@ -42,21 +51,28 @@ class StrictBuilder {
 
   bool start_object() { return open(Json(Json::value_t::object)); }
   bool start_array() {
-    if (in_list() && !in_point_) {
-      in_point_ = true;
+    if (in_list() && !in_row_) {
+      in_row_ = true;
       return true;
     }
     // The caller's id is no shape, whatever it holds.
-    const bool list = !open_.empty() && open_.back()->is_object() && key_ == "vertices" && !in_id_;
+    const bool list = !open_.empty() && open_.back()->is_object() && is_row_key(key_) && !in_id_;
     if (!open(Json(Json::value_t::array))) return false;
-    if (list) list_level_ = open_.size();
+    if (list) {
+      list_level_ = open_.size();
+      of_indices_ = key_ == "faces";
+      max_rows_ = key_ == "vertices" || key_ == "outer" ? max_points_ : 2 * max_points_;
+      row_length_ = 0;
+    }
     return true;
   }
   bool end_object() { return close(); }
   bool end_array() {
-    if (in_point_) return end_point();
+    if (in_row_) return end_row();
     if (in_list()) {
-      if (!packed_.empty()) *open_.back() = Json::binary(std::move(packed_));
+      if (!packed_.empty()) {
+        *open_.back() = Json::binary(std::move(packed_), packed_rows_subtype(row_length_, of_indices_));
+      }
       packed_ = {};
       list_level_ = 0;
     }
@@ -94,46 +110,58 @@ class StrictBuilder {
  private:
   [[nodiscard]] bool in_list() const { return list_level_ != 0 && open_.size() == list_level_; }
 
-  bool take_coordinate(double value) {
-    if (!in_point_ || point_size_ == 3) return false;
-    point_[point_size_++] = value;
+  static bool is_row_key(std::string_view key) {
+    return key == "vertices" || key == "faces" || key == "outer" || key == "points";
+  }
+
+  bool take_number(double value, bool index) {
+    if (!in_row_ || row_size_ == kLongestRow || (of_indices_ && !index)) return false;
+    row_[row_size_++] = value;
     return true;
   }
-  bool end_point() {
-    if (point_size_ != 3) return unpack() && close();
-    const std::size_t held = packed_.capacity();
-    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(point_.data());
-    packed_.insert(packed_.end(), bytes, bytes + sizeof point_);
+  bool end_row() {
+    if (packed_.empty()) row_length_ = row_size_;
+    if (row_size_ != row_length_ || row_length_ < 2) return unpack() && close();
+    const std::size_t held = packed_.capacity(), bytes_of_row = row_size_ * sizeof(double);
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(row_.data());
+    if (packed_.size() + bytes_of_row > held && too_many_bytes(2 * held)) return false;  // while it is copied
+    packed_.insert(packed_.end(), bytes, bytes + bytes_of_row);
     bytes_ += packed_.capacity() - held;
-    in_point_ = false;
-    point_size_ = 0;
-    if (packed_.size() > sizeof point_ * static_cast<std::size_t>(max_points_)) {
+    in_row_ = false;
+    row_size_ = 0;
+    if (packed_.size() > bytes_of_row * static_cast<std::size_t>(max_rows_)) {
       refusal = Refusal{"limit_exceeded",
-                        "more than " + std::to_string(max_points_) + " points; the limit is " +
-                            std::to_string(max_points_) + " (--max-vertices)",
+                        "more than " + std::to_string(max_rows_) + (of_indices_ ? " faces" : " points") +
+                            "; the limit is " + std::to_string(max_rows_) + " (--max-vertices)",
                         path()};
       return false;
     }
-    return !too_many_bytes();
+    return true;
   }
-  /// The list holds something else than triples of numbers: from here on it is JSON like any other.
+  [[nodiscard]] Json number(double value) const {
+    return of_indices_ ? Json(static_cast<std::int64_t>(value)) : Json(value);
+  }
+  /// The list holds something else than rows of equally many numbers: from here on it is JSON like any other.
   bool unpack() {
     list_level_ = 0;
-    const std::size_t count = packed_.size() / sizeof point_;
-    bytes_ += (count + 1) * (kBytesPerArray + 7 * sizeof(Json));
+    const std::size_t bytes_of_row = row_length_ * sizeof(double);
+    const std::size_t count = packed_.empty() ? 0 : packed_.size() / bytes_of_row;
+    bytes_ += (count + 1) * (kBytesPerArray + 2 * sizeof(Json) + 2 * row_length_ * sizeof(Json));
     if (too_many_bytes()) return false;
     Json& list = *open_.back();
     for (std::size_t i = 0; i < count; ++i) {
-      std::array<double, 3> point;
-      std::memcpy(point.data(), packed_.data() + i * sizeof point, sizeof point);
-      list.push_back(point);
+      std::array<double, kLongestRow> row;
+      std::memcpy(row.data(), packed_.data() + i * bytes_of_row, bytes_of_row);
+      Json::array_t numbers;
+      for (std::size_t k = 0; k < row_length_; ++k) numbers.push_back(number(row[k]));
+      list.push_back(std::move(numbers));
     }
     packed_ = {};
-    if (!in_point_) return true;
-    in_point_ = false;
+    if (!in_row_) return true;
+    in_row_ = false;
     list.push_back(Json(Json::value_t::array));
-    for (std::size_t k = 0; k < point_size_; ++k) list.back().push_back(point_[k]);
-    point_size_ = 0;
+    for (std::size_t k = 0; k < row_size_; ++k) list.back().push_back(number(row_[k]));
+    row_size_ = 0;
     open_.push_back(&list.back());
     return true;
   }
@@ -152,8 +180,9 @@ class StrictBuilder {
     }
     return text;
   }
-  [[nodiscard]] bool too_many_bytes() {
-    if (bytes_ <= max_bytes_) return false;
+  /// @param more  what is needed for a moment besides
+  [[nodiscard]] bool too_many_bytes(std::size_t more = 0) {
+    if (bytes_ + more <= max_bytes_) return false;
     refusal = Refusal{"limit_exceeded",
                       "the values of this line take more than " + std::to_string(max_bytes_ >> 20) +
                           " MB, which no query of its length needs",
@@ -164,12 +193,16 @@ class StrictBuilder {
   [[nodiscard]] bool too_many_values(const Json& value) {
     if (value.is_object()) bytes_ += kBytesPerObject;
     if (value.is_array()) bytes_ += kBytesPerArray;
+    std::size_t copied = 0;
     if (!open_.empty() && open_.back()->is_array()) {
       const auto& list = open_.back()->get_ref<const Json::array_t&>();
-      // Such a list doubles when it is full.
-      if (list.size() == list.capacity()) bytes_ += sizeof(Json) * std::max<std::size_t>(1, list.size());
+      // Such a list doubles when it is full, and for a moment there are both.
+      if (list.size() == list.capacity()) {
+        copied = sizeof(Json) * list.size();
+        bytes_ += std::max(kLeastAllocation, copied);
+      }
     }
-    if (too_many_bytes()) return true;
+    if (too_many_bytes(copied)) return true;
     // A surface of n points has fewer than 2n faces and 6n corners; as much again for what else a line may hold.
     const std::int64_t limit = 12 * max_points_ + kOtherValues;
     if (++values_ <= limit) return false;
@@ -217,20 +250,27 @@ class StrictBuilder {
   static constexpr std::int64_t kOtherValues = 100'000;
   // What glibc's allocator takes on a 64-bit machine: a node of std::map with a key and a value, an empty map, an empty
   // vector, a string without its letters.
-  static constexpr std::size_t kBytesPerMember = 96, kBytesPerObject = 64, kBytesPerArray = 32, kBytesPerString = 48;
-  // Faces take some five times their text and are half of a line with short coordinates, which take half of their text.
-  static constexpr std::size_t kAnyLine = std::size_t{32} << 20, kBytesPerLetter = 4;
+  static constexpr std::size_t kBytesPerMember = 96, kBytesPerObject = 64, kBytesPerArray = 32, kBytesPerString = 48,
+                               kLeastAllocation = 32;
+  // Rows of numbers take at most three times their shortest text, and half of it with all digits. What else a long line
+  // may hold is short.
+  static constexpr std::size_t kAnyLine = std::size_t{32} << 20, kBytesPerLetter = 2;
+  static constexpr std::size_t kLongestRow = 8;
+  static constexpr std::int64_t kMostIndex = std::int64_t{1} << 31;
 
   std::size_t bytes_ = 0;
   std::size_t max_bytes_;
   std::int64_t max_points_;
   const IdSeen& id_seen_;
   std::int64_t values_ = 0;
-  Json::binary_t::container_type packed_;  ///< the points read so far, in a list of nothing else
-  std::array<double, 3> point_{};
-  std::size_t point_size_ = 0;
+  Json::binary_t::container_type packed_;  ///< the rows read so far, in a list of nothing else
+  std::array<double, kLongestRow> row_{};
+  std::size_t row_size_ = 0;
+  std::size_t row_length_ = 0;  ///< of the rows read so far
+  std::int64_t max_rows_ = 0;
   std::size_t list_level_ = 0;  ///< open containers where such a list is the innermost; 0: there is none
-  bool in_point_ = false;
+  bool in_row_ = false;
+  bool of_indices_ = false;  ///< a list of faces: whole numbers only
 
   std::vector<Json*> open_;
   std::string key_;
@@ -238,6 +278,16 @@ class StrictBuilder {
   int ids_ = 0;
   bool in_id_ = false;
 };
+
+/// Ends the values inside one by one. Json's own end copies every list first, which takes as much memory again.
+void release(Json& value) {
+  if (!value.is_structured()) return;
+  for (Json& inner : value) {
+    release(inner);
+    inner = nullptr;
+  }
+  if (value.is_array()) value.get_ref<Json::array_t&>().clear();
+}
 
 }  // namespace
 
@@ -268,8 +318,28 @@ ParsedLine parse_line_within(std::string_view line, std::int64_t max_points, con
   return parsed;
 }
 
-std::optional<std::vector<Vec3>> packed_points(const Json& value) {
+ParsedLine::~ParsedLine() { release(object); }
+
+std::optional<PackedRows> packed_rows(const Json& value) {
   if (!value.is_binary()) return std::nullopt;
+  const Json::binary_t& bytes = value.get_binary();
+  const std::size_t length = static_cast<std::size_t>(bytes.subtype() / 2);
+  return PackedRows{bytes.data(), bytes.size() / (length * sizeof(double)), length, bytes.subtype() % 2 == 1};
+}
+
+Json PackedRows::row(std::size_t index) const {
+  Json::array_t numbers;
+  for (std::size_t k = 0; k < length; ++k) {
+    double value = 0;
+    std::memcpy(&value, bytes + (index * length + k) * sizeof value, sizeof value);
+    numbers.push_back(of_indices ? Json(static_cast<std::int64_t>(value)) : Json(value));
+  }
+  return numbers;
+}
+
+std::optional<std::vector<Vec3>> packed_points(const Json& value) {
+  const auto rows = packed_rows(value);
+  if (!rows || rows->length != 3 || rows->of_indices) return std::nullopt;
   const Json::binary_t& bytes = value.get_binary();
   std::vector<Vec3> points(bytes.size() / (3 * sizeof(double)));
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -14,6 +14,11 @@ namespace pd::query {
 using Json = nlohmann::json;
 
 struct ParsedLine {
+  ParsedLine() = default;
+  ParsedLine(ParsedLine&&) = default;
+  ParsedLine& operator=(ParsedLine&&) = default;
+  ~ParsedLine();
+
   Json object;                     ///< the line's object, whole only where `refusal` is empty
   std::string id_text = "null";    ///< the caller's id, byte for byte; null where there is none or it cannot be read
   std::optional<Refusal> refusal;  ///< bad_json, or limit_exceeded for nesting deeper than kMaxNesting

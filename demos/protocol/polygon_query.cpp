@@ -14,7 +14,7 @@ namespace pd::query {
 
 namespace {
 
-/// Explicit sums are one for every two triangles; a line may not ask for more.
+/// Explicit sums are one for every two convex parts at most; a line may not ask for more.
 constexpr std::int64_t kMostSums = 1 << 20;
 
 /// Placements from which on a direction of a set is cut into trapezoids, which costs some dozens of rays an edge.
@@ -35,6 +35,11 @@ bool read_flag(const Node& line, std::string_view key) {
   if (!node) return false;
   if (!node->json().is_boolean()) node->refuse("bad_value", "must be true or false");
   return node->json().get<bool>();
+}
+
+std::int64_t read_max_comparisons(const Node& line) {
+  const auto node = line.find("max_comparisons");
+  return node ? read_integer(*node, 1, std::int64_t{1} << 40) : kPolygonComparisons;
 }
 
 /// What a line asks of every placement.
@@ -98,11 +103,12 @@ Question read_question(const Node& line) {
 }  // namespace
 
 void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line,
-             {"id", "query", "p", "q", "direction", "method", "complete", "direction_set", "placements", "slots"});
+  allow_only(line, {"id", "query", "p", "q", "direction", "method", "complete", "direction_set", "placements", "slots",
+                    "max_comparisons"});
   const Question question = read_question(line);
   const PolygonMethod method = read_polygon_method(line);
   const bool slots = read_flag(line, "slots");
+  const std::int64_t max_comparisons = read_max_comparisons(line);
   std::vector<Point2> placements = {{0, 0}};
   const auto placements_node = line.find("placements");
   if (placements_node) placements = read_points2(*placements_node, session.limits, false);
@@ -115,11 +121,11 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
   if (!one_convex || method == PolygonMethod::explicit_sums) {
     const std::int64_t sums = static_cast<std::int64_t>(p.num_vertices()) * q.num_vertices();
     if (sums > kMostSums) {
-      line.refuse("limit_exceeded", "more than 2^20 sums of two triangles; one polygon convex needs none");
+      line.refuse("limit_exceeded", "more than 2^20 sums of two convex parts; one polygon convex needs none");
     }
   }
   const Stopwatch watch;
-  const Expected<PolygonDifference> r = PolygonDifference::of(p, q, method);
+  const Expected<PolygonDifference> r = PolygonDifference::of(p, q, method, max_comparisons);
   if (!r) line.refuse(r.error());
   const std::vector<PolygonDepth> answers = question.answers(*r, placements, line);
   const std::int64_t nanoseconds = watch.nanoseconds();

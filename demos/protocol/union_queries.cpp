@@ -218,10 +218,12 @@ std::string_view word_of_facet(Feature::Kind kind) {
 }
 
 void answer_union_minkowski_difference(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "max_work"});
   const BodyPair pair = read_bodies(line, session.limits);
-  const UnionDifference result =
-      value_or_refuse(minkowski_difference(pair.posed_a(), pair.posed_b(), session.limits.max_vertices), line);
+  const auto most = line.find("max_work");
+  const std::int64_t max_work = most ? read_integer(*most, 1, std::int64_t{1} << 40) : kDifferenceWork;
+  const UnionDifference result = value_or_refuse(
+      minkowski_difference(pair.posed_a(), pair.posed_b(), session.limits.max_vertices, max_work), line);
   answer.key("vertices").begin_array();
   for (const Vec3& vertex : result.vertices) answer.vector(vertex);
   answer.end_array();

@@ -168,6 +168,10 @@ TEST(UnionDifference, LimitsAndOtherShapesAreRefused) {
   const Compound cube(ConvexShape(*ConvexPolytope::box({0.5, 0.5, 0.5})));
   const Compound ball(*ConvexShape::sphere(1));
   EXPECT_EQ(minkowski_difference({&cube, Pose()}, {&cube, Pose()}, 5).error().code, ErrorCode::limit_exceeded);
+  const auto ended = minkowski_difference({&cube, Pose()}, {&cube, Pose()}, 1000, 5);
+  ASSERT_FALSE(ended.has_value());
+  EXPECT_EQ(ended.error().code, ErrorCode::limit_exceeded);
+  EXPECT_EQ(ended.error().where, "max_work");
   EXPECT_EQ(minkowski_difference({&cube, Pose()}, {&ball, Pose()}).error().code, ErrorCode::unsupported);
 }
 

@@ -21,19 +21,37 @@ def run(program, *arguments, **options):
 
 
 UNMADE = """
-    import gc, sys, pdepth
-    from pdepth import _core
-    kinds = [pdepth.Pose, pdepth.Depth, pdepth.Warm, pdepth.Box, pdepth.Shape, _core.Shape, _core.Settings]
+    import gc, inspect, sys, pdepth
+    from pdepth import _core, _picture, _protocol
+    # Every class of the package and of its modules, whoever wrote it.
+    kinds = sorted({kind for module in (pdepth, _core, _protocol, _picture) for kind in vars(module).values()
+                    if inspect.isclass(kind) and kind.__module__.startswith("pdepth")
+                    and not issubclass(kind, BaseException)}, key=lambda kind: (kind.__module__, kind.__qualname__))
+    # What they are made of, too: pybind11's base has a __new__ of its own.
+    kinds += sorted({base for kind in kinds for base in kind.__mro__ if base is not object} - set(kinds), key=repr)
+    assert {pdepth.Pose, pdepth.Depth, pdepth.Warm, pdepth.Box, pdepth.Shape, _core.Settings} <= set(kinds)
     box = pdepth.Box([1, 1, 1])
     uses = [repr, str, lambda x: x.vertices, lambda x: x.rotation, lambda x: x.translation, lambda x: x.depth,
             lambda x: x.feature_a, lambda x: x.shape_a, lambda x: x.clear(), lambda x: x.nbytes, lambda x: x.is_convex,
             lambda x: x.facets, lambda x: pdepth.depth(x, box), lambda x: pdepth.depth(box, box, x),
             lambda x: pdepth.depth(box, box, warm=x), lambda x: pdepth.depth([x, box], box), lambda x: x.__getstate__(),
             lambda x: x.__reduce__(), lambda x: pdepth.Compound([x]), lambda x: pdepth.query("hull", a=x),
-            lambda x: pdepth.width(x), lambda x: pdepth.picture(x), lambda x: x == x, lambda x: x.matrix]
+            lambda x: pdepth.width(x), lambda x: pdepth.picture(x), lambda x: x == x, lambda x: x.matrix, hash, len,
+            iter, list, dir, vars, lambda x: x < x, lambda x: x[0],
+            lambda x: [getattr(x, name) for name in dir(x) if safe(x, name)]]
+
+    def safe(x, name):
+        # Each attribute is read; what raises is refused.
+        try:
+            return getattr(x, name) is not None
+        except (TypeError, AttributeError, ValueError):
+            return False
     for kind in kinds:
         for use in uses:
-            made = kind.__new__(kind)
+            try:
+                made = kind.__new__(kind)
+            except TypeError:  # an enumeration
+                break
             try:
                 use(made)
             except (TypeError, AttributeError, ValueError):  # Refused is a ValueError

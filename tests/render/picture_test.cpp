@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "pd/render/annotation.hpp"
@@ -168,12 +170,39 @@ TEST_F(Picture, BadVideoPathIsNamed) {
   if (!ffmpeg_is_there()) {
     GTEST_SKIP() << "the program ffmpeg is not installed";
   }
-  auto opened = VideoWriter::open("/proc/none/film.mp4", {64, 64});
-  ASSERT_TRUE(opened);
-  VideoWriter film = *std::move(opened);
-  const auto path = film.finish();
-  ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().code, ErrorCode::bad_value);
+  const auto opened = VideoWriter::open("/proc/none/film.mp4", {64, 64});
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, ErrorCode::bad_value);
+  EXPECT_FALSE(write_looping_clip(std::vector<Image>{ramp({20, 12})}, "/proc/none/clip.gif"));
+}
+
+/// A film or a clip that cannot be finished leaves what stood under its name.
+TEST_F(Picture, FilmsAreWrittenBesideTheirNames) {
+  if (!ffmpeg_is_there()) {
+    GTEST_SKIP() << "the program ffmpeg is not installed";
+  }
+  const auto older = [&](const char* name) {
+    std::ofstream(folder_ / name) << "older";
+    return folder_ / name;
+  };
+  const auto text_of = [](const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  };
+  const auto film = older("film.mp4"), clip = older("clip.gif");
+  {
+    VideoWriter writer = *VideoWriter::open(film, {64, 48});
+    ASSERT_TRUE(writer.add(ramp({64, 48})));
+    EXPECT_EQ(text_of(film), "older");
+    ASSERT_TRUE(writer.finish());
+    EXPECT_NE(text_of(film), "older");
+  }
+  EXPECT_FALSE(write_looping_clip(std::vector<Image>{ramp({64, 48})}, clip, 10, 64, 50));
+  EXPECT_EQ(text_of(clip), "older");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".pdepth-")) << entry.path();
+  }
 }
 
 TEST_F(Picture, MissingFfmpegIsSaidPlainly) {

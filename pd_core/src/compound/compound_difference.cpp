@@ -24,10 +24,17 @@ Error too_many(std::int64_t max_facets) {
                "max_facets"};
 }
 
+Error too_much_work(std::int64_t max_work) {
+  return Error{ErrorCode::limit_exceeded,
+               "building the Minkowski difference takes more than " + std::to_string(max_work) +
+                   " polygons and cuts: depth queries answer without building it, max_work allows more",
+               "max_work"};
+}
+
 }  // namespace
 
-Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const PosedCompound& b,
-                                               std::int64_t max_facets) {
+Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const PosedCompound& b, std::int64_t max_facets,
+                                               std::int64_t max_work) {
   const detail::FloatingPointGuard guard;
   const Expected<detail::UnionPair> pair = detail::UnionPair::pose(a, b);
   if (!pair) return pair.error();
@@ -35,9 +42,9 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
     return Error{ErrorCode::unsupported, "a Minkowski difference is built for polytopes without a margin", ""};
   }
   const int exponent = pair->scale_exponent();
-  auto built =
-      detail::PartDifferences::build(pair->a, pair->boxes_a, pair->b, pair->boxes_b, exponent, HUGE_VAL, max_facets);
-  if (!built) return too_many(max_facets);
+  auto built = detail::PartDifferences::build(pair->a, pair->boxes_a, pair->b, pair->boxes_b, exponent, HUGE_VAL,
+                                              std::min(max_facets, max_work));
+  if (!built) return max_facets <= max_work ? too_many(max_facets) : too_much_work(max_work);
   detail::PartDifferences differences = std::move(built).value();
   UnionDifference result;
   for (const detail::PartDifference& piece : differences.pieces()) {
@@ -46,7 +53,7 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
   }
   detail::UnionBoundary boundary(differences);
   std::vector<Vec3> corners;
-  const bool complete = boundary.visit_all([&](const detail::UnionBoundary::BoundaryPoint& where) {
+  const auto add = [&](const detail::UnionBoundary::BoundaryPoint& where) {
     if (static_cast<std::int64_t>(result.facets.size()) == max_facets) return false;
     const detail::PartDifference& piece = differences.pieces()[where.piece];
     const detail::DifferenceFacet& facet = piece.facets[where.facet];
@@ -61,9 +68,11 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
       corners.push_back(y);
     }
     return true;
-  });
+  };
+  const bool complete = boundary.visit_all(add, max_work);
   result.work.polygons = boundary.counts().polygons;
   result.work.cuts = boundary.counts().cuts;
+  if (result.work.polygons + result.work.cuts > max_work) return too_much_work(max_work);
   if (!complete) return too_many(max_facets);
 
   result.vertices = corners;

@@ -40,6 +40,25 @@ struct RoundedMeet {
   double determinant, determinant_size;
 };
 
+/// The same in double-double. Its sizes are those of `RoundedMeet`: a term takes at most twelve operations of relative
+/// error 2 kUdd, on coefficients within kUdd.
+struct FineMeet {
+  Vec3DD v;
+  DoubleDouble determinant;
+};
+constexpr double kFineError = 32 * kUdd;
+
+FineMeet meet_finely(const Vec3DD& f, const DoubleDouble& df, const Vec3DD& q, const DoubleDouble& dq, const Vec3DD& r,
+                     const DoubleDouble& dr) {
+  const Vec3DD qr = cross(q, r);
+  return {scaled(qr, df) + scaled(cross(r, f), dq) + scaled(cross(f, q), dr), dot(f, qr)};
+}
+
+/// True if every number within `error` of x rounds to x.hi; then so does the number that x stands for.
+bool rounds_for_certain(const DoubleDouble& x, double error) {
+  return x.hi + (x.lo + error) == x.hi && x.hi + (x.lo - error) == x.hi;
+}
+
 Vec3 cross_size(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]};
 }
@@ -90,6 +109,13 @@ Side PlaneSet::add(const Dyadic3& normal, const Dyadic& offset) {
     plane.normal = {rounded(exact[0]), rounded(exact[1]), rounded(exact[2])};
     plane.offset = rounded(exact[3]);
     plane.inverse_length = 1 / plane.normal.norm();
+    const auto finer = [&](const Integer& c, double high) {
+      const Dyadic rest = Dyadic::from_integer(c, -top) - Dyadic(high);
+      return quick_two_sum(high, rest.sign() == 0 ? 0.0 : rest.to_double());
+    };
+    plane.finer_normal = {finer(exact[0], plane.normal[0]), finer(exact[1], plane.normal[1]),
+                          finer(exact[2], plane.normal[2])};
+    plane.finer_offset = finer(exact[3], plane.offset);
     plane.exact = std::move(exact);
     planes_.push_back(std::move(plane));
   }
@@ -118,6 +144,10 @@ int PlaneSet::sign_at_meet(Side f, Side q, Side r, Side h) const {
     const double size = ph.normal.cwiseAbs().dot(m.v_size) + std::abs(ph.offset) * m.determinant_size;
     // Four coefficients within 2u each (8u), and at most nine roundings on the way of a term.
     if (std::abs(value) > 24 * kUnitRoundoff * size + kUnderflow) return (value > 0 ? 1 : -1) * turned;
+    const FineMeet fine = meet_finely(pf.finer_normal, pf.finer_offset, pq.finer_normal, pq.finer_offset,
+                                      pr.finer_normal, pr.finer_offset);
+    const DoubleDouble finer = dot(ph.finer_normal, fine.v) - ph.finer_offset * fine.determinant;
+    if (std::abs(finer.hi) > 2 * kFineError * size + kUnderflow) return (finer.hi > 0 ? 1 : -1) * turned;
   }
   ++exact_signs_;
   const Meet m = meet_exactly(pf.exact, pq.exact, pr.exact);
@@ -158,6 +188,23 @@ PlaneSet::Point PlaneSet::meet(Side f, Side q, Side r) const {
                        4 * kUnitRoundoff * x.cwiseAbs().array();
     // Flat crossings are worth exact arithmetic, so that bounds stay near the rounding of the input.
     if (error.maxCoeff() <= 0x1p-46 * (1 + x.cwiseAbs().maxCoeff())) return {x, error.maxCoeff()};
+  }
+  const FineMeet fine =
+      meet_finely(pf.finer_normal, pf.finer_offset, pq.finer_normal, pq.finer_offset, pr.finer_normal, pr.finer_offset);
+  const double fine_slack = kFineError * m.determinant_size + kUnderflow;
+  if (std::abs(fine.determinant.hi) > 0x1p10 * fine_slack) {
+    const double least = std::abs(fine.determinant.hi) - 2 * fine_slack;
+    Vec3 x;
+    bool certain = true;
+    for (int i = 0; i < 3 && certain; ++i) {
+      const DoubleDouble& above = i == 0 ? fine.v.x : i == 1 ? fine.v.y : fine.v.z;
+      const DoubleDouble coordinate = above / fine.determinant;
+      x[i] = coordinate.hi;
+      const double error =
+          (kFineError * m.v_size[i] + kUnderflow + std::abs(x[i]) * fine_slack) / least + 16 * kUdd * std::abs(x[i]);
+      certain = rounds_for_certain(coordinate, 2 * error);
+    }
+    if (certain) return {x, 2 * kUnitRoundoff * x.cwiseAbs().maxCoeff() + kUnderflow};
   }
   const Meet e = meet_exactly(pf.exact, pq.exact, pr.exact);
   const Dyadic below = Dyadic::from_integer(e.determinant, 0);

@@ -4,7 +4,7 @@
 /// A plane is kept as four integers without a common divisor, first nonzero coefficient positive, so that two planes
 /// are one exactly when they have one number; aligned bodies have small coefficients however they were posed. A
 /// `Side` is a plane with the direction in which it looks outwards. Every sign is decided in doubles with a bound
-/// first.
+/// first, then in double-double; so is every point.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <map>
 #include <vector>
 
+#include "numeric/double_double.hpp"
 #include "numeric/dyadic.hpp"
 #include "pd/numeric/vector.hpp"
 
@@ -96,6 +97,8 @@ class PlaneSet {
     Vec3 normal;
     double offset;
     double inverse_length;
+    Vec3DD finer_normal;  ///< each coefficient within kUdd
+    DoubleDouble finer_offset;
   };
   static std::size_t index(Side s) { return static_cast<std::size_t>(s.plane()); }
 

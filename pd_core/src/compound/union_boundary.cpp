@@ -149,7 +149,7 @@ std::optional<UnionBoundary::BoundaryPoint> UnionBoundary::at(const Vec3& x, boo
   return std::nullopt;
 }
 
-bool UnionBoundary::visit_all(const Visitor& visitor) {
+bool UnionBoundary::visit_all(const Visitor& visitor, std::int64_t max_work) {
   const std::vector<PartDifference>& pieces = differences_.pieces();
   std::vector<Cell> open;
   for (std::size_t own_piece = 0; own_piece < pieces.size(); ++own_piece) {
@@ -159,6 +159,7 @@ bool UnionBoundary::visit_all(const Visitor& visitor) {
         Cell cell = std::move(open.back());
         open.pop_back();
         ++counts_.polygons;
+        if (counts_.polygons + counts_.cuts > max_work) return false;
         if (contained_in_recent(cell.where.polygon)) continue;
         if (split_one(cell, open)) continue;
         if (!visitor(cell.where)) return false;

@@ -63,9 +63,10 @@ class UnionBoundary {
   /// @param direction  `exact` rounded; its largest |coordinate| in [1, 2).
   [[nodiscard]] std::optional<Hit> along(const Vec3& direction, const Dyadic3& exact);
 
-  /// Every piece of the boundary once, in the order of P_k and facets. Returns false when stopped.
+  /// Every piece of the boundary once, in the order of P_k and facets. Returns false when the visitor stops it, and
+  /// when more polygons and cuts than `max_work` were counted.
   using Visitor = std::function<bool(const BoundaryPoint&)>;
-  bool visit_all(const Visitor& visitor);
+  bool visit_all(const Visitor& visitor, std::int64_t max_work);
 
   /// Whether an uncovered part of the boundary of the union of these P_k may meet a box (inside lengths); false is
   /// certain.

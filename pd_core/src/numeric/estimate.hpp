@@ -18,7 +18,7 @@ struct Estimate {
   Estimate(double exact) : value(exact) {}  // NOLINT(google-explicit-constructor): doubles are exact
   Estimate(double v, double e) : value(v), error(e) {}
 
-  /// 1 or -1 where it is certain, 0 where it is not (or where the value is exactly 0).
+  /// 1 or -1 where it is certain, 0 where it is not (or where the value is exactly 0: then is_zero() is true).
   [[nodiscard]] int certain_sign() const { return value > error ? 1 : (-value > error ? -1 : 0); }
   [[nodiscard]] bool is_zero() const { return value == 0 && error == 0; }
 };
@@ -31,18 +31,34 @@ inline constexpr double kSlack = 1 + 0x1p-48;
 inline constexpr double kUnderflow = 0x1p-1070;
 }  // namespace estimate
 
+namespace estimate {
+/// True if a double has at most 24 leading bits: a product of two such numbers has at most 48.
+inline bool is_short(double a) { return static_cast<double>(static_cast<float>(a)) == a; }
+/// True if v = a + b without rounding: Knuth's two-sum, whose rest is 0. False where something overflows.
+inline bool is_exact_sum(double a, double b, double v) {
+  const double of_b = v - a;
+  return (a - (v - of_b)) + (b - of_b) == 0;
+}
+}  // namespace estimate
+
+// Sums and products of exact numbers that are exact keep the error 0. Without this, every zero of a lattice (collinear
+// edges, common corners) would take big numbers.
+
 inline Estimate operator-(const Estimate& a) { return {-a.value, a.error}; }
 inline Estimate operator+(const Estimate& a, const Estimate& b) {
   const double v = a.value + b.value;
+  if (a.error == 0 && b.error == 0 && estimate::is_exact_sum(a.value, b.value, v)) return {v, 0};
   return {v, (a.error + b.error + estimate::kRounding * std::abs(v)) * estimate::kSlack};
 }
 inline Estimate operator-(const Estimate& a, const Estimate& b) {
   const double v = a.value - b.value;
+  if (a.error == 0 && b.error == 0 && estimate::is_exact_sum(a.value, -b.value, v)) return {v, 0};
   return {v, (a.error + b.error + estimate::kRounding * std::abs(v)) * estimate::kSlack};
 }
 inline Estimate operator*(const Estimate& a, const Estimate& b) {
   if (a.is_zero() || b.is_zero()) return {};  // axis-parallel edges: no big number is asked for their exact zeros
   const double v = a.value * b.value;
+  if (a.error == 0 && b.error == 0 && estimate::is_short(a.value) && estimate::is_short(b.value)) return {v, 0};
   return {v, (std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error +
               estimate::kRounding * std::abs(v)) *
                      estimate::kSlack +

@@ -10,8 +10,13 @@ namespace pd {
 
 /// Where only Q is non-convex the implicit method takes the two in each other's place: Q + (-P) is -R.
 struct PolygonDifference::State {
-  State(const Polygon& p_in, const Polygon& q_in, bool implicit_in, bool swapped_in)
-      : p(p_in), q(q_in), implicit(implicit_in), swapped(swapped_in), boundary(p, q, implicit), query(boundary) {}
+  State(const Polygon& p_in, const Polygon& q_in, bool implicit_in, bool swapped_in, std::int64_t max_comparisons)
+      : p(p_in),
+        q(q_in),
+        implicit(implicit_in),
+        swapped(swapped_in),
+        boundary(p, q, implicit, max_comparisons),
+        query(boundary) {}
 
   Polygon p, q;
   bool implicit, swapped;

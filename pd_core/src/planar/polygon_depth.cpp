@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
 #include "numeric/quotient.hpp"
 #include "planar/difference_state.hpp"
@@ -27,7 +28,8 @@ std::string_view to_string(PlanarContact contact) {
   return "";
 }
 
-Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygon& q, PolygonMethod method) {
+Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygon& q, PolygonMethod method,
+                                                  std::int64_t max_comparisons) {
   const bool one_convex = p.convex() || q.convex();
   if (method == PolygonMethod::implicit && !one_convex) {
     return Error{ErrorCode::unsupported,
@@ -36,13 +38,19 @@ Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygo
   const bool implicit = one_convex && method != PolygonMethod::explicit_sums;
   const bool swapped = implicit && !q.convex();
   PolygonDifference r;
-  r.state_ = swapped ? std::make_shared<const State>(q, p, implicit, true)
-                     : std::make_shared<const State>(p, q, implicit, false);
+  r.state_ = swapped ? std::make_shared<const State>(q, p, implicit, true, max_comparisons)
+                     : std::make_shared<const State>(p, q, implicit, false, max_comparisons);
   // The implicit form relies on Facts 4.1 and 4.2: where they were seen to fail, it is given up.
   if (implicit && !r.state_->boundary.counts().facts_hold()) {
-    auto rebuilt = std::make_shared<State>(p, q, false, false);
+    auto rebuilt = std::make_shared<State>(p, q, false, false, max_comparisons);
     rebuilt->given_up = r.state_->boundary.counts();
     r.state_ = std::move(rebuilt);
+  }
+  if (!r.state_->boundary.complete()) {
+    return Error{ErrorCode::limit_exceeded,
+                 "the sums of convex parts took more than " + std::to_string(max_comparisons) +
+                     " comparisons: fewer vertices or one convex polygon take fewer, max_comparisons allows more",
+                 "max_comparisons"};
   }
   return r;
 }

@@ -3,7 +3,9 @@
 #include <cassert>
 #include <string>
 #include <system_error>
+#include <utility>
 
+#include "pd/numeric/whole_file.hpp"
 #include "video/ffmpeg_process.hpp"
 
 namespace pd::render {
@@ -32,19 +34,35 @@ void make_folder(const std::filesystem::path& path) {
 
 struct VideoWriter::State {
   detail::FfmpegProcess process;
+  std::unique_ptr<WholeFile> file;
   std::filesystem::path path;
   Size size;
   int frames = 0;
   bool open = true;
+
+  /// Ends ffmpeg. @return empty, or why there is no film.
+  std::string close() {
+    open = false;
+    std::string words = process.finish();
+    if (words.empty() && !file->finish()) words = "the film cannot be given its name";
+    return words;
+  }
 };
 
 VideoWriter::VideoWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
-VideoWriter::~VideoWriter() = default;
+VideoWriter::~VideoWriter() {
+  if (state_ && state_->open) (void)state_->close();
+}
 VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
-VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
+VideoWriter& VideoWriter::operator=(VideoWriter&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
 
 Expected<VideoWriter> VideoWriter::open(const std::filesystem::path& path, Size size, int frames_per_second) {
   make_folder(path);
+  auto file = std::make_unique<WholeFile>(path);
+  if (!file->good()) return bad_path(path, "the film cannot be written there");
   std::vector<std::string> arguments = raw_input(size, frames_per_second);
   // One encoder thread: the drawing needs the cores, and the file's bytes do not depend on their number.
   const std::vector<std::string> output = {"-vf",
@@ -69,13 +87,13 @@ Expected<VideoWriter> VideoWriter::open(const std::filesystem::path& path, Size 
                                            "+faststart",
                                            "-f",
                                            "mp4",
-                                           path.string()};
+                                           file->written_path().string()};
   arguments.insert(arguments.end(), output.begin(), output.end());
   auto process = detail::FfmpegProcess::start(arguments);
   if (!process) {
     return process.error();
   }
-  return VideoWriter(std::unique_ptr<State>(new State{*std::move(process), path, size}));
+  return VideoWriter(std::unique_ptr<State>(new State{*std::move(process), std::move(file), path, size}));
 }
 
 Expected<int> VideoWriter::add(const Image& frame) {
@@ -96,8 +114,7 @@ Expected<std::filesystem::path> VideoWriter::finish() {
   if (!state_->open) {
     return bad_path(state_->path, "the film is closed");
   }
-  state_->open = false;
-  const std::string words = state_->process.finish();
+  const std::string words = state_->close();
   if (!words.empty()) {
     return bad_path(state_->path, "ffmpeg failed: " + words);
   }
@@ -120,18 +137,21 @@ Expected<std::filesystem::path> write_looping_clip(std::span<const Image> frames
   };
   constexpr Step kSteps[] = {{82, 192, 1}, {68, 128, 1}, {55, 96, 1}, {50, 64, 0.85}, {42, 48, 0.75}};
   for (const Step& step : kSteps) {
+    WholeFile file(path);
+    if (!file.good()) return bad_path(path, "the clip cannot be written there");
+    const std::string target = file.written_path().string();
     const std::string scale =
         "scale=" + std::to_string(static_cast<int>(width * step.shrink) / 2 * 2) + ":-2:flags=area";
     std::vector<std::string> arguments = raw_input(frames.front().size(), frames_per_second);
     if (webp) {
       arguments.insert(arguments.end(), {"-vf", scale, "-c:v", "libwebp_anim", "-quality", std::to_string(step.quality),
-                                         "-compression_level", "4", "-loop", "0", "-f", "webp", path.string()});
+                                         "-compression_level", "4", "-loop", "0", "-f", "webp", target});
     } else {
       arguments.insert(arguments.end(),
                        {"-vf",
                         scale + ",split[a][b];[a]palettegen=max_colors=" + std::to_string(step.colours) +
                             ":stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
-                        "-loop", "0", "-f", "gif", path.string()});
+                        "-loop", "0", "-f", "gif", target});
     }
     auto process = detail::FfmpegProcess::start(arguments);
     if (!process) {
@@ -151,12 +171,11 @@ Expected<std::filesystem::path> write_looping_clip(std::span<const Image> frames
       return bad_path(path, "ffmpeg failed: " + words);
     }
     std::error_code missing;
-    if (std::filesystem::file_size(path, missing) <= max_bytes && !missing) {
-      return path;
+    if (std::filesystem::file_size(target, missing) <= max_bytes && !missing) {
+      if (file.finish()) return path;
+      return bad_path(path, "the clip cannot be given its name");
     }
   }
-  std::error_code ignored;  // it may not be there
-  std::filesystem::remove(path, ignored);
   return Error{ErrorCode::limit_exceeded,
                "the clip is larger than " + std::to_string(max_bytes) + " bytes at any quality fit to be seen",
                path.string()};

@@ -23,8 +23,12 @@ namespace pd {
 enum class PolygonMethod {
   automatic,      ///< implicit where P or Q is convex, else explicit_sums
   implicit,       ///< [D] Theorem 4.4: arcs of -Q as index ranges; needs a convex P or Q
-  explicit_sums,  ///< the union of all sums of two triangles, edge by edge
+  explicit_sums,  ///< the union of all sums of two convex parts, edge by edge
 };
+
+/// The budget of explicit sums, in comparisons of an edge with a convex sum; an exact intersection counts as 16. Two
+/// jagged polygons of 500 vertices take 5 to 25 million, some 200 nanoseconds each.
+inline constexpr std::int64_t kPolygonComparisons = std::int64_t{1} << 25;
 
 /// The feature of P and Q that holds the answer: a vertex or an edge (from that vertex on), as the caller numbered it.
 struct PlanarFeature {
@@ -53,11 +57,13 @@ enum class Leave {
 /// The boundary of R, prepared for any number of placements.
 class PolygonDifference {
  public:
-  /// @return ErrorCode::unsupported for the implicit method where neither is convex.
+  /// @return ErrorCode::unsupported for the implicit method where neither is convex; ErrorCode::limit_exceeded where
+  /// explicit sums take more than `max_comparisons`.
   /// Time O((n + k) log^2 m) for the implicit method. k counts the pairs of a part of P's boundary and a triangle of
   /// P that Q, slid along the part, meets. O(s^2) at worst for s sums of the explicit one. Space O(n + m), and O(s).
   static Expected<PolygonDifference> of(const Polygon& p, const Polygon& q,
-                                        PolygonMethod method = PolygonMethod::automatic);
+                                        PolygonMethod method = PolygonMethod::automatic,
+                                        std::int64_t max_comparisons = kPolygonComparisons);
 
   [[nodiscard]] PlanarContact contact(const Point2& placement) const;
   /// sigma. Requires a finite placement.

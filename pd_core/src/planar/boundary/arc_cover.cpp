@@ -53,7 +53,7 @@ void ArcCover::cut_arc(CandidateCover& cover) {
   const Point2 corner = vertex(0).p;
   int low = 0, high = count;  // the edges along which U reaches no farther
   bool tie = false;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < other().num_corners(); ++k) {
     const Direction to_other{corner, other().corner(k)};
     if (to_other.from == to_other.to) continue;
     const auto sign = [&](int e) { return cross_sign(to_other, direction(e)); };

@@ -1,13 +1,15 @@
 #include "planar/boundary/boundary_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <unordered_set>
 #include <utility>
 
 #include "numeric/at.hpp"
-#include "planar/boundary/rough_sums.hpp"
+#include "planar/boundary/convex_parts.hpp"
 
 namespace pd::detail {
 
@@ -24,8 +26,16 @@ bool is_farthest(const Polygon& polygon, int vertex, const Direction& d) {
          cross_sign(d, {at_vertex, polygon.point(polygon.next(vertex))}) >= 0;
 }
 
+/// The vertex of P at the end of the edge from a corner of a sum's part.
+std::int32_t next_corner(const ConvexSum& sum, int a) {
+  return sum.corners()[a + 1 == sum.num_corners() ? 0 : at(a + 1)];
+}
+
+/// Intersecting a candidate with a sum exactly takes some 16 times as long as in doubles.
+constexpr std::int64_t kExactComparison = 16;
+
 /// Sums that are tried first.
-constexpr std::size_t kMostRecent = 8;
+constexpr std::size_t kMostRecent = 16;
 
 void move_to_front(std::vector<std::int32_t>& recent, std::int32_t sum) {
   std::erase(recent, sum);
@@ -42,9 +52,8 @@ void BoundaryBuilder::build_implicit() {
   const NegatedChain& chain = *r_.chains_.front();
   auto& vertices = r_.chain_vertices_.emplace_back();
   for (int k = 0; k <= chain.size(); ++k) vertices.push_back(chain.index(k));
-  for (int t = 0; t < triangulation_.num_inside; ++t) {
-    r_.sums_.emplace_back(r_.p_points_, triangulation_.triangles[at(t)].vertex, chain);
-  }
+  r_.parts_ = triangles_inside(triangulation_, r_.p_points_);
+  for (const ConvexPart& part : r_.parts_) r_.sums_.emplace_back(part, chain);
   for (const Point2& p : q_.points()) q_box_.add(p);
   seen_.assign(triangulation_.triangles.size(), -1);
   for (int v = 0; v < p_.num_vertices(); ++v) add_arc_candidates(v);
@@ -119,7 +128,7 @@ int BoundaryBuilder::candidate_at(int sum_index, int edge) const {
   const ConvexSum& sum = r_.sums_[at(sum_index)];
   const ConvexSum::Parts parts = sum.parts(edge);
   const std::int32_t v = sum.corners()[at(parts.a)];
-  if (parts.of_triangle) return p_.next(v) == sum.corners()[at((parts.a + 1) % 3)] ? 2 * v : -1;
+  if (parts.of_triangle) return p_.next(v) == next_corner(sum, parts.a) ? 2 * v : -1;
   if (p_.turn(v) < 0) return -1;
   const Direction d = sum.chain().edge(parts.b);
   const bool between = cross_sign({p_.point(p_.previous(v)), p_.point(v)}, d) > 0 &&
@@ -179,7 +188,7 @@ void BoundaryBuilder::reach_of(const Candidate& candidate) {
     for (std::size_t c = 0; c < 2; ++c) {
       size += std::abs(d[c]) * (std::max(std::abs(q_box_.low[c]), std::abs(q_box_.high[c])) * 2 +
                                 std::max(std::abs(low[k]), std::abs(high[k])) * (k < 2 ? 1 : 0));
-      for (int a = 0; a < 3; ++a) size += std::abs(d[c]) * std::abs(sum.corner(a)[c]);
+      for (int a = 0; a < sum.num_corners(); ++a) size += std::abs(d[c]) * std::abs(sum.corner(a)[c]);
     }
     reach_.low[k] -= 0x1p-44 * size;
     reach_.high[k] += 0x1p-44 * size;
@@ -274,80 +283,113 @@ void BoundaryBuilder::compact() {
   r_.num_loops_ = link_loops(r_, r_.stretches_, r_.counts_.reflex_points);
 }
 
-void BoundaryBuilder::build_explicit() {
+void BoundaryBuilder::build_explicit(std::int64_t max_comparisons) {
   triangulation_ = triangulate(p_, false);
   const Triangulation other = triangulate(q_, false);
   r_.p_points_ = triangulation_.points;
   r_.q_points_ = other.points;
-  for (int s = 0; s < other.num_inside; ++s) {
-    const auto& corners = other.triangles[at(s)].vertex;
+  for (const ConvexPart& part : convex_parts(other, r_.q_points_)) {
     std::vector<Point2> points;
-    for (const std::int32_t v : corners) points.push_back(other.points[at(v)]);
+    for (const std::int32_t v : part.corners()) points.push_back(other.points[at(v)]);
     r_.chains_.push_back(std::make_unique<NegatedChain>(points));
+    const NegatedChain& chain = *r_.chains_.back();
     auto& vertices = r_.chain_vertices_.emplace_back();
-    for (int k = 0; k <= 3; ++k) vertices.push_back(corners[at(r_.chains_.back()->index(k))]);
+    for (int k = 0; k <= chain.size(); ++k) vertices.push_back(part.corners()[at(chain.index(k))]);
   }
-  for (int t = 0; t < triangulation_.num_inside; ++t) {
-    for (const auto& chain : r_.chains_) {
-      r_.sums_.emplace_back(r_.p_points_, triangulation_.triangles[at(t)].vertex, *chain);
-    }
+  r_.parts_ = convex_parts(triangulation_, r_.p_points_);
+  r_.sums_.reserve(r_.parts_.size() * r_.chains_.size());
+  for (const ConvexPart& part : r_.parts_) {
+    for (const auto& chain : r_.chains_) r_.sums_.emplace_back(part, *chain);
   }
   add_edge_candidates();
   std::vector<Box2> boxes;
   for (const ConvexSum& sum : r_.sums_) {
     Box2 box;
-    for (int t = 0; t < sum.size(); ++t) {
-      const SumPoint x = sum.vertex(t);
-      box.add(Point2{x.p[0] - x.q[0], x.p[1] - x.q[1]});
-    }
+    for (int t = 0; t < sum.size(); ++t) box.add(RoughSums::rounded(sum.vertex(t)));
     boxes.push_back(box.widened());
   }
   const BoxTree tree(boxes);
   const RoughSums rough(r_.sums_);
   std::vector<std::int32_t> recent;  // sums that covered candidates just before this one: neighbours lie in the same
   for (const Candidate& candidate : r_.candidates_) {
-    ArcCover cutter(
-        r_, candidate, [&](int sum, int) { return sum < candidate.sum; }, r_.counts_);
-    CandidateCover cover{{r_, candidate}, {}};
-    const Span e = r_.edge(candidate, 0);
-    const Point2 start = RoughSums::rounded(e.s), end = RoughSums::rounded(e.z);
-    Box2 box;
-    box.add(start);
-    box.add(end);
-    box = box.widened();
-    std::int32_t last = -1;
-    const auto cut = [&](std::int32_t sum) {
-      if (sum == candidate.sum || cover.covered.whole()) return;
-      const RoughSums::Where where = rough.place(sum, start, end);
-      if (where == RoughSums::Where::apart) return;
-      last = sum;
-      if (where == RoughSums::Where::holds) {
-        cover.covered.add({{0, {}}, {candidate.count, {}}});
-        return;
-      }
-      near_.push_back({index_of(candidate), sum});
-      cutter.cut(sum, cover);
-    };
-    for (const std::int32_t sum : recent) cut(sum);
-    tree.visit([&](const Box2& b) { return b.meets(box) && !cover.covered.whole(); },
-               [&](std::int32_t sum) {
-                 if (boxes[at(sum)].meets(box) && std::find(recent.begin(), recent.end(), sum) == recent.end()) {
-                   cut(sum);
-                 }
-               });
-    keep(candidate, cover);
-    if (cover.covered.whole()) move_to_front(recent, last);
+    cut_edge_candidate(candidate, {boxes, tree, rough}, recent);
+    if (comparisons_ <= max_comparisons) continue;
+    r_.complete_ = false;
+    r_.stretches_.clear();
+    r_.slots_.clear();
+    r_.candidates_.clear();
+    return;
   }
   compact();
+}
+
+void BoundaryBuilder::cut_edge_candidate(const Candidate& candidate, const SumSearch& search,
+                                         std::vector<std::int32_t>& recent) {
+  const Span e = r_.edge(candidate, 0);
+  const Point2 start = RoughSums::rounded(e.s), end = RoughSums::rounded(e.z);
+  Box2 box;
+  box.add(start);
+  box.add(end);
+  box = box.widened();
+  bool whole = false;
+  rough_union_.clear();
+  const auto look_at = [&](std::int32_t sum) {
+    RoughCover share;
+    if (whole || sum == candidate.sum) return;
+    ++comparisons_;
+    if (!search.rough.cover(sum, start, end, share)) return;
+    if (share.whole()) {
+      whole = true;
+      needed_.assign(1, sum);
+      return;
+    }
+    rough_union_.add(share);
+    // Looked at whenever the number of shares has doubled, so that it costs little.
+    const std::size_t count = rough_union_.size();
+    if (count >= 8 && (count & (count - 1)) == 0) whole = rough_union_.whole(needed_);
+  };
+  for (std::size_t i = 0; i < recent.size() && !whole; ++i) look_at(recent[i]);
+  if (!whole && rough_union_.size() > 1) whole = rough_union_.whole(needed_);
+  const std::vector<std::int32_t> tried = recent;
+  // Sums with their middle near the candidate's are most likely to cover it.
+  const Point2 middle = {0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])};
+  search.tree.visit([&](const Box2& b) { return !whole && b.meets(box); },
+                    [&](const Box2& b) { return b.middle_distance_squared(middle); },
+                    [&](std::int32_t sum) {
+                      if (!search.boxes[at(sum)].meets(box)) return;
+                      if (std::find(tried.begin(), tried.end(), sum) == tried.end()) look_at(sum);
+                    });
+  if (whole || rough_union_.whole(needed_)) {
+    for (const std::int32_t sum : needed_) move_to_front(recent, sum);
+    return;
+  }
+
+  ArcCover cutter(
+      r_, candidate, [&](int sum, int) { return sum < candidate.sum; }, r_.counts_);
+  CandidateCover cover{{r_, candidate}, {}};
+  for (const std::int32_t sum : needed_) {
+    if (cover.covered.whole()) break;
+    near_.push_back({index_of(candidate), sum});
+    cutter.cut(sum, cover);
+    comparisons_ += kExactComparison;
+  }
+  keep(candidate, cover);
 }
 
 /// What may lie on the boundary: an edge of one polygon displaced by a convex vertex of the other one, if no edge at
 /// that vertex reaches farther across the edge, or two parallel edges. Next to any other point of a sum's edge lies
 /// more of the other polygon, beyond the edge: the point is inside.
 ///
-/// Of edges that several sums share, that of the first sum is enough: the others give way to it.
+/// Of edges that several sums share, that of the first sum is enough: the others give way to it. On a lattice most
+/// edges coincide with an edge of other vertices: those are compared exactly.
 void BoundaryBuilder::add_edge_candidates() {
   std::unordered_set<std::uint64_t> known;
+  std::map<std::array<double, 4>, Span> first_at;  // by the rounded ends
+  const auto is_elsewhere = [&](const Span& e) {
+    const Point2 start = RoughSums::rounded(e.s), end = RoughSums::rounded(e.z);
+    const auto [found, inserted] = first_at.try_emplace({start[0], start[1], end[0], end[1]}, e);
+    return inserted || !same(found->second.s, e.s) || !same(found->second.z, e.z);
+  };
   const auto is_new = [&](int moving, int fixed, bool edge_of_p) {
     return known
         .insert(static_cast<std::uint64_t>(moving) << 32 | static_cast<std::uint64_t>(fixed) << 1 |
@@ -360,7 +402,7 @@ void BoundaryBuilder::add_edge_candidates() {
     for (int t = 0; t < sum.size(); ++t) {
       const ConvexSum::Parts parts = sum.parts(t);
       const std::int32_t p_from = sum.corners()[at(parts.a)], q_from = q_vertex[at(parts.b)];
-      const bool p_edge = parts.of_triangle && p_.next(p_from) == sum.corners()[at((parts.a + 1) % 3)];
+      const bool p_edge = parts.of_triangle && p_.next(p_from) == next_corner(sum, parts.a);
       const bool q_edge = parts.of_chain && q_.next(q_from) == q_vertex[at(parts.b + 1)];
       bool kept = false;
       if (parts.of_triangle && parts.of_chain) {
@@ -370,17 +412,18 @@ void BoundaryBuilder::add_edge_candidates() {
       } else {
         kept = q_edge && is_farthest(p_, p_from, sum.direction(t)) && is_new(q_from, p_from, false);
       }
-      if (kept) r_.candidates_.push_back({i, t, 1, static_cast<std::int32_t>(r_.candidates_.size())});
+      if (kept && is_elsewhere(sum.edge(t)))
+        r_.candidates_.push_back({i, t, 1, static_cast<std::int32_t>(r_.candidates_.size())});
     }
   }
 }
 
-SumBoundary::SumBoundary(const Polygon& p, const Polygon& q, bool implicit) {
+SumBoundary::SumBoundary(const Polygon& p, const Polygon& q, bool implicit, std::int64_t max_comparisons) {
   BoundaryBuilder builder(*this, p, q);
   if (implicit) {
     builder.build_implicit();
   } else {
-    builder.build_explicit();
+    builder.build_explicit(max_comparisons);
   }
 }
 
@@ -421,6 +464,8 @@ std::size_t SumBoundary::memory_bytes() const {
                       sums_.capacity() * sizeof(ConvexSum) + candidates_.capacity() * sizeof(Candidate) +
                       (stretches_.capacity() + slots_.capacity()) * sizeof(Stretch);
   for (const auto& chain : chains_) bytes += static_cast<std::size_t>(chain->size() + 1) * sizeof(Point2);
+  for (const ConvexSum& sum : sums_) bytes += sum.memory_bytes();
+  for (const ConvexPart& part : parts_) bytes += sizeof(ConvexPart) + at(part.size()) * sizeof(std::int32_t);
   for (const auto& list : chain_vertices_) bytes += list.capacity() * sizeof(std::int32_t);
   return bytes;
 }

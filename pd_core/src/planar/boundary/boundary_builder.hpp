@@ -4,6 +4,7 @@
 
 #include "planar/boundary/arc_cover.hpp"
 #include "planar/boundary/box_tree.hpp"
+#include "planar/boundary/rough_sums.hpp"
 #include "planar/boundary/sum_boundary.hpp"
 
 namespace pd::detail {
@@ -18,11 +19,19 @@ class BoundaryBuilder {
   BoundaryBuilder(SumBoundary& boundary, const Polygon& p, const Polygon& q) : r_(boundary), p_(p), q_(q) {}
 
   void build_implicit();
-  void build_explicit();
+  /// Gives up where it takes more comparisons of a candidate with a sum. An exact one counts as kExactComparison.
+  void build_explicit(std::int64_t max_comparisons);
 
  private:
   void add_arc_candidates(int vertex);
   void add_edge_candidates();
+  /// All sums, to be searched for those near a candidate.
+  struct SumSearch {
+    const std::vector<Box2>& boxes;
+    const BoxTree& tree;
+    const RoughSums& rough;
+  };
+  void cut_edge_candidate(const Candidate& candidate, const SumSearch& search, std::vector<std::int32_t>& recent);
   [[nodiscard]] int candidate_at(int sum, int edge) const;
   void flood(const Candidate& candidate, int triangle, ArcCover& cutter, CandidateCover& cover);
   [[nodiscard]] bool may_meet(const Triangle& triangle) const;
@@ -42,6 +51,9 @@ class BoundaryBuilder {
   std::vector<std::int32_t> crossings_;  ///< per triangle: with the sum at hand
   std::vector<std::int32_t> crossed_;    ///< those with any
   std::vector<NearSum> near_;            ///< of candidates of which something is left
+  RoughUnion rough_union_;
+  std::int64_t comparisons_ = 0;
+  std::vector<std::int32_t> needed_;  ///< sums that are cut from the candidate at hand exactly
   Box2 q_box_;
 
   /// Where Q lies while it slides along a candidate: within an interval along each of three directions.

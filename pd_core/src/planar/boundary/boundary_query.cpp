@@ -18,7 +18,7 @@ std::vector<Box2> boxes_of(const SumBoundary& boundary, const std::vector<Stretc
 
 Box2 sum_box(const ConvexSum& sum) {
   Box2 p, box;
-  for (int a = 0; a < 3; ++a) p.add(sum.corner(a));
+  for (int a = 0; a < sum.num_corners(); ++a) p.add(sum.corner(a));
   const Box2 q = sum.chain().box(0, sum.chain().size());
   box.add(Point2{p.low[0] - q.high[0], p.low[1] - q.high[1]});
   box.add(Point2{p.high[0] - q.low[0], p.high[1] - q.low[1]});

@@ -49,6 +49,15 @@ struct Box2 {
     }
     return sum;
   }
+  /// From the box's middle to p, rounded.
+  [[nodiscard]] double middle_distance_squared(const Point2& p) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double gap = 0.5 * low[k] + 0.5 * high[k] - p[k];
+      sum += gap * gap;
+    }
+    return sum;
+  }
 };
 
 class BoxTree {

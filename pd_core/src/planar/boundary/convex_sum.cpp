@@ -42,32 +42,27 @@ int NegatedChain::edges_before(const Direction& d) const {
   return low;
 }
 
-ConvexSum::ConvexSum(const std::vector<Point2>& points, const std::array<std::int32_t, 3>& corners,
-                     const NegatedChain& chain)
-    : points_(&points), chain_(&chain), corner_(corners) {
-  const auto least = std::min_element(corner_.begin(), corner_.end(), [&](std::int32_t a, std::int32_t b) {
-    return points[static_cast<std::size_t>(a)] < points[static_cast<std::size_t>(b)];
-  });
-  std::rotate(corner_.begin(), least, corner_.end());
+ConvexSum::ConvexSum(const ConvexPart& part, const NegatedChain& chain) : part_(&part), chain_(&chain) {
+  place_.reserve(static_cast<std::size_t>(part.size()));
   int fused = 0;
-  for (int a = 0; a < 3; ++a) {
-    const Direction d = triangle_edge(a);
+  for (int a = 0; a < part.size(); ++a) {
+    const Direction d = part.edge(a);
     const int before = chain.edges_before(d);
-    const auto k = static_cast<std::size_t>(a);
-    parallel_[k] = before < chain.size() && compare_angles(chain.edge(before), d) == 0;
-    place_[k] = before + a - fused;
-    fused += parallel_[k] ? 1 : 0;
+    const bool parallel = before < chain.size() && compare_angles(chain.edge(before), d) == 0;
+    place_.push_back({before + a - fused, fused, parallel});
+    fused += parallel ? 1 : 0;
   }
-  size_ = 3 + chain.size() - fused;
+  size_ = part.size() + chain.size() - fused;
 }
 
 ConvexSum::Parts ConvexSum::parts(int t) const {
-  int a = 0, fused = 0;
-  while (a < 3 && place_[static_cast<std::size_t>(a)] < t) fused += parallel_[static_cast<std::size_t>(a++)] ? 1 : 0;
-  const int b = t - a + fused;
-  const bool of_triangle = a < 3 && place_[static_cast<std::size_t>(a)] == t;
-  const bool of_chain = !of_triangle || parallel_[static_cast<std::size_t>(a)];
-  return {a == 3 ? 0 : a, b, of_triangle, of_chain};
+  const auto found = std::lower_bound(place_.begin(), place_.end(), t,
+                                      [](const InsertedEdge& e, int number) { return e.edge < number; });
+  const auto a = static_cast<std::size_t>(found - place_.begin());
+  const int b = t - static_cast<int>(a) + fused_before(a);
+  const bool of_triangle = a < place_.size() && place_[a].edge == t;
+  const bool of_chain = !of_triangle || place_[a].parallel;
+  return {a == place_.size() ? 0 : static_cast<int>(a), b, of_triangle, of_chain};
 }
 
 SumPoint ConvexSum::vertex(int t) const {
@@ -77,13 +72,20 @@ SumPoint ConvexSum::vertex(int t) const {
 
 Direction ConvexSum::direction(int t) const {
   const Parts p = parts(t);
-  return p.of_triangle ? triangle_edge(p.a) : chain_->edge(p.b);
+  return p.of_triangle ? part_->edge(p.a) : chain_->edge(p.b);
 }
 
 int ConvexSum::edges_before(const Direction& d) const {
-  int a = 0, fused = 0;
-  while (a < 3 && compare_angles(triangle_edge(a), d) < 0) fused += parallel_[static_cast<std::size_t>(a++)] ? 1 : 0;
-  return a + chain_->edges_before(d) - fused;
+  int low = 0, high = part_->size();
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (compare_angles(part_->edge(middle), d) < 0) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low + chain_->edges_before(d) - fused_before(static_cast<std::size_t>(low));
 }
 
 ConvexSum::Location ConvexSum::locate(const SumPoint& x) const {

@@ -1,11 +1,14 @@
 /// @file
 /// A convolved triangle T + (-B) in implicit form ([D] section 4.1, step 2): the three places where T's edges go
 /// between those of -B, in slope order. Any vertex or edge in constant time, all in O(1) space; parallel edges are one
-/// edge.
+/// edge. T may be any convex part of P: its k places take O(k) space, and a search among them O(log k) time.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "planar/boundary/box_tree.hpp"
@@ -37,13 +40,40 @@ class NegatedChain {
   int first_;
 };
 
+/// A convex part of P: indices of its corners, counter-clockwise, no three collinear.
+class ConvexPart {
+ public:
+  ConvexPart(const std::vector<Point2>& points, std::vector<std::int32_t> corners)
+      : points_(&points), corner_(std::move(corners)) {
+    const auto least = std::min_element(corner_.begin(), corner_.end(), [&](std::int32_t a, std::int32_t b) {
+      return points[static_cast<std::size_t>(a)] < points[static_cast<std::size_t>(b)];
+    });
+    std::rotate(corner_.begin(), least, corner_.end());
+  }
+
+  [[nodiscard]] int size() const { return static_cast<int>(corner_.size()); }
+  /// The first corner is the least.
+  [[nodiscard]] const std::vector<std::int32_t>& corners() const { return corner_; }
+  /// The corner after the last one is the first.
+  [[nodiscard]] const Point2& point(int a) const {
+    const std::size_t k = static_cast<std::size_t>(a) == corner_.size() ? 0 : static_cast<std::size_t>(a);
+    return (*points_)[static_cast<std::size_t>(corner_[k])];
+  }
+  [[nodiscard]] Direction edge(int a) const { return {point(a), point(a + 1)}; }
+
+ private:
+  const std::vector<Point2>* points_;
+  std::vector<std::int32_t> corner_;
+};
+
 class ConvexSum {
  public:
-  /// `corners`: counter-clockwise indices into `points`.
-  ConvexSum(const std::vector<Point2>& points, const std::array<std::int32_t, 3>& corners, const NegatedChain& chain);
+  /// Requires that both parts stay where they are.
+  ConvexSum(const ConvexPart& part, const NegatedChain& chain);
 
   [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] const std::array<std::int32_t, 3>& corners() const { return corner_; }
+  [[nodiscard]] int num_corners() const { return part_->size(); }
+  [[nodiscard]] const std::vector<std::int32_t>& corners() const { return part_->corners(); }
   [[nodiscard]] const NegatedChain& chain() const { return *chain_; }
 
   /// What edge t (0 <= t < size) is made of: T's edge from corner `a`, -B's edge from vertex `b`, or both where they
@@ -60,12 +90,8 @@ class ConvexSum {
   /// farthest to the right of d (`size` stands for 0).
   [[nodiscard]] int edges_before(const Direction& d) const;
   /// The edge that T's edge from corner a lies on.
-  [[nodiscard]] int edge_of_corner(int a) const { return place_[static_cast<std::size_t>(a)]; }
-
-  [[nodiscard]] const Point2& corner(int a) const {
-    return (*points_)[static_cast<std::size_t>(corner_[static_cast<std::size_t>(a % 3)])];
-  }
-  [[nodiscard]] Direction triangle_edge(int a) const { return {corner(a), corner(a + 1)}; }
+  [[nodiscard]] int edge_of_corner(int a) const { return place_[static_cast<std::size_t>(a)].edge; }
+  [[nodiscard]] const Point2& corner(int a) const { return part_->point(a); }
 
   /// Strictly inside, or else an edge that the point lies on or beyond.
   struct Location {
@@ -75,6 +101,9 @@ class ConvexSum {
   [[nodiscard]] Location locate(const SumPoint& x) const;
   /// In the closed polygon.
   [[nodiscard]] bool contains(const SumPoint& x) const;
+
+  /// Beyond the sum itself.
+  [[nodiscard]] std::size_t memory_bytes() const { return place_.capacity() * sizeof(InsertedEdge); }
 
   /// The part of a span that lies inside.
   struct Cover {
@@ -88,11 +117,20 @@ class ConvexSum {
   [[nodiscard]] std::optional<Cover> cover_of_line(const Span& e) const;
 
  private:
-  const std::vector<Point2>* points_;
+  /// Where an edge of T goes among those of -B.
+  struct InsertedEdge {
+    std::int32_t edge;   ///< its number in the sum
+    std::int32_t fused;  ///< how many edges of T before it are parallel to an edge of -B
+    bool parallel;       ///< fused with an edge of -B
+  };
+  [[nodiscard]] int fused_before(std::size_t a) const {
+    if (a < place_.size()) return place_[a].fused;
+    return place_.back().fused + (place_.back().parallel ? 1 : 0);
+  }
+
+  const ConvexPart* part_;
   const NegatedChain* chain_;
-  std::array<std::int32_t, 3> corner_;
-  std::array<std::int32_t, 3> place_;  ///< number of the edge that holds T's edge k
-  std::array<bool, 3> parallel_;       ///< fused with an edge of -B
+  std::vector<InsertedEdge> place_;
   std::int32_t size_;
 };
 

@@ -1,10 +1,9 @@
 /// @file
-/// Sums of two triangles in doubles: most pairs of a candidate and a sum lie apart, or the one inside the other, by far
-/// more than rounding. Only the rest take exact signs.
+/// Convex sums in doubles: which part of a candidate a sum covers for certain, and which it cannot reach. Most
+/// candidates are covered for certain by a few sums. Only the rest take exact signs, and only of sums near the rest.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -13,63 +12,136 @@
 
 namespace pd::detail {
 
+/// A sum's share of a segment, by fractions of the segment's length.
+struct RoughCover {
+  std::int32_t sum = -1;
+  /// For certain in the sum's interior; empty where `inner_from` > `inner_to`.
+  double inner_from = 0, inner_to = 1;
+  /// Everything outside of this interval is for certain not in the closed sum.
+  double outer_from = 0, outer_to = 1;
+
+  [[nodiscard]] bool whole() const { return inner_from <= 0 && inner_to >= 1; }
+};
+
 class RoughSums {
  public:
-  enum class Where { holds, apart, unclear };
-
-  /// Requires sums of triangles: six corners at most.
   explicit RoughSums(const std::vector<ConvexSum>& sums) {
     double size = 0;
-    rough_.reserve(sums.size());
+    first_.reserve(sums.size() + 1);
     for (const ConvexSum& sum : sums) {
-      Rough& rough = rough_.emplace_back();
-      rough.count = sum.size();
+      first_.push_back(corners_.size());
       for (int t = 0; t < sum.size(); ++t) {
         const SumPoint x = sum.vertex(t);
         for (std::size_t k = 0; k < 2; ++k) size = std::max({size, std::abs(x.p[k]), std::abs(x.q[k])});
-        rough.corners[static_cast<std::size_t>(t)] = rounded(x);
+        corners_.push_back(rounded(x));
       }
     }
-    // Corners err by 2u times the size, sides are products of lengths of four sizes at most.
-    constexpr double kAir = 0x1p-44;
+    first_.push_back(corners_.size());
+    // Corners err by 2u times the size. Sides are two products of lengths of four sizes at most, and err by 2^7 u
+    // size^2. Fractions err by 3u times a difference of two sides: by 2^7 u size^2 along the edge's normal.
+    constexpr double kAir = 0x1p-43;
     const bool in_range = size > 0x1p-400 && size < 0x1p400;
     air_ = in_range ? kAir * size * size : std::numeric_limits<double>::infinity();
   }
 
   static Point2 rounded(const SumPoint& x) { return {x.p[0] - x.q[0], x.p[1] - x.q[1]}; }
 
-  /// Where the segment from s to z (rounded as above) lies: in the interior of the sum; with no point in common with
-  /// it; or neither for certain.
-  [[nodiscard]] Where place(std::int32_t sum, const Point2& s, const Point2& z) const {
-    const Rough& rough = rough_[static_cast<std::size_t>(sum)];
-    bool holds = true;
+  /// The share of the segment from s to z (rounded as above). @return false if the two have for certain no point in
+  /// common.
+  [[nodiscard]] bool cover(std::int32_t sum, const Point2& s, const Point2& z, RoughCover& r) const {
+    r = {.sum = sum};
+    const std::size_t begin = first_[static_cast<std::size_t>(sum)], end = first_[static_cast<std::size_t>(sum) + 1];
     double least = std::numeric_limits<double>::infinity(), greatest = -least;
-    for (std::size_t t = 0; t < static_cast<std::size_t>(rough.count); ++t) {
-      const Point2& a = rough.corners[t];
-      const Point2& b = rough.corners[t + 1 == static_cast<std::size_t>(rough.count) ? 0 : t + 1];
-      const double of_s = side(a, b, s), of_z = side(a, b, z);
-      if (std::max(of_s, of_z) < -air_) return Where::apart;
-      holds = holds && std::min(of_s, of_z) > air_;
-      const double of_corner = side(s, z, a);
+    const Point2* a = &corners_[end - 1];
+    for (std::size_t t = begin; t < end; ++t) {
+      const Point2& b = corners_[t];
+      const double at_s = side(*a, b, s), at_z = side(*a, b, z), rise = at_z - at_s;
+      if (std::max(at_s, at_z) < -air_) return false;
+      if (std::max(at_s, at_z) <= air_) {
+        r.inner_to = -1;
+      } else if (at_s <= air_) {
+        r.inner_from = std::max(r.inner_from, (air_ - at_s) / rise);
+      } else if (at_z <= air_) {
+        r.inner_to = std::min(r.inner_to, (air_ - at_s) / rise);
+      }
+      if (at_s < -air_) {
+        r.outer_from = std::max(r.outer_from, (-air_ - at_s) / rise);
+      } else if (at_z < -air_) {
+        r.outer_to = std::min(r.outer_to, (-air_ - at_s) / rise);
+      }
+      const double of_corner = side(s, z, b);
       least = std::min(least, of_corner);
       greatest = std::max(greatest, of_corner);
+      a = &b;
     }
-    if (least > air_ || greatest < -air_) return Where::apart;
-    return holds ? Where::holds : Where::unclear;
+    return least <= air_ && greatest >= -air_ && r.outer_from <= r.outer_to;
   }
 
  private:
-  struct Rough {
-    std::array<Point2, 6> corners{};
-    int count = 0;
-  };
   /// > 0 where x lies to the left of the line from a to b.
   static double side(const Point2& a, const Point2& b, const Point2& x) {
     return (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0]);
   }
 
-  std::vector<Rough> rough_;
+  std::vector<Point2> corners_;
+  std::vector<std::size_t> first_;  ///< by sum, one more at the end: into `corners_`
   double air_ = 0;
+};
+
+/// Which sums must be intersected with a candidate exactly.
+class RoughUnion {
+ public:
+  void clear() { shares_.clear(); }
+  void add(const RoughCover& share) { shares_.push_back(share); }
+  [[nodiscard]] std::size_t size() const { return shares_.size(); }
+
+  /// True if the shares cover the candidate for certain. If not, `needed` holds the sums that reach one of the gaps and
+  /// those of the chain between the gaps: every other sum adds nothing to the union.
+  [[nodiscard]] bool whole(std::vector<std::int32_t>& needed) {
+    std::sort(shares_.begin(), shares_.end(), [](const RoughCover& a, const RoughCover& b) {
+      return a.inner_from != b.inner_from ? a.inner_from < b.inner_from : a.sum < b.sum;
+    });
+    gaps_.clear();
+    needed.clear();
+    double reach = 0;
+    std::size_t next = 0;
+    const auto begins = [&](double from) { return next < shares_.size() && shares_[next].inner_from <= from; };
+    while (reach < 1) {
+      double farthest = reach;
+      std::int32_t best = -1;
+      for (; begins(reach); ++next) {
+        if (shares_[next].inner_to <= farthest) continue;
+        farthest = shares_[next].inner_to;
+        best = shares_[next].sum;
+      }
+      if (best >= 0) {
+        needed.push_back(best);
+        reach = farthest;
+        continue;
+      }
+      while (next < shares_.size() && shares_[next].inner_to <= shares_[next].inner_from) ++next;
+      const double until = next < shares_.size() ? std::min(1.0, shares_[next].inner_from) : 1;
+      gaps_.push_back({reach, until});
+      reach = until;
+    }
+    if (gaps_.empty()) return true;
+    for (const RoughCover& share : shares_) {
+      const bool reaches = std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) {
+        return share.outer_from <= gap.to && share.outer_to >= gap.from;
+      });
+      if (reaches) needed.push_back(share.sum);
+    }
+    std::sort(needed.begin(), needed.end());
+    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+    return false;
+  }
+
+ private:
+  struct Gap {
+    double from, to;
+  };
+  std::vector<RoughCover> shares_;
+  std::vector<Gap> gaps_;
 };
 
 }  // namespace pd::detail

@@ -67,8 +67,9 @@ struct BoundaryCounts {
 
 class SumBoundary {
  public:
-  /// Implicit: q convex, candidates are arcs. Explicit: every edge of every sum of two convex parts is one.
-  SumBoundary(const Polygon& p, const Polygon& q, bool implicit);
+  /// Implicit: q convex, candidates are arcs. Explicit: every edge of every sum of two convex parts is one, within a
+  /// budget of comparisons.
+  SumBoundary(const Polygon& p, const Polygon& q, bool implicit, std::int64_t max_comparisons);
   SumBoundary(const SumBoundary&) = delete;  // sums point into its lists
   SumBoundary& operator=(const SumBoundary&) = delete;
 
@@ -78,6 +79,8 @@ class SumBoundary {
   [[nodiscard]] const std::vector<Stretch>& slots() const { return slots_; }
   [[nodiscard]] const BoundaryCounts& counts() const { return counts_; }
   [[nodiscard]] int num_loops() const { return num_loops_; }
+  /// False if the budget ended first: then there are sums and no stretches.
+  [[nodiscard]] bool complete() const { return complete_; }
 
   [[nodiscard]] const Candidate& candidate(const Stretch& s) const {
     return candidates_[static_cast<std::size_t>(s.candidate)];
@@ -107,11 +110,13 @@ class SumBoundary {
   std::vector<Point2> p_points_, q_points_;
   std::vector<std::unique_ptr<NegatedChain>> chains_;
   std::vector<std::vector<std::int32_t>> chain_vertices_;  ///< per chain: Q's vertex of each
+  std::vector<ConvexPart> parts_;                          ///< of P
   std::vector<ConvexSum> sums_;
   std::vector<Candidate> candidates_;
   std::vector<Stretch> stretches_, slots_;
   BoundaryCounts counts_;
   int num_loops_ = 0;
+  bool complete_ = true;
 };
 
 }  // namespace pd::detail

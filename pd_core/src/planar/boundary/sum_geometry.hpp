@@ -122,7 +122,7 @@ inline int compare_places(const Span& e, const Place& a, const Place& b) {
   };
   const auto estimate = evaluate.template operator()<Estimate>();
   const int sign = estimate[0].certain_sign() * estimate[1].certain_sign() * estimate[2].certain_sign();
-  if (sign != 0) return sign;
+  if (sign != 0 || estimate[0].is_zero()) return sign;
   const auto exact = evaluate.template operator()<Dyadic>();
   return exact[0].sign() * exact[1].sign() * exact[2].sign();
 }

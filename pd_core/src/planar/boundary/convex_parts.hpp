@@ -1,0 +1,21 @@
+/// @file
+/// A polygon in few convex parts: the triangles of a triangulation, joined over diagonals that neither end needs
+/// (Hertel and Mehlhorn, "Fast triangulation of simple polygons", 1983: at most four times the least number).
+#pragma once
+
+#include <vector>
+
+#include "planar/boundary/convex_sum.hpp"
+#include "planar/boundary/triangulation.hpp"
+
+namespace pd::detail {
+
+/// The triangles inside as they are. Requires that the points stay where they are.
+[[nodiscard]] std::vector<ConvexPart> triangles_inside(const Triangulation& triangulation,
+                                                       const std::vector<Point2>& points);
+
+/// The triangles inside, joined. No part has three collinear corners unless it is a single flat triangle.
+[[nodiscard]] std::vector<ConvexPart> convex_parts(const Triangulation& triangulation,
+                                                   const std::vector<Point2>& points);
+
+}  // namespace pd::detail
