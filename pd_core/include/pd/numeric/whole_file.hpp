@@ -29,7 +29,7 @@ class WholeFile {
   /// For writers of their own, which need not look for errors: `finish` does. Requires that the file is open.
   [[nodiscard]] std::FILE* stream() const { return stream_; }
   void write(std::string_view text);
-  /// Where another program may write the text instead, over the empty file that stands there.
+  /// A path where another program may write the text instead, over the empty file that stands there.
   [[nodiscard]] const std::filesystem::path& written_path() const { return part_.empty() ? target_ : part_; }
   /// Closes the file and gives it its name. False where anything failed since it was opened; then nothing has changed.
   [[nodiscard]] bool finish();
