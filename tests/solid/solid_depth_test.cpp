@@ -64,5 +64,24 @@ TEST(SolidDepth, StarsWithinTheirBracket) {
   EXPECT_GT(overlapping, 5);
 }
 
+/// Stars of many faces have too many parts: the bracket is wide, says so, and holds what the tetrahedra give.
+TEST(SolidDepth, WideBracketsAreSaidAndHold) {
+  std::mt19937_64 random(77);
+  Scratch scratch;
+  const StarBody star = random_star(random, 2, Vec3::Zero());
+  const MeshSolid solid = solid_of(mesh_of(star));
+  const Pose pose = *Pose::from_quaternion({0.36, 0.48, -0.64, 0.48}, {0.7, 0.5, 0.25});
+  const SolidDepth found = *penetration_depth({&solid, Pose()}, {&solid, pose}, scratch);
+  ASSERT_EQ(found.contact, ContactClass::overlapping);
+  EXPECT_FALSE(found.exact);
+  EXPECT_EQ(found.bracket_reached, found.upper <= 1.01 * found.lower);
+  EXPECT_LE(found.translation.norm(), found.upper * (1 + 1e-15));
+  EXPECT_NE(classify({&solid, moved(found.translation)}, {&solid, pose}), ContactClass::overlapping);
+  // A vertex of either that lies in the other stays there for a shorter way than the lower end.
+  for (const Vec3& way : {Vec3(found.translation.normalized()), Vec3::UnitX().eval(), Vec3::UnitZ().eval()}) {
+    EXPECT_EQ(classify({&solid, moved(0.999 * found.lower * way)}, {&solid, pose}), ContactClass::overlapping);
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

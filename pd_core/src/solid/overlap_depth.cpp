@@ -4,9 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "numeric/root_sum.hpp"
 #include "pd/compound/compound_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/solid/solid_parts.hpp"
+#include "solid/solid_contact.hpp"
+#include "solid/solid_distance.hpp"
 #include "solid/surface_distance.hpp"
 #include "solid/winding.hpp"
 
@@ -41,10 +44,9 @@ class Bracketing {
     set_by_hulls();
     if (reached() || narrow_by_parts(0)) return;
     // Parts within a share of the depth of the solids: fewer of them, and a bracket as wide as that.
-    for (const double share : {1.0 / 32, 1.0 / 4, 1.0}) {
-      if (narrow_by_parts(share * settings_.delta * out_.upper)) break;
-    }
-    if (!reached()) raise_by_balls();
+    if (narrow_by_parts(settings_.delta * out_.upper) && reached()) return;
+    raise_by_balls();
+    lower_by_trials();
   }
 
  private:
@@ -111,6 +113,69 @@ class Bracketing {
     raise(std::ldexp(best, solids_.scale_exponent()));
   }
 
+  /// Whether A, moved by the vector as stored, is apart from B, exactly. Places where the two touch are not taken: they
+  /// may be slots of zero width.
+  [[nodiscard]] bool is_apart(const Vec3& way) const {
+    return contact_of(PosedSolids(*a_.solid, a_.pose, *b_.solid, b_.pose, way)).contact == ContactClass::separated;
+  }
+
+  /// The least way along a direction that was found to be free, if one is shorter than the upper end.
+  bool try_direction(const Vec3& unit) {
+    constexpr double kShorter = 1 - 0x1p-7;
+    constexpr int kHalvings = 12;
+    double high = kShorter * out_.upper;
+    if (!(high > out_.lower) || !is_apart(high * unit)) return false;
+    double low = out_.lower;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (is_apart(middle * unit) ? high : low) = middle;
+    }
+    const Vec3 way = high * unit;
+    out_.translation = way;
+    out_.depth = out_.upper = length_rounded_up(way);
+    out_.normal = unit;
+    improved_ = true;
+    return true;
+  }
+
+  /// Translations that are tried: many directions, then those around the best.
+  void lower_by_trials() {
+    for (int x = -2; x <= 2; ++x) {
+      for (int y = -2; y <= 2; ++y) {
+        for (int z = -2; z <= 2; ++z) {
+          if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == 2 && !reached()) {
+            try_direction(Vec3(x, y, z).normalized());
+          }
+        }
+      }
+    }
+    for (double step = 0.25; step > 0x1p-8 && !reached();) {
+      bool better = false;
+      const Vec3 best = out_.normal;
+      for (int k = 0; k < 6; ++k) {
+        const Vec3 aside = (k % 2 == 0 ? step : -step) * Vec3::Unit(k / 2);
+        better = try_direction((best + aside).normalized()) || better;
+      }
+      if (!better) step /= 2;
+    }
+    if (improved_) set_witnesses();
+  }
+
+  /// The points that are nearest after the move, where A was before it.
+  void set_witnesses() {
+    const Vec3 translation = a_.pose.translation() + out_.translation;
+    const Pose moved = a_.pose.is_quaternion() ? *Pose::from_quaternion(a_.pose.quaternion_wxyz(), translation)
+                                               : Pose::from_trusted_matrix(a_.pose.rotation(), translation);
+    const PosedSolids apart(*a_.solid, moved, *b_.solid, b_.pose);
+    if (contact_of(apart).contact != ContactClass::separated) return;
+    SolidDepth near;
+    set_distance(apart, scratch_, near);
+    out_.witness_b = near.witness_b;
+    out_.witness_a = near.witness_b - out_.translation;
+    out_.face_a = near.face_a;
+    out_.face_b = near.face_b;
+  }
+
   void raise(double lower) { out_.lower = std::min(std::max(out_.lower, lower), out_.upper); }
 
   const PosedSolid& a_;
@@ -119,6 +184,7 @@ class Bracketing {
   const SolidSettings& settings_;
   Scratch& scratch_;
   SolidDepth& out_;
+  bool improved_ = false;
 };
 
 }  // namespace

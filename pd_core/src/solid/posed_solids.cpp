@@ -53,10 +53,12 @@ void rotation_numerators(const Pose& pose, std::array<Dyadic, 9>& rotation, Dyad
   denominator = ww + xx + yy + zz;
 }
 
-PosedSolids::PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid& b, const Pose& pose_b)
+PosedSolids::PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid& b, const Pose& pose_b,
+                         const Vec3& way)
     : a_{&a, &pose_a, pose_a.rotation(), pose_a.rotation().cwiseAbs(), Vec3::Zero(), exchanges_axes(pose_a)},
-      b_{&b, &pose_b, pose_b.rotation(), pose_b.rotation().cwiseAbs(), Vec3::Zero(), exchanges_axes(pose_b)} {
-  const Vec3 apart = 0.5 * pose_b.translation() - 0.5 * pose_a.translation();
+      b_{&b, &pose_b, pose_b.rotation(), pose_b.rotation().cwiseAbs(), Vec3::Zero(), exchanges_axes(pose_b)},
+      way_(way) {
+  const Vec3 apart = 0.5 * pose_b.translation() - 0.5 * pose_a.translation() - 0.5 * way;
   const double size =
       std::max({largest_coordinate(a), largest_coordinate(b), 2 * std::min(apart.cwiseAbs().maxCoeff(), 0x1p1022)});
   scale_exponent_ = size > 0 ? std::ilogb(size) : 0;
@@ -64,8 +66,9 @@ PosedSolids::PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid
   for (int k = 0; k < 3; ++k) {
     const DoubleDouble offset = two_sum(std::ldexp(pose_b.translation()[k], -scale_exponent_),
                                         -std::ldexp(pose_a.translation()[k], -scale_exponent_));
-    b_.offset[k] = offset.hi;
-    b_.exact = b_.exact && offset.lo == 0;
+    const DoubleDouble moved = two_sum(offset.hi, -std::ldexp(way[k], -scale_exponent_));
+    b_.offset[k] = moved.hi;
+    b_.exact = b_.exact && offset.lo == 0 && moved.lo == 0;
   }
   const double largest = 3 * (largest_coordinate(a) + largest_coordinate(b)) * scale_ + b_.offset.cwiseAbs().maxCoeff();
   error_ = 32 * kUnitRoundoff * largest;
@@ -116,7 +119,7 @@ TriangleBox PosedSolids::box(Body body, const TriangleNode& node) const {
 
 Vec3 PosedSolids::outside(const Vec3& x) const {
   Vec3 out;
-  for (int k = 0; k < 3; ++k) out[k] = std::ldexp(x[k], scale_exponent_) + pose(Body::a).translation()[k];
+  for (int k = 0; k < 3; ++k) out[k] = std::ldexp(x[k], scale_exponent_) + (pose(Body::a).translation()[k] + way_[k]);
   return out;
 }
 
@@ -128,8 +131,8 @@ Dyadic3 PosedSolids::exact_vertex(Body body, std::int32_t vertex) const {
     rotation_numerators(*b_.pose, made.rotation[1], denominator[1]);
     for (Dyadic& x : made.rotation[0]) x = x * denominator[1];
     for (Dyadic& x : made.rotation[1]) x = x * denominator[0];
-    made.offset_b =
-        (to_dyadic(b_.pose->translation()) - to_dyadic(a_.pose->translation())) * (denominator[0] * denominator[1]);
+    made.offset_b = (to_dyadic(b_.pose->translation()) - to_dyadic(a_.pose->translation()) - to_dyadic(way_)) *
+                    (denominator[0] * denominator[1]);
   }
   const Dyadic3 v = to_dyadic(solid(body).vertex(vertex));
   const auto& r = exact_->rotation[body == Body::a ? 0 : 1];

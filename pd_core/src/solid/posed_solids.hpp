@@ -37,8 +37,10 @@ using PosedTriangle = std::array<PosedPoint, 3>;
 
 class PosedSolids {
  public:
-  /// Refers to the solids: they must outlive it.
-  PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid& b, const Pose& pose_b);
+  /// Refers to the solids and poses: they must outlive it.
+  /// @param way  A stands moved by it, exactly.
+  PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid& b, const Pose& pose_b,
+              const Vec3& way = Vec3::Zero());
 
   [[nodiscard]] const MeshSolid& solid(Body body) const { return *placing(body).solid; }
   [[nodiscard]] const Pose& pose(Body body) const { return *placing(body).pose; }
@@ -87,6 +89,7 @@ class PosedSolids {
   [[nodiscard]] Dyadic3 exact_vertex(Body body, std::int32_t vertex) const;
 
   Placing a_, b_;
+  Vec3 way_;
   int scale_exponent_ = 0;
   double scale_ = 1;
   double error_ = 0;
