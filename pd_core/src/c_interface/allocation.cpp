@@ -46,6 +46,14 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
   return memory;
 }
 
+void* allocate_or_null(std::size_t bytes, std::size_t alignment) noexcept {
+  try {
+    return allocate(bytes, alignment);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
 void release(void* memory) {
   if (memory == nullptr) return;
   const BlockHeader header = *reinterpret_cast<const BlockHeader*>(static_cast<char*>(memory) - sizeof(BlockHeader));
@@ -68,12 +76,45 @@ AllocationScope::~AllocationScope() { *source_of_thread_ = previous_; }
 
 }  // namespace pd::c_interface
 
-// The standard library's other forms (arrays, nothrow) call these.
-void* operator new(std::size_t bytes) { return pd::c_interface::allocate(bytes, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
+namespace {
+constexpr std::size_t kDefaultAlignment = __STDCPP_DEFAULT_NEW_ALIGNMENT__;
+}
+
+// Every form that a program may replace: where the sanitizers bring forms of their own, the others would not match
+// them.
+void* operator new(std::size_t bytes) { return pd::c_interface::allocate(bytes, kDefaultAlignment); }
+void* operator new[](std::size_t bytes) { return pd::c_interface::allocate(bytes, kDefaultAlignment); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return pd::c_interface::allocate(bytes, static_cast<std::size_t>(alignment));
 }
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+  return pd::c_interface::allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  return pd::c_interface::allocate_or_null(bytes, kDefaultAlignment);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+  return pd::c_interface::allocate_or_null(bytes, kDefaultAlignment);
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return pd::c_interface::allocate_or_null(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t bytes, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return pd::c_interface::allocate_or_null(bytes, static_cast<std::size_t>(alignment));
+}
 void operator delete(void* memory) noexcept { pd::c_interface::release(memory); }
+void operator delete[](void* memory) noexcept { pd::c_interface::release(memory); }
 void operator delete(void* memory, std::size_t) noexcept { pd::c_interface::release(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { pd::c_interface::release(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { pd::c_interface::release(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { pd::c_interface::release(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { pd::c_interface::release(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { pd::c_interface::release(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { pd::c_interface::release(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { pd::c_interface::release(memory); }
+void operator delete(void* memory, std::align_val_t, const std::nothrow_t&) noexcept {
+  pd::c_interface::release(memory);
+}
+void operator delete[](void* memory, std::align_val_t, const std::nothrow_t&) noexcept {
+  pd::c_interface::release(memory);
+}
