@@ -112,6 +112,7 @@ class Frame {
       }
     }
     question.pair = nullptr;
+    question.settings = nullptr;
     return pdepth_depth_along(c, &question, direction.data(), &along);
   }
 
