@@ -57,6 +57,18 @@ btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentMan
   return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
 }
 
+/// The closest point alone, of bodies that are farther apart than contacts reach. Bullet's queries get one point for
+/// each pair of a compound's children, too.
+ContactManifold closest_point_of(const PenetrationDepth& depth) {
+  ContactManifold closest;
+  closest.normal = depth.normal;
+  closest.points[0].position_a = depth.witness_a;
+  closest.points[0].position_b = depth.witness_b;
+  closest.points[0].depth = -depth.signed_distance();
+  closest.count = 1;
+  return closest;
+}
+
 /// What the query reads of a pair's memory: first of all, before bounding boxes are compared.
 void fetch_for_query(PairMemory& memory) {
   for (const auto& shape : memory.shapes) {
@@ -126,16 +138,24 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                              .corners = corners,
                              .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
                              .boxes_asked = boxes};
-    const auto outcome = core.contacts(asked, static_cast<double>(threshold), *buffers, answer, points);
+    // A query may ask for distances of metres. Contacts, and the neighbours that may cover them, lie within the
+    // breaking threshold.
+    const auto asked_reach = static_cast<double>(threshold);
+    const double contact_reach =
+        of_union ? std::min(asked_reach, static_cast<double>(manifold.getContactBreakingThreshold())) : asked_reach;
+    const auto outcome = core.contacts(asked, contact_reach, *buffers, answer, points);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), *a, *b, info, *result);
       return;
     }
     if (outcome == SolverCore::Outcome::answered) {
-      if (of_union) {
+      const double distance = answer.depth.signed_distance();
+      if (of_union && distance > contact_reach) {
+        if (distance <= asked_reach) points = closest_point_of(answer.depth);
+      } else if (of_union) {
         buffers->near.begin_pair(stamp);
         AskedPieces pieces(*a, *b,
-                           {.threshold = static_cast<double>(threshold),
+                           {.threshold = contact_reach,
                             .seconds = static_cast<double>(info.m_timeStep),
                             .shapes = {core.cache, stamp},
                             .near = buffers->near,
@@ -148,6 +168,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     }
   }
   if (own_boxes && StepReach::may_be_idle(fresh, threshold)) this_step().leave_out_idle(fresh);
+  if (own_boxes && fresh.count > 0 && manifold_.carries_nothing()) this_step().leave_out_flying(fresh);
   manifold_.replace(fresh, time_of(info), *result);
 }
 

@@ -13,6 +13,7 @@
 #include <LinearMath/btScalar.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace pd::detail {
 
@@ -20,11 +21,17 @@ namespace pd::detail {
 struct ImpulseTrend {
   btScalar carried = -1;  ///< at the end of the last step
   btScalar handed = -1;   ///< at its beginning
+  btScalar ahead = -1;    ///< found for the next step already (heavy_loads.hpp)
 
   /// The point's impulse for the next step.
   /// @param solved    what it carries now, >= 0
   /// @param same_step whether the last step was as long as the next one: impulses are forces times steps
   btScalar next(btScalar solved, bool same_step) {
+    const btScalar found = std::exchange(ahead, btScalar(-1));
+    if (found >= 0 && same_step) {
+      carried = solved;
+      return handed = found;
+    }
     // Nobody solved since: contacts were looked for twice in a step.
     if (solved == handed) return solved;
     constexpr btScalar kShare = btScalar(0.5);

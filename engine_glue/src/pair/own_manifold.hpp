@@ -10,6 +10,7 @@
 #include "pair/manifold_points.hpp"
 #include "pair/pair_registry.hpp"
 #include "pair/solver_core.hpp"
+#include "pair/step_reach.hpp"
 
 namespace pd::detail {
 
@@ -41,11 +42,24 @@ class OwnManifold {
   /// Null: it is shared.
   [[nodiscard]] PairMemory* memory() const { return memory_.get(); }
 
+  /// Whether the pair had points in the last step, all without a load.
+  [[nodiscard]] bool carries_nothing() const {
+    for (int k = 0; k < manifold_->getNumContacts(); ++k) {
+      if (manifold_->getContactPoint(k).m_appliedImpulse > 0) return false;
+    }
+    return true;
+  }
   void clear() {
     if (memory_) manifold_->clearManifold();
   }
   /// Puts this step's points in place of the last step's, or adds them to a shared one.
-  void replace(const FreshPoints& fresh, const StepTime& seconds, btManifoldResult& result) {
+  void replace(FreshPoints fresh, const StepTime& seconds, btManifoldResult& result) {
+    const btCollisionObject& a = *manifold_->getBody0();
+    const btCollisionObject& b = *manifold_->getBody1();
+    if (fresh.count > 0 && (is_link(a) || is_link(b))) {
+      const btScalar threshold = manifold_->getContactBreakingThreshold();
+      StepReach(a, b, result, threshold, seconds).leave_out_idle_of_links(fresh);
+    }
     if (!memory_) {
       add_points(*manifold_, fresh, seconds, result);
       return;

@@ -3,6 +3,7 @@
 /// save it: a replay is bit for bit only if the warm start is the same.
 #pragma once
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btVector3.h>
 
 #include <array>
@@ -46,6 +47,20 @@ struct ChildMotion {
   double way = 0;
 };
 
+/// A heavy body that a light one carries (world/heavy_loads.hpp).
+struct HeavyLoad {
+  bool carried = false;  ///< the sweeps alone do not find the load
+  bool known = false;    ///< the heavy body's motion at the end of the last step
+  btVector3 velocity = btVector3(0, 0, 0), turn = btVector3(0, 0, 0), centre = btVector3(0, 0, 0);
+
+  void begin(const btRigidBody& heavy) {
+    known = true;
+    velocity = heavy.getLinearVelocity();
+    turn = heavy.getAngularVelocity();
+    centre = heavy.getCenterOfMassPosition();
+  }
+};
+
 class ManifoldOwner;
 
 struct PairMemory {
@@ -65,6 +80,7 @@ struct PairMemory {
   int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
+  HeavyLoad load;
 
   /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
   [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
@@ -76,7 +92,7 @@ struct PairMemory {
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
     return patch < 0 && num_points == 0 && pieces.empty() && standing.empty() && sheet.empty() && union_refusals == 0 &&
-           warm.memory_bytes() == sizeof(warm);
+           !load.known && warm.memory_bytes() == sizeof(warm);
   }
 };
 

@@ -13,17 +13,26 @@ namespace {
 
 /// Of the threshold.
 constexpr btScalar kNear = btScalar(0.25), kNearOfPieces = btScalar(0.5);
+constexpr btScalar kNearOfLinks = btScalar(1. / 16);
 constexpr btScalar kClosing = 2;
+/// Of the breaking threshold: depths of bodies that touch without a load.
+constexpr btScalar kTouching = btScalar(1e-3);
+/// In steps of gravity: bodies that are slower may just have been let go, and soon rest.
+constexpr btScalar kFlying = 4;
+/// Of the bodies' speed: rounding.
+constexpr btScalar kTogether = btScalar(1e-3);
 
 }  // namespace
 
-StepReach::StepReach(const btManifoldResult& result, btScalar threshold, btScalar seconds)
+StepReach::StepReach(const btCollisionObject& a, const btCollisionObject& b, const btManifoldResult& result,
+                     btScalar threshold, btScalar seconds)
     : threshold_(threshold), seconds_(seconds) {
-  const btCollisionObject& a = *result.getBody0Internal();
-  const btCollisionObject& b = *result.getBody1Internal();
-  all_ = !(seconds > 0) || result.m_closestPointDistanceThreshold > 0 || typeid(result) != typeid(btManifoldResult) ||
-         !a.hasContactResponse() || !b.hasContactResponse() || !motion_of(a, seconds, a_) ||
-         !motion_of(b, seconds, b_) || a_.link || b_.link;
+  const bool unknown = !(seconds > 0) || result.m_closestPointDistanceThreshold > 0 ||
+                       typeid(result) != typeid(btManifoldResult) || !a.hasContactResponse() ||
+                       !b.hasContactResponse() || !motion_of(a, seconds, a_) || !motion_of(b, seconds, b_);
+  const bool link = a_.link || b_.link;
+  all_ = unknown || link;
+  links_ = !unknown && link;
   a_.velocity += a_.gained;
   b_.velocity += b_.gained;
 }
@@ -51,7 +60,7 @@ bool StepReach::is_needed(btScalar distance, btScalar closing, btScalar near) co
   return distance <= near || distance <= near + kClosing * seconds_ * std::max(btScalar(0), closing);
 }
 
-btScalar StepReach::closing_of_boxes(const btVector3& place, const btVector3& normal) const {
+btScalar StepReach::closing_alone(const btVector3& place, const btVector3& normal) const {
   const btScalar of_a = -a_.velocity_at(place).dot(normal), of_b = b_.velocity_at(place).dot(normal);
   return std::max({of_a + of_b, of_a, of_b});
 }
@@ -68,7 +77,7 @@ void StepReach::leave_out_idle(FreshPoints& points) const {
   int kept = 0;
   for (int k = 0; k < points.count; ++k) {
     const FreshPoint& point = points.points[k];
-    const btScalar closing = closing_of_boxes(point.point_on_b, point.normal);
+    const btScalar closing = closing_alone(point.point_on_b, point.normal);
     if (is_needed(point.distance, closing, kNear * threshold_)) points.points[kept++] = point;
   }
   points.count = kept;
@@ -86,6 +95,33 @@ void StepReach::leave_out_idle(ContactManifold& points) const {
     }
   }
   points.count = static_cast<int>(kept);
+}
+
+bool StepReach::is_needed_by_links(const FreshPoint& point) const {
+  return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), kNearOfLinks * threshold_);
+}
+
+void StepReach::leave_out_idle_of_links(FreshPoints& points) const {
+  if (!links_) return;
+  int kept = 0;
+  for (int k = 0; k < points.count; ++k) {
+    if (is_needed_by_links(points.points[k])) points.points[kept++] = points.points[k];
+  }
+  points.count = kept;
+}
+
+void StepReach::leave_out_flying(FreshPoints& points) const {
+  if (all_) return;
+  const btScalar speed = std::min(a_.velocity.length(), b_.velocity.length());
+  const btScalar least = kFlying * std::max(a_.gained.length(), b_.gained.length()), noise = kTogether * speed;
+  if (!(speed > least) || (a_.velocity - b_.velocity).length() > noise) return;
+  int kept = 0;
+  for (int k = 0; k < points.count; ++k) {
+    const FreshPoint& point = points.points[k];
+    const bool touching = point.distance > -kTouching * threshold_;
+    if (!touching || closing_alone(point.point_on_b, point.normal) > noise) points.points[kept++] = point;
+  }
+  points.count = kept;
 }
 
 }  // namespace pd::detail

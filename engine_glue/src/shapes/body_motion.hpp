@@ -17,6 +17,11 @@ struct BodyMotion {
   [[nodiscard]] btVector3 velocity_at(const btVector3& place) const { return velocity + turn.cross(place - centre); }
 };
 
+/// Whether an object is a link of a multibody.
+[[nodiscard]] inline bool is_link(const btCollisionObject& object) {
+  return (object.getInternalType() & btCollisionObject::CO_FEATHERSTONE_LINK) != 0;
+}
+
 /// @param seconds  of the step
 /// @return false: an object of which Bullet knows no velocity
 [[nodiscard]] bool motion_of(const btCollisionObject& object, btScalar seconds, BodyMotion& out);

@@ -2,10 +2,9 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <Eigen/LU>
-#include <cmath>
 #include <memory>
 
+#include "stack/body_inertia.hpp"
 #include "stack/impulse_newton.hpp"
 #include "stack/row_groups.hpp"
 #include "stack/waiting_bodies.hpp"
@@ -15,6 +14,7 @@ namespace {
 
 using detail::ImpulseNewton;
 using detail::RowGroups;
+using detail::six;
 using detail::SolverBodies;
 using detail::SolverRows;
 
@@ -26,47 +26,9 @@ using detail::SolverRows;
 constexpr double kSoftness = 1e-4;
 constexpr double kFrictionSoftness = 1e-2;
 
-ImpulseNewton::Vector6 six(const btVector3& linear, const btVector3& angular) {
-  ImpulseNewton::Vector6 result;
-  for (int i = 0; i < 3; ++i) {
-    result[i] = static_cast<double>(linear[i]);
-    result[3 + i] = static_cast<double>(angular[i]);
-  }
-  return result;
-}
-
-/// A body's mass matrix, and its directions that can move (1) or cannot (0), whose mass is 1 and of no account.
-struct Inertia {
-  ImpulseNewton::Matrix6 mass = ImpulseNewton::Matrix6::Identity();
-  ImpulseNewton::Vector6 moves = ImpulseNewton::Vector6::Zero();
-};
-
-Inertia inertia_of(const btSolverBody& body) {
-  Inertia result;
-  const btMatrix3x3& inverse = body.m_originalBody->getInvInertiaTensorWorld();
-  Eigen::Matrix3d turning;
-  for (int i = 0; i < 3; ++i) {
-    const double inverse_mass = static_cast<double>(body.internalGetInvMass()[i]);
-    if (inverse_mass > 0) {
-      result.mass(i, i) = 1 / inverse_mass;
-      result.moves[i] = 1;
-    }
-    for (int j = 0; j < 3; ++j) {
-      turning(i, j) = static_cast<double>(inverse[i][j]) *
-                      std::sqrt(static_cast<double>(body.m_angularFactor[i] * body.m_angularFactor[j]));
-    }
-  }
-  for (int i = 0; i < 3; ++i) {
-    if (turning(i, i) > 0) {
-      result.moves[3 + i] = 1;
-      continue;
-    }
-    turning.row(i).setZero();
-    turning.col(i).setZero();
-    turning(i, i) = 1;
-  }
-  result.mass.bottomRightCorner<3, 3>() = turning.inverse();
-  return result;
+detail::BodyInertia inertia_of(const btSolverBody& body) {
+  return detail::body_inertia(body.internalGetInvMass(), body.m_originalBody->getInvInertiaTensorWorld(),
+                              body.m_angularFactor);
 }
 
 /// Groups of a step that keep an order of elimination from the step before; later ones share the last.
@@ -174,7 +136,7 @@ void StackSolver::State::read_bodies(const SolverBodies& bodies, const RowGroups
   newton.masses.clear();
   moves.clear();
   for (const int i : groups.bodies(group)) {
-    const Inertia inertia = inertia_of(bodies[i]);
+    const detail::BodyInertia inertia = inertia_of(bodies[i]);
     place[static_cast<std::size_t>(i)] = static_cast<int>(newton.masses.size());
     newton.masses.push_back(inertia.mass);
     moves.push_back(inertia.moves);

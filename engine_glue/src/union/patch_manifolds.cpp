@@ -1,8 +1,10 @@
 #include "union/patch_manifolds.hpp"
 
 #include <array>
+#include <optional>
 
 #include "pair/solver_core.hpp"
+#include "pair/step_reach.hpp"
 #include "pd/bullet/scalar.hpp"
 
 namespace pd::detail {
@@ -24,6 +26,18 @@ class PieceOfPoint : public PointSurroundings {
   const Patch& patch_;
   PointSurroundings& pieces_;
 };
+
+/// Takes the points out that links do not need in this step.
+void leave_out_idle(const StepReach& reach, Patch& patch) {
+  if (!reach.of_links()) return;
+  int kept = 0;
+  for (int k = 0; k < patch.fresh.count; ++k) {
+    if (!reach.is_needed_by_links(patch.fresh.points[k])) continue;
+    patch.fresh.points[kept] = patch.fresh.points[k];
+    patch.pieces[static_cast<std::size_t>(kept++)] = patch.pieces[static_cast<std::size_t>(k)];
+  }
+  patch.fresh.count = kept;
+}
 
 }  // namespace
 
@@ -106,13 +120,16 @@ void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifo
     while (heirs[free] >= 0) ++free;
     heirs[free] = i;
   }
+  std::optional<StepReach> reach;
+  if (is_link(a) || is_link(b)) reach.emplace(a, b, result, first.getContactBreakingThreshold(), seconds);
   for (std::size_t m = 0; m < static_cast<std::size_t>(kMost); ++m) {
     if (heirs[m] < 0) {
       if (m < manifolds_.size()) manifolds_[m]->manifold->clearManifold();
       continue;
     }
     Kept& kept = at(m, a, b);
-    const Patch& patch = patches[heirs[m]];
+    Patch patch = patches[heirs[m]];
+    if (reach) leave_out_idle(*reach, patch);
     PieceOfPoint around(patch, surroundings);
     result.setPersistentManifold(kept.manifold);
     replace_points({*kept.manifold, kept.memory, patch.fresh, seconds, result}, around);

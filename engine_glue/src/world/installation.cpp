@@ -7,6 +7,7 @@
 #include "union/compound_contacts.hpp"
 #include "union/mesh_contacts.hpp"
 #include "union/plane_contacts.hpp"
+#include "world/heavy_loads.hpp"
 
 namespace pd::detail {
 
@@ -57,6 +58,12 @@ bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, 
                                              witness_b, draw);
 }
 
-void Installation::StepAction::updateAction(btCollisionWorld*, btScalar) { installation_.begin_step(); }
+void Installation::StepAction::updateAction(btCollisionWorld* world, btScalar step) {
+  installation_.begin_step();
+  // `install` adds the action to such worlds only.
+  if (!installation_.core().closed()) {
+    carry_heavy_loads(static_cast<btDiscreteDynamicsWorld&>(*world), installation_.core(), step);
+  }
+}
 
 }  // namespace pd::detail
