@@ -88,14 +88,21 @@ const std::string& standard_input() {
   return bytes;
 }
 
-query::NamedShape shape_of_standard_input(query::MeshAs as) {
+/// Asks `body_of` for the body of the mesh that standard input holds; a refusal names where the mesh came from.
+template <class BodyOf>
+auto body_of_standard_input(BodyOf&& body_of) {
   const std::string name = "standard input";
   try {
-    return query::hull_of_mesh(query::read_mesh_bytes(standard_input(), kLimits.max_vertices), name, as);
+    return body_of(query::read_mesh_bytes(standard_input(), kLimits.max_vertices), name);
   } catch (const query::Refusal& refusal) {
     query::refuse(refusal.code, refusal.message.starts_with(name) ? refusal.message : name + ": " + refusal.message,
                   "");
   }
+}
+
+query::NamedShape shape_of_standard_input(query::MeshAs as) {
+  return body_of_standard_input(
+      [&](query::MeshPoints mesh, const std::string& name) { return query::hull_of_mesh(std::move(mesh), name, as); });
 }
 
 }  // namespace
@@ -104,7 +111,8 @@ std::optional<MeshSolid> read_solid_argument(const std::string& word) {
   if (find_primitive(word) != nullptr) return std::nullopt;
   const query::SolidWish wish{.hull_words = "--hull"};
   if (word != "-") return query::load_solid(word, kLimits, wish);
-  return query::solid_of_mesh(query::read_mesh_bytes(standard_input(), kLimits.max_vertices), "standard input", wish);
+  return body_of_standard_input(
+      [&](const query::MeshPoints& mesh, const std::string& name) { return query::solid_of_mesh(mesh, name, wish); });
 }
 
 query::NamedShape read_body_argument(const BodyArgument& argument) {

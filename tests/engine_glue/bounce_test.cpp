@@ -250,5 +250,51 @@ TEST(Bounce, ComesToRest) {
   }
 }
 
+/// A host's callback is told the child that each point belongs to, also where only some points touch in a step.
+TEST(Bounce, LeavesTheChildrenOfPointsAsTheyAre) {
+  static int told, wrong, partly;
+  told = wrong = partly = 0;
+  gContactAddedCallback = [](btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int index_a,
+                             const btCollisionObjectWrapper*, int, int index_b) {
+    const bool first = a->getCollisionObject()->getCollisionShape()->isCompound();
+    const btVector3 local = first ? point.m_localPointA : point.m_localPointB;
+    const int index = first ? index_a : index_b;
+    ++told;
+    // Children stand at the corners of a square, child 2 i + k at the sides i of x and k of z; a point between two may
+    // be either's.
+    const auto is_of = [](bool side, double place) { return std::abs(place) < 1e-3 || side == (place > 0); };
+    if (!is_of(index / 2 == 1, local.x()) || !is_of(index % 2 == 1, local.z())) ++wrong;
+    return false;
+  };
+  BulletPenetrationDepthSolver solver;
+  BulletWorld world;
+  install(world.world(), solver);
+  auto* const box = world.shape<btBoxShape>(at(0.5, 0.5, 0.5));
+  auto* const four = world.shape<btCompoundShape>();
+  for (const double x : {-0.5, 0.5}) {
+    for (const double z : {-0.5, 0.5}) {
+      four->addChildShape(btTransform(btQuaternion::getIdentity(), at(x, 0, z)), box);
+    }
+  }
+  btRigidBody* const ground = world.body(world.shape<btBoxShape>(at(5, 1, 5)), 0, at(0, -1, 0));
+  ground->setRestitution(1);
+  for (int start = 0; start < 6; ++start) {
+    const btQuaternion tilt(btVector3(btScalar(0.3 - 0.1 * start), 0, 1).normalized(), btScalar(0.03));
+    btRigidBody* const body = world.body(four, 1, btTransform(tilt, at(0, 1.2 + 0.03 * start, 0)));
+    body->setRestitution(1);
+    body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+    for (int step = 0; step < 120; ++step) {
+      world.world().stepSimulation(btScalar(1. / 240), 0);
+      const int points = world.num_contacts();
+      if (points > 0 && points < 4) ++partly;
+    }
+    world.world().removeRigidBody(body);
+  }
+  gContactAddedCallback = nullptr;
+  EXPECT_GT(partly, 0);
+  EXPECT_GT(told, 0);
+  EXPECT_EQ(wrong, 0);
+}
+
 }  // namespace
 }  // namespace pd::test

@@ -23,7 +23,7 @@ class RandomRoom {
   static constexpr double kHalf = 3;  ///< of the room's edge
 
   /// @param solved_at_once  constraints by `StackSolver`, else by Bullet's sequential impulses
-  explicit RandomRoom(std::uint64_t seed, bool solved_at_once = false) : random_(seed) {
+  explicit RandomRoom(std::uint64_t seed_of_room, bool solved_at_once = false) : random_(seed_of_room) {
     install(scene_.world(), solver_);
     if (solved_at_once) scene_.world().setConstraintSolver(&stacks_);
     restitution_ = static_cast<btScalar>(uniform(0, 1));

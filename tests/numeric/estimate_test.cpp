@@ -54,7 +54,12 @@ TEST(Estimate, ProductsBelowTheSmallestDouble) {
 
 TEST(Estimate, ExactZerosNeedNoBigNumbers) {
   EXPECT_TRUE((Estimate(0.0) * Estimate(3.0)).is_zero());
-  EXPECT_FALSE((Estimate(1.0) - Estimate(1.0) * Estimate(1.0)).is_zero());
+  EXPECT_TRUE((Estimate(1.0) - Estimate(1.0) * Estimate(1.0)).is_zero());
+  EXPECT_TRUE((Estimate(0.5) + Estimate(-0.5)).is_zero());
+  // The products round, and may have rounded apart.
+  EXPECT_FALSE((Estimate(0.1) * Estimate(0.3) - Estimate(0.3) * Estimate(0.1)).is_zero());
+  // The sum rounds: 2^-60 is lost in it.
+  EXPECT_FALSE((Estimate(1.0) + Estimate(0x1p-60) - Estimate(1.0)).is_zero());
 }
 
 }  // namespace

@@ -182,6 +182,7 @@ TEST_F(Picture, FilmsAreWrittenBesideTheirNames) {
     GTEST_SKIP() << "the program ffmpeg is not installed";
   }
   const auto older = [&](const char* name) {
+    std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / name) << "older";
     return folder_ / name;
   };

@@ -21,6 +21,8 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include <array>
+
 #include "pair/impulse_trend.hpp"
 #include "shapes/body_motion.hpp"
 
@@ -49,7 +51,8 @@ class Bounce {
   /// False: neither body bounces, and nothing is to be done.
   [[nodiscard]] bool possible() const { return possible_; }
   /// Takes out the points that do not touch in this step, or that separate.
-  void leave_out(FreshPoints& points) const;
+  /// @return the numbers that those left had before.
+  std::array<int, 4> leave_out(FreshPoints& points) const;
   /// Sets what the solver makes of a point that has been put into the manifold.
   void set(btManifoldPoint& point, ImpulseTrend& impulse) const;
 

@@ -248,6 +248,22 @@ void replace_all_points(const PointsOfStep& step, PointSurroundings& surrounding
   }
 }
 
+/// Leads from a point's number among those that are left to its number before any was left out.
+class PointsLeft : public PointSurroundings {
+ public:
+  PointsLeft(const std::array<int, 4>& before, PointSurroundings& all) : before_(before), all_(all) {}
+  void enter(int point) override { all_.enter(before_[static_cast<std::size_t>(point)]); }
+  void leave() override { all_.leave(); }
+  [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
+    return all_.numbers(before_[static_cast<std::size_t>(point)], out);
+  }
+  [[nodiscard]] bool lasting() const override { return all_.lasting(); }
+
+ private:
+  const std::array<int, 4>& before_;
+  PointSurroundings& all_;
+};
+
 }  // namespace
 
 void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
@@ -255,8 +271,9 @@ void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
   const Bounce bounce(manifold, result, seconds);
   if (bounce.possible()) {
     FreshPoints touching = fresh;
-    bounce.leave_out(touching);
-    replace_all_points({manifold, memory, touching, seconds, result}, surroundings);
+    const std::array<int, 4> before = bounce.leave_out(touching);
+    PointsLeft left(before, surroundings);
+    replace_all_points({manifold, memory, touching, seconds, result}, left);
     for (int i = 0; i < memory.num_points; ++i) {
       bounce.set(manifold.getContactPoint(i), memory.points[static_cast<std::size_t>(i)].impulse);
     }

@@ -69,6 +69,7 @@ void RowGroups::find(const SolverBodies& bodies, const SolverRows& rows) {
     if (group < 0) continue;
     Group& facts = groups_[static_cast<std::size_t>(group)];
     ++facts.num_rows;
+    facts.joint_rows += i < rows.first_contact() ? 1 : 0;
     facts.moving_rows += i >= rows.first_contact() && is_moving(row, bodies) ? 1 : 0;
   }
   int body = 0, row = 0;

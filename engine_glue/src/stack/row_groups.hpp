@@ -41,6 +41,7 @@ class RowGroups {
   struct Group {
     int first_body = 0, num_bodies = 0;
     int first_row = 0, num_rows = 0;
+    int joint_rows = 0;
     int moving_rows = 0;  ///< rows of contacts and friction that `is_moving`
   };
 

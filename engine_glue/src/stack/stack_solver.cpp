@@ -104,8 +104,10 @@ void StackSolver::begin_at_solution(const btContactSolverInfo& info) {
   for (const RowGroups::Group& group : state_->groups.groups()) {
     if (group.num_rows == 0) continue;
     const double sweeps = state_->groups.sweeps_of_load(m_tmpSolverBodyPool, rows, group);
-    if (group.num_bodies > settings_.max_bodies || kFoldsOfSweeps * sweeps < info.m_numIterations ||
-        group.moving_rows > kMovingShare * group.num_rows ||
+    const bool suits_sweeps =
+        kFoldsOfSweeps * sweeps < info.m_numIterations || group.moving_rows > kMovingShare * group.num_rows;
+    // An impact on a joint is no load that sweeps carry: they leave its ends at a speed against each other.
+    if (group.num_bodies > settings_.max_bodies || (suits_sweeps && group.joint_rows == 0) ||
         state_->waiting.wait_a_step(m_tmpSolverBodyPool, state_->groups.bodies(group))) {
       ++statistics_.left;
       continue;

@@ -81,13 +81,20 @@ class ContactSearch {
     return false;
   }
 
-  /// The place of a point of the triangle that does not lie on the other's surface. At most finitely many do.
+  /// The place of a point of the triangle that does not lie on the other's surface. Each of the other's triangles meets
+  /// this one in one point at most, or the shell would run along it. One sample more than the other has triangles
+  /// therefore tells.
   [[nodiscard]] bool inside(Body body, const MeshSolid::Triangle& triangle) const {
-    PointPlace place = place_in(solids_, other(body), solids_.point(body, triangle.vertices[0]));
-    for (int shift = 2; place.on_surface && shift < 24; ++shift) {
+    const auto place_of = [&](std::int32_t second, int shift) {
       const std::int32_t whole = std::int32_t{1} << shift;
-      place = place_in(solids_, other(body), solids_.mean(body, triangle.vertices, {whole - 2, 1, 1}, shift));
-    }
+      return place_in(solids_, other(body),
+                      solids_.mean(body, triangle.vertices, {whole - second - 1, second, 1}, shift));
+    };
+    PointPlace place = place_in(solids_, other(body), solids_.point(body, triangle.vertices[0]));
+    for (int shift = 2; place.on_surface && shift < 24; ++shift) place = place_of(1, shift);
+    const std::size_t samples = solids_.solid(other(body)).triangles().size();
+    for (std::size_t k = 0; place.on_surface && k <= samples; ++k)
+      place = place_of(static_cast<std::int32_t>(k) + 2, 30);
     return !place.on_surface && place.winding > 0;
   }
 
