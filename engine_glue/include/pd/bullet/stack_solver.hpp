@@ -37,9 +37,9 @@ struct StackSolverStatistics {
 /// - where more than a fifth of its rows move, by more than twice the speed that its weight gives it in a step;
 /// - where it is a block whose factorisation fills in (more than 4 products of blocks a row);
 /// - where the first factorisation shows that contacts come and go, unless its bodies stand in a high column. Such a
-/// group
-///   is left alone for the next 2 steps, then 4, up to 64.
-/// All this is decided by counts, so that the same world gives the same bits.
+///   group is left alone for the next 2 steps, then 4, up to 64.
+/// Neither of the first two leaves a group with a joint, whose ends the sweeps would let part at an impact. All this is
+/// decided by counts, so that the same world gives the same bits.
 ///
 /// Time: one sparse factorisation a step and group that is solved while the same points carry, and a few more where
 /// points come, go or slip. A factorisation takes O(n) for a tower of n bodies (`stack_growth` measured n^1.13, and
