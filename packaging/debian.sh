@@ -31,7 +31,7 @@ out=${PWD}/build/debian
 tree=${out}/pdepth-${version}
 mkdir -p "${out}"
 find "${out}" -maxdepth 1 -type f -delete
-# What a build made before stays, for ninja.
+# The build folder of an earlier run stays, so that ninja builds only what has changed.
 mkdir -p "${tree}"
 find "${tree}" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
 git archive --prefix="pdepth-${version}/" HEAD | gzip -9n >"${out}/pdepth_${version}.orig.tar.gz"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a release is, step by step. Nothing is published from here: whoever publishes pushes the tag and the files.
+# Makes a release, step by step. Nothing is published from here: whoever publishes pushes the tag and the files.
 #
 #   packaging/release.sh check            1. the version is the same wherever it stands, and the changelog has a section of it
 #   packaging/release.sh build [OLD.deb]  2. as check; then, from the committed tree into build/release-VERSION:

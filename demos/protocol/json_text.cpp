@@ -27,9 +27,9 @@ std::uint64_t packed_rows_subtype(std::size_t row_length, bool of_indices) {
 /// Invariant: `open_` holds the containers that are not yet closed, outermost first; each is the last element of the
 /// one before it, so none moves while it is open.
 ///
-/// What takes memory is counted as it comes: values, their bytes, and the rows under the keys of kRowKeys, which are
-/// kept as bare doubles for as long as they are equally many numbers each (a Json of each would take sixteen times its
-/// shortest text).
+/// Builds a document and counts the memory as it comes: values, their bytes, and the rows under the keys of kRowKeys.
+/// These are kept as bare doubles for as long as they are equally many numbers each (a Json of each would take sixteen
+/// times its shortest text).
 class StrictBuilder {
  public:
   StrictBuilder(std::size_t line_size, std::int64_t max_points, const IdSeen& id_seen)

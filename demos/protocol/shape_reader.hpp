@@ -51,7 +51,7 @@ enum class MeshAs {
 /// unreadable_file or limit_exceeded without a path, or a refusal of the hull.
 [[nodiscard]] NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs as = MeshAs::found);
 
-/// The same of points that were read already. @param name  begins what is said when the hull is refused
+/// The hull of points that were read already. @param name  begins what is said when the hull is refused
 [[nodiscard]] NamedShape hull_of_mesh(MeshPoints mesh, const std::string& name, MeshAs as = MeshAs::found);
 
 }  // namespace pd::query

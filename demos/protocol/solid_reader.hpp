@@ -15,7 +15,7 @@ namespace pd::query {
 struct SolidWish {
   bool always = false;      ///< also where the mesh is convex
   bool turn_faces = false;  ///< a mesh that is wholly inside out is turned
-  /// What a person or a program writes to ask for the hull instead, for refusals.
+  /// Words by which a person or a program asks for the hull instead; refusals quote them.
   std::string hull_words = "\"as\":\"hull\"";
 };
 
@@ -32,7 +32,7 @@ struct SolidWish {
 /// margin.
 [[nodiscard]] std::optional<MeshSolid> read_solid(const Node& node, const Limits& limits);
 
-/// Whether "a" or "b" of a line is, or holds in a compound, a mesh that is asked as a solid.
+/// True if "a" or "b" of a line is, or holds in a compound, a mesh that is asked as a solid.
 [[nodiscard]] bool names_solid(const Node& line, const Limits& limits);
 
 /// Either body of a query about solids: a mesh's, or a convex polytope's without a margin; nothing for others.

@@ -14,7 +14,7 @@ pd_test_packages=(
   python3-distributed python3-jsonschema
 )
 
-# What packaging/debian.sh and packaging/try_debian.sh need beside them: the tools that make and check packages, and the peers
+# packaging/debian.sh and packaging/try_debian.sh need these beside them: the tools that make and check packages, and the peers
 # whose answers pdepth-recorders records.
 pd_package_packages=(
   dpkg-dev fakeroot debhelper dh-python lintian mmdebstrap git doxygen mkdocs mkdocs-material libccd-dev libfcl-dev libode-dev

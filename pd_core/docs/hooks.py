@@ -113,7 +113,7 @@ def api_link(match):
         raise PluginError(f"{header} names no public header, or several: a folder before it tells which")
     if not DOXYGEN:
         return words
-    # As Doxygen names pages: by the file, by its path where two have the same name, with what is no letter escaped.
+    # Doxygen names a page by its file, or by its path where two have the same name, and escapes what is no letter.
     page = "files" if not header else header if len(namesakes) == 1 else meant[0]
     page = page.replace("_", "__").replace(".", "_8").replace("/", "_2") + ".html"
     return f'<a href="api/{page}">{words}</a>'

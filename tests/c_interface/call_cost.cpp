@@ -1,5 +1,5 @@
 /// @file
-/// What a call of the C interface costs beside the C++ call that it makes: the two by turns in one process, the least
+/// Measures a call of the C interface beside the C++ call that it makes: the two by turns in one process, the least
 /// of many rounds. `c_call_cost [rounds]`.
 #include <algorithm>
 #include <cstdio>

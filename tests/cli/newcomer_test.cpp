@@ -33,7 +33,7 @@ class Newcomer : public ::testing::Test, protected TemporaryFolder {
     EXPECT_EQ(shell(command), 0) << command << "\n" << read("err");
     return Json::parse(read("out"), nullptr, false);
   }
-  /// What a command writes to a terminal on which nothing but the end of the input is typed.
+  /// The output of a command to a terminal on which nothing but the end of the input is typed.
   std::string on_terminal(const std::string& command) {
     int terminal = -1;
     const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);

@@ -40,7 +40,7 @@ def check_link(root, pages, path, tag, link):
 
 
 def main(root):
-    # What Doxygen writes links within itself; it is looked at as the target of links alone.
+    # Doxygen's pages link each other rightly; they are looked at as the targets of links alone.
     texts = {path: path.read_text() for path in sorted(root.rglob("*.html")) if root / "api" not in path.parents}
     pages = {path: Page(text) for path, text in texts.items()}
     complaints, links = [], 0

@@ -27,7 +27,7 @@ UNMADE = """
     kinds = sorted({kind for module in (pdepth, _core, _protocol, _picture) for kind in vars(module).values()
                     if inspect.isclass(kind) and kind.__module__.startswith("pdepth")
                     and not issubclass(kind, BaseException)}, key=lambda kind: (kind.__module__, kind.__qualname__))
-    # What they are made of, too: pybind11's base has a __new__ of its own.
+    # Their bases count, too: pybind11's base has a __new__ of its own.
     kinds += sorted({base for kind in kinds for base in kind.__mro__ if base is not object} - set(kinds), key=repr)
     assert {pdepth.Pose, pdepth.Depth, pdepth.Warm, pdepth.Box, pdepth.Shape, _core.Settings} <= set(kinds)
     box = pdepth.Box([1, 1, 1])

@@ -1,5 +1,5 @@
 /// @file
-/// Which meshes are solids, and by which word others are refused.
+/// Meshes that are solids, and the words by which others are refused.
 #include "pd/shape/mesh_solid.hpp"
 
 #include <gtest/gtest.h>

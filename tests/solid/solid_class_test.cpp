@@ -59,7 +59,7 @@ TEST(SolidClass, CellsOfAGrid) {
       EXPECT_LE(found->distance_lower, found->distance_upper);
       EXPECT_TRUE(found->bracket_reached);
     }
-    // The same bodies turned about one point by one quaternion, whose rotation no double holds.
+    // Both bodies are turned about one point by one quaternion, whose rotation no double holds.
     if (pair % 8 != 0) continue;
     Mesh turned = mesh_of(cells_b);
     for (Vec3& p : turned.points) p += pose.translation();

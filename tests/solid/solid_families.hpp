@@ -60,7 +60,7 @@ inline Mesh mesh_of(const Cells& cells) {
   return mesh;
 }
 
-/// The same cells as a union of boxes.
+/// The union of boxes that the cells are.
 inline Compound boxes_of(const Cells& cells) {
   std::vector<Compound::Part> parts;
   for (const auto& cell : cells) {

@@ -42,7 +42,7 @@ class OwnManifold {
   /// Null: it is shared.
   [[nodiscard]] PairMemory* memory() const { return memory_.get(); }
 
-  /// Whether the pair had points in the last step, all without a load.
+  /// True if no point of the last step carried a load.
   [[nodiscard]] bool carries_nothing() const {
     for (int k = 0; k < manifold_->getNumContacts(); ++k) {
       if (manifold_->getContactPoint(k).m_appliedImpulse > 0) return false;

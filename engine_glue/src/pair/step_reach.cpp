@@ -11,15 +11,15 @@ namespace pd::detail {
 
 namespace {
 
-/// Of the threshold.
+/// Shares of the threshold.
 constexpr btScalar kNear = btScalar(0.25), kNearOfPieces = btScalar(0.5);
 constexpr btScalar kNearOfLinks = btScalar(1. / 16);
 constexpr btScalar kClosing = 2;
-/// Of the breaking threshold: depths of bodies that touch without a load.
+/// Bodies that touch without a load are less deep in each other than this share of the breaking threshold.
 constexpr btScalar kTouching = btScalar(1e-3);
-/// In steps of gravity: bodies that are slower may just have been let go, and soon rest.
+/// Bodies slower than so many steps of gravity may just have been let go, and soon rest.
 constexpr btScalar kFlying = 4;
-/// Of the bodies' speed: rounding.
+/// Bodies fly together where their velocities differ by less than this share of their speed, which is rounding.
 constexpr btScalar kTogether = btScalar(1e-3);
 
 }  // namespace

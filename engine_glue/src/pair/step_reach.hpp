@@ -46,10 +46,10 @@ class StepReach {
   void leave_out_idle(FreshPoints& points) const;
   /// The same of two pieces'.
   void leave_out_idle(ContactManifold& points) const;
-  /// Whether a body is a link of a multibody whose idle points may be left out, and which of its points are needed.
+  /// True if a body is a link of a multibody whose idle points may be left out.
   [[nodiscard]] bool of_links() const { return links_; }
   [[nodiscard]] bool is_needed_by_links(const FreshPoint& point) const;
-  /// The same of all points of a pair. Does nothing for rigid bodies.
+  /// Takes out the points of a pair that links do not need. Does nothing for rigid bodies.
   void leave_out_idle_of_links(FreshPoints& points) const;
   /// Takes out the points of two boxes that fly together. Requires that the pair carried nothing in the last step.
   void leave_out_flying(FreshPoints& points) const;

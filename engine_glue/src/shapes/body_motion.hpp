@@ -17,7 +17,7 @@ struct BodyMotion {
   [[nodiscard]] btVector3 velocity_at(const btVector3& place) const { return velocity + turn.cross(place - centre); }
 };
 
-/// Whether an object is a link of a multibody.
+/// True if an object is a link of a multibody.
 [[nodiscard]] inline bool is_link(const btCollisionObject& object) {
   return (object.getInternalType() & btCollisionObject::CO_FEATHERSTONE_LINK) != 0;
 }

@@ -54,9 +54,10 @@ class ImpulseNewton {
     bool given_up = false;  ///< by one of `Limits`; impulses are as they were
   };
 
-  /// What rows may cost. Counts and shares, never times, so that the answer is the same on every machine.
+  /// Ends a solution that does not pay. The limits are counts and shares, never times, so that the answer is the same
+  /// on every machine.
   struct Limits {
-    /// Of a factorisation.
+    /// Most products of blocks that a factorisation may take.
     long long products = std::numeric_limits<long long>::max();
     /// Share of the impulses that the first step may show to be amiss. It is below 0.03 where a stack stands, also in
     /// its first step. It is near 1 where contacts come and go, and then more factorisations follow than pay.

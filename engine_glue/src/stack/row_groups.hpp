@@ -69,7 +69,7 @@ class RowGroups {
   std::vector<int> group_of_;  ///< of each solver body
   std::vector<int> group_of_row_;
   std::vector<int> bodies_, rows_;  ///< group by group
-  // Of the group whose load was asked for last:
+  // These hold the group whose load was asked for last:
   std::vector<int> level_;            ///< of each solver body
   std::vector<int> queue_;            ///< bodies in the order of their levels
   std::vector<int> neighbour_start_;  ///< of each solver body in `neighbours_`, one more at the end

@@ -17,20 +17,21 @@ namespace pd::detail {
 
 namespace {
 
-/// Of masses. Ten sweeps mend a third of the load of lesser ratios, and need no help.
+/// Ratio of masses from which a pair is looked at: ten sweeps mend a third of the load of lesser ratios.
 constexpr btScalar kHeavy = 30;
-/// Of a light body's weight: a load that sweeps do not find in time.
+/// Sweeps do not find a load in time that is more than so many times the light body's weight.
 constexpr btScalar kLoad = 10;
 /// Bodies that are solved for, and those of them whose neighbours may join. Others go on pushing as they do. Twice as
 /// many take a third of the step of a heap of mixed sizes.
 constexpr std::size_t kMostBodies = 8;
 constexpr std::size_t kMostSupported = 6;
-/// Of the speed that gravity adds in a step: what bodies come together more slowly after the sweeps is no load.
+/// Share of the speed that gravity adds in a step. Bodies that close more slowly after the sweeps carry what they
+/// should.
 constexpr btScalar kUnresolved = btScalar(0.1);
 /// As `StackSolver` does.
 constexpr double kSoftness = 1e-4;
 
-/// Null: not one that impulses move.
+/// The rigid body of an object; null for one that impulses do not move.
 const btRigidBody* moving(const btCollisionObject* object) {
   const btRigidBody* const body = btRigidBody::upcast(object);
   return body != nullptr && body->getInvMass() > 0 && !body->isStaticOrKinematicObject() ? body : nullptr;
@@ -47,8 +48,8 @@ bool masses_differ(const btCollisionObjectArray& objects) {
   return most >= kHeavy * least;
 }
 
-/// What the sweeps have left at a light body: the largest speed at which a point that pushes still closes, and the
-/// velocity of the body on the point's other side.
+/// The error that the sweeps have left at a light body: the largest speed at which a point that pushes still closes,
+/// and the velocity of the body on the point's other side.
 struct Unresolved {
   btScalar speed = 0;
   btVector3 support = btVector3(0, 0, 0);
@@ -102,7 +103,7 @@ class HeavyLoads {
     btVector3 turns = btVector3(0, 0, 0);  ///< of its angular velocity
     bool measured = false;                 ///< the forces are those of this step
   };
-  /// Where the impulse of a row goes.
+  /// The point of a manifold that takes the impulse of a row.
   struct Place {
     int manifold;
     int point;
@@ -239,8 +240,8 @@ class HeavyLoads {
     return index < 0 ? -1 : places_[static_cast<std::size_t>(index)];
   }
 
-  /// What neither gravity nor contacts have done to a heavy body in this step (joints, a host's forces), it is taken to
-  /// feel in the next one, too.
+  /// A heavy body is taken to feel in the next step, too, what neither gravity nor contacts have done to it in this
+  /// one: the forces of joints and of the host.
   void find_other_forces() {
     for (const Pair& pair : pairs_) {
       const HeavyLoad& load = pair.before;

@@ -18,7 +18,7 @@ namespace pd::detail {
 class SolverCore;
 
 /// Notes the impulses in the pairs' memories, where the next step's contact points take them from. Does nothing in
-/// worlds whose bodies' masses differ by less than ten times. Time O(bodies), and O(contacts) where masses differ.
+/// worlds whose bodies' masses differ by less than thirty times. Time O(bodies), and O(contacts) where masses differ.
 /// @param seconds  of the step that has ended
 void carry_heavy_loads(btDiscreteDynamicsWorld& world, SolverCore& core, btScalar seconds);
 

@@ -1,5 +1,5 @@
 /// @file
-/// What stands behind the opaque types of `pdepth.h`, and the border that no exception crosses.
+/// The structs behind the opaque types of `pdepth.h`, and the border that no exception crosses.
 #pragma once
 
 #include <atomic>

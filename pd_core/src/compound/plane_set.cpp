@@ -40,7 +40,7 @@ struct RoundedMeet {
   double determinant, determinant_size;
 };
 
-/// The same in double-double. Its sizes are those of `RoundedMeet`: a term takes at most twelve operations of relative
+/// A `Meet` in double-double. Its sizes are those of `RoundedMeet`: a term takes at most twelve operations of relative
 /// error 2 kUdd, on coefficients within kUdd.
 struct FineMeet {
   Vec3DD v;

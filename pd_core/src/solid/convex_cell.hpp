@@ -21,7 +21,7 @@ class ConvexCell {
   [[nodiscard]] const std::vector<PlanePolygon>& facets() const { return facets_; }
 
  private:
-  /// What the cell's planes leave of another plane.
+  /// The polygon that the cell's planes leave of another plane.
   [[nodiscard]] std::optional<PlanePolygon> section(const PlaneSet& planes, Side side) const;
 
   std::array<std::array<Side, 2>, 3> walls_;  ///< of the cube: along each axis the negative and the positive one

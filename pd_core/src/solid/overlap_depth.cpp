@@ -113,7 +113,7 @@ class Bracketing {
     raise(std::ldexp(best, solids_.scale_exponent()));
   }
 
-  /// Whether A, moved by the vector as stored, is apart from B, exactly. Places where the two touch are not taken: they
+  /// True if A, moved by the vector as stored, is apart from B, exactly. Places where the two touch are not taken: they
   /// may be slots of zero width.
   [[nodiscard]] bool is_apart(const Vec3& way) const {
     return contact_of(PosedSolids(*a_.solid, a_.pose, *b_.solid, b_.pose, way)).contact == ContactClass::separated;

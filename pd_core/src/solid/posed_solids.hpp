@@ -53,7 +53,7 @@ class PosedSolids {
   [[nodiscard]] PosedPoint mean(Body body, const std::array<std::int32_t, 3>& vertices,
                                 const std::array<std::int32_t, 3>& weights, int shift) const;
   [[nodiscard]] PosedTriangle corners(Body body, std::int32_t triangle) const;
-  /// Of a node of the solid's tree, rounded outwards.
+  /// The box of a node of the solid's tree, rounded outwards.
   [[nodiscard]] TriangleBox box(Body body, const TriangleNode& node) const;
   /// The point in the world, rounded.
   [[nodiscard]] Vec3 outside(const Vec3& x) const;

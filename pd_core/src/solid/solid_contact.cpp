@@ -67,7 +67,7 @@ class ContactSearch {
     running_along_[1][static_cast<std::size_t>(solids_.solid(Body::b).triangle(t).shell)] = 1;
   }
 
-  /// Whether a shell lies in the other's interior but for finitely many points. One that runs along the other's surface
+  /// True if a shell lies in the other's interior but for finitely many points. One that runs along the other's surface
   /// somewhere does not, or the meeting there would have told an overlap.
   bool lies_inside(Body body) {
     std::vector<char> known = running_along_[body == Body::a ? 0 : 1];

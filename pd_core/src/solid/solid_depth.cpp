@@ -21,7 +21,7 @@ using detail::SolidContact;
 
 Vec3 unit_normal(const detail::PosedTriangle& t) { return (t[1].x - t[0].x).cross(t[2].x - t[0].x).normalized(); }
 
-/// Whether a triangle lies above the plane of another, or in it.
+/// True if a triangle lies above the plane of another, or in it.
 bool lies_above(const PosedSolids& solids, const detail::PosedTriangle& plane, const detail::PosedTriangle& t) {
   return solids.orient3d(plane, t[0]) >= 0 && solids.orient3d(plane, t[1]) >= 0 && solids.orient3d(plane, t[2]) >= 0;
 }

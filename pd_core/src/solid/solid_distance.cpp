@@ -178,7 +178,7 @@ void set_distance(const PosedSolids& solids, Scratch& scratch, SolidDepth& out) 
   constexpr double kTight = 1e-12;
   constexpr std::size_t kMostAsked = 4096;
   const std::vector<Candidate> candidates = DistanceSearch(solids).run(out.work.triangle_pairs);
-  // Of those from i on, the least lower bound.
+  // rest[i] is the least lower bound of the candidates from i on.
   std::vector<double> rest(candidates.size() + 1, HUGE_VAL);
   for (std::size_t i = candidates.size(); i-- > 0;) {
     rest[i] = std::min(rest[i + 1], std::ldexp(candidates[i].lower, solids.scale_exponent()));

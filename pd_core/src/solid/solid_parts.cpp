@@ -135,7 +135,7 @@ class Partition {
     return planes_.add(normal, offset.scaled(exponent_of(solid_)));
   }
 
-  /// Where a polygon lies about a plane; exactly without a tolerance, else in doubles.
+  /// Tells on which sides of a plane a polygon lies; exactly without a tolerance, else in doubles.
   [[nodiscard]] Height height_of(const PlanePolygon& polygon, Side plane) const {
     if (limits_.tolerance > 0) {
       double low = HUGE_VAL, high = -HUGE_VAL;
@@ -361,7 +361,7 @@ class PartCorners {
 
 namespace {
 
-/// Whether a polytope lies inside of another, for certain.
+/// True if a polytope lies inside of another for certain.
 bool lies_within(const ConvexPolytope& small, const ConvexPolytope& large, double rounding) {
   for (int f = 0; f < large.num_facets(); ++f) {
     const Vec3& normal = large.facet_normal(f);

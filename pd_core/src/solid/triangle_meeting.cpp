@@ -256,7 +256,7 @@ class MeetingTest {
     return false;
   }
 
-  /// Whether the direction of x lies in the arc that begins with that of `from` and runs up to, without it, that of
+  /// True if the direction of x lies in the arc that begins with that of `from` and runs up to, without it, that of
   /// `to`, counter-clockwise about the line from p to q.
   [[nodiscard]] bool begins_in(const PosedPoint& p, const PosedPoint& q, const PosedPoint& x, const PosedPoint& from,
                                const PosedPoint& to) const {

@@ -18,7 +18,7 @@ struct PointPlace {
 [[nodiscard]] PointPlace place_in(const PosedSolids& solids, Body solid, const PosedPoint& point,
                                   std::int32_t without = -1);
 
-/// Whether a closed triangle holds a point of its plane.
+/// True if a closed triangle holds a point of its plane.
 [[nodiscard]] bool holds_in_plane(const PosedSolids& solids, const PosedTriangle& triangle, const PosedPoint& point);
 /// An axis along which the triangle's shadow has an area.
 [[nodiscard]] int shadow_axis(const PosedSolids& solids, const PosedTriangle& triangle);

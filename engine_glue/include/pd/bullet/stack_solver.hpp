@@ -63,7 +63,7 @@ class StackSolver : public btSequentialImpulseConstraintSolver {
   [[nodiscard]] const StackSolverStatistics& statistics() const { return statistics_; }
   void reset_statistics() { statistics_ = {}; }
 
-  /// Which bodies belong to groups that are left alone, by their place in the world. `BulletSnapshot` saves it.
+  /// For each body, by its place in the world, how long its group is left alone. `BulletSnapshot` saves it.
   [[nodiscard]] const btAlignedObjectArray<unsigned>& memory() const;
   void set_memory(const btAlignedObjectArray<unsigned>& memory);
 

@@ -380,8 +380,8 @@ void BoundaryBuilder::cut_edge_candidate(const Candidate& candidate, const SumSe
 /// that vertex reaches farther across the edge, or two parallel edges. Next to any other point of a sum's edge lies
 /// more of the other polygon, beyond the edge: the point is inside.
 ///
-/// Of edges that several sums share, that of the first sum is enough: the others give way to it. On a lattice most
-/// edges coincide with an edge of other vertices: those are compared exactly.
+/// An edge that several sums share is a candidate once, as the first sum's. On a lattice most edges coincide with an
+/// edge of other vertices: those are compared exactly.
 void BoundaryBuilder::add_edge_candidates() {
   std::unordered_set<std::uint64_t> known;
   std::map<std::array<double, 4>, Span> first_at;  // by the rounded ends

@@ -117,7 +117,7 @@ class ConvexSum {
   [[nodiscard]] std::optional<Cover> cover_of_line(const Span& e) const;
 
  private:
-  /// Where an edge of T goes among those of -B.
+  /// The place of an edge of T among those of -B.
   struct InsertedEdge {
     std::int32_t edge;   ///< its number in the sum
     std::int32_t fused;  ///< how many edges of T before it are parallel to an edge of -B

@@ -88,7 +88,7 @@ class RoughSums {
   double air_ = 0;
 };
 
-/// Which sums must be intersected with a candidate exactly.
+/// Finds the sums that must be intersected with a candidate exactly.
 class RoughUnion {
  public:
   void clear() { shares_.clear(); }
