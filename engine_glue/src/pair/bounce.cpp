@@ -70,19 +70,12 @@ Bounce::Approach Bounce::approach_of(btScalar distance, const btVector3& normal,
 }
 
 std::array<int, 4> Bounce::leave_out(FreshPoints& points) const {
-  std::array<int, 4> before{0, 1, 2, 3};
-  if (!(restitution_ >= kLeastRestitution)) return before;
-  int kept = 0;
-  for (int k = 0; k < points.count; ++k) {
-    const FreshPoint& point = points.points[k];
+  if (!(restitution_ >= kLeastRestitution)) return {0, 1, 2, 3};
+  return keep_points(points, [this](const FreshPoint& point) {
     const btVector3 place_a = point.point_on_b + point.normal * point.distance;
     const Phase phase = approach_of(point.distance, point.normal, place_a, point.point_on_b, restitution_).phase;
-    if (phase == Phase::coming || (phase == Phase::leaving && point.distance > 0)) continue;
-    before[static_cast<std::size_t>(kept)] = k;
-    points.points[kept++] = point;
-  }
-  points.count = kept;
-  return before;
+    return phase != Phase::coming && (phase != Phase::leaving || !(point.distance > 0));
+  });
 }
 
 void Bounce::set(btManifoldPoint& point, ImpulseTrend& impulse) const {

@@ -26,6 +26,22 @@ struct FreshPoints {
   int count = 0;
 };
 
+/// Keeps the points that `is_kept` accepts, in their order.
+/// @return the numbers that the kept ones had before.
+template <class IsKept>
+std::array<int, 4> keep_points(FreshPoints& points, IsKept&& is_kept) {
+  std::array<int, 4> before{0, 1, 2, 3};
+  int kept = 0;
+  for (int k = 0; k < points.count; ++k) {
+    const FreshPoint& point = points.points[static_cast<std::size_t>(k)];
+    if (!is_kept(point)) continue;
+    before[static_cast<std::size_t>(kept)] = k;
+    points.points[static_cast<std::size_t>(kept++)] = point;
+  }
+  points.count = kept;
+  return before;
+}
+
 [[nodiscard]] FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point);
 [[nodiscard]] FreshPoints fresh_points(const ContactManifold& manifold);
 

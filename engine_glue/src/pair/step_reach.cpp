@@ -74,13 +74,9 @@ bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
 
 void StepReach::leave_out_idle(FreshPoints& points) const {
   if (all_) return;
-  int kept = 0;
-  for (int k = 0; k < points.count; ++k) {
-    const FreshPoint& point = points.points[k];
-    const btScalar closing = closing_alone(point.point_on_b, point.normal);
-    if (is_needed(point.distance, closing, kNear * threshold_)) points.points[kept++] = point;
-  }
-  points.count = kept;
+  keep_points(points, [this](const FreshPoint& point) {
+    return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), kNear * threshold_);
+  });
 }
 
 void StepReach::leave_out_idle(ContactManifold& points) const {
@@ -97,17 +93,11 @@ void StepReach::leave_out_idle(ContactManifold& points) const {
   points.count = static_cast<int>(kept);
 }
 
-bool StepReach::is_needed_by_links(const FreshPoint& point) const {
-  return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), kNearOfLinks * threshold_);
-}
-
-void StepReach::leave_out_idle_of_links(FreshPoints& points) const {
-  if (!links_) return;
-  int kept = 0;
-  for (int k = 0; k < points.count; ++k) {
-    if (is_needed_by_links(points.points[k])) points.points[kept++] = points.points[k];
-  }
-  points.count = kept;
+std::array<int, 4> StepReach::leave_out_idle_of_links(FreshPoints& points) const {
+  if (!links_) return {0, 1, 2, 3};
+  return keep_points(points, [this](const FreshPoint& point) {
+    return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), kNearOfLinks * threshold_);
+  });
 }
 
 void StepReach::leave_out_flying(FreshPoints& points) const {
@@ -115,13 +105,10 @@ void StepReach::leave_out_flying(FreshPoints& points) const {
   const btScalar speed = std::min(a_.velocity.length(), b_.velocity.length());
   const btScalar least = kFlying * std::max(a_.gained.length(), b_.gained.length()), noise = kTogether * speed;
   if (!(speed > least) || (a_.velocity - b_.velocity).length() > noise) return;
-  int kept = 0;
-  for (int k = 0; k < points.count; ++k) {
-    const FreshPoint& point = points.points[k];
+  keep_points(points, [&](const FreshPoint& point) {
     const bool touching = point.distance > -kTouching * threshold_;
-    if (!touching || closing_alone(point.point_on_b, point.normal) > noise) points.points[kept++] = point;
-  }
-  points.count = kept;
+    return !touching || closing_alone(point.point_on_b, point.normal) > noise;
+  });
 }
 
 }  // namespace pd::detail

@@ -19,6 +19,8 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <array>
+
 #include "pair/manifold_points.hpp"
 #include "shapes/body_motion.hpp"
 
@@ -46,11 +48,9 @@ class StepReach {
   void leave_out_idle(FreshPoints& points) const;
   /// The same of two pieces'.
   void leave_out_idle(ContactManifold& points) const;
-  /// True if a body is a link of a multibody whose idle points may be left out.
-  [[nodiscard]] bool of_links() const { return links_; }
-  [[nodiscard]] bool is_needed_by_links(const FreshPoint& point) const;
-  /// Takes out the points of a pair that links do not need. Does nothing for rigid bodies.
-  void leave_out_idle_of_links(FreshPoints& points) const;
+  /// Takes out the points that a link of a multibody does not need. Does nothing for rigid bodies.
+  /// @return the numbers that those left had before.
+  std::array<int, 4> leave_out_idle_of_links(FreshPoints& points) const;
   /// Takes out the points of two boxes that fly together. Requires that the pair carried nothing in the last step.
   void leave_out_flying(FreshPoints& points) const;
 

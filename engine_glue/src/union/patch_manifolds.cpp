@@ -29,14 +29,10 @@ class PieceOfPoint : public PointSurroundings {
 
 /// Takes the points out that links do not need in this step.
 void leave_out_idle(const StepReach& reach, Patch& patch) {
-  if (!reach.of_links()) return;
-  int kept = 0;
-  for (int k = 0; k < patch.fresh.count; ++k) {
-    if (!reach.is_needed_by_links(patch.fresh.points[k])) continue;
-    patch.fresh.points[kept] = patch.fresh.points[k];
-    patch.pieces[static_cast<std::size_t>(kept++)] = patch.pieces[static_cast<std::size_t>(k)];
+  const std::array<int, 4> before = reach.leave_out_idle_of_links(patch.fresh);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.fresh.count); ++k) {
+    patch.pieces[k] = patch.pieces[static_cast<std::size_t>(before[k])];
   }
-  patch.fresh.count = kept;
 }
 
 }  // namespace
