@@ -18,12 +18,7 @@ using detail::six;
 using detail::SolverBodies;
 using detail::SolverRows;
 
-/// Softness of rows beyond their own, as a share of what their bodies weigh against them. Four points under a face say
-/// three things, and their eight rows of friction three others; poses in single precision let them contradict each
-/// other by some 1e-7 m a step, which stiff rows answer with impulses against each other: with 1e-6 for both, points
-/// slip for that alone, and towers at 240 Hz and more fly apart. With 1e-2 for normals a pyramid takes more rounds than
-/// it gets. Of the normals' only changes feel it, so that nothing sinks.
-constexpr double kSoftness = 1e-4;
+/// Softness of friction beyond its own, like `ImpulseNewton::kSoftness`.
 constexpr double kFrictionSoftness = 1e-2;
 
 detail::BodyInertia inertia_of(const btSolverBody& body) {
@@ -171,7 +166,7 @@ void StackSolver::State::read_rows(const SolverRows& rows, const RowGroups::Grou
     row.lower = static_cast<double>(constraint.m_lowerLimit);
     row.upper = static_cast<double>(constraint.m_upperLimit);
     if (inverse > 0) {
-      const double share = is_friction ? kFrictionSoftness : kSoftness;
+      const double share = is_friction ? kFrictionSoftness : ImpulseNewton::kSoftness;
       row.target = static_cast<double>(constraint.m_rhs) / inverse;
       row.softness = (static_cast<double>(constraint.m_cfm) + share) / inverse;
       if (!is_friction) row.of_changes = share / inverse;

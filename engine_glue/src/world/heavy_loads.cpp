@@ -28,8 +28,6 @@ constexpr std::size_t kMostSupported = 6;
 /// Share of the speed that gravity adds in a step. Bodies that close more slowly after the sweeps carry what they
 /// should.
 constexpr btScalar kUnresolved = btScalar(0.1);
-/// As `StackSolver` does.
-constexpr double kSoftness = 1e-4;
 
 /// The rigid body of an object; null for one that impulses do not move.
 const btRigidBody* moving(const btCollisionObject* object) {
@@ -309,7 +307,7 @@ class HeavyLoads {
         info_.m_splitImpulse != 0 && gap <= static_cast<double>(info_.m_splitImpulsePenetrationThreshold);
     const double wanted = gap > 0 ? -gap / dt : split ? 0 : -gap * static_cast<double>(info_.m_erp2) / dt;
     row.target = wanted - parting;
-    row.softness = row.of_changes = kSoftness * weight;
+    row.softness = row.of_changes = ImpulseNewton::kSoftness * weight;
     row.impulse = static_cast<double>(point.m_appliedImpulse);
     // Nothing is known of what moves a body that is not solved for: it goes on pushing as it does.
     if (left) row.lower = row.upper = row.impulse;
