@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pd::detail {
 
@@ -77,6 +78,22 @@ Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePol
   inner.update(planes);
   if (outer != nullptr) outer->update(planes);
   return Cut::split;
+}
+
+std::optional<PlanePolygon> part_inside(const PlaneSet& planes, PlanePolygon polygon, std::span<const Side> walls) {
+  for (const Side wall : walls) {
+    PlanePolygon inner;
+    switch (cut(planes, polygon, wall, inner, nullptr)) {
+      case Cut::outside:
+        return std::nullopt;
+      case Cut::inside:
+        break;
+      case Cut::split:
+        polygon = std::move(inner);
+        break;
+    }
+  }
+  return polygon;
 }
 
 bool contains_point(const PlaneSet& planes, const PlanePolygon& polygon, const Vec3& x) {

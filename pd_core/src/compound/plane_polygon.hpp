@@ -4,6 +4,8 @@
 /// do not grow (after Bernstein, Fussell, "Fast, exact, linear booleans", 2009).
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "compound/plane_set.hpp"
@@ -33,6 +35,10 @@ enum class Cut : std::uint8_t {
 /// @param outer  nullptr: not wanted.
 [[nodiscard]] Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner,
                       PlanePolygon* outer);
+
+/// The part of a polygon inside of every wall; nothing where it has no relative interior.
+[[nodiscard]] std::optional<PlanePolygon> part_inside(const PlaneSet& planes, PlanePolygon polygon,
+                                                      std::span<const Side> walls);
 
 /// Whether a point given in doubles lies in the closed polygon, exactly.
 [[nodiscard]] bool contains_point(const PlaneSet& planes, const PlanePolygon& polygon, const Vec3& x);

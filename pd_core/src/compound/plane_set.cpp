@@ -48,10 +48,12 @@ struct FineMeet {
 };
 constexpr double kFineError = 32 * kUdd;
 
-FineMeet meet_finely(const Vec3DD& f, const DoubleDouble& df, const Vec3DD& q, const DoubleDouble& dq, const Vec3DD& r,
-                     const DoubleDouble& dr) {
-  const Vec3DD qr = cross(q, r);
-  return {scaled(qr, df) + scaled(cross(r, f), dq) + scaled(cross(f, q), dr), dot(f, qr)};
+template <class Plane>
+FineMeet meet_finely(const Plane& f, const Plane& q, const Plane& r) {
+  const Vec3DD &nf = f.finer_normal, &nq = q.finer_normal, &nr = r.finer_normal;
+  const Vec3DD qr = cross(nq, nr);
+  return {scaled(qr, f.finer_offset) + scaled(cross(nr, nf), q.finer_offset) + scaled(cross(nf, nq), r.finer_offset),
+          dot(nf, qr)};
 }
 
 /// True if every number within `error` of x rounds to x.hi; then so does the number that x stands for.
@@ -63,13 +65,16 @@ Vec3 cross_size(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]};
 }
 
-RoundedMeet meet_rounded(const Vec3& f, double df, const Vec3& q, double dq, const Vec3& r, double dr) {
-  const Vec3 af = f.cwiseAbs(), aq = q.cwiseAbs(), ar = r.cwiseAbs();
-  const Vec3 qr = q.cross(r), qr_size = cross_size(aq, ar);
+template <class Plane>
+RoundedMeet meet_rounded(const Plane& f, const Plane& q, const Plane& r) {
+  const Vec3 &nf = f.normal, &nq = q.normal, &nr = r.normal;
+  const Vec3 af = nf.cwiseAbs(), aq = nq.cwiseAbs(), ar = nr.cwiseAbs();
+  const Vec3 qr = nq.cross(nr), qr_size = cross_size(aq, ar);
   RoundedMeet m;
-  m.v = df * qr + dq * r.cross(f) + dr * f.cross(q);
-  m.v_size = std::abs(df) * qr_size + std::abs(dq) * cross_size(ar, af) + std::abs(dr) * cross_size(af, aq);
-  m.determinant = f.dot(qr);
+  m.v = f.offset * qr + q.offset * nr.cross(nf) + r.offset * nf.cross(nq);
+  m.v_size =
+      std::abs(f.offset) * qr_size + std::abs(q.offset) * cross_size(ar, af) + std::abs(r.offset) * cross_size(af, aq);
+  m.determinant = nf.dot(qr);
   m.determinant_size = af.dot(qr_size);
   return m;
 }
@@ -139,13 +144,12 @@ int PlaneSet::sign_at_meet(Side f, Side q, Side r, Side h) const {
   // Turning f, q or r round turns the point's numerator and denominator alike, which is what their product undoes.
   const int turned = f.orientation() * q.orientation() * r.orientation() * h.orientation();
   {
-    const RoundedMeet m = meet_rounded(pf.normal, pf.offset, pq.normal, pq.offset, pr.normal, pr.offset);
+    const RoundedMeet m = meet_rounded(pf, pq, pr);
     const double value = ph.normal.dot(m.v) - ph.offset * m.determinant;
     const double size = ph.normal.cwiseAbs().dot(m.v_size) + std::abs(ph.offset) * m.determinant_size;
     // Four coefficients within 2u each (8u), and at most nine roundings on the way of a term.
     if (std::abs(value) > 24 * kUnitRoundoff * size + kUnderflow) return (value > 0 ? 1 : -1) * turned;
-    const FineMeet fine = meet_finely(pf.finer_normal, pf.finer_offset, pq.finer_normal, pq.finer_offset,
-                                      pr.finer_normal, pr.finer_offset);
+    const FineMeet fine = meet_finely(pf, pq, pr);
     const DoubleDouble finer = dot(ph.finer_normal, fine.v) - ph.finer_offset * fine.determinant;
     if (std::abs(finer.hi) > 2 * kFineError * size + kUnderflow) return (finer.hi > 0 ? 1 : -1) * turned;
   }
@@ -179,7 +183,7 @@ PlaneSet::ExactPoint PlaneSet::exact_meet(Side f, Side q, Side r) const {
 
 PlaneSet::Point PlaneSet::meet(Side f, Side q, Side r) const {
   const Plane &pf = planes_[index(f)], &pq = planes_[index(q)], &pr = planes_[index(r)];
-  const RoundedMeet m = meet_rounded(pf.normal, pf.offset, pq.normal, pq.offset, pr.normal, pr.offset);
+  const RoundedMeet m = meet_rounded(pf, pq, pr);
   const double slack = 24 * kUnitRoundoff * m.determinant_size + kUnderflow;
   if (std::abs(m.determinant) > 2 * slack) {
     const double least = std::abs(m.determinant) - slack;
@@ -189,8 +193,7 @@ PlaneSet::Point PlaneSet::meet(Side f, Side q, Side r) const {
     // Flat crossings are worth exact arithmetic, so that bounds stay near the rounding of the input.
     if (error.maxCoeff() <= 0x1p-46 * (1 + x.cwiseAbs().maxCoeff())) return {x, error.maxCoeff()};
   }
-  const FineMeet fine =
-      meet_finely(pf.finer_normal, pf.finer_offset, pq.finer_normal, pq.finer_offset, pr.finer_normal, pr.finer_offset);
+  const FineMeet fine = meet_finely(pf, pq, pr);
   const double fine_slack = kFineError * m.determinant_size + kUnderflow;
   if (std::abs(fine.determinant.hi) > 0x1p10 * fine_slack) {
     const double least = std::abs(fine.determinant.hi) - 2 * fine_slack;

@@ -106,7 +106,7 @@ class UnionBoundary::NearestSearch {
         walls_.push_back(differences.across_axis(axis, -1, cube.centre[axis] - cube.half));
       }
     }
-    auto part = part_inside(differences.polygon(cell.where.piece, cell.where.facet), walls_);
+    auto part = part_inside(boundary_.planes_, differences.polygon(cell.where.piece, cell.where.facet), walls_);
     if (!part) return;
     cell.where.polygon = *std::move(part);
     cell.clipped = boundary_.own(cell.where.piece);
@@ -146,22 +146,6 @@ class UnionBoundary::NearestSearch {
     // What covers one facet covers its neighbours.
     std::rotate(among_.begin(), found, found + 1);
     return true;
-  }
-
-  [[nodiscard]] std::optional<PlanePolygon> part_inside(PlanePolygon polygon, const std::vector<Side>& walls) const {
-    for (const Side wall : walls) {
-      PlanePolygon inner;
-      switch (cut(boundary_.planes_, polygon, wall, inner, nullptr)) {
-        case Cut::outside:
-          return std::nullopt;
-        case Cut::inside:
-          break;
-        case Cut::split:
-          polygon = std::move(inner);
-          break;
-      }
-    }
-    return polygon;
   }
 
   /// A polygon that may hold a nearer point than the best so far waits.

@@ -38,20 +38,9 @@ ConvexCell ConvexCell::cube(PlaneSet& planes, double half) {
 }
 
 std::optional<PlanePolygon> ConvexCell::section(const PlaneSet& planes, Side side) const {
-  PlanePolygon polygon = wide_polygon(planes, side, walls_);
-  for (const PlanePolygon& facet : facets_) {
-    PlanePolygon inner;
-    switch (cut(planes, polygon, facet.plane, inner, nullptr)) {
-      case Cut::outside:
-        return std::nullopt;
-      case Cut::inside:
-        break;
-      case Cut::split:
-        polygon = std::move(inner);
-        break;
-    }
-  }
-  return polygon;
+  std::vector<Side> around;
+  for (const PlanePolygon& facet : facets_) around.push_back(facet.plane);
+  return part_inside(planes, wide_polygon(planes, side, walls_), around);
 }
 
 std::optional<ConvexCell> ConvexCell::inside(const PlaneSet& planes, Side side) const {
