@@ -1,5 +1,5 @@
 # Sourced by try_debian.sh and try_wheel.sh: bare Debian 12 systems, as root, from Debian's mirror by mmdebstrap, and a count of
-# what passed. The first one is kept in build/bare.tar.
+# what passed. The first one is kept in build/bare.tar; PD_MIRROR names another mirror than Debian's own.
 
 passed=0
 failed=0
@@ -25,7 +25,7 @@ trap 'rm -rf "${pd_workplace}"' EXIT
 bare_system() {
   if [[ ! -s build/bare.tar ]]; then
     mkdir -p build
-    mmdebstrap --quiet --variant=minbase bookworm build/bare.tar "${PD_MIRROR:-http://deb.debian.org/debian}"
+    mmdebstrap --quiet --variant=minbase bookworm build/bare.tar ${PD_MIRROR:+"${PD_MIRROR}"}
   fi
   mkdir "$1"
   tar -xf build/bare.tar -C "$1"

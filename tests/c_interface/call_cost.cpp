@@ -46,9 +46,17 @@ pd::Pose pose_of(const Numbers& n, int form) {
   return *pd::Pose::from_matrix(rotation, place);
 }
 
-/// The mean over two rows of each door, by turns.
-void compare(const char* name, const pd::ConvexShape& shape, pdepth_context* context, const pdepth_shape* of_c,
-             int form, int rounds) {
+/// A shape through both doors, and how often it is asked.
+struct Door {
+  const pd::ConvexShape& shape;
+  pdepth_context* context;
+  const pdepth_shape* of_c;
+  int rounds;
+};
+
+/// Prints the least of many rounds of each door, by turns.
+void compare(const char* name, const Door& door, int form) {
+  const auto& [shape, context, of_c, rounds] = door;
   pd::Scratch scratch;
   const Numbers still{{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   Numbers moving = still;
@@ -96,11 +104,12 @@ int main(int argc, char** argv) {
     return 1;
   }
   const pd::ConvexShape sphere = *pd::ConvexShape::sphere(0.5), box = *pd::ConvexPolytope::box({0.5, 0.5, 0.5});
-  compare("two balls, translations", sphere, context, ball, PDEPTH_POSE_TRANSLATION, rounds);
-  compare("two balls, quaternions", sphere, context, ball, PDEPTH_POSE_QUATERNION_WXYZ, rounds);
-  compare("two balls, matrices", sphere, context, ball, PDEPTH_POSE_MATRIX, rounds);
-  compare("two cubes, translations", box, context, cube, PDEPTH_POSE_TRANSLATION, rounds);
-  compare("two cubes, matrices", box, context, cube, PDEPTH_POSE_MATRIX, rounds);
+  const Door balls{sphere, context, ball, rounds}, cubes{box, context, cube, rounds};
+  compare("two balls, translations", balls, PDEPTH_POSE_TRANSLATION);
+  compare("two balls, quaternions", balls, PDEPTH_POSE_QUATERNION_WXYZ);
+  compare("two balls, matrices", balls, PDEPTH_POSE_MATRIX);
+  compare("two cubes, translations", cubes, PDEPTH_POSE_TRANSLATION);
+  compare("two cubes, matrices", cubes, PDEPTH_POSE_MATRIX);
   pdepth_shape_release(ball);
   pdepth_shape_release(cube);
   pdepth_context_destroy(context);
