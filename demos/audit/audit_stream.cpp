@@ -6,8 +6,8 @@
 #include <thread>
 #include <utility>
 
-#include "protocol/bounded_line.hpp"
-#include "protocol/line_source.hpp"
+#include "protocol/line/bounded_line.hpp"
+#include "protocol/line/line_source.hpp"
 
 namespace pd::audit {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "audit/audit_summary.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::audit {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "audit/audit_answer.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "report/html_text.hpp"
 
 namespace pd::audit {

@@ -7,7 +7,7 @@
 
 #include "audit/audit_answer.hpp"
 #include "audit/body_extent.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "report/html_text.hpp"
 
 namespace pd::audit {

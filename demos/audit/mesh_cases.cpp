@@ -10,8 +10,8 @@
 #include <set>
 
 #include "mesh/mesh_file.hpp"
-#include "protocol/json_writer.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/json_writer.hpp"
+#include "protocol/line/limits.hpp"
 #include "scenes/shape_families.hpp"
 #include "support/refusal.hpp"
 

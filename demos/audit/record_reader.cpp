@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "protocol/pair_reader.hpp"
 
 namespace pd::audit {

@@ -8,8 +8,8 @@
 
 #include "pd/shape/compound.hpp"
 #include "pd/shape/halfspaces.hpp"
-#include "protocol/field_reader.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/field_reader.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::audit {
 

@@ -15,8 +15,8 @@
 #include "mesh/mesh_file.hpp"
 #include "options.hpp"
 #include "pd/shape/convex_polytope.hpp"
-#include "protocol/json_writer.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/json_writer.hpp"
+#include "protocol/line/limits.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"
 

@@ -5,7 +5,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-#include "protocol/limits.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::cli {
 

@@ -15,8 +15,8 @@
 #include "line_input.hpp"
 #include "progress.hpp"
 #include "protocol/handlers.hpp"
-#include "protocol/query_stream.hpp"
 #include "protocol/schema.hpp"
+#include "protocol/stream/query_stream.hpp"
 #include "support/complain.hpp"
 
 namespace pd::cli {

@@ -16,7 +16,7 @@
 #include "pd/numeric/whole_file.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "progress.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/limits.hpp"
 #include "protocol/pair_reader.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"

@@ -8,8 +8,8 @@
 
 #include "drawing/svg_file.hpp"
 #include "files/regular_file.hpp"
-#include "protocol/json_text.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_text.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "protocol/polygon_reader.hpp"
 
 namespace pd::drawing {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pd/planar/polygon.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::drawing {
 

@@ -15,7 +15,7 @@
 
 #include "mesh/gltf_file.hpp"
 #include "mesh/mesh_text.hpp"
-#include "protocol/bounded_line.hpp"
+#include "protocol/line/bounded_line.hpp"
 
 namespace pd::query {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "pd/numeric/vector.hpp"
-#include "protocol/field_reader.hpp"
+#include "protocol/line/field_reader.hpp"
 
 namespace pd::query {
 

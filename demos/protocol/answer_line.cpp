@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "protocol/body_reader.hpp"
-#include "protocol/bounded_line.hpp"
 #include "protocol/handlers.hpp"
+#include "protocol/line/bounded_line.hpp"
+#include "protocol/line/line_notes.hpp"
 #include "protocol/solid_queries.hpp"
 #include "protocol/solid_reader.hpp"
 #include "protocol/union_queries.hpp"
@@ -85,12 +86,12 @@ void write_remarks(const std::vector<Remark>& remarks, JsonWriter& answer) {
 
 LineAnswer answer_parsed(const ParsedLine& parsed, Session& session, Care care) {
   LineAnswer answer;
-  std::vector<Remark> remarks;
-  const Node root(parsed.object, &remarks);
+  LineNotes notes;
+  const Node root(parsed.object, &notes);
   JsonWriter writer(answer.text);
   writer.begin_object().key("id").raw(parsed.id_text);
   find_handler(root, session.limits)(root, session, writer);
-  write_remarks(remarks, writer);
+  write_remarks(notes.remarks, writer);
   if (care == Care::coarse) writer.bracket_unreached();
   writer.end_object();
   answer.unreached = writer.is_bracket_unreached();

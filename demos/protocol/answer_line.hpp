@@ -9,8 +9,8 @@
 
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/scratch.hpp"
-#include "protocol/bounded_line.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/bounded_line.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::query {
 

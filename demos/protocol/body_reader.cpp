@@ -76,7 +76,7 @@ NamedBody read_star(const Node& node, const Limits& limits) {
 NamedBody read_nested(const Node& node, const Limits& limits, int depth) {
   require_object(node);
   const std::string type = read_string(node.at("type"));
-  const auto solid = type == "mesh" ? read_solid(node, limits) : std::nullopt;
+  const auto solid = type == "mesh" ? read_solid(node, limits) : nullptr;
   if (type != "compound" && type != "star" && !solid) {
     NamedShape shape = read_shape(node, limits);
     Compound compound(shape.shape);

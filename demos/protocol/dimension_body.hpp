@@ -10,9 +10,9 @@
 
 #include "pd/dimension/approximate_body.hpp"
 #include "pd/dimension/directional_width.hpp"
-#include "protocol/field_reader.hpp"
-#include "protocol/json_writer.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/field_reader.hpp"
+#include "protocol/line/json_writer.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::query {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "protocol/answer_line.hpp"
-#include "protocol/field_reader.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/field_reader.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "protocol/shape_reader.hpp"
 
 namespace pd::query {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pd/planar/polygon_depth.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 
 namespace pd::query {
 

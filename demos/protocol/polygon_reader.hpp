@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pd/planar/polygon.hpp"
-#include "protocol/field_reader.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/field_reader.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::query {
 

@@ -10,8 +10,8 @@
 #include "mesh/hull_note.hpp"
 #include "mesh/mesh_file.hpp"
 #include "pd/shape/convex_shape.hpp"
-#include "protocol/field_reader.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/field_reader.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::query {
 

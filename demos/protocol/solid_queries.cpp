@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 
 #include "protocol/pair_reader.hpp"
@@ -35,12 +36,12 @@ namespace {
 
 /// Two solids where they stand; one of them is missing where it is neither a mesh nor a polytope.
 struct SolidPair {
-  std::optional<MeshSolid> a, b;
+  std::shared_ptr<const MeshSolid> a, b;
   Pose pose_a, pose_b;
 
   [[nodiscard]] bool complete() const { return a && b; }
-  [[nodiscard]] PosedSolid posed_a() const { return {&*a, pose_a}; }
-  [[nodiscard]] PosedSolid posed_b() const { return {&*b, pose_b}; }
+  [[nodiscard]] PosedSolid posed_a() const { return {a.get(), pose_a}; }
+  [[nodiscard]] PosedSolid posed_b() const { return {b.get(), pose_b}; }
 };
 
 SolidPair read_solids(const Node& line, const Limits& limits) {

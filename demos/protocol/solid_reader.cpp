@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pd/solid/solid_parts.hpp"
+#include "protocol/line/line_notes.hpp"
 
 namespace pd::query {
 
@@ -71,13 +72,13 @@ std::optional<MeshSolid> solid_of_mesh(const MeshPoints& mesh, const std::string
   return *std::move(solid);
 }
 
-std::optional<MeshSolid> read_solid(const Node& node, const Limits& limits) {
-  if (!is_mesh(node)) return std::nullopt;
+std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limits) {
+  if (!is_mesh(node)) return nullptr;
   allow_only(node, {"type", "margin", "path", "as", "turn_faces"});
   SolidWish wish;
   if (const auto as = node.find("as")) {
     const std::string word = read_string(*as);
-    if (word == "hull") return std::nullopt;
+    if (word == "hull") return nullptr;
     if (word != "solid") as->refuse("bad_value", "must be \"solid\" or \"hull\"");
     wish.always = true;
   }
@@ -88,11 +89,19 @@ std::optional<MeshSolid> read_solid(const Node& node, const Limits& limits) {
   const Node path = node.at("path");
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
+  const std::string key = (wish.always ? "always " : "") + std::string(wish.turn_faces ? "turned " : "") + "/" + file;
+  LineNotes* const notes = node.notes();
+  if (notes != nullptr) {
+    if (const auto known = notes->solids.find(key); known != notes->solids.end()) return known->second;
+  }
+  std::shared_ptr<const MeshSolid> solid;
   try {
-    return load_solid(file, limits, wish);
+    if (auto loaded = load_solid(file, limits, wish)) solid = std::make_shared<const MeshSolid>(*std::move(loaded));
   } catch (const Refusal& refusal) {
     path.refuse(refusal.code, refusal.message);
   }
+  if (notes != nullptr) notes->solids.emplace(key, solid);
+  return solid;
 }
 
 namespace {
@@ -101,7 +110,7 @@ bool holds_solid(const Node& node, const Limits& limits, int depth) {
   if (!node.json().is_object() || depth > kMaxCompoundNesting) return false;
   const auto type = node.json().find("type");
   if (type == node.json().end()) return false;
-  if (*type == "mesh") return read_solid(node, limits).has_value();
+  if (*type == "mesh") return read_solid(node, limits) != nullptr;
   if (*type != "compound") return false;
   const auto parts = node.find("parts");
   if (!parts || !parts->json().is_array()) return false;
@@ -124,20 +133,20 @@ bool names_solid(const Node& line, const Limits& limits) {
   return false;
 }
 
-std::optional<MeshSolid> read_as_solid(const Node& node, const Limits& limits) {
-  if (node.find("margin")) return std::nullopt;
+std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& limits) {
+  if (node.find("margin")) return nullptr;
   if (const auto type = node.find("type")) {
-    if (type->json() == "compound" || type->json() == "star") return std::nullopt;
+    if (type->json() == "compound" || type->json() == "star") return nullptr;
   }
   if (auto solid = read_solid(node, limits)) {
     node.remark("solid");
     return solid;
   }
   const NamedShape shape = read_shape(node, limits);
-  if (shape.shape.polytope() == nullptr) return std::nullopt;
+  if (shape.shape.polytope() == nullptr) return nullptr;
   auto solid = MeshSolid::from_polytope(*shape.shape.polytope());
-  if (!solid) return std::nullopt;
-  return *std::move(solid);
+  if (!solid) return nullptr;
+  return std::make_shared<const MeshSolid>(*std::move(solid));
 }
 
 NamedBody parts_of_solid(const MeshSolid& solid, const Node& node) {

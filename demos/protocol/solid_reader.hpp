@@ -2,6 +2,7 @@
 /// Meshes that are asked as the solids that they bound.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -28,15 +29,15 @@ struct SolidWish {
 /// Reads the mesh from a file.
 [[nodiscard]] std::optional<MeshSolid> load_solid(const std::string& path, const Limits& limits, const SolidWish& wish);
 
-/// The solid of a shape {"type":"mesh"}, as above; nothing for other shapes, meshes asked as their hull or with a
-/// margin.
-[[nodiscard]] std::optional<MeshSolid> read_solid(const Node& node, const Limits& limits);
+/// The solid of a shape {"type":"mesh"}, as above; null for other shapes, and for meshes asked as their hull. A line
+/// reads a file once.
+[[nodiscard]] std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limits);
 
 /// True if "a" or "b" of a line is, or holds in a compound, a mesh that is asked as a solid.
 [[nodiscard]] bool names_solid(const Node& line, const Limits& limits);
 
-/// Either body of a query about solids: a mesh's, or a convex polytope's without a margin; nothing for others.
-[[nodiscard]] std::optional<MeshSolid> read_as_solid(const Node& node, const Limits& limits);
+/// Either body of a query about solids: a mesh's, or a convex polytope's without a margin; null for others.
+[[nodiscard]] std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& limits);
 
 /// The union of the convex parts of a solid.
 /// @throws Refusal unsupported where the parts are not the solid exactly, limit_exceeded for too many of them.

@@ -8,8 +8,8 @@
 
 #include "files/points_file.hpp"
 #include "pd/dimension/epsilon_kernel.hpp"
-#include "protocol/field_reader.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/field_reader.hpp"
+#include "protocol/line/limits.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::query {

@@ -8,7 +8,7 @@
 #include "pd/render/camera.hpp"
 #include "pd/render/renderer.hpp"
 #include "protocol/body_reader.hpp"
-#include "protocol/json_text.hpp"
+#include "protocol/line/json_text.hpp"
 #include "protocol/pair_reader.hpp"
 #include "python/arrays.hpp"
 #include "support/refusal.hpp"

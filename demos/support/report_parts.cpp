@@ -6,7 +6,7 @@
 
 #include "audit/audit_stream.hpp"
 #include "audit/contact_figure.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "report/html_text.hpp"
 #include "report/page.hpp"
 

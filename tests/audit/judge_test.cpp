@@ -7,7 +7,7 @@
 #include "audit/exact_depth.hpp"
 #include "audit/surface_distance.hpp"
 #include "pd/depth/difference_queries.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "record_text.hpp"
 #include "scenes/shape_families.hpp"
 

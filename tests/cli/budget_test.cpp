@@ -12,7 +12,7 @@
 #include <sstream>
 #include <vector>
 
-#include "protocol/line_budget.hpp"
+#include "protocol/stream/line_budget.hpp"
 #include "protocol_lines.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
 /// @file
 /// The reader of JSON against nlohmann's parser: the same verdict and the same events, on whole and on spoilt text.
-#include "protocol/json_reader.hpp"
+#include "protocol/line/json_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 /// @file
 /// Strict reading: everything that is not one JSON object is bad_json, and the id comes back wherever it can be read.
-#include "protocol/json_text.hpp"
+#include "protocol/line/json_text.hpp"
 
 #include <bit>
 #include <cmath>
 #include <random>
 
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 #include "protocol_lines.hpp"
 
 namespace pd::test {

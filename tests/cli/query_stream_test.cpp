@@ -1,6 +1,6 @@
 /// @file
 /// The stream: order, limits and flushing, by one thread and by several.
-#include "protocol/query_stream.hpp"
+#include "protocol/stream/query_stream.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

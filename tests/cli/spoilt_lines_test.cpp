@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "protocol/handlers.hpp"
-#include "protocol/line_budget.hpp"
+#include "protocol/stream/line_budget.hpp"
 #include "protocol_lines.hpp"
 
 namespace pd::test {

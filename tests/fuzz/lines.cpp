@@ -7,8 +7,8 @@
 
 #include "fuzz/input.hpp"
 #include "protocol/answer_line.hpp"
-#include "protocol/json_text.hpp"
-#include "protocol/line_budget.hpp"
+#include "protocol/line/json_text.hpp"
+#include "protocol/stream/line_budget.hpp"
 
 namespace {
 

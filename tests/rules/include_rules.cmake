@@ -13,6 +13,7 @@
 #   3. engine_glue and render stand on pd_core's public headers and do not see each other; neither knows demos or tests.
 #   4. Nothing outside pd_core includes pd_core/src, except tests.
 #   5. demos/scenes stands on pd_core (and Bullet); tests see of demos nothing but scenes, and tests/cli, tests/audit and tests/fuzz the command's parts.
+#      In demos/protocol the values of a line (line) stand below the queries, and streams of lines (stream) above them.
 #   6. demos/python stands on the core, the renderer and the demos' libraries (protocol, mesh, audit, support); nobody includes it.
 #   7. engine_glue/src stands in rooms, lowest first in glue_rooms; each includes itself and those named in rooms_under_* below.
 # With -DGRAPH=<file> it also writes those arrows, their number of includes beside them, for Graphviz.
@@ -206,6 +207,11 @@ function(check_include file line path)
   endif()
   if(file MATCHES "^demos/scenes/" AND path MATCHES "^(cli|protocol|mesh|support|audit|agarwal|report|oracle)/|^pd/render/")
     report(${file} "${line}" "scenes are shared by demos and tests and include neither")
+  endif()
+  if(file MATCHES "^demos/protocol/line/" AND path MATCHES "^protocol/" AND NOT path MATCHES "^protocol/line/")
+    report(${file} "${line}" "protocol/line stands below the queries")
+  elseif(file MATCHES "^demos/protocol/[^/]+$" AND path MATCHES "^protocol/stream/")
+    report(${file} "${line}" "protocol/stream stands above the queries")
   endif()
   if(path MATCHES "^python/" AND NOT file MATCHES "^demos/python/")
     report(${file} "${line}" "nobody includes demos/python")

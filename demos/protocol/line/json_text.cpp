@@ -1,4 +1,4 @@
-#include "protocol/json_text.hpp"
+#include "protocol/line/json_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/bounded_line.hpp"
-#include "protocol/json_reader.hpp"
-#include "protocol/json_writer.hpp"
-#include "protocol/limits.hpp"
+#include "protocol/line/bounded_line.hpp"
+#include "protocol/line/json_reader.hpp"
+#include "protocol/line/json_writer.hpp"
+#include "protocol/line/limits.hpp"
 
 namespace pd::query {
 

@@ -2,9 +2,9 @@
 /// A stream of lines answered in order, by one thread or by several.
 #pragma once
 
-#include "protocol/limits.hpp"
-#include "protocol/line_budget.hpp"
-#include "protocol/line_recorder.hpp"
+#include "protocol/line/limits.hpp"
+#include "protocol/stream/line_budget.hpp"
+#include "protocol/stream/line_recorder.hpp"
 
 namespace pd::query {
 

@@ -1,10 +1,11 @@
-#include "protocol/field_reader.hpp"
+#include "protocol/line/field_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/bounded_line.hpp"
-#include "protocol/json_writer.hpp"
+#include "protocol/line/bounded_line.hpp"
+#include "protocol/line/json_writer.hpp"
+#include "protocol/line/line_notes.hpp"
 
 namespace pd::query {
 
@@ -76,10 +77,14 @@ std::size_t Node::size() const {
   return rows ? rows->count : value_->size();
 }
 
-void Node::remark(std::string word) const {
+LineNotes* Node::notes() const {
   const Node* root = this;
   while (root->parent_ != nullptr) root = root->parent_;
-  if (root->remarks_ != nullptr) root->remarks_->push_back({path(), std::move(word)});
+  return root->notes_;
+}
+
+void Node::remark(std::string word) const {
+  if (LineNotes* const line = notes()) line->remarks.push_back({path(), std::move(word)});
 }
 
 void Node::refuse(std::string_view code, std::string message) const { query::refuse(code, std::move(message), path()); }

@@ -1,4 +1,4 @@
-#include "protocol/line_recorder.hpp"
+#include "protocol/stream/line_recorder.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "protocol/line_source.hpp"
+#include "protocol/line/line_source.hpp"
 
 namespace pd::query {
 

@@ -1,4 +1,4 @@
-#include "protocol/line_budget.hpp"
+#include "protocol/stream/line_budget.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -14,7 +14,7 @@
 #include <optional>
 #include <utility>
 
-#include "protocol/line_source.hpp"
+#include "protocol/line/line_source.hpp"
 
 namespace pd::query {
 

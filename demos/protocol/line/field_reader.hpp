@@ -13,22 +13,18 @@
 
 #include "pd/numeric/expected.hpp"
 #include "pd/numeric/vector.hpp"
-#include "protocol/json_text.hpp"
+#include "protocol/line/json_text.hpp"
 
 namespace pd::query {
 
-/// What an answer must say about a part of its line: its path, and a word.
-struct Remark {
-  std::string path;
-  std::string word;
-};
+struct LineNotes;
 
 /// A JSON value and its place in the line. Refers to its parent, which must outlive it; no path is built before a
 /// refusal. A list that the reader has packed is an array here: its rows are made on demand.
 class Node {
  public:
-  /// @param remarks  where `remark` writes; may be null
-  explicit Node(const Json& root, std::vector<Remark>* remarks = nullptr) : value_(&root), remarks_(remarks) {}
+  /// @param notes  of the line; may be null
+  explicit Node(const Json& root, LineNotes* notes = nullptr) : value_(&root), notes_(notes) {}
 
   [[nodiscard]] const Json& json() const { return *value_; }
   /// "a.vertices[3]"; empty for the line itself.
@@ -42,6 +38,8 @@ class Node {
   [[nodiscard]] Node element(std::size_t index) const;
   [[nodiscard]] std::size_t size() const;
 
+  /// The notes of the line that this node is a part of, or null.
+  [[nodiscard]] LineNotes* notes() const;
   /// Has the answer say a word about this node.
   void remark(std::string word) const;
   [[noreturn]] void refuse(std::string_view code, std::string message) const;
@@ -57,7 +55,7 @@ class Node {
   const Node* parent_ = nullptr;
   std::string_view key_;
   std::size_t index_ = 0;
-  std::vector<Remark>* remarks_ = nullptr;  ///< of the root
+  LineNotes* notes_ = nullptr;  ///< of the root
 };
 
 /// Refuses a value that is no object (bad_value).

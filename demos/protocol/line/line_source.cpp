@@ -1,4 +1,4 @@
-#include "protocol/line_source.hpp"
+#include "protocol/line/line_source.hpp"
 
 #include <unistd.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pd/numeric/vector.hpp"
-#include "protocol/json_text.hpp"
+#include "protocol/line/json_text.hpp"
 
 namespace pd::query {
 

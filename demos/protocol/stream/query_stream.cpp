@@ -1,4 +1,4 @@
-#include "protocol/query_stream.hpp"
+#include "protocol/stream/query_stream.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "protocol/answer_line.hpp"
-#include "protocol/json_text.hpp"
-#include "protocol/line_source.hpp"
+#include "protocol/line/json_text.hpp"
+#include "protocol/line/line_source.hpp"
 
 namespace pd::query {
 

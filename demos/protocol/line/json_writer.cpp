@@ -1,4 +1,4 @@
-#include "protocol/json_writer.hpp"
+#include "protocol/line/json_writer.hpp"
 
 #include <cassert>
 #include <charconv>
