@@ -55,7 +55,7 @@ constexpr std::int64_t kMostChecked = 50'000'000;
 struct CheckedMesh {
   std::string file;
   query::MeshPoints mesh;
-  MeshReport report;
+  SurfaceReport report;
   ConvexPolytope hull;
 
   [[nodiscard]] double volume(double relative) const { return relative * std::pow(report.size, 3); }
@@ -122,7 +122,7 @@ void print_judged(const CheckedMesh& checked, std::string_view name, MeshFault f
 }
 
 std::string verdict(const CheckedMesh& checked) {
-  const MeshReport& report = checked.report;
+  const SurfaceReport& report = checked.report;
   if (report.faces == 0) return "The file holds points and no faces: it bounds no solid.";
   if (!report.solid()) return "The faces do not bound a solid. What is in the way stands below.";
   if (!report.crossings_searched) return "No fault was found; faces that cross were not searched to the end.";
@@ -130,7 +130,7 @@ std::string verdict(const CheckedMesh& checked) {
 }
 
 void print_report(const CheckedMesh& checked) {
-  const MeshReport& report = checked.report;
+  const SurfaceReport& report = checked.report;
   fmt::print("\n  {}\n\n  {}\n\n", checked.file, verdict(checked));
   const std::int64_t repeated = report.points - report.vertices;
   print_row("points", fmt::format("{}{}", report.points,
@@ -172,7 +172,7 @@ void print_report(const CheckedMesh& checked) {
 // ---- for programs ------------------------------------------------------------------------------------------------
 
 void print_json(const CheckedMesh& checked) {
-  const MeshReport& report = checked.report;
+  const SurfaceReport& report = checked.report;
   std::string out;
   query::JsonWriter writer(out);
   writer.begin_object();
@@ -205,7 +205,7 @@ void print_json(const CheckedMesh& checked) {
 
 /// Does the word apply? Refused where it is no word of --fail-on.
 bool applies(const std::string& word, const CheckedMesh& checked) {
-  const MeshReport& report = checked.report;
+  const SurfaceReport& report = checked.report;
   if (word == "not_convex") return query::why_hull(report, checked.hull).has_value();
   if (word == "duplicate_points") return report.vertices < report.points;
   if (word == "solid") return !report.solid();

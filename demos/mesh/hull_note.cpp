@@ -9,7 +9,7 @@ namespace pd::query {
 namespace {
 
 /// Tells a person the first thing that keeps a mesh from being convex; empty for a convex mesh.
-std::string reason_of(const MeshReport& report) {
+std::string reason_of(const SurfaceReport& report) {
   if (report.faces == 0) return "the file holds points and no faces";
   if (!report.closed()) return "the mesh has holes";
   if (!report.oriented()) return "neighbouring faces of the mesh show opposite sides";
@@ -33,7 +33,7 @@ double relative_volume(const ConvexPolytope& hull, double size) {
   return sum;
 }
 
-std::optional<HullNote> why_hull(const MeshReport& report, const ConvexPolytope& hull) {
+std::optional<HullNote> why_hull(const SurfaceReport& report, const ConvexPolytope& hull) {
   const std::string reason = reason_of(report);
   if (reason.empty()) return std::nullopt;
   HullNote note{reason, hull.num_vertices(), 0};
@@ -45,7 +45,7 @@ std::optional<HullNote> why_hull(const MeshReport& report, const ConvexPolytope&
 namespace {
 
 /// Crossings are the dearest part, and nothing hangs on them here: a surface that bends nowhere inwards has none.
-Expected<MeshReport> quick_check(const MeshPoints& mesh) {
+Expected<SurfaceReport> quick_check(const MeshPoints& mesh) {
   return check_mesh({mesh.points, mesh.faces.offsets, mesh.faces.corners}, {.crossings = false});
 }
 

@@ -24,7 +24,7 @@ struct HullNote {
 /// Nothing where the file's faces are the boundary of its hull, to kMeshPrecision.
 [[nodiscard]] std::optional<HullNote> why_hull(const MeshPoints& mesh, const ConvexPolytope& hull);
 /// Says it for a mesh whose report is there.
-[[nodiscard]] std::optional<HullNote> why_hull(const MeshReport& report, const ConvexPolytope& hull);
+[[nodiscard]] std::optional<HullNote> why_hull(const SurfaceReport& report, const ConvexPolytope& hull);
 
 /// Volume of a hull divided by the cube of `size`.
 [[nodiscard]] double relative_volume(const ConvexPolytope& hull, double size);

@@ -26,10 +26,10 @@ struct Mesh {
     corners.insert(corners.end(), loop.begin(), loop.end());
     offsets.push_back(static_cast<std::int32_t>(corners.size()));
   }
-  [[nodiscard]] MeshReport check() const {
+  [[nodiscard]] SurfaceReport check() const {
     const auto report = check_mesh({points, offsets, corners});
     EXPECT_TRUE(report) << (report ? "" : report.error().message);
-    return report ? *report : MeshReport{};
+    return report ? *report : SurfaceReport{};
   }
   /// The loop of each face the other way.
   [[nodiscard]] Mesh turned() const {
@@ -94,7 +94,7 @@ constexpr std::array<std::int64_t, kMeshFaults> kNone{};
 
 TEST(MeshCheck, ABoxIsASolidAndConvex) {
   for (const Mesh& mesh : {box(-1, 2), soup(box(-1, 2))}) {
-    const MeshReport report = mesh.check();
+    const SurfaceReport report = mesh.check();
     EXPECT_EQ(report.counts, kNone);
     EXPECT_TRUE(report.solid());
     EXPECT_TRUE(report.convex);
@@ -107,7 +107,7 @@ TEST(MeshCheck, ABoxIsASolidAndConvex) {
 }
 
 TEST(MeshCheck, AnAngleBracketIsASolidAndNotConvex) {
-  const MeshReport report = angle_bracket().check();
+  const SurfaceReport report = angle_bracket().check();
   EXPECT_EQ(report.counts, kNone);
   EXPECT_TRUE(report.solid());
   EXPECT_FALSE(report.convex);
@@ -116,7 +116,7 @@ TEST(MeshCheck, AnAngleBracketIsASolidAndNotConvex) {
 
 TEST(MeshCheck, AThinSlitIsNotConvexAndRoundedNumbersAre) {
   // The slit is 1e-3 wide and takes 1e-4 of the volume; its bottom ends on the sides of the box.
-  const MeshReport slit = prism({{0, 0}, {1, 0}, {1, 1}, {0.501, 1}, {0.5, 0.9}, {0.5, 1}, {0, 1}}, 0, 1).check();
+  const SurfaceReport slit = prism({{0, 0}, {1, 0}, {1, 1}, {0.501, 1}, {0.5, 0.9}, {0.5, 1}, {0, 1}}, 0, 1).check();
   EXPECT_TRUE(slit.solid());
   EXPECT_FALSE(slit.convex);
   // A cylinder of 100 sides, turned, its corners rounded to six digits: flat faces bend by as much.
@@ -128,7 +128,7 @@ TEST(MeshCheck, AThinSlitIsNotConvexAndRoundedNumbersAre) {
              -0.48 * p.x() + 0.64 * p.y() + 0.6 * p.z());
     for (int k = 0; k < 3; ++k) p[k] = std::round(p[k] * 1e6) / 1e6;
   }
-  const MeshReport report = round.check();
+  const SurfaceReport report = round.check();
   EXPECT_EQ(report.counts, kNone);
   EXPECT_TRUE(report.convex);
 }
@@ -137,7 +137,7 @@ TEST(MeshCheck, NamesOpenEdgesAndFlippedFaces) {
   Mesh open = box(0, 1);
   open.corners.resize(open.corners.size() - 4);  // the lid
   open.offsets.pop_back();
-  MeshReport report = open.check();
+  SurfaceReport report = open.check();
   EXPECT_EQ(report.counts, only(MeshFault::open_edge, 4));
   ASSERT_EQ(report.findings.size(), 4u);
   EXPECT_EQ(report.findings[0].edge, (std::array<std::int32_t, 2>{4, 5}));
@@ -156,7 +156,7 @@ TEST(MeshCheck, NamesOpenEdgesAndFlippedFaces) {
 TEST(MeshCheck, NamesWhereSheetsMeet) {
   Mesh edge = box(0, 1);
   edge.append(prism({{1, 1}, {2, 1}, {2, 2}, {1, 2}}, 0, 1));
-  MeshReport report = edge.check();
+  SurfaceReport report = edge.check();
   EXPECT_EQ(report.counts, only(MeshFault::not_manifold, 1)) << "an edge of four faces";
   EXPECT_EQ(report.findings[0].edge, (std::array<std::int32_t, 2>{2, 6}));
 
@@ -171,7 +171,7 @@ TEST(MeshCheck, NamesWhereSheetsMeet) {
 TEST(MeshCheck, NamesCrossingFaces) {
   Mesh crossed = box(0, 1);
   crossed.append(prism({{0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}}, 0.5, 1.5));
-  MeshReport report = crossed.check();
+  SurfaceReport report = crossed.check();
   EXPECT_EQ(report.count(MeshFault::self_crossing), 4) << "the lid and the four sides that pass through it";
   EXPECT_TRUE(report.closed() && report.oriented() && report.manifold());
   EXPECT_FALSE(report.solid());
@@ -193,7 +193,7 @@ TEST(MeshCheck, NamesCrossingFaces) {
 TEST(MeshCheck, CavitiesAreNotInsideOut) {
   Mesh hollow = box(0, 3);
   hollow.append(box(1, 2).turned());
-  const MeshReport report = hollow.check();
+  const SurfaceReport report = hollow.check();
   EXPECT_EQ(report.counts, kNone);
   EXPECT_TRUE(report.solid());
   EXPECT_FALSE(report.convex) << "two shells";
@@ -221,7 +221,7 @@ TEST(MeshCheck, DegenerateFacesOfAClosedMeshAreHarmless) {
   mesh.points.emplace_back(1, 0, 0);
   mesh.points.emplace_back(0, 0, 0);
   mesh.face({last, last + 1, last + 2});
-  const MeshReport report = mesh.check();
+  const SurfaceReport report = mesh.check();
   EXPECT_EQ(report.counts, only(MeshFault::degenerate_face, 1));
   EXPECT_TRUE(report.solid());
   EXPECT_TRUE(report.convex);
@@ -231,7 +231,7 @@ TEST(MeshCheck, SizesFromOneEndOfTheDoublesToTheOther) {
   for (const double size : {1e-300, 1e-150, 1.0, 1e150, 1e299}) {
     Mesh mesh = angle_bracket();
     for (Vec3& p : mesh.points) p *= size;
-    const MeshReport report = mesh.check();
+    const SurfaceReport report = mesh.check();
     EXPECT_EQ(report.counts, kNone) << size;
     EXPECT_FALSE(report.convex) << size;
     Mesh cube = box(0, 1);

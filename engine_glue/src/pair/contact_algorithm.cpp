@@ -125,7 +125,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
     // compared.
     const std::uint64_t stamp = first ? 0 : world_.stamp();
-    const BoxCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
+    const SharpCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
     PairAnswer answer;
     ContactManifold points;
     const PairQuestion asked{.a = shape_a,

@@ -14,10 +14,10 @@ constexpr btScalar kSamePlace = btScalar(0.9);
 struct Entries {
   std::array<btManifoldPoint*, 4> at;
 
-  [[nodiscard]] LaneVectors gather(btVector3 btManifoldPoint::*member) const {
+  [[nodiscard]] FourVectors gather(btVector3 btManifoldPoint::*member) const {
     return detail::gather({&(at[0]->*member), &(at[1]->*member), &(at[2]->*member), &(at[3]->*member)});
   }
-  void scatter(const LaneVectors& v, btVector3 btManifoldPoint::*member) const {
+  void scatter(const FourVectors& v, btVector3 btManifoldPoint::*member) const {
     Lanes out[4];
     spread(v, out);
     for (std::size_t k = 0; k < 4; ++k) __builtin_memcpy((at[k]->*member).m_floats, &out[k], sizeof(Lanes));
@@ -115,7 +115,7 @@ struct Normals<true> {
 };
 template <>
 struct Normals<false> {
-  LaneVectors all;
+  FourVectors all;
   explicit Normals(const FreshPoint* const (&points)[4])
       : all(gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal})) {}
 };
@@ -136,29 +136,29 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
   const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
   const btScalar threshold = manifold.getContactBreakingThreshold();
   const FreshPoint* const points[4] = {&new_point(0), &new_point(1), &new_point(2), &new_point(3)};
-  const LaneVectors world_b =
+  const FourVectors world_b =
       gather({&points[0]->point_on_b, &points[1]->point_on_b, &points[2]->point_on_b, &points[3]->point_on_b});
   const Normals<one_piece> normals(points);
   const auto& normal = normals.all;
-  const LaneVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
+  const FourVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
                                                              points[2]->distance, points[3]->distance});
-  const LaneVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
-  const LaneVectors old_b = entries.gather(&btManifoldPoint::m_localPointB);
+  const FourVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
+  const FourVectors old_b = entries.gather(&btManifoldPoint::m_localPointB);
 
   // From today's points to the anchor's material points where they are today.
-  const LaneVectors way_a = apply(pose_a, old_a) - world_a;
+  const FourVectors way_a = apply(pose_a, old_a) - world_a;
   if (known == PlacesKnown::no) {
     Lanes moved;
     dot(way_a, way_a, moved);
     if (!all(moved < kSamePlace * threshold * threshold)) return false;
   }
-  const LaneVectors way_b = apply(pose_b, old_b) - world_b;
+  const FourVectors way_b = apply(pose_b, old_b) - world_b;
   Lanes height_a, height_b, length_a, length_b, length_slip;
   dot(way_a, normal, height_a);
   dot(way_b, normal, height_b);
-  const LaneVectors lift_a = scaled(normal, height_a), lift_b = scaled(normal, height_b);
-  const LaneVectors along_a = way_a - lift_a, along_b = way_b - lift_b;
-  const LaneVectors slip = along_a - along_b;
+  const FourVectors lift_a = scaled(normal, height_a), lift_b = scaled(normal, height_b);
+  const FourVectors along_a = way_a - lift_a, along_b = way_b - lift_b;
+  const FourVectors slip = along_a - along_b;
   dot(along_a, along_a, length_a);
   dot(along_b, along_b, length_b);
   dot(slip, slip, length_slip);
@@ -166,9 +166,9 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
   LaneFlags held;
   friction_held(entries, held);
   held &= ~((length_a > reach * reach) | (length_b > reach * reach) | (length_slip > allowed * allowed));
-  LaneVectors local_a = old_a - turn_back(pose_a, lift_a);
-  LaneVectors local_b = old_b - turn_back(pose_b, lift_b);
-  LaneVectors shown_a = world_a + slip;
+  FourVectors local_a = old_a - turn_back(pose_a, lift_a);
+  FourVectors local_b = old_b - turn_back(pose_b, lift_b);
+  FourVectors shown_a = world_a + slip;
   if (!all(held)) {
     local_a = select(held, local_a, apply_inverse(pose_a, world_a));
     local_b = select(held, local_b, apply_inverse(pose_b, world_b));

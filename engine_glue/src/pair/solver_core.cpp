@@ -63,7 +63,7 @@ SolverCore::Outcome SolverCore::place(const PairQuestion& question, ThreadBuffer
     counters.refused_poses.add();
     return Outcome::refused;
   }
-  const BoxCorners& corners = question.corners;
+  const SharpCorners& corners = question.corners;
   const bool pair = corners.sharp_pair && found_a.sharp && found_b.sharp;
   const bool sharp_a = found_a.sharp && (pair || corners.sharp_a), sharp_b = found_b.sharp && (pair || corners.sharp_b);
   out.a = {(sharp_a ? found_a.sharp : found_a.body).get(), to_pd(question.pose_a)};

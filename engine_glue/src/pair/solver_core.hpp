@@ -28,13 +28,13 @@ namespace pd::detail {
 class SolverInWorld;
 
 /// Which btBoxShapes are taken without their margins; the others as Bullet's GJK sees every shape, core and margin.
-struct BoxCorners {
+struct SharpCorners {
   bool sharp_pair = false;  ///< two of them, as Bullet's own box/box algorithm takes them
   bool sharp_a = false;     ///< A as a part of a compound: rounded, flush boxes would have grooves between them
   bool sharp_b = false;
 };
-inline constexpr BoxCorners kRoundedBoxes{};
-inline constexpr BoxCorners kSharpBoxPair{true, false, false};
+inline constexpr SharpCorners kRoundedBoxes{};
+inline constexpr SharpCorners kSharpBoxPair{true, false, false};
 
 /// Closest points however far apart the bodies are.
 inline constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ struct PairQuestion {
   std::array<std::shared_ptr<CachedShape>, 2>& shapes;  ///< as found earlier: the pair's memory, or the buffers' last
   WarmCertificate* warm = nullptr;                      ///< of this pair, or nullptr
   std::uint64_t stamp = 0;  ///< of this step of this world (`BulletShapeCache::find`), 0: unknown
-  BoxCorners corners = kRoundedBoxes;
+  SharpCorners corners = kRoundedBoxes;
   double beyond = kAnyDistance;  ///< that the bodies are farther apart than this is all there is to know then
   bool boxes_asked = false;      ///< `box_contacts` had no answer
   bool shapes_current = false;   ///< `shapes` are those of this step

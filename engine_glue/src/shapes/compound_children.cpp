@@ -18,21 +18,21 @@ bool is_empty(const btCollisionShape& child) { return child.getShapeType() == EM
 
 }  // namespace
 
-Box box_of(const btCollisionShape& shape, const btTransform& pose) {
-  Box box;
+ChildBox box_of(const btCollisionShape& shape, const btTransform& pose) {
+  ChildBox box;
   shape.getAabb(pose, box.lower, box.upper);
   return box;
 }
 
-bool apart(const Box& a, const Box& b, btScalar reach) {
+bool apart(const ChildBox& a, const ChildBox& b, btScalar reach) {
   for (int i = 0; i < 3; ++i) {
     if (a.lower[i] > b.upper[i] + reach || b.lower[i] > a.upper[i] + reach) return true;
   }
   return false;
 }
 
-void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
-                   std::vector<Child>& children) {
+void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& local, const ChildBox& world,
+                   btScalar reach, std::vector<Child>& children) {
   children.clear();
   const btCollisionShape& shape = *wrapper.getCollisionShape();
   const btTransform& pose = wrapper.getWorldTransform();

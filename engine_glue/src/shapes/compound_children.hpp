@@ -9,7 +9,7 @@
 
 namespace pd::detail {
 
-struct Box {
+struct ChildBox {
   btVector3 lower;
   btVector3 upper;
 };
@@ -19,18 +19,18 @@ struct Child {
   const btCollisionShape* shape;
   btTransform pose;
   int index;
-  Box box;  ///< in the world
+  ChildBox box;  ///< in the world
 };
 
 /// Of a shape as it stands, with what Bullet adds.
-Box box_of(const btCollisionShape& shape, const btTransform& pose);
+ChildBox box_of(const btCollisionShape& shape, const btTransform& pose);
 
-bool apart(const Box& a, const Box& b, btScalar reach);
+bool apart(const ChildBox& a, const ChildBox& b, btScalar reach);
 
 /// The children whose boxes come within `reach` of a box (`local`: in the compound's frame), by number, but empty ones.
 /// Of a shape that is no compound: itself.
-void children_near(const btCollisionObjectWrapper& wrapper, const Box& local, const Box& world, btScalar reach,
-                   std::vector<Child>& children);
+void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& local, const ChildBox& world,
+                   btScalar reach, std::vector<Child>& children);
 
 /// The children that the host lets meet `other` (`gCompoundChildShapePairCallback`), wherever they are and without
 /// their boxes, but empty ones and those whose place is no number. Of a shape that is no compound: itself.

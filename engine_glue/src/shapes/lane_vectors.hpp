@@ -18,18 +18,18 @@ using LaneInteger = std::conditional_t<sizeof(btScalar) == sizeof(float), std::i
 /// Of comparisons: all bits of a lane, or none.
 typedef LaneInteger LaneFlags __attribute__((vector_size(4 * sizeof(btScalar))));
 
-struct LaneVectors {
+struct FourVectors {
   Lanes x, y, z;
 };
 
-inline LaneVectors operator+(const LaneVectors& u, const LaneVectors& v) { return {u.x + v.x, u.y + v.y, u.z + v.z}; }
-inline LaneVectors operator-(const LaneVectors& u, const LaneVectors& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
+inline FourVectors operator+(const FourVectors& u, const FourVectors& v) { return {u.x + v.x, u.y + v.y, u.z + v.z}; }
+inline FourVectors operator-(const FourVectors& u, const FourVectors& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
 /// v s, a factor for each lane.
-inline LaneVectors scaled(const LaneVectors& v, const Lanes& s) { return {v.x * s, v.y * s, v.z * s}; }
-inline LaneVectors scaled(const btVector3& v, const Lanes& s) { return {v.x() * s, v.y() * s, v.z() * s}; }
-inline void dot(const LaneVectors& u, const LaneVectors& v, Lanes& out) { out = u.x * v.x + u.y * v.y + u.z * v.z; }
-inline void dot(const LaneVectors& u, const btVector3& v, Lanes& out) { out = u.x * v.x() + u.y * v.y() + u.z * v.z(); }
-inline LaneVectors select(const LaneFlags& flags, const LaneVectors& u, const LaneVectors& v) {
+inline FourVectors scaled(const FourVectors& v, const Lanes& s) { return {v.x * s, v.y * s, v.z * s}; }
+inline FourVectors scaled(const btVector3& v, const Lanes& s) { return {v.x() * s, v.y() * s, v.z() * s}; }
+inline void dot(const FourVectors& u, const FourVectors& v, Lanes& out) { out = u.x * v.x + u.y * v.y + u.z * v.z; }
+inline void dot(const FourVectors& u, const btVector3& v, Lanes& out) { out = u.x * v.x() + u.y * v.y() + u.z * v.z(); }
+inline FourVectors select(const LaneFlags& flags, const FourVectors& u, const FourVectors& v) {
   return {flags ? u.x : v.x, flags ? u.y : v.y, flags ? u.z : v.z};
 }
 inline bool all(const LaneFlags& flags) {
@@ -40,7 +40,7 @@ inline bool all(const LaneFlags& flags) {
   return both == ~std::uint64_t{0};
 }
 
-inline LaneVectors gather(const std::array<const btVector3*, 4>& from) {
+inline FourVectors gather(const std::array<const btVector3*, 4>& from) {
   Lanes v[4];
   for (std::size_t k = 0; k < 4; ++k) load_lanes(*from[k], v[k]);
   const Lanes xy_low = __builtin_shufflevector(v[0], v[1], 0, 4, 1, 5);
@@ -52,7 +52,7 @@ inline LaneVectors gather(const std::array<const btVector3*, 4>& from) {
 }
 
 /// The vectors one by one, their fourth number 0.
-inline void spread(const LaneVectors& v, Lanes (&out)[4]) {
+inline void spread(const FourVectors& v, Lanes (&out)[4]) {
   const Lanes zero = {0, 0, 0, 0};
   const Lanes xy_low = __builtin_shufflevector(v.x, v.y, 0, 4, 1, 5);
   const Lanes xy_high = __builtin_shufflevector(v.x, v.y, 2, 6, 3, 7);
@@ -65,9 +65,9 @@ inline void spread(const LaneVectors& v, Lanes (&out)[4]) {
 }
 
 /// transform(v)
-inline LaneVectors apply(const btTransform& transform, const LaneVectors& v) {
+inline FourVectors apply(const btTransform& transform, const FourVectors& v) {
   const btMatrix3x3& rows = transform.getBasis();
-  LaneVectors out;
+  FourVectors out;
   dot(v, rows[0], out.x);
   dot(v, rows[1], out.y);
   dot(v, rows[2], out.z);
@@ -76,7 +76,7 @@ inline LaneVectors apply(const btTransform& transform, const LaneVectors& v) {
 }
 
 /// v * transform.getBasis()
-inline LaneVectors turn_back(const btTransform& transform, const LaneVectors& v) {
+inline FourVectors turn_back(const btTransform& transform, const FourVectors& v) {
   const btMatrix3x3& rows = transform.getBasis();
   return {v.x * rows[0].x() + v.y * rows[1].x() + v.z * rows[2].x(),
           v.x * rows[0].y() + v.y * rows[1].y() + v.z * rows[2].y(),
@@ -84,7 +84,7 @@ inline LaneVectors turn_back(const btTransform& transform, const LaneVectors& v)
 }
 
 /// transform.invXform(v)
-inline LaneVectors apply_inverse(const btTransform& transform, const LaneVectors& v) {
+inline FourVectors apply_inverse(const btTransform& transform, const FourVectors& v) {
   const btVector3& origin = transform.getOrigin();
   return turn_back(transform, {v.x - origin.x(), v.y - origin.y(), v.z - origin.z()});
 }

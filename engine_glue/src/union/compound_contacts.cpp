@@ -90,7 +90,7 @@ bool still_apart(const PieceMemory& memory, const ChildMotion& a, const ChildMot
 
 /// Up to which gap the solver can need points of two children in this step: they lie within the threshold of both
 /// boxes.
-btScalar reach_of(const Box& a, const Box& b, const StepReach& reach, btScalar threshold) {
+btScalar reach_of(const ChildBox& a, const ChildBox& b, const StepReach& reach, btScalar threshold) {
   btVector3 lower = a.lower, upper = a.upper;
   lower.setMax(b.lower);
   upper.setMin(b.upper);

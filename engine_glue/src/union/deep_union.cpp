@@ -98,7 +98,7 @@ bool DeepUnion::deepest_pair_leads_out(ThreadBuffers& buffers) const {
     const PosedShape moved{a_.posed[i].shape, Pose::from_trusted_matrix(a_.posed[i].pose.rotation(),
                                                                         a_.posed[i].pose.translation() + way)};
     const Child& child_a = a_.children[i];
-    const Box box_a{child_a.box.lower + to_bullet(way), child_a.box.upper + to_bullet(way)};
+    const ChildBox box_a{child_a.box.lower + to_bullet(way), child_a.box.upper + to_bullet(way)};
     for (std::size_t j = 0; j < b_.posed.size(); ++j) {
       const Child& child_b = b_.children[j];
       if (child_a.index == child_a_ && child_b.index == child_b_) continue;

@@ -40,7 +40,7 @@ Rounded time_of(const ConvexPolygon& p, const ConvexPolygon& q, const ExitEdge& 
   const detail::PolygonEdge& e = exit.edge;
   const detail::Span ray{{y, {0, 0}}, {{0, 0}, d}, {}};
   const detail::Span edge{{p.vertex(exit.parts.vertex_p), q.vertex(exit.parts.vertex_q)},
-                          e.sign > 0 ? detail::Direction{*e.from, *e.to} : detail::Direction{*e.to, *e.from},
+                          e.sign > 0 ? detail::PlaneDirection{*e.from, *e.to} : detail::PlaneDirection{*e.to, *e.from},
                           {}};
   if (const auto r = detail::rounded_crossing(ray, d, edge)) return {r->lower, r->upper};
   const auto [numerator, denominator] = detail::crossing_time<Dyadic>(p, q, exit, y, d);

@@ -252,7 +252,7 @@ std::optional<Error> check_sides(const Surface& s, const std::vector<std::int32_
 /// Compares the rims of the coplanar patches with the facets of the hull.
 std::optional<Error> check_patches(const Surface& s, const std::vector<std::int32_t>& spans,
                                    const ConvexPolytope& hull) {
-  detail::DisjointSets patches(s.num_faces());
+  detail::DisjointSets patches(size(s.num_faces()));
   const auto edges = static_cast<std::int32_t>(s.corners.size());
   std::vector<bool> rim(s.corners.size());
   for (std::int32_t e = 0; e < edges; ++e) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "numeric/floating_point_guard.hpp"
+#include "shape/hull/disjoint_sets.hpp"
 #include "shape/mesh/polygon_triangles.hpp"
 #include "shape/mesh/triangle_tree.hpp"
 #include "shape/mesh/welded_mesh.hpp"
@@ -81,7 +82,7 @@ std::string in_words(const MeshFinding& finding) {
   return word + "the corners of " + face + " lie on one line";
 }
 
-std::optional<MeshFinding> fault_of_solid(const MeshReport& report, bool turn_faces) {
+std::optional<MeshFinding> fault_of_solid(const SurfaceReport& report, bool turn_faces) {
   for (const MeshFinding& finding : report.findings) {
     if (finding.fault == MeshFault::degenerate_face) continue;
     if (finding.fault == MeshFault::inside_out && turn_faces && report.relative_volume < 0) continue;
@@ -91,12 +92,12 @@ std::optional<MeshFinding> fault_of_solid(const MeshReport& report, bool turn_fa
 }
 
 Expected<MeshSolid> MeshSolid::from_faces(const MeshView& mesh, const MeshSolidSettings& settings) {
-  const Expected<MeshReport> report = check_mesh(mesh);
+  const Expected<SurfaceReport> report = check_mesh(mesh);
   if (!report) return report.error();
   return from_checked(mesh, *report, settings);
 }
 
-Expected<MeshSolid> MeshSolid::from_checked(const MeshView& mesh, const MeshReport& report,
+Expected<MeshSolid> MeshSolid::from_checked(const MeshView& mesh, const SurfaceReport& report,
                                             const MeshSolidSettings& settings) {
   const detail::FloatingPointGuard guard;
   if (report.faces == 0) return Error{ErrorCode::bad_faces, "a solid needs faces; there are points alone", "faces"};
@@ -110,9 +111,9 @@ Expected<MeshSolid> MeshSolid::from_checked(const MeshView& mesh, const MeshRepo
   if (report.count(MeshFault::inside_out) > 0) {
     const TurnedMesh turned(mesh);
     const MeshView view{mesh.points, mesh.offsets, turned.corners};
-    Expected<MeshReport> again = check_mesh(view, {.crossings = false});
+    Expected<SurfaceReport> again = check_mesh(view, {.crossings = false});
     if (!again) return again.error();
-    MeshReport found = *std::move(again);
+    SurfaceReport found = *std::move(again);
     found.crossings_searched = true;
     return from_checked(view, found, {});
   }
@@ -198,7 +199,7 @@ std::optional<Error> MeshSolid::arrange() {
     const EdgeSide& y = sides[i + 1];
     triangles_[static_cast<std::size_t>(x.triangle)].neighbours[static_cast<std::size_t>(x.edge)] = y.triangle;
     triangles_[static_cast<std::size_t>(y.triangle)].neighbours[static_cast<std::size_t>(y.edge)] = x.triangle;
-    shells.join(x.triangle, y.triangle);
+    shells.unite(x.triangle, y.triangle);
   }
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto root = static_cast<std::size_t>(shells.find(static_cast<std::int32_t>(t)));

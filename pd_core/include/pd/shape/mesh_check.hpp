@@ -45,7 +45,7 @@ struct MeshFinding {
   std::array<std::int32_t, 2> faces = {-1, -1};  ///< two of the faces in question
 };
 
-struct MeshReport {
+struct SurfaceReport {
   std::int64_t points = 0;    ///< as given
   std::int64_t vertices = 0;  ///< distinct points
   std::int64_t faces = 0;
@@ -98,6 +98,6 @@ struct MeshView {
 ///
 /// Time O(n log n) for n corners without crossings. Their search visits pairs of faces whose boxes meet, up to 64 n +
 /// 10^6 of them.
-[[nodiscard]] Expected<MeshReport> check_mesh(const MeshView& mesh, const MeshCheckSettings& settings = {});
+[[nodiscard]] Expected<SurfaceReport> check_mesh(const MeshView& mesh, const MeshCheckSettings& settings = {});
 
 }  // namespace pd

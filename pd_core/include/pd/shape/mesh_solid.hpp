@@ -41,7 +41,7 @@ class MeshSolid {
   static Expected<MeshSolid> from_faces(const MeshView& mesh, const MeshSolidSettings& settings = {});
 
   /// Takes a report of the mesh, whose crossings were searched, instead of checking it again.
-  static Expected<MeshSolid> from_checked(const MeshView& mesh, const MeshReport& report,
+  static Expected<MeshSolid> from_checked(const MeshView& mesh, const SurfaceReport& report,
                                           const MeshSolidSettings& settings = {});
 
   /// A convex polytope, its facets cut into triangles; vertices and faces are the polytope's own.
@@ -70,7 +70,7 @@ class MeshSolid {
 
 /// The first fault that keeps a mesh from bounding a solid, in the order of the enumeration; nothing for a solid.
 /// @param turn_faces  a mesh that is wholly inside out counts as a solid.
-[[nodiscard]] std::optional<MeshFinding> fault_of_solid(const MeshReport& report, bool turn_faces = false);
+[[nodiscard]] std::optional<MeshFinding> fault_of_solid(const SurfaceReport& report, bool turn_faces = false);
 
 /// Says for people what is wrong at a fault, and where.
 [[nodiscard]] std::string in_words(const MeshFinding& finding);

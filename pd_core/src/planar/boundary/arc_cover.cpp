@@ -54,7 +54,7 @@ void ArcCover::cut_arc(CandidateCover& cover) {
   int low = 0, high = count;  // the edges along which U reaches no farther
   bool tie = false;
   for (int k = 0; k < other().num_corners(); ++k) {
-    const Direction to_other{corner, other().corner(k)};
+    const PlaneDirection to_other{corner, other().corner(k)};
     if (to_other.from == to_other.to) continue;
     const auto sign = [&](int e) { return cross_sign(to_other, direction(e)); };
     const int first = sign(0), last = sign(count - 1);

@@ -37,7 +37,7 @@ class ArcCover {
   [[nodiscard]] int classify(int vertex, int high) const;
   [[nodiscard]] bool vertex_inside(int vertex) const;
   [[nodiscard]] SumPoint vertex(int v) const { return own().vertex((candidate_.first + v) % own().size()); }
-  [[nodiscard]] Direction direction(int e) const { return own().direction(boundary_.sum_edge(candidate_, e)); }
+  [[nodiscard]] PlaneDirection direction(int e) const { return own().direction(boundary_.sum_edge(candidate_, e)); }
   [[nodiscard]] const ConvexSum& own() const { return boundary_.sum(candidate_); }
   [[nodiscard]] const ConvexSum& other() const { return boundary_.sums()[static_cast<std::size_t>(sum_)]; }
 

@@ -19,7 +19,7 @@ double along(const Point2& direction, const Point2& p) { return direction[0] * p
 
 /// True if no neighbour of a polygon's vertex lies to the right of the line through the vertex along d, the polygon's
 /// inside being on the left.
-bool is_farthest(const Polygon& polygon, int vertex, const Direction& d) {
+bool is_farthest(const Polygon& polygon, int vertex, const PlaneDirection& d) {
   if (polygon.turn(vertex) < 0) return false;
   const Point2& at_vertex = polygon.point(vertex);
   return cross_sign({polygon.point(polygon.previous(vertex)), at_vertex}, d) >= 0 &&
@@ -115,7 +115,7 @@ void BoundaryBuilder::add_arc_candidates(int v) {
   if (p_.turn(v) < 0) return;
   // -B's edges strictly between the directions of P's edges into v and out of it; they come just before the latter.
   const NegatedChain& chain = sum.chain();
-  const Direction in{p_.point(p_.previous(v)), p_.point(v)}, out{p_.point(v), p_.point(p_.next(v))};
+  const PlaneDirection in{p_.point(p_.previous(v)), p_.point(v)}, out{p_.point(v), p_.point(p_.next(v))};
   int after_in = chain.edges_before(in);
   if (after_in < chain.size() && compare_angles(chain.edge(after_in), in) == 0) ++after_in;
   int count = chain.edges_before(out) - after_in;
@@ -130,7 +130,7 @@ int BoundaryBuilder::candidate_at(int sum_index, int edge) const {
   const std::int32_t v = sum.corners()[at(parts.a)];
   if (parts.of_triangle) return p_.next(v) == next_corner(sum, parts.a) ? 2 * v : -1;
   if (p_.turn(v) < 0) return -1;
-  const Direction d = sum.chain().edge(parts.b);
+  const PlaneDirection d = sum.chain().edge(parts.b);
   const bool between = cross_sign({p_.point(p_.previous(v)), p_.point(v)}, d) > 0 &&
                        cross_sign(d, {p_.point(v), p_.point(p_.next(v))}) > 0;
   return between ? 2 * v + 1 : -1;

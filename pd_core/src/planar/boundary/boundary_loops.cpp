@@ -57,8 +57,8 @@ bool same_point(const Junction& a, const Junction& b) {
 }
 
 /// Is direction a met before b when turning counter-clockwise from `base`?
-bool turns_before(const Direction& base, const Direction& a, const Direction& b) {
-  const auto sector = [&](const Direction& d) {
+bool turns_before(const PlaneDirection& base, const PlaneDirection& a, const PlaneDirection& b) {
+  const auto sector = [&](const PlaneDirection& d) {
     const int side = cross_sign(base, d);
     return side > 0 ? 0 : (side == 0 ? 1 : 2);
   };
@@ -88,7 +88,7 @@ class Linker {
     next_.assign(n, -1);
     for (std::size_t i = 0; i < n; ++i) {
       next_[i] = follower(i);
-      const Direction in = direction(i, true), out = direction(at(next_[i]), false);
+      const PlaneDirection in = direction(i, true), out = direction(at(next_[i]), false);
       if (cross_sign(in, out) < 0) ++reflex_points;
     }
   }
@@ -121,11 +121,13 @@ class Linker {
     const auto y = static_cast<std::int64_t>(std::floor(p[1] / cell_)) + dy;
     return static_cast<Cell>(x) * 0x9E3779B97F4A7C15u ^ (static_cast<Cell>(y) * 0xC2B2AE3D27D4EB4Fu);
   }
-  [[nodiscard]] Direction direction(std::size_t i, bool end) const { return end ? end_[i].span.d : start_[i].span.d; }
+  [[nodiscard]] PlaneDirection direction(std::size_t i, bool end) const {
+    return end ? end_[i].span.d : start_[i].span.d;
+  }
 
   [[nodiscard]] std::int32_t follower(std::size_t i) const {
     const Junction& here = end_[i];
-    const Direction back = direction(i, true).reversed();
+    const PlaneDirection back = direction(i, true).reversed();
     const double fx = here.rounded[0] / cell_ - std::floor(here.rounded[0] / cell_);
     const double fy = here.rounded[1] / cell_ - std::floor(here.rounded[1] / cell_);
     std::int32_t best = -1;

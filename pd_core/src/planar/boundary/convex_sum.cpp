@@ -29,7 +29,7 @@ Box2 NegatedChain::box(int first, int count) const {
   return box;
 }
 
-int NegatedChain::edges_before(const Direction& d) const {
+int NegatedChain::edges_before(const PlaneDirection& d) const {
   int low = 0, high = size_;
   while (low < high) {
     const int middle = (low + high) / 2;
@@ -46,7 +46,7 @@ ConvexSum::ConvexSum(const ConvexPart& part, const NegatedChain& chain) : part_(
   place_.reserve(static_cast<std::size_t>(part.size()));
   int fused = 0;
   for (int a = 0; a < part.size(); ++a) {
-    const Direction d = part.edge(a);
+    const PlaneDirection d = part.edge(a);
     const int before = chain.edges_before(d);
     const bool parallel = before < chain.size() && compare_angles(chain.edge(before), d) == 0;
     place_.push_back({before + a - fused, fused, parallel});
@@ -70,12 +70,12 @@ SumPoint ConvexSum::vertex(int t) const {
   return {corner(p.a), chain_->point(p.b)};
 }
 
-Direction ConvexSum::direction(int t) const {
+PlaneDirection ConvexSum::direction(int t) const {
   const Parts p = parts(t);
   return p.of_triangle ? part_->edge(p.a) : chain_->edge(p.b);
 }
 
-int ConvexSum::edges_before(const Direction& d) const {
+int ConvexSum::edges_before(const PlaneDirection& d) const {
   int low = 0, high = part_->size();
   while (low < high) {
     const int middle = (low + high) / 2;

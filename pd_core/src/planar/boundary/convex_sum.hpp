@@ -27,9 +27,9 @@ class NegatedChain {
   [[nodiscard]] const Point2& point(int k) const { return points_[static_cast<std::size_t>(k)]; }
   /// Of the caller's points, the one that is vertex k.
   [[nodiscard]] int index(int k) const { return (first_ + k) % size_; }
-  [[nodiscard]] Direction edge(int k) const { return {point(k + 1), point(k)}; }
+  [[nodiscard]] PlaneDirection edge(int k) const { return {point(k + 1), point(k)}; }
   /// How many edges have a smaller angle than d.
-  [[nodiscard]] int edges_before(const Direction& d) const;
+  [[nodiscard]] int edges_before(const PlaneDirection& d) const;
   /// A box of B's vertices first .. first + count (mod size), in constant time.
   [[nodiscard]] Box2 box(int first, int count) const;
 
@@ -59,7 +59,7 @@ class ConvexPart {
     const std::size_t k = static_cast<std::size_t>(a) == corner_.size() ? 0 : static_cast<std::size_t>(a);
     return (*points_)[static_cast<std::size_t>(corner_[k])];
   }
-  [[nodiscard]] Direction edge(int a) const { return {point(a), point(a + 1)}; }
+  [[nodiscard]] PlaneDirection edge(int a) const { return {point(a), point(a + 1)}; }
 
  private:
   const std::vector<Point2>* points_;
@@ -84,11 +84,11 @@ class ConvexSum {
   };
   [[nodiscard]] Parts parts(int t) const;
   [[nodiscard]] SumPoint vertex(int t) const;
-  [[nodiscard]] Direction direction(int t) const;
+  [[nodiscard]] PlaneDirection direction(int t) const;
   [[nodiscard]] Span edge(int t) const { return {vertex(t), direction(t), vertex(t + 1 == size_ ? 0 : t + 1)}; }
   /// How many edges have a smaller angle than d: the number of the first one that has not, which starts at the vertex
   /// farthest to the right of d (`size` stands for 0).
-  [[nodiscard]] int edges_before(const Direction& d) const;
+  [[nodiscard]] int edges_before(const PlaneDirection& d) const;
   /// The edge that T's edge from corner a lies on.
   [[nodiscard]] int edge_of_corner(int a) const { return place_[static_cast<std::size_t>(a)].edge; }
   [[nodiscard]] const Point2& corner(int a) const { return part_->point(a); }

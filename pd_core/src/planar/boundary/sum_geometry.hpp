@@ -20,10 +20,10 @@ struct SumPoint {
 };
 
 /// The direction to - from.
-struct Direction {
+struct PlaneDirection {
   Point2 from;
   Point2 to;
-  [[nodiscard]] Direction reversed() const { return {to, from}; }
+  [[nodiscard]] PlaneDirection reversed() const { return {to, from}; }
 };
 
 template <class N>
@@ -39,7 +39,7 @@ N dot(const Vector2<N>& a, const Vector2<N>& b) {
   return a.x * b.x + a.y * b.y;
 }
 template <class N>
-Vector2<N> vector(const Direction& d) {
+Vector2<N> vector(const PlaneDirection& d) {
   return {N(d.to[0]) - N(d.from[0]), N(d.to[1]) - N(d.from[1])};
 }
 /// b - a.
@@ -56,21 +56,21 @@ inline bool same(const SumPoint& a, const SumPoint& b) {
   return true;
 }
 
-inline int cross_sign(const Direction& a, const Direction& b) {
+inline int cross_sign(const PlaneDirection& a, const PlaneDirection& b) {
   return exact_sign([&]<class N>() { return cross(vector<N>(a), vector<N>(b)); });
 }
 /// 1 where x lies on the left of the line through s along d, 0 on it.
-inline int side_of(const SumPoint& s, const Direction& d, const SumPoint& x) {
+inline int side_of(const SumPoint& s, const PlaneDirection& d, const SumPoint& x) {
   return exact_sign([&]<class N>() { return cross(vector<N>(d), from_to<N>(s, x)); });
 }
 
 /// 0 for directions turned by an angle in (-90, 90] degrees from the x axis, 1 for the others.
-inline int half_of(const Direction& d) {
+inline int half_of(const PlaneDirection& d) {
   if (d.to[0] != d.from[0]) return d.to[0] > d.from[0] ? 0 : 1;
   return d.to[1] > d.from[1] ? 0 : 1;
 }
 /// Order of directions by their angle in (-90, 270] degrees: -1, 0, 1.
-inline int compare_angles(const Direction& a, const Direction& b) {
+inline int compare_angles(const PlaneDirection& a, const PlaneDirection& b) {
   const int ha = half_of(a), hb = half_of(b);
   if (ha != hb) return ha < hb ? -1 : 1;
   return -cross_sign(a, b);
@@ -79,7 +79,7 @@ inline int compare_angles(const Direction& a, const Direction& b) {
 /// A straight piece: from s on along d, as far as z (on the line, ahead of s).
 struct Span {
   SumPoint s;
-  Direction d;
+  PlaneDirection d;
   SumPoint z;
 };
 
@@ -87,7 +87,7 @@ struct Span {
 struct Place {
   enum class Kind : std::uint8_t { start, end, point, line } kind = Kind::start;
   SumPoint point = {};
-  Direction direction = {};  ///< of the crossing line through `point`
+  PlaneDirection direction = {};  ///< of the crossing line through `point`
 };
 
 template <class N>

@@ -10,9 +10,7 @@ namespace pd::detail {
 
 class DisjointSets {
  public:
-  explicit DisjointSets(std::int32_t n) : parent_(static_cast<std::size_t>(n)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
+  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
   std::int32_t find(std::int32_t i) {
     while (parent(i) != i) {
       parent(i) = parent(parent(i));

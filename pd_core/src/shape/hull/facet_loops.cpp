@@ -19,7 +19,7 @@ FacetLoops merge_facets(const Quickhull& hull, int num_points) {
   const auto at = [&](std::int32_t t) -> const HullTriangle& { return triangles[static_cast<std::size_t>(t)]; };
   const auto count = static_cast<std::int32_t>(triangles.size());
 
-  DisjointSets facets(count);
+  DisjointSets facets(triangles.size());
   std::vector<std::uint8_t> ridges(triangles.size(), 0);  // bit i: edge i separates two facets
   std::vector<std::int32_t> degree(static_cast<std::size_t>(num_points), 0);
   for (std::int32_t t = 0; t < count; ++t) {

@@ -7,6 +7,7 @@
 
 #include "pd/numeric/predicates.hpp"
 #include "pd/shape/pose.hpp"
+#include "shape/hull/disjoint_sets.hpp"
 #include "shape/mesh/polygon_triangles.hpp"
 #include "shape/mesh/triangle_crossings.hpp"
 #include "shape/mesh/welded_mesh.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 using detail::DisjointSets;
 using detail::EdgeUse;
-using detail::SurfaceTriangle;
+using detail::FaceTriangle;
 using detail::WeldedMesh;
 
 std::optional<Error> bad_input(const MeshView& mesh) {
@@ -65,7 +66,7 @@ class MeshChecker {
     report_.size = (report_.high - report_.low).maxCoeff();
   }
 
-  MeshReport check(const MeshCheckSettings& settings) {
+  SurfaceReport check(const MeshCheckSettings& settings) {
     find_planes();
     check_edges();
     if (report_.closed() && report_.oriented()) check_shells();
@@ -123,7 +124,7 @@ class MeshChecker {
     std::vector<char> faulty(mesh_.points.size(), 0);
     for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
       for (end = i; end < uses.size() && uses[end].same_edge(uses[i]); ++end) {
-        faces.join(face_of(uses[i].corner), face_of(uses[end].corner));
+        faces.unite(face_of(uses[i].corner), face_of(uses[end].corner));
       }
       const std::int32_t c = uses[i].corner, d = uses[i + (end > i + 1 ? 1 : 0)].corner;
       const std::array<std::int32_t, 2> edge = {uses[i].low, uses[i].high};
@@ -135,8 +136,8 @@ class MeshChecker {
         for (const std::int32_t v : edge) faulty[static_cast<std::size_t>(v)] = 1;
         continue;
       }
-      fans.join(c, mesh_.next(d));
-      fans.join(mesh_.next(c), d);
+      fans.unite(c, mesh_.next(d));
+      fans.unite(mesh_.next(c), d);
       for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
         deepest_bend_[side] = std::max(deepest_bend_[side], bend(c, d, side == 0 ? 1 : -1));
     }
@@ -222,7 +223,7 @@ class MeshChecker {
   }
 
   void check_crossings() {
-    std::vector<SurfaceTriangle> triangles;
+    std::vector<FaceTriangle> triangles;
     std::vector<std::array<std::int32_t, 3>> parts;
     report_.crossings_searched = true;
     for (std::int32_t f = 0; f < mesh_.num_faces(); ++f) {
@@ -247,7 +248,7 @@ class MeshChecker {
   }
 
   WeldedMesh mesh_;
-  MeshReport report_;
+  SurfaceReport report_;
   std::vector<FacePlane> planes_;
   std::vector<std::int32_t> shell_of_;
   std::array<double, 2> deepest_bend_{};  ///< inwards, for faces that show their outside and for those that do not
@@ -261,7 +262,7 @@ std::string_view to_string(MeshFault fault) {
   return kWords[static_cast<std::size_t>(fault)];
 }
 
-Expected<MeshReport> check_mesh(const MeshView& mesh, const MeshCheckSettings& settings) {
+Expected<SurfaceReport> check_mesh(const MeshView& mesh, const MeshCheckSettings& settings) {
   if (auto error = bad_input(mesh)) return *std::move(error);
   return MeshChecker(mesh).check(settings);
 }

@@ -76,20 +76,20 @@ bool segment_meets(const Vec3& p, const Vec3& q, const Triangle& t) {
   return !(left && right);
 }
 
-Triangle corners(std::span<const Vec3> points, const SurfaceTriangle& t) {
+Triangle corners(std::span<const Vec3> points, const FaceTriangle& t) {
   const auto point = [&](std::size_t k) { return points[static_cast<std::size_t>(t.vertices[k])]; };
   return {point(0), point(1), point(2)};
 }
 
 /// The triangle so turned that its vertices in `shared` come first.
-SurfaceTriangle shared_first(SurfaceTriangle t, const SurfaceTriangle& other) {
+FaceTriangle shared_first(FaceTriangle t, const FaceTriangle& other) {
   std::stable_partition(t.vertices.begin(), t.vertices.end(), [&](std::int32_t v) {
     return std::find(other.vertices.begin(), other.vertices.end(), v) != other.vertices.end();
   });
   return t;
 }
 
-int count_shared(const SurfaceTriangle& s, const SurfaceTriangle& t) {
+int count_shared(const FaceTriangle& s, const FaceTriangle& t) {
   int shared = 0;
   for (const std::int32_t v : s.vertices)
     shared += std::find(t.vertices.begin(), t.vertices.end(), v) != t.vertices.end();
@@ -98,7 +98,7 @@ int count_shared(const SurfaceTriangle& s, const SurfaceTriangle& t) {
 
 }  // namespace
 
-bool cross(std::span<const Vec3> points, const SurfaceTriangle& s, const SurfaceTriangle& t) {
+bool cross(std::span<const Vec3> points, const FaceTriangle& s, const FaceTriangle& t) {
   const int shared = count_shared(s, t);
   if (shared == 3) return true;
   const Triangle a = corners(points, shared_first(s, t)), b = corners(points, shared_first(t, s));
@@ -123,11 +123,11 @@ namespace {
 /// Pairs of triangles whose boxes meet, found in one tree.
 class CrossingSearch {
  public:
-  CrossingSearch(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
+  CrossingSearch(std::span<const Vec3> points, const std::vector<FaceTriangle>& triangles, std::int64_t budget,
                  const std::function<void(std::int32_t, std::int32_t)>& found)
       : points_(points), triangles_(triangles), budget_(budget), found_(found) {
     boxes_.reserve(triangles.size());
-    for (const SurfaceTriangle& triangle : triangles) boxes_.push_back(box_of(points, triangle.vertices));
+    for (const FaceTriangle& triangle : triangles) boxes_.push_back(box_of(points, triangle.vertices));
     tree_ = TriangleTree(boxes_);
   }
 
@@ -146,7 +146,7 @@ class CrossingSearch {
   void test(std::int32_t i, std::int32_t j) {
     if (--budget_ < 0) return;
     const std::size_t at = triangle(i), other = triangle(j);
-    const SurfaceTriangle &s = triangles_[at], &t = triangles_[other];
+    const FaceTriangle &s = triangles_[at], &t = triangles_[other];
     if (s.face != t.face && boxes_[at].meets(boxes_[other]) && cross(points_, s, t)) {
       found_(std::min(s.face, t.face), std::max(s.face, t.face));
     }
@@ -187,7 +187,7 @@ class CrossingSearch {
   }
 
   std::span<const Vec3> points_;
-  const std::vector<SurfaceTriangle>& triangles_;
+  const std::vector<FaceTriangle>& triangles_;
   std::int64_t budget_;
   const std::function<void(std::int32_t, std::int32_t)>& found_;
   std::vector<TriangleBox> boxes_;
@@ -196,7 +196,7 @@ class CrossingSearch {
 
 }  // namespace
 
-bool find_crossings(std::span<const Vec3> points, const std::vector<SurfaceTriangle>& triangles, std::int64_t budget,
+bool find_crossings(std::span<const Vec3> points, const std::vector<FaceTriangle>& triangles, std::int64_t budget,
                     const std::function<void(std::int32_t, std::int32_t)>& found) {
   return CrossingSearch(points, triangles, budget, found).search();
 }

@@ -67,20 +67,4 @@ std::vector<EdgeUse> sorted_edges(const WeldedMesh& mesh) {
   return uses;
 }
 
-DisjointSets::DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-std::int32_t DisjointSets::find(std::int32_t element) {
-  while (parent_[static_cast<std::size_t>(element)] != element) {
-    std::int32_t& parent = parent_[static_cast<std::size_t>(element)];
-    parent = parent_[static_cast<std::size_t>(parent)];
-    element = parent;
-  }
-  return element;
-}
-
-void DisjointSets::join(std::int32_t a, std::int32_t b) {
-  const std::int32_t x = find(a), y = find(b);
-  parent_[static_cast<std::size_t>(std::max(x, y))] = std::min(x, y);
-}
-
 }  // namespace pd::detail

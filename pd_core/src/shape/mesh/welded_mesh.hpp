@@ -49,15 +49,4 @@ struct EdgeUse {
 /// All of them, those of one edge side by side, in the order of their corners.
 [[nodiscard]] std::vector<EdgeUse> sorted_edges(const WeldedMesh& mesh);
 
-/// Sets that grow together.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size);
-  std::int32_t find(std::int32_t element);
-  void join(std::int32_t a, std::int32_t b);
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
 }  // namespace pd::detail
