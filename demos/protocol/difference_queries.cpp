@@ -8,6 +8,7 @@
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/minkowski_difference.hpp"
 #include "protocol/pair_reader.hpp"
+#include "protocol/union_queries.hpp"
 
 namespace pd::query {
 
@@ -108,7 +109,9 @@ void write_directional_answer(const DirectionalDepth& result, std::int64_t nanos
 }
 
 void answer_minkowski_difference(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
+  // Two convex bodies are answered within any budget: "max_work" is read, so that one form of line serves all bodies.
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "max_work"});
+  (void)read_max_work(line);
   const Pair pair = read_pair(line, session.limits);
   const ConvexPolytope& a = require_polytope(pair.a, line.at("a"));
   const ConvexPolytope& b = require_polytope(pair.b, line.at("b"));

@@ -217,11 +217,19 @@ std::string_view word_of_facet(Feature::Kind kind) {
   return kind == Feature::Kind::facet ? "facet" : kind == Feature::Kind::edge ? "edge" : "vertex";
 }
 
+}  // namespace
+
+std::int64_t read_max_work(const Node& line) {
+  const auto node = line.find("max_work");
+  return node ? read_integer(*node, 1, std::int64_t{1} << 40) : kDifferenceWork;
+}
+
+namespace {
+
 void answer_union_minkowski_difference(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "max_work"});
   const BodyPair pair = read_bodies(line, session.limits);
-  const auto most = line.find("max_work");
-  const std::int64_t max_work = most ? read_integer(*most, 1, std::int64_t{1} << 40) : kDifferenceWork;
+  const std::int64_t max_work = read_max_work(line);
   const UnionDifference result = value_or_refuse(
       minkowski_difference(pair.posed_a(), pair.posed_b(), session.limits.max_vertices, max_work), line);
   answer.key("vertices").begin_array();

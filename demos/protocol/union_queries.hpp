@@ -2,6 +2,7 @@
 /// The queries that also answer for compounds and star-shaped bodies.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "pd/compound/compound_depth.hpp"
@@ -23,6 +24,9 @@ struct BodyPair {
 
 /// Reads "a", "b" and their poses.
 [[nodiscard]] BodyPair read_bodies(const Node& line, const Limits& limits);
+
+/// "max_work" of a Minkowski difference, kDifferenceWork where it is not given.
+[[nodiscard]] std::int64_t read_max_work(const Node& line);
 
 /// The fields of a union's depth answer from "class" to "stats".
 void write_union_answer(const UnionDepth& result, const BodyPair& pair, std::int64_t nanoseconds, JsonWriter& answer);

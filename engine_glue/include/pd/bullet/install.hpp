@@ -22,7 +22,7 @@ enum class BulletContacts {
 /// at the next step.
 ///
 /// Not covered, because Bullet decides without asking the tables: soft bodies, ray and sweep queries
-/// (`convexSweepTest`; use `pd::time_of_impact`), and `btGImpactMeshShape` against itself. Create functions that the
+/// (`convexSweepTest`; use `pd::sweep_test`), and `btGImpactMeshShape` against itself. Create functions that the
 /// host registers later win.
 ///
 /// How shapes and their margins are taken ("inside" as in shape_conversion.hpp):
