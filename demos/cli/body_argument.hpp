@@ -12,7 +12,7 @@ namespace pd::cli {
 
 /// The help's list of the words that name a body.
 inline constexpr const char* kBodyWords =
-    R"(A body is a mesh's file (OBJ, STL, PLY, OFF or glTF), - for a mesh on standard input, or a primitive about the origin:
+    R"(A body is a mesh's file (OBJ, STL, PLY, OFF, glTF, XYZ or PCD), - for a mesh on standard input, or a primitive about the origin:
   box:X,Y,Z        half extents
   sphere:R         radius
   ellipsoid:X,Y,Z  radii

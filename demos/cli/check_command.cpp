@@ -133,8 +133,11 @@ void print_report(const CheckedMesh& checked) {
   const SurfaceReport& report = checked.report;
   fmt::print("\n  {}\n\n  {}\n\n", checked.file, verdict(checked));
   const std::int64_t repeated = report.points - report.vertices;
-  print_row("points", fmt::format("{}{}", report.points,
-                                  repeated > 0 ? fmt::format(", {} of them repeat another", repeated) : ""));
+  const std::int64_t left_out = checked.mesh.left_out;
+  print_row(
+      "points",
+      fmt::format("{}{}{}", report.points, repeated > 0 ? fmt::format(", {} of them repeat another", repeated) : "",
+                  left_out > 0 ? fmt::format("; {} without a measurement (NaN) are left out", left_out) : ""));
   print_row("faces", fmt::format("{} in {} connected {}", report.faces, report.shells,
                                  report.shells == 1 ? "surface" : "surfaces"));
   const Vec3 extent = report.high - report.low;
@@ -182,6 +185,7 @@ void print_json(const CheckedMesh& checked) {
   writer.key("convex").boolean(!query::why_hull(report, checked.hull));
   writer.key("crossings_searched").boolean(report.crossings_searched);
   writer.key("points").integer(report.points).key("duplicate_points").integer(report.points - report.vertices);
+  if (checked.mesh.left_out > 0) writer.key("points_left_out").integer(checked.mesh.left_out);
   writer.key("faces").integer(report.faces).key("surfaces").integer(report.shells);
   writer.key("low").vector(report.low).key("high").vector(report.high);
   writer.key("faults").begin_object();
@@ -243,7 +247,7 @@ void add_check_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand("check", "Does a mesh bound a solid, and is it convex?");
   command->footer(kCheckFooter);
-  command->add_option("FILE", arguments->file, "Mesh: OBJ, STL, PLY, OFF or glTF")->required();
+  command->add_option("FILE", arguments->file, "Mesh or points: OBJ, STL, PLY, OFF, glTF, XYZ or PCD")->required();
   command->add_option("--fail-on", arguments->fail_on, "Faults that end the command with exit code 3");
   command->add_flag("--json", arguments->json, "Print one JSON object");
   command->callback([arguments, &action] { action = [arguments] { return run_check(*arguments); }; });

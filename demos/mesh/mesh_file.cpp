@@ -28,6 +28,8 @@ MeshPoints read_by_ending(const std::string& path, const std::string& ending, st
   if (ending == ".obj") return read_obj(bytes, max_vertices);
   if (ending == ".off") return read_off(bytes, max_vertices);
   if (ending == ".ply") return read_ply(bytes, max_vertices);
+  if (ending == ".xyz") return read_xyz(bytes, max_vertices);
+  if (ending == ".pcd") return read_pcd(bytes, max_vertices);
   return read_stl(bytes, max_vertices);
 }
 
@@ -58,10 +60,10 @@ MeshPoints read_mesh_bytes(const std::string& bytes, std::int64_t max_vertices) 
 }
 
 MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes) {
-  static constexpr const char* kEndings[] = {".obj", ".off", ".ply", ".stl", ".gltf", ".glb"};
+  static constexpr const char* kEndings[] = {".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".xyz", ".pcd"};
   const std::string ending = lower_ending(path);
   if (std::none_of(std::begin(kEndings), std::end(kEndings), [&](const char* known) { return ending == known; })) {
-    refuse("unreadable_file", path + ": the file ending must be .obj, .off, .ply, .stl, .gltf or .glb", "");
+    refuse("unreadable_file", path + ": the file ending must be .obj, .off, .ply, .stl, .gltf, .glb, .xyz or .pcd", "");
   }
   try {
     return require_vertices(read_by_ending(path, ending, max_vertices, max_bytes));

@@ -3,6 +3,7 @@
 ///
 /// OBJ, OFF, PLY (text and binary) and STL text numbers are rounded once, to double; glTF 2 keeps its single precision,
 /// and its nodes' transforms are applied in double. Materials, normals and textures are ignored.
+/// XYZ (rows of numbers) and PCD (text and binary) are points without faces.
 ///
 /// A file may come from a stranger: it is a regular file, and so is each file that it names, which stands in its own
 /// folder; vertices, corners and bytes are counted before memory is spent on them.
@@ -35,15 +36,17 @@ struct MeshPoints {
   /// The file's polygons, as indices of `points`. Formats that repeat a vertex for each face (STL, and glTF for each
   /// normal) hold its point several times.
   MeshFaces faces;
+  /// Points of the file that are not there: a PCD or XYZ file has NaN where nothing was measured.
+  std::int64_t left_out = 0;
 };
 
-/// Reads a mesh by its file ending (.obj, .off, .ply, .stl, .gltf, .glb; any case).
+/// Reads a mesh by its file ending (.obj, .off, .ply, .stl, .gltf, .glb, .xyz, .pcd; any case).
 ///
 /// All meshes of a scene are taken, each where its nodes put it. Coordinates may still be infinite or NaN: the hull
 /// builder refuses those by name.
 /// @throws Refusal unreadable_file (missing, not a regular file, malformed, a glTF's buffer outside of its folder; the
-/// message says the line, byte or member where it can), unsupported (compressed glTF) or limit_exceeded (more vertices
-/// than `max_vertices`, more bytes than `max_bytes`, nodes or JSON nested too deep).
+/// message says the line, byte or member where it can), unsupported (compressed glTF or PCD) or limit_exceeded (more
+/// vertices than `max_vertices`, more bytes than `max_bytes`, nodes or JSON nested too deep).
 [[nodiscard]] MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes);
 
 /// Reads a mesh that has no name, from a pipe. Its first bytes tell its kind; text that is no OFF, PLY or STL is OBJ.

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,9 +32,17 @@ class VertexCollector {
     if (static_cast<std::int64_t>(points_.size()) >= limit_) {
       refuse("limit_exceeded", "the mesh has more than " + std::to_string(limit_) + " vertices (--max-vertices)", "");
     }
+    if (left_out_ > 0) ids_.push_back(static_cast<std::int32_t>(size() + left_out_));
     points_.push_back(point);
   }
+  /// A point of the file that is none: a place without a measurement.
+  void leave_out() {
+    if (left_out_++ > 0) return;
+    ids_.resize(points_.size());
+    std::iota(ids_.begin(), ids_.end(), 0);
+  }
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(points_.size()); }
+  [[nodiscard]] std::int64_t left_out() const { return left_out_; }
   /// Refuses early what a header announces.
   void announce(std::int64_t count) const {
     if (count > limit_) {
@@ -71,9 +80,11 @@ class VertexCollector {
 
   [[nodiscard]] MeshPoints finish() && {
     MeshPoints mesh;
+    mesh.left_out = left_out_;
     mesh.faces.lines = {};
     if (faces_.size() == 0) {
       mesh.points = std::move(points_);
+      mesh.ids = std::move(ids_);
       return mesh;
     }
     // New number of each vertex that an element names; -1: none does.
@@ -120,7 +131,9 @@ class VertexCollector {
   }
 
   std::int64_t limit_;
+  std::int64_t left_out_ = 0;
   std::vector<Vec3> points_;
+  std::vector<std::int32_t> ids_;  ///< of the points in the file, where some are left out
   MeshFaces faces_;            ///< all elements
   std::vector<char> is_face_;  ///< of each element
 };
@@ -187,6 +200,8 @@ MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices);
 MeshPoints read_off(std::string_view bytes, std::int64_t max_vertices);
 MeshPoints read_ply(std::string_view bytes, std::int64_t max_vertices);
 MeshPoints read_stl(std::string_view bytes, std::int64_t max_vertices);
+MeshPoints read_xyz(std::string_view bytes, std::int64_t max_vertices);
+MeshPoints read_pcd(std::string_view bytes, std::int64_t max_vertices);
 /// glTF names further files: those beside `path`, with `bytes` no more than `max_bytes` in all.
 MeshPoints read_gltf(const std::string& path, std::string bytes, std::int64_t max_vertices, std::uintmax_t max_bytes);
 

@@ -2,51 +2,31 @@
 /// PLY, text and binary (both byte orders): x, y, z of the element "vertex" in whatever type the file declares, and the
 /// index lists of every other element that refer to them.
 #include <algorithm>
-#include <bit>
 #include <optional>
 
+#include "mesh/binary_numbers.hpp"
 #include "mesh/mesh_text.hpp"
 
 namespace pd::query {
 
 namespace {
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-std::optional<Type> parse_type(std::string_view word) {
-  if (word == "char" || word == "int8") return Type::int8;
-  if (word == "uchar" || word == "uint8") return Type::uint8;
-  if (word == "short" || word == "int16") return Type::int16;
-  if (word == "ushort" || word == "uint16") return Type::uint16;
-  if (word == "int" || word == "int32") return Type::int32;
-  if (word == "uint" || word == "uint32") return Type::uint32;
-  if (word == "float" || word == "float32") return Type::float32;
-  if (word == "double" || word == "float64") return Type::float64;
+std::optional<NumberType> parse_type(std::string_view word) {
+  if (word == "char" || word == "int8") return NumberType::int8;
+  if (word == "uchar" || word == "uint8") return NumberType::uint8;
+  if (word == "short" || word == "int16") return NumberType::int16;
+  if (word == "ushort" || word == "uint16") return NumberType::uint16;
+  if (word == "int" || word == "int32") return NumberType::int32;
+  if (word == "uint" || word == "uint32") return NumberType::uint32;
+  if (word == "float" || word == "float32") return NumberType::float32;
+  if (word == "double" || word == "float64") return NumberType::float64;
   return std::nullopt;
-}
-
-int size_of(Type type) {
-  switch (type) {
-    case Type::int8:
-    case Type::uint8:
-      return 1;
-    case Type::int16:
-    case Type::uint16:
-      return 2;
-    case Type::int32:
-    case Type::uint32:
-    case Type::float32:
-      return 4;
-    case Type::float64:
-      return 8;
-  }
-  return 0;
 }
 
 struct Property {
   std::string name;
-  Type type = Type::float32;
-  std::optional<Type> count_type;  ///< of lists
+  NumberType type = NumberType::float32;
+  std::optional<NumberType> count_type;  ///< of lists
 
   /// Lists of vertex indices, by the names in use (a strip ends with -1).
   [[nodiscard]] bool names_vertices() const {
@@ -104,7 +84,7 @@ Header read_header(TextCursor& cursor) {
         if (!property.count_type) refuse_line(cursor.line_number(), "unknown type");
         word = next_word(rest);
       }
-      const std::optional<Type> type = parse_type(word);
+      const std::optional<NumberType> type = parse_type(word);
       if (!type) refuse_line(cursor.line_number(), "unknown type");
       property.type = *type;
       property.name = next_word(rest);
@@ -119,7 +99,7 @@ Header read_header(TextCursor& cursor) {
 class TextBody {
  public:
   explicit TextBody(TextCursor cursor) : cursor_(cursor) {}
-  double next(Type /*type*/) {
+  double next(NumberType /*type*/) {
     std::string_view word = next_word(line_);
     while (word.empty()) {
       if (cursor_.at_end()) refuse_line(cursor_.line_number(), "the file ends too early");
@@ -134,44 +114,6 @@ class TextBody {
  private:
   TextCursor cursor_;
   std::string_view line_;
-};
-
-class BinaryBody {
- public:
-  BinaryBody(std::string_view bytes, bool big_endian) : rest_(bytes), big_endian_(big_endian) {}
-  double next(Type type) {
-    const auto size = static_cast<std::size_t>(size_of(type));
-    if (rest_.size() < size) refuse("unreadable_file", "the file ends too early", "");
-    std::uint64_t word = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t at = big_endian_ ? i : size - 1 - i;
-      word = word << 8 | static_cast<unsigned char>(rest_[at]);
-    }
-    rest_.remove_prefix(size);
-    switch (type) {
-      case Type::int8:
-        return static_cast<std::int8_t>(word);
-      case Type::uint8:
-        return static_cast<std::uint8_t>(word);
-      case Type::int16:
-        return static_cast<std::int16_t>(word);
-      case Type::uint16:
-        return static_cast<std::uint16_t>(word);
-      case Type::int32:
-        return static_cast<std::int32_t>(word);
-      case Type::uint32:
-        return static_cast<std::uint32_t>(word);
-      case Type::float32:
-        return double{std::bit_cast<float>(static_cast<std::uint32_t>(word))};
-      case Type::float64:
-        return std::bit_cast<double>(word);
-    }
-    return 0;
-  }
-
- private:
-  std::string_view rest_;
-  bool big_endian_;
 };
 
 template <class Body>
@@ -220,7 +162,7 @@ MeshPoints read_ply(std::string_view bytes, std::int64_t max_vertices) {
   TextCursor cursor(bytes);
   const Header header = read_header(cursor);
   if (header.format == Format::text) return read_body(header, TextBody(cursor), max_vertices);
-  return read_body(header, BinaryBody(cursor.rest(), header.format == Format::big_endian), max_vertices);
+  return read_body(header, BinaryNumbers(cursor.rest(), header.format == Format::big_endian), max_vertices);
 }
 
 }  // namespace pd::query

@@ -168,7 +168,7 @@ class ConvexPolytope(Shape):
 
     @classmethod
     def from_mesh(cls, mesh, *, margin=0.0, hull=False):
-        """The hull of a mesh: a file (OBJ, STL, PLY, OFF, glTF) or an object with `.vertices` and `.faces` (trimesh's).
+        """The hull of a mesh: a file (OBJ, STL, PLY, OFF, glTF, XYZ, PCD) or an object with `.vertices` and `.faces` (trimesh's).
 
         A file whose mesh is not convex gives a UserWarning, unless hull=True says that its hull is meant.
         Vertices that no face refers to are left out. Feature ids are rows of the points that are kept.
