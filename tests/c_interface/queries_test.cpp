@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "c_interface/c_library.hpp"
 
@@ -82,6 +86,42 @@ TEST_F(CQueries, HalfspacesAreTheirSolid) {
   auto answer = sized<pdepth_answer>();
   ASSERT_EQ(pdepth_depth(context_.get(), &question_, &answer), PDEPTH_OK);
   EXPECT_EQ(answer.depth, 0.25);
+}
+
+/// Facets of a solid turn counter-clockwise about their outward normals and share each edge with one other facet.
+TEST_F(CQueries, SurfacesAreClosed) {
+  const std::array<double, 12> points{0, 0, 1, 1, 0, 0, 0, 1, 0, -1, -1, 0};
+  const Shape hull = make_shape(context_, &pdepth_convex_hull, points.data(), 4);
+  const std::array<pdepth_part, 2> parts{pdepth_part{hull.get(), {}}, pdepth_part{cube_.get(), {0, 0, {0, 0, 3}}}};
+  const Shape whole = make_shape(context_, &pdepth_compound, parts.data(), 2);
+  auto info = sized<pdepth_shape_info>();
+  ASSERT_EQ(pdepth_shape_describe(context_.get(), whole.get(), 1, &info), PDEPTH_OK);
+  std::vector<double> room(3 * static_cast<std::size_t>(info.vertices));
+  std::vector<std::int32_t> offsets(static_cast<std::size_t>(info.facets) + 1);
+  std::vector<std::int32_t> corners(2 * static_cast<std::size_t>(info.vertices + info.facets - 2));
+  auto surface = sized<pdepth_surface>();
+  surface.points = room.data();
+  surface.offsets = offsets.data();
+  surface.corners = corners.data();
+  ASSERT_EQ(pdepth_shape_surface(context_.get(), whole.get(), 1, &surface), PDEPTH_OK) << error_of(context_);
+  EXPECT_EQ(offsets.front(), 0);
+  EXPECT_EQ(offsets.back(), static_cast<std::int32_t>(corners.size()));
+  double least = HUGE_VAL;
+  for (std::size_t v = 2; v < room.size(); v += 3) least = std::min(least, room[v]);
+  EXPECT_EQ(least, 2.5) << "points stand in the frame of the compound";
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+    for (std::int32_t k = offsets[f]; k < offsets[f + 1]; ++k) {
+      const std::int32_t next = k + 1 < offsets[f + 1] ? k + 1 : offsets[f];
+      EXPECT_TRUE(edges.emplace(corners[static_cast<std::size_t>(k)], corners[static_cast<std::size_t>(next)]).second);
+    }
+  }
+  for (const auto& [from, to] : edges) EXPECT_TRUE(edges.contains({to, from}));
+  auto nothing = sized<pdepth_surface>();
+  EXPECT_EQ(pdepth_shape_surface(context_.get(), whole.get(), 0, &nothing), PDEPTH_OK) << "arrays may be left out";
+  EXPECT_EQ(pdepth_shape_surface(context_.get(), whole.get(), 2, &nothing), PDEPTH_OUT_OF_RANGE);
+  const Shape round = make_shape(context_, &pdepth_cylinder, 1.0, 1.0, 2);
+  EXPECT_EQ(pdepth_shape_surface(context_.get(), round.get(), 0, &nothing), PDEPTH_UNSUPPORTED);
 }
 
 /// A feature leads back to the rows of the caller, in whatever order they came.

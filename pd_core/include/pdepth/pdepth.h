@@ -68,7 +68,6 @@ typedef struct pdepth_error {
   const char* message;  ///< what is wrong and what would be right
   const char* where;    ///< the argument, for example "points[3]" or "rows[17].pose_a.translation[0]"
 } pdepth_error;
-
 /// The error of the last call with this context that failed. The texts belong to the context and live until the next
 /// call that fails, or until the context is destroyed.
 pdepth_status pdepth_last_error(const pdepth_context* context, pdepth_error* error);
@@ -87,7 +86,6 @@ typedef struct pdepth_allocator {
   /// Takes back a block, with the numbers that it was asked for.
   void (*release)(void* user, void* block, size_t bytes, size_t alignment);
 } pdepth_allocator;
-
 /// @param allocator  for all memory of the context and of what is made with it; NULL: malloc.
 /// The caller owns the context: `pdepth_context_destroy`.
 pdepth_status pdepth_context_create(const pdepth_allocator* allocator, pdepth_context** context);
@@ -156,7 +154,6 @@ typedef struct pdepth_faces {
   int64_t num_faces;
   const int32_t* vertices;  ///< [offsets[num_faces]]
 } pdepth_faces;
-
 /// The solid that the faces bound, which are checked and not trusted. Errors: as `pdepth_convex_hull`, and bad_faces,
 /// not_closed, not_convex, not_full_dimensional. Time: that of the hull, and O(c log c) for c corners of faces.
 pdepth_status pdepth_convex_faces(pdepth_context* context, const pdepth_faces* faces, pdepth_shape** shape);
@@ -176,7 +173,6 @@ typedef struct pdepth_part {
   const pdepth_shape* shape;
   pdepth_pose pose;  ///< in the compound's frame
 } pdepth_part;
-
 /// The union of shapes, which may be compounds themselves: their parts follow each other.
 pdepth_status pdepth_compound(pdepth_context* context, const pdepth_part* parts, int64_t count, pdepth_shape** shape);
 
@@ -190,10 +186,21 @@ typedef struct pdepth_shape_info {
   int32_t facets;
   double margin;
 } pdepth_shape_info;
-
 /// @param part  from 0; 0 for a convex shape. Error: out_of_range.
 pdepth_status pdepth_shape_describe(pdepth_context* context, const pdepth_shape* shape, int32_t part,
                                     pdepth_shape_info* info);
+
+/// Room for the facets of a part's core. A NULL array is left out; `pdepth_shape_describe` gives the sizes.
+typedef struct pdepth_surface {
+  uint32_t size;
+  int32_t reserved;
+  double* points;    ///< [vertices x 3], in the frame of the shape; rounded for parts of compounds
+  int32_t* offsets;  ///< [facets + 1]: facet f is corners[offsets[f]] .. corners[offsets[f + 1] - 1]
+  int32_t* corners;  ///< [2 (vertices + facets - 2)], 0 without facets: vertices, counter-clockwise from outside
+} pdepth_surface;
+/// Writes the facets, for drawing. Errors: out_of_range; unsupported where the core is curved.
+pdepth_status pdepth_shape_surface(pdepth_context* context, const pdepth_shape* shape, int32_t part,
+                                   const pdepth_surface* surface);
 
 // ---- Depth
 
@@ -329,7 +336,6 @@ typedef struct pdepth_directional {
   pdepth_feature feature_a;
   pdepth_feature feature_b;
 } pdepth_directional;
-
 /// Depth along a direction of any length but zero. Exact for polytopes; certified bracket for curved convex bodies.
 /// Errors: zero_direction, non_finite; unsupported for compounds with curved or swept parts. No settings, no pair.
 /// Time: some 1.3 supports for each doubling of the vertices, as measured.
@@ -351,7 +357,6 @@ typedef struct pdepth_manifold {
   double normal[3];
   pdepth_contact_point points[4];
 } pdepth_manifold;
-
 /// The contact of two convex bodies as at most four pairs of points.
 /// @param breaking_threshold  >= 0: pairs of points with a wider gap are left out.
 /// Settings and pair: all. Error: unsupported for compounds. Time: a depth query, and O(k m) for faces of k and m
@@ -385,7 +390,6 @@ typedef struct pdepth_impact {
   double time;       ///< the bodies are apart by at most the tolerance then; the duration without a hit
   double certified;  ///< no contact happens before, proved
 } pdepth_impact;
-
 /// When two moving convex bodies first touch; the question's poses are those at time 0.
 /// @param contact  the answer at `time`, or NULL.
 /// Settings: all; no pair. Errors: unsupported for compounds, out_of_range where a body leaves the range, passes a

@@ -103,7 +103,7 @@ pdepth_status for_each_row(pdepth_context& context, const Rows& rows, Struct* fi
     }
   };
   {
-    std::vector<std::jthread> others;
+    std::vector<std::thread> others;
     others.reserve(threads - 1);
     try {
       for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
@@ -111,6 +111,7 @@ pdepth_status for_each_row(pdepth_context& context, const Rows& rows, Struct* fi
       // A thread that the system does not give leaves its rows to the others: the answers are the same.
     }
     work(0);
+    for (std::thread& other : others) other.join();
   }
   const Failure& worst = *std::min_element(failures.begin(), failures.end(),
                                            [](const Failure& x, const Failure& y) { return x.row < y.row; });

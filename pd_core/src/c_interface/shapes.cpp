@@ -217,6 +217,29 @@ pdepth_status pdepth_shape_describe(pdepth_context* context, const pdepth_shape*
   });
 }
 
+pdepth_status pdepth_shape_surface(pdepth_context* context, const pdepth_shape* shape, int32_t part,
+                                   const pdepth_surface* surface) {
+  return at_border(context, [&] {
+    const pdepth_surface& room = read_struct(surface, "surface");
+    const Compound::Part& asked = part_of(given(shape, "shape"), part, "part");
+    const ConvexPolytope* const polytope = asked.shape.polytope();
+    if (polytope == nullptr) refuse(PDEPTH_UNSUPPORTED, "a curved core has no facets", "part");
+    for (int v = 0; room.points != nullptr && v < polytope->num_vertices(); ++v) {
+      const Vec3 point = asked.pose.rotation() * polytope->vertex(v) + asked.pose.translation();
+      write_vector(point, room.points + 3 * static_cast<std::ptrdiff_t>(v));
+    }
+    std::int32_t corners = 0;
+    for (int f = 0; f < polytope->num_facets(); ++f) {
+      if (room.offsets != nullptr) room.offsets[f] = corners;
+      for (const std::int32_t vertex : polytope->facet_vertices(f)) {
+        if (room.corners != nullptr) room.corners[corners] = vertex;
+        ++corners;
+      }
+    }
+    if (room.offsets != nullptr) room.offsets[polytope->num_facets()] = corners;
+  });
+}
+
 pdepth_status pdepth_feature_points(pdepth_context* context, const pdepth_shape* shape, const pdepth_feature* feature,
                                     int32_t* points, int32_t* count) {
   return at_border(context, [&] {
