@@ -31,8 +31,13 @@ with_packages() {
 }
 
 try_lintian() {
-  local status=0
-  lintian --fail-on warning,error --tag-display-limit 0 "${out}"/pdepth_*.changes || status=$?
+  local status=0 changes=("${out}"/pdepth_*.changes)
+  if ((${#changes[@]} == 0)); then
+    printf 'build/debian holds no .changes: packaging/debian.sh did not end\n' >&2
+    status=1
+  else
+    lintian --fail-on warning,error --tag-display-limit 0 "${changes[@]}" || status=$?
+  fi
   verdict "${status}" lintian
 }
 
