@@ -21,7 +21,7 @@ pd_require_packages "${pd_build_packages[@]}" "${pd_demo_packages[@]}"
 printf '== 2/4 build\n'
 pd_use_ccache
 cmake --preset release --log-level=WARNING "${pd_launcher[@]}"
-cmake --build --preset release --target pdepth pdepth_c
+cmake --build --preset release --target pdepth pdepth_c pd_doors
 
 demo_seconds=${SECONDS}
 run_demo() {

@@ -28,6 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SHOWN = {
     "README.md": "index.md",
     "engine_glue/README.md": "bullet.md",
+    "engine_glue/mujoco/README.md": "mujoco.md",
     "demos/audit/README.md": "accuracy.md",
     "demos/python/README.md": "python.md",
     "pd_core/README.md": "papers.md",

@@ -7,8 +7,8 @@
 #   3. Every header says #pragma once and describes itself with @file.
 #   4. A constant of a source has no namesake in another source of its folder: compiled as one they clash, or one hides the
 #      other.
-#   5. A folder of engine_glue/src or pd_core/src holds at most 25 units, where a header with its source is one. Larger folders are
-#      named in `crowded_folders` and may only shrink.
+#   5. A folder of engine_glue/src, of a door beside it (engine_glue/mujoco/src) or of pd_core/src holds at most 25 units, where a
+#      header with its source is one. Larger folders are named in `crowded_folders` and may only shrink.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
@@ -74,7 +74,7 @@ endfunction()
 list(SORT files)
 foreach(file ${files})
   # What is compiled for several dimensions stays alone (pd_core/CMakeLists.txt).
-  if(file MATCHES "^(pd_core/src|engine_glue/src|render/src|demos)/.*\\.(cpp|hpp)$" AND NOT file MATCHES "^pd_core/src/dimension/")
+  if(file MATCHES "^(pd_core/src|engine_glue/([a-z]+/)?src|render/src|demos)/.*\\.(cpp|hpp)$" AND NOT file MATCHES "^pd_core/src/dimension/")
     get_filename_component(folder ${file} DIRECTORY)
     file(READ ${ROOT}/${file} text)
     string(REPLACE ";" " " text "${text}")
@@ -94,7 +94,7 @@ endforeach()
 # Units by folder.
 set(folders "")
 foreach(file ${files})
-  if(file MATCHES "^((engine_glue|pd_core)/src/.*)/([^/]+)\\.[ch]pp$")
+  if(file MATCHES "^((engine_glue|pd_core)/src/.*|engine_glue/[a-z]+/src)/([^/]+)\\.[ch]pp$")
     list(APPEND folders ${CMAKE_MATCH_1})
     list(APPEND "units_of_${CMAKE_MATCH_1}" ${CMAKE_MATCH_3})
   endif()

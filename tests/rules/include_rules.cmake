@@ -16,6 +16,8 @@
 #      In demos/protocol the values of a line (line) stand below the queries, and streams of lines (stream) above them.
 #   6. demos/python stands on the core, the renderer and the demos' libraries (protocol, mesh, audit, support); nobody includes it.
 #   7. engine_glue/src stands in rooms, lowest first in glue_rooms; each includes itself and those named in rooms_under_* below.
+#   8. A door to another engine than Bullet stands beside engine_glue/src in a folder of its own (engine_glue/mujoco): it includes
+#      its own files, its engine, the core's public headers and engine_glue's pd/record. Nobody else includes that engine but tests.
 # With -DGRAPH=<file> it also writes those arrows, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
@@ -58,6 +60,12 @@ set(rooms_under_world shapes pieces pair union stack world)
 set(rooms_under_rollback shapes pieces pair rollback)
 set(rooms_under_record shapes pieces pair record)
 set(rooms_under_stack stack)
+
+# Doors beside engine_glue/src, and the headers of their engines.
+set(glue_doors mujoco fcl)
+set(engine_of_bullet "^(bt[A-Z]|Bullet|LinearMath)")
+set(engine_of_mujoco "^mujoco/")
+set(engine_of_fcl "^fcl/")
 
 set_property(GLOBAL PROPERTY broken 0)
 function(report file line reason)
@@ -121,6 +129,28 @@ function(check_room_of_glue file line path)
   elseif(path MATCHES "^([a-z_]+)/" AND CMAKE_MATCH_1 IN_LIST glue_rooms AND NOT CMAKE_MATCH_1 IN_LIST rooms_under_${own_room})
     report(${file} "${line}" "${own_room} stands below or beside ${CMAKE_MATCH_1}")
   endif()
+endfunction()
+
+# Doors: who may include what of which engine.
+function(check_door file line path)
+  if(file MATCHES "^tests/")
+    return()
+  endif()
+  set(own_door "")
+  if(file MATCHES "^engine_glue/([a-z]+)/(include|src)/")
+    set(own_door ${CMAKE_MATCH_1})
+    if(NOT own_door IN_LIST glue_doors)
+      report(${file} "${line}" "stands in none of the doors ${glue_doors}")
+    elseif(path MATCHES "^pd/bullet/" OR path MATCHES "${engine_of_bullet}" OR
+           (path MATCHES "^([a-z_]+)/" AND CMAKE_MATCH_1 IN_LIST glue_rooms))
+      report(${file} "${line}" "a door does not see Bullet or its rooms")
+    endif()
+  endif()
+  foreach(door ${glue_doors})
+    if(NOT door STREQUAL own_door AND (path MATCHES "${engine_of_${door}}" OR path MATCHES "^pd/${door}/"))
+      report(${file} "${line}" "only engine_glue/${door} and tests see this engine")
+    endif()
+  endforeach()
 endfunction()
 
 # The folder that a path as it is included names, or nothing.
@@ -194,6 +224,7 @@ function(check_include file line path)
   endif()
 
   check_room_of_glue(${file} "${line}" "${path}")
+  check_door(${file} "${line}" "${path}")
   if(kind STREQUAL "internal" AND NOT room STREQUAL "tests")
     report(${file} "${line}" "only pd_core and tests include pd_core/src")
   endif()

@@ -10,12 +10,11 @@
 
 #include "pd/bullet/scalar.hpp"
 #include "pd/bullet/shape_conversion.hpp"
+#include "pd/record/record_shape.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-constexpr const char* kAxes = "xyz";
 
 /// A running number that changes with the bits of what is added.
 class Number {
@@ -31,41 +30,6 @@ class Number {
 
  private:
   std::uint64_t value_;
-};
-
-struct WriteCore {
-  pd_record& record;
-  const char* id;
-  double margin;
-
-  void operator()(const ConvexPolytope& polytope) const {
-    if (polytope.num_vertices() == 1 && polytope.vertex(0).isZero(0) && margin > 0) {
-      pd_record_sphere(&record, id, margin);
-      return;
-    }
-    std::vector<double> points;
-    for (int v = 0; v < polytope.num_vertices(); ++v) {
-      const Vec3 p = polytope.vertex(v);
-      points.insert(points.end(), p.data(), p.data() + 3);
-    }
-    pd_record_convex(&record, id, points.data(), points.size() / 3, margin);
-  }
-  void operator()(const Ellipsoid& ellipsoid) const {
-    pd_record_ellipsoid(&record, id, ellipsoid.radii.data(), margin);
-  }
-  void operator()(const Cylinder& cylinder) const {
-    pd_record_round(&record, id, "cylinder", cylinder.radius, cylinder.half_height, kAxes[cylinder.axis], margin);
-  }
-  void operator()(const Cone& cone) const {
-    pd_record_round(&record, id, "cone", cone.radius, cone.half_height, kAxes[cone.axis], margin);
-  }
-  void operator()(const SphereHull& hull) const {
-    std::vector<double> spheres;
-    for (const Sphere& s : hull.spheres()) {
-      spheres.insert(spheres.end(), {s.centre.x(), s.centre.y(), s.centre.z(), s.radius});
-    }
-    pd_record_spheres(&record, id, spheres.data(), hull.spheres().size(), margin);
-  }
 };
 
 /// Of a box to its corners; none of other shapes.
@@ -88,10 +52,6 @@ std::optional<Vec3> half_extents(const btConvexShape& shape) {
   }
 }
 
-void write(pd_record& record, const std::string& id, const ConvexShape& shape) {
-  std::visit(WriteCore{record, id.c_str(), shape.margin()}, shape.core());
-}
-
 }  // namespace
 
 template <class Write>
@@ -107,7 +67,7 @@ std::optional<std::string> RecordShapes::convex(pd_record& record, const btConve
   if (ids_.contains(number)) return known(number, [](const std::string&) {});
   const auto body = to_convex_shape(shape);
   if (!body) return std::nullopt;
-  return known(number, [&](const std::string& id) { write(record, id, *body); });
+  return known(number, [&](const std::string& id) { record_shape(record, id, *body); });
 }
 
 std::optional<std::string> RecordShapes::sharp(pd_record& record, const btConvexShape& shape) {
@@ -137,7 +97,8 @@ std::string RecordShapes::triangle(pd_record& record, const ConvexShape& triangl
   Number number(0x741A);
   const ConvexPolytope& polytope = *triangle.polytope();
   for (int v = 0; v < polytope.num_vertices(); ++v) number.add(polytope.vertex(v));
-  return known(number.add(triangle.margin()).value(), [&](const std::string& id) { write(record, id, triangle); });
+  return known(number.add(triangle.margin()).value(),
+               [&](const std::string& id) { record_shape(record, id, triangle); });
 }
 
 }  // namespace pd::detail
