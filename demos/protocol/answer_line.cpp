@@ -65,6 +65,7 @@ Handler find_handler(const Node& line, const Limits& limits) {
   for (const QueryEntry& entry : kQueries) {
     if (entry.name == name) {
       const Handler of_unions = find_union_handler(name);
+      if (of_unions == answer_union_contact_manifold && names_sheet(line)) return of_unions;
       if (of_unions != nullptr && names_solid(line, limits)) return find_solid_handler(name);
       return of_unions != nullptr && names_non_convex(line) ? of_unions : entry.handler;
     }

@@ -13,24 +13,38 @@ double read_breaking_threshold(const Node& line) {
   return threshold;
 }
 
+bool read_one_sided(const Node& line) {
+  const auto node = line.find("one_sided");
+  if (!node) return false;
+  if (!node->json().is_boolean()) node->refuse("bad_value", "must be true or false");
+  return node->json().get<bool>();
+}
+
+void write_contact_point(const ContactPoint& point, JsonWriter& answer) {
+  answer.key("position_a").vector(point.position_a);
+  answer.key("position_b").vector(point.position_b);
+  answer.key("depth").number(point.depth);
+  answer.key("feature_id").integer(point.feature_id);
+}
+
 void write_manifold(const ContactManifold& manifold, JsonWriter& answer) {
   answer.key("normal").vector(manifold.normal);
   answer.key("points").begin_array();
   for (int i = 0; i < manifold.count; ++i) {
-    const ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
     answer.begin_object();
-    answer.key("position_a").vector(point.position_a);
-    answer.key("position_b").vector(point.position_b);
-    answer.key("depth").number(point.depth);
-    answer.key("feature_id").integer(point.feature_id);
+    write_contact_point(manifold.points[static_cast<std::size_t>(i)], answer);
     answer.end_object();
   }
   answer.end_array();
 }
 
 void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold"});
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold", "one_sided"});
   const double threshold = read_breaking_threshold(line);
+  if (read_one_sided(line)) {
+    line.at("one_sided")
+        .refuse("unsupported", "only a sheet has sides; give a mesh as one (\"as\":\"sheet\"), or leave one_sided out");
+  }
   const Pair pair = read_pair(line, session.limits);
   const PenetrationDepth depth = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch,
                                                    {.method = Method::automatic, .bracket = Bracket::tightest});

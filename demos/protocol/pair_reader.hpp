@@ -60,6 +60,10 @@ void write_depth_fields(const PenetrationDepth& result, JsonWriter& answer);
 /// The field "breaking_threshold", 0 where it is not given.
 /// @throws Refusal bad_value when negative.
 [[nodiscard]] double read_breaking_threshold(const Node& line);
+/// The field "one_sided", false where it is not given.
+[[nodiscard]] bool read_one_sided(const Node& line);
+/// The fields of a contact point within its object.
+void write_contact_point(const ContactPoint& point, JsonWriter& answer);
 /// The fields "normal" and "points".
 void write_manifold(const ContactManifold& manifold, JsonWriter& answer);
 

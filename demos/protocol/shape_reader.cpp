@@ -133,7 +133,10 @@ NamedShape read_mesh(const Node& node, const Limits& limits) {
         "this query is for convex shapes; for solids there are depth, distance, intersect and, where their convex "
         "parts have exact corners, the queries of compounds");
   }
-  if (as && word != "hull") as->refuse("bad_value", "must be \"solid\" or \"hull\"");
+  if (as && word == "sheet") {
+    as->refuse("unsupported", "a sheet has no inside: contact_manifold alone takes one, as its \"a\" or \"b\"");
+  }
+  if (as && word != "hull") as->refuse("bad_value", kMeshWords);
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
   try {

@@ -41,6 +41,9 @@ struct NamedShape {
 /// Reads a pose; the identity where a part is missing.
 [[nodiscard]] Pose read_pose(const Node& node);
 
+/// What "as" of a mesh may say.
+inline constexpr const char* kMeshWords = "must be \"solid\", \"hull\" or \"sheet\"";
+
 /// How a mesh is to be taken.
 enum class MeshAs {
   found,  ///< as it is where it is convex, else as its hull, with a note

@@ -78,8 +78,8 @@ std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limi
   SolidWish wish;
   if (const auto as = node.find("as")) {
     const std::string word = read_string(*as);
-    if (word == "hull") return nullptr;
-    if (word != "solid") as->refuse("bad_value", "must be \"solid\" or \"hull\"");
+    if (word == "hull" || word == "sheet") return nullptr;
+    if (word != "solid") as->refuse("bad_value", kMeshWords);
     wish.always = true;
   }
   if (const auto turn = node.find("turn_faces")) {

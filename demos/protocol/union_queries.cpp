@@ -197,22 +197,6 @@ void answer_union_support(const Node& line, Session& session, JsonWriter& answer
   write_integers("parts_b", [](const Best& s) { return s.part_b; });
 }
 
-/// The contact points of the two parts that decide the answer.
-void answer_union_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold"});
-  const double threshold = read_breaking_threshold(line);
-  const BodyPair pair = read_bodies(line, session.limits);
-  const UnionDepth depth = solve(line, pair, session, {});
-  const std::vector<PosedShape> parts_a = value_or_refuse(pair.a.compound.posed(pair.pose_a), line);
-  const std::vector<PosedShape> parts_b = value_or_refuse(pair.b.compound.posed(pair.pose_b), line);
-  const ContactManifold manifold =
-      contact_manifold(parts_a[static_cast<std::size_t>(depth.part_a)], parts_b[static_cast<std::size_t>(depth.part_b)],
-                       depth, threshold, session.manifold_scratch);
-  write_manifold(manifold, answer);
-  answer.key("part_a").integer(depth.part_a);
-  answer.key("part_b").integer(depth.part_b);
-}
-
 std::string_view word_of_facet(Feature::Kind kind) {
   return kind == Feature::Kind::facet ? "facet" : kind == Feature::Kind::edge ? "edge" : "vertex";
 }

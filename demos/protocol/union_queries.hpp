@@ -31,6 +31,11 @@ struct BodyPair {
 /// The fields of a union's depth answer from "class" to "stats".
 void write_union_answer(const UnionDepth& result, const BodyPair& pair, std::int64_t nanoseconds, JsonWriter& answer);
 
+/// True if "a" or "b" of a line is a mesh that is asked as a sheet of triangles.
+[[nodiscard]] bool names_sheet(const Node& line);
+
+/// Contacts of bodies that need not be convex, sheets included.
+void answer_union_contact_manifold(const Node& line, Session& session, JsonWriter& answer);
 void answer_union_time_of_impact(const Node& line, Session& session, JsonWriter& answer);
 
 /// The handler of a query for bodies that need not be convex; nullptr where it answers for convex bodies only (its own

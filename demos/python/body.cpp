@@ -16,29 +16,6 @@ namespace {
 
 using Make = std::function<BodyRef(const py::tuple&)>;
 
-std::vector<Vec3> read_points(py::handle value, std::string_view argument) {
-  const Array array = read_array(value, argument, {-1, 3});
-  std::vector<Vec3> points(static_cast<std::size_t>(array.shape(0)));
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = Eigen::Map<const Vec3>(array.data() + 3 * i);
-  return points;
-}
-
-/// A list of lists of indices, or an array of them.
-std::vector<std::vector<std::int32_t>> read_faces(py::handle value) {
-  std::vector<std::vector<std::int32_t>> faces;
-  for (const py::handle face : value) {
-    faces.emplace_back();
-    for (const py::handle index : face) {
-      const auto number = py::int_(py::reinterpret_borrow<py::object>(index)).cast<std::int64_t>();
-      if (number < 0 || number > INT32_MAX) {
-        refuse("bad_faces", "an index is a number from 0", "faces[" + std::to_string(faces.size() - 1) + "]");
-      }
-      faces.back().push_back(static_cast<std::int32_t>(number));
-    }
-  }
-  return faces;
-}
-
 BodyRef make(std::variant<ConvexShape, Compound> value) { return std::make_shared<Body>(Body{std::move(value)}); }
 
 BodyRef make_faces(const py::tuple& numbers) {
@@ -176,6 +153,28 @@ py::list facets_of(const Body& body) {
 }
 
 }  // namespace
+
+std::vector<Vec3> read_points(py::handle value, std::string_view argument) {
+  const Array array = read_array(value, argument, {-1, 3});
+  std::vector<Vec3> points(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = Eigen::Map<const Vec3>(array.data() + 3 * i);
+  return points;
+}
+
+std::vector<std::vector<std::int32_t>> read_faces(py::handle value) {
+  std::vector<std::vector<std::int32_t>> faces;
+  for (const py::handle face : value) {
+    faces.emplace_back();
+    for (const py::handle index : face) {
+      const auto number = py::int_(py::reinterpret_borrow<py::object>(index)).cast<std::int64_t>();
+      if (number < 0 || number > INT32_MAX) {
+        refuse("bad_faces", "an index is a number from 0", "faces[" + std::to_string(faces.size() - 1) + "]");
+      }
+      faces.back().push_back(static_cast<std::int32_t>(number));
+    }
+  }
+  return faces;
+}
 
 Compound Body::compound() const {
   if (const ConvexShape* const shape = convex()) return Compound(*shape);

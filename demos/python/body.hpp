@@ -2,8 +2,10 @@
 /// Shapes as Python holds them: a convex body or a union of convex parts, immutable and shared.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -29,6 +31,11 @@ using BodyRef = std::shared_ptr<Body>;
 /// The vertices of a feature by the caller's numbers (rows of the array that the shape was made from); empty for none.
 /// @param part  of a union; 0 for a convex body.
 [[nodiscard]] std::vector<int> feature_ids(const Body& body, int part, const Feature& feature);
+
+/// An array [n, 3]. @throws Refused as `read_array`
+[[nodiscard]] std::vector<Vec3> read_points(py::handle value, std::string_view argument);
+/// A list of lists of indices, or an array of them. @throws Refused bad_faces for a number that is no index
+[[nodiscard]] std::vector<std::vector<std::int32_t>> read_faces(py::handle value);
 
 /// Declares `Shape`, the base of Python's shapes.
 void bind_shapes(py::module_& module);

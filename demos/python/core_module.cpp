@@ -30,5 +30,6 @@ PYBIND11_MODULE(_core, module) {
   pd::python::bind_pose(module);
   pd::python::bind_shapes(module);
   pd::python::bind_pair_queries(module);
+  pd::python::bind_union_contacts(module);
   pd::python::bind_batch_queries(module);
 }

@@ -41,5 +41,7 @@ struct QuerySettings {
 
 /// Declares `Depth` and the queries of one pair.
 void bind_pair_queries(py::module_& module);
+/// Declares `Sheet` and the contacts of unions and sheets.
+void bind_union_contacts(py::module_& module);
 
 }  // namespace pd::python

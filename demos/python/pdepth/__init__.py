@@ -16,7 +16,8 @@ from ._lines import Answer, audit, hull, minkowski_difference, polygon_depth, qu
 from ._picture_call import picture, save_picture
 from ._queries import (CONTACTS, FEATURES, Batch, Derivatives, DirectionalDepth, Manifold, contact_manifold, cores, depth,
                        derivatives, directional_depth, distance, intersects)
-from ._shapes import Box, Capsule, Compound, Cone, ConvexPolytope, Cylinder, Ellipsoid, Shape, Sphere, SphereHull, StarBody
+from ._shapes import (Box, Capsule, Compound, Cone, ConvexPolytope, Cylinder, Ellipsoid, Shape, Sheet, Sphere, SphereHull,
+                      StarBody)
 from ._sweep import Sweep, sweep
 
 __version__ = "0.1.0"
@@ -24,8 +25,8 @@ __version__ = "0.1.0"
 # Named, so that help(pdepth) shows them all.
 __all__ = [
     "Answer", "Batch", "Box", "CONTACTS", "Capsule", "Compound", "Cone", "ConvexPolytope", "Cylinder", "Depth", "Derivatives",
-    "DirectionalDepth", "ERRORS", "Ellipsoid", "FEATURES", "Manifold", "Pose", "Refused", "RowBatch", "Shape", "Sphere",
-    "SphereHull", "StarBody", "Sweep", "Warm", "audit", "contact_manifold", "cores", "depth", "derivatives", "directional_depth",
-    "distance", "hull", "intersects", "minkowski_difference", "picture", "polygon_depth", "query", "query_many",
-    "save_picture", "sweep", "time_of_impact", "width",
+    "DirectionalDepth", "ERRORS", "Ellipsoid", "FEATURES", "Manifold", "Pose", "Refused", "RowBatch", "Shape", "Sheet",
+    "Sphere", "SphereHull", "StarBody", "Sweep", "Warm", "audit", "contact_manifold", "cores", "depth", "derivatives",
+    "directional_depth", "distance", "hull", "intersects", "minkowski_difference", "picture", "polygon_depth", "query",
+    "query_many", "save_picture", "sweep", "time_of_impact", "width",
 ]

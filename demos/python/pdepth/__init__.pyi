@@ -90,6 +90,9 @@ class Compound(Shape):
 class StarBody(Shape):
     def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike, center: npt.ArrayLike, *, margin: float = ...) -> None: ...
 
+class Sheet:
+    def __init__(self, vertices: npt.ArrayLike, faces: Iterable[Iterable[int]], *, margin: float = ...) -> None: ...
+
 class Warm:
     def __init__(self) -> None: ...
     def clear(self) -> None: ...
@@ -149,6 +152,11 @@ class Manifold:
     position_b: Floats
     depth: Floats
     feature_id: npt.NDArray[np.int64]
+    normals: Floats
+    piece_a: npt.NDArray[np.int64]
+    piece_b: npt.NDArray[np.int64]
+    patches: list[Manifold]
+    covered: int
 
 class Derivatives:
     answer: Depth
@@ -211,14 +219,14 @@ def directional_depth(a: Sequence[Shape], b: ShapesLike, direction: npt.ArrayLik
 def directional_depth(a: ShapesLike, b: ShapesLike, direction: npt.ArrayLike, pose_a: PosesLike = ...,
                       pose_b: PosesLike = ..., *, threads: Optional[int] = ...) -> Any: ...
 @overload
-def contact_manifold(a: Shape, b: Shape, pose_a: OnePose = ..., pose_b: OnePose = ..., *,
-                     breaking_threshold: float = ..., threads: Optional[int] = ...) -> Manifold: ...
+def contact_manifold(a: Union[Shape, Sheet], b: Union[Shape, Sheet], pose_a: OnePose = ..., pose_b: OnePose = ..., *,
+                     breaking_threshold: float = ..., one_sided: bool = ..., threads: Optional[int] = ...) -> Manifold: ...
 @overload
 def contact_manifold(a: Sequence[Shape], b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *,
-                     breaking_threshold: float = ..., threads: Optional[int] = ...) -> Batch: ...
+                     breaking_threshold: float = ..., one_sided: bool = ..., threads: Optional[int] = ...) -> Batch: ...
 @overload
 def contact_manifold(a: ShapesLike, b: ShapesLike, pose_a: PosesLike = ..., pose_b: PosesLike = ..., *,
-                     breaking_threshold: float = ..., threads: Optional[int] = ...) -> Any: ...
+                     breaking_threshold: float = ..., one_sided: bool = ..., threads: Optional[int] = ...) -> Any: ...
 @overload
 def derivatives(a: Shape, b: Shape, pose_a: OnePose = ..., pose_b: OnePose = ..., *,
                 threads: Optional[int] = ...) -> Derivatives: ...

@@ -239,7 +239,12 @@ class DirectionalDepth(Fields):
 
 
 class Manifold(Fields):
-    """normal [3]; position_a and position_b [k, 3], depth [k], feature_id [k] with k <= 4."""
+    """normal [3]; position_a and position_b [k, 3], depth [k], feature_id [k] with k <= 4.
+
+    Of unions and sheets also normals [k, 3], piece_a and piece_b [k] (numbers of parts or faces), patches (a list of
+    Manifold, one for each direction of contact; the first holds the deepest point) and covered (contacts of two pieces
+    that were dropped or turned because other pieces cover them).
+    """
 
 
 class Derivatives(Fields):
@@ -266,21 +271,44 @@ def directional_depth(a, b, direction, pose_a=None, pose_b=None, *, threads=None
     return Batch(_core.directional_rows(bodies_a, bodies_b, poses_a, poses_b, rows, count, _threads(threads)), lead)
 
 
-def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, threads=None):
-    """At most four pairs of points where two convex bodies meet.
+#: What stands for one body of a contact.
+_ONE = (_core.Shape, _core.Sheet)
+
+
+def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, one_sided=False, threads=None):
+    """At most four pairs of points for each direction in which two bodies meet.
 
     The normal points from B to A; depth > 0 inside, < 0 a gap of at most breaking_threshold; feature_id is the same while
-    the same two features meet. For many: a Batch with count, normal [n, 3], position_a and position_b [n, 4, 3],
-    point_depth [n, 4] and feature_id [n, 4], NaN and 0 beyond count.
-    Lengths and frames as in depth. Raises Refused: 'unsupported' for unions, 'bad_value' at breaking_threshold.
+    the same two features meet. A union is one body: contacts with faces and edges inside of it are dropped or turned.
+    One of the bodies may be a Sheet, the triangles of a mesh. one_sided: a sheet is left by its front alone, from which
+    the corners of its faces run counter-clockwise. The normal is 0 where a sheet has no contact. See Manifold.
+
+    For many pairs of convex bodies: a Batch with count, normal [n, 3], position_a and position_b [n, 4, 3], point_depth
+    [n, 4] and feature_id [n, 4], NaN and 0 beyond count.
+    Lengths and frames as in depth. Raises Refused: 'bad_value' at breaking_threshold; 'unsupported' for two sheets, for
+    one_sided without a sheet and for unions and sheets in a batch; 'limit_exceeded' where unions of many pieces are deep
+    in each other.
     """
+    one_pair = isinstance(a, _ONE) and isinstance(b, _ONE) and not _many(pose_a) and not _many(pose_b)
+    if isinstance(a, _core.Sheet) or isinstance(b, _core.Sheet):
+        if not one_pair:
+            raise refused("a: sheets are asked pair by pair, not in a batch (unsupported)")
+        return _union_manifold(a, b, pose_a, pose_b, breaking_threshold, one_sided)
     if _is_batch(a, b, pose_a, pose_b):
         (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
         fields = _core.manifold_rows(bodies_a, bodies_b, poses_a, poses_b, count, breaking_threshold, _threads(threads))
         for name in ("position_a", "position_b"):
             fields[name] = fields[name].reshape((count, 4, 3))
         return Batch(fields, lead)
+    if one_sided or not (a.is_convex and b.is_convex):
+        return _union_manifold(a, b, pose_a, pose_b, breaking_threshold, one_sided)
     return Manifold(_core.manifold(a, b, pose_a, pose_b, breaking_threshold))
+
+
+def _union_manifold(a, b, pose_a, pose_b, breaking_threshold, one_sided):
+    patches, covered = _core.union_manifold(a, b, pose_a, pose_b, (float(breaking_threshold), bool(one_sided)))
+    patches = [Manifold(fields) for fields in patches]
+    return Manifold({**vars(patches[0]), "patches": patches if len(patches[0].depth) else [], "covered": covered})
 
 
 def derivatives(a, b, pose_a=None, pose_b=None, *, threads=None):

@@ -116,6 +116,30 @@ class Shape(_core.Shape):
         return png(picture(self))
 
 
+class Sheet(_core.Sheet):
+    """The triangles of a mesh as a sheet without an inside, for contact_manifold alone.
+
+    vertices: [n, 3]; faces: loops of row numbers; a face of more than three corners is cut into triangles. The mesh need
+    be neither closed nor manifold; faces without an area are left out. `margin` >= 0 makes the sheet thicker on both
+    sides. Immutable.
+
+    Raises Refused: 'bad_faces' at faces[i], 'non_finite' or 'out_of_range' at vertices[i], 'too_few_points' if no face
+    has an area, 'bad_value'.
+    """
+
+    def __init__(self, vertices, faces, *, margin=0.0):
+        super().__init__(vertices, faces, margin)
+        self._arguments = {"vertices": _numbers(vertices), "faces": [[int(i) for i in face] for face in faces]}
+        if margin:
+            self._arguments["margin"] = float(margin)
+
+    def __repr__(self):
+        return f"Sheet({', '.join(f'{name}={value!r}' for name, value in self._arguments.items())})"
+
+    def __reduce__(self):
+        return _again, (type(self), self._arguments)
+
+
 def shape_fields(shape, argument):
     """A shape as the line protocol writes it."""
     if not isinstance(shape, Shape):

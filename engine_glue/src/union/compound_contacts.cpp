@@ -11,10 +11,10 @@
 #include "pair/step_reach.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
+#include "pd/union_contact/deep_union.hpp"
 #include "pieces/compound_facts.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/moving_body.hpp"
-#include "union/deep_union.hpp"
 #include "union/piece_memories.hpp"
 #include "union/pieces_in_result.hpp"
 
@@ -72,14 +72,60 @@ class ChildrenOfPoint : public PointSurroundings {
   std::optional<ChildrenInResult> inside_;
 };
 
-/// Where a child stands in a list, at whose end it is put if it is not there.
-int place_of(const Child& child, std::vector<Child>& children) {
-  const auto same = [&](const Child& other) { return other.index == child.index; };
-  const auto found = std::find_if(children.begin(), children.end(), same);
+/// The place of the child of this number in a list.
+std::vector<Child>::const_iterator place_in(const std::vector<Child>& children, int number) {
+  return std::find_if(children.begin(), children.end(), [&](const Child& child) { return child.index == number; });
+}
+
+/// Where a child stands in a list. If it is not there, it is copied from `all` to the end.
+int place_of(int number, const std::vector<Child>& all, std::vector<Child>& children) {
+  const auto found = place_in(children, number);
   const auto place = static_cast<int>(found - children.begin());
-  if (found == children.end()) children.push_back(child);
+  if (found == children.end()) children.push_back(*place_in(all, number));
   return place;
 }
+
+/// The children of two compounds near each other, by Bullet's trees.
+class NearChildren final : public NearSides {
+ public:
+  NearChildren(const UnionQuestion& question, SolverCore& core) : question_(question), core_(core) {}
+  bool collect(double reach, NearSide& a, NearSide& b) override {
+    return collect(question_.a, question_.b, reach, a_, a) && collect(question_.b, question_.a, reach, b_, b);
+  }
+  [[nodiscard]] const std::vector<Child>& of_a() const { return a_.children; }
+  [[nodiscard]] const std::vector<Child>& of_b() const { return b_.children; }
+
+ private:
+  struct Held {
+    std::vector<Child> children;
+    std::vector<std::shared_ptr<CachedShape>> shapes;  ///< as long as they are posed
+  };
+  bool collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach, Held& held,
+               NearSide& side) const {
+    const btTransform& pose = body.getWorldTransform();
+    const btTransform& other_pose = other.getWorldTransform();
+    const btCollisionShape& other_shape = *other.getCollisionShape();
+    children_near(body, box_of(other_shape, pose.inverseTimes(other_pose)), box_of(other_shape, other_pose),
+                  static_cast<btScalar>(reach), held.children);
+    held.shapes.clear();
+    side = {};
+    for (const Child& child : held.children) {
+      if (!child.shape->isConvex()) return false;
+      const auto found = core_.cache.find(static_cast<const btConvexShape&>(*child.shape), question_.stamp);
+      if (!found->body) return false;
+      side.polytopes = side.polytopes && found->body->polytope() != nullptr;
+      const bool part = child.index >= 0;
+      held.shapes.push_back(found);
+      side.numbers.push_back(child.index);
+      side.posed.push_back({(part && found->sharp ? found->sharp : found->body).get(), to_pd(child.pose)});
+    }
+    return !side.posed.empty();
+  }
+
+  const UnionQuestion& question_;
+  SolverCore& core_;
+  Held a_, b_;
+};
 
 /// Whether two children cannot have come within reach of each other since they were last asked.
 /// @param way_and_reach  what both have come, and up to which gap there are contacts
@@ -216,8 +262,13 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
     buffers.counters.deep_unions_left.add();
     return;
   }
+  NearChildren near(question, core);
+  const Vec3 back =
+      linear_velocity(*question.b.getCollisionObject()) - linear_velocity(*question.a.getCollisionObject());
   DeepUnion::Way way;
-  const DeepUnion::Outcome outcome = deep_.find_way(question, core, buffers, memory.union_way, way);
+  const DeepUnion::Outcome outcome =
+      deep_.find_way({near, static_cast<double>(question.threshold), kPoseRounding, back},
+                     {buffers.scratch, buffers.manifold, buffers.union_exit}, memory.union_way, way);
   if (outcome == DeepUnion::Outcome::over_budget) {
     memory.union_refusals = std::min(memory.union_refusals + 1, kMostRefusals);
     memory.union_pause = (1 << memory.union_refusals) - 1;
@@ -229,11 +280,12 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
   buffers.counters.deep_unions.add();
   if (outcome == DeepUnion::Outcome::nearly) buffers.counters.deep_unions_nearly.add();
   // The children that touch last need not touch yet.
-  const ChildPair last(place_of(way.a, children_a_), place_of(way.b, children_b_));
+  const ChildPair last(place_of(way.piece_a, near.of_a(), children_a_),
+                       place_of(way.piece_b, near.of_b(), children_b_));
   auto pair = std::find(pairs_.begin(), pairs_.end(), last);
   if (pair == pairs_.end()) pair = pairs_.insert(pairs_.end(), last);
   patches.keep_along(way.points.normal);
-  patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.a.index, way.b.index);
+  patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.piece_a, way.piece_b);
 }
 
 bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
@@ -265,7 +317,7 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   const auto [i, j] = pairs_.back();
   const int piece_a = children_a_[static_cast<std::size_t>(i)].index;
   const int piece_b = children_b_[static_cast<std::size_t>(j)].index;
-  deep_.add(answer, piece_a, piece_b, points);
+  deep_.add({answer.depth, answer.a, answer.b, piece_a, piece_b}, points);
   patches.add(points, static_cast<int>(pairs_.size()) - 1, piece_a, piece_b);
   return true;
 }

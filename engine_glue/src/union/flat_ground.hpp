@@ -21,9 +21,12 @@
 #include "pd/contact/halfspace_contact.hpp"
 #include "shapes/met_triangle.hpp"
 
-namespace pd::detail {
+namespace pd {
 
 class Patches;
+
+namespace detail {
+
 class SheetSides;
 class SolverCore;
 struct CachedShape;
@@ -74,4 +77,6 @@ class FlatGround {
   double farthest_ = 0;  ///< largest coordinate of a corner
 };
 
-}  // namespace pd::detail
+}  // namespace detail
+
+}  // namespace pd

@@ -13,6 +13,7 @@
 
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/union_contact/one_sided.hpp"
 #include "pieces/compound_facts.hpp"
 #include "shapes/body_motion.hpp"
 #include "shapes/compound_children.hpp"
@@ -21,7 +22,6 @@
 #include "shapes/triangles_around.hpp"
 #include "union/flat_ground.hpp"
 #include "union/gentle_ground.hpp"
-#include "union/one_sided.hpp"
 #include "union/piece_memories.hpp"
 #include "union/pieces_in_result.hpp"
 #include "union/sheet_sides.hpp"
@@ -303,8 +303,8 @@ void MeshContacts::choose_triangles(int place, const TrianglesAround& around, St
 void MeshContacts::remember_points(const Patches& patches, StandingStill& standing) const {
   if (standing.empty()) return;
   for (int i = 0; i < patches.size(); ++i) {
-    for (int k = 0; k < patches[i].fresh.count; ++k) {
-      const auto piece = static_cast<std::size_t>(patches[i].pieces[static_cast<std::size_t>(k)]);
+    for (int k = 0; k < patches[i].count; ++k) {
+      const auto piece = static_cast<std::size_t>(patches[i].points[static_cast<std::size_t>(k)].piece);
       standing.set(static_cast<std::size_t>(triangles_[piece].child), places_[piece], StandingStill::Met::with_points);
     }
   }
@@ -405,7 +405,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     if (outcome != SolverCore::Outcome::answered) continue;
     if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
     const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
-    if (one_sided && !one_sided_.admit(answer, front, static_cast<int>(i))) continue;
+    if (one_sided && !one_sided_.admit(answer.depth, front, static_cast<int>(i))) continue;
     if (!one_sided) {
       const MeshTriangle& near = buffers.around.triangles()[places_[i]];
       const Vec3 back = sides_.judge(number_of_pieces(child.index, met), near.across.normalized(), met, answer);
@@ -413,7 +413,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
         one_sided_.add_behind(static_cast<int>(i), back);
         continue;
       }
-      one_sided_.add_way_of(answer);
+      one_sided_.add_way_of(answer.depth);
     }
     ContactManifold points;
     AskedPieces pieces = question.of_pieces(a, triangle.wrapper(), core, buffers);

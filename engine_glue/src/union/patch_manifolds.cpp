@@ -15,24 +15,32 @@ namespace {
 class PieceOfPoint : public PointSurroundings {
  public:
   PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
-  void enter(int point) override { pieces_.enter(patch_.pieces[static_cast<std::size_t>(point)]); }
+  /// Each of the points is the one that had the number in `before`.
+  void renumber(const std::array<int, 4>& before) { before_ = before; }
+  void enter(int point) override { pieces_.enter(piece_of(point)); }
   void leave() override { pieces_.leave(); }
   [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
-    return pieces_.numbers(patch_.pieces[static_cast<std::size_t>(point)], out);
+    return pieces_.numbers(piece_of(point), out);
   }
   [[nodiscard]] bool lasting() const override { return false; }
 
  private:
+  [[nodiscard]] int piece_of(int point) const {
+    return patch_.points[static_cast<std::size_t>(before_[static_cast<std::size_t>(point)])].piece;
+  }
+
   const Patch& patch_;
   PointSurroundings& pieces_;
+  std::array<int, 4> before_{0, 1, 2, 3};
 };
 
-/// Takes the points out that links do not need in this step.
-void leave_out_idle(const StepReach& reach, Patch& patch) {
-  const std::array<int, 4> before = reach.leave_out_idle_of_links(patch.fresh);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.fresh.count); ++k) {
-    patch.pieces[k] = patch.pieces[static_cast<std::size_t>(before[k])];
+FreshPoints fresh_points(const Patch& patch) {
+  FreshPoints fresh;
+  fresh.count = patch.count;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.count); ++k) {
+    fresh.points[k] = fresh_point(patch.points[k].normal, patch.points[k].contact);
   }
+  return fresh;
 }
 
 }  // namespace
@@ -124,11 +132,11 @@ void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifo
       continue;
     }
     Kept& kept = at(m, a, b);
-    Patch patch = patches[heirs[m]];
-    if (reach) leave_out_idle(*reach, patch);
-    PieceOfPoint around(patch, surroundings);
+    FreshPoints fresh = fresh_points(patches[heirs[m]]);
+    PieceOfPoint around(patches[heirs[m]], surroundings);
+    if (reach) around.renumber(reach->leave_out_idle_of_links(fresh));
     result.setPersistentManifold(kept.manifold);
-    replace_points({*kept.manifold, kept.memory, patch.fresh, seconds, result}, around);
+    replace_points({*kept.manifold, kept.memory, fresh, seconds, result}, around);
   }
   result.setPersistentManifold(&first);
 }

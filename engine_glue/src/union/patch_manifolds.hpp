@@ -11,8 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "pair/manifold_points.hpp"
 #include "pair/pair_registry.hpp"
-#include "union/patches.hpp"
+#include "pd/union_contact/patches.hpp"
 
 namespace pd::detail {
 

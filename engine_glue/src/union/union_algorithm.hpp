@@ -7,9 +7,9 @@
 
 #include "pair/algorithm_shell.hpp"
 #include "pair/bounce.hpp"
+#include "pd/union_contact/patches.hpp"
 #include "pieces/asked_pieces.hpp"
 #include "union/patch_manifolds.hpp"
-#include "union/patches.hpp"
 
 namespace pd::detail {
 

@@ -1,7 +1,7 @@
 /// @file
 /// Which four points of many stand for a patch, and that it is the same four in the next step.
 
-#include "union/patches.hpp"
+#include "pd/union_contact/patches.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,6 @@
 
 namespace pd::test {
 namespace {
-
-using detail::LastPatch;
-using detail::Patches;
 
 constexpr double kThreshold = 0.02;
 
@@ -44,7 +41,8 @@ class NoisyRings {
 std::vector<std::vector<int>> pieces_of(const Patches& patches) {
   std::vector<std::vector<int>> all;
   for (int p = 0; p < patches.size(); ++p) {
-    std::vector<int> pieces(patches[p].pieces.begin(), patches[p].pieces.begin() + patches[p].fresh.count);
+    std::vector<int> pieces;
+    for (int k = 0; k < patches[p].count; ++k) pieces.push_back(patches[p].points[static_cast<std::size_t>(k)].piece);
     std::sort(pieces.begin(), pieces.end());
     all.push_back(pieces);
   }
@@ -57,10 +55,9 @@ std::vector<LastPatch> as_last(const Patches& patches) {
   for (int p = 0; p < patches.size(); ++p) {
     LastPatch& one = last.emplace_back();
     one.normal = patches[p].normal;
-    one.count = patches[p].fresh.count;
-    for (int k = 0; k < one.count; ++k) {
-      const btVector3& x = patches[p].fresh.points[static_cast<std::size_t>(k)].point_on_b;
-      one.places[static_cast<std::size_t>(k)] = Vec3(x.x(), x.y(), x.z());
+    one.count = patches[p].count;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(one.count); ++k) {
+      one.places[k] = patches[p].points[k].contact.position_b;
     }
   }
   return last;
@@ -127,9 +124,9 @@ TEST(Patches, OnesOfTheLastStepGoOnAndEmptyOnesMakeRoom) {
   patches.choose(2, kThreshold, last);
   ASSERT_EQ(patches.size(), 2);
   EXPECT_EQ(patches[0].last, 1);
-  EXPECT_EQ(patches[0].pieces[0], 1);
+  EXPECT_EQ(patches[0].points[0].piece, 1);
   EXPECT_EQ(patches[1].last, -1);
-  EXPECT_EQ(patches[1].pieces[0], 0);
+  EXPECT_EQ(patches[1].points[0].piece, 0);
 }
 
 void add_point(Patches& patches, const Vec3& normal, const Vec3& place, double depth, int piece) {

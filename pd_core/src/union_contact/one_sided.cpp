@@ -1,8 +1,8 @@
-#include "union/one_sided.hpp"
+#include "pd/union_contact/one_sided.hpp"
 
 #include <algorithm>
 
-namespace pd::detail {
+namespace pd {
 
 namespace {
 
@@ -18,11 +18,11 @@ void OneSided::clear() {
   ways_.clear();
 }
 
-bool OneSided::admit(const PairAnswer& answer, const Vec3& front, int triangle) {
-  const bool overlapping = answer.depth.contact == ContactClass::overlapping;
-  const double ahead = answer.depth.normal.dot(front);
+bool OneSided::admit(const PenetrationDepth& answer, const Vec3& front, int triangle) {
+  const bool overlapping = answer.contact == ContactClass::overlapping;
+  const double ahead = answer.normal.dot(front);
   if (ahead >= -kSideways) {
-    if (overlapping) ways_.emplace_back(answer.depth.depth * answer.depth.normal);
+    if (overlapping) ways_.emplace_back(answer.depth * answer.normal);
     return true;
   }
   if (overlapping && ahead < -kThrough) behind_.push_back({triangle, front});
@@ -36,4 +36,4 @@ const std::vector<Vec3>& OneSided::ways_out() {
   return ways_;
 }
 
-}  // namespace pd::detail
+}  // namespace pd

@@ -7,15 +7,21 @@
 #include <utility>
 #include <vector>
 
-#include "pair/manifold_points.hpp"
 #include "pd/contact/manifold.hpp"
 
-namespace pd::detail {
+namespace pd {
 
-/// At most four points of about one normal, and which piece each came from.
+/// A contact point among those of many pieces.
+struct PatchPoint {
+  Vec3 normal = Vec3::UnitX();  ///< unit, from B to A
+  ContactPoint contact;
+  int piece = -1;  ///< handed to `Patches::add`
+};
+
+/// At most four points of about one normal.
 struct Patch {
-  FreshPoints fresh;
-  std::array<int, 4> pieces{};
+  std::array<PatchPoint, 4> points;
+  int count = 0;
   Vec3 normal = Vec3::UnitX();  ///< of its deepest point, or of the patch of the last step that goes on in it
   int last = -1;                ///< number of that patch; -1: it is new
 };
@@ -34,24 +40,24 @@ class Patches {
   /// @param i, j  numbers of the piece that do not change from step to step: features are told apart by them
   void add(const ContactManifold& manifold, int piece, int i, int j);
 
-  /// Whether no points were added.
+  /// True if no points were added.
   [[nodiscard]] bool empty() const { return points_.empty(); }
   /// Drops the points whose normals are more than 60 degrees off `normal`.
   void keep_along(const Vec3& normal);
 
-  /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees (the
-  /// last ones take what fits nowhere), drops those that coincide, and keeps four of each patch: the deepest, the
-  /// farthest from it, and those that span the largest triangles with these two, one to each side.
+  /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees; the last
+  /// ones take the points that fit nowhere. Points that coincide are one. Four points of each patch are kept: the
+  /// deepest, the farthest from it, and those that span the largest triangles with these two, one to each side.
   ///
-  /// The choice is the same from step to step as far as that goes, since a point that is new has no impulse yet:
-  /// patches of the last step go on where points are left for them, points of the last step count as a tenth farther
-  /// out, and of points that are as deep up to the noise of a resting contact (a thousandth of the breaking threshold)
-  /// the first is one of the last step, or else the farthest out in a fixed direction.
+  /// The choice is the same from step to step as far as possible, since a point that is new has no impulse yet. Patches
+  /// of the last step go on where points are left for them, and points of the last step count as a tenth farther out.
+  /// Depths that differ by the noise of a resting contact (a thousandth of the breaking threshold) are one depth. Of
+  /// such points the first is one of the last step, or else the farthest out in a fixed direction.
   ///
-  /// Of a corner in a valley that is less steep than a patch is wide, two points push, each to its side. One of them
-  /// alone moves the body until the other one is the deeper, and back in the next step; so what touches within the
-  /// breaking threshold of a chosen point, along a normal more than three degrees off, gets a patch of its own. O(p (q
-  /// + log p)), p points, q patches.
+  /// In a valley that is less steep than a patch is wide, two points of a corner push, each to its side. One of them
+  /// alone moves the body until the other one is the deeper, and back in the next step. So a point that touches within
+  /// the breaking threshold of a chosen point, along a normal more than three degrees off, gets a patch of its own.
+  /// Time O(p (q + log p)) in p points and q patches.
   /// @param last  of the last step, at most `most`
   void choose(int most, double breaking_threshold, std::span<const LastPatch> last);
 
@@ -59,12 +65,9 @@ class Patches {
   [[nodiscard]] const Patch& operator[](int i) const { return patches_[static_cast<std::size_t>(i)]; }
 
  private:
-  struct Point {
-    Vec3 normal;
-    ContactPoint contact;
-    int piece;
-    int patch;
-    bool lasting;  ///< it stands where the patch had a point in the last step
+  struct Point : PatchPoint {
+    int patch = -1;
+    bool lasting = false;  ///< it stands where the patch had a point in the last step
   };
   /// A point by how far it lies in some direction.
   struct Place {
@@ -72,15 +75,15 @@ class Patches {
     std::size_t point;
     bool kept;
   };
-  static void add(const Point& point, Patch& patch);
+  static void add(const PatchPoint& point, Patch& patch);
   /// The patches of the last step that some point belongs to.
   void go_on(std::span<const LastPatch> last);
   /// The deepest first, of equal ones that which was added first.
   void sort_by_depth();
   void choose_in(int patch, double breaking_threshold, std::span<const LastPatch> last);
-  /// Of the points that are left: those that touch and push another way than what was chosen beside them.
+  /// Finds points among those left that touch and push another way than the points chosen beside them.
   void find_twins(double breaking_threshold);
-  /// As patches of their own.
+  /// Adds the twins as patches of their own.
   void add_twins(int most, std::span<const LastPatch> last);
   /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
   void keep_one_of_each(int patch, double merge);
@@ -96,4 +99,4 @@ class Patches {
   std::vector<std::size_t> ranks_;
 };
 
-}  // namespace pd::detail
+}  // namespace pd

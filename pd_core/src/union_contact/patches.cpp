@@ -1,8 +1,8 @@
-#include "union/patches.hpp"
+#include "pd/union_contact/patches.hpp"
 
 #include <algorithm>
 
-namespace pd::detail {
+namespace pd {
 
 namespace {
 
@@ -41,7 +41,7 @@ void Patches::clear() {
 
 void Patches::add(const ContactManifold& manifold, int piece, int i, int j) {
   for (int k = 0; k < manifold.count; ++k) {
-    points_.push_back({manifold.normal, manifold.points[static_cast<std::size_t>(k)], piece, -1, false});
+    points_.push_back({{manifold.normal, manifold.points[static_cast<std::size_t>(k)], piece}, -1, false});
     std::int64_t& feature = points_.back().contact.feature_id;
     feature = feature_of_piece(feature, i, j);
   }
@@ -51,10 +51,8 @@ void Patches::keep_along(const Vec3& normal) {
   std::erase_if(points_, [&](const Point& point) { return point.normal.dot(normal) < kAlong; });
 }
 
-void Patches::add(const Point& point, Patch& patch) {
-  const auto k = static_cast<std::size_t>(patch.fresh.count++);
-  patch.fresh.points[k] = fresh_point(point.normal, point.contact);
-  patch.pieces[k] = point.piece;
+void Patches::add(const PatchPoint& point, Patch& patch) {
+  patch.points[static_cast<std::size_t>(patch.count++)] = point;
 }
 
 void Patches::go_on(std::span<const LastPatch> last) {
@@ -244,4 +242,4 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
   find_twins(breaking_threshold);
 }
 
-}  // namespace pd::detail
+}  // namespace pd

@@ -1,0 +1,133 @@
+/// @file
+/// Two unions of convex pieces that are deep in each other: out the shortest way of the whole, not torn between pieces.
+///
+/// A piece that is far inside another union has no answer of its own that holds for the whole: its nearest exits lead
+/// into other pieces, and pairs of pieces push against each other. There the shortest way out of the whole
+/// (union_exit.hpp) answers, within a budget.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pd/contact/manifold.hpp"
+#include "pd/depth/depth_answer.hpp"
+#include "pd/depth/scratch.hpp"
+#include "pd/union_contact/union_exit.hpp"
+
+namespace pd {
+
+/// Pieces of one union where they stand.
+struct NearSide {
+  std::vector<PosedShape> posed;
+  std::vector<int> numbers;  ///< of the pieces, as the host counts them
+  bool polytopes = true;     ///< none of them is smooth
+};
+
+/// The pieces of two unions that come near each other. A host implements it on its own trees.
+class NearSides {
+ public:
+  virtual ~NearSides() = default;
+  /// Sets `a` and `b` to the pieces that come within `reach` of the other body. They stay valid until the next call.
+  /// @return false where a piece within reach has no exact form, or there is none
+  virtual bool collect(double reach, NearSide& a, NearSide& b) = 0;
+};
+
+/// An answer about two pieces, by their numbers.
+struct PiecesAnswer {
+  PenetrationDepth depth;
+  PosedShape a{};
+  PosedShape b{};
+  int piece_a = -1;
+  int piece_b = -1;
+};
+
+/// Memory of one thread.
+struct DeepBuffers {
+  Scratch& scratch;
+  ManifoldScratch& manifold;
+  UnionExit& exit;
+};
+
+class DeepUnion {
+ public:
+  void clear();
+  /// Takes note of what two pieces said about each other, and of what the rule of covered_contact.hpp left of it. The
+  /// answer's shapes are used until `clear`.
+  void add(const PiecesAnswer& answer, const ContactManifold& left);
+  /// Tells whether the way out of the whole is to be asked for. Pieces are in each other by a quarter of the smaller
+  /// one's radius or more. Either no contact of theirs is left, or those that are left lead more than 45 degrees apart
+  /// from each other or from the pieces' own answers.
+  [[nodiscard]] bool needed() const { return deepest_ > 0 && (normals_.empty() || torn_); }
+
+  struct Way {
+    ContactManifold points;  ///< of the two pieces that touch last, along the way out
+    int piece_a = -1;        ///< those pieces
+    int piece_b = -1;
+  };
+  enum class Outcome {
+    found,        ///< the shortest way
+    nearly,       ///< one that is at most half as long again
+    apart,        ///< only margins meet
+    over_budget,  ///< more pairs of pieces within reach, or facets of their differences, than one answer may take
+    unsupported   ///< a piece within reach has no exact form, or one is smooth and no short way was found
+  };
+  struct Question {
+    NearSides& near;
+    double threshold;      ///< up to which gap a pair of points is a contact
+    double pose_rounding;  ///< as of `seam_slack`
+    Vec3 back;             ///< along which A came: the velocity of B less A's, or zero
+  };
+  /// The shortest way out of b's cores for a's, all pieces that it could meet included, or one that is little longer
+  /// (`nearly`); rounded pieces go on by their margins. Time as said in union_exit.hpp for the pieces within reach.
+  /// @param last  unit, along which the pair was led out in the last step, or zero; set to the way found
+  Outcome find_way(const Question& question, const DeepBuffers& buffers, Vec3& last, Way& way);
+
+ private:
+  struct Box {
+    Vec3 low;
+    Vec3 high;
+  };
+  struct Side : NearSide {
+    std::vector<Box> boxes;
+  };
+  /// @return whether all pieces within `reach` of the other body have an exact form
+  bool collect(double reach, NearSides& near);
+
+  /// Tells whether A moved along the deepest pair's way out is free of B: then the unions' depth is that pair's, since
+  /// the union of the differences P_ij holds each of them. Requires: all pieces within that reach are collected.
+  [[nodiscard]] bool deepest_pair_leads_out(Scratch& scratch) const;
+  /// A's piece number i moved by `way`; empty if the box of B's piece number j is apart from it or what is left of
+  /// their depth is rounding.
+  [[nodiscard]] std::optional<PosedShape> still_in(std::size_t i, std::size_t j, const Vec3& way,
+                                                   Scratch& scratch) const;
+
+  using OwnWay = std::pair<double, Vec3>;
+  /// A straight way for A out of B, not to the nearest place for certain.
+  struct Exit {
+    Vec3 along = Vec3::UnitX();  ///< unit
+    double length = 0;
+    std::size_t a = 0;  ///< the pieces that part last
+    std::size_t b = 0;
+    Vec3 facet = Vec3::UnitX();  ///< the normal by which they part
+  };
+  /// Out along `n` (unit), where that is no longer than `limit`. Requires: all pieces within that reach are collected.
+  [[nodiscard]] std::optional<Exit> exit_along(const Vec3& n, double limit, Scratch& scratch) const;
+  /// A way that is at most half as long again as the deepest pair's own. No way is shorter than that. The way of the
+  /// last step is tried, the ways of the deepest pieces and of two of them together, and back the way that A came. Each
+  /// is turned straight off the facet that parts last. Much cheaper than the shortest, and the same from step to step.
+  [[nodiscard]] std::optional<Exit> short_exit(const Vec3& back, const Vec3& last, Scratch& scratch);
+  /// The contact that leads out. @return false where it has no points
+  bool lead_out(const Exit& exit, double threshold, const DeepBuffers& buffers, Way& way) const;
+
+  double deepest_ = 0;            ///< of the pieces that are deep
+  PiecesAnswer deepest_pair_;     ///< of all pieces
+  std::vector<Vec3> normals_;     ///< of their contacts that are left
+  std::vector<OwnWay> own_ways_;  ///< of pieces in each other: how deep, along which normal
+  bool torn_ = false;
+  double pose_rounding_ = 0;
+  Side a_;
+  Side b_;
+};
+
+}  // namespace pd

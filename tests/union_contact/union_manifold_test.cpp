@@ -1,0 +1,200 @@
+// Contacts of compounds and sheets as one body each, without an engine.
+#include "pd/union_contact/union_manifold.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "pd/compound/compound_depth.hpp"
+
+namespace pd::test {
+namespace {
+
+Pose at(double x, double y, double z) { return Pose::from_trusted_matrix(Mat3::Identity(), Vec3(x, y, z)); }
+
+PieceBody box(double half) { return PieceBody::of_compound(Compound(*ConvexPolytope::box(Vec3::Constant(half)))); }
+
+struct Mesh {
+  std::vector<Vec3> points;
+  std::vector<std::int32_t> offsets{0};
+  std::vector<std::int32_t> corners;
+  void add(std::initializer_list<std::int32_t> face) {
+    corners.insert(corners.end(), face);
+    offsets.push_back(static_cast<std::int32_t>(corners.size()));
+  }
+  [[nodiscard]] MeshView view() const { return {points, offsets, corners}; }
+};
+
+/// The square [-1, 1]^2 at z = 0 in cells of a quarter, two triangles each, facing up.
+Mesh floor_of_cells(double scale = 1) {
+  Mesh mesh;
+  for (int i = 0; i <= 8; ++i) {
+    for (int j = 0; j <= 8; ++j) mesh.points.emplace_back(scale * (0.25 * i - 1), scale * (0.25 * j - 1), 0);
+  }
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const int corner = 9 * i + j;
+      mesh.add({corner, corner + 9, corner + 10});
+      mesh.add({corner, corner + 10, corner + 1});
+    }
+  }
+  return mesh;
+}
+
+/// Five flush boxes in a row along x, their common top at z = 0.
+PieceBody slab() {
+  std::vector<Compound::Part> parts;
+  for (int i = 0; i < 5; ++i) parts.push_back({*ConvexPolytope::box({0.5, 1, 0.5}), at(i - 2.0, 0, -0.5)});
+  return PieceBody::of_compound(*Compound::from_parts(parts));
+}
+
+class UnionManifolds : public testing::Test {
+ protected:
+  UnionManifold ask(const PosedPieces& a, const PosedPieces& b) {
+    auto found = union_manifold(a, b, settings_, scratch_);
+    EXPECT_TRUE(found) << (found ? "" : found.error().message);
+    return found ? std::move(found).value() : UnionManifold();
+  }
+  std::string refusal(const PosedPieces& a, const PosedPieces& b) {
+    const auto found = union_manifold(a, b, settings_, scratch_);
+    return found ? "" : std::string(to_string(found.error().code)) + " " + found.error().where;
+  }
+  /// The box of half extent 0.2 at height `z` stands on four points of one depth.
+  void expect_stands(const PieceBody& ground, double x, double depth) {
+    SCOPED_TRACE(x);
+    const PieceBody body = box(0.2);
+    const UnionManifold found = ask({&body, at(x, 0.013, 0.2 - depth)}, {&ground, Pose()});
+    ASSERT_EQ(found.patches.size(), 1U);
+    const UnionContactPatch& patch = found.patches[0];
+    ASSERT_EQ(patch.count, 4);
+    double spread = 0;
+    for (const UnionContactPoint& point : patch.points) {
+      EXPECT_LT((point.normal - Vec3::UnitZ()).norm(), 1e-12);
+      EXPECT_NEAR(point.contact.depth, depth, 1e-12);
+      spread = std::max(spread, (point.contact.position_b - patch.points[0].contact.position_b).norm());
+    }
+    EXPECT_NEAR(spread, 0.4 * std::sqrt(2.0), 2e-3);
+  }
+
+  UnionContactSettings settings_{.breaking_threshold = 0.02};
+  Scratch depth_;
+  ManifoldScratch manifold_;
+  UnionManifoldScratch scratch_{depth_, manifold_};
+};
+
+TEST_F(UnionManifolds, ABoxThatSlidesOverInnerEdgesMeetsNone) {
+  const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), flush = slab();
+  for (const double depth : {1e-4, 0.0, -1e-4, 0.01}) {
+    for (int i = 0; i < 24; ++i) {
+      expect_stands(floor, 0.0125 * i, depth);
+      expect_stands(flush, 0.04 * i, depth);
+    }
+  }
+}
+
+TEST_F(UnionManifolds, CoveredContactsAreCounted) {
+  const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), body = box(0.2);
+  // The box's side stands 1e-5 beyond an edge of the mesh: of that triangle alone it would leave sideways.
+  EXPECT_GT(ask({&body, at(0.05001, 0.013, 0.1999)}, {&floor, Pose()}).covered, 0);
+  EXPECT_EQ(ask({&body, at(0.123, 0.013, 0.1999)}, {&floor, Pose()}).covered, 0);
+}
+
+TEST_F(UnionManifolds, ASwapTurnsTheAnswer) {
+  const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), body = box(0.2);
+  const PosedPieces stands{&body, at(0.051, 0.013, 0.1999)}, under{&floor, Pose()};
+  const UnionManifold one = ask(stands, under), other = ask(under, stands);
+  ASSERT_EQ(one.patches.size(), 1U);
+  ASSERT_EQ(other.patches.size(), 1U);
+  EXPECT_EQ(other.normal, Vec3(0, 0, -1));
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(one.patches[0].points[k].contact.position_a, other.patches[0].points[k].contact.position_b);
+    EXPECT_EQ(one.patches[0].points[k].piece_b, other.patches[0].points[k].piece_a);
+  }
+}
+
+TEST_F(UnionManifolds, AOneSidedSheetIsLeftByItsFront) {
+  const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), body = box(0.2);
+  const PosedPieces mostly_under{&body, at(0.051, 0.013, -0.1)}, under{&body, at(0.051, 0.013, -0.21)};
+  EXPECT_EQ(ask(mostly_under, {&floor, Pose()}).normal, Vec3(0, 0, -1));
+  settings_.one_sided = true;
+  const UnionManifold found = ask(mostly_under, {&floor, Pose()});
+  EXPECT_EQ(found.normal, Vec3(0, 0, 1));
+  EXPECT_NEAR(found.patches.at(0).points[0].contact.depth, 0.3, 1e-12);
+  const UnionManifold none = ask(under, {&floor, Pose()});
+  EXPECT_TRUE(none.patches.empty());
+  EXPECT_TRUE(none.normal.isZero(0));
+}
+
+TEST_F(UnionManifolds, WallAndFloorAreTwoPatches) {
+  Mesh corner;
+  corner.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {0, 2, 2}};
+  corner.add({0, 1, 2, 3});
+  corner.add({0, 3, 5, 4});
+  const PieceBody room = *PieceBody::of_sheet(corner.view()), body = box(0.5);
+  const UnionManifold found = ask({&body, at(0.499, 1, 0.498)}, {&room, Pose()});
+  ASSERT_EQ(found.patches.size(), 2U);
+  EXPECT_LT((found.patches[0].normal - Vec3::UnitZ()).norm(), 1e-12);
+  EXPECT_LT((found.patches[1].normal - Vec3::UnitX()).norm(), 1e-12);
+  EXPECT_EQ(found.patches[0].points[0].piece_b, 0);
+  EXPECT_EQ(found.patches[1].points[0].piece_b, 1);
+}
+
+TEST_F(UnionManifolds, ABoxDeepInACompoundLeavesTheWhole) {
+  const PieceBody ground = slab(), body = box(0.2);
+  const UnionManifold found = ask({&body, at(0.45, 0.013, -0.3)}, {&ground, Pose()});
+  ASSERT_FALSE(found.patches.empty());
+  EXPECT_LT((found.normal - Vec3::UnitZ()).norm(), 1e-12);
+  EXPECT_NEAR(found.patches[0].points[0].contact.depth, 0.5, 1e-12);
+}
+
+TEST_F(UnionManifolds, ACompoundStandsOnASheet) {
+  const PieceBody ground = *PieceBody::of_sheet(floor_of_cells().view()), body = slab();
+  const UnionManifold found = ask({&body, at(0, 0, 0.99)}, {&ground, Pose()});
+  ASSERT_EQ(found.patches.size(), 1U);
+  EXPECT_EQ(found.patches[0].count, 4);
+  EXPECT_LT((found.normal - Vec3::UnitZ()).norm(), 1e-12);
+}
+
+TEST_F(UnionManifolds, SizesOfAllPowersOfTwoHaveOneAnswer) {
+  for (const int exponent : {-900, -120, 120, 900}) {
+    const double scale = std::ldexp(1.0, exponent);
+    const PieceBody floor = *PieceBody::of_sheet(floor_of_cells(scale).view()), body = box(0.2 * scale);
+    settings_.breaking_threshold = 0.02 * scale;
+    const UnionManifold found = ask({&body, at(0.051 * scale, 0, 0.1875 * scale)}, {&floor, Pose()});
+    ASSERT_EQ(found.patches.size(), 1U) << exponent;
+    EXPECT_EQ(found.patches[0].count, 4);
+    EXPECT_NEAR(found.patches[0].points[0].contact.depth / scale, 0.0125, 1e-12);
+  }
+}
+
+TEST_F(UnionManifolds, BadInputIsRefusedByName) {
+  const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), body = box(0.2);
+  EXPECT_EQ(refusal({&floor, Pose()}, {&floor, Pose()}), "unsupported a");
+  settings_.one_sided = true;
+  EXPECT_EQ(refusal({&body, Pose()}, {&body, Pose()}), "unsupported one_sided");
+  settings_ = {.breaking_threshold = -1};
+  EXPECT_EQ(refusal({&body, Pose()}, {&floor, Pose()}), "bad_value breaking_threshold");
+  settings_ = {.way = std::nan("")};
+  EXPECT_EQ(refusal({&body, Pose()}, {&floor, Pose()}), "bad_value way");
+  const auto fault = [](Mesh mesh, double margin = 0) {
+    const auto made = PieceBody::of_sheet(mesh.view(), margin);
+    return made ? "" : std::string(to_string(made.error().code)) + " " + made.error().where;
+  };
+  Mesh mesh = floor_of_cells();
+  EXPECT_EQ(fault(mesh, -1), "bad_value margin");
+  mesh.corners[7] = 81;
+  EXPECT_EQ(fault(mesh), "bad_faces faces[2]");
+  mesh.corners[7] = 0;
+  mesh.points[5].y() = HUGE_VAL;
+  EXPECT_EQ(fault(mesh), "non_finite points[5]");
+  mesh.points[5].y() = 1e301;
+  EXPECT_EQ(fault(mesh), "out_of_range points[5]");
+  Mesh line;
+  line.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  line.add({0, 1, 2});
+  EXPECT_EQ(fault(line), "too_few_points faces");
+}
+
+}  // namespace
+}  // namespace pd::test
