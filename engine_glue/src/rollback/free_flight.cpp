@@ -71,14 +71,21 @@ void FreeFlight::expect_impact(const btCollisionObject* a, const btCollisionObje
 
 void FreeFlight::begin_part() {
   bounces_.clear();
+  // Bodies without restitution do not leave what they meet.
+  const auto bounces = [](const btCollisionObject* object) { return object->getRestitution() > 0; };
+  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+  // The last part may have ended with its frame, and the host may have taken a body away since.
+  const auto is_here = [&](const btCollisionObject* object) {
+    return objects.findLinearSearch(const_cast<btCollisionObject*>(object)) != objects.size();
+  };
+  if (!std::all_of(expected_.begin(), expected_.end(), [&](auto* one) { return is_here(one) && bounces(one); })) {
+    expected_.clear();
+  }
   if (expected_.empty()) return;
   const auto other_than_expected = [&](const btCollisionObject* object) {
     return std::find(expected_.begin(), expected_.end(), object) == expected_.end();
   };
-  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   for (const btCollisionObject* object : expected_) {
-    // The last part may have ended with its frame, and the host may have taken the body away since.
-    if (objects.findLinearSearch(const_cast<btCollisionObject*>(object)) == objects.size()) continue;
     btRigidBody* body = dynamic_body(object);
     if (body == nullptr || body->getInternalType() != btCollisionObject::CO_RIGID_BODY) continue;
     bool held = !body->getTotalTorque().isZero();

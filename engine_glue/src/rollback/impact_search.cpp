@@ -30,6 +30,8 @@ constexpr double kNotIn = 0.02;
 /// first quarter, so that pairs that sink steadily are not cut there.
 constexpr int kLooks = 8;
 constexpr int kFirstLook = 2;
+/// Triangles that are kept as convex bodies.
+constexpr std::size_t kMostTriangles = 4096;
 /// To 1/2000 of the motion; trials do the rest.
 constexpr int kHalvings = 8;
 
@@ -231,6 +233,7 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
   impact.depth = quick_;
+  impact.at_start = &before;
   // From where it is, a pair in contact may sink; then the step is cut, and Bullet sees it there.
   const double depth = std::max(-start, 0.0);
   if (start <= settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
@@ -267,6 +270,7 @@ void ImpactSearch::end_where_it_came_in(const MovingShape& a, const MovingShape&
   }
   found.time = low;
   found.allowed_depth = allowed;
+  found.comes_in = true;
 }
 
 void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
@@ -293,7 +297,7 @@ void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, cons
   upper += btVector3(grown, grown, grown);
 }
 
-Level ImpactSearch::level_of(const TriangleCorners& triangle, double margin, const Vec3& towards) {
+Level ImpactSearch::level_of(const StillTriangle& triangle, const Vec3& towards) {
   const std::array<Vec3, 3>& corners = triangle.corners;
   Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double length = normal.norm();
@@ -301,29 +305,78 @@ Level ImpactSearch::level_of(const TriangleCorners& triangle, double margin, con
   normal /= normal.dot(towards - corners[0]) < 0 ? -length : length;
   double level = -HUGE_VAL;
   for (const Vec3& corner : corners) level = std::max(level, normal.dot(corner));
-  return {normal, level + margin};
+  return {normal, level + triangle.margin};
 }
 
-void ImpactSearch::read_surface(const Body& a, const Piece& pa, const Body& b, const Piece& pb, double within) {
+void ImpactSearch::read_surface(const Approach& pair, StaysApart& along) {
   btVector3 lower;
   btVector3 upper;
-  swept_box(a, pa, b, pb, lower, upper);
-  const Pose surface = to_pd(b.start * pb.local);
-  const Pose start = to_pd(a.start * pa.local);
+  swept_box(pair.a, pair.convex, pair.b, pair.concave, lower, upper);
+  const Pose surface = to_pd(pair.b.start * pair.concave.local);
+  const Pose& start = pair.moving.start.pose;
   const Whereabouts near{surface.rotation().transpose() * (start.translation() - surface.translation()),
-                         pa.radius + within};
-  const double margin = margin_of_triangles(*pb.concave);
+                         pair.convex.radius + pair.depth.beyond};
+  const btConcaveShape& concave = *pair.concave.concave;
+  const double margin = margin_of_triangles(concave);
+  const double margins = margin + pair.moving.start.shape->margin();
   surface_.clear();
-  for (const TriangleCorners& local : corners_in_box(*pb.concave, lower, upper, &near)) {
-    TriangleCorners world = local;
+  for (const TriangleCorners& local : corners_in_box(concave, lower, upper, &near)) {
+    StillTriangle world{local.corners, margin};
     for (Vec3& corner : world.corners) corner = surface.apply(corner);
-    Surface triangle{local, level_of(world, margin, start.translation()), 0, -HUGE_VAL, nullptr};
-    triangle.bound = apart_along(triangle.level, *pa.cached->body, start);
+    Surface triangle{local, level_of(world, start.translation()), world, 0, HUGE_VAL, nullptr, std::nullopt};
+    const Level& level = triangle.level;
+    triangle.bound = std::max(along.at_start(level), along.beside_at_start(world));
+    if (triangle.bound <= pair.depth.beyond) {
+      // A point of the body is no nearer than the body: the first one, or the one on the way through it that is in the
+      // plane of the triangle.
+      Vec3 point = along.first_along(level.normal);
+      const double above = level.normal.dot(point) - (level.level - margin);
+      if (above < 0) {
+        const Vec3 last = along.first_along(-level.normal);
+        const double thick = level.normal.dot(last - point);
+        if (thick > -above) point += (-above / thick) * (last - point);
+      }
+      const double reach = distance_from(point, world.corners) - margins;
+      if (!std::isnan(reach)) triangle.reach = reach;
+    }
     surface_.push_back(std::move(triangle));
   }
-  // The nearest first: it says whether the body is in contact.
   std::stable_sort(surface_.begin(), surface_.end(),
-                   [](const Surface& x, const Surface& y) { return x.bound < y.bound; });
+                   [](const Surface& x, const Surface& y) { return x.reach < y.reach; });
+}
+
+const std::shared_ptr<const ConvexShape>& ImpactSearch::shape_of(const TriangleCorners& triangle, double margin) {
+  std::array<double, 10> key;
+  for (std::size_t i = 0; i < 9; ++i) key[i] = triangle.corners[i / 3][static_cast<int>(i % 3)];
+  key[9] = margin;
+  static const std::shared_ptr<const ConvexShape> kNone;
+  if (!std::all_of(key.begin(), key.end(), [](double x) { return std::isfinite(x); })) return kNone;
+  auto found = triangles_.find(key);
+  if (found == triangles_.end()) {
+    if (triangles_.size() >= kMostTriangles) triangles_.clear();
+    found = triangles_.emplace(key, to_shape(triangle, margin)).first;
+  }
+  return found->second;
+}
+
+double ImpactSearch::ask_start(const Approach& pair, Surface& triangle) {
+  if (!triangle.start) {
+    triangle.start.emplace();
+    triangle.shape = shape_of(triangle.corners, triangle.world.margin);
+    if (triangle.shape != nullptr) {
+      const MovingShape posed = moving_piece(*triangle.shape, pair.b.start, pair.concave.local, pair.b.motion);
+      *triangle.start = penetration_depth(pair.moving.start, posed.start, scratch_, pair.depth);
+    }
+  }
+  return triangle.shape != nullptr ? triangle.start->signed_distance() : HUGE_VAL;
+}
+
+bool ImpactSearch::is_in_contact(const Approach& pair, double in_contact) {
+  // The nearest triangle is the first.
+  if (!surface_.empty() && surface_.front().reach <= in_contact) return true;
+  return std::any_of(surface_.begin(), surface_.end(), [&](Surface& triangle) {
+    return triangle.bound <= in_contact && ask_start(pair, triangle) <= in_contact;
+  });
 }
 
 void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
@@ -335,54 +388,45 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   const double way =
       duration_ * ((a.motion.linear_velocity - b.motion.linear_velocity).norm() +
                    a.motion.angular_velocity.norm() * (arm + pa.radius) + b.motion.angular_velocity.norm() * far);
-  DepthSettings quick = quick_;
-  quick.beyond = std::max(way + settings.gap, settings.in_contact);
-  read_surface(a, pa, b, pb, quick.beyond);
-  const double margin = margin_of_triangles(*pb.concave);
-  double deepest = -HUGE_VAL;
-  const auto ask_start = [&](Surface& triangle) {
-    triangle.shape = to_shape(triangle.corners, margin);
-    if (triangle.shape == nullptr) return;
-    const PosedShape posed = moving_piece(*triangle.shape, b.start, pb.local, b.motion).start;
-    triangle.start = penetration_depth(moving_a.start, posed, scratch_, quick).signed_distance();
-    deepest = std::max(deepest, -triangle.start);
-  };
-  const bool still = b.travel == 0;
-  const auto proved = [&](const Surface& triangle, double least) {
-    return triangle.bound > quick.beyond ||
-           (still && triangle.bound >= least && stays_apart(triangle.level, moving_a, pa.radius, least, duration_));
-  };
-  // Pairs in contact may sink by this at the least, whatever they have sunk.
-  const double sinks = -0.9 * kLeastSlop * settings.slop;
-  unproved_.clear();
-  for (std::size_t i = 0; i < surface_.size(); ++i) {
-    if (proved(surface_[i], deepest >= -settings.in_contact ? sinks : settings.gap)) continue;
-    ask_start(surface_[i]);
-    if (surface_[i].shape != nullptr) unproved_.push_back(i);
-  }
-  const bool in_contact = deepest >= -settings.in_contact;
-  // The first one was asked before it was known that the body is in contact.
-  if (in_contact) {
-    const auto rests = [&](std::size_t i) { return proved(surface_[i], sinks); };
-    unproved_.erase(std::remove_if(unproved_.begin(), unproved_.end(), rests), unproved_.end());
-  }
-  if (unproved_.empty()) return;
+  Approach pair{a, pa, b, pb, moving_a, quick_};
+  pair.depth.beyond = std::max(way + settings.gap, settings.in_contact);
+  StaysApart along(moving_a, duration_);
+  read_surface(pair, along);
   // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
   // their edges, no deeper than it lies on this one. So one depth is allowed for all.
-  for (Surface& triangle : surface_) {
-    if (triangle.shape == nullptr && triangle.bound <= settings.in_contact) ask_start(triangle);
+  const bool in_contact = is_in_contact(pair, settings.in_contact);
+  const bool still = b.travel == 0;
+  const auto proved = [&](const Surface& triangle, double least) {
+    return triangle.bound > pair.depth.beyond ||
+           (still && triangle.bound >= least &&
+            (along.proved(triangle.level, least) || along.proved_beside(triangle.world, least)));
+  };
+  // Pairs in contact may sink by this at the least, whatever they have sunk.
+  const double least = in_contact ? -0.9 * kLeastSlop * settings.slop : settings.gap;
+  unproved_.clear();
+  for (std::size_t i = 0; i < surface_.size(); ++i) {
+    if (proved(surface_[i], least)) continue;
+    ask_start(pair, surface_[i]);
+    if (surface_[i].shape != nullptr) unproved_.push_back(i);
   }
+  if (unproved_.empty()) return;
   TimeOfImpactSettings impact;
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
   impact.depth = quick_;
-  const double depth = std::max(deepest, 0.0);
-  if (in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
+  double depth = 0;
+  if (in_contact) {
+    for (Surface& triangle : surface_) {
+      if (triangle.bound <= settings.in_contact) depth = std::max(depth, -ask_start(pair, triangle));
+    }
+    impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
+  }
   for (const std::size_t i : unproved_) {
     const Surface& triangle = surface_[i];
-    if (triangle.start > way + settings.gap) continue;
+    if (triangle.start->signed_distance() > way + settings.gap) continue;
     if (impact.allowed_depth > 0 && proved(triangle, -0.9 * impact.allowed_depth)) continue;
     const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
+    impact.at_start = &*triangle.start;
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};

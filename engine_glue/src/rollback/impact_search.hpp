@@ -6,7 +6,10 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <array>
+#include <map>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -39,6 +42,7 @@ struct FoundImpact {
   Piece b;
   double time = 0;
   double allowed_depth = 0;  ///< 0: a first contact
+  bool comes_in = false;     ///< the pair was in contact and out of it in between
 };
 
 class ImpactSearch {
@@ -101,9 +105,34 @@ class ImpactSearch {
                             FoundImpact& found);
   void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
                       FoundImpact& found);
-  [[nodiscard]] static Level level_of(const TriangleCorners& triangle, double margin, const Vec3& towards);
-  /// The triangles that a convex piece comes `within` reach of, into `surface_`.
-  void read_surface(const Body& a, const Piece& pa, const Body& b, const Piece& pb, double within);
+  [[nodiscard]] static Level level_of(const StillTriangle& triangle, const Vec3& towards);
+  /// A triangle that a body may come to.
+  struct Surface {
+    TriangleCorners corners;  ///< in the concave piece's frame
+    Level level;              ///< along its normal, towards the body
+    StillTriangle world;
+    double bound;                              ///< no larger than the signed distance where the motion begins
+    double reach;                              ///< no smaller than the signed distance there
+    std::shared_ptr<const ConvexShape> shape;  ///< once asked for; null then, too, if the triangle is none
+    std::optional<PenetrationDepth> start;     ///< the answer where the motion begins, once asked for
+  };
+  /// A convex piece that moves against the triangles of a concave one.
+  struct Approach {
+    const Body& a;
+    const Piece& convex;
+    const Body& b;
+    const Piece& concave;
+    const MovingShape& moving;  ///< the convex piece
+    DepthSettings depth;        ///< tells distances within which the triangles may be met
+  };
+  /// The triangles that the convex piece may come to, into `surface_`, the nearest first.
+  void read_surface(const Approach& pair, StaysApart& along);
+  /// The convex body of a triangle; null if its corners are no numbers.
+  const std::shared_ptr<const ConvexShape>& shape_of(const TriangleCorners& triangle, double margin);
+  /// The signed distance of the convex piece and a triangle where the motion begins.
+  double ask_start(const Approach& pair, Surface& triangle);
+  /// True if the convex piece is in contact with a triangle where the motion begins.
+  [[nodiscard]] bool is_in_contact(const Approach& pair, double in_contact);
   /// The box of a convex piece's motion in the frame of a concave one.
   void swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
                  btVector3& upper) const;
@@ -116,15 +145,9 @@ class ImpactSearch {
   std::vector<Piece> pieces_;
   std::vector<Body> bodies_;
   std::vector<int> order_;
-  /// A triangle that a body may come to.
-  struct Surface {
-    TriangleCorners corners;                   ///< in the concave piece's frame
-    Level level;                               ///< along its normal, towards the body
-    double bound;                              ///< by which the body is apart along it where the motion begins
-    double start;                              ///< the signed distance there, where it was asked for
-    std::shared_ptr<const ConvexShape> shape;  ///< where it was asked for
-  };
   std::vector<Surface> surface_;
+  /// Triangles that were asked for, by their corners and margin: none of these can be stale.
+  std::map<std::array<double, 10>, std::shared_ptr<const ConvexShape>> triangles_;
   std::vector<std::size_t> unproved_;  ///< of these, those that the body may meet
   /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.
   std::unordered_map<std::size_t, double> first_depths_;

@@ -43,13 +43,39 @@ constexpr double kNothingLeft = 1e-6;
 /// Steps of Newton's method before a trial; its speeds are those at the trial's end, so that it converges by a factor.
 constexpr int kMostForeseen = 8;
 /// A pair in contact that deepens ends a part when it has this share of the slop left, or less.
-constexpr double kDeepEnough = 0.2;
+constexpr double kDeepEnough = 0.4;
+/// The shortest trial after one that met something, as a share of it, by what longer ones left to the pair.
+constexpr double kLeastShare = 1.0 / 16;
 /// Trials for one contact after which, where none was free of contacts, one of the least length says whether any is.
 /// Later (10) the parts that follow are short, and the cap on cuts is reached in ten times as many steps.
 constexpr int kTrialsBeforeLeast = 4;
 /// Trials for one contact after which one that meets nothing is taken for a part of its own: what stands in their way
 /// (motions that jump between two lengths of a part, contacts that brake each other) looks different from nearer by.
-constexpr int kPatience = 10;
+constexpr int kPatience = 4;
+
+}  // namespace
+
+namespace {
+
+/// What a trial left to a pair at its end.
+struct TrialEnd {
+  const btCollisionObject* a;
+  const btCollisionObject* b;
+  double time;
+  double clearance;
+
+  TrialEnd(const detail::FoundImpact& impact, double at, double left)
+      : a(impact.a.body), b(impact.b.body), time(at), clearance(left) {}
+
+  /// The length of a trial that leaves `wanted`, by this one and a shorter one of the pair that left more. Pairs that
+  /// Bullet brakes come to the end of every trial the deeper the longer it is, and their way in it says nothing about a
+  /// shorter one. HUGE_VAL: not known.
+  [[nodiscard]] double before(const TrialEnd& shorter, double wanted) const {
+    if (a != shorter.a || b != shorter.b || !(shorter.time < time && shorter.clearance > clearance)) return HUGE_VAL;
+    const double rise = (shorter.clearance - clearance) / (time - shorter.time);
+    return std::max(shorter.time - (wanted - shorter.clearance) / rise, kLeastShare * shorter.time);
+  }
+};
 
 }  // namespace
 
@@ -117,11 +143,20 @@ struct RollbackStepper::State {
   /// same: a gap left, and less than two gaps moved since.
   [[nodiscard]] bool is_just_before(const detail::FoundImpact& impact, double time, double clearance,
                                     const PenetrationDepth& contact) const;
-  /// When a part is to end so that the impact's pair has about three quarters of the gap left: on the motion that a
-  /// shorter part would make, as far as it is known. Otherwise on the way of the last trial. @return less than `end`.
+  /// True if the part ends because a pair in contact sinks, at a depth that is no matter of digits.
+  [[nodiscard]] static bool sinks(const detail::FoundImpact& impact) {
+    return impact.allowed_depth > 0 && !impact.comes_in;
+  }
+  /// The clearance that a part is to leave to the impact's pair: the middle of those with which it may end.
+  [[nodiscard]] double aim(const detail::FoundImpact& impact) const {
+    return sinks(impact) ? 0.5 * kDeepEnough * settings.contact_slop : 0.75 * settings.gap;
+  }
+  /// When a part is to end so that the impact's pair has about the clearance left that it is to have: on the motion
+  /// that a shorter part would make, as far as it is known. Otherwise on the way of the last trial. @return less than
+  /// `end`.
   [[nodiscard]] double foresee(const detail::FoundImpact& impact, double end);
   /// Whether a part of whose motion nothing met anything ended where the impact's pair meets.
-  [[nodiscard]] bool is_at(const detail::FoundImpact& impact, double clearance, int trials) const;
+  [[nodiscard]] bool is_at(const detail::FoundImpact& impact, double clearance) const;
   /// Reports the contact that ended a part, and expects its impact.
   void record(const detail::FoundImpact& impact, const PenetrationDepth& contact, FirstContact& result,
               RollbackReport& report);
@@ -144,11 +179,11 @@ bool RollbackStepper::State::is_just_before(const detail::FoundImpact& impact, d
   return (time - impact.time) * approach(impact, contact).norm() <= 2 * settings.gap;
 }
 
-bool RollbackStepper::State::is_at(const detail::FoundImpact& impact, double clearance, int trials) const {
-  // How deep a pair may go before the step is cut is no matter of digits. And a pair that Bullet brakes comes to the
-  // end of every part at the distance that counts as touching; the next part has it in contact.
-  return clearance <= settings.gap || (impact.allowed_depth > 0 && clearance <= kDeepEnough * settings.contact_slop) ||
-         (trials > 1 && clearance <= detail::kInContactGaps * settings.gap);
+bool RollbackStepper::State::is_at(const detail::FoundImpact& impact, double clearance) const {
+  // A pair that Bullet brakes comes to the end of every part at the distance that counts as touching; the next part has
+  // it in contact.
+  return clearance <= detail::kInContactGaps * settings.gap ||
+         (sinks(impact) && clearance <= kDeepEnough * settings.contact_slop);
 }
 
 double RollbackStepper::State::foresee(const detail::FoundImpact& impact, double end) {
@@ -157,14 +192,15 @@ double RollbackStepper::State::foresee(const detail::FoundImpact& impact, double
     return parts.predict(body, time, pose) ? pose : search.pose_on_the_way(body, time);
   };
   double time = impact.time;
+  const double wanted = aim(impact);
   for (int i = 0; i < kMostForeseen; ++i) {
     const btTransform a = pose_at(*impact.a.body, time);
     const btTransform b = pose_at(*impact.b.body, time);
     const PenetrationDepth contact = search.measure(impact, a, b);
     const double clearance = contact.signed_distance() + impact.allowed_depth;
-    if (clearance > 0.5 * settings.gap && clearance <= settings.gap) break;
+    if (std::abs(clearance - wanted) <= wanted / 3) break;
     const double closing = approach(impact, a, b, contact).dot(contact.normal);
-    const double next = time + (clearance - 0.75 * settings.gap) / closing;
+    const double next = time + (clearance - wanted) / closing;
     if (!(closing > 0 && next > 0 && next < end)) break;
     time = next;
   }
@@ -175,7 +211,9 @@ double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double fr
                                           RollbackReport& report) {
   FirstContact result;
   PenetrationDepth contact;
-  result.undone_depth = std::max(0.0, -search.measure(impact).signed_distance());
+  const double undone = search.measure(impact).signed_distance();
+  result.undone_depth = std::max(0.0, -undone);
+  TrialEnd longer(impact, duration, undone + impact.allowed_depth);
   // A shorter part moves a little differently (forces act for less time, Bullet clamps a fast turn less), so that each
   // trial's own motion is searched. `low` is the latest time whose motion meets nothing, `high` the earliest whose
   // motion does; between them Newton's method on the pair's gap.
@@ -195,7 +233,7 @@ double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double fr
     if (meets) impact = earlier;
     contact = search.measure(impact);
     const double clearance = contact.signed_distance() + impact.allowed_depth;
-    at_contact = meets ? is_just_before(impact, time, clearance, contact) : is_at(impact, clearance, trials);
+    at_contact = meets ? is_just_before(impact, time, clearance, contact) : is_at(impact, clearance);
     if (at_contact) break;
     (meets ? high : low) = time;
     const bool free_part = low >= least;
@@ -205,11 +243,13 @@ double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double fr
       break;
     }
     double next = HUGE_VAL;
+    const TrialEnd end(impact, time, clearance);
     if (meets) {
-      next = foresee(impact, time);
+      next = std::min(foresee(impact, time), longer.before(end, aim(impact)));
+      longer = end;
     } else {
       const double closing = approach(impact, contact).dot(contact.normal);
-      if (closing > 0) next = time + (clearance - 0.75 * settings.gap) / closing;
+      if (closing > 0) next = time + (clearance - aim(impact)) / closing;
     }
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     // Where no trial was free yet, the least part says whether any is.

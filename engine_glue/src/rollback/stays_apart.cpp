@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pd::detail {
 
@@ -9,53 +10,172 @@ namespace {
 
 /// Hulls of more corners are left to queries.
 constexpr int kMostCorners = 128;
-/// Parts of the duration, at the most.
-constexpr int kMostParts = 16;
 
-/// The support of a core along a direction in its frame.
-struct Support {
+/// The point of a core that is the farthest along a direction in its frame.
+struct Farthest {
   const Vec3& d;
 
-  double operator()(const ConvexPolytope& core) const {
-    if (core.num_vertices() > kMostCorners) return HUGE_VAL;
+  Vec3 operator()(const ConvexPolytope& core) const {
+    if (core.num_vertices() > kMostCorners) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    int farthest = 0;
     double most = -HUGE_VAL;
-    for (int v = 0; v < core.num_vertices(); ++v) most = std::max(most, core.vertex(v).dot(d));
-    return most;
+    for (int v = 0; v < core.num_vertices(); ++v) {
+      const double along = core.vertex(v).dot(d);
+      if (along > most) {
+        most = along;
+        farthest = v;
+      }
+    }
+    return core.vertex(farthest);
   }
-  double operator()(const Ellipsoid& core) const { return core.radii.cwiseProduct(d).norm(); }
-  double operator()(const Cylinder& core) const {
-    return core.radius * across(core.axis) + core.half_height * std::abs(d[core.axis]);
+  Vec3 operator()(const Ellipsoid& core) const {
+    const Vec3 scaled = core.radii.cwiseProduct(d);
+    return core.radii.cwiseProduct(scaled) / scaled.norm();
   }
-  double operator()(const Cone& core) const {
-    return std::max(core.half_height * d[core.axis], core.radius * across(core.axis) - core.half_height * d[core.axis]);
+  Vec3 operator()(const Cylinder& core) const {
+    Vec3 point = on_circle(core.axis, core.radius);
+    point[core.axis] = d[core.axis] < 0 ? -core.half_height : core.half_height;
+    return point;
   }
-  double operator()(const SphereHull& core) const {
+  Vec3 operator()(const Cone& core) const {
+    Vec3 rim = on_circle(core.axis, core.radius);
+    rim[core.axis] = -core.half_height;
+    const Vec3 apex = core.half_height * Vec3::Unit(core.axis);
+    return apex.dot(d) > rim.dot(d) ? apex : rim;
+  }
+  Vec3 operator()(const SphereHull& core) const {
+    Vec3 farthest = Vec3::Zero();
     double most = -HUGE_VAL;
-    for (const Sphere& sphere : core.spheres()) most = std::max(most, sphere.centre.dot(d) + sphere.radius * d.norm());
-    return most;
+    for (const Sphere& sphere : core.spheres()) {
+      const Vec3 point = sphere.centre + sphere.radius / d.norm() * d;
+      if (point.dot(d) > most) {
+        most = point.dot(d);
+        farthest = point;
+      }
+    }
+    return farthest;
   }
 
  private:
-  [[nodiscard]] double across(int axis) const { return std::hypot(d[(axis + 1) % 3], d[(axis + 2) % 3]); }
+  [[nodiscard]] Vec3 on_circle(int axis, double radius) const {
+    Vec3 point = d;
+    point[axis] = 0;
+    const double length = point.norm();
+    return length > 0 ? Vec3(radius / length * point) : point;
+  }
 };
 
 }  // namespace
 
-double apart_along(const Level& direction, const ConvexShape& shape, const Pose& pose) {
-  const Vec3 local = -(pose.rotation().transpose() * direction.normal);
-  const double support = std::visit(Support{local}, shape.core()) + shape.margin() * local.norm();
-  return direction.normal.dot(pose.translation()) - support - direction.level;
+StaysApart::StaysApart(const MovingShape& body, double duration)
+    : body_(body),
+      duration_(duration),
+      bulge_(curvature_bound(body) * duration * duration / 8),
+      normal_(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())) {
+  const ConvexShape& shape = *body.start.shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 up = Vec3::Unit(axis);
+    const Vec3 down = -up;
+    upper_[axis] = std::visit(Farthest{up}, shape.core())[axis] + shape.margin();
+    lower_[axis] = std::visit(Farthest{down}, shape.core())[axis] - shape.margin();
+  }
 }
 
-bool stays_apart(const Level& direction, const MovingShape& body, double radius, double least, double duration) {
-  const auto at = [&](double time) { return apart_along(direction, *body.start.shape, pose_at(body, time)); };
-  const double first = at(0), last = at(duration);
-  if (!(first >= least && last >= least)) return false;
-  const double turn = body.motion.angular_velocity.norm() * duration;
-  const double bulge = turn * turn * (body.arm.norm() + radius) / 8;
+const Pose& StaysApart::pose(int sixteenths) {
+  const auto k = static_cast<std::size_t>(sixteenths);
+  if (!posed_[k]) {
+    poses_[k] = pose_at(body_, duration_ * sixteenths / kMostParts);
+    posed_[k] = true;
+  }
+  return poses_[k];
+}
+
+void StaysApart::turn_to(const Vec3& normal) {
+  if (normal == normal_) return;
+  normal_ = normal;
+  heights_.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+double StaysApart::height(int sixteenths) {
+  const auto k = static_cast<std::size_t>(sixteenths);
+  if (!std::isnan(heights_[k])) return heights_[k];
+  const Pose& then = pose(sixteenths);
+  const ConvexShape& shape = *body_.start.shape;
+  const Vec3 local = -(then.rotation().transpose() * normal_);
+  const Vec3 first = std::visit(Farthest{local}, shape.core());
+  const double apart = normal_.dot(then.translation()) - first.dot(local) - shape.margin() * local.norm();
+  heights_[k] = std::isnan(apart) ? -HUGE_VAL : apart;
+  return heights_[k];
+}
+
+double StaysApart::at_start(const Level& direction) {
+  turn_to(direction.normal);
+  return height(0) - direction.level;
+}
+
+Vec3 StaysApart::first_along(const Vec3& direction) const {
+  const Pose& start = body_.start.pose;
+  const Vec3 local = -(start.rotation().transpose() * direction);
+  return start.apply(std::visit(Farthest{local}, body_.start.shape->core()));
+}
+
+bool StaysApart::proved(const Level& direction, double least) {
+  turn_to(direction.normal);
+  const double needed = direction.level + least;
+  const double ends = std::min(height(0), height(kMostParts));
+  if (!(ends >= needed)) return false;
+  double lowest = ends;
   for (int parts = 1; parts <= kMostParts; parts *= 2) {
-    double lowest = std::min(first, last);
-    for (int k = 1; k < parts && lowest >= least; ++k) lowest = std::min(lowest, at(duration * k / parts));
+    const int step = kMostParts / parts;
+    for (int k = step; k < kMostParts && lowest >= needed; k += 2 * step) lowest = std::min(lowest, height(k));
+    if (lowest < needed) return false;
+    if (lowest - bulge_ / (parts * parts) >= needed) return true;
+  }
+  return false;
+}
+
+StaysApart::Faces StaysApart::beside(const StillTriangle& triangle, int sixteenths) {
+  const Pose& then = pose(sixteenths);
+  Faces apart;
+  apart.fill(HUGE_VAL);
+  for (const Vec3& corner : triangle.corners) {
+    const Vec3 local = then.rotation().transpose() * (corner - then.translation());
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto face = static_cast<std::size_t>(2 * axis);
+      apart[face] = std::min(apart[face], local[axis] - upper_[axis] - triangle.margin);
+      apart[face + 1] = std::min(apart[face + 1], lower_[axis] - local[axis] - triangle.margin);
+    }
+  }
+  return apart;
+}
+
+double StaysApart::beside_at_start(const StillTriangle& triangle) {
+  if (!lower_.allFinite()) return -HUGE_VAL;
+  const Faces apart = beside(triangle, 0);
+  return *std::max_element(apart.begin(), apart.end());
+}
+
+bool StaysApart::proved_beside(const StillTriangle& triangle, double least) {
+  if (!lower_.allFinite()) return false;
+  const Faces first = beside(triangle, 0), last = beside(triangle, kMostParts);
+  std::size_t face = 0;
+  const auto ends = [&](std::size_t k) { return std::min(first[k], last[k]); };
+  for (std::size_t k = 1; k < first.size(); ++k) {
+    if (ends(k) > ends(face)) face = k;
+  }
+  if (!(ends(face) >= least)) return false;
+  const Vec3 pivot = body_.start.pose.translation() - body_.arm;
+  const double way = body_.motion.linear_velocity.norm() * duration_;
+  const double turn = body_.motion.angular_velocity.norm() * duration_;
+  double far = way;
+  for (const Vec3& corner : triangle.corners) far = std::max(far, (corner - pivot).norm() + way);
+  const double bulge = turn * (2 * way + turn * far) / 8;
+  double lowest = ends(face);
+  for (int parts = 1; parts <= kMostParts; parts *= 2) {
+    const int step = kMostParts / parts;
+    for (int k = step; k < kMostParts && lowest >= least; k += 2 * step) {
+      lowest = std::min(lowest, beside(triangle, k)[face]);
+    }
     if (lowest < least) return false;
     if (lowest - bulge / (parts * parts) >= least) return true;
   }

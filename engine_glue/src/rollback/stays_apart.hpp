@@ -4,11 +4,16 @@
 /// Along a unit direction n the bodies are apart by s(t) = min <p(t), n> - level, p in the moving one and `level` the
 /// support of the other. Between two times t0, t1 whose s is known
 ///
-///     s(t) >= min(s(t0), s(t1)) - (t1 - t0)^2 / 8 * |omega|^2 r,
+///     s(t) >= min(s(t0), s(t1)) - (t1 - t0)^2 / 8 * c,   c = curvature_bound(body)
 ///
-/// r the largest distance of a point from the axis (pd/contact/time_of_impact.hpp says why). Most triangles under a
-/// body that rests or rolls are told apart in this way, without a query of their distance.
+/// (pd/contact/time_of_impact.hpp says why). A direction may also turn with the moving body: the six faces of the box
+/// about its core are such directions, and c is then omega (2 v + omega D), v the speed of the body's pivot and D the
+/// largest distance of a corner from it. Most triangles under a body that rests, rolls or rocks are told apart in one
+/// of these ways, without a query of their distance.
 #pragma once
+
+#include <array>
+#include <cmath>
 
 #include "pd/contact/time_of_impact.hpp"
 
@@ -20,12 +25,53 @@ struct Level {
   double level;
 };
 
-/// s at a pose; -HUGE_VAL where the shape has too many corners for a look at each.
-[[nodiscard]] double apart_along(const Level& direction, const ConvexShape& shape, const Pose& pose);
+/// The corners of a triangle that stands still, in the world, and its margin.
+struct StillTriangle {
+  std::array<Vec3, 3> corners;
+  double margin;
+};
 
-/// True if s(t) >= least is proved for all of [0, duration].
-/// @param radius  `bounding_radius` of the moving shape
-[[nodiscard]] bool stays_apart(const Level& direction, const MovingShape& body, double radius, double least,
-                               double duration);
+/// One motion of a body, for proofs along many directions. Poses are computed once, and supports once for directions of
+/// one normal that follow each other.
+class StaysApart {
+ public:
+  /// `body` must outlive the object.
+  StaysApart(const MovingShape& body, double duration);
+
+  /// s at the start; -HUGE_VAL if the shape has too many corners for a look at each.
+  [[nodiscard]] double at_start(const Level& direction);
+  /// The point of the core that is the first along a direction, where the motion begins. NaN if the shape has too many
+  /// corners.
+  [[nodiscard]] Vec3 first_along(const Vec3& direction) const;
+  /// True if s(t) >= least is proved for all of the motion.
+  [[nodiscard]] bool proved(const Level& direction, double least);
+  /// How far a triangle is apart at the start along the best face of the body's box; -HUGE_VAL without a box.
+  [[nodiscard]] double beside_at_start(const StillTriangle& triangle);
+  /// True if a triangle is proved to stay apart by `least` along one face of the body's box.
+  [[nodiscard]] bool proved_beside(const StillTriangle& triangle, double least);
+
+ private:
+  using Faces = std::array<double, 6>;
+
+  /// Parts of the duration, at the most.
+  static constexpr int kMostParts = 16;
+
+  [[nodiscard]] const Pose& pose(int sixteenths);
+  /// min <p, n> at a share of the duration.
+  [[nodiscard]] double height(int sixteenths);
+  /// How far a triangle is apart from each face of the body's box.
+  [[nodiscard]] Faces beside(const StillTriangle& triangle, int sixteenths);
+  void turn_to(const Vec3& normal);
+
+  const MovingShape& body_;
+  double duration_;
+  double bulge_;  ///< below the chord of the whole motion
+  Vec3 lower_;    ///< of the box about the shape, in its frame; NaN: the shape has too many corners
+  Vec3 upper_;
+  std::array<Pose, kMostParts + 1> poses_;
+  std::array<bool, kMostParts + 1> posed_{};
+  Vec3 normal_;
+  std::array<double, kMostParts + 1> heights_;  ///< along `normal_`; NaN: not asked for yet
+};
 
 }  // namespace pd::detail

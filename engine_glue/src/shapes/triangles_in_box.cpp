@@ -11,31 +11,6 @@ namespace pd::detail {
 
 namespace {
 
-/// How far the nearest point of a triangle is, by its Voronoi regions: C. Ericson, "Real-Time Collision Detection",
-/// 2005, section 5.1.5. NaN where it has no area.
-double distance_from(const Vec3& point, const std::array<Vec3, 3>& corners) {
-  const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = point - corners[0];
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return ap.norm();
-  const Vec3 bp = point - corners[1];
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return bp.norm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).norm();
-  const Vec3 cp = point - corners[2];
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return cp.norm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).norm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return (bp - share * (corners[2] - corners[1])).norm();
-  }
-  const Vec3 normal = ab.cross(ac);
-  return std::abs(normal.dot(ap)) / normal.norm();
-}
-
 class Collector : public btTriangleCallback {
  public:
   Collector(const btVector3& lower, const btVector3& upper, double margin, const Whereabouts* near)
@@ -65,6 +40,30 @@ class Collector : public btTriangleCallback {
 };
 
 }  // namespace
+
+// By its Voronoi regions: C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+double distance_from(const Vec3& point, const std::array<Vec3, 3>& corners) {
+  const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = point - corners[0];
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return ap.norm();
+  const Vec3 bp = point - corners[1];
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return bp.norm();
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).norm();
+  const Vec3 cp = point - corners[2];
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return cp.norm();
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).norm();
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return (bp - share * (corners[2] - corners[1])).norm();
+  }
+  const Vec3 normal = ab.cross(ac);
+  return std::abs(normal.dot(ap)) / normal.norm();
+}
 
 double margin_of_triangles(const btConcaveShape& concave) {
   return concave.getShapeType() == STATIC_PLANE_PROXYTYPE ? 0 : static_cast<double>(concave.getMargin());

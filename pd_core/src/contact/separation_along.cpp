@@ -1,6 +1,8 @@
 #include "contact/separation_along.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <variant>
 
 #include "depth/difference/smooth_difference.hpp"
 #include "numeric/length.hpp"
@@ -15,6 +17,18 @@ namespace {
 
 /// A few roundings on the way to a radius or a curvature.
 constexpr double kRoundedUp = 1 + 32 * kUnitRoundoff;
+
+std::optional<int> axis_of_revolution(const ConvexShape::Core& core) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&core)) return cylinder->axis;
+  if (const auto* cone = std::get_if<Cone>(&core)) return cone->axis;
+  return std::nullopt;
+}
+
+/// The share of its radius in the curvature of a body of revolution whose axis a turns by the unit vector e; given
+/// e x a. The body is the same in the frame that follows a without spinning about it. That frame turns by
+/// w = e - (e . a) a and w' = -(e . a) (e x a), so that no acceleration in it is larger than
+/// |w|^2 + |w'| = |e x a| (|e x a| + |e . a|) <= sqrt(2) |e x a| times the radius.
+double across_revolution(const Vec3& e_cross_a) { return std::min(1.0, 1.4142136 * length(e_cross_a)); }
 
 }  // namespace
 
@@ -32,12 +46,16 @@ MovingSupport::MovingSupport(const MovingShape& body)
       from_axis = std::max(from_axis, length(Vec3(axis_.cross(r))));
     }
   } else {
-    radius_ = length(body.arm) + core_radius(body.start.shape->core());
+    const double of_core = core_radius(body.start.shape->core());
+    radius_ = length(body.arm) + of_core;
     from_axis = radius_;
+    if (const std::optional<int> own = axis_of_revolution(body.start.shape->core())) {
+      from_axis = length(Vec3(axis_.cross(body.arm))) + across_revolution(axis_.cross(rotation_.col(*own))) * of_core;
+    }
   }
   radius_ *= kRoundedUp;
-  // The cross product above is off by some units of the radius, not of itself.
-  curvature_ = speed_ * speed_ * (from_axis + 16 * kUnitRoundoff * radius_) * kRoundedUp;
+  // The cross products above are off by some units of the radius, not of themselves.
+  curvature_ = speed_ * speed_ * (from_axis + 64 * kUnitRoundoff * radius_) * kRoundedUp;
 }
 
 double MovingSupport::least_along(const Vec3& n, double time, int& near) const {
@@ -54,8 +72,26 @@ double MovingSupport::least_along(const Vec3& n, double time, int& near) const {
   return turned_back.dot(body_.arm) + local.dot(point);
 }
 
+double MovingSupport::farthest_from(const Vec3& point) const {
+  const Vec3 offset = body_.start.pose.translation() - point;
+  double farthest = 0;
+  if (const ConvexPolytope* polytope = body_.start.shape->polytope()) {
+    for (int v = 0; v < polytope->num_vertices(); ++v) {
+      farthest = std::max(farthest, length(Vec3(offset + rotation_ * polytope->vertex(v))));
+    }
+  } else {
+    farthest = length(offset) + core_radius(body_.start.shape->core());
+  }
+  return (farthest + 16 * kUnitRoundoff * (length(body_.start.pose.translation()) + length(point))) * kRoundedUp;
+}
+
 MovingSeparation::MovingSeparation(const MovingShape& a, const MovingShape& b, double duration)
-    : motion_a_(a), motion_b_(b), a_(a), b_(b), margins_(a.start.shape->margin() + b.start.shape->margin()) {
+    : motion_a_(a),
+      motion_b_(b),
+      duration_(duration),
+      a_(a),
+      b_(b),
+      margins_(a.start.shape->margin() + b.start.shape->margin()) {
   // Pivots: two products, three sums of lengths below `way`. Supports: the turned direction is off by 8u and by the
   // angle's own rounding, 2u of it; two products with matrices; sums of three terms: 40u of the radius.
   const auto way = [&](const MovingShape& body) {
@@ -67,12 +103,47 @@ MovingSeparation::MovingSeparation(const MovingShape& a, const MovingShape& b, d
   rounding_ = kUnitRoundoff * (8 * (way(a) + way(b)) + turn(a_) + turn(b_) + 4 * margins_);
 }
 
-double MovingSeparation::at(const Vec3& n, double time) {
-  const double between = (a_.pivot_at(time) - b_.pivot_at(time)).dot(n);
-  return between + a_.least_along(n, time, near_a_) + b_.least_along(-n, time, near_b_) - margins_ - rounding_;
+const MovingSeparation::Seen& MovingSeparation::seen_from(Frame frame) {
+  Seen& seen = frame == Frame::a ? from_a_ : from_b_;
+  if (seen.angular_speed >= 0) return seen;
+  const MovingSupport& own = frame == Frame::a ? a_ : b_;
+  const MovingSupport& other = frame == Frame::a ? b_ : a_;
+  const double linear = length(Vec3(motion_a_.motion.linear_velocity - motion_b_.motion.linear_velocity));
+  seen.angular_speed = own.angular_speed();
+  seen.speed = (linear + other.angular_speed() * other.radius()) * kRoundedUp;
+  seen.distance = (other.farthest_from(own.pivot_at(0)) + duration_ * seen.speed) * kRoundedUp;
+  seen.acceleration = other.curvature();
+  // The direction is off by 8u and by the rounding of its angle, and its length is off as much.
+  const double angle = own.angular_speed() * duration_;
+  seen.rounding = kUnitRoundoff * (32 + 4 * angle) * (seen.distance + own.radius() + margins_);
+  return seen;
 }
 
-double MovingSeparation::closing_bound(const Vec3& n) const {
+double MovingSeparation::at(const MovingDirection& direction, double time) {
+  Vec3 n = direction.n;
+  double error = rounding_;
+  if (turns(direction.frame) && time != direction.since) {
+    const MovingSupport& body = direction.frame == Frame::a ? a_ : b_;
+    n = turned(n, body.axis(), body.angular_speed() * (time - direction.since));
+    error += seen_from(direction.frame).rounding;
+  }
+  const double between = (a_.pivot_at(time) - b_.pivot_at(time)).dot(n);
+  return between + a_.least_along(n, time, near_a_) + b_.least_along(-n, time, near_b_) - margins_ - error;
+}
+
+double MovingSeparation::curvature(Frame frame) {
+  if (!turns(frame)) return a_.curvature() + b_.curvature();
+  const Seen& seen = seen_from(frame);
+  const double omega = seen.angular_speed;
+  return (seen.acceleration + omega * (2 * seen.speed + omega * seen.distance)) * kRoundedUp;
+}
+
+double MovingSeparation::closing_bound(const MovingDirection& direction) {
+  if (turns(direction.frame)) {
+    const Seen& seen = seen_from(direction.frame);
+    return (seen.speed + seen.angular_speed * seen.distance) * kRoundedUp;
+  }
+  const Vec3& n = direction.n;
   const double bound = (motion_b_.motion.linear_velocity - motion_a_.motion.linear_velocity).dot(n) +
                        length(Vec3(n.cross(motion_a_.motion.angular_velocity))) * a_.radius() +
                        length(Vec3(n.cross(motion_b_.motion.angular_velocity))) * b_.radius();

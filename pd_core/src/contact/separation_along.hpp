@@ -1,5 +1,6 @@
 /// @file
-/// How far two moving bodies are apart along one fixed direction, as a function of time with a bound on its curvature.
+/// How far two moving bodies are apart along one direction, which stands still or turns with one of them, as a function
+/// of time with a bound on its curvature.
 #pragma once
 
 #include "pd/contact/time_of_impact.hpp"
@@ -19,6 +20,9 @@ class MovingSupport {
   /// >= the distance of every point of the core from the pivot.
   [[nodiscard]] double radius() const { return radius_; }
   [[nodiscard]] double angular_speed() const { return speed_; }
+  [[nodiscard]] const Vec3& axis() const { return axis_; }
+  /// >= the distance of every point of the core from `point`, at time 0.
+  [[nodiscard]] double farthest_from(const Vec3& point) const;
 
  private:
   const MovingShape& body_;
@@ -30,30 +34,58 @@ class MovingSupport {
   double curvature_ = 0;
 };
 
+/// A direction that stands still, or turns with a body of the pair: the unit vector n at the time `since`.
+struct MovingDirection {
+  enum class Frame { common, a, b };
+  Vec3 n;
+  double since = 0;
+  Frame frame = Frame::common;
+};
+
 /// Both bodies. Lengths are less the margins.
 class MovingSeparation {
  public:
+  using Frame = MovingDirection::Frame;
+
   /// @param duration  the times asked for lie in [0, duration].
   MovingSeparation(const MovingShape& a, const MovingShape& b, double duration);
 
-  /// A lower bound of min_A <p, n> - max_B <q, n> - margins at `time`, for a unit vector n: within `2 * rounding()` of
-  /// it.
-  [[nodiscard]] double at(const Vec3& n, double time);
-  /// Every pair of points has |g''| <= this along any unit direction, so that s, the least of them, lies below its
-  /// chord over a span h by curvature * x (h - x) / 2 at most.
-  [[nodiscard]] double curvature() const { return a_.curvature() + b_.curvature(); }
-  /// No pair of points comes nearer along n faster than this, at any time.
-  [[nodiscard]] double closing_bound(const Vec3& n) const;
+  /// A lower bound of s(time) = min_A <p, n> - max_B <q, n> - margins at `time`, for the direction as it is then:
+  /// within `2 * rounding()` of s.
+  [[nodiscard]] double at(const MovingDirection& direction, double time);
+  /// Every pair of points has |g''| <= this, so that s, the least of them, lies below its chord over a span h by
+  /// curvature * x (h - x) / 2 at most. Along a direction that turns with A by omega, the points of A stand still, and
+  /// a point of B is at u from the pivot of A: g'' is the part along n of u'' - 2 omega x u' + omega x (omega x u).
+  [[nodiscard]] double curvature(Frame frame);
+  /// No pair of points comes nearer along the direction faster than this, at any time.
+  [[nodiscard]] double closing_bound(const MovingDirection& direction);
+  /// True if directions of the frame turn.
+  [[nodiscard]] bool turns(Frame frame) const {
+    return frame != Frame::common && (frame == Frame::a ? a_ : b_).angular_speed() > 0;
+  }
   /// The error of `at`, and how far a pose of doubles is from the motion that it stands for.
   [[nodiscard]] double rounding() const { return rounding_; }
 
  private:
+  /// How the points of one body are and move as the pivot of the other one sees them; upper bounds.
+  struct Seen {
+    double angular_speed = -1;  ///< of the pivot's body; negative: not computed yet
+    double distance = 0;
+    double speed = 0;
+    double acceleration = 0;
+    double rounding = 0;  ///< what a direction that turns adds to the error of `at`
+  };
+  [[nodiscard]] const Seen& seen_from(Frame frame);
+
   const MovingShape& motion_a_;
   const MovingShape& motion_b_;
+  double duration_;
   MovingSupport a_;
   MovingSupport b_;
   double margins_;
   double rounding_;
+  Seen from_a_;
+  Seen from_b_;
   int near_a_ = -1;
   int near_b_ = -1;
 };

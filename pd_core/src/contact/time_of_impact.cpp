@@ -1,7 +1,9 @@
 #include "pd/contact/time_of_impact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "contact/separation_along.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -18,6 +20,8 @@ namespace {
 /// few hundredths of a query, and a normal is worth following while it still tells half of the distance.
 constexpr int kSpansPerNormal = 8;
 constexpr int kShortenings = 24;
+/// A direction that proves this share of what is left of the duration is followed alone.
+constexpr double kFarEnough = 0.25;
 
 /// The pair at a time: the distance and what follows from its normal.
 class MovingPair {
@@ -25,6 +29,12 @@ class MovingPair {
   MovingPair(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
              const TimeOfImpactSettings& settings)
       : a_(a), b_(b), duration_(duration), scratch_(scratch), settings_(settings), separation_(a, b, duration) {}
+
+  /// The pair at time 0.
+  void begin() {
+    if (settings_.at_start == nullptr) return ask(0);
+    answer_ = *settings_.at_start;
+  }
 
   /// Moves to `time` and asks.
   void ask(double time) {
@@ -38,17 +48,31 @@ class MovingPair {
   [[nodiscard]] double clearance() const { return settings_.allowed_depth + answer_.signed_distance(); }
 
   /// The latest time after `time` up to which the present normal proves the pair apart: the end of the duration, or one
-  /// where what is left along the normal is about `goal`, or where the normal is worth no more.
+  /// where what is left along the normal is about `goal`, or where the normal is worth no more. The normal stands
+  /// still, or turns with one of the bodies.
   [[nodiscard]] double follow_normal(double time, double goal) {
-    double left = clearance_along(time);
-    const double worthless = 0.25 * left;
-    for (int i = 0; i < kSpansPerNormal && left > 0 && time < duration_; ++i) {
-      const double next = one_span(time, left, goal);
-      if (!(next > time)) break;
-      time = next;
-      if (left <= worthless || left <= 2 * goal) break;
+    struct Lead {
+      detail::MovingDirection direction;
+      double left;  ///< at the end
+    };
+    std::array<Lead, 3> leads;
+    std::size_t count = 0;
+    const double now = clearance_along({answer_.normal, time, Frame::common}, time);
+    for (const Frame frame : {Frame::common, Frame::a, Frame::b}) {
+      if (frame != Frame::common && !separation_.turns(frame)) continue;
+      const detail::MovingDirection direction{answer_.normal, time, frame};
+      const double left = clearance_along(direction, duration_);
+      if (left >= 0.5 * goal && detail::apart_throughout(now, left, bulge(frame, duration_ - time))) return duration_;
+      leads[count++] = {direction, left};
     }
-    return time;
+    // The direction with the most left at the end is followed first.
+    const auto end = leads.begin() + static_cast<std::ptrdiff_t>(count);
+    std::stable_sort(leads.begin(), end, [](const Lead& x, const Lead& y) { return x.left > y.left; });
+    double latest = time;
+    for (auto lead = leads.begin(); lead != end && latest - time < kFarEnough * (duration_ - time); ++lead) {
+      latest = std::max(latest, follow(lead->direction, goal));
+    }
+    return latest;
   }
 
   [[nodiscard]] double rounding() const { return separation_.rounding(); }
@@ -56,27 +80,45 @@ class MovingPair {
   [[nodiscard]] int queries() const { return queries_; }
 
  private:
-  [[nodiscard]] double clearance_along(double time) {
-    return settings_.allowed_depth + separation_.at(answer_.normal, time);
+  using Frame = detail::MovingDirection::Frame;
+
+  [[nodiscard]] double clearance_along(const detail::MovingDirection& direction, double time) {
+    return settings_.allowed_depth + separation_.at(direction, time);
+  }
+
+  /// m of `apart_throughout`.
+  [[nodiscard]] double bulge(Frame frame, double span) { return 0.5 * separation_.curvature(frame) * span * span; }
+
+  /// `follow_normal` along one direction, from the time that it is of.
+  [[nodiscard]] double follow(const detail::MovingDirection& direction, double goal) {
+    double time = direction.since;
+    double left = clearance_along(direction, time);
+    const double worthless = 0.25 * left;
+    for (int i = 0; i < kSpansPerNormal && left > 0 && time < duration_; ++i) {
+      const double next = one_span(direction, time, left, goal);
+      if (!(next > time)) break;
+      time = next;
+      if (left <= worthless || left <= 2 * goal) break;
+    }
+    return time;
   }
 
   /// One proved span from `time`, where `left` > 0 is left along the normal. Updates `left`. The span is shortened
   /// until the proof holds; that of first order (Mirtich's) holds for certain.
-  [[nodiscard]] double one_span(double time, double& left, double goal) {
-    const double bound = separation_.closing_bound(answer_.normal);
+  [[nodiscard]] double one_span(const detail::MovingDirection& direction, double time, double& left, double goal) {
+    const double bound = separation_.closing_bound(direction);
     // Rounded down: the quotient and the sum with the time.
     const double certain = bound > 0 ? 0.999 * left / bound : HUGE_VAL;
     double span = duration_ - time;
     if (certain >= span) {
-      left = clearance_along(duration_);
+      left = clearance_along(direction, duration_);
       return duration_;
     }
     for (int k = 0; k < kShortenings && span > certain; ++k) {
       const double end = k == 0 ? duration_ : time + span;
-      const double then = clearance_along(end);
+      const double then = clearance_along(direction, end);
       if (then >= 0.5 * goal) {
-        const double m = 0.5 * separation_.curvature() * (end - time) * (end - time);
-        if (detail::apart_throughout(left, then, m)) {
+        if (detail::apart_throughout(left, then, bulge(direction.frame, end - time))) {
           left = then;
           return end;
         }
@@ -88,7 +130,7 @@ class MovingPair {
       }
     }
     const double end = std::min(time + certain, duration_);
-    left = clearance_along(end);
+    left = clearance_along(direction, end);
     return end;
   }
 
@@ -123,6 +165,8 @@ Pose pose_at(const MovingShape& body, double time) {
   return Pose::from_trusted_matrix(turn * body.start.pose.rotation(), translation);
 }
 
+double curvature_bound(const MovingShape& body) { return detail::MovingSupport(body).curvature(); }
+
 double bounding_radius(const ConvexShape& shape) { return detail::core_radius(shape.core()) + shape.margin(); }
 
 TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
@@ -140,7 +184,7 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
   };
 
   double time = 0;  // no contact in [0, time), and apart there
-  pair.ask(time);
+  pair.begin();
   if (pair.clearance() <= 0) return finish(true, 0, true);
   // A pair that starts closer than the tolerance meets only if it comes closer still.
   const double tolerance = std::min(settings.distance_tolerance, 0.5 * pair.clearance());

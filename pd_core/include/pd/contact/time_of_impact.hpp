@@ -9,10 +9,12 @@
 ///     s(t) >= linear interpolation - (t - t0) (t1 - t) / 2 * (|omega_a|^2 r_a + |omega_b|^2 r_b),
 ///
 /// which costs two supports a body for a whole span of time. Without rotation s is concave and the span may have any
-/// length. The normal of the distance at the span's start is n. The function s is followed to where it has nearly
-/// vanished, and the next distance gives the next n. This is B. Mirtich's conservative advancement ("Impulse-based
-/// dynamic simulation", 1996), with a bound of second order in place of his of first, along E. Catto's separation
-/// functions
+/// length. The normal of the distance at the span's start is n; it stands still or, if that proves more, turns with one
+/// of the bodies (a face that rocks on an edge stays apart along its own normal, and a normal that stands still serves
+/// it for a short while only; the bound on g'' then has the terms of a frame that turns). The function s is followed to
+/// where it has nearly vanished, and the next distance gives the next n. This is B. Mirtich's conservative advancement
+/// ("Impulse-based dynamic simulation", 1996), with a bound of second order in place of his of first, along E. Catto's
+/// separation functions
 /// ("Continuous collision", GDC 2013), with a proof in place of his root finding.
 #pragma once
 
@@ -38,6 +40,11 @@ struct MovingShape {
 /// without rotation, the rotation is the start's own, to the bit.
 [[nodiscard]] Pose pose_at(const MovingShape& body, double time);
 
+/// The least coordinate of the moving shape along any unit direction that stands still, as a function of time, lies
+/// below its chord over a span h by curvature_bound * x (h - x) / 2 at most, x the time since the span began. A
+/// cylinder or cone that turns about its own axis has 0.
+[[nodiscard]] double curvature_bound(const MovingShape& body);
+
 /// Largest distance of a point of the shape from the origin of its frame, margin included.
 [[nodiscard]] double bounding_radius(const ConvexShape& shape);
 
@@ -52,6 +59,8 @@ struct TimeOfImpactSettings {
   int max_queries = 1000;
   /// Without a hit, whether `contact` is asked for at the end of the duration; else it is of the last time looked at.
   bool contact_at_end = true;
+  /// Null, or the pair's answer at time 0 with the settings below: it is not asked for again.
+  const PenetrationDepth* at_start = nullptr;
   DepthSettings depth;
 };
 
