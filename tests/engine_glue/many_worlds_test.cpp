@@ -1,4 +1,7 @@
 // One solver serves any number of worlds one after another, although Bullet tells nobody that a world has ended.
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -111,6 +114,55 @@ TEST(Prepare, ConvertsTheShapesOfAWorldAheadOfItsSteps) {
   for (int i = 0; i < 30; ++i) scene.world().stepSimulation(btScalar(1) / 60, 0);
   EXPECT_GT(solver.statistics().calls, 30);
   EXPECT_EQ(solver.cache().conversions(), conversions);
+}
+
+/// Shows how much memory Bullet's solver has for the rows of multibodies.
+struct SolverWithRows : btMultiBodyConstraintSolver {
+  [[nodiscard]] int room() const { return m_data.m_jacobians.capacity(); }
+};
+
+// Otherwise Bullet's arrays grow row by row, and are copied each time.
+TEST(Prepare, ReservesTheRowsOfMultibodies) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  SolverWithRows rows;
+  btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &rows, &configuration);
+  world.setGravity(btVector3(0, btScalar(-9.81), 0));
+  btBoxShape ground(btVector3(20, 1, 20));
+  btRigidBody floor(0, nullptr, &ground);
+  floor.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, -1, 0)));
+  world.addRigidBody(&floor, 1, 3);
+  btBoxShape brick(btVector3(btScalar(0.4), btScalar(0.2), btScalar(0.2)));
+  btVector3 inertia;
+  brick.calculateLocalInertia(1, inertia);
+  std::vector<std::unique_ptr<btMultiBody>> bodies;
+  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
+  for (int i = 0; i < 12; ++i) {
+    bodies.push_back(std::make_unique<btMultiBody>(0, btScalar(1), inertia, false, false));
+    btMultiBody& body = *bodies.back();
+    body.finalizeMultiDof();
+    const auto along = static_cast<btScalar>(0.8 * (i % 4) + 0.4 * (i / 4 % 2));
+    body.setBaseWorldTransform(
+        btTransform(btQuaternion::getIdentity(), btVector3(along, static_cast<btScalar>(0.2 + 0.4 * (i / 4)), 0)));
+    world.addMultiBody(&body);
+    colliders.push_back(std::make_unique<btMultiBodyLinkCollider>(&body, -1));
+    colliders.back()->setCollisionShape(&brick);
+    colliders.back()->setWorldTransform(body.getBaseWorldTransform());
+    world.addCollisionObject(colliders.back().get(), 2, 3);
+    body.setBaseCollider(colliders.back().get());
+  }
+  BulletPenetrationDepthSolver solver;
+  ASSERT_TRUE(install(world, solver));
+  (void)prepare(world, solver);
+  const int room = rows.room();
+  EXPECT_GT(room, 0);
+  for (int i = 0; i < 3; ++i) world.stepSimulation(btScalar(1) / 60, 0);
+  EXPECT_GT(dispatcher.getNumManifolds(), 12);
+  EXPECT_EQ(rows.room(), room);
+  for (const auto& collider : colliders) world.removeCollisionObject(collider.get());
+  for (const auto& body : bodies) world.removeMultiBody(body.get());
+  world.removeRigidBody(&floor);
 }
 
 }  // namespace

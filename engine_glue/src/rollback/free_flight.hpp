@@ -26,7 +26,8 @@ class FreeFlight {
  public:
   explicit FreeFlight(btDiscreteDynamicsWorld& world) : world_(world) {}
 
-  /// What is in contact with nothing but the other one of these bodies may bounce off it when the next part begins.
+  /// What is in contact with nothing but the other one of these bodies may bounce off it when the next part begins, if
+  /// both have restitution.
   void expect_impact(const btCollisionObject* a, const btCollisionObject* b);
   /// A part begins at the present state.
   void begin_part();

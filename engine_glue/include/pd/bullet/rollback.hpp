@@ -26,8 +26,8 @@
 namespace pd {
 
 struct RollbackSettings {
-  /// The gap left at a first contact, > 0, in the world's unit. Floats cannot place a body finer than about 1e-7 of its
-  /// coordinates.
+  /// The gap left at a first contact, > 0, in the world's unit; pairs that Bullet brakes may have 2.25 gaps left.
+  /// Floats cannot place a body finer than about 1e-7 of its coordinates.
   double gap = 1e-5;
   /// Pairs in contact already may sink by this length before the step is cut there too: after a corner hits, a fast
   /// body still turns its other corners through the wall. After it, a quarter of it a part. Pairs that move by less in

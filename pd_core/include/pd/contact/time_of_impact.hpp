@@ -9,10 +9,10 @@
 ///     s(t) >= linear interpolation - (t - t0) (t1 - t) / 2 * (|omega_a|^2 r_a + |omega_b|^2 r_b),
 ///
 /// which costs two supports a body for a whole span of time. Without rotation s is concave and the span may have any
-/// length. The normal of the distance at the span's start is n; it stands still or, if that proves more, turns with one
-/// of the bodies (a face that rocks on an edge stays apart along its own normal, and a normal that stands still serves
-/// it for a short while only; the bound on g'' then has the terms of a frame that turns). The function s is followed to
-/// where it has nearly vanished, and the next distance gives the next n. This is B. Mirtich's conservative advancement
+/// length. The normal of the distance at the span's start is n. It stands still or, if that proves more, turns with one
+/// of the bodies: a face that rocks on an edge stays apart along its own normal. The bound on g'' then has the terms of
+/// a frame that turns. The function s is followed to where it has nearly vanished, and the next distance gives the next
+/// n. This is B. Mirtich's conservative advancement
 /// ("Impulse-based dynamic simulation", 1996), with a bound of second order in place of his of first, along E. Catto's
 /// separation functions
 /// ("Continuous collision", GDC 2013), with a proof in place of his root finding.
@@ -40,9 +40,9 @@ struct MovingShape {
 /// without rotation, the rotation is the start's own, to the bit.
 [[nodiscard]] Pose pose_at(const MovingShape& body, double time);
 
-/// The least coordinate of the moving shape along any unit direction that stands still, as a function of time, lies
-/// below its chord over a span h by curvature_bound * x (h - x) / 2 at most, x the time since the span began. A
-/// cylinder or cone that turns about its own axis has 0.
+/// How much a moving shape bends off a chord. The least coordinate of the shape along a unit direction is a function of
+/// time. Over a span h it lies below its chord by curvature_bound * x (h - x) / 2 at most, x since the span began.
+/// A cylinder or cone that turns about its own axis has 0.
 [[nodiscard]] double curvature_bound(const MovingShape& body);
 
 /// Largest distance of a point of the shape from the origin of its frame, margin included.

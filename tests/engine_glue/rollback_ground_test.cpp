@@ -1,0 +1,108 @@
+// What RollbackStepper costs on meshes and heightfields, in steps of Bullet: each first contact takes the step that met
+// it, a shorter one or two that end before it, and one for the rest.
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "engine_glue/bullet_world.hpp"
+#include "pd/bullet/install.hpp"
+#include "pd/bullet/rollback.hpp"
+
+namespace pd::test {
+namespace {
+
+const btScalar kStep = btScalar(1.0 / 60);
+
+struct Cost {
+  int steps = 0;
+  int cuts = 0;
+};
+
+Cost run(BulletWorld& scene, int frames) {
+  BulletPenetrationDepthSolver solver;
+  install(scene.world(), solver);
+  RollbackStepper stepper(scene.world(), solver);
+  Cost cost;
+  for (int i = 0; i < frames; ++i) {
+    const RollbackReport report = stepper.step(kStep);
+    cost.steps += report.simulation_steps - 1;
+    cost.cuts += report.parts - 1;
+    EXPECT_FALSE(report.bounded);
+  }
+  return cost;
+}
+
+btVector3 place(double x, double y, double z) {
+  return btVector3(static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z));
+}
+
+TEST(RollbackGround, BoxesOnARidge) {
+  constexpr int kSide = 41;
+  std::vector<float> heights;
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      heights.push_back(static_cast<float>(2 - 0.5 * std::abs(i - 20) + 0.05 * std::sin(1.7 * j)));
+    }
+  }
+  Cost all;
+  for (int start = 0; start < 4; ++start) {
+    BulletWorld scene;
+    scene.body(scene.shape<btHeightfieldTerrainShape>(kSide, kSide, heights.data(), btScalar(1), btScalar(-10),
+                                                      btScalar(10), 1, PHY_FLOAT, false),
+               0, btVector3(0, 0, 0));
+    auto* box = scene.shape<btBoxShape>(place(0.3, 0.3, 0.3));
+    for (int i = 0; i < 10; ++i) {
+      btRigidBody* body = scene.body(
+          box, 1, place(0.05 * (i % 3) + 0.013 * i * start, 3 + 0.7 * (i / 5) + 0.1 * i, -4 + 1.8 * (i % 5)));
+      body->setActivationState(DISABLE_DEACTIVATION);
+    }
+    const Cost cost = run(scene, 60);
+    all.steps += cost.steps;
+    all.cuts += cost.cuts;
+  }
+  EXPECT_GT(all.cuts, 100);
+  EXPECT_LT(all.steps, 3.3 * all.cuts) << all.steps << " steps for " << all.cuts << " cuts";
+}
+
+TEST(RollbackGround, WheelsOnWaves) {
+  btTriangleMesh mesh;
+  const auto corner = [](int i, int j) { return place(0.5 * i, 0.1 * std::sin(0.5 * i) * std::cos(0.5 * j), 0.5 * j); };
+  for (int i = -20; i < 0; ++i) {
+    for (int j = -6; j < 6; ++j) {
+      mesh.addTriangle(corner(i, j), corner(i, j + 1), corner(i + 1, j + 1));
+      mesh.addTriangle(corner(i, j), corner(i + 1, j + 1), corner(i + 1, j));
+    }
+  }
+  Cost all;
+  for (int start = 0; start < 4; ++start) {
+    BulletWorld scene;
+    scene.body(scene.shape<btBvhTriangleMeshShape>(&mesh, true), 0, btVector3(0, 0, 0))->setFriction(1);
+    const btVector3 middle = place(-5 + 0.07 * start, 0.75, 0.03 * start);
+    btRigidBody* car = scene.body(scene.shape<btBoxShape>(place(1, 0.2, 0.5)), 200, middle);
+    car->setActivationState(DISABLE_DEACTIVATION);
+    auto* wheel = scene.shape<btCylinderShapeZ>(place(0.35, 0.35, 0.1));
+    std::vector<std::unique_ptr<btHingeConstraint>> axles;
+    for (int k = 0; k < 4; ++k) {
+      const btVector3 at = place(k % 2 != 0 ? 0.8 : -0.8, -0.35, k / 2 != 0 ? 0.75 : -0.75);
+      btRigidBody* body = scene.body(wheel, 15, middle + at);
+      body->setFriction(1);
+      body->setActivationState(DISABLE_DEACTIVATION);
+      axles.push_back(std::make_unique<btHingeConstraint>(*car, *body, at, btVector3(0, 0, 0), btVector3(0, 0, 1),
+                                                          btVector3(0, 0, 1)));
+      axles.back()->enableAngularMotor(true, -12, 20);
+      scene.world().addConstraint(axles.back().get(), true);
+    }
+    const Cost cost = run(scene, 60);
+    all.steps += cost.steps;
+    all.cuts += cost.cuts;
+    for (const auto& axle : axles) scene.world().removeConstraint(axle.get());
+  }
+  EXPECT_GT(all.cuts, 100);
+  EXPECT_LT(all.steps, 3.5 * all.cuts) << all.steps << " steps for " << all.cuts << " cuts";
+}
+
+}  // namespace
+}  // namespace pd::test
