@@ -1,6 +1,7 @@
 #include "contact/separation_along.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <variant>
 
@@ -153,7 +154,8 @@ double MovingSeparation::closing_bound(const MovingDirection& direction) {
 }
 
 bool apart_throughout(double s0, double s1, double m) {
-  if (!(s0 > 0 && s1 > 0 && m >= 0)) return false;
+  // A bound that has overflowed proves nothing.
+  if (!(s0 > 0 && s1 > 0 && m >= 0 && m < HUGE_VAL)) return false;
   // With x in [0, 1] along the span: s0 + (s1 - s0) x - m x (1 - x), least at x = (m + s0 - s1) / (2 m).
   const double slope = m + s0 - s1;
   if (slope <= 0 || slope >= 2 * m) return true;
