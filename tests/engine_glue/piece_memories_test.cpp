@@ -1,12 +1,13 @@
 // What pairs with meshes remember of their triangles: kept from step to step, forgotten with the triangles that are
 // left behind, the same on a replay.
-#include "union/piece_memories.hpp"
+#include "pd/union_contact/piece_memories.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "engine_glue/union_worlds.hpp"
+#include "pair/pair_registry.hpp"
 #include "pd/bullet/snapshot.hpp"
 
 namespace pd::test {
@@ -14,7 +15,7 @@ namespace {
 
 TEST(PieceMemories, WhatAStepDoesNotAskForIsForgotten) {
   std::vector<detail::PieceMemory> old;
-  detail::PieceMemories memories;
+  PieceMemories<detail::PieceMemory> memories;
   const auto step = [&](const std::vector<std::uint64_t>& numbers) {
     std::vector<bool> met;
     memories.begin();

@@ -23,8 +23,4 @@ inline std::uint64_t number_of_pieces(int child, const MetTriangle& triangle) {
          static_cast<std::uint32_t>(triangle.index);
 }
 
-/// Of a body's thickness. Deeper in a sheet than this, its shortest way out is back to where most of it is, over edges
-/// or not, and no longer the triangle's own side.
-inline constexpr double kShallow = 0.25;
-
 }  // namespace pd::detail

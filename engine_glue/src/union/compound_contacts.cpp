@@ -12,10 +12,10 @@
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/union_contact/deep_union.hpp"
+#include "pd/union_contact/piece_memories.hpp"
 #include "pieces/compound_facts.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/moving_body.hpp"
-#include "union/piece_memories.hpp"
 #include "union/pieces_in_result.hpp"
 
 namespace pd::detail {
@@ -171,7 +171,7 @@ class CompoundContacts final : public UnionContacts {
   std::vector<Child> children_a_;
   std::vector<Child> children_b_;
   std::vector<ChildPair> pairs_;
-  PieceMemories memories_;
+  PieceMemories<PieceMemory> memories_;
   DeepUnion deep_;
 };
 

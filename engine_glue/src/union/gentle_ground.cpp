@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "pd/bullet/scalar.hpp"
+#include "pd/union_contact/flat_ground.hpp"
 #include "pieces/piece_wrapper.hpp"
-#include "shapes/met_triangle.hpp"
 
 namespace pd::detail {
 

@@ -7,6 +7,7 @@
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,15 +15,15 @@
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/union_contact/one_sided.hpp"
+#include "pd/union_contact/piece_memories.hpp"
 #include "pieces/compound_facts.hpp"
 #include "shapes/body_motion.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/met_triangle.hpp"
 #include "shapes/moving_body.hpp"
 #include "shapes/triangles_around.hpp"
-#include "union/flat_ground.hpp"
+#include "union/child_on_ground.hpp"
 #include "union/gentle_ground.hpp"
-#include "union/piece_memories.hpp"
 #include "union/pieces_in_result.hpp"
 #include "union/sheet_sides.hpp"
 
@@ -80,6 +81,9 @@ class PiecesOfPoint : public PointSurroundings {
   std::optional<TriangleInResult> triangle_;
 };
 
+/// Of coordinates: corners of a plane that its author rounded to Bullet's scalar.
+constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
+
 class MeshContacts final : public UnionContacts {
  public:
   bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
@@ -108,6 +112,9 @@ class MeshContacts final : public UnionContacts {
   /// The contacts of one of them. @return false where a piece has no exact form
   bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
                Patches& patches);
+  /// The contacts with the triangles from number `first` on, if they are flat. @return false: they have to be asked
+  bool find_on_flat(ChildOnGround& standing, const btCollisionObjectWrapper& a, const UnionQuestion& question,
+                    std::size_t first, Patches& patches);
   /// Whether the body can be asked along the normals of gentle triangles. @param a  the wrapper of the child
   bool begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place, SolverCore& core,
                     PairMemory& memory);
@@ -123,20 +130,21 @@ class MeshContacts final : public UnionContacts {
   void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
                   ThreadBuffers& buffers, Patches& patches);
 
-  std::vector<Child> children_;         ///< of question.a, or itself
-  std::vector<BodyReach> reaches_;      ///< of the children
-  btVector3 lower_, upper_;             ///< of the box around all of them
-  bool together_ = true;                ///< so close that the mesh is read once for all
-  bool still_ = false;                  ///< since all triangles were asked
-  std::vector<StandingChild> stand_;    ///< as the children are now
-  std::vector<double> radii_;           ///< of the children, about the origins of their frames
-  std::vector<int> known_;              ///< places of the triangles around among those that were asked
-  std::vector<MetTriangle> triangles_;  ///< of all children, one child's after the other's
-  std::vector<std::size_t> places_;     ///< theirs among the triangles around
+  std::vector<Child> children_;               ///< of question.a, or itself
+  std::vector<BodyReach> reaches_;            ///< of the children
+  btVector3 lower_, upper_;                   ///< of the box around all of them
+  bool together_ = true;                      ///< so close that the mesh is read once for all
+  bool still_ = false;                        ///< since all triangles were asked
+  std::vector<StandingChild> stand_;          ///< as the children are now
+  std::vector<double> radii_;                 ///< of the children, about the origins of their frames
+  std::vector<int> known_;                    ///< places of the triangles around among those that were asked
+  std::vector<MetTriangle> triangles_;        ///< of all children, one child's after the other's
+  std::vector<std::size_t> places_;           ///< theirs among the triangles around
+  std::vector<std::array<Vec3, 3>> corners_;  ///< of the child's triangles
   FlatGround flat_;
   GentleGround gentle_;
   PosedShape body_{};  ///< the child at hand
-  PieceMemories memories_;
+  PieceMemories<PieceMemory> memories_;
   OneSided one_sided_;
   SheetSides sides_;
 };
@@ -363,6 +371,30 @@ bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const Union
   return true;
 }
 
+bool MeshContacts::find_on_flat(ChildOnGround& standing, const btCollisionObjectWrapper& a,
+                                const UnionQuestion& question, std::size_t first, Patches& patches) {
+  corners_.clear();
+  for (std::size_t i = first; i < triangles_.size(); ++i) {
+    const MetTriangle& met = triangles_[i];
+    corners_.push_back({to_pd(met.corners[0]), to_pd(met.corners[1]), to_pd(met.corners[2])});
+  }
+  const Pose mesh = to_pd(question.b.getWorldTransform());
+  const GroundTriangles ground{.corners = corners_,
+                               .mesh = mesh,
+                               .margin = static_cast<double>(question.b.getCollisionShape()->getMargin()),
+                               .corner_rounding = kFlat,
+                               .pose_rounding = kPoseRounding,
+                               .one_sided = !standing.remembers_sides()};
+  const GroundPlace place{to_pd(a.getWorldTransform().getOrigin()), to_pd(question.a.getWorldTransform().getOrigin()),
+                          is_part(a)};
+  if (!flat_.find(standing, place, ground)) return false;
+  flat_.for_each_point([&](const ContactManifold& point, std::size_t triangle) {
+    // Features are the body's alone, and go on from triangle to triangle.
+    patches.add(point, static_cast<int>(first + triangle), is_part(a) ? a.m_index : -1, -1);
+  });
+  return true;
+}
+
 bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers,
                            PairMemory& memory, Patches& patches) {
   const Child& child = children_[static_cast<std::size_t>(place)];
@@ -378,10 +410,11 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const auto threshold = static_cast<double>(question.threshold);
   const bool one_sided = core.settings.one_sided_meshes;
   if (!one_sided) enter_sides(question, child, reach);
-  const FlatGround::Body standing{a, memory.shape_of_child(0, child.index), one_sided ? nullptr : &sides_};
-  const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
+  ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1,
+                          std::span<const MetTriangle>(triangles_).subspan(first), one_sided ? nullptr : &sides_},
+                         core, buffers, memory.shape_of_child(0, child.index));
   const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
-  if (!asked_one_by_one && flat_.find(standing, question, met_of_child, first, core, buffers, patches)) {
+  if (!asked_one_by_one && find_on_flat(standing, a, question, first, patches)) {
     if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
     return true;
   }
@@ -396,7 +429,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     PairAnswer answer;
     PieceMemory* remembered = nullptr;
     if (still_) {
-      remembered = PieceMemories::find(memory.pieces, number_of_pieces(child.index, met));
+      remembered = PieceMemories<PieceMemory>::find(memory.pieces, number_of_pieces(child.index, met));
     } else if (i - first < kMostRemembered) {
       remembered = &memories_.take(memory.pieces, number_of_pieces(child.index, met));
     }

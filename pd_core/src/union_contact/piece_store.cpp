@@ -121,14 +121,14 @@ namespace detail {
 namespace {
 
 /// Of coordinates: a matrix that is a rotation up to 1e-6 and its transpose miss each other's inverse by no more.
-constexpr double kTurned = 0x1p-17;
+constexpr double kNoInverse = 0x1p-17;
 
 /// The box around a turned and moved box.
 TriangleBox turned(const TriangleBox& box, const Mat3& rotation, const Vec3& translation) {
   const Vec3 middle = rotation * (0.5 * box.low + 0.5 * box.high) + translation;
   Vec3 half = rotation.cwiseAbs() * (0.5 * box.high - 0.5 * box.low);
   half.array() +=
-      kTurned * (box.low.cwiseAbs().maxCoeff() + box.high.cwiseAbs().maxCoeff() + translation.cwiseAbs().maxCoeff());
+      kNoInverse * (box.low.cwiseAbs().maxCoeff() + box.high.cwiseAbs().maxCoeff() + translation.cwiseAbs().maxCoeff());
   return {middle - half, middle + half};
 }
 

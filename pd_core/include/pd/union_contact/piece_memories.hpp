@@ -1,5 +1,5 @@
 /// @file
-/// What a pair with a mesh or compound remembers of its pieces, handed from step to step.
+/// The memory that a pair with a mesh or compound has of its pieces, handed from step to step.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "pair/pair_registry.hpp"
+namespace pd {
 
-namespace pd::detail {
-
-/// The memories that a step asks for take the place of last step's: what is not asked for is forgotten, so that there
-/// are never more than pieces met in one step.
+/// The memories that a step asks for take the place of last step's. All others are forgotten, so that there are never
+/// more than pieces met in one step.
+///
+/// @tparam Memory  of two pieces, with their number (`pieces`), `met` and `apart_until`, which a step sets anew.
+template <class Memory>
 class PieceMemories {
  public:
   void begin() {
@@ -22,11 +23,11 @@ class PieceMemories {
 
   /// Taken from last step's memories, or new. Valid until the next is taken.
   /// @param old  sorted by number
-  PieceMemory& take(std::vector<PieceMemory>& old, std::uint64_t number) {
+  Memory& take(std::vector<Memory>& old, std::uint64_t number) {
     auto found = old.begin() + static_cast<std::ptrdiff_t>(std::min(next_, old.size()));
     if (found == old.end() || found->pieces != number) {
       found = std::lower_bound(old.begin(), old.end(), number,
-                               [](const PieceMemory& x, std::uint64_t n) { return x.pieces < n; });
+                               [](const Memory& x, std::uint64_t n) { return x.pieces < n; });
     }
     if (found != old.end() && found->pieces == number) {
       next_ = static_cast<std::size_t>(found - old.begin()) + 1;
@@ -40,17 +41,18 @@ class PieceMemories {
     return fresh_.back();
   }
 
-  /// Where few are asked again and all others are to be remembered: in place, without `take` and `end`; null: none.
-  static PieceMemory* find(std::vector<PieceMemory>& all, std::uint64_t number) {
-    const auto found = std::lower_bound(all.begin(), all.end(), number,
-                                        [](const PieceMemory& x, std::uint64_t n) { return x.pieces < n; });
+  /// Finds a memory in place, without `take` and `end`, for a step that asks few again and keeps all others. Null:
+  /// none.
+  static Memory* find(std::vector<Memory>& all, std::uint64_t number) {
+    const auto found =
+        std::lower_bound(all.begin(), all.end(), number, [](const Memory& x, std::uint64_t n) { return x.pieces < n; });
     return found != all.end() && found->pieces == number ? &*found : nullptr;
   }
 
   /// Puts the memories that were taken in place of the old ones. Hosts may give several triangles one number: these
   /// keep the order in which they were met.
-  void end(std::vector<PieceMemory>& old) {
-    const auto earlier = [](const PieceMemory& x, const PieceMemory& y) { return x.pieces < y.pieces; };
+  void end(std::vector<Memory>& old) {
+    const auto earlier = [](const Memory& x, const Memory& y) { return x.pieces < y.pieces; };
     if (!std::is_sorted(fresh_.begin(), fresh_.end(), earlier)) {
       std::stable_sort(fresh_.begin(), fresh_.end(), earlier);
     }
@@ -58,8 +60,8 @@ class PieceMemories {
   }
 
  private:
-  std::vector<PieceMemory> fresh_;
+  std::vector<Memory> fresh_;
   std::size_t next_ = 0;  ///< most steps ask in last step's order
 };
 
-}  // namespace pd::detail
+}  // namespace pd
