@@ -26,7 +26,7 @@ endfunction()
 # pd_harden(<target>): programs and shared libraries are bound when they start, so that no table of functions can be written to
 # afterwards. With PD_HARDENED a function with an array checks its frame, and the C library checks the sizes that it is given.
 function(pd_harden target)
-  if(NOT APPLE AND NOT WIN32)
+  if(NOT APPLE AND NOT WIN32 AND NOT EMSCRIPTEN)
     target_link_options(${target} PRIVATE LINKER:-z,relro LINKER:-z,now)
   endif()
   if(PD_HARDENED)

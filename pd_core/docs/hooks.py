@@ -37,6 +37,8 @@ SHOWN = {
 }
 # Pages whose file need not be there: a part of the project that was left out.
 OPTIONAL = {"python.md": "demos/python/README.md"}
+# The page to play with, where packaging/wasm.sh has made it.
+PLAY = ROOT / "build/npm/play.html"
 DOXYGEN = shutil.which("doxygen")
 API = re.compile(r"\{\{ api ([^#}]+?)(?: # ([\w./]+))? \}\}")
 DIRECTIVE = re.compile(r"^\{\{ (include|opening|code) ([^#}]+?)(?: # ([^}]+?))? \}\}$", re.M)
@@ -66,6 +68,8 @@ def on_files(files, config):
 
 
 def on_nav(nav, config, files):
+    if PLAY.exists():
+        nav.items.append(Link("Play with two bodies", PLAY.name))
     if DOXYGEN:
         nav.items.append(Link("Reference of the headers", "api/files.html"))
     return nav
@@ -94,6 +98,10 @@ def write_offline_search(site):
 
 def on_post_build(config):
     write_offline_search(Path(config["site_dir"]))
+    if PLAY.exists():
+        shutil.copy(PLAY, config["site_dir"])
+    else:
+        logging.getLogger("mkdocs.hooks").info("The page to play with is left out: packaging/wasm.sh was not run")
     if not DOXYGEN:
         logging.getLogger("mkdocs.hooks").info("The reference of the C++ headers is left out: doxygen is not installed")
         return

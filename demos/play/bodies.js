@@ -1,0 +1,159 @@
+// Bodies as the protocol's JSON, and as shapes of the library.
+
+const {PdepthError} = pdepth;
+const refuse = (code, message, place) => { throw new PdepthError(code, message, place); };
+
+/** Points on a sphere that are the same everywhere: a fixed sequence of numbers. */
+function gemPoints(count, seed) {
+  let state = seed;
+  const random = () => { state = Math.imul(state ^ state >>> 15, 0x2c1b3c6d) + 0x9e3779b9 | 0; return (state >>> 0) / 2 ** 32; };
+  return Array.from({length: count}, () => {
+    const z = 2 * random() - 1, turn = 2 * Math.PI * random(), r = Math.sqrt(1 - z * z);
+    return [r * Math.cos(turn), r * Math.sin(turn), z].map(x => Math.round(x * 1000) / 1000);
+  });
+}
+const rounded = x => Math.round(x * 1e6) / 1e6;
+const ring = (count, radius, z, phase = 0) => Array.from({length: count}, (_, i) => {
+  const turn = 2 * Math.PI * (i + phase) / count;
+  return [rounded(radius * Math.cos(turn)), rounded(radius * Math.sin(turn)), z];
+});
+const box = (x, y, z) => ({type: 'box', half_extents: [x, y, z]});
+const part = (shape, translation) => ({shape, pose: {translation}});
+function gear() {
+  const teeth = Array.from({length: 8}, (_, i) => {
+    const turn = Math.PI * i / 4;
+    return {shape: {type: 'convex', vertices: [-0.28, 0.28].flatMap(z => [[0.6, -0.24, z], [0.6, 0.24, z], [1, -0.13, z], [1, 0.13, z]])},
+            pose: {quaternion_wxyz: [Math.cos(turn / 2), 0, 0, Math.sin(turn / 2)]}};
+  });
+  return {type: 'compound', parts: [{shape: {type: 'convex', vertices: [...ring(16, 0.72, -0.28), ...ring(16, 0.72, 0.28)]}}, ...teeth]};
+}
+const golden = (1 + Math.sqrt(5)) / 2, fit = 0.6;
+const kShapes = {
+  'Box': box(0.9, 0.7, 0.5),
+  'Rounded box': {...box(0.7, 0.5, 0.35), margin: 0.2},
+  'Tetrahedron': {type: 'convex', vertices: [[0.9, 0.9, 0.9], [0.9, -0.9, -0.9], [-0.9, 0.9, -0.9], [-0.9, -0.9, 0.9]]},
+  'Octahedron': {type: 'convex', vertices: [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]},
+  'Icosahedron': {type: 'convex', vertices: [-1, 1].flatMap(s => [-1, 1].flatMap(t => {
+    const u = rounded(fit * s), v = rounded(fit * t * golden);
+    return [[0, u, v], [u, v, 0], [v, 0, u]];
+  }))},
+  'Prism': {type: 'convex', vertices: [...ring(6, 0.7, -0.8), ...ring(6, 0.7, 0.8)]},
+  'Wedge': {type: 'convex', vertices: [[-1, -0.6, -0.5], [1, -0.6, -0.5], [-1, 0.6, -0.5], [1, 0.6, -0.5], [-1, -0.6, 0.7], [-1, 0.6, 0.7]]},
+  'Gem of 40 points': {type: 'convex', vertices: gemPoints(40, 7)},
+  'Sphere': {type: 'sphere', radius: 0.8},
+  'Ellipsoid': {type: 'ellipsoid', radii: [1, 0.7, 0.45]},
+  'Capsule': {type: 'capsule', radius: 0.4, half_height: 0.6, axis: 'z'},
+  'Cylinder': {type: 'cylinder', radius: 0.7, half_height: 0.7, axis: 'z'},
+  'Cone': {type: 'cone', radius: 0.8, half_height: 0.8, axis: 'z'},
+  'Cross of boxes': {type: 'compound', parts: [{shape: box(1, 0.3, 0.3)}, {shape: box(0.3, 1, 0.3)}, {shape: box(0.3, 0.3, 1)}]},
+  'Corner of boxes': {type: 'compound', parts: [part(box(1, 0.3, 0.4), [0, -0.5, 0]), part(box(0.3, 0.5, 0.4), [-0.7, 0.3, 0])]},
+  'Gear': gear(),
+};
+const kStart = {a: {name: 'Prism', pose: {t: [0.35, -0.1, 1.0], q: product(aboutAxis([1, 0.3, 0], 0.5), [0, 0, 0, 1])}},
+                b: {name: 'Box', pose: {t: [0, 0, 0], q: product(aboutAxis([0, 0, 1], 0.3), [0, 0, 0, 1])}}};
+
+/** A pose of the protocol as {t, q} or {t, m}. */
+function readPose(json, place) {
+  if (json === undefined || json === null) return {t: [0, 0, 0], q: [0, 0, 0, 1]};
+  const allowed = ['translation', 'quaternion_wxyz', 'rotation_row_major'];
+  for (const key of Object.keys(json)) if (!allowed.includes(key)) refuse('bad_value', `is none of ${allowed.join(', ')}`, `${place}.${key}`);
+  const numbers = (name, count) => {
+    const found = json[name];
+    if (!Array.isArray(found) || found.length !== count || !found.every(x => typeof x === 'number')) refuse('bad_value', `must be ${count} numbers`, `${place}.${name}`);
+    return found;
+  };
+  const t = json.translation === undefined ? [0, 0, 0] : numbers('translation', 3);
+  if (json.rotation_row_major !== undefined) return {t, m: numbers('rotation_row_major', 9)};
+  if (json.quaternion_wxyz === undefined) return {t, q: [0, 0, 0, 1]};
+  const [w, x, y, z] = numbers('quaternion_wxyz', 4);
+  return {t, q: [x, y, z, w]};
+}
+function poseJson({t, q, m}) {
+  return m ? {translation: t, rotation_row_major: m} : {translation: t, quaternion_wxyz: [q[3], q[0], q[1], q[2]]};
+}
+const libraryPose = ({t, q, m}) => m ? {position: t, matrix: m} : {position: t, quaternion: q};
+const rotationOf = ({q, m}) => m ?? matrixOf(q);
+
+const kFields = {box: ['half_extents'], sphere: ['radius'], ellipsoid: ['radii'], capsule: ['radius', 'half_height', 'axis'],
+                 cylinder: ['radius', 'half_height', 'axis'], cone: ['radius', 'half_height', 'axis'], convex: ['vertices', 'faces'],
+                 sphere_hull: ['spheres'], halfspaces: ['planes'], compound: ['parts']};
+
+/** One convex shape of the protocol. */
+function convexShape(json, place) {
+  const make = {
+    box: () => new pdepth.Box(json.half_extents), sphere: () => new pdepth.Sphere(json.radius), ellipsoid: () => new pdepth.Ellipsoid(json.radii),
+    capsule: () => new pdepth.Capsule(json.radius, json.half_height, json.axis),
+    cylinder: () => new pdepth.Cylinder(json.radius, json.half_height, json.axis),
+    cone: () => new pdepth.Cone(json.radius, json.half_height, json.axis), convex: () => new pdepth.Convex(json.vertices, json.faces),
+    sphere_hull: () => new pdepth.HullOfSpheres(json.spheres), halfspaces: () => new pdepth.Halfspaces(json.planes),
+  };
+  const core = located(place, make[json.type]);
+  if (!json.margin) return core;
+  const swept = located(place, () => core.withMargin(json.margin));
+  core.free();
+  return swept;
+}
+/** Runs a step, and puts the place in the line before the place that it names. */
+function located(place, step) {
+  try {
+    return step();
+  } catch (error) {
+    if (!(error instanceof PdepthError)) throw error;
+    const words = error.message.replace(/^\w+: /, '').replace(/ \([^()]*\)$/, '');
+    const field = error.place.replace(/[A-Z]/g, letter => `_${letter.toLowerCase()}`);  // as the protocol writes it
+    throw new PdepthError(error.code, words, field ? `${place}.${field}` : place);
+  }
+}
+function checkFields(json, place) {
+  if (json === null || typeof json !== 'object') refuse('bad_value', 'must be an object', place);
+  if (json.type === 'mesh' || json.type === 'star') refuse('unsupported', `a ${json.type} is asked by the command; drop its file for the hull`, `${place}.type`);
+  const fields = kFields[json.type] ?? refuse('bad_value', `"${json.type}" is none of ${Object.keys(kFields).join(', ')}`, `${place}.type`);
+  for (const key of Object.keys(json)) {
+    if (!['type', 'margin', ...fields].includes(key)) refuse('bad_value', `a ${json.type} has no such field`, `${place}.${key}`);
+  }
+  for (const key of fields) if (json[key] === undefined && key !== 'faces') refuse('bad_value', 'is missing', `${place}.${key}`);
+}
+/** A body: the whole shape, and its convex parts in the body's frame. */
+function makeBody(json, name, place) {
+  checkFields(json, place);
+  if (json.type !== 'compound') {
+    const shape = convexShape(json, place);
+    return {json, name, shape, parts: [{shape, pose: {t: [0, 0, 0], q: [0, 0, 0, 1]}}]};
+  }
+  if (!Array.isArray(json.parts) || json.parts.length === 0) refuse('too_few_points', 'must hold parts', `${place}.parts`);
+  const parts = json.parts.flatMap((each, i) => {
+    const inside = makeBody(each.shape, '', `${place}.parts[${i}].shape`);
+    const pose = readPose(each.pose, `${place}.parts[${i}].pose`);
+    return inside.parts.map(leaf => ({shape: leaf.shape, pose: composed(pose, leaf.pose)}));
+  });
+  let shape = located(place, () => new pdepth.Compound(parts.map(leaf => ({shape: leaf.shape, pose: libraryPose(leaf.pose)}))));
+  if (json.margin) shape = located(place, () => shape.withMargin(json.margin));
+  return {json, name, shape, parts, margin: json.margin ?? 0};
+}
+function composed(outer, inner) {
+  if (outer.t.every(x => x === 0) && !outer.m && outer.q[3] === 1) return inner;
+  const m = rotationOf(outer);
+  const isStill = inner.t.every(x => x === 0) && !inner.m && inner.q[3] === 1;
+  return isStill ? outer : {t: add(turned(m, inner.t), outer.t), m: multiplied(m, rotationOf(inner))};
+}
+function freeBody(body) {
+  for (const leaf of body.parts) leaf.shape.free();
+  body.shape.free();
+}
+
+const lineOf = state => JSON.stringify({query: 'depth', a: state.a.body.json, b: state.b.body.json, pose_a: poseJson(state.a.pose), pose_b: poseJson(state.b.pose)});
+/** A pasted line as two bodies and poses. */
+function readLine(text) {
+  let line = text.trim();
+  const quoted = line.match(/'(\{.*\})'/s);
+  if (quoted) line = quoted[1];
+  let json;
+  try {
+    json = JSON.parse(line);
+  } catch (error) {
+    refuse('bad_json', error.message, 'line');
+  }
+  if (json.query !== undefined && json.query !== 'depth' && json.query !== 'distance') refuse('unsupported', `"${json.query}" is neither depth nor distance`, 'line.query');
+  return {a: {body: makeBody(json.a, 'Pasted', 'a'), pose: readPose(json.pose_a, 'pose_a')},
+          b: {body: makeBody(json.b, 'Pasted', 'b'), pose: readPose(json.pose_b, 'pose_b')}};
+}

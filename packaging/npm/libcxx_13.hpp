@@ -1,0 +1,51 @@
+/// @file
+/// C++20 that libc++ 13 lacks, with which Debian's emscripten builds: included before every source of the WebAssembly
+/// module, and of nothing else. Each part leaves when a newer library has it.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <compare>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <system_error>
+
+#if _LIBCPP_VERSION < 14000
+namespace std {  // NOLINT(cert-dcl58-cpp): the names are the library's own
+
+template <class To, class From>
+[[nodiscard]] constexpr To bit_cast(const From& from) noexcept {
+  return __builtin_bit_cast(To, from);
+}
+
+/// The shortest digits that read back to the same bits. The only locale of WebAssembly's C library is "C".
+inline to_chars_result to_chars(char* first, char* last, double value) {
+  array<char, 32> text;
+  int size = 0;
+  for (int digits = 1; digits <= 17; ++digits) {
+    size = snprintf(text.data(), text.size(), "%.*g", digits, value);
+    if (strtod(text.data(), nullptr) == value) break;
+  }
+  if (last - first < size) return {last, errc::value_too_large};
+  for (int i = 0; i < size; ++i) *first++ = text[static_cast<size_t>(i)];
+  return {first, errc()};
+}
+
+template <class T, size_t N>
+constexpr strong_ordering operator<=>(const array<T, N>& x, const array<T, N>& y) {
+  for (size_t i = 0; i < N; ++i) {
+    if (const strong_ordering order = x[i] <=> y[i]; order != 0) return order;
+  }
+  return strong_ordering::equal;
+}
+
+namespace ranges {
+template <class Range, class Out>
+constexpr void copy(const Range& range, Out out) {
+  for (const auto& x : range) *out++ = x;
+}
+}  // namespace ranges
+
+}  // namespace std
+#endif

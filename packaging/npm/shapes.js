@@ -1,0 +1,173 @@
+// ---- Things of the module that an object owns
+
+const forgotten = typeof FinalizationRegistry === 'undefined' ? null
+    : new FinalizationRegistry(({release, pointer}) => release(pointer));
+const releaseShape = pointer => wasm.pdepth_shape_release(pointer);
+const releasePair = pointer => wasm.pdepth_pair_destroy(pointer);
+
+class Owned {
+  #pointer;
+  #release;
+  constructor(pointer, release) {
+    this.#pointer = pointer;
+    this.#release = release;
+    if (forgotten) forgotten.register(this, {release, pointer}, this);
+  }
+  /** Gives the memory back. A second call does nothing. */
+  free() {
+    if (this.#pointer === 0) return;
+    if (forgotten) forgotten.unregister(this);
+    this.#release(this.#pointer);
+    this.#pointer = 0;
+  }
+  get freed() { return this.#pointer === 0; }
+  [kUse](place) {
+    if (this.#pointer === 0) refuse('freed', 'was freed and cannot be used any more', place);
+    return this.#pointer;
+  }
+}
+const kDispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
+Owned.prototype[kDispose] = Owned.prototype.free;
+
+function shapePointer(shape, place) {
+  if (!(shape instanceof Shape)) refuse('bad_value', 'must be a shape of this library', place);
+  return shape[kUse](place);
+}
+
+/** Calls a function that makes a shape; `write` gives its arguments between the context and the result. */
+function made(name, write) {
+  return call(() => {
+    const parameters = write();
+    const out = room(8);
+    check(wasm[name](context, ...parameters, out));
+    return words[out >> 2];
+  });
+}
+
+export class Shape extends Owned {
+  #info;
+  constructor(pointer) {
+    if (new.target === Shape && typeof pointer !== 'number') refuse('bad_value', 'a shape is made as a Box, Sphere, Convex ...', '');
+    super(pointer, releaseShape);
+  }
+  /** The shape swept by a ball of this radius, in addition to its margin. */
+  withMargin(margin) {
+    return new Shape(made('pdepth_with_margin', () => [shapePointer(this, 'shape'), readNumber(margin, 'margin')]));
+  }
+  /** What the shape is made of. */
+  describe(part = 0) {
+    return call(() => {
+      const out = struct('shape_info');
+      check(wasm.pdepth_shape_describe(context, shapePointer(this, 'shape'), part, out));
+      const word = name => words[(out + at.shape_info[name]) >> 2];
+      return {isConvex: word('is_convex') === 1, parts: word('parts'), dimension: word('dimension'), vertices: word('vertices'),
+              facets: word('facets'), margin: doubles[(out + at.shape_info.margin) >> 3]};
+    });
+  }
+  /** Facets of a part's core as loops of vertices, for drawing. */
+  surface(part = 0) {
+    const {vertices, facets} = this.describe(part);
+    return call(() => {
+      const out = struct('surface');
+      const corners = facets > 0 ? 2 * (vertices + facets - 2) : 0;
+      const rooms = [room(24 * vertices), room(4 * (facets + 1)), room(4 * corners)];
+      see();
+      ['points', 'offsets', 'corners'].forEach((name, i) => { words[(out + at.surface[name]) >> 2] = rooms[i]; });
+      check(wasm.pdepth_shape_surface(context, shapePointer(this, 'shape'), part, out));
+      return {points: doubles.slice(rooms[0] >> 3, (rooms[0] >> 3) + 3 * vertices),
+              offsets: words.slice(rooms[1] >> 2, (rooms[1] >> 2) + facets + 1),
+              corners: words.slice(rooms[2] >> 2, (rooms[2] >> 2) + corners)};
+    });
+  }
+  /** The points of a feature of an answer, as numbers of the rows that the shape was made from. */
+  pointsOf(feature) {
+    return call(() => {
+      const asked = room(at.feature.size), count = room(8);
+      words[(asked + at.feature.kind) >> 2] = kFeatures.indexOf(feature.kind);
+      for (const key of ['part', 'first', 'second']) words[(asked + at.feature[key]) >> 2] = feature[key];
+      check(wasm.pdepth_feature_points(context, shapePointer(this, 'shape'), asked, 0, count));
+      const found = words[count >> 2], out = room(4 * found);
+      check(wasm.pdepth_feature_points(context, shapePointer(this, 'shape'), asked, out, count));
+      return Array.from(words.slice(out >> 2, (out >> 2) + found));
+    });
+  }
+}
+
+const kAxes = {x: 0, y: 1, z: 2};
+function axisNumber(axis) {
+  return kAxes[axis] ?? refuse('bad_value', `"${axis}" is none of x, y, z`, 'axis');
+}
+function roundShape(name, radius, halfHeight, axis) {
+  return made(name, () => [readNumber(radius, 'radius'), readNumber(halfHeight, 'halfHeight'), axisNumber(axis)]);
+}
+function shapeOfRows(name, rows, place, length) {
+  return made(name, () => {
+    const [pointer, count] = writeNumbers(rows, place, length);
+    return [pointer, BigInt(count / length)];
+  });
+}
+
+export class Box extends Shape {
+  constructor(halfExtents) { super(made('pdepth_box', () => [writeVector(halfExtents, 'halfExtents')])); }
+}
+export class Sphere extends Shape {
+  constructor(radius) { super(made('pdepth_sphere', () => [readNumber(radius, 'radius')])); }
+}
+export class Ellipsoid extends Shape {
+  constructor(radii) { super(made('pdepth_ellipsoid', () => [writeVector(radii, 'radii')])); }
+}
+export class Capsule extends Shape {
+  constructor(radius, halfHeight, axis = 'y') { super(roundShape('pdepth_capsule', radius, halfHeight, axis)); }
+}
+export class Cylinder extends Shape {
+  constructor(radius, halfHeight, axis = 'y') { super(roundShape('pdepth_cylinder', radius, halfHeight, axis)); }
+}
+export class Cone extends Shape {
+  constructor(radius, halfHeight, axis = 'y') { super(roundShape('pdepth_cone', radius, halfHeight, axis)); }
+}
+export class Convex extends Shape {
+  constructor(points, faces) {
+    super(faces === undefined ? shapeOfRows('pdepth_convex_hull', points, 'points', 3) : made('pdepth_convex_faces', () => {
+      const [pointer, count] = writeNumbers(points, 'points', 3);
+      const corners = faces.flatMap ? faces.flatMap(face => [...face]) : refuse('bad_value', 'must be an array of loops', 'faces');
+      const offsets = room(4 * (faces.length + 1)), vertices = room(4 * corners.length), out = struct('faces');
+      let next = 0;
+      faces.forEach((face, i) => { words[(offsets >> 2) + i] = next; next += face.length; });
+      words[(offsets >> 2) + faces.length] = next;
+      words.set(corners, vertices >> 2);
+      words[(out + at.faces.points) >> 2] = pointer;
+      longs[(out + at.faces.num_points) >> 3] = BigInt(count / 3);
+      words[(out + at.faces.offsets) >> 2] = offsets;
+      longs[(out + at.faces.num_faces) >> 3] = BigInt(faces.length);
+      words[(out + at.faces.vertices) >> 2] = vertices;
+      return [out];
+    }));
+  }
+}
+export class Halfspaces extends Shape {
+  constructor(planes) { super(shapeOfRows('pdepth_halfspaces', planes, 'planes', 4)); }
+}
+export class HullOfSpheres extends Shape {
+  constructor(spheres) { super(shapeOfRows('pdepth_hull_of_spheres', spheres, 'spheres', 4)); }
+}
+export class Compound extends Shape {
+  constructor(parts) {
+    super(made('pdepth_compound', () => {
+      if (!Array.isArray(parts)) refuse('bad_value', 'must be an array of {shape, pose}', 'parts');
+      const rows = room(at.part.size * Math.max(parts.length, 1));
+      parts.forEach((part, i) => {
+        const row = rows + at.part.size * i;
+        words[(row + at.part.shape) >> 2] = shapePointer(part?.shape, `parts[${i}].shape`);
+        fillPose(row + at.part.pose, part.pose, `parts[${i}].pose`);
+      });
+      return [rows, BigInt(parts.length)];
+    }));
+  }
+}
+
+/** The memory of one pair of bodies from frame to frame. It makes the next answer quicker and changes none. */
+export class Pair extends Owned {
+  constructor() { super(made('pdepth_pair_create', () => []), releasePair); }
+  /** Forgets everything. */
+  clear() { call(() => check(wasm.pdepth_pair_clear(context, this[kUse]('pair')))); }
+}

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Builds the C interface as WebAssembly, and the npm package around it, into build/npm.
+#
+#   packaging/wasm.sh          the module, the package, its tarball and the page to play with (build/npm/play.html)
+#   packaging/wasm.sh files    all but the module, around the one that was built before
+#
+# Debian: apt-get install emscripten cmake ninja-build libeigen3-dev libboost-dev nodejs. No fast math and no contraction, so that the
+# answers have the bits of every other build; wasm128 vectors take the place of the instruction sets of x86-64.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+for tool in em++ cmake ninja node; do
+  command -v "${tool}" >/dev/null || { echo "${tool} is not installed"; exit 1; }
+done
+out=build/npm
+work=build/wasm
+if [[ ${1-} != files ]]; then
+  # Boost alone from the system's headers: the others are those of another machine.
+  mkdir -p "${work}/include"
+  ln -sfn /usr/include/boost "${work}/include/boost"
+  flags='-msimd128 -fwasm-exceptions -fvisibility=hidden'
+  emcmake cmake -S . -B "${work}" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="${flags}" \
+    -DCMAKE_CXX_FLAGS_RELEASE='-O2 -DNDEBUG' -DCMAKE_UNITY_BUILD=ON -DPD_ISA=baseline -DPD_PRECOMPILED_HEADERS=OFF \
+    -DPD_HARDENED=OFF -DPD_WITH_BULLET=OFF -DPD_WITH_RENDER=OFF -DPD_WITH_TESTS=OFF -DPD_WITH_DEMOS=OFF -DPD_WITH_PYTHON=OFF \
+    -DPD_WITH_RECORDERS=OFF -DPD_INSTALL=OFF -DEigen3_DIR=/usr/share/eigen3/cmake -DBoost_NO_BOOST_CMAKE=ON \
+    -DBoost_INCLUDE_DIR="${PWD}/${work}/include" --log-level=WARNING
+  cmake --build "${work}" --target pdepth_wasm -j "${PD_JOBS:-$(nproc)}"
+fi
+node packaging/npm/build.mjs "${work}/pdepth.wasm" "${out}"
+node demos/play/build.mjs "${out}/package/single.js" "${out}/play.html"

@@ -1,0 +1,243 @@
+/// @file
+/// The page to play with in headless Chromium, opened from a file: what it shows is what the command answers, for every
+/// body of its list, after drags, keys, dropped files and pasted lines; wrong input leaves it alive; a phone's width.
+/// packaging/wasm.sh makes the page.
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "pages/browser.hpp"
+
+namespace pd::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PlayPage : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (Browser::program().empty() || !fs::exists(kPage)) return;
+    std::string name = (fs::temp_directory_path() / "pdepth_play_XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+    browser_ = std::make_unique<Browser>(folder_ / "profile");
+  }
+  static void TearDownTestSuite() {
+    browser_.reset();
+    std::error_code error;
+    if (!folder_.empty()) fs::remove_all(folder_, error);
+  }
+  void SetUp() override {
+    if (Browser::program().empty())
+      GTEST_SKIP() << "Chromium is not installed (Debian: chromium), so no page is opened";
+    if (!fs::exists(kPage)) GTEST_SKIP() << "packaging/wasm.sh was not run, so there is no page to play with";
+  }
+
+  static Browser& open(int width = 1280, const std::string& scheme = "light") {
+    browser_->look(width, 900, scheme);
+    browser_->open("/nowhere");  // another address, so that the same file is loaded anew
+    browser_->open(kPage);
+    settled();
+    return *browser_;
+  }
+  /// Waits until the answer to the last change is shown.
+  static void settled() {
+    browser_->evaluate(
+        "(async () => { const c = document.getElementById('space');"
+        "const two = () => new Promise(go => requestAnimationFrame(() => requestAnimationFrame(go)));"
+        "for (let i = 0; i < 2000 && !c.dataset.frames; ++i) await two(); await two(); })()");
+  }
+  static nlohmann::json of(const std::string& expression) { return browser_->evaluate(expression); }
+  static std::string text(const std::string& id) { return of("document.getElementById('" + id + "').textContent"); }
+  static bool is_refused() { return !of("document.getElementById('refusal').hidden").get<bool>(); }
+
+  /// Runs the line that the page shows, as a visitor would.
+  static nlohmann::json native() {
+    std::string line = of("document.getElementById('line').value");
+    line.replace(line.rfind("pdepth query"), 6, std::string("'") + PDEPTH_PROGRAM + "'");
+    std::FILE* const pipe = ::popen(line.c_str(), "r");
+    std::string answer;
+    std::array<char, 4096> bytes{};
+    while (std::fgets(bytes.data(), bytes.size(), pipe) != nullptr) answer += bytes.data();
+    ::pclose(pipe);
+    return nlohmann::json::parse(answer);
+  }
+  /// The depth (or distance) that is shown has the bits of the command's.
+  static void expect_native(const std::string& what) {
+    settled();
+    const nlohmann::json found = native();
+    ASSERT_TRUE(found.contains("class")) << what << ": " << found;
+    const std::string contact = of("document.getElementById('depth').dataset.contact");
+    EXPECT_EQ(contact, found.at("class")) << what;
+    const auto shown = nlohmann::json::parse(of("document.getElementById('depth').dataset.value").get<std::string>());
+    EXPECT_EQ(shown.get<double>(), found.at(contact == "separated" ? "distance" : "depth").get<double>()) << what;
+  }
+  static void expect_quiet() {
+    for (const std::string& complaint : browser_->complaints()) ADD_FAILURE() << complaint;
+    for (const std::string& request : browser_->requests()) {
+      EXPECT_TRUE(request.rfind("file://", 0) == 0 || request.rfind("blob:", 0) == 0 || request.rfind("data:", 0) == 0)
+          << request;
+    }
+  }
+  static void choose(const std::string& role, const std::string& name) {
+    of("(() => { const s = document.getElementById('shape_" + role + "'); s.value = '" + name +
+       "'; s.dispatchEvent(new Event('change')); })()");
+  }
+  static void drop(const std::string& name, const std::string& content) {
+    of("(() => { const data = new DataTransfer(); data.items.add(new File([" + nlohmann::json(content).dump() + "], '" +
+       name + "')); dispatchEvent(new DragEvent('drop', {dataTransfer: data, clientX: 5, clientY: 5})); })()");
+    of("new Promise(go => setTimeout(go, 200))");
+    settled();
+  }
+  static void paste(const std::string& line) {
+    of("(() => { document.getElementById('paste').value = " + nlohmann::json(line).dump() +
+       "; document.getElementById('take').click(); })()");
+    settled();
+  }
+
+  static constexpr const char* kPage = PROJECT_SOURCE_DIR "/build/npm/play.html";
+  static inline fs::path folder_;
+  static inline std::unique_ptr<Browser> browser_;
+};
+
+TEST_F(PlayPage, ADragMovesABodyAndTheAnswerFollows) {
+  open();
+  expect_native("at first");
+  const std::string before = of("document.getElementById('depth').dataset.value");
+  const std::string picture = of("document.getElementById('space').toDataURL()");
+  const int frames = std::stoi(of("document.getElementById('space').dataset.frames").get<std::string>());
+  const auto box =
+      of("(() => { const b = document.getElementById('space').getBoundingClientRect(); return [b.left, b.top, b.width, "
+         "b.height]; })()");
+  const double x = box[0].get<double>() + box[2].get<double>() / 4, y = box[1].get<double>() + box[3].get<double>() / 2;
+  browser_->drag(x, y, x + 24, y - 18);
+  settled();
+  EXPECT_NE(of("document.getElementById('depth').dataset.value"), before);
+  EXPECT_NE(of("document.getElementById('space').toDataURL()"), picture);
+  EXPECT_GT(std::stoi(of("document.getElementById('space').dataset.frames").get<std::string>()), frames);
+  expect_native("after a drag");
+  of("document.getElementById('out').click()");
+  settled();
+  EXPECT_NE(of("document.getElementById('depth').dataset.contact"), "overlapping");
+  expect_quiet();
+}
+
+TEST_F(PlayPage, EveryBodyOfTheListIsAnsweredAsByTheCommand) {
+  open();
+  const auto names = of("[...document.getElementById('shape_a').options].map(o => o.value)");
+  ASSERT_GE(names.size(), 12U);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    choose("a", names[i]);
+    choose("b", names[(i + 5) % names.size()]);
+    ASSERT_FALSE(is_refused()) << names[i] << ": " << text("refusal");
+    expect_native(names[i]);
+  }
+  expect_quiet();
+}
+
+TEST_F(PlayPage, KeysMoveAndTurn) {
+  open();
+  of("document.getElementById('space').focus()");
+  const std::string first = of("document.getElementById('line').value");
+  browser_->press("ArrowRight");
+  settled();
+  const std::string moved = of("document.getElementById('line').value");
+  EXPECT_NE(moved, first);
+  of("document.getElementById('space').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', shiftKey: "
+     "true}))");
+  settled();
+  EXPECT_NE(of("document.getElementById('line').value"), moved);
+  expect_native("after keys");
+  expect_quiet();
+}
+
+TEST_F(PlayPage, DroppedFilesAndPastedLines) {
+  open();
+  drop("wedge.obj", "v 0 0 0\nv 1.25 0 0\nv 0 1.5 0\nv 0 0 1.125\nf 1 3 2\n");
+  EXPECT_EQ(of("document.getElementById('shape_a').value"), "wedge.obj");
+  expect_native("a dropped OBJ");
+  drop("cube.ply",
+       "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+       "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
+  expect_native("a dropped PLY");
+  drop("corner.stl",
+       "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.5\nendloop\nendfacet\n"
+       "facet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 0\nvertex 0 1 0.5\nendloop\nendfacet\nendsolid\n");
+  expect_native("a dropped STL");
+  paste(
+      R"({"query":"depth","a":{"type":"box","half_extents":[1,1,1]},"b":{"type":"sphere","radius":1},"pose_b":{"translation":[1.5,0,0]}})");
+  EXPECT_EQ(of("document.getElementById('depth').dataset.value"), "0.5");
+  expect_native("a pasted line");
+  const std::string line = of("document.getElementById('line').value");
+  of("document.getElementById('copy_link').click()");
+  settled();
+  const std::string link = of("location.hash");
+  open();
+  of("location.hash = " + nlohmann::json(link).dump());
+  settled();
+  EXPECT_EQ(of("document.getElementById('line').value"), line);
+  expect_quiet();
+}
+
+TEST_F(PlayPage, WrongInputIsNamedAndThePageLivesOn) {
+  open();
+  const std::string before = of("document.getElementById('line').value");
+  const auto refused = [](const std::string& words) {
+    EXPECT_TRUE(is_refused()) << words;
+    EXPECT_NE(text("refusal").find(words), std::string::npos) << text("refusal");
+  };
+  paste("{\"query\":");
+  refused("bad_json");
+  paste(R"({"query":"depth","a":{"type":"box","half_extents":[1,-1,1]},"b":{"type":"sphere","radius":1}})");
+  refused("(a.half_extents[1])");
+  paste(R"({"query":"depth","a":{"type":"mesh","path":"x.obj"},"b":{"type":"sphere","radius":1}})");
+  refused("(a.type)");
+  paste(
+      R"({"query":"depth","a":{"type":"sphere","radius":1},"b":{"type":"sphere","radius":1},"pose_b":{"translation":[1,null,0]}})");
+  refused("(pose_b.translation)");
+  drop("nan.obj", "v 0 0 0\nv 1 x 0\n");
+  refused("nan.obj, line 2");
+  drop("empty.obj", "# nothing\n");
+  refused("too_few_points");
+  drop("x.doc", "nothing");
+  refused("none of obj, stl, ply");
+  drop("cut.ply",
+       "ply\nformat binary_little_endian 1.0\nelement vertex 800\nproperty float x\nproperty float y\nproperty float "
+       "z\nend_header\n0");
+  refused("ends before its 800 vertices");
+  settled();
+  EXPECT_EQ(of("document.getElementById('line').value"), before);
+  of("document.getElementById('reset').click()");
+  settled();
+  EXPECT_FALSE(is_refused());
+  expect_native("after all that");
+  expect_quiet();
+}
+
+TEST_F(PlayPage, FitsAPhoneInLightAndDark) {
+  for (const char* scheme : {"light", "dark"}) {
+    open(390, scheme);
+    EXPECT_LE(of("document.documentElement.scrollWidth").get<int>(), 390) << scheme;
+    const auto small =
+        of("[...document.querySelectorAll('button, select')].filter(e => e.offsetHeight < 36 || "
+           "e.getBoundingClientRect().right > 390).map(e => e.id)");
+    EXPECT_TRUE(small.empty()) << small;
+    expect_quiet();
+  }
+  const auto unnamed =
+      of("[...document.querySelectorAll('select, textarea, input, button, canvas')].filter(e => !e.labels?.length && "
+         "!e.textContent.trim() && !e.getAttribute('aria-label')).map(e => e.outerHTML)");
+  EXPECT_TRUE(unnamed.empty()) << unnamed;
+}
+
+/// The licence goes wherever the code goes.
+TEST_F(PlayPage, HoldsTheLicenceOfThreeJs) {
+  open();
+  EXPECT_NE(text("licence").find("Permission is hereby granted"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pd::test

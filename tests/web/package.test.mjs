@@ -1,0 +1,175 @@
+// The npm package as its users have it: installed from the tarball in a folder of its own.
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {test} from 'node:test';
+import {Worker} from 'node:worker_threads';
+import * as pdepth from 'pdepth';
+
+const {Box, Capsule, Compound, Cone, Convex, Halfspaces, HullOfSpheres, Pair, PdepthError, Shape, Sphere} = pdepth;
+const cube = new Box([0.5, 0.5, 0.5]);
+
+function refused(step, code, place) {
+  assert.throws(step, error => {
+    assert.ok(error instanceof PdepthError, String(error));
+    assert.deepEqual([error.code, error.place], [code, place]);
+    assert.ok(error.message.startsWith(`${code}: `));
+    return true;
+  });
+}
+
+test('a depth, a distance and a touch', () => {
+  const found = pdepth.depth(cube, null, cube, [0.75, 0, 0]);
+  assert.equal(found.contact, 'overlapping');
+  assert.deepEqual([found.depth, found.lower, found.upper], [0.25, 0.25, 0.25]);
+  assert.deepEqual(found.translation, [-0.25, 0, 0]);
+  assert.deepEqual(found.witnessB.map((x, i) => x - found.witnessA[i]), found.translation);
+  assert.equal(pdepth.depth(cube, null, cube, [1, 0, 0]).contact, 'touching');
+  const apart = pdepth.depth(cube, null, cube, [3, 0, 0]);
+  assert.deepEqual([apart.contact, apart.distance, apart.depth], ['separated', 2, 0]);
+  assert.equal(pdepth.version(), JSON.parse(readFileSync('node_modules/pdepth/package.json', 'utf8')).version);
+});
+
+test('poses in every form mean the same', () => {
+  const half = Math.SQRT1_2;
+  const forms = [{position: [1, 2, 3], quaternion: [0, 0, half, half]}, [1, 2, 3, 0, 0, half, half], Float64Array.of(1, 2, 3, 0, 0, half, half),
+                 {position: [1, 2, 3], matrix: [0, -1, 0, 1, 0, 0, 0, 0, 1]}, [1, 2, 3, 0, -1, 0, 1, 0, 0, 0, 0, 1]];
+  for (const pose of forms) {
+    const {point} = pdepth.support(new Box([1, 2, 3]), pose, [1, 0, 0]);
+    assert.ok(Math.abs(point[0] - 3) < 1e-15, String(point));
+  }
+  refused(() => pdepth.depth(cube, [1, 2], cube, null), 'bad_value', 'poseA');
+  refused(() => pdepth.depth(cube, null, cube, {quaternion: [0, 0, 0, 2]}), 'not_a_rotation', 'poseB.quaternion');
+  refused(() => pdepth.depth(cube, {position: [0, NaN, 0]}, cube, null), 'non_finite', 'poseA.position[1]');
+});
+
+test('shapes, and what they are made of', () => {
+  assert.deepEqual(cube.describe(), {isConvex: true, parts: 1, dimension: 3, vertices: 8, facets: 6, margin: 0});
+  const hull = new Convex(Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.1, 0.1, 0.1));
+  assert.equal(hull.describe().vertices, 4);
+  const faced = new Convex([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);
+  assert.equal(faced.describe().facets, 4);
+  const {points, offsets, corners} = cube.surface();
+  assert.deepEqual([points.length, offsets.length, corners.length], [24, 7, 24]);
+  const swept = new Convex([[0, 0, 0], [0, 0, 2]]).withMargin(0.5);
+  const capsule = new Capsule(0.5, 1, 'z');
+  assert.equal(pdepth.depth(swept, null, cube, [1, 0, 1]).distance, 0);
+  assert.equal(pdepth.depth(capsule, [0, 0, 1], cube, [0.75, 0, 1]).depth, pdepth.depth(swept, null, cube, [0.75, 0, 1]).depth);
+  const tall = new Compound([{shape: cube}, {shape: cube, pose: [0, 0, 1]}]);
+  assert.equal(tall.describe(1).parts, 2);
+  assert.equal(pdepth.depth(tall, null, cube, [0, 0, 1.75]).depth, 0.25);
+  assert.equal(new Halfspaces([1, 0, 0, 1, -1, 0, 0, 1, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1, 0, 0, -1, 1]).describe().vertices, 8);
+  assert.equal(new HullOfSpheres([[0, 0, 0, 1]]).describe().isConvex, true);
+});
+
+test('wrong input is refused by name and place', () => {
+  refused(() => new Convex(Float64Array.of(0, 0, 0, 1, NaN, 0)), 'non_finite', 'points[1]');
+  refused(() => new Convex([[0, 0, 0], [1, 0]]), 'bad_value', 'points[1]');
+  refused(() => new Convex([0, 1]), 'bad_value', 'points');
+  refused(() => new Convex([[0, 0, 'x']]), 'bad_value', 'points[0][2]');
+  refused(() => new Convex([]), 'too_few_points', 'points');
+  refused(() => new Convex([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2]]), 'not_closed', 'faces[0]');
+  refused(() => new Box([1, -1, 1]), 'bad_value', 'halfExtents[1]');
+  refused(() => new Sphere(undefined), 'bad_value', 'radius');
+  refused(() => new Capsule(1, 1, 'w'), 'bad_value', 'axis');
+  refused(() => new Shape(), 'bad_value', '');
+  refused(() => pdepth.depth({}, null, cube, null), 'bad_value', 'a');
+  refused(() => pdepth.depth(cube, null, cube, null, {brackets: 1}), 'bad_value', 'settings.brackets');
+  refused(() => pdepth.depth(cube, null, cube, null, {bracket: 'wide'}), 'bad_value', 'settings.bracket');
+  refused(() => pdepth.depth(cube, null, cube, null, {delta: 2}), 'bad_value', 'settings.delta');
+  refused(() => pdepth.depthAlong(cube, null, cube, null, [0, 0, 0]), 'zero_direction', 'direction');
+  refused(() => new Cone(1, 1).surface(), 'unsupported', 'part');
+  assert.equal(pdepth.depth(cube, null, cube, null).depth, 1);  // the library lives on
+});
+
+test('use after free is an error, and a second free is none', () => {
+  const box = new Box([1, 1, 1]), pair = new Pair();
+  const compound = new Compound([{shape: box}]);
+  box.free();
+  box[Symbol.dispose ?? Symbol.for('Symbol.dispose')]();
+  assert.equal(box.freed, true);
+  refused(() => pdepth.depth(cube, null, box, null), 'freed', 'b');
+  refused(() => box.describe(), 'freed', 'shape');
+  refused(() => pdepth.depthBatch({a: [cube, box], b: cube}), 'freed', 'a[1]');
+  assert.equal(pdepth.depth(compound, null, cube, [1, 0, 0]).depth, 0.5);  // it owns its parts
+  pair.free();
+  refused(() => pdepth.depth(cube, null, cube, null, {pair}), 'freed', 'pair');
+});
+
+test('the other queries', () => {
+  assert.equal(pdepth.apart(cube, null, cube, [3, 0, 0], 1.5), true);
+  assert.equal(pdepth.apart(cube, null, cube, [3, 0, 0], 2.5), false);
+  assert.equal(pdepth.depthAlong(cube, null, cube, null, [0, 2, 0]).depth, 1);
+  const {points, normal} = pdepth.manifold(cube, [0, 0, 0.75], cube, null);
+  assert.deepEqual([points.length, normal], [4, [0, 0, 1]]);
+  assert.ok(points.every(point => point.depth === 0.25 && typeof point.featureId === 'bigint'));
+  const impact = pdepth.timeOfImpact(cube, null, cube, [3, 0, 0], {a: {linearVelocity: [1, 0, 0]}, duration: 5});
+  assert.ok(impact.hit && Math.abs(impact.time - 2) < 1e-8 && impact.certified <= 2);
+  assert.equal(pdepth.width(new Box([1, 2, 3])).width, 2);
+  const slope = pdepth.derivatives(cube, null, cube, [0.75, 0, 0]);
+  assert.deepEqual(slope.byA.slice(0, 3).map(x => x + 0), [1, 0, 0]);
+  const found = pdepth.depth(cube, [0, 0, 1.25], new Convex([[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, -1, 0]]), null);
+  assert.equal(found.featureB.kind, 'vertex');
+  assert.deepEqual(new Convex([[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, -1, 0]]).pointsOf(found.featureB), [0]);
+});
+
+test('a memory of a pair changes no answer', () => {
+  const pair = new Pair(), gem = new Convex(Array.from({length: 60}, (_, i) => [Math.sin(i * i), Math.cos(3 * i * i), Math.sin(7 * i)]));
+  for (let i = 0; i < 20; ++i) {
+    const pose = [0.3 + 0.01 * i, 0.2, 0.1];
+    const warm = pdepth.depth(gem, null, gem, pose, {pair}), cold = pdepth.depth(gem, null, gem, pose);
+    assert.deepEqual([warm.depth, warm.lower, warm.upper, warm.contact], [cold.depth, cold.lower, cold.upper, cold.contact]);
+  }
+  pair.clear();
+});
+
+test('batches are the single answers, in columns', () => {
+  const n = 1000, poses = new Float64Array(3 * n);
+  for (let i = 0; i < n; ++i) poses[3 * i] = 0.002 * i;
+  const found = pdepth.depthBatch({a: cube, b: cube, posesB: poses, formB: 'position'});
+  assert.equal(found.count, n);
+  assert.equal(found.error, null);
+  for (const i of [0, 1, 250, 500, 501, 999]) {
+    const single = pdepth.depth(cube, null, cube, poses.subarray(3 * i, 3 * i + 3));
+    assert.deepEqual([found.depth[i], found.distance[i]], [single.depth, single.distance]);
+    assert.deepEqual(Array.from(found.translation.subarray(3 * i, 3 * i + 3)), single.translation);
+  }
+  poses[3 * 17 + 1] = NaN;
+  const partly = pdepth.depthBatch({a: cube, b: cube, posesB: poses, formB: 'position'});
+  assert.deepEqual([partly.error.code, partly.error.place], ['non_finite', 'rows[17].poseB.position[1]']);
+  assert.ok(partly.status[17] !== 0 && Number.isNaN(partly.depth[17]) && partly.depth[18] === found.depth[18]);
+  assert.equal(pdepth.depthBatch({a: [cube, cube], b: [cube, cube]}).count, 2);
+  assert.equal(pdepth.depthBatch({a: [], b: cube}).count, 0);
+  refused(() => pdepth.depthBatch({a: [cube, cube], b: [cube]}), 'bad_value', 'count');
+  refused(() => pdepth.depthBatch({a: cube, b: cube, posesB: [1, 2, 3, 4]}), 'bad_value', 'posesB');
+});
+
+test('memory grows and comes back', () => {
+  const hulls = Array.from({length: 300}, (_, k) => new Convex(Float64Array.from({length: 900}, (_, i) => Math.sin(1 + i * (k + 1)))));
+  for (const hull of hulls) assert.ok(pdepth.depth(hull, null, cube, [0.5, 0, 0]).depth > 0);
+  for (const hull of hulls) hull.free();
+  const rows = 200000, poses = new Float64Array(3 * rows).fill(0.25);
+  assert.equal(pdepth.depthBatch({a: cube, b: cube, posesA: poses, formA: 'position'}).depth[rows - 1], 0.75);
+});
+
+test('the same in a worker', async () => {
+  const answer = await new Promise((resolve, reject) => {
+    const worker = new Worker(new URL('worker.mjs', import.meta.url));
+    worker.once('message', resolve);
+    worker.once('error', reject);
+  });
+  assert.deepEqual(answer, pdepth.depth(cube, null, cube, [0.75, 0, 0]));
+});
+
+test('the single file, and the module without a loader', async () => {
+  const single = await import('pdepth/single');
+  assert.equal(single.depth(new single.Box([1, 1, 1]), null, new single.Sphere(1), [1.5, 0, 0]).depth, 0.5);
+  assert.equal(typeof globalThis.pdepth.depth, 'function');
+  const core = await import('pdepth/core?again');
+  assert.throws(() => new core.Sphere(1), {code: 'not_ready'});
+});
+
+test('the types name what the module exports', () => {
+  const types = readFileSync('node_modules/pdepth/index.d.ts', 'utf8');
+  const declared = new Set([...types.matchAll(/^export (?:abstract )?(?:class|function|const) (\w+)/gm)].map(found => found[1]));
+  assert.deepEqual([...declared].sort(), Object.keys(pdepth).sort());
+});
