@@ -277,8 +277,16 @@ canvas.addEventListener('keydown', event => {
 
 // ---- Controls
 
+/** Moves A out by the answer's translation. The sum with its position is rounded, so that some last bits may have to follow. */
 function moveOut() {
-  if (answer?.contact === 'overlapping') moveBody('a', answer.translation);
+  if (answer?.contact !== 'overlapping') return;
+  const {a, b} = state, {t} = a.pose;
+  const last = 2 ** -52 * Math.max(...t.map(Math.abs), ...b.pose.t.map(Math.abs), answer.depth);
+  for (let bits = 0; bits < 64; bits = 2 * bits + 1) {
+    a.pose = {...a.pose, t: add(t, add(answer.translation, times(bits * last, answer.normal)))};
+    if (pdepth.depth(a.body.shape, libraryPose(a.pose), b.body.shape, libraryPose(b.pose)).contact !== 'overlapping') break;
+  }
+  change();
 }
 function start() {
   for (const role of ['a', 'b']) setBody(role, makeBody(kShapes[kStart[role].name], kStart[role].name, role), kStart[role].pose);
