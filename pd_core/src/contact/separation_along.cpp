@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "depth/difference/smooth_difference.hpp"
@@ -59,9 +60,17 @@ MovingSupport::MovingSupport(const MovingShape& body)
   curvature_ = speed_ * speed_ * (from_axis + 64 * kUnitRoundoff * radius_) * kRoundedUp;
 }
 
-double MovingSupport::least_along(const Vec3& n, double time, int& near) const {
+const Turn& MovingSupport::turn_back(double time) {
+  if (turns_[0].time != time) {
+    std::swap(turns_[0], turns_[1]);
+    if (turns_[0].time != time) turns_[0] = {time, turn_by(-(speed_ * time))};
+  }
+  return turns_[0].turn;
+}
+
+double MovingSupport::least_along(const Vec3& n, double time, int& near) {
   // As the frame sees it that has turned.
-  const Vec3 turned_back = speed_ * time == 0 ? n : turned(n, axis_, -(speed_ * time));
+  const Vec3 turned_back = speed_ * time == 0 ? n : turned(n, axis_, turn_back(time));
   const Vec3 local = rotation_.transpose() * turned_back;
   Vec3 point;
   if (const ConvexPolytope* polytope = body_.start.shape->polytope()) {

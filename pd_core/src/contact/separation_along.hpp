@@ -3,6 +3,9 @@
 /// of time with a bound on its curvature.
 #pragma once
 
+#include <array>
+
+#include "numeric/turn.hpp"
 #include "pd/contact/time_of_impact.hpp"
 
 namespace pd::detail {
@@ -13,7 +16,7 @@ class MovingSupport {
   explicit MovingSupport(const MovingShape& body);
 
   /// min <x(time) - pivot(time), n> over the core. `near` is the vertex that answered last.
-  [[nodiscard]] double least_along(const Vec3& n, double time, int& near) const;
+  [[nodiscard]] double least_along(const Vec3& n, double time, int& near);
   [[nodiscard]] Vec3 pivot_at(double time) const { return pivot_ + time * body_.motion.linear_velocity; }
   /// >= |omega|^2 times the distance of every point of the core from the axis through the pivot.
   [[nodiscard]] double curvature() const { return curvature_; }
@@ -25,7 +28,16 @@ class MovingSupport {
   [[nodiscard]] double farthest_from(const Vec3& point) const;
 
  private:
+  /// The turn back from `time` to 0. The last two are kept: the end of a duration is asked for again and again.
+  [[nodiscard]] const Turn& turn_back(double time);
+
+  struct TurnAt {
+    double time;
+    Turn turn;
+  };
+
   const MovingShape& body_;
+  std::array<TurnAt, 2> turns_{TurnAt{-1, {0, 0}}, TurnAt{-1, {0, 0}}};  ///< the newest first
   Mat3 rotation_;
   Vec3 pivot_;
   Vec3 axis_ = Vec3::Zero();

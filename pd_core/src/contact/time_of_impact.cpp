@@ -67,7 +67,9 @@ class MovingPair {
     }
     // The direction with the most left at the end is followed first.
     const auto end = leads.begin() + static_cast<std::ptrdiff_t>(count);
-    std::stable_sort(leads.begin(), end, [](const Lead& x, const Lead& y) { return x.left > y.left; });
+    std::sort(leads.begin(), end, [](const Lead& x, const Lead& y) {
+      return x.left != y.left ? x.left > y.left : x.direction.frame < y.direction.frame;
+    });
     double latest = time;
     for (auto lead = leads.begin(); lead != end && latest - time < kFarEnough * (duration_ - time); ++lead) {
       latest = std::max(latest, follow(lead->direction, goal));

@@ -42,11 +42,13 @@ struct Turn {
   return {sine(angle), 2 * half * half};
 }
 
-/// v turned by `angle` about a unit axis (Rodrigues' formula).
-[[nodiscard]] inline Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {
-  const Turn turn = turn_by(angle);
+/// v turned about a unit axis (Rodrigues' formula).
+[[nodiscard]] inline Vec3 turned(const Vec3& v, const Vec3& axis, const Turn& turn) {
   const Vec3 across = axis.cross(v);
   return v + turn.sine * across + turn.versine * axis.cross(across);
+}
+[[nodiscard]] inline Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {
+  return turned(v, axis, turn_by(angle));
 }
 
 /// The rotation by `angle` about a unit axis.
