@@ -1,17 +1,15 @@
 #include "pd/contact/box_contact.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
 
-#include "contact/box_axes.hpp"
 #include "contact/box_faces.hpp"
 #include "contact/manifold_reduce.hpp"
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/difference/bracket_width.hpp"
-#include "depth/facets/box_pair.hpp"
+#include "depth/facets/gauss_boxes.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "numeric/floating_point_guard.hpp"
 
@@ -21,7 +19,7 @@ namespace {
 
 using detail::BoxCorners;
 using detail::BoxDistance;
-using detail::BoxFoot;
+using detail::FootPoints;
 using detail::IdKind;
 using detail::make_id;
 using detail::Vec2;
@@ -39,33 +37,18 @@ struct Candidate {
 double norm_of(const double (&v)[4]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 /// Both boxes, about the centre of A.
-struct BoxPairInRows {
-  const BoxInRows& a;
-  const BoxInRows& b;
-  double centre_b[3];
-  double reach;  ///< of points of the two from each other, at most
+struct BoxPairInRows : detail::PosedBoxes {
+  const Vec3& origin;  ///< the centre of A
 
-  BoxPairInRows(const BoxInRows& box_a, const BoxInRows& box_b) : a(box_a), b(box_b) {
-    const Vec3 way = b.centre - a.centre;
-    for (int i = 0; i < 3; ++i) centre_b[i] = way[i];
+  BoxPairInRows(const BoxInRows& box_a, const BoxInRows& box_b)
+      : PosedBoxes{rows_of(box_a), rows_of(box_b), {}, 0}, origin(box_a.centre) {
+    const Vec3 way = box_b.centre - box_a.centre;
+    for (int i = 0; i < 3; ++i) centre[i] = way[i];
     reach = norm_of(a.half_extents) * kRounded + norm_of(b.half_extents) * kRounded + way.norm();
   }
 
   [[nodiscard]] bool in_range() const {
     return reach > 0x1p-100 && reach < 0x1p100 && least(a) > 0x1p-100 && least(b) > 0x1p-100;
-  }
-
-  /// Whether all numbers of the axes have the 24 digits of single precision. By their bits, since GCC 12 takes
-  /// roundings to float and back, side by side in one vector, for none at all.
-  [[nodiscard]] bool has_single_axes() const {
-    constexpr std::uint64_t kBeyond = (std::uint64_t{1} << (53 - 24)) - 1;
-    std::uint64_t bits = 0;
-    for (const BoxInRows* box : {&a, &b}) {
-      for (const auto* row : {&box->x, &box->y, &box->z}) {
-        for (const double number : *row) bits |= std::bit_cast<std::uint64_t>(number);
-      }
-    }
-    return (bits & kBeyond) == 0;
   }
 
   /// How wide the bracket may be.
@@ -76,36 +59,16 @@ struct BoxPairInRows {
   }
 
  private:
-  /// L, rounded: |c| + sum |g| a coordinate.
-  [[nodiscard]] double greatest_coordinate() const {
-    const auto extent = [&](const double(&of_a)[4], const double(&of_b)[4], double centre) {
-      double sum = std::abs(centre);
-      for (int k = 0; k < 3; ++k) {
-        sum += std::abs(of_a[k]) * a.half_extents[k] + std::abs(of_b[k]) * b.half_extents[k];
-      }
-      return sum;
-    };
-    return std::max({extent(a.x, b.x, centre_b[0]), extent(a.y, b.y, centre_b[1]), extent(a.z, b.z, centre_b[2])});
-  }
-  static double least(const BoxInRows& box) {
+  static detail::BoxRows rows_of(const BoxInRows& box) { return {box.x, box.y, box.z, box.half_extents}; }
+  static double least(const detail::BoxRows& box) {
     return std::min({box.half_extents[0], box.half_extents[1], box.half_extents[2]});
   }
 };
 
 Vec3 vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-/// The foot of the origin on the plane of the axis.
-BoxFoot foot_of(const BoxPairInRows& boxes, const BoxDistance& found, double level) {
-  const auto edges_of = [](const BoxInRows& box, const Vec3& centre) {
-    const auto edge = [&](int k) { return Vec3(Vec3(box.x[k], box.y[k], box.z[k]) * box.half_extents[k]); };
-    return detail::BoxHalfEdges{{edge(0), edge(1), edge(2)}, centre};
-  };
-  return foot_of_boxes(edges_of(boxes.a, Vec3::Zero()), edges_of(boxes.b, vector_of(boxes.centre_b)), found, level,
-                       boxes.reach);
-}
-
 void take_all(const BoxPairInRows& boxes, const BoxCorners& corners, const double (&n)[3], ContactManifold& manifold) {
-  const double origin[3] = {boxes.a.centre.x(), boxes.a.centre.y(), boxes.a.centre.z()};
+  const double origin[3] = {boxes.origin.x(), boxes.origin.y(), boxes.origin.z()};
   double points[4][8];
   points_at_corners(corners, n, origin, points);
   manifold.count = corners.count;
@@ -120,7 +83,7 @@ void take_all(const BoxPairInRows& boxes, const BoxCorners& corners, const doubl
 }
 
 /// @param witness  joins the corners where they are not as deep as the boxes, else nullptr.
-void keep_four(const BoxPairInRows& boxes, const BoxCorners& corners, const BoxFoot* witness, double signed_depth,
+void keep_four(const BoxPairInRows& boxes, const BoxCorners& corners, const FootPoints* witness, double signed_depth,
                double noise, ContactManifold& manifold) {
   const Vec3& n = manifold.normal;
   const Vec3 centre = vector_of(corners.centre), first = vector_of(corners.first), second = vector_of(corners.second);
@@ -144,7 +107,7 @@ void keep_four(const BoxPairInRows& boxes, const BoxCorners& corners, const BoxF
     count = 4;
   }
   manifold.count = count;
-  const Vec3& origin = boxes.a.centre;
+  const Vec3& origin = boxes.origin;
   for (int i = 0; i < count; ++i) {
     const Candidate& c = candidates[i];
     const Vec3 on_b = c.place + origin;
@@ -156,9 +119,9 @@ void solve(const BoxInRows& a, const BoxInRows& b, double tolerance, double brea
            BoxContact& out) {
   const BoxPairInRows boxes(a, b);
   if (!boxes.in_range()) return;
-  const BoxDistance found = detail::distance_of_boxes(a, b, boxes.centre_b, boxes.reach, boxes.has_single_axes());
-  const double slack = 64 * detail::kUnitRoundoff * boxes.reach;  // as of `BoxPair::foot`
-  out.manifold.normal = found.normal.array() + 0.0;               // no negative zeros
+  const BoxDistance found = detail::distance_of_boxes(boxes);
+  const double slack = boxes.slack();
+  out.manifold.normal = found.normal.array() + 0.0;  // no negative zeros
   out.lower = -found.height - found.rounding;
   if (out.lower > breaking_threshold) {
     out.answered = true;
@@ -171,14 +134,14 @@ void solve(const BoxInRows& a, const BoxInRows& b, double tolerance, double brea
   const double signed_depth = found.depth > 0 ? -out.lower : out.lower > 0 ? found.height : 0;
   const double n[3] = {found.normal.x(), found.normal.y(), found.normal.z()};
   BoxCorners corners;
-  detail::box_corners(a, b, boxes.centre_b, n, signed_depth, breaking_threshold, corners);
+  detail::box_corners(a, b, boxes.centre, n, signed_depth, breaking_threshold, corners);
   const double noise = std::max(detail::kNoiseRatio * breaking_threshold, detail::kMergeRatio * corners.size);
   const bool reached = corners.count > 0 && corners.deepest >= signed_depth - noise;
   // A corner shows how near the boxes are at most; where none is near enough, the foot of the origin does.
   double missed = signed_depth - corners.deepest;
-  BoxFoot at;
+  FootPoints at;
   if (!reached || (found.depth <= 0 && missed > limit) || witness == BoxWitness::placed) {
-    at = foot_of(boxes, found, 0.125 * limit);
+    at = foot_of_boxes(boxes, Vec3::Zero(), found, 0.125 * limit);
     if (!reached || at.missed < missed) missed = at.missed;
     out.witness_a = at.point_a + a.centre;
     out.witness_b = at.point_b + a.centre;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/box_lanes.hpp"
 #include "contact/manifold_reduce.hpp"
+#include "numeric/lanes.hpp"
 
 namespace pd::detail {
 
@@ -50,13 +50,13 @@ PD_INLINE unsigned bit(int axis) { return 4U >> axis; }
 /// @param turned  of the body that the normal points away from.
 PD_INLINE void face_towards(const BoxInRows& box, const PlainVector& centre, const PlainVector& direction, bool turned,
                             BoxFace& out) {
-  FourDoubles x, y, z;
-  load_four(x, box.x);
-  load_four(y, box.y);
-  load_four(z, box.z);
-  const FourDoubles sum = x * direction.x + y * direction.y + z * direction.z;
+  Lanes x, y, z;
+  load(x, box.x);
+  load(y, box.y);
+  load(z, box.z);
+  const Lanes sum = x * direction.x + y * direction.y + z * direction.z;
   double along[4];
-  store_four(along, sum);
+  store(along, sum);
   int axis = unsigned_of(along[1]) > unsigned_of(along[0]) ? 1 : 0;
   if (unsigned_of(along[2]) > unsigned_of(along[axis])) axis = 2;
   const bool positive = along[axis] > 0;
@@ -106,12 +106,10 @@ PD_INLINE void put(CutCorners& to, int i, const CutCorners& from, int k) {
 /// A line of the window: what lies to its left has 1 + sign * (s or t) > 0.
 enum class Across : bool { s, t };
 
-PD_INLINE bool any(const FourFlags& flags) { return (flags[0] | flags[1] | flags[2] | flags[3]) != 0; }
+PD_INLINE bool any(const Flags& flags) { return (flags[0] | flags[1] | flags[2] | flags[3]) != 0; }
 /// From lane to lane, by one and by two.
-PD_INLINE void turn(FourDoubles& to, const FourDoubles& from) { to = __builtin_shufflevector(from, from, 1, 2, 3, 0); }
-PD_INLINE void turn_twice(FourDoubles& to, const FourDoubles& from) {
-  to = __builtin_shufflevector(from, from, 2, 3, 0, 1);
-}
+PD_INLINE void turn(Lanes& to, const Lanes& from) { to = __builtin_shufflevector(from, from, 1, 2, 3, 0); }
+PD_INLINE void turn_twice(Lanes& to, const Lanes& from) { to = __builtin_shufflevector(from, from, 2, 3, 0, 1); }
 
 /// What lies to the left of a line of the window.
 template <Across across, int sign>
@@ -165,10 +163,10 @@ struct FaceSlope {
 };
 
 /// Of four numbers.
-PD_INLINE double range(const FourDoubles& x) {
-  FourDoubles turned, turned_twice;
+PD_INLINE double range(const Lanes& x) {
+  Lanes turned, turned_twice;
   turn_twice(turned_twice, x);
-  const FourDoubles less = turned_twice < x ? turned_twice : x, more = turned_twice < x ? x : turned_twice;
+  const Lanes less = turned_twice < x ? turned_twice : x, more = turned_twice < x ? x : turned_twice;
   turn(turned, less);
   const double least = less_of(less[0], turned[0]);
   turn(turned, more);
@@ -183,28 +181,28 @@ PD_INLINE void set_size(double range_s, double range_t, const BoxFace& face_b, B
 PD_INLINE bool lift_four(const CutCorners& polygon, const BoxFace& face_b, const FaceSlope& slope, double signed_depth,
                          double breaking_threshold, BoxCorners& out) {
   if (polygon.count != 4) return false;
-  FourDoubles s, t;
-  load_four(s, polygon.s);
-  load_four(t, polygon.t);
+  Lanes s, t;
+  load(s, polygon.s);
+  load(t, polygon.t);
   set_size(range(s), range(t), face_b, out);
   const double merge_s = kMergeRatio * out.size / face_b.length_first;
   const double merge_t = kMergeRatio * out.size / face_b.length_second;
-  FourDoubles turned_s, turned_t;
+  Lanes turned_s, turned_t;
   turn(turned_s, s);
   turn(turned_t, t);
-  const FourDoubles next_s = magnitude(s - turned_s), next_t = magnitude(t - turned_t);
+  const Lanes next_s = magnitude(s - turned_s), next_t = magnitude(t - turned_t);
   turn_twice(turned_s, s);
   turn_twice(turned_t, t);
-  const FourDoubles across_s = magnitude(s - turned_s), across_t = magnitude(t - turned_t);
-  FourDoubles depth = slope.at_centre + s * slope.along_s + t * slope.along_t;
-  depth = depth > signed_depth ? FourDoubles{} + signed_depth : depth;
+  const Lanes across_s = magnitude(s - turned_s), across_t = magnitude(t - turned_t);
+  Lanes depth = slope.at_centre + s * slope.along_s + t * slope.along_t;
+  depth = depth > signed_depth ? Lanes{} + signed_depth : depth;
   if (any(((next_s <= merge_s) & (next_t <= merge_t)) | ((across_s <= merge_s) & (across_t <= merge_t)) |
           (depth < -breaking_threshold))) {
     return false;
   }
-  store_four(out.s, s);
-  store_four(out.t, t);
-  store_four(out.depth, depth);
+  store(out.s, s);
+  store(out.t, t);
+  store(out.depth, depth);
   for (int i = 0; i < 4; ++i) {
     out.kind[i] = static_cast<std::uint16_t>(polygon.tag[i] >> kEdgeBits);
     out.deepest = more_of(out.deepest, depth[i]);
@@ -297,28 +295,28 @@ PD_CLONES void box_corners(const BoxInRows& a, const BoxInRows& b, const double 
 
 PD_CLONES void points_at_corners(const BoxCorners& corners, const double (&n)[3], const double (&origin)[3],
                                  double (&out)[4][8]) {
-  FourDoubles s, t, depth;
-  load_four(s, corners.s);
-  load_four(t, corners.t);
-  load_four(depth, corners.depth);
+  Lanes s, t, depth;
+  load(s, corners.s);
+  load(t, corners.t);
+  load(depth, corners.depth);
   const double* const c = corners.centre;
   const double* const u = corners.first;
   const double* const v = corners.second;
-  const FourDoubles zero = {0, 0, 0, 0};
-  const FourDoubles b[3] = {c[0] + s * u[0] + t * v[0] + origin[0], c[1] + s * u[1] + t * v[1] + origin[1],
-                            c[2] + s * u[2] + t * v[2] + origin[2]};
-  const FourDoubles columns[8] = {
+  const Lanes zero = {0, 0, 0, 0};
+  const Lanes b[3] = {c[0] + s * u[0] + t * v[0] + origin[0], c[1] + s * u[1] + t * v[1] + origin[1],
+                      c[2] + s * u[2] + t * v[2] + origin[2]};
+  const Lanes columns[8] = {
       b[0] - depth * n[0], b[1] - depth * n[1], b[2] - depth * n[2], b[0], b[1], b[2], depth, zero};
   for (int half = 0; half < 2; ++half) {
-    const FourDoubles* const of = columns + 4 * half;
-    const FourDoubles low_01 = __builtin_shufflevector(of[0], of[1], 0, 4, 2, 6);
-    const FourDoubles high_01 = __builtin_shufflevector(of[0], of[1], 1, 5, 3, 7);
-    const FourDoubles low_23 = __builtin_shufflevector(of[2], of[3], 0, 4, 2, 6);
-    const FourDoubles high_23 = __builtin_shufflevector(of[2], of[3], 1, 5, 3, 7);
-    store_four(out[0] + 4 * half, __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5));
-    store_four(out[1] + 4 * half, __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5));
-    store_four(out[2] + 4 * half, __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7));
-    store_four(out[3] + 4 * half, __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7));
+    const Lanes* const of = columns + 4 * half;
+    const Lanes low_01 = __builtin_shufflevector(of[0], of[1], 0, 4, 2, 6);
+    const Lanes high_01 = __builtin_shufflevector(of[0], of[1], 1, 5, 3, 7);
+    const Lanes low_23 = __builtin_shufflevector(of[2], of[3], 0, 4, 2, 6);
+    const Lanes high_23 = __builtin_shufflevector(of[2], of[3], 1, 5, 3, 7);
+    store(out[0] + 4 * half, __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5));
+    store(out[1] + 4 * half, __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5));
+    store(out[2] + 4 * half, __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7));
+    store(out[3] + 4 * half, __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7));
   }
 }
 

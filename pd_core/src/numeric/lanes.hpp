@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
@@ -28,6 +29,11 @@ inline constexpr int kFloats = 8;
 PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
 PD_INLINE void load(Floats& to, const float* from) { __builtin_memcpy(&to, from, sizeof(Floats)); }
 PD_INLINE void store(double* to, const Lanes& from) { __builtin_memcpy(to, &from, sizeof(Lanes)); }
+
+PD_INLINE Lanes magnitude(const Lanes& v) {
+  constexpr std::int64_t kMagnitude = std::numeric_limits<std::int64_t>::max();  // all bits but the sign's
+  return (Lanes)((Flags)v & Flags{kMagnitude, kMagnitude, kMagnitude, kMagnitude});
+}
 
 /// Rounded as std::sqrt, which the compiler leaves alone for the sake of errno.
 PD_INLINE void take_roots(Lanes& v) {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/programs/real.hpp"
-#include "depth/facets/box_sat.hpp"
+#include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/features/nearest_of_segments.hpp"
 #include "depth/pair/slender_on_box.hpp"
 #include "pd/shape/convex_polytope.hpp"
@@ -90,26 +90,18 @@ struct BoxesAtPoses {
   }
 };
 
-inline double box_depth_share(const Numbers& x) {
+inline double box_share(const Numbers& x, detail::BoxQuestion question) {
   const BoxesAtPoses boxes(x);
   if (!boxes.valid()) return 0;
   const auto frame_a = detail::box_frame(*boxes.a), frame_b = detail::box_frame(*boxes.b);
-  const detail::BoxPairDepth found =
-      detail::box_pair_depth(*boxes.a, *frame_a, *boxes.pose_a, *boxes.b, *frame_b, *boxes.pose_b, kAnyWidth);
-  if (found.status != detail::BoxPairStatus::certified) return 0;
-  return share_of_bracket(boxes.least_height(), found.lower, found.upper);
+  const detail::GaussSatDepth found = detail::gauss_sat_of_boxes(
+      {*boxes.a, *frame_a, *boxes.pose_a}, {*boxes.b, *frame_b, *boxes.pose_b}, kAnyWidth, question, nullptr);
+  if (!found.nearest.certified || !(found.nearest.lower > 0)) return 0;
+  return share_of_bracket(boxes.least_height(), found.nearest.lower, found.nearest.upper);
 }
-
+inline double box_depth_share(const Numbers& x) { return box_share(x, detail::BoxQuestion::depth); }
 /// Of boxes that overlap.
-inline double box_contact_share(const Numbers& x) {
-  const BoxesAtPoses boxes(x);
-  if (!boxes.valid()) return 0;
-  const auto frame_a = detail::box_frame(*boxes.a), frame_b = detail::box_frame(*boxes.b);
-  const detail::BoxPairContact found =
-      detail::box_pair_contact(*boxes.a, *frame_a, *boxes.pose_a, *boxes.b, *frame_b, *boxes.pose_b, kAnyWidth);
-  if (!found.certified || found.upper >= 0) return 0;
-  return share_of_bracket(-boxes.least_height(), found.lower, found.upper);
-}
+inline double box_contact_share(const Numbers& x) { return box_share(x, detail::BoxQuestion::signed_depth); }
 
 /// The distance of the segments from p[0] to p[1] and from p[2] to p[3].
 inline Real true_distance(const std::array<RealVector, 4>& p) {

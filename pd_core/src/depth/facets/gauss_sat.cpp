@@ -156,6 +156,10 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
       body_of(difference.b(), difference.posed_b(), turned.of_b, growth_b), {t.x(), t.y(), t.z()}, errors, near, thin);
   NearFacets& nearest = out.nearest;
   nearest.facets = found.pieces;
+  if (near != nullptr) {
+    near->all_told = near->complete;
+    near->beyond = near->complete ? near->radius - kGaussLowerError * reach : 0;
+  }
   if (found.outcome == NearestByGaussMaps::Outcome::full) return out;
   const Vec3 normal = normal_of_piece(found.piece, turned, difference);
   const double squared = normal.squaredNorm();
@@ -166,6 +170,7 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
   const double height = s.x.dot(nearest.normal);
   nearest.upper = height + kGaussUpperError * reach;
   name_piece(found.piece, s, nearest);
+  out.corner = {s.a, s.b};
   if (nearest.upper < 0) {
     out.status = GaussSatStatus::separated;
     return out;
@@ -183,8 +188,10 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
   if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
   if (!inside) {
     const double slack = std::max(foot_rounding(difference), 0.125 * width.length);
-    out.meeting = meeting_point(difference, nearest.normal, height, slack);
-    if (!out.meeting) return out;
+    const std::optional<Vec3> meeting = meeting_point(difference, nearest.normal, height, slack);
+    if (!meeting) return out;
+    const Vec3 on_b = *meeting + difference.offset();
+    out.foot = FootPoints{on_b - height * nearest.normal, on_b, 0};
   }
   if (beyond > 0) nearest.beyond = beyond - kGaussLowerError * reach;
   nearest.certified = true;

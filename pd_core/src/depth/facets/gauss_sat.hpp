@@ -1,6 +1,6 @@
 /// @file
 /// Depth of two solids of at most 32 vertices and 64 facets, in doubles with a certificate: all facets of P by their
-/// Gauss maps (gauss_sat_kernels.hpp), no search.
+/// Gauss maps (gauss_sat_kernels.hpp; of two boxes gauss_sat_boxes.hpp), no search.
 ///
 /// Why it proves anything: the boundary of P consists of facets with a facet of one body and of parallelograms of two
 /// edges whose arcs cross. A facet's plane supports P, and h_P changes by at most the turn of its normal times the
@@ -22,6 +22,7 @@
 #include <optional>
 
 #include "depth/difference/bracket_width.hpp"
+#include "depth/facets/gauss_boxes.hpp"
 #include "depth/facets/gauss_sat_kernels.hpp"
 #include "depth/facets/near_facets.hpp"
 
@@ -31,12 +32,14 @@ enum class GaussSatStatus : std::uint8_t { certified, separated, undecided };
 
 struct GaussSatDepth {
   GaussSatStatus status = GaussSatStatus::undecided;
-  /// Certified facets; of separated bodies the normal, the separating direction, and the piece across it.
+  /// Certified facets; of separated bodies the normal, the separating direction, and the piece across it (a facet
+  /// that is -1 is not known).
   NearFacets nearest;
   double largest = 0;  ///< |coordinate| of P; certified depths only
-  /// Where faces of both bodies meet that lie in one plane, relative to B's translation: where the point below the
-  /// origin does not lie inside of the winner alone.
-  std::optional<Vec3> meeting;
+  /// A point of either body, relative to A's translation, where the point below the origin does not lie inside of the
+  /// winner alone: faces of both meet in its plane. Always there for boxes that are certified.
+  std::optional<FootPoints> foot;
+  VertexPair corner{0, 0};  ///< of the winner, or else of P, farthest along the normal
 };
 
 /// True if both bodies are solids of so few facets.

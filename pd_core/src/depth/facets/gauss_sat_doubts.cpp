@@ -185,6 +185,7 @@ PD_CLONES double bound_thin_pairs(const GaussSatBody& a, const GaussSatBody& b, 
       ThinPair pair = thin.pairs[k + lane];
       const double best = key[lane] > pair.bound ? key[lane] : pair.bound;
       pair.bound = best < 0 ? -__builtin_sqrt(-best) : __builtin_sqrt(best);
+      if (!pair.oriented && pair.bound < thin.unoriented) thin.unoriented = pair.bound;
       if (pair.bound >= level) {
         dropped = pair.bound < dropped ? pair.bound : dropped;
       } else {

@@ -183,8 +183,8 @@ PD_INLINE void nearest_crossing(Nearest& best, Crossings<Size>& pairs, const Ker
     }
     if (found.near == nullptr) continue;
     NearGaussPieces& near = *found.near;
-    for (unsigned bits = mask_of_four(is_pair & (measured <= zero + near.radius * near.radius)); bits != 0;
-         bits &= bits - 1) {
+    const Flags is_near = (measured <= zero + near.radius * near.radius) & (sign != zero);
+    for (unsigned bits = mask_of_four(is_pair & is_near); bits != 0; bits &= bits - 1) {
       const int lane = std::countr_zero(bits);
       GaussPiece piece;
       piece_of_edges(piece, kept_a, kept_b, i[lane], j[lane], sign[lane] < 0);
@@ -297,13 +297,17 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
       piece_of_edges(out.piece, state.kept_a, state.kept_b, pairs.a[k], pairs.b[k], pairs.sign[k] < 0);
     }
   }
-  if (near != nullptr) near->complete = !open && near->count < NearGaussPieces::kMost;
+  if (near != nullptr) {
+    near->complete = near->count < NearGaussPieces::kMost;
+    near->open = open;
+  }
   if (thin.count == 0) return;
   if (thin.count == ThinPairs::kMost) {
     out.outcome = NearestByGaussMaps::Outcome::full;
     return;
   }
   const double dropped = bound_thin_pairs(a, b, offset, __builtin_sqrt(out.key) - errors.room, thin);
+  if (near != nullptr && thin.unoriented < near->radius) near->radius = thin.unoriented;
   const double dropped_key = key_of(dropped, 1);
   out.others_key = dropped_key < out.others_key ? dropped_key : out.others_key;
 }
@@ -329,6 +333,7 @@ NearestByGaussMaps nearest_by_gauss_maps(const GaussSatBody& a, const GaussSatBo
                                          const GaussSatErrors& errors, NearGaussPieces* near, ThinPairs& thin) {
   NearestByGaussMaps out;
   thin.count = 0;
+  thin.unoriented = gauss_sat::kNone;
   if (gauss_sat::is_small(a.storage) && gauss_sat::is_small(b.storage)) {
     gauss_sat::nearest_of_small(out, a, b, offset, errors, near, thin);
   } else {

@@ -41,7 +41,7 @@ struct GaussPiece {
 };
 
 /// The facets of P that are not much farther than the nearest one of either body: what the next frames look at
-/// (remembered_pieces.hpp).
+/// (remembered_pieces.hpp), and among which exact numbers tell the nearest (gauss_ties.hpp).
 struct NearGaussPieces {
   static constexpr int kMost = 64;
   struct Measured {
@@ -50,13 +50,29 @@ struct NearGaussPieces {
   };
   double band = 0;        ///< asked for: how much farther
   double radius = 0;      ///< all facets of P that are no farther are listed, if `complete`
-  bool complete = false;  ///< they fit, and no side of an edge near them is open
+  bool complete = false;  ///< they fit
+  bool open = false;      ///< a side of an edge near them is open: some of them may be no facets of P
+  /// Of boxes: bit 3 i + j says that edge i of A and edge j of B are parallel up to rounding. If they are not exactly,
+  /// their facets are not listed, and may be as near.
+  unsigned parallel = 0;
+  double beyond = 0;      ///< no facet of P that is not listed is nearer; 0: not known
+  bool all_told = false;  ///< every facet that is nearer is listed; else one of several in a plane
   int count = 0;
   Measured pieces[kMost + 1];
 
   void add(double key, const GaussPiece& piece) {
     pieces[count] = {key, piece};
     count += static_cast<int>(count < kMost);
+  }
+  /// Drops what is farther, and what was not listed may be as near as that, less an error.
+  void keep_within(double distance, double error) {
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      pieces[kept] = pieces[i];
+      kept += static_cast<int>(!(pieces[i].key > distance * distance));
+    }
+    count = kept;
+    beyond = distance - error < beyond ? distance - error : beyond;
   }
 };
 
@@ -71,6 +87,7 @@ struct ThinPair {
 struct ThinPairs {
   static constexpr int kMost = 256;
   int count = 0;
+  double unoriented = 0;  ///< those whose normal may point either way are no nearer, once all are bounded
   ThinPair pairs[kMost + 1];
 };
 

@@ -122,7 +122,7 @@ double remembered_band(const PolytopeDifference& difference) {
 
 bool remember_pieces(const GaussSatDepth& found, NearGaussPieces& near, const PolytopeDifference& difference,
                      WarmPieces& out) {
-  if (!near.complete || near.count == 0) return false;
+  if (!near.complete || near.open || near.count == 0) return false;
   if (!is_rotation(difference.rotation_a()) || !is_rotation(difference.rotation_b())) return false;
   if (!out.a || !out.a->same_storage(difference.a())) out.a = difference.a();
   if (!out.b || !out.b->same_storage(difference.b())) out.b = difference.b();

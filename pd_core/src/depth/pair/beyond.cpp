@@ -7,7 +7,7 @@
 #include "depth/distance/closest_of_few.hpp"
 #include "depth/distance/nearest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
-#include "depth/facets/box_sat.hpp"
+#include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/pair/scaled_shape.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -146,13 +146,12 @@ class BeyondQuery {
     if (!box_a) return std::nullopt;
     const std::optional<BoxFrame> box_b = box_frame(b);
     if (!box_b) return std::nullopt;
-    const BoxPairDepth boxes = box_pair_depth(a, *box_a, a_.pose, b, *box_b, b_.pose, {});
-    if (boxes.status != BoxPairStatus::separated || !boxes.nearest) return std::nullopt;
-    // A root, a quotient and the length of the normal come to the bound's own rounding.
-    const double lower = -boxes.upper - 8 * kUnitRoundoff * reach;
+    const GaussSatDepth boxes =
+        gauss_sat_of_boxes({a, *box_a, a_.pose}, {b, *box_b, b_.pose}, {}, BoxQuestion::depth, nullptr);
+    if (boxes.status != GaussSatStatus::separated || boxes.nearest.facets == 0) return std::nullopt;
+    const double lower = -boxes.nearest.upper;
     if (!(lower > least(reach))) return std::nullopt;
-    const VertexPair s = boxes.nearest->v[0];
-    return SeparatingPlane{boxes.normal, lower, {Vec3::Zero(), s.a, s.b}, false};
+    return SeparatingPlane{boxes.nearest.normal, lower, {Vec3::Zero(), boxes.corner.a, boxes.corner.b}, false};
   }
 
   void fill(const SeparatingPlane& plane, const BodyPoints& points, double point_error, double reach) {

@@ -12,7 +12,7 @@ namespace pd::detail {
 
 namespace {
 
-/// Two boxes have another way, at twice the cost of a try (box_sat.hpp).
+/// Two boxes have another way, at twice the cost of a try (gauss_sat_boxes.hpp).
 constexpr int kLongestPauseOfBoxes = 63;
 constexpr int kBoxVertices = 8;
 /// Polytopes of more facets are not searched for the one that faces the contact: only answers name it.
@@ -124,7 +124,6 @@ void count_try(WarmFacets& facets, bool answered, int longest_pause) {
 }
 
 bool answer_from_contact_facet(PolytopeQuery& query, PenetrationDepth& out) {
-  if (!query.for_contact() || !query.within_range()) return false;
   if (!query.warm) return answer_on_polygon(query, out);
   WarmFacets& facets = query.warm->state().facets;
   if (!may_try(facets)) return false;

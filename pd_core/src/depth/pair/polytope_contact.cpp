@@ -165,9 +165,12 @@ void answer_near_boundary(PolytopeQuery& query, const ExpansionResult& surface, 
   keep_wide_contact(largest, out);
 }
 
-/// P lies in a ball that is smaller than what may be left open: two balls about one centre, say.
-void answer_one_place(PolytopeQuery& query, PenetrationDepth& out) {
+}  // namespace
+
+bool answer_at_one_place(PolytopeQuery& query, PenetrationDepth& out) {
+  if (!query.for_contact()) return false;
   const double reach = query.difference.reach();
+  if (!(2 * reach <= query.width().length || reach == 0)) return false;
   ClosestPoint nearest;
   nearest.count = 1;
   nearest.simplex[0] = query.difference.posed_vertex(0, 0);
@@ -176,17 +179,12 @@ void answer_one_place(PolytopeQuery& query, PenetrationDepth& out) {
   out.normal = Vec3::UnitX();
   set_contact_of_simplex(query.pair, nearest, out);
   set_signed_distance(query.pair.margins.both(), -reach, reach, out);
+  return true;
 }
 
-}  // namespace
-
-bool answer_contact(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
-  if (!query.for_contact()) return false;
-  if (2 * query.difference.reach() <= query.width().length || query.difference.reach() == 0) {
-    answer_one_place(query, out);
-    return true;
-  }
-  if (!query.within_range()) return false;
+bool answer_contact(PolytopeQuery& query, PenetrationDepth& out) {
+  const ExpansionResult& surface = query.surface;
+  if (answer_at_one_place(query, out)) return true;
   if (surface.face >= 0 && surface.lower > 0) {
     answer_inside(query, surface, out);
   } else {

@@ -9,12 +9,16 @@
 
 namespace pd::detail {
 
-/// Answers wherever `Bracket::contact` is asked for and sizes are in range; passes on otherwise.
+/// `Bracket::contact` where P lies in a ball that is smaller than what may be left open: two balls about one centre,
+/// say. Any size.
+bool answer_at_one_place(PolytopeQuery& query, PenetrationDepth& out);
+
+/// Always answers.
 ///
 /// The origin surely inside: the surface's bounds. Else the signed distance c of the cores lies in [-h_P(n), |x|] for
 /// any unit n and any point x of P: x from GJK in doubles or double-double, n from the search, from GJK, or across what
 /// is flat. `bracket_reached` says whether that is as narrow as asked.
 /// Time: a bounded number of supports beyond the search.
-bool answer_contact(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+bool answer_contact(PolytopeQuery& query, PenetrationDepth& out);
 
 }  // namespace pd::detail

@@ -6,8 +6,7 @@
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
 #include "depth/distance/closest_of_few.hpp"
-#include "depth/facets/box_sat.hpp"
-#include "depth/facets/gauss_sat.hpp"
+#include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/facets/remembered_pieces.hpp"
 #include "depth/pair/double_answer.hpp"
@@ -20,6 +19,10 @@
 namespace pd::detail {
 
 namespace {
+
+/// Bracket::contact: pairs of more vertices do not try all their near facets: nearly equal hulls of 256 take 2 ms for
+/// it, of 128 40 us.
+constexpr int kMostVerticesTried = 256;
 
 /// A support towards P's centre shows bodies apart only if that is no nearer to the origin than this share of the
 /// reach: measured on boxes, prisms, needles and round hulls.
@@ -51,49 +54,56 @@ void face_below_origin(const PolytopeQuery& query, int f, const Vec3& normal, Di
   }
 }
 
-/// Witnesses and features of a parallelogram of two edges.
-void set_contact_of_edges(const PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
+/// The features that make a piece of P's boundary.
+void set_features_of(const NearFacets& found, PenetrationDepth& out) {
   const auto [a, b] = std::pair(found.edge_a, found.edge_b);
-  const double s = found.along_a, t = found.along_b;
-  const PolytopeDifference& difference = query.difference;
-  const DifferenceVertex corners[4] = {difference.vertex(a[0], b[0]), difference.vertex(a[1], b[0]),
-                                       difference.vertex(a[0], b[1]), difference.vertex(a[1], b[1])};
-  const double weights[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
-  set_witnesses_of_depth(query.pair, corners, weights, 4, out);
-  out.feature_a = {Feature::Kind::edge, std::min(a[0], a[1]), std::max(a[0], a[1])};
-  out.feature_b = {Feature::Kind::edge, std::min(b[0], b[1]), std::max(b[0], b[1])};
-}
-
-/// The same of a facet of one body and a vertex of the other.
-void set_contact_of_facet(const PolytopePair& pair, const NearFacets& found, PenetrationDepth& out) {
   const Feature facet{Feature::Kind::facet, found.facet, -1};
   const Feature vertex{Feature::Kind::vertex, found.vertex, -1};
-  if (found.kind == NearFacetsBuffers::Kind::facet_of_a) {
-    out.feature_a = facet;
-    out.feature_b = vertex;
-    out.witness_b = pair.pose_b->apply(pair.b->vertex(found.vertex)) + pair.margins.b * out.normal;
-    out.witness_a = out.witness_b - out.translation;
-  } else {
-    out.feature_a = vertex;
-    out.feature_b = facet;
-    out.witness_a = pair.pose_a->apply(pair.a->vertex(found.vertex)) - pair.margins.a * out.normal;
-    out.witness_b = out.witness_a + out.translation;
+  switch (found.kind) {
+    case NearFacetsBuffers::Kind::edges:
+      out.feature_a = {Feature::Kind::edge, std::min(a[0], a[1]), std::max(a[0], a[1])};
+      out.feature_b = {Feature::Kind::edge, std::min(b[0], b[1]), std::max(b[0], b[1])};
+      break;
+    case NearFacetsBuffers::Kind::facet_of_a:
+      out.feature_a = facet;
+      out.feature_b = vertex;
+      break;
+    case NearFacetsBuffers::Kind::facet_of_b:
+      out.feature_a = vertex;
+      out.feature_b = facet;
+      break;
   }
 }
 
-/// Class, bracket and contact of the certified piece.
+/// The point below the origin on a piece that holds it; depth and normal are set.
+void set_witnesses_on(const PolytopePair& pair, const NearFacets& found, PenetrationDepth& out) {
+  if (found.kind == NearFacetsBuffers::Kind::facet_of_a) {
+    out.witness_b = pair.pose_b->apply(pair.b->vertex(found.vertex)) + pair.margins.b * out.normal;
+    out.witness_a = out.witness_b - out.translation;
+  } else if (found.kind == NearFacetsBuffers::Kind::facet_of_b) {
+    out.witness_a = pair.pose_a->apply(pair.a->vertex(found.vertex)) - pair.margins.a * out.normal;
+    out.witness_b = out.witness_a + out.translation;
+  } else {
+    const std::int32_t *const a = found.edge_a, *const b = found.edge_b;
+    const double s = found.along_a, t = found.along_b;
+    // Witnesses are made of the bodies' own vertices.
+    const auto corner = [&](int i, int k) { return DifferenceVertex{Vec3::Zero(), a[i], b[k]}; };
+    const DifferenceVertex corners[4] = {corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)};
+    const double weights[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+    set_witnesses_of_depth(pair, corners, weights, 4, out);
+  }
+}
+
+/// Class, bracket and contact of a certified piece that holds the point below the origin.
 void set_answer(const PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
   set_depth(query.pair, found.lower, found.upper, found.normal, out);
-  if (found.kind == NearFacetsBuffers::Kind::edges) {
-    set_contact_of_edges(query, found, out);
-  } else {
-    set_contact_of_facet(query.pair, found, out);
-  }
+  set_features_of(found, out);
+  set_witnesses_on(query.pair, found, out);
 }
 
 /// Up to four corners of a facet of P.
-std::size_t corners_of_piece(const PolytopeQuery& query, const NearFacets& piece, DifferenceVertex (&corners)[4]) {
-  const PolytopeDifference& difference = query.difference;
+std::size_t corners_of_piece(PolytopeQuery& query, const NearFacets& piece, DifferenceVertex (&corners)[4]) {
+  const PolytopeDifference& difference = query.with_supports();
   if (piece.kind == NearFacetsBuffers::Kind::edges) {
     for (std::size_t i = 0; i < 4; ++i) corners[i] = difference.vertex(piece.edge_a[i % 2], piece.edge_b[i / 2]);
     return 4;
@@ -149,25 +159,72 @@ bool apart_between_places(const PolytopeDifference& difference) {
   return difference.support(back, nullptr).x.dot(back) < 0;
 }
 
-bool answer_boxes_for_contact(PolytopeQuery& query, const BoxFrame& box_a, const BoxFrame& box_b,
-                              PenetrationDepth& out) {
+/// How much farther than the nearest facet others are listed for a proof, in units of the reach: beyond rounding.
+constexpr double kTieBand = 0x1p-44;
+
+/// An answer of the Gauss maps in doubles.
+bool answer_from_gauss_maps(PolytopeQuery& query, const GaussSatDepth& found, PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
-  const BoxPairContact boxes =
-      box_pair_contact(*pair.a, box_a, *pair.pose_a, *pair.b, box_b, *pair.pose_b, query.width());
-  out.method = Method::overlay;
-  out.statistics.facets_visited += kBoxAxes;
-  if (!boxes.certified && boxes.lower > 0) {
-    const DifferenceVertex first = query.with_supports().support(boxes.normal, nullptr);
-    return answer_apart(query, closest_point(query, {&first, 1}, out.statistics), out);
+  const NearFacets& nearest = found.nearest;
+  if (found.status == GaussSatStatus::separated) {
+    DifferenceVertex corners[4];
+    std::size_t count = 1;
+    if (nearest.facet >= 0 || nearest.kind == NearFacetsBuffers::Kind::edges) {
+      count = corners_of_piece(query, nearest, corners);
+    } else {
+      corners[0] = query.with_supports().vertex(found.corner.a, found.corner.b);
+    }
+    return answer_apart(query, closest_point(query, std::span(corners).first(count), out.statistics), out);
   }
-  if (!boxes.certified) return false;
+  if (found.status == GaussSatStatus::undecided) return false;
+  if (!found.foot) {
+    set_answer(query, nearest, out);
+    return true;
+  }
   const Vec3& origin = pair.pose_a->translation();
-  out.normal = boxes.normal;
-  out.witness_a = boxes.point_a + origin - pair.margins.a * boxes.normal;
-  out.witness_b = boxes.point_b + origin + pair.margins.b * boxes.normal;
-  out.feature_a = boxes.feature_a;
-  out.feature_b = boxes.feature_b;
-  set_signed_distance(pair.margins.both(), boxes.lower, boxes.upper, out);
+  out.normal = nearest.normal;
+  out.witness_a = found.foot->point_a + origin - pair.margins.a * out.normal;
+  out.witness_b = found.foot->point_b + origin + pair.margins.b * out.normal;
+  set_features_of(nearest, out);
+  if (nearest.lower > 0) {
+    set_depth(pair, nearest.lower, nearest.upper, nearest.normal, out);
+    out.witness_b = out.witness_a + out.translation;
+  } else {
+    set_signed_distance(pair.margins.both(), -nearest.upper, -nearest.lower, out);
+  }
+  return true;
+}
+
+/// Two boxes by the kernel for boxes.
+bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
+  const PolytopePair& pair = query.pair;
+  const BoxQuestion question = query.for_contact()                  ? BoxQuestion::signed_depth
+                               : query.bracket == Bracket::tightest ? BoxQuestion::near_pieces
+                                                                    : BoxQuestion::depth;
+  NearGaussPieces near;
+  const GaussSatDepth found =
+      gauss_sat_of_boxes({*pair.a, query.frame_a(), *pair.pose_a}, {*pair.b, query.frame_b(), *pair.pose_b},
+                         query.width(), question, &near);
+  out.method = Method::overlay;
+  out.statistics.facets_visited += found.nearest.facets;
+  if (question != BoxQuestion::near_pieces) return answer_from_gauss_maps(query, found, out);
+  return prove_gauss_maps(query, found, near, out);
+}
+
+/// Of the facets of P between the bounds of a surface, the nearest (facets/near_facets.hpp); for the tightest bracket
+/// it is proved.
+bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+  const PolytopePair& pair = query.pair;
+  const NearFacets found = nearest_of_near_facets(
+      *pair.a, *pair.pose_a, *pair.b, *pair.pose_b, query.with_supports(), query.buffers.surface,
+      {surface.lower, surface.upper, kCertifiedWidth}, query.buffers.stack, query.buffers.near_facets);
+  out.statistics.support_calls += found.support_calls;
+  out.statistics.facets_visited += found.facets;
+  out.statistics.pair_evaluations += found.pairs;
+  out.method = Method::decomposition;
+  if (query.bracket == Bracket::tightest) return prove_near_facets(query, found.beyond, out);
+  if (!found.certified) return false;
+  set_answer(query, found, out);
   return true;
 }
 
@@ -187,41 +244,8 @@ ExpansionGoal expansion_goal(const PolytopeQuery& query) {
   return goal;
 }
 
-bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.bracket == Bracket::tightest || query.settings.method != Method::automatic) return false;
-  const PolytopePair& pair = query.pair;
-  const std::optional<BoxFrame> box_a = box_frame(*pair.a);
-  if (!box_a) return false;
-  const std::optional<BoxFrame> box_b = box_frame(*pair.b);
-  if (!box_b || !query.within_range()) return false;
-  if (query.for_contact()) return answer_boxes_for_contact(query, *box_a, *box_b, out);
-  const BoxPairDepth boxes =
-      box_pair_depth(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, query.width());
-  out.method = Method::overlay;
-  out.statistics.facets_visited += kBoxAxes;
-  if (boxes.status == BoxPairStatus::separated) {
-    const PolytopeDifference& difference = query.with_supports();
-    DifferenceVertex first[3];
-    std::size_t count = 0;
-    if (boxes.nearest) {
-      for (const VertexPair& corner : boxes.nearest->v) first[count++] = difference.vertex(corner.a, corner.b);
-    } else {
-      first[count++] = difference.support(boxes.normal, nullptr);
-    }
-    return answer_apart(query, closest_point(query, std::span(first).first(count), out.statistics), out);
-  }
-  if (boxes.status == BoxPairStatus::undecided) return false;
-  set_depth(pair, boxes.lower, boxes.upper, boxes.normal, out);
-  out.witness_a = boxes.point_a + pair.pose_a->translation() - pair.margins.a * boxes.normal;
-  out.witness_b = out.witness_a + out.translation;
-  out.feature_a = boxes.feature_a;
-  out.feature_b = boxes.feature_b;
-  return true;
-}
-
-bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.settings.method != Method::automatic || query.bracket == Bracket::tightest) return false;
-  if (query.difference.climbs() || !query.within_range() || remembers_overlap(query)) return false;
+bool answer_few_apart(PolytopeQuery& query, PenetrationDepth& out) {
+  if (remembers_overlap(query)) return false;
   const Vec3 back = -query.difference.centre();
   const double reach = query.difference.reach();
   if (!(back.squaredNorm() > kLeastWayShown * kLeastWayShown * reach * reach)) return false;
@@ -234,9 +258,9 @@ bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.settings.method != Method::automatic || !query.within_range()) return false;
   const PolytopePair& pair = query.pair;
-  if (!gauss_sat_applies(*pair.a, *pair.b) || !gauss_sat_pays(query.difference)) return false;
+  if (query.boxes() && answer_boxes(query, out)) return true;
+  if (!gauss_sat_pays(query.difference)) return false;
   // The surface has a memory of any pair; what the Gauss maps tell is remembered of small solids, of doubles.
   const bool remembers = query.warm && has_small_gauss_map(*pair.a) && has_small_gauss_map(*pair.b);
   if (query.warm && !(remembers && query.doubles_suffice())) return false;
@@ -244,32 +268,25 @@ bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out) {
   const bool tightest = query.bracket == Bracket::tightest;
   if (tightest && apart_between_places(query.with_supports())) return false;
   NearGaussPieces near;
-  if (remembers) near.band = remembered_band(query.difference);
-  const GaussSatDepth found =
-      gauss_sat_depth(*pair.pose_a, *pair.pose_b, query.with_supports(), query.width(), remembers ? &near : nullptr);
+  near.band = tightest ? kTieBand * query.difference.reach() : remembers ? remembered_band(query.difference) : 0;
+  const GaussSatDepth found = gauss_sat_depth(*pair.pose_a, *pair.pose_b, query.with_supports(), query.width(),
+                                              tightest || remembers ? &near : nullptr);
   out.method = Method::overlay;
   out.statistics.facets_visited += found.nearest.facets;
   out.statistics.support_calls += found.nearest.support_calls;
   if (tightest) {
-    return found.status == GaussSatStatus::certified && !found.meeting && prove_near_facet(query, found.nearest, out);
+    // The list reaches up to the nearest facet of either body; where edges are nearer, most of it is no tie.
+    double least = near.radius * near.radius;
+    for (int i = 0; i < near.count; ++i) least = near.pieces[i].key > 0 ? std::min(least, near.pieces[i].key) : least;
+    near.keep_within(std::sqrt(least) + near.band, kGaussLowerError * query.difference.reach());
+    return prove_gauss_maps(query, found, near, out);
   }
-  if (found.status == GaussSatStatus::separated) {
-    DifferenceVertex corners[4];
-    const std::size_t count = corners_of_piece(query, found.nearest, corners);
-    return answer_apart(query, closest_point(query, std::span(corners).first(count), out.statistics), out);
-  }
-  if (remembers) save_pieces(query, found, near);
-  if (found.status == GaussSatStatus::undecided) return false;
-  set_answer(query, found.nearest, out);
-  if (found.meeting) {
-    out.witness_b = *found.meeting + pair.pose_b->translation() + pair.margins.b * out.normal;
-    out.witness_a = out.witness_b - out.translation;
-  }
-  return true;
+  if (remembers && found.status != GaussSatStatus::separated) save_pieces(query, found, near);
+  return answer_from_gauss_maps(query, found, out);
 }
 
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out) {
-  if (!remembers_pieces(query) || !query.doubles_suffice() || !query.within_range()) return false;
+  if (!remembers_pieces(query)) return false;
   int looked_at = 0;
   const NearFacets found =
       certify_remembered_pieces(query.warm->state().small.pieces[0], *query.pair.pose_a, *query.pair.pose_b,
@@ -286,7 +303,6 @@ bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out) 
 ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out) {
   ExpansionResult result;
   out.method = Method::expansion;
-  if (!query.within_range()) return result;
   const bool restored = query.warm && restore_surface(query);
   if (restored && query.doubles_suffice() && certify_restored_surface(query, result, out.statistics)) {
     out.warm = true;
@@ -315,8 +331,8 @@ ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out) {
   return result;
 }
 
-bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
-  if (surface.status != ExpansionStatus::certified || query.bracket == Bracket::tightest) return false;
+bool answer_from_surface(PolytopeQuery& query, PenetrationDepth& out) {
+  const ExpansionResult& surface = query.surface;
   if (!bound_is_of_face(query.buffers.surface, surface)) return false;
   set_depth(query.pair, surface.lower, surface.upper, surface.normal, out);
   set_contact_of_face(query, surface.face, surface.normal, out);
@@ -356,20 +372,22 @@ bool narrow_enough(const PolytopeQuery& query, const ExpansionResult& found) {
          found.upper <= (1 + query.settings.delta) * found.lower;
 }
 
-bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
-  if (surface.status != ExpansionStatus::over_budget || !(surface.lower > 0)) return false;
-  const PolytopePair& pair = query.pair;
-  const NearFacets found = nearest_of_near_facets(
-      *pair.a, *pair.pose_a, *pair.b, *pair.pose_b, query.with_supports(), query.buffers.surface,
-      {surface.lower, surface.upper, kCertifiedWidth}, query.buffers.stack, query.buffers.near_facets);
-  out.statistics.support_calls += found.support_calls;
-  out.statistics.facets_visited += found.facets;
-  out.statistics.pair_evaluations += found.pairs;
-  out.method = Method::decomposition;
-  if (query.bracket == Bracket::tightest) return prove_near_facets(query, found.beyond, out);
-  if (!found.certified) return false;
-  set_answer(query, found, out);
-  return true;
+ExpansionResult bounded(PolytopeQuery& query, ExpansionResult surface, Statistics& statistics) {
+  if (!(surface.lower > 0)) return surface;
+  ScratchBuffers& buffers = query.buffers;
+  const HeightOfFace least =
+      upper_bound_of_nearest_faces(query.with_supports(), buffers.surface, buffers.stack, statistics.support_calls);
+  surface.upper = std::min(surface.upper, least.upper);
+  return surface;
+}
+
+bool answer_among_many_facets(PolytopeQuery& query, PenetrationDepth& out) {
+  const ExpansionResult found = bounded(query, query.surface, out.statistics);
+  // A contact that may be left as it is, or whose facets are too many to try them all, has had its share.
+  const bool enough = query.vertices() > kMostVerticesTried || found.upper <= (1 + kContactClose) * found.lower;
+  if (query.for_contact() && enough) return false;
+  if (answer_among_near_facets(query, found, out)) return true;
+  return !query.for_contact() && answer_by_decomposition(query, found, out);
 }
 
 double relative_of_distance(const PolytopeQuery& query) {

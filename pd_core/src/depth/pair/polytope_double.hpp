@@ -14,28 +14,25 @@ namespace pd::detail {
 /// Width of the bracket that doubles are asked for, as the goal of an expansion.
 [[nodiscard]] ExpansionGoal expansion_goal(const PolytopeQuery& query);
 
-/// Two boxes by their fifteen axes of separation (facets/box_sat.hpp).
-bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out);
+/// Bodies that a support towards P's centre shows apart, by the closest points at once.
+bool answer_few_apart(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Bodies of few vertices that a support towards P's centre shows apart, by the closest points at once.
-bool answer_few_vertices_apart(PolytopeQuery& query, PenetrationDepth& out);
-
-/// Two solids of few facets by all facets of P (facets/gauss_sat.hpp); for the tightest bracket the nearest one is
+/// All facets of P by the bodies' Gauss maps (facets/gauss_sat.hpp); for the tightest bracket the nearest one is
 /// proved.
 bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out);
 
-/// The same of small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
+/// Small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start
-/// from. The faces are left in the scratch (`buffers.surface`). Sizes out of range give `undecided` without a face.
+/// from. The faces are left in the scratch (`buffers.surface`).
 [[nodiscard]] ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Whether a bracket of the surface in the scratch is as narrow as the caller asked, whatever ended its search.
 [[nodiscard]] bool narrow_enough(const PolytopeQuery& query, const ExpansionResult& found);
 
-/// The surface's nearest face, where its bracket ended the search.
-bool answer_from_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+/// The surface's nearest face, whose bracket ended the search.
+bool answer_from_surface(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Witnesses and features of a face of the surface, or of those in its plane where the origin projects.
 void set_contact_of_face(const PolytopeQuery& query, int face, const Vec3& unit_normal, PenetrationDepth& out);
@@ -43,9 +40,12 @@ void set_contact_of_face(const PolytopeQuery& query, int face, const Vec3& unit_
 /// Witnesses and features of the closest points of the cores; `out.normal` is set.
 void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& nearest, PenetrationDepth& out);
 
-/// Of the facets of P between the bounds that an expansion leaves, the nearest (facets/near_facets.hpp); for the
-/// tightest bracket it is proved.
-bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+/// The bounds of a surface that stopped early, the upper one lowered by supports along the normals of its nearest
+/// faces.
+[[nodiscard]] ExpansionResult bounded(PolytopeQuery& query, ExpansionResult surface, Statistics& statistics);
+
+/// Many facets are nearly as near: among those alone, else in the way of [A].
+bool answer_among_many_facets(PolytopeQuery& query, PenetrationDepth& out);
 
 /// What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.
 [[nodiscard]] double relative_of_distance(const PolytopeQuery& query);

@@ -8,9 +8,7 @@
 
 #include "depth/certificate/nearest_facet_proof.hpp"
 #include "depth/expansion/exact_expanding_polytope.hpp"
-#include "depth/facets/aligned_boxes.hpp"
-#include "depth/facets/box_near_ties.hpp"
-#include "depth/facets/box_sat.hpp"
+#include "depth/facets/gauss_ties.hpp"
 #include "depth/facets/unique_nearest_facet.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
@@ -77,13 +75,6 @@ bool answer_from_proof(PolytopeQuery& query, const std::optional<ProvenFacet>& p
   return true;
 }
 
-bool answer_boxes_from_proof(PolytopeQuery& query, const std::optional<ProvenFacet>& proven, PenetrationDepth& out) {
-  if (!answer_from_proof(query, proven, out)) return false;
-  out.method = Method::overlay;
-  out.statistics.facets_visited += kBoxAxes;
-  return true;
-}
-
 /// The nearest facet proved among `near`; every other piece of the surface is `beyond` or farther (in the caller's
 /// lengths).
 /// @param first_of_equals  as in `prove_nearest_facet`.
@@ -93,21 +84,26 @@ std::optional<ProvenFacet> prove_nearest(PolytopeQuery& query, std::span<const S
   return prove_nearest_facet(posed, near, beyond * posed.inwards(), first_of_equals, query.buffers.faces);
 }
 
-/// The piece as a facet of P.
-FacetOfDifference facet_of(const PolytopePair& pair, const PosedPair& posed, const NearFacets& found) {
-  switch (found.kind) {
-    case NearFacetsBuffers::Kind::facet_of_a:
-      return FacetOfDifference::from_facet_of_a(*pair.a, found.facet, found.vertex);
-    case NearFacetsBuffers::Kind::facet_of_b:
-      return FacetOfDifference::from_facet_of_b(*pair.b, found.facet, found.vertex);
-    case NearFacetsBuffers::Kind::edges:
-      break;
+/// Three corners of a piece.
+SurfaceCorners corners_of(const PosedPair& posed, const GaussPiece& piece) {
+  const VertexPair first{piece.a[0], piece.b[0]};
+  if (piece.is_of_edges()) return {{first, {piece.a[1], piece.b[0]}, {piece.a[0], piece.b[1]}}};
+  if (piece.facet_a >= 0) {
+    const auto loop = posed.a().facet_vertices(piece.facet_a);
+    return {{{loop[0], first.b}, {loop[1], first.b}, {loop[2], first.b}}};
   }
-  const auto& [a0, a1] = found.edge_a;
-  const auto& [b0, b1] = found.edge_b;
-  const FacetOfDifference facet = FacetOfDifference::from_edges(a0, a1, b0, b1);
-  const Vec3 n = posed.approximate(facet.u).cross(posed.approximate(facet.v));
-  return n.dot(found.normal) > 0 ? facet : FacetOfDifference::from_edges(a1, a0, b0, b1);
+  const auto loop = posed.b().facet_vertices(piece.facet_b);
+  return {{{first.a, loop[0]}, {first.a, loop[1]}, {first.a, loop[2]}}};
+}
+
+/// True if edges of boxes that are parallel up to rounding are parallel.
+bool are_parallel(const PosedPair& posed, unsigned pairs) {
+  for (int i = 0; i < 9; ++i) {
+    if ((pairs >> i & 1U) == 0 || (i % 4 == 0 && posed.same_rotation())) continue;
+    // Edge k of a box runs from vertex 0 to vertex 4 >> k.
+    if (!posed.parallel(PairVector::edge_a(0, 4 >> i / 3), PairVector::edge_b(0, 4 >> i % 3))) return false;
+  }
+  return true;
 }
 
 /// An exact search that is not observed, where no other facet is as near: the same facet without big numbers.
@@ -207,50 +203,8 @@ bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surfac
   return true;
 }
 
-bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out) {
-  if (query.bracket != Bracket::tightest || query.settings.method != Method::automatic) return false;
-  const PolytopePair& pair = query.pair;
-  const std::optional<BoxFrame> box_a = box_frame(*pair.a);
-  if (!box_a) return false;
-  const std::optional<BoxFrame> box_b = box_frame(*pair.b);
-  if (!box_b || !query.within_range()) return false;
-  const PosedPair& posed = query.exact();
-  ProvenFacet aligned;
-  switch (nearest_of_aligned_boxes(posed, aligned, query.buffers.faces)) {
-    case AlignedBoxes::tied:
-      return false;
-    case AlignedBoxes::found:
-      return answer_boxes_from_proof(query, aligned, out);
-    case AlignedBoxes::other:
-      break;
-  }
-  SupportFaces& faces = query.buffers.faces;
-  const BoxNearFacets found = box_near_facets(*pair.a, *box_a, *pair.pose_a, *pair.b, *box_b, *pair.pose_b, faces);
-  if (found.count == 0) return false;
-  if (found.only) {
-    return answer_boxes_from_proof(query, prove_supporting_facet(posed, *found.only, found.beyond * posed.inwards()),
-                                   out);
-  }
-  for (int i = 0; i < 9; ++i) {
-    if ((found.parallel >> i & 1U) == 0 || (i % 4 == 0 && posed.same_rotation())) continue;
-    // Edge k of a box runs from vertex 0 to vertex 4 >> k.
-    if (!posed.parallel(PairVector::edge_a(0, 4 >> i / 3), PairVector::edge_b(0, 4 >> i % 3))) return false;
-  }
-  const auto near = std::span(found.near).first(static_cast<std::size_t>(found.count));
-  const auto among_coplanar = [&] {
-    return answer_boxes_from_proof(query, prove_nearest(query, near, found.beyond, false), out);
-  };
-  const auto one_by_one = [&] {
-    return answer_boxes_from_proof(query, nearest_of_box_facets(posed, found, faces), out);
-  };
-  // Flush faces lie in one plane where rotations are one but for axes, or leave an axis as it is; others round. Bodies
-  // at one place tie with their images, exactly.
-  if (posed.in_one_frame() || posed.at_one_place()) return among_coplanar();
-  return posed.has_an_own_coordinate() ? among_coplanar() || one_by_one() : one_by_one() || among_coplanar();
-}
-
-bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
-  if (!(surface.lower > 0) || surface.face < 0) return false;
+bool prove_surface(PolytopeQuery& query, PenetrationDepth& out) {
+  const ExpansionResult& surface = query.surface;
   // Keys err by the error of a point and of the distance itself; what lies beyond is certainly farther.
   const InnerSurface& faces = query.buffers.surface;
   const double error = face_error(query.difference);
@@ -275,23 +229,47 @@ bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& ou
   return answer_from_proof(query, prove_nearest(query, near, beyond, false), out);
 }
 
-bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
-  if (!(found.beyond > 0)) return false;
+bool prove_gauss_maps(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near, PenetrationDepth& out) {
+  if (near.count == 0 || !(near.beyond > 0)) return false;
+  // The proofs take the origin to lie behind every piece.
+  const double error = kGaussLowerError * query.difference.reach();
+  for (int i = 0; i < near.count; ++i) {
+    if (!(near.pieces[i].key > error * error)) return false;
+  }
   const PosedPair& posed = query.exact();
-  return answer_from_proof(
-      query,
-      prove_facet(posed, facet_of(query.pair, posed, found), found.beyond * posed.inwards(), query.buffers.faces), out);
+  SupportFaces& faces = query.buffers.faces;
+  if (!are_parallel(posed, near.parallel)) return false;
+  const NearFacets& alone = found.nearest;
+  if (alone.beyond > 0 && !found.foot) {
+    const double beyond = alone.beyond * posed.inwards();
+    if (answer_from_proof(query, prove_facet(posed, facet_of(posed, alone), beyond, faces), out)) return true;
+  }
+  if (near.count == 1) return false;
+  const auto among_coplanar = [&] {
+    if (near.count > static_cast<int>(kMaxNearFaces)) return false;
+    std::array<SurfaceCorners, kMaxNearFaces> corners;
+    const auto count = static_cast<std::size_t>(near.count);
+    for (std::size_t i = 0; i < count; ++i) corners[i] = corners_of(posed, near.pieces[i].piece);
+    return answer_from_proof(query, prove_nearest(query, std::span(corners).first(count), near.beyond, false), out);
+  };
+  const auto one_by_one = [&] {
+    return near.all_told && answer_from_proof(query, nearest_of_ties(posed, query.with_supports(), near, faces), out);
+  };
+  // Flush faces lie in one plane where rotations are one but for axes, or leave an axis as it is; others by rounding.
+  // Bodies at one place tie with their images, exactly.
+  if (posed.in_one_frame() || posed.at_one_place()) return among_coplanar();
+  return posed.has_an_own_coordinate() ? among_coplanar() || one_by_one() : one_by_one() || among_coplanar();
 }
 
-bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
-  if (surface.status != ExpansionStatus::certified) return false;
-  const SurfaceCorners start = corners_of(query.buffers.surface, surface.face);
+bool answer_by_exact_expansion(PolytopeQuery& query, PenetrationDepth& out) {
+  const SurfaceCorners start = corners_of(query.buffers.surface, query.surface.face);
   std::optional<SurfaceCorners> ended;
   if (!answer_from_unique_facet(query, start.v, ended, out)) expand_exactly(query, start.v, nullptr, out);
   return true;
 }
 
-bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
+bool answer_by_closest_point(PolytopeQuery& query, PenetrationDepth& out) {
+  const ExpansionResult& surface = query.surface;
   std::array<DifferenceVertex, 4> vertices;
   std::array<VertexPair, 4> start;
   std::size_t count = 0;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "depth/expansion/expanding_polytope.hpp"
-#include "depth/facets/near_facets.hpp"
+#include "depth/facets/gauss_sat.hpp"
 #include "depth/pair/polytope_query.hpp"
 
 namespace pd::detail {
@@ -19,25 +19,23 @@ bool answer_by_overlay(PolytopeQuery& query, PenetrationDepth& out,
 /// [A] section 2, below the bound that the expansion leaves and with the vertices of P that it found. Always answers.
 bool answer_by_decomposition(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
 
-/// Two boxes: of the facets that their fifteen axes leave, the nearest, proved in the same way.
-bool prove_boxes(PolytopeQuery& query, PenetrationDepth& out);
-
 /// The surface's nearest face proved to lie in the nearest facet of P, mostly without big numbers.
-bool prove_surface(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+bool prove_surface(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Of the few pieces of P's boundary that may be nearest (`buffers.near_facets.nearest`), the one that is. Those pieces
 /// and what lies beyond cover the boundary, as the triangles of a surface enclose a ball: the proof is the same.
 /// @param beyond  no other piece is nearer to the origin; 0: not known.
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out);
 
-/// The same where doubles have told the nearest piece from all others, which are `found.beyond` or farther.
-bool prove_near_facet(PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out);
+/// The nearest facet that the Gauss maps tell, or of several that they leave (facets/gauss_sat.hpp), also where planes
+/// differ by rounding.
+bool prove_gauss_maps(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near, PenetrationDepth& out);
 
 /// Exact expansion from the surface's nearest face, the origin inside the surface for certain.
-bool answer_by_exact_expansion(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+bool answer_by_exact_expansion(PolytopeQuery& query, PenetrationDepth& out);
 
 /// The class by the point of P closest to the origin: in doubles where they suffice, else exactly from the simplex in
 /// which they ended; bodies that meet go on to the exact expansion. Always answers.
-bool answer_by_closest_point(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out);
+bool answer_by_closest_point(PolytopeQuery& query, PenetrationDepth& out);
 
 }  // namespace pd::detail

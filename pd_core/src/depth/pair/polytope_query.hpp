@@ -1,6 +1,6 @@
 /// @file
-/// What the stages of one query about two posed polytopes share. Nothing here passes from one stage to the next: what a
-/// search has found is handed on as a value (polytope_depth.cpp).
+/// What the stages of one query about two posed polytopes share (stages.hpp). Of what a stage finds only the surface's
+/// result passes to the next ones.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,8 @@
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/difference/bracket_width.hpp"
 #include "depth/difference/polytope_difference.hpp"
+#include "depth/expansion/expansion_goal.hpp"
+#include "depth/facets/gauss_boxes.hpp"
 #include "depth/pair/polytope_depth.hpp"
 #include "shape/posed_pair.hpp"
 
@@ -30,6 +32,7 @@ class PolytopeQuery {
   WarmCertificate* const warm;  ///< or nullptr
   const Bracket bracket;        ///< what the answer needs: an approximate one is never rounded exactly
   PolytopeDifference difference;
+  ExpansionResult surface;  ///< once a stage has asked for it; its faces are in the scratch
 
   /// The difference, ready for supports: the vertices are transformed on first use.
   const PolytopeDifference& with_supports() {
@@ -46,6 +49,19 @@ class PolytopeQuery {
   [[nodiscard]] std::int64_t exact_signs() const {
     return exact_ ? 1 + exact_->stages().double_double + exact_->stages().exact : 0;
   }
+
+  /// Whether both are boxes, looked for on first use.
+  bool boxes() {
+    if (!boxes_known_) {
+      boxes_known_ = true;
+      frame_a_ = box_frame(*pair.a);
+      if (frame_a_) frame_b_ = box_frame(*pair.b);
+    }
+    return frame_b_.has_value();
+  }
+  /// Require `boxes()`.
+  [[nodiscard]] const BoxFrame& frame_a() const { return *frame_a_; }
+  [[nodiscard]] const BoxFrame& frame_b() const { return *frame_b_; }
 
   /// Whether doubles with error bounds may answer alone.
   [[nodiscard]] bool doubles_suffice() const {
@@ -70,6 +86,8 @@ class PolytopeQuery {
 
  private:
   std::optional<PosedPair> exact_;
+  bool boxes_known_ = false;
+  std::optional<BoxFrame> frame_a_, frame_b_;
 };
 
 }  // namespace pd::detail

@@ -52,13 +52,10 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   return true;
 }
 
-}  // namespace
-
 bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
-  if (!query.warm || !query.doubles_suffice()) return false;
   const WarmState& state = query.warm->state();
   WarmReference& since = query.warm->state().reference;
-  if (!(since.clearance > 0) || !query.within_range()) return false;
+  if (!(since.clearance > 0)) return false;
   if (!since.a->same_storage(*query.pair.a) || !since.b->same_storage(*query.pair.b)) return false;
   RememberedFace near;
   ExpansionResult result;
@@ -79,9 +76,8 @@ bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
 }
 
 bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& out) {
-  if (!query.warm || !query.doubles_suffice()) return false;
   WarmState& state = query.warm->state();
-  if (state.apart_count == 0 || !query.within_range()) return false;
+  if (state.apart_count == 0) return false;
   const int count = std::exchange(state.apart_count, 0);
   if (!is_of_pair(state, query.pair)) return false;
   out.statistics.support_calls += 1;
@@ -96,6 +92,13 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   out.method = Method::expansion;
   out.warm = true;
   return true;
+}
+
+}  // namespace
+
+bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out) {
+  return answer_from_remembered_pieces(query, out) || answer_from_cached_faces(query, out) ||
+         answer_apart_from_cached_simplex(query, out);
 }
 
 bool remembers_overlap(const PolytopeQuery& query) {

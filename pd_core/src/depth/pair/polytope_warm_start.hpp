@@ -12,12 +12,10 @@
 
 namespace pd::detail {
 
-/// Most frames of a slowly moving pair: the nearest face of the saved surface is still a supporting plane of P.
-/// Computes a few planes and asks the neighbours of that face's vertices (expansion/cached_surface.hpp).
-bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out);
-
-/// Bodies that were apart: the closest point of P is looked for from the vertices around the last one.
-bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& out);
+/// Small solids from the facets that were near; most frames of a slowly moving pair from the nearest face of the saved
+/// surface, which is still a supporting plane of P (expansion/cached_surface.hpp); bodies that were apart from the
+/// vertices around their last closest point.
+bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Whether a surface or a facet has been saved, of whatever pair: the bodies overlapped in the last frame.
 [[nodiscard]] bool remembers_overlap(const PolytopeQuery& query);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/facets/box_sat.hpp"
+#include "depth/facets/gauss_boxes.hpp"
 #include "depth/features/nearest_of_segments.hpp"
 #include "depth/pair/slender_pair.hpp"
 

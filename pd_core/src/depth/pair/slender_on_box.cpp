@@ -5,8 +5,8 @@
 
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/difference/bracket_width.hpp"
-#include "depth/facets/box_sat.hpp"
 #include "depth/facets/facet_contact.hpp"
+#include "depth/facets/gauss_boxes.hpp"
 #include "depth/pair/contact_facets.hpp"
 #include "numeric/unit_roundoff.hpp"
 
