@@ -173,5 +173,44 @@ TEST(DeepUnions, APlateInsideOfARobotComesOutInBulletsTime) {
   }
 }
 
+enum class Thin { plate, disc, two_plates };
+
+/// A thin body lies between two of eight flush boxes of a column, each of which pushes it into the other one.
+/// @return the steps until no child is deeper than a millimetre
+int steps_out_of_a_seam(Thin kind, double aside) {
+  UnionWorld world;
+  world.bullet.world().setGravity(at(0, 0, 0));
+  auto* column = world.bullet.shape<btCompoundShape>();
+  for (int i = 0; i < 8; ++i) {
+    column->addChildShape(btTransform(btQuaternion::getIdentity(), at(0, 0.2 * i, 0)),
+                          world.bullet.shape<btBoxShape>(at(0.09, 0.1, 0.12)));
+  }
+  btCollisionShape* thin = world.bullet.shape<btBoxShape>(at(0.1, 0.0025, 0.1));
+  if (kind == Thin::disc) thin = world.bullet.shape<btCylinderShape>(at(0.1, 0.0025, 0.1));
+  if (kind == Thin::two_plates) {
+    auto* both = world.bullet.shape<btCompoundShape>();
+    for (const double y : {-0.025, 0.025}) {
+      both->addChildShape(btTransform(btQuaternion::getIdentity(), at(0, y, 0)), static_cast<btConvexShape*>(thin));
+    }
+    thin = both;
+  }
+  world.fixed(column);
+  world.moving(thin, at(aside, 0.7, 0.01), at(0, 0, 0));
+  for (int step = 1; step <= 240; ++step) {
+    world.step();
+    if (world.bullet.least_distance() > -1e-3) return step;
+  }
+  return 1000;
+}
+
+// Bullet's are still in after 240 steps; from elsewhere inside of such bodies they take up to 60.
+TEST(DeepUnions, AThinBodyBetweenTwoChildrenComesOut) {
+  for (const Thin kind : {Thin::plate, Thin::disc, Thin::two_plates}) {
+    for (const double aside : {0.01, 0.05}) {
+      EXPECT_LE(steps_out_of_a_seam(kind, aside), 60) << static_cast<int>(kind) << ' ' << aside;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

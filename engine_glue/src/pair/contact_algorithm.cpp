@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <typeinfo>
 
 #include "pair/box_contacts.hpp"
 #include "pair/manifold_points.hpp"
+#include "pair/passing_bodies.hpp"
 #include "pair/solver_core.hpp"
 #include "pair/step_reach.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -121,37 +123,36 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   const btScalar reach = own_boxes && !touched ? this_step().of_boxes(shape_a, shape_b) : threshold;
   auto buffers = core.buffers.lease();
   FreshPoints fresh;
+  std::optional<PairAnswer> answer;
+  // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
+  const std::uint64_t stamp = first ? 0 : world_.stamp();
+  const SharpCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
+  const PairQuestion asked{.a = shape_a,
+                           .pose_a = pose_a,
+                           .b = shape_b,
+                           .pose_b = pose_b,
+                           .shapes = memory != nullptr ? memory->shapes : buffers->recent,
+                           .warm = memory != nullptr ? &memory->warm : nullptr,
+                           .stamp = stamp,
+                           .corners = corners,
+                           .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
+                           .boxes_asked = boxes};
   if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
-    // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
-    // compared.
-    const std::uint64_t stamp = first ? 0 : world_.stamp();
-    const SharpCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
-    PairAnswer answer;
     ContactManifold points;
-    const PairQuestion asked{.a = shape_a,
-                             .pose_a = pose_a,
-                             .b = shape_b,
-                             .pose_b = pose_b,
-                             .shapes = memory != nullptr ? memory->shapes : buffers->recent,
-                             .warm = memory != nullptr ? &memory->warm : nullptr,
-                             .stamp = stamp,
-                             .corners = corners,
-                             .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
-                             .boxes_asked = boxes};
     // A query may ask for distances of metres. Contacts, and the neighbours that may cover them, lie within the
     // breaking threshold.
     const auto asked_reach = static_cast<double>(threshold);
     const double contact_reach =
         of_union ? std::min(asked_reach, static_cast<double>(manifold.getContactBreakingThreshold())) : asked_reach;
-    const auto outcome = core.contacts(asked, contact_reach, *buffers, answer, points);
+    const auto outcome = core.contacts(asked, contact_reach, *buffers, answer.emplace(), points);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), *a, *b, info, *result);
       return;
     }
     if (outcome == SolverCore::Outcome::answered) {
-      const double distance = answer.depth.signed_distance();
+      const double distance = answer->depth.signed_distance();
       if (of_union && distance > contact_reach) {
-        if (distance <= asked_reach) points = closest_point_of(answer.depth);
+        if (distance <= asked_reach) points = closest_point_of(answer->depth);
       } else if (of_union) {
         buffers->near.begin_pair(stamp);
         AskedPieces pieces(*a, *b,
@@ -161,10 +162,24 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                             .near = buffers->near,
                             .cover = buffers->cover,
                             .manifold = buffers->manifold});
-        count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points),
+        count_covered(keep_uncovered(pieces.as(answer->a, answer->b), answer->depth, AnswerPoints::made, points),
                       *buffers);
       }
       fresh = fresh_points(points);
+    }
+  }
+  if (memory != nullptr && !of_union && on_one_line(fresh, kEdge * threshold)) {
+    if (!answer) {
+      const CachedShape& found_a = core.find(shape_a, stamp, memory->shapes[0], *buffers);
+      const CachedShape& found_b = core.find(shape_b, stamp, memory->shapes[1], *buffers);
+      answer = PairAnswer{.depth = {},
+                          .a = {found_a.sharp.get(), to_pd(pose_a)},
+                          .b = {found_b.sharp.get(), to_pd(pose_b)},
+                          .boxes = true};
+    }
+    if (answer->a.shape != nullptr && answer->b.shape != nullptr &&
+        pass_each_other(answer->a, answer->b, fresh, this_step())) {
+      fresh.count = 0;
     }
   }
   if (own_boxes && StepReach::may_be_idle(fresh, threshold)) this_step().leave_out_idle(fresh);

@@ -33,6 +33,7 @@ StepReach::StepReach(const btCollisionObject& a, const btCollisionObject& b, con
   const bool link = a_.link || b_.link;
   all_ = unknown || link;
   links_ = !unknown && link;
+  fixed_ = a.isStaticOrKinematicObject() || b.isStaticOrKinematicObject();
   a_.velocity += a_.gained;
   b_.velocity += b_.gained;
 }

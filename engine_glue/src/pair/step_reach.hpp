@@ -37,6 +37,14 @@ class StepReach {
   StepReach(const btCollisionObject& a, const btCollisionObject& b, const btManifoldResult& result, btScalar threshold,
             btScalar seconds);
 
+  /// Whether points can be left out, and one of the bodies is held in its place or on its way.
+  [[nodiscard]] bool against_fixed() const { return !all_ && fixed_; }
+  /// How far the bodies close along a normal (unit, from B to A) at a place until the next step. Requires that their
+  /// motion is known.
+  [[nodiscard]] btScalar closed_in_step(const btVector3& place, const btVector3& normal) const {
+    return seconds_ * coming_at(place).dot(normal);
+  }
+
   /// How far apart points may be to be needed. Requires two btBoxShapes.
   [[nodiscard]] btScalar of_boxes(const btConvexShape& a, const btConvexShape& b) const;
   /// The same of two pieces' points, which lie within `radius` of a place.
@@ -66,6 +74,7 @@ class StepReach {
   btScalar seconds_;
   bool all_;
   bool links_;
+  bool fixed_;
   BodyMotion a_, b_;  ///< with what the step's forces add
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "pair/passing_bodies.hpp"
 #include "pair/solver_core.hpp"
 #include "pair/step_reach.hpp"
 #include "pd/bullet/scalar.hpp"
@@ -113,7 +114,6 @@ class NearChildren final : public NearSides {
       if (!child.shape->isConvex()) return false;
       const auto found = core_.cache.find(static_cast<const btConvexShape&>(*child.shape), question_.stamp);
       if (!found->body) return false;
-      side.polytopes = side.polytopes && found->body->polytope() != nullptr;
       const bool part = child.index >= 0;
       held.shapes.push_back(found);
       side.numbers.push_back(child.index);
@@ -246,7 +246,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
     }
   }
   memories_.end(memory.pieces);
-  if (deep_.needed()) {
+  const double speed = (linear_velocity(*b.getCollisionObject()) - linear_velocity(*a.getCollisionObject())).norm();
+  if (deep_.needed_in_step(static_cast<double>(question.time.seconds) * speed, pairs_.size())) {
     leave_as_one(question, core, memory, *buffers, patches);
   } else {
     memory.union_pause = memory.union_refusals = 0;
@@ -312,6 +313,10 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   memory.met = answer.depth.signed_distance() <= gap;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   reach.leave_out_idle(points);
+  if (const FreshPoints fresh = fresh_points(points);
+      on_one_line(fresh, kEdge * question.threshold) && pass_each_other(answer.a, answer.b, fresh, reach)) {
+    points.count = 0;
+  }
   AskedPieces pieces = question.of_pieces(pair.a(), pair.b(), core, buffers);
   count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points), buffers);
   const auto [i, j] = pairs_.back();

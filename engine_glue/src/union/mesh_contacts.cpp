@@ -410,9 +410,9 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const auto threshold = static_cast<double>(question.threshold);
   const bool one_sided = core.settings.one_sided_meshes;
   if (!one_sided) enter_sides(question, child, reach);
-  ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1,
-                          std::span<const MetTriangle>(triangles_).subspan(first), one_sided ? nullptr : &sides_},
-                         core, buffers, memory.shape_of_child(0, child.index));
+  const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
+  ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1, met_of_child, one_sided ? nullptr : &sides_}, core,
+                         buffers, memory.shape_of_child(0, child.index));
   const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
   if (!asked_one_by_one && find_on_flat(standing, a, question, first, patches)) {
     if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
@@ -441,7 +441,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     if (one_sided && !one_sided_.admit(answer.depth, front, static_cast<int>(i))) continue;
     if (!one_sided) {
       const MeshTriangle& near = buffers.around.triangles()[places_[i]];
-      const Vec3 back = sides_.judge(number_of_pieces(child.index, met), near.across.normalized(), met, answer);
+      const Vec3 back = sides_.judge(met, near.across.normalized(), met_of_child, answer);
       if (!back.isZero()) {
         one_sided_.add_behind(static_cast<int>(i), back);
         continue;

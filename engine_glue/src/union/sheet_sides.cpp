@@ -18,17 +18,33 @@ constexpr double kPutThere = 3;
 /// Of the gap up to which there are contacts: triangles that lie so far off a plane are not beside it.
 constexpr double kBeside = 4;
 
-/// True if a way from one side of a triangle's plane to the other leads through the triangle.
+/// True if a way leads from one side of a triangle's plane to the other.
+bool crosses_plane(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
+  const Vec3 corner = to_pd(met.corners[0]);
+  return normal.dot(from - corner) * normal.dot(to - corner) < 0;
+}
+
+/// True if such a way leads through the triangle.
 bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
+  if (!crosses_plane(from, to, normal, met)) return false;
   const Vec3 corner = to_pd(met.corners[0]);
   const double before = normal.dot(from - corner), after = normal.dot(to - corner);
-  if (!(before * after < 0)) return false;
   const Vec3 place = from + before / (before - after) * (to - from);
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 begin = to_pd(met.corners[i]), end = to_pd(met.corners[i < 2 ? i + 1 : 0]);
     if ((end - begin).cross(place - begin).dot(normal) < 0) return false;
   }
   return true;
+}
+
+/// True if a way that crosses a triangle's plane leads through it or one of nearly its direction: who comes aslant has
+/// come through the triangle beside the one that is the nearest now.
+bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, std::span<const MetTriangle> around) {
+  return std::any_of(around.begin(), around.end(), [&](const MetTriangle& met) {
+    const Vec3 corner = to_pd(met.corners[0]);
+    const Vec3 own = (to_pd(met.corners[1]) - corner).cross(to_pd(met.corners[2]) - corner).normalized();
+    return std::abs(own.dot(normal)) > kOfOneWay && leads_through(from, to, own, met);
+  });
 }
 
 }  // namespace
@@ -42,6 +58,7 @@ void SheetSides::begin(const SheetMemory& memory) {
 void SheetSides::enter(int child, const btTransform& pose, const Pose& mesh, const Vec3& middle, double way,
                        double reach) {
   first_of_child_ = fresh_.size();
+  child_ = child;
   mesh_ = mesh;
   reach_ = reach;
   pose_ = last_pose_ = pose;
@@ -88,7 +105,9 @@ Vec3 SheetSides::front_of(std::uint64_t triangle, const Vec3& normal) const {
   return cosine > 0 ? normal : Vec3(-normal);
 }
 
-Vec3 SheetSides::judge(std::uint64_t triangle, const Vec3& normal, const MetTriangle& met, const PairAnswer& answer) {
+Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<const MetTriangle> around,
+                       const PairAnswer& answer) {
+  const std::uint64_t triangle = number_of_pieces(child_, met);
   const Vec3 corner = to_pd(met.corners[0]);
   const bool overlapping = answer.depth.contact == ContactClass::overlapping;
   const bool within = answer.depth.signed_distance() <= reach_;
@@ -97,6 +116,7 @@ Vec3 SheetSides::judge(std::uint64_t triangle, const Vec3& normal, const MetTria
   const Vec3 side = cosine > 0 ? normal : Vec3(-normal);
   Vec3 front = front_of(triangle, normal);
   const bool was_over = !front.isZero();
+  bool sure = true;
   if (!was_over && known_ && (overlapping || fast_)) {
     const Vec3 came = before(answer.depth.witness_a);
     const Vec3 now = mesh_.rotation().transpose() * (answer.depth.witness_a - mesh_.translation());
@@ -105,8 +125,10 @@ Vec3 SheetSides::judge(std::uint64_t triangle, const Vec3& normal, const MetTria
       front = beside(std::span(fresh_).subspan(first_of_child_), normal, corner);
       if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, corner);
       if (front.isZero() && comes_through && side.dot(before_ - corner) < 0) front = -side;
-    } else if (std::abs(cosine) > kOfOneWay && leads_through(came, now, normal, met)) {
-      front = -side;
+    } else if (std::abs(cosine) > kOfOneWay && crosses_plane(came, now, normal, met)) {
+      // Who crossed the plane where no triangle is known may have come through one or around a rim.
+      sure = leads_through_one(came, now, normal, around);
+      if (sure) front = -side;
     }
   }
   const bool through = front.dot(side) < 0 && (overlapping || std::abs(cosine) > kOfOneWay);
@@ -115,7 +137,7 @@ Vec3 SheetSides::judge(std::uint64_t triangle, const Vec3& normal, const MetTria
     keep(triangle, front, corner);
     return mesh_.rotation() * front;
   }
-  if (std::abs(cosine) > kOfOneWay || was_over) keep(triangle, side, corner);
+  if (sure && (std::abs(cosine) > kOfOneWay || was_over)) keep(triangle, side, corner);
   return Vec3::Zero();
 }
 

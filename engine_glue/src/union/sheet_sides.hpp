@@ -43,8 +43,9 @@ class SheetSides {
   [[nodiscard]] const Vec3& middle_before() const { return before_; }
 
   /// @param normal  of the triangle, unit and in the mesh's frame
+  /// @param around  all triangles that the child is asked about
   /// @return the triangle's front, unit and in the world, where the answer leads to its back; else zero
-  Vec3 judge(std::uint64_t triangle, const Vec3& normal, const MetTriangle& met, const PairAnswer& answer);
+  Vec3 judge(const MetTriangle& met, const Vec3& normal, std::span<const MetTriangle> around, const PairAnswer& answer);
   /// The child is in front of a triangle.
   void keep(std::uint64_t triangle, const Vec3& front, const Vec3& corner) {
     fresh_.push_back({triangle, front, front.dot(corner)});
@@ -63,6 +64,7 @@ class SheetSides {
   std::vector<KnownFront> fresh_;
   std::vector<SheetMemory::LastPose> poses_;
   std::size_t first_of_child_ = 0;  ///< among `fresh_`
+  int child_ = -1;                  ///< the one that is asked
   bool known_ = false;              ///< where the child was
   bool fast_ = false;
   double reach_ = 0;

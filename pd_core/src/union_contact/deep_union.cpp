@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compound/part_pairs.hpp"
 #include "pd/contact/time_of_impact.hpp"
+#include "pd/depth/difference_queries.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/union_contact/union_piece.hpp"
@@ -15,6 +17,15 @@ namespace {
 
 /// Of the radius of the smaller piece: contacts that solvers leave behind are far below.
 constexpr double kDeep = 0.25;
+/// Share of the smaller piece's extent along the way out from which on a thin piece is deep: what lies between two
+/// others is in one of them by half of it.
+constexpr double kDeepForThin = 0.4;
+/// Thin pieces count where so few pairs are near, and where the bodies come by less than this share of their depth in a
+/// step: a plate that is held in a robot, and not walls of shells that meet.
+constexpr std::size_t kFewPairs = 64;
+constexpr double kHeld = 0.5;
+/// Share of the smaller piece's radius: no extent is asked for what is less deep.
+constexpr double kResting = 0x1p-10;
 /// cos 45 degrees.
 constexpr double kTogether = 0.7;
 /// Ways out that are no longer than this times the deepest pair's depth, which none is shorter than, are short enough.
@@ -29,6 +40,22 @@ constexpr int kMostStops = 12;
 constexpr std::size_t kMostPairs = 1 << 10;
 constexpr std::int64_t kMostFacets = 1 << 14;
 
+/// Tells whether a piece is through another one by a good part of its extent along the way out. A thin plate is so deep
+/// long before its radius counts.
+bool is_deep_for_thin(const PiecesAnswer& answer, double radius) {
+  if (answer.depth.depth < kResting * radius) return false;
+  const auto thicker = [&](const PosedShape& piece) {
+    const auto extent = support_of_difference(piece, piece, answer.depth.normal);
+    return !extent || answer.depth.depth < kDeepForThin * extent.value().value;
+  };
+  return !thicker(answer.a) || !thicker(answer.b);
+}
+
+bool all_polytopes(const std::vector<PosedShape>& pieces) {
+  return std::all_of(pieces.begin(), pieces.end(),
+                     [](const PosedShape& piece) { return piece.shape->polytope() != nullptr; });
+}
+
 PosedShape moved_by(const PosedShape& piece, const Vec3& way) {
   return {piece.shape, Pose::from_trusted_matrix(piece.pose.rotation(), piece.pose.translation() + way)};
 }
@@ -36,11 +63,10 @@ PosedShape moved_by(const PosedShape& piece, const Vec3& way) {
 }  // namespace
 
 void DeepUnion::clear() {
-  deepest_ = 0;
   deepest_pair_.depth.depth = 0;
-  normals_.clear();
   own_ways_.clear();
-  torn_ = false;
+  solid_.clear();
+  thin_.clear();
 }
 
 void DeepUnion::add(const PiecesAnswer& answer, const ContactManifold& left) {
@@ -49,14 +75,24 @@ void DeepUnion::add(const PiecesAnswer& answer, const ContactManifold& left) {
   own_ways_.emplace_back(depth.depth, depth.normal);
   if (depth.depth > deepest_pair_.depth.depth) deepest_pair_ = answer;
   const double radius = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
-  if (depth.depth < kDeep * radius) return;
-  deepest_ = std::max(deepest_, depth.depth);
+  const bool deep = depth.depth >= kDeep * radius;
+  if (deep) solid_.add(depth, left);
+  if (deep || is_deep_for_thin(answer, radius)) thin_.add(depth, left);
+}
+
+void DeepUnion::DeepPairs::add(const PenetrationDepth& depth, const ContactManifold& left) {
+  deepest = std::max(deepest, depth.depth);
   if (left.count == 0) return;
   // A facet that stands in for a covered one is far, and what lies round it was not looked at.
-  torn_ = torn_ || depth.normal.dot(left.normal) < kTogether ||
-          std::any_of(normals_.begin(), normals_.end(),
-                      [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
-  normals_.push_back(left.normal);
+  torn = torn || depth.normal.dot(left.normal) < kTogether ||
+         std::any_of(normals.begin(), normals.end(),
+                     [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
+  normals.push_back(left.normal);
+}
+
+bool DeepUnion::needed_in_step(double way, std::size_t num_pairs) const {
+  if (solid_.need_a_way()) return true;
+  return thin_.need_a_way() && num_pairs <= kFewPairs && way <= kHeld * thin_.deepest;
 }
 
 bool DeepUnion::collect(double reach, NearSides& near) {
@@ -185,8 +221,8 @@ DeepUnion::Outcome DeepUnion::find_way(const Question& question, const DeepBuffe
     return Outcome::nearly;
   }
   // A way of length d meets no piece that is farther than d from the other body now.
-  for (double reach = 2 * deepest_;;) {
-    if (!collect(reach, question.near) || !a_.polytopes || !b_.polytopes) return Outcome::unsupported;
+  for (double reach = 2 * thin_.deepest;;) {
+    if (!collect(reach, question.near)) return Outcome::unsupported;
     if (a_.posed.size() * b_.posed.size() > kMostPairs) return Outcome::over_budget;
     UnionExit::Way shortest;
     switch (buffers.exit.find(a_.posed, b_.posed, {kMostFacets, question.pose_rounding}, buffers.scratch, shortest)) {
@@ -205,8 +241,13 @@ DeepUnion::Outcome DeepUnion::find_way(const Question& question, const DeepBuffe
     }
     const double margins = a_.posed[shortest.a].shape->margin() + b_.posed[shortest.b].shape->margin();
     last = shortest.by / length;
-    const Exit exit{last, length + margins, shortest.a, shortest.b, last};
-    return lead_out(exit, question.threshold, buffers, way) ? Outcome::found : Outcome::apart;
+    Exit exit{last, length + margins, shortest.a, shortest.b, last};
+    const bool polytopes = all_polytopes(a_.posed) && all_polytopes(b_.posed);
+    // A way between smooth pieces was found for polytopes inside of them.
+    constexpr double kAnyLength = std::numeric_limits<double>::infinity();
+    if (const auto whole = polytopes ? std::nullopt : exit_along(last, kAnyLength, buffers.scratch)) exit = *whole;
+    if (!lead_out(exit, question.threshold, buffers, way)) return Outcome::apart;
+    return polytopes ? Outcome::found : Outcome::nearly;
   }
 }
 

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "pd/depth/minkowski_difference.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/union_contact/union_piece.hpp"
+#include "union_contact/piece_exit.hpp"
 
 namespace pd {
 
@@ -32,6 +35,22 @@ Extent extent_of(const PosedShape& posed) {
     extent.high = extent.high.cwiseMax(corner);
   }
   return extent;
+}
+
+/// The hull of a smooth core's support points in the 26 directions to the faces, edges and corners of a cube. It lies
+/// inside of the core.
+std::optional<ConvexShape> inner_polytope(const ConvexShape& shape) {
+  std::vector<Vec3> points;
+  const PosedShape at_home{&shape, Pose()};
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (!way.isZero()) points.push_back(detail::farthest_against(at_home, way.normalized()));
+  }
+  auto hull = ConvexPolytope::from_points(points);
+  if (!hull) return std::nullopt;
+  auto rounded = ConvexShape(std::move(hull.value())).with_margin(shape.margin());
+  if (!rounded) return std::nullopt;
+  return std::move(rounded.value());
 }
 
 /// The point of a convex polygon, counter-clockwise about n, nearest to the origin.
@@ -74,10 +93,24 @@ UnionExit::Waiting UnionExit::pop() {
   return top;
 }
 
-void UnionExit::begin(std::span<const PosedShape> a, std::span<const PosedShape> b, double pose_rounding,
+bool UnionExit::stand_in(std::vector<PosedShape>& pieces) {
+  for (PosedShape& piece : pieces) {
+    if (piece.shape->polytope() != nullptr) continue;
+    auto inner = inner_polytope(*piece.shape);
+    if (!inner) return false;
+    piece.shape = &inner_.emplace_back(std::move(*inner));
+  }
+  return true;
+}
+
+bool UnionExit::begin(std::span<const PosedShape> of_a, std::span<const PosedShape> of_b, double pose_rounding,
                       Scratch& scratch) {
-  a_ = a;
-  b_ = b;
+  std::vector<PosedShape>& a = a_;
+  std::vector<PosedShape>& b = b_;
+  a.assign(of_a.begin(), of_a.end());
+  b.assign(of_b.begin(), of_b.end());
+  inner_.clear();
+  if (!stand_in(a) || !stand_in(b)) return false;
   scratch_ = &scratch;
   slack_ = 0;
   inside_one_ = false;
@@ -107,6 +140,7 @@ void UnionExit::begin(std::span<const PosedShape> a, std::span<const PosedShape>
     const Vec3 nearest = pieces_[k].low.cwiseMax(Vec3::Zero()) + pieces_[k].high.cwiseMin(Vec3::Zero());
     push_piece(nearest.norm(), k);
   }
+  return true;
 }
 
 void UnionExit::push_piece(double distance, std::size_t number) {
@@ -234,7 +268,7 @@ void UnionExit::cut(const Waiting& part, std::size_t number) {
 
 UnionExit::Outcome UnionExit::find(std::span<const PosedShape> a, std::span<const PosedShape> b, const Limits& limits,
                                    Scratch& scratch, Way& way) {
-  begin(a, b, limits.pose_rounding, scratch);
+  if (!begin(a, b, limits.pose_rounding, scratch)) return Outcome::over_budget;
   facets_left_ = limits.max_facets;
   while (!queue_.empty()) {
     const Waiting top = pop();

@@ -48,10 +48,8 @@ class NearStanding final : public NearSides {
   bool collect(StandingPieces& body, const TriangleBox& other, double reach, NearSide& side) {
     body.meeting(grown(other, reach), side.numbers);
     side.posed.clear();
-    side.polytopes = true;
     for (const int i : side.numbers) {
       side.posed.push_back(body.posed(i));
-      side.polytopes = side.polytopes && side.posed.back().shape->polytope() != nullptr;
     }
     return !side.posed.empty();
   }

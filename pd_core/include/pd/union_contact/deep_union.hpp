@@ -21,7 +21,6 @@ namespace pd {
 struct NearSide {
   std::vector<PosedShape> posed;
   std::vector<int> numbers;  ///< of the pieces, as the host counts them
-  bool polytopes = true;     ///< none of them is smooth
 };
 
 /// The pieces of two unions that come near each other. A host implements it on its own trees.
@@ -58,7 +57,12 @@ class DeepUnion {
   /// Tells whether the way out of the whole is to be asked for. Pieces are in each other by a quarter of the smaller
   /// one's radius or more. Either no contact of theirs is left, or those that are left lead more than 45 degrees apart
   /// from each other or from the pieces' own answers.
-  [[nodiscard]] bool needed() const { return deepest_ > 0 && (normals_.empty() || torn_); }
+  [[nodiscard]] bool needed() const { return solid_.need_a_way(); }
+  /// Asks the same in a step. Where few pieces are near and the bodies hardly move, a thin piece is deep by two fifths
+  /// of its extent along its own way out.
+  /// @param way        that the bodies come against each other in the step
+  /// @param num_pairs  of pieces that are near
+  [[nodiscard]] bool needed_in_step(double way, std::size_t num_pairs) const;
 
   struct Way {
     ContactManifold points;  ///< of the two pieces that touch last, along the way out
@@ -67,10 +71,10 @@ class DeepUnion {
   };
   enum class Outcome {
     found,        ///< the shortest way
-    nearly,       ///< one that is at most half as long again
+    nearly,       ///< one that is at most half as long again, or where a piece is smooth, about the shortest
     apart,        ///< only margins meet
     over_budget,  ///< more pairs of pieces within reach, or facets of their differences, than one answer may take
-    unsupported   ///< a piece within reach has no exact form, or one is smooth and no short way was found
+    unsupported   ///< a piece within reach has no exact form
   };
   struct Question {
     NearSides& near;
@@ -102,6 +106,20 @@ class DeepUnion {
   [[nodiscard]] std::optional<PosedShape> still_in(std::size_t i, std::size_t j, const Vec3& way,
                                                    Scratch& scratch) const;
 
+  /// The answers of pairs that are deep.
+  struct DeepPairs {
+    double deepest = 0;
+    std::vector<Vec3> normals;  ///< of their contacts that are left
+    bool torn = false;
+    void clear() {
+      deepest = 0;
+      normals.clear();
+      torn = false;
+    }
+    void add(const PenetrationDepth& depth, const ContactManifold& left);
+    [[nodiscard]] bool need_a_way() const { return deepest > 0 && (normals.empty() || torn); }
+  };
+
   using OwnWay = std::pair<double, Vec3>;
   /// A straight way for A out of B, not to the nearest place for certain.
   struct Exit {
@@ -120,11 +138,10 @@ class DeepUnion {
   /// The contact that leads out. @return false where it has no points
   bool lead_out(const Exit& exit, double threshold, const DeepBuffers& buffers, Way& way) const;
 
-  double deepest_ = 0;            ///< of the pieces that are deep
   PiecesAnswer deepest_pair_;     ///< of all pieces
-  std::vector<Vec3> normals_;     ///< of their contacts that are left
   std::vector<OwnWay> own_ways_;  ///< of pieces in each other: how deep, along which normal
-  bool torn_ = false;
+  DeepPairs solid_;               ///< deep by their radius
+  DeepPairs thin_;                ///< those, and others deep by their extent
   double pose_rounding_ = 0;
   Side a_;
   Side b_;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,13 +34,14 @@ class UnionExit {
   enum class Outcome {
     found,
     apart,       ///< the cores do not overlap
-    over_budget  ///< more facets than may be built
+    over_budget  ///< more facets than may be built, or a smooth piece that is too large for a polytope
   };
   struct Limits {
     std::int64_t max_facets;  ///< of the P_ij that may be built
     double pose_rounding;     ///< as of `seam_slack`
   };
-  /// Requires: polytopes; their margins are left aside.
+  /// Margins are left aside. A smooth piece counts as the hull of 26 points of its surface: the way then has the
+  /// direction of a short one, and is too short by what lies outside of the hull.
   /// Time: up to one query of depth a pair of pieces, and O(k f) for each cut in the k P_ij that hold its point and
   /// their f facets.
   Outcome find(std::span<const PosedShape> a, std::span<const PosedShape> b, const Limits& limits, Scratch& scratch,
@@ -74,8 +76,10 @@ class UnionExit {
     Vec3 nearest = Vec3::Zero();
   };
 
-  /// Lets all pieces wait.
-  void begin(std::span<const PosedShape> a, std::span<const PosedShape> b, double pose_rounding, Scratch& scratch);
+  /// Puts polytopes in the place of smooth pieces. @return false where one is too large for a polytope
+  bool stand_in(std::vector<PosedShape>& pieces);
+  /// Lets all pieces wait. @return false where a smooth one is too large for a polytope
+  bool begin(std::span<const PosedShape> a, std::span<const PosedShape> b, double pose_rounding, Scratch& scratch);
   /// How deep or far apart the pair is, and lets it wait again until it has to be built.
   void measure(std::size_t piece);
   /// @return false beyond the budget
@@ -94,8 +98,9 @@ class UnionExit {
   /// Lets what a piece leaves of the part wait.
   void cut(const Waiting& part, std::size_t piece);
 
-  std::span<const PosedShape> a_;
-  std::span<const PosedShape> b_;
+  std::vector<PosedShape> a_;
+  std::vector<PosedShape> b_;
+  std::deque<ConvexShape> inner_;  ///< in the place of smooth pieces
   Scratch* scratch_ = nullptr;
   std::int64_t facets_left_ = 0;
   double slack_ = 0;
