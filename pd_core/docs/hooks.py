@@ -29,6 +29,7 @@ SHOWN = {
     "README.md": "index.md",
     "engine_glue/README.md": "bullet.md",
     "engine_glue/mujoco/README.md": "mujoco.md",
+    "engine_glue/fcl/README.md": "fcl.md",
     "demos/audit/README.md": "accuracy.md",
     "demos/python/README.md": "python.md",
     "pd_core/README.md": "papers.md",
@@ -116,14 +117,16 @@ def on_post_build(config):
 def api_link(match):
     """The page that Doxygen makes of a header; a name that no public header has ends the build."""
     words, header = match.groups()
-    namesakes = [path.relative_to(ROOT).as_posix() for path in ROOT.glob(f"*/include/pd*/**/{(header or '').split('/')[-1]}")]
+    name = (header or "").split("/")[-1]
+    namesakes = [path.relative_to(ROOT).as_posix() for rooms in ("*", "engine_glue/*") for path in ROOT.glob(f"{rooms}/include/pd*/**/{name}")]
     meant = [path for path in namesakes if header and path.endswith("/" + header)]
     if header and len(meant) != 1:
         raise PluginError(f"{header} names no public header, or several: a folder before it tells which")
     if not DOXYGEN:
         return words
-    # Doxygen names a page by its file, or by its path where two have the same name, and escapes what is no letter.
-    page = "files" if not header else header if len(namesakes) == 1 else meant[0]
+    # Doxygen names a page by its file, or where several have the same name by its path below their common folder, and escapes what
+    # is no letter.
+    page = "files" if not header else name if len(namesakes) == 1 else posixpath.relpath(meant[0], posixpath.commonpath(namesakes))
     page = page.replace("_", "__").replace(".", "_8").replace("/", "_2") + ".html"
     return f'<a href="api/{page}">{words}</a>'
 
