@@ -46,5 +46,7 @@ if command -v ccache >/dev/null; then
   export CCACHE_DIR="${CCACHE_DIR:-${HOME}/.cache/ccache}"
 fi
 (cd "${tree}" && dpkg-buildpackage --no-sign --no-check-builddeps --no-pre-clean "${build[@]}")
+printf '\n== hardening (SECURITY.md)\n'
+packaging/hardening.sh "${tree}/debian/tmp"
 printf '\n== packages\n'
 find "${out}" -maxdepth 1 -name '*.deb' -printf '%9s  %P\n' | sort -k 2

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Programs and shared libraries as SECURITY.md promises them: a stack protector, checked library calls (_FORTIFY_SOURCE), all
+# symbols bound before the first one is used (-z now, -z relro), no stack that runs, addresses that the system chooses.
+#
+#   packaging/hardening.sh FILE|FOLDER...
+#
+# Reads ELF files with readelf; of a folder those that are programs or shared libraries. Ends with 1 where something is missing.
+# packaging/debian.sh runs it on what it has built.
+set -euo pipefail
+(($# > 0)) || { sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+
+missing_of() { # one word for each promise that the file breaks
+  local dynamic symbols segments
+  dynamic=$(readelf -Wd "$1") segments=$(readelf -Wl "$1") symbols=$(readelf -W --dyn-syms "$1")
+  grep -qE 'BIND_NOW|FLAGS_1.*NOW' <<<"${dynamic}" || printf ' now'
+  grep -q GNU_RELRO <<<"${segments}" || printf ' relro'
+  grep -qE 'GNU_STACK.* RW ' <<<"${segments}" || printf ' stack-that-does-not-run'
+  grep -qE 'file type is DYN|Shared object|PIE' <<<"${segments}" || printf ' position-independent'
+  grep -q __stack_chk_fail <<<"${symbols}" || printf ' stack-protector'
+  # Checked copies appear only where the compiler cannot prove the size, and the standard library's own headers call vsnprintf
+  # by a pointer: a file that formats text and checks nothing was compiled without.
+  if grep -qE ' v?(f|s|sn)?printf@' <<<"${symbols}"; then
+    grep -qE ' __[a-z]+_chk@' <<<"${symbols}" || printf ' checked-calls'
+  fi
+}
+
+status=0
+while IFS= read -r -d '' file; do
+  [[ $(head -c 4 "${file}" | od -An -c | tr -d ' ') == '177ELF' ]] || continue
+  readelf -h "${file}" 2>/dev/null | grep -qE 'Type: +(DYN|EXEC)' || continue
+  missing=$(missing_of "${file}")
+  printf '%-60s %s\n' "${file##*/}" "${missing:+misses}${missing:-holds}"
+  [[ -z ${missing} ]] || status=1
+done < <(find "$@" -type f -print0)
+exit "${status}"
