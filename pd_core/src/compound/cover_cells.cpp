@@ -47,27 +47,6 @@ double distance_within(const RoughPlane& plane, const CoverCell& cell, double ex
   return std::max(plain, std::sqrt(best) * (1 - 0x1p-50));
 }
 
-/// The greatest <g, x> over {x in cube : <n, x> = d} is the least over m of the greatest <g - m n, x> + m d over the
-/// cube, and that least is where a coordinate of g - m n vanishes. Every m bounds it from above.
-bool covers_within(const PartDifference& piece, const RoughPlane& plane, const CoverCell& cell, double extent) {
-  const double rounding = 0x1p-47 * extent;
-  return std::all_of(piece.planes.begin(), piece.planes.end(), [&](const RoughPlane& side) {
-    const double limit = side.offset - side.slack;
-    const auto below = [&](double m) {
-      const Vec3 rest = side.normal - m * plane.normal;
-      return rest.dot(cell.centre) + cell.half * rest.lpNorm<1>() + m * plane.offset +
-                 std::abs(m) * (plane.slack + rounding) + rounding <
-             limit;
-    };
-    if (below(0)) return true;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double m = side.normal[axis] / plane.normal[axis];
-      if (std::abs(m) < 1e3 && below(m)) return true;
-    }
-    return false;
-  });
-}
-
 CoverCells::CoverCells(PartDifferences& differences, double reach, double known_lower, UnionMemory* memory)
     : differences_(differences), known_lower_(known_lower), memory_(memory) {
   std::vector<std::int32_t> all(differences.pieces().size());
@@ -195,7 +174,8 @@ std::optional<CoverCell> CoverCells::next(double upper) {
     const bool stuck =
         !halved_last && cell.depth > 0 && meeting_.size() == cell.pieces->size() && meeting_.size() <= kMany;
     cell.pieces = std::make_shared<const std::vector<std::int32_t>>(meeting_);
-    if (meeting_.size() <= kFew || stuck || cell.depth == kMaxDepth || num_cells_ > kMaxCells) return cell;
+    const std::size_t few = num_cells_ > kCellsOfWalls ? kFewAtWalls : kFew;
+    if (meeting_.size() <= few || stuck || cell.depth == kMaxDepth || num_cells_ > kMaxCells) return cell;
     halve(cell);
   }
   return std::nullopt;

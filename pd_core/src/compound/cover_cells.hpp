@@ -38,10 +38,6 @@ struct CoverCell {
 /// @param extent  of the differences.
 [[nodiscard]] double distance_within(const RoughPlane& plane, const CoverCell& cell, double extent);
 
-/// Whether what lies of a facet's plane in a cube lies in the interior of P_k, for certain.
-[[nodiscard]] bool covers_within(const PartDifference& piece, const RoughPlane& plane, const CoverCell& cell,
-                                 double extent);
-
 class CoverCells {
  public:
   /// Refers to the differences, and makes those it needs. The first cube holds the ball of radius `reach` about the
@@ -60,8 +56,12 @@ class CoverCells {
 
  private:
   static constexpr int kMaxDepth = 8;
-  /// Cutting a polygon exactly costs what some hundred cells do: cubes that more P_k meet are halved first.
+  /// Cubes that more P_k meet are halved first.
   static constexpr std::size_t kFew = 4;
+  /// After so many cubes the P_k abut, as the parts of a solid do, and halving follows their walls. Holding this many
+  /// P_k against each other is cheaper then.
+  static constexpr std::int64_t kCellsOfWalls = 1000;
+  static constexpr std::size_t kFewAtWalls = 32;
   /// More than these are worth another halving, even if the last one told none apart.
   static constexpr std::size_t kMany = 48;
   /// Beyond it cubes are handed out as they come: what is left to find then takes exact cuts, not more cubes.

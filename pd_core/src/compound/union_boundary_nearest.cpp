@@ -91,7 +91,7 @@ class UnionBoundary::NearestSearch {
         if (!crosses(piece.planes[f], cell) || !near(*piece.built, f, cell)) continue;
         // Of most that do, near the answer, nothing there is nearer than the best point so far.
         const double key = distance_within(piece.planes[f], cell, scale_);
-        if (key >= best_key_ || covered_within(k, f, cell)) continue;
+        if (key >= best_key_ || !clip_roughly(*piece.built, f, cell) || covered_roughly(k)) continue;
         push({std::max(known_lower_, key), order_++, {{k, f, {}, Vec3::Zero()}, {}}});
       }
     }
@@ -133,13 +133,43 @@ class UnionBoundary::NearestSearch {
     return !(std::abs(height) > cell.half * plane.normal.lpNorm<1>() + plane.slack + 0x1p-48 * scale_);
   }
 
-  /// Whether another P_k holds in its interior what the cube holds of a facet, for certain.
-  bool covered_within(std::size_t own, std::size_t f, const CoverCell& cell) {
-    PartDifferences& differences = boundary_.differences_;
-    const RoughPlane plane = differences.pieces()[own].planes[f];
+  /// Fills `part_` with the corners of what the cube holds of a facet, in doubles. The cube is taken a little larger
+  /// than it is, by more than the doubles may be wrong, so that nothing of it is lost. False when the part is empty.
+  bool clip_roughly(const MinkowskiDifference& built, std::size_t f, const CoverCell& cell) {
+    const MinkowskiDifference::Facet& facet = built.facets[f];
+    const double scale = boundary_.differences_.scale();
+    const double half = cell.half + 0x1p-43 * scale_;
+    part_.clear();
+    for (std::int32_t i = facet.first; i < facet.first + facet.count; ++i) {
+      const std::int32_t corner = built.corners[static_cast<std::size_t>(i)];
+      part_.push_back(built.vertices[static_cast<std::size_t>(corner)].position * scale);
+    }
+    for (int wall = 0; wall < 6 && !part_.empty(); ++wall) {
+      const int axis = wall / 2;
+      const double sign = wall % 2 == 0 ? 1 : -1;
+      const auto height = [&](const Vec3& x) { return sign * (x[axis] - cell.centre[axis]) - half; };
+      clipped_.clear();
+      for (std::size_t i = 0; i < part_.size(); ++i) {
+        const Vec3 &from = part_[i], &to = part_[(i + 1) % part_.size()];
+        const double here = height(from), there = height(to);
+        if (here <= 0) clipped_.push_back(from);
+        if ((here <= 0) != (there <= 0)) clipped_.push_back(from + (to - from) * (here / (here - there)));
+      }
+      std::swap(part_, clipped_);
+    }
+    return !part_.empty();
+  }
+
+  /// Whether another P_k holds in its interior the part of a facet in `part_`, for certain.
+  bool covered_roughly(std::size_t own) {
+    const double rounding = 0x1p-42 * scale_;
     const auto covers = [&](std::int32_t k) {
-      return static_cast<std::size_t>(k) != own &&
-             covers_within(differences.pieces()[static_cast<std::size_t>(k)], plane, cell, scale_);
+      if (static_cast<std::size_t>(k) == own) return false;
+      const auto& planes = boundary_.differences_.pieces()[static_cast<std::size_t>(k)].planes;
+      return std::all_of(planes.begin(), planes.end(), [&](const RoughPlane& plane) {
+        const double limit = plane.offset - plane.slack - rounding;
+        return std::all_of(part_.begin(), part_.end(), [&](const Vec3& x) { return plane.normal.dot(x) < limit; });
+      });
     };
     const auto found = std::find_if(among_.begin(), among_.end(), covers);
     if (found == among_.end()) return false;
@@ -220,6 +250,7 @@ class UnionBoundary::NearestSearch {
   std::vector<Waiting> queue_;       ///< a heap
   std::vector<std::int32_t> among_;  ///< the P_k that meet the cube
   std::vector<Side> walls_;          ///< of the cube, once a facet is cut
+  std::vector<Vec3> part_, clipped_;
   std::int64_t order_ = 0;
   std::optional<Nearest> best_;
   SquaredRatio best_squared_;
