@@ -35,6 +35,8 @@ std::optional<Composition> find_composition(const Node& body) {
 
 }  // namespace
 
+void write_reached(double epsilon, JsonWriter& answer) { answer.bracket_unreached().key("epsilon").number(epsilon); }
+
 bool is_composed(const Node& body) { return find_composition(body).has_value(); }
 
 int composed_dimension(const Node& body, const Limits& limits, int nesting) {

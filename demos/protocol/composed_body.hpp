@@ -26,6 +26,9 @@ template <int D>
 [[nodiscard]] dimension::ComposedBody<D> read_composed(const Node& body, const Limits& limits,
                                                        const Preparation& preparation, int nesting = 0);
 
+/// Says that a budget of operations ended first, and the epsilon that the answer keeps all the same.
+void write_reached(double epsilon, JsonWriter& answer);
+
 /// The answer of `ask(share)`, structures inside built for a share of epsilon: a quarter for sums. Hulls ask for more,
 /// by the shape of the whole, which is known once it stands, and intersections by how thin they are.
 template <class Ask>

@@ -110,6 +110,7 @@ void answer_approx_minkowski_sum(const Node& line, Session& session, JsonWriter&
     for (const dimension::Halfspace<D>& h : sum->body.halfspaces) write_halfspace<D>(h, answer);
     answer.end_array();
     answer.key("side").string(side == Side::outer ? "outer" : "inner");
+    if (!sum->bracket_reached) write_reached(sum->epsilon, answer);
     answer.key("stats").begin_object();
     answer.key("support_calls").integer(sum->support_calls);
     answer.key("vertices").integer(sum->vertices).key("facets").integer(sum->facets);

@@ -91,25 +91,28 @@ Expected<dimension::ApproximateWidth<D>> width_of_file(const Node& file, const L
 constexpr double kComposedShare = 0.7;
 
 template <int D>
-Expected<dimension::ApproximateBody<D>> approximate_composed(const Node& a, const Limits& limits, double epsilon,
-                                                             Backend backend, Representation representation,
-                                                             Side side) {
-  auto made = with_fine_structures(epsilon, [&](double share) {
+Expected<dimension::ApproximateSum<D>> approximate_composed(const Node& a, const Limits& limits, double epsilon,
+                                                            Backend backend, Representation representation, Side side) {
+  return with_fine_structures(epsilon, [&](double share) {
     return dimension::approximate_minkowski_sum<D>(read_composed<D>(a, limits, {share, backend}), epsilon,
                                                    representation, side);
   });
-  if (!made) return made.error();
-  return (*std::move(made)).body;
 }
 
-/// A polytope inside, every width at least 1 - epsilon of the composed body's.
+/// A polytope inside, every width at least 1 - `epsilon` of the composed body's.
 template <int D>
-Body<D> body_of_composed(const Node& a, const Limits& limits, double epsilon, Backend backend) {
+struct InsideComposed {
+  Body<D> body;
+  double epsilon;
+  bool reached;
+};
+template <int D>
+InsideComposed<D> body_of_composed(const Node& a, const Limits& limits, double epsilon, Backend backend) {
   const auto made = approximate_composed<D>(a, limits, epsilon, backend, Representation::points, Side::inner);
   if (!made) a.refuse(made.error());
-  Expected<Body<D>> body = Body<D>::from_points(made->points);
+  Expected<Body<D>> body = Body<D>::from_points(made->body.points);
   if (!body) a.refuse(body.error());
-  return *std::move(body);
+  return {*std::move(body), made->epsilon, made->bracket_reached};
 }
 
 template <int D>
@@ -141,10 +144,11 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
     const bool composed = is_composed(a);
     const auto file = streamed_file(a, epsilon, backend);
     // (1 - share) (1 - rest) >= 1 - epsilon.
-    const Streamed<D> input =
-        composed ? Streamed<D>{body_of_composed<D>(a, session.limits, kComposedShare * epsilon, backend), {}}
-        : file   ? body_of_file<D>(*file, session.limits, kStreamedShare * epsilon)
-                 : Streamed<D>{read_dimension_body<D>(a, session.limits), {}};
+    std::optional<InsideComposed<D>> inside;
+    if (composed) inside = body_of_composed<D>(a, session.limits, kComposedShare * epsilon, backend);
+    const Streamed<D> input = composed ? Streamed<D>{inside->body, {}}
+                              : file   ? body_of_file<D>(*file, session.limits, kStreamedShare * epsilon)
+                                       : Streamed<D>{read_dimension_body<D>(a, session.limits), {}};
     const double rest = (composed ? 1 - kComposedShare : file ? 1 - kStreamedShare : 1) * epsilon;
     const auto structure = DirectionalWidth<D>::build(input.body, rest, backend);
     if (!structure) line.refuse(structure.error());
@@ -168,7 +172,9 @@ void answer_approx_directional_width(const Node& line, Session& session, JsonWri
       write_end<D>(w.least, answer);
       answer.end_array();
     }
-    answer.end_array().key("stats").begin_object();
+    answer.end_array();
+    if (inside && !inside->reached) write_reached(1 - (1 - inside->epsilon) * (1 - rest), answer);
+    answer.key("stats").begin_object();
     write_counters(counters, answer);
     write_size(structure->size(), answer);
     answer.key("build_nanoseconds").integer(build).key("nanoseconds").integer(total).end_object();
@@ -192,6 +198,7 @@ void answer_approx_width(const Node& line, Session& session, JsonWriter& answer)
     answer.key("width").number(width->width).key("lower").number(width->lower).key("upper").number(width->upper);
     answer.key("direction");
     write_row<D>(width->direction, answer);
+    if (!width->bracket_reached) answer.bracket_unreached();
     answer.key("stats").begin_object();
     answer.key("facets").integer(width->facets).key("vertices").integer(width->vertices);
     write_counters(width->queries, answer);
@@ -213,16 +220,24 @@ void answer_approximate(const Node& line, Session& session, JsonWriter& answer) 
   }
   for_dimension(composed_dimension(a, session.limits), [&]<int D>() {
     const Stopwatch watch;
-    const auto small = composed ? approximate_composed<D>(a, session.limits, epsilon, backend, representation, side)
-                                : dimension::approximate_body<D>(read_dimension_body<D>(a, session.limits), epsilon,
-                                                                 representation, side);
-    if (!small) line.refuse(small.error());
+    const auto found = [&]() -> Expected<dimension::ApproximateSum<D>> {
+      if (composed) return approximate_composed<D>(a, session.limits, epsilon, backend, representation, side);
+      auto made =
+          dimension::approximate_body<D>(read_dimension_body<D>(a, session.limits), epsilon, representation, side);
+      if (!made) return made.error();
+      dimension::ApproximateSum<D> whole;
+      whole.body = *std::move(made);
+      return whole;
+    }();
+    if (!found) line.refuse(found.error());
+    const dimension::ApproximateBody<D>* const small = &found->body;
     const std::int64_t nanoseconds = watch.nanoseconds();
     answer.key(representation == Representation::points ? "points" : "halfspaces").begin_array();
     for (const Vector<D>& p : small->points) write_row<D>(p, answer);
     for (const dimension::Halfspace<D>& h : small->halfspaces) write_halfspace<D>(h, answer);
     answer.end_array();
     answer.key("side").string(side == Side::outer ? "outer" : "inner");
+    if (!found->bracket_reached) write_reached(found->epsilon, answer);
     answer.key("stats").begin_object().key("nanoseconds").integer(nanoseconds).end_object();
   });
 }

@@ -60,7 +60,7 @@ void answer_width(const Node& line, Session& session, JsonWriter& answer) {
   answer.key("width").number(result.width);
   answer.key("lower").number(result.lower);
   answer.key("upper").number(result.upper);
-  if (!result.bracket_reached) answer.key("bracket_reached").boolean(false);
+  if (!result.bracket_reached) answer.bracket_unreached();
   answer.key("normal").vector(result.normal);
   write_statistics(result.statistics, nanoseconds, answer);
 }

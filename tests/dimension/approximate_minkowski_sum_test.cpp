@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "dimension/body_families.hpp"
+#include "dimension/growing_sum.hpp"
 
 namespace pd::dimension::test {
 namespace {
@@ -129,6 +130,32 @@ void check_size(double coarse, double fine, int count) {
 TEST(ApproximateMinkowskiSum, SizeGrowsAsTheoremTwoSays) {
   check_size<2>(1e-2, 1e-4, 20000);
   check_size<3>(0.1, 1e-2, 20000);
+}
+
+/// Where a growth ends by its budget, what it certifies holds all the same.
+template <int D>
+void check_growth_by_budget(std::int64_t most_work) {
+  BodySource<D> source(3);
+  const ComposedBody<D> first = prepare<D>(source.points(Family::sphere, 200), 1e-4, Backend::kernel);
+  const ComposedBody<D> second = prepare<D>(source.points(Family::sphere, 200), 1e-4, Backend::kernel);
+  const ComposedBody<D> sum = *ComposedBody<D>::sum_of({first, second});
+  detail::GrowingSum<D> grown(sum);
+  ASSERT_EQ(grown.grow(1 + 1e-3, most_work), detail::Growth::spent) << "D = " << D;
+  EXPECT_GT(grown.reached(), 1 + 1e-3);
+  EXPECT_LT(grown.reached(), 2) << "D = " << D;
+  for (int k = 0; k < 200; ++k) {
+    const Vector<D> v = source.direction();
+    QueryCounters counters;
+    const Vector<D> p = grown.frame().apply(sum.support(grown.frame().pull_back(v), counters).point);
+    double inside = 0;
+    for (const Vector<D>& q : grown.hull().vertices()) inside = std::max(inside, q.dot(v));
+    EXPECT_LE(p.dot(v), grown.reached() * inside) << "D = " << D;
+  }
+}
+
+TEST(ApproximateMinkowskiSum, ABudgetKeepsWhatIsCertifiedSoFar) {
+  check_growth_by_budget<3>(400);
+  check_growth_by_budget<4>(3000);
 }
 
 TEST(ApproximateMinkowskiSum, RefusesByName) {

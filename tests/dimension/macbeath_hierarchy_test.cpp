@@ -19,9 +19,10 @@ std::vector<SupportPoint<D>> fat_points(Family family, int count) {
 
 template <int D>
 std::unique_ptr<detail::WidthStructure<D>> build_hierarchy(const std::vector<SupportPoint<D>>& points, double epsilon) {
-  auto built = detail::build_macbeath_hierarchy<D>(points, {}, epsilon);
-  EXPECT_TRUE(built);
-  return std::move(built).value();
+  constexpr std::int64_t kMuch = 1'000'000'000;
+  auto built = detail::build_macbeath_hierarchy<D>(points, {}, epsilon, kMuch);
+  EXPECT_NE(built, nullptr);
+  return built;
 }
 
 struct Measured {
@@ -55,6 +56,12 @@ TEST(MacbeathHierarchy, SupportsAreWithinEpsilon) {
   check<4>(Family::sphere, 300, 0.4, 500);
   check<4>(Family::cube, 0, 0.3, 500);
   check<5>(Family::sphere, 200, 0.9, 200);
+}
+
+TEST(MacbeathHierarchy, ABudgetOfOperationsEndsTheBuild) {
+  const auto points = fat_points<5>(Family::sphere, 300);
+  EXPECT_EQ(detail::build_macbeath_hierarchy<5>(points, {}, 0.01, 100'000), nullptr);
+  EXPECT_NE(detail::build_macbeath_hierarchy<5>(points, {}, 0.9, 100'000), nullptr);
 }
 
 TEST(MacbeathHierarchy, NodesAndVisitsGrowAsPromised) {

@@ -15,6 +15,7 @@ namespace pd::dimension {
 namespace {
 
 using detail::GrowingSum;
+using detail::Growth;
 using detail::kRoom;
 
 template <int D>
@@ -66,7 +67,12 @@ Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum
     // product.
     const auto flat = detail::without_intersections<D>(sum, side, epsilon / 5, epsilon / 4);
     if (!flat) return flat.error();
-    return approximate_minkowski_sum<D>(*flat, epsilon / 2, representation, side);
+    auto made = approximate_minkowski_sum<D>(*flat, epsilon / 2, representation, side);
+    if (!made) return made;
+    ApproximateSum<D> whole = *std::move(made);
+    // The rest of epsilon went into the intersections.
+    whole.epsilon = whole.bracket_reached ? epsilon : whole.epsilon + epsilon / 2;
+    return whole;
   }
   GrowingSum<D> grown(sum);
   const double needed = detail::allowed_error(sum, grown.ratio(), epsilon / 2);
@@ -78,13 +84,19 @@ Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum
   }
   // Outer: blown up by 1 + epsilon / 2 about a point inside, no support grows by more than epsilon / 2 of the width.
   const double limit = side == Side::outer ? 1 + epsilon / 2 * (1 - 1e-4) : 1 / (1 - epsilon * (1 - 1e-4));
-  if (!grown.grow(limit)) {
+  const Growth growth = grown.grow(limit);
+  if (growth == Growth::rounding) {
     return Error{ErrorCode::out_of_range, "the bodies are too slender for this epsilon in double precision", "epsilon"};
   }
+  const double reached = grown.reached();
   ApproximateSum<D> r;
   r.body.representation = representation;
+  r.bracket_reached = growth == Growth::reached;
+  r.epsilon = r.bracket_reached     ? epsilon
+              : side == Side::outer ? 2 * (reached - 1) * (1 + 1e-4)
+                                    : (1 - 1 / reached) * (1 + 1e-4);
   std::vector<Vector<D>> points = points_of(
-      grown, side == Side::outer && representation == Representation::points ? limit * (1 + kRoom) : 1 - kRoom);
+      grown, side == Side::outer && representation == Representation::points ? reached * (1 + kRoom) : 1 - kRoom);
   std::vector<Halfspace<D>> halfspaces = halfspaces_of(grown, side);
   r.vertices = static_cast<std::int64_t>(points.size());
   r.facets = static_cast<std::int64_t>(halfspaces.size());

@@ -19,6 +19,8 @@ constexpr double kRoom = 1e-10;
 /// Of epsilon, for the structure; the search takes the rest. The kernel's hull is much dearer than the search, which
 /// finds its last digits fast: measured on 1e6 points from .5 to .93, the total still fell at .9 by a third to a half.
 constexpr double kStructureShare = 0.9;
+/// Budget of a search in operations: facets made, and a thousand products of the structure for one.
+constexpr std::int64_t kMostWork = 1'000'000;
 
 /// The polytope inside K + (-K), in the frame in which K holds the unit ball and so K + (-K) the ball of radius 2.
 template <int D>
@@ -45,6 +47,8 @@ class WidthSearch {
         result_.direction = direction;
       }
       if (least <= (1 + stop_) * nearest.distance) break;
+      result_.bracket_reached = work() < kMostWork;
+      if (!result_.bracket_reached) break;
       const Vector<D> reach = to_unit_.linear * (answer.most.point - answer.least.point);
       grow(reach, nearest);
     }
@@ -82,6 +86,11 @@ class WidthSearch {
     // Rounding keeps the point out: a little nearer to the origin it is a point of K + (-K), too.
     for (double shrink = 0x1p-36; !grown; shrink *= 64) grown = hull_.insert((1 - shrink) * reach, nearest.facet);
     push(before, static_cast<std::int32_t>(hull_.facets().size()));
+  }
+
+  [[nodiscard]] std::int64_t work() const {
+    constexpr std::int64_t kProductsAFacet = 1000;
+    return static_cast<std::int64_t>(hull_.facets().size()) + result_.queries.dot_products / kProductsAFacet;
   }
 
   void finish() {
@@ -139,7 +148,8 @@ Expected<ApproximateWidth<D>> approximate_width(const ComposedBody<D>& body, dou
   const auto found = approximate_width<D>(*solid, (1 - kInnerShare) * share, Backend::kernel);
   if (!found) return found;
   ApproximateWidth<D> width = *found;
-  width.upper = width.upper / (1 - inner) * (1 + kRoom);
+  width.bracket_reached = width.bracket_reached && polytope->bracket_reached;
+  width.upper = width.upper / (1 - polytope->epsilon) * (1 + kRoom);
   width.width = width.upper;
   return width;
 }

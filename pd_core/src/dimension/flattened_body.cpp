@@ -15,7 +15,6 @@ namespace {
 
 /// Finest growth of the parts; rounding in their frames is a thousandth of it.
 constexpr double kLeastGrowth = 1e-6;
-constexpr std::size_t kMostVertices = 200'000;
 
 /// <normal, x> <= inner for all x of a body inside, <= outer for one that holds it.
 template <int D>
@@ -53,12 +52,15 @@ std::optional<Error> add_facets(const ComposedBody<D>& inner, const ComposedBody
   GrowingSum<D> grown(inner);
   const double needed = allowed_error(inner, grown.ratio(), growth);
   if (inner.epsilon() > needed) return too_coarse(inner, needed);
-  if (!grown.grow(1 + growth, kMostVertices)) {
-    if (grown.hull().vertices().size() >= kMostVertices) {
+  switch (grown.grow(1 + growth)) {
+    case Growth::spent:
       return Error{ErrorCode::limit_exceeded,
-                   "an intersection inside is so thin beside its parts that they take more than 200000 vertices", ""};
-    }
-    return Error{ErrorCode::out_of_range, "the bodies are too slender for this epsilon in double precision", "epsilon"};
+                   "an intersection inside is so thin beside its parts that they take more than a million facets", ""};
+    case Growth::rounding:
+      return Error{ErrorCode::out_of_range, "the bodies are too slender for this epsilon in double precision",
+                   "epsilon"};
+    case Growth::reached:
+      break;
   }
   const std::vector<std::int32_t> same = merge_equal_planes(grown.hull());
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(same.size()); ++f) {

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
+#include <cstdint>
 #include <vector>
 
 #include "dimension/composed_node.hpp"
@@ -25,6 +25,17 @@ template <int D>
   return body.node().radial ? growth / 2 : growth / (4 * (1 + ratio));
 }
 
+/// Budget of a growth in operations: facets made, and a thousand products of K's structures for one. Some four seconds
+/// and 0.6 GB in R^5.
+inline constexpr std::int64_t kMostGrowthWork = 1'000'000;
+
+/// How a growth ended.
+enum class Growth {
+  reached,   ///< K shrunk by the limit lies inside
+  spent,     ///< the budget ended; `GrowingSum::reached` tells what is certified
+  rounding,  ///< no surface is left in double precision
+};
+
 /// Grows a polytope inside K until it holds K shrunk by `limit`.
 template <int D>
 class GrowingSum {
@@ -39,11 +50,11 @@ class GrowingSum {
   /// How far K reaches in the frame, in which it holds the unit ball.
   [[nodiscard]] double ratio() const { return ratio_; }
 
-  /// @return false where rounding leaves no surface, or where there are `most_vertices`.
-  bool grow(double limit, std::size_t most_vertices = std::numeric_limits<std::size_t>::max()) {
+  Growth grow(double limit, std::int64_t most_work = kMostGrowthWork) {
+    reached_ = limit;
     enter_facets(0);
     while (!waiting_.empty()) {
-      if (hull_.vertices().size() >= most_vertices) return false;
+      if (work() >= most_work) return end_early();
       std::pop_heap(waiting_.begin(), waiting_.end());
       const Waiting next = waiting_.back();
       waiting_.pop_back();
@@ -52,12 +63,14 @@ class GrowingSum {
       const std::size_t before = hull_.facets().size();
       const double nearer = joggle<D>(static_cast<std::int64_t>(hull_.vertices().size()), limit);
       const Vector<D> point = (1 - nearer) * next.support;
-      if (!hull_.insert(point, next.facet)) return false;
+      if (!hull_.insert(point, next.facet)) return Growth::rounding;
       enter_facets(before);
     }
-    return true;
+    return Growth::reached;
   }
 
+  /// K shrunk by this lies inside: the limit, or more where the budget ended first.
+  [[nodiscard]] double reached() const { return reached_; }
   [[nodiscard]] const RadialHull<D>& hull() const { return hull_; }
   [[nodiscard]] const AffineMap<D>& frame() const { return frame_; }
   /// Bounds h_K over a living facet's normal, whose plane is at 1.
@@ -74,6 +87,19 @@ class GrowingSum {
       return a.height != b.height ? a.height < b.height : a.facet > b.facet;
     }
   };
+
+  [[nodiscard]] std::int64_t work() const {
+    constexpr std::int64_t kProductsAFacet = 1000;
+    return static_cast<std::int64_t>(hull_.facets().size()) + counters_.dot_products / kProductsAFacet;
+  }
+
+  /// Certifies the facets that still wait, which were not refined.
+  Growth end_early() {
+    for (const Waiting& facet : waiting_) {
+      if (hull_.alive(facet.facet)) reached_ = std::max(reached_, certify(facet));
+    }
+    return Growth::spent;
+  }
 
   Vector<D> support(const Vector<D>& normal) {
     ++supports_;
@@ -108,6 +134,7 @@ class GrowingSum {
   const ComposedBody<D>& sum_;
   AffineMap<D> frame_;
   double ratio_ = 1;
+  double reached_ = 1;
   RadialHull<D> hull_;
   std::vector<Waiting> waiting_;  ///< a heap
   std::vector<double> upper_;     ///< per facet, once certified

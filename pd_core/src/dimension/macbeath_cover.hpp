@@ -84,8 +84,8 @@ bool meets(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
       const double slope = image[i] / root - cone.axis[i];
       tangent += slope * ((slope > 0 ? box.low[i] : box.low[i] + box.side) - v[i]);
     }
-    constexpr double kRoom = 1e-9;
-    if (tangent > kRoom * root) return false;
+    constexpr double kSlack = 1e-9;
+    if (tangent > kSlack * root) return false;
     for (int i = 0; i < D; ++i) {
       if (i == box.axis) continue;
       // Along the coordinate g is sqrt(a u^2 + rest) - l u and a constant, u measured from the root's least place.

@@ -96,11 +96,11 @@ class MacbeathHierarchy final : public WidthStructure<D> {
 template <int D>
 class HierarchyBuilder {
  public:
-  HierarchyBuilder(PolarBody<D> polar, MacbeathHierarchy<D>& hierarchy)
-      : polar_(std::move(polar)), hierarchy_(hierarchy) {}
+  HierarchyBuilder(PolarBody<D> polar, MacbeathHierarchy<D>& hierarchy, std::int64_t most_work)
+      : polar_(std::move(polar)), hierarchy_(hierarchy), work_left_(most_work) {}
 
   /// @param delta  depth of the regions; of leaves, what their points may fall short by
-  /// @return false where the nodes exceed their limit.
+  /// @return false where the budget is spent.
   bool add_layer(double delta, bool leaves) {
     delta_ = delta;
     leaves_ = leaves;
@@ -122,13 +122,17 @@ class HierarchyBuilder {
     neighbours_ = std::move(next_neighbours_);
     previous_first_ = first_;
     ++hierarchy_.layers;
-    return true;
+    return work_left_ > 0;
   }
+
+  [[nodiscard]] std::int64_t work_left() const { return work_left_; }
 
  private:
   /// Subdivides the cell until every part lies in one cover shadow; regions enter where a middle is in no core shadow.
   /// @param near  nodes of this layer before `seen` that may meet the cell
   bool cover(std::size_t cell, const DirectionBox<D>& box, const std::vector<std::int32_t>& outer, std::size_t seen) {
+    work_left_ -= 1 + static_cast<std::int64_t>(outer.size() + cores_.size() - seen);
+    if (work_left_ <= 0) return false;
     // Most boxes lie in one shadow and are not split: the lists of those that may meet a box are for its parts alone.
     const Vector<D> middle = box.middle();
     const auto holds = [&](std::int32_t id) {
@@ -153,12 +157,10 @@ class HierarchyBuilder {
     });
     if (!held) {
       const std::int32_t id = insert(middle);
-      if (id < 0) return false;
       near.push_back(id);
       if (covers(hierarchy_.nodes[static_cast<std::size_t>(id)].shadow, box)) return settle(cell, id);
     }
     const std::size_t first_child = cells_.size();
-    if (first_child > kMaxCells) return false;
     cells_.resize(first_child + DirectionBox<D>::kCorners, 0);
     cells_[cell] = static_cast<std::int64_t>(first_child);
     const std::size_t known = cores_.size();
@@ -175,7 +177,7 @@ class HierarchyBuilder {
 
   std::int32_t insert(const Vector<D>& v) {
     const auto id = static_cast<std::int32_t>(hierarchy_.nodes.size());
-    if (id >= kMaxMacbeathNodes) return -1;
+    work_left_ -= static_cast<std::int64_t>(polar_.points().size()) / kPointsAStep;
     const std::vector<std::int32_t>& candidates = parent_list(v);
     // Leaves are flat: their depth hardly matters (from .2 to .5 of epsilon the numbers of nodes differ by a tenth).
     constexpr double kDepth = 0.5;
@@ -213,7 +215,7 @@ class HierarchyBuilder {
     for (std::int32_t parent = previous_first_; parent < first_; ++parent) {
       HierarchyNode<D>& node = hierarchy_.nodes[static_cast<std::size_t>(parent)];
       node.first_child = static_cast<std::int32_t>(hierarchy_.links.size());
-      for (int face = 0; face < 2 * D; ++face) {
+      for (int face = 0; face < 2 * D && work_left_ > 0; ++face) {
         const DirectionBox<D> box = cube_face<D>(face);
         collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, false);
       }
@@ -259,6 +261,7 @@ class HierarchyBuilder {
   /// @param inside  the box lies in the parent's shadow, and so do its parts: nothing is left to ask
   void collect(std::size_t cell, const DirectionBox<D>& box, const ShadowSection<D>& shadow, std::int32_t parent,
                bool inside) {
+    if (--work_left_ <= 0) return;
     const std::int64_t content = cells_[cell];
     const auto seen = [&](std::int32_t id) { return mark_[static_cast<std::size_t>(id - first_)] == parent; };
     const auto link = [&](std::int32_t id) {
@@ -289,7 +292,7 @@ class HierarchyBuilder {
     }
   }
 
-  static constexpr std::size_t kMaxCells = 200'000'000;
+  static constexpr std::int64_t kPointsAStep = 8;
   /// What a walk saves where all nodes below a cell are linked already, longer lists hardly save more often.
   static constexpr std::size_t kMostListed = 64;
 
@@ -301,6 +304,7 @@ class HierarchyBuilder {
 
   PolarBody<D> polar_;
   MacbeathHierarchy<D>& hierarchy_;
+  std::int64_t work_left_;
   double delta_ = 0;
   bool leaves_ = false;
   std::int32_t first_ = 0;
@@ -319,14 +323,15 @@ class HierarchyBuilder {
 }  // namespace
 
 template <int D>
-Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
-                                                                      const AffineMap<D>& frame, double epsilon) {
+std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
+                                                            const AffineMap<D>& frame, double epsilon,
+                                                            std::int64_t most_work) {
   auto hierarchy = std::make_unique<MacbeathHierarchy<D>>();
   hierarchy->points = points;
   hierarchy->pull_back = inverse_of<D>(frame.linear).transpose();
   std::vector<Vector<D>> fat;
   for (const SupportPoint<D>& p : points) fat.push_back(frame.apply(p.point));
-  HierarchyBuilder<D> builder(PolarBody<D>(std::move(fat)), *hierarchy);
+  HierarchyBuilder<D> builder(PolarBody<D>(std::move(fat)), *hierarchy, most_work);
   constexpr double kFirst = 0.5;
   // Doubled from the leaves' upwards: a last layer that hardly differs from the one above would cost as much as it. The
   // first one is left out where the second is near it.
@@ -336,18 +341,14 @@ Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(const std:
   const bool first = std::ldexp(epsilon, doublings) < kNear * kFirst;
   for (int i = first ? doublings + 1 : doublings; i >= 0; --i) {
     const double delta = i == 0 ? epsilon : std::min(kFirst, std::ldexp(epsilon, i));
-    if (!builder.add_layer(delta, i == 0)) {
-      return Error{ErrorCode::limit_exceeded,
-                   "the hierarchy of Macbeath regions takes more than 4000000 nodes at this epsilon; take a larger one",
-                   "epsilon"};
-    }
+    if (!builder.add_layer(delta, i == 0)) return nullptr;
   }
-  return Expected<std::unique_ptr<WidthStructure<D>>>(std::unique_ptr<WidthStructure<D>>(std::move(hierarchy)));
+  return hierarchy;
 }
 
-#define PD_INSTANTIATE(D)                                                            \
-  template Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy<D>( \
-      const std::vector<SupportPoint<D>>&, const AffineMap<D>&, double);
+#define PD_INSTANTIATE(D)                                                                                      \
+  template std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy<D>(const std::vector<SupportPoint<D>>&, \
+                                                                          const AffineMap<D>&, double, std::int64_t);
 PD_INSTANTIATE(2)
 PD_INSTANTIATE(3)
 PD_INSTANTIATE(4)

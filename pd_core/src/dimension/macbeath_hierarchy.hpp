@@ -23,16 +23,20 @@
 
 namespace pd::dimension::detail {
 
-/// Nodes at most: where a body and an epsilon need more, the hierarchy is refused.
-inline constexpr std::int64_t kMaxMacbeathNodes = 4'000'000;
+/// Budget of the build in operations: shadows held against a box, cells walked through, and points that a region is cut
+/// from, eight for one. Some 0.1 microseconds each, and at most 100 MB. Where a body and an epsilon need more, as on
+/// spheres in R^5, no hierarchy is made.
+inline constexpr std::int64_t kMostMacbeathWork = 12'000'000;
 
 /// @param points   of K, extreme or not; K is their hull
 /// @param frame    maps C of K's sandwich to the unit ball: O inside, K fat
 /// @param epsilon  in (0, 1): supports fall short of h by at most epsilon h, h measured from the frame's O, so by
 /// epsilon width_K at most.
-/// @return limit_exceeded ("epsilon").
+/// @param most_work  budget of operations
+/// @return null where the budget is spent.
 template <int D>
-[[nodiscard]] Expected<std::unique_ptr<WidthStructure<D>>> build_macbeath_hierarchy(
-    const std::vector<SupportPoint<D>>& points, const AffineMap<D>& frame, double epsilon);
+[[nodiscard]] std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
+                                                                          const AffineMap<D>& frame, double epsilon,
+                                                                          std::int64_t most_work = kMostMacbeathWork);
 
 }  // namespace pd::dimension::detail

@@ -81,12 +81,12 @@ Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body
                  std::string("the macbeath backend needs epsilon >= ") + (D < 4 ? "2e-7" : "8e-7"), "epsilon"};
   }
   std::vector<SupportPoint<D>> points = kernel_points(body, kKernelShare * epsilon);
-  if (D > 3 && points.size() <= kFewPoints) {
-    return std::shared_ptr<const WidthStructure<D>>(std::make_shared<ScannedPoints<D>>(std::move(points)));
+  if (D <= 3 || points.size() > kFewPoints) {
+    std::shared_ptr<const WidthStructure<D>> hierarchy =
+        build_macbeath_hierarchy<D>(points, body.sandwich().fattening(), (1 - kKernelShare) * epsilon);
+    if (hierarchy != nullptr) return hierarchy;
   }
-  auto hierarchy = build_macbeath_hierarchy<D>(points, body.sandwich().fattening(), (1 - kKernelShare) * epsilon);
-  if (!hierarchy) return hierarchy.error();
-  return std::shared_ptr<const WidthStructure<D>>(std::move(hierarchy).value());
+  return std::shared_ptr<const WidthStructure<D>>(std::make_shared<ScannedPoints<D>>(std::move(points)));
 }
 
 #define PD_INSTANTIATE(D) \

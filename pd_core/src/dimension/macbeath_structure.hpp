@@ -1,6 +1,8 @@
 /// @file
-/// The macbeath backend of directional width queries: the hierarchy of Macbeath regions over a kernel. In R^4 and R^5 a
-/// kernel of 256 points or fewer is scanned instead, which takes less than a descent.
+/// The macbeath backend of directional width queries: the hierarchy of Macbeath regions over a kernel. Where the build
+/// exceeds its budget of operations (`kMostMacbeathWork`), and in R^4 and R^5 for a kernel of 256 points or fewer, the
+/// kernel is scanned instead: the answers keep their epsilon, a query costs a product a point, and `StructureSize`
+/// shows one layer.
 #pragma once
 
 #include <memory>
@@ -11,7 +13,7 @@ namespace pd::dimension::detail {
 
 /// @param epsilon  in [2e-7, 1) for D < 4, in [8e-7, 1) above: .5 or .125 of it goes into the kernel, the rest into the
 ///                 hierarchy.
-/// @return bad_value, limit_exceeded ("epsilon").
+/// @return bad_value ("epsilon").
 template <int D>
 [[nodiscard]] Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body,
                                                                                     double epsilon);

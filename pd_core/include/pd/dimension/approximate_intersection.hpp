@@ -5,6 +5,9 @@
 /// have a common point, no when the grown bodies have none, and either in between. The bodies are preprocessed one by
 /// one and queried as they are, under any affine maps. Two of them meet when O lies in A + (-B) (Lemma 12). k of them
 /// meet when O lies among the differences from the first, a body in R^((k - 1) d).
+///
+/// Budget: cutting planes end after O(N^2 log(1 / epsilon)) supports whatever the bodies, and the answer is certified
+/// within epsilon.
 #pragma once
 
 #include <cstdint>

@@ -16,12 +16,13 @@ namespace pd::dimension {
 
 template <int D>
 struct ApproximateWidth {
-  double width = 0;           ///< = upper
-  double lower = 0;           ///< of the exact width, certified by points of the body
-  double upper = 0;           ///< the width of the whole body along `direction`; upper <= (1 + epsilon) lower
-  Vector<D> direction;        ///< of length 1
-  std::int64_t facets = 0;    ///< of the growing polytope, in all
-  std::int64_t vertices = 0;  ///< of it
+  double width = 0;             ///< = upper
+  double lower = 0;             ///< of the exact width, certified by points of the body
+  double upper = 0;             ///< the width of the whole body along `direction`; upper <= (1 + epsilon) lower
+  Vector<D> direction;          ///< of length 1
+  bool bracket_reached = true;  ///< false: a budget of operations ended first, and upper > (1 + epsilon) lower
+  std::int64_t facets = 0;      ///< of the growing polytope, in all
+  std::int64_t vertices = 0;    ///< of it
   QueryCounters queries;
   StructureSize structure;
 };
@@ -29,14 +30,15 @@ struct ApproximateWidth {
 /// @param epsilon  in (0, 1); at least 1.2e-7 with the kernel backend.
 /// @return ErrorCode::bad_value ("epsilon").
 /// The structure of the backend is built for 0.9 epsilon / (1 + epsilon), the search ends at the rest; bounds up to
-/// rounding (1e-9, relative).
+/// rounding (1e-9, relative). Budget of the search: a million facets, where a thousand products of the structure count
+/// as one; where it ends first, the bracket so far stands.
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
                                                               Backend backend = Backend::kernel);
 
 /// The width of a body composed of others (sums, hulls of unions, intersections, affine images). Measured is a small
 /// polytope inside, which every directional width exceeds by a known factor at most. `structure` and `queries` are
-/// those of that polytope.
+/// those of that polytope. Budgets as above and those of `approximate_minkowski_sum`.
 ///
 /// @param epsilon  in [2e-6, 1), with an intersection inside [2e-5, 1); the structures inside at least as fine as
 /// `approximate_minkowski_sum` asks at 0.7 epsilon / (1 + epsilon).
