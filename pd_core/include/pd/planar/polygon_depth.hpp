@@ -27,8 +27,9 @@ enum class PolygonMethod {
 };
 
 /// The budget of explicit sums, in comparisons of an edge with a convex sum; an exact intersection counts as 16. Two
-/// jagged polygons of 500 vertices take 5 to 25 million, some 200 nanoseconds each.
-inline constexpr std::int64_t kPolygonComparisons = std::int64_t{1} << 25;
+/// jagged polygons of 500 vertices take 5 to 25 million, some 200 nanoseconds each. The default ends within five
+/// seconds.
+inline constexpr std::int64_t kPolygonComparisons = std::int64_t{24} << 20;
 
 /// The feature of P and Q that holds the answer: a vertex or an edge (from that vertex on), as the caller numbered it.
 struct PlanarFeature {
