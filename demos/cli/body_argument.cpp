@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr query::Limits kLimits{.max_vertices = 50'000'000};
 constexpr int kAlongZ = 2;
+constexpr const char* kStandardInput = "standard input";
 
 struct Primitive {
   std::string_view name;
@@ -82,44 +84,48 @@ std::string read_standard_input() {
   }
 }
 
-/// Read once: a mesh is looked at as a solid and then as a hull.
+/// Standard input can be read once only.
 const std::string& standard_input() {
   static const std::string bytes = read_standard_input();
   return bytes;
 }
 
-/// Asks `body_of` for the body of the mesh that standard input holds; a refusal names where the mesh came from.
-template <class BodyOf>
-auto body_of_standard_input(BodyOf&& body_of) {
-  const std::string name = "standard input";
+/// The mesh that an argument names. A refusal names where the mesh came from.
+query::MeshPoints read_points_of(const std::string& word) {
+  if (word != "-") return query::read_mesh_points(word, kLimits.max_vertices, query::kMaxMeshBytes);
   try {
-    return body_of(query::read_mesh_bytes(standard_input(), kLimits.max_vertices), name);
+    return query::read_mesh_bytes(standard_input(), kLimits.max_vertices);
   } catch (const query::Refusal& refusal) {
-    query::refuse(refusal.code, refusal.message.starts_with(name) ? refusal.message : name + ": " + refusal.message,
-                  "");
+    query::refuse(refusal.code, kStandardInput + (": " + refusal.message), "");
   }
 }
 
-query::NamedShape shape_of_standard_input(query::MeshAs as) {
-  return body_of_standard_input(
-      [&](query::MeshPoints mesh, const std::string& name) { return query::hull_of_mesh(std::move(mesh), name, as); });
+std::string name_of(const std::string& word) { return word == "-" ? kStandardInput : word; }
+
+/// Reads and checks a file once: a mesh is looked at as a solid and then as a hull.
+query::MeshBody& mesh_argument(const std::string& word) {
+  static std::map<std::string, query::MeshBody> known;
+  const auto [place, fresh] = known.try_emplace(word);
+  if (fresh) place->second = query::body_of_mesh(read_points_of(word), name_of(word), {.hull_words = "--hull"});
+  return place->second;
+}
+
+query::NamedShape shape_of_mesh(const BodyArgument& argument) {
+  if (argument.as == query::MeshAs::found) {
+    if (const auto& hull = mesh_argument(argument.word).hull) return *hull;
+  }
+  return query::hull_of_mesh(read_points_of(argument.word), name_of(argument.word), argument.as);
 }
 
 }  // namespace
 
-std::optional<MeshSolid> read_solid_argument(const std::string& word) {
-  if (find_primitive(word) != nullptr) return std::nullopt;
-  const query::SolidWish wish{.hull_words = "--hull"};
-  if (word != "-") return query::load_solid(word, kLimits, wish);
-  return body_of_standard_input(
-      [&](const query::MeshPoints& mesh, const std::string& name) { return query::solid_of_mesh(mesh, name, wish); });
+std::shared_ptr<const MeshSolid> read_solid_argument(const std::string& word) {
+  return find_primitive(word) != nullptr ? nullptr : mesh_argument(word).solid;
 }
 
 query::NamedShape read_body_argument(const BodyArgument& argument) {
   const Primitive* const primitive = find_primitive(argument.word);
-  query::NamedShape body = primitive != nullptr   ? shape_of(*primitive, argument.word)
-                           : argument.word == "-" ? shape_of_standard_input(argument.as)
-                                                  : query::load_mesh_shape(argument.word, kLimits, argument.as);
+  query::NamedShape body = primitive != nullptr ? shape_of(*primitive, argument.word) : shape_of_mesh(argument);
   if (argument.margin == 0) return body;
   auto swept = body.shape.with_margin(argument.margin);
   if (!swept) query::refuse(to_string(swept.error().code), "--margin: " + swept.error().message, "");

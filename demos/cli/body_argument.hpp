@@ -25,9 +25,9 @@ struct BodyArgument {
   query::MeshAs as = query::MeshAs::found;  ///< of meshes
 };
 
-/// The solid of a mesh that is closed and not convex; nothing for other bodies. @throws query::Refusal that names the
+/// The solid of a mesh that is closed and not convex; null for other bodies. @throws query::Refusal that names the
 /// fault of a mesh with holes, or one that crosses itself
-[[nodiscard]] std::optional<MeshSolid> read_solid_argument(const std::string& word);
+[[nodiscard]] std::shared_ptr<const MeshSolid> read_solid_argument(const std::string& word);
 
 /// Reads the body. @throws query::Refusal that begins with the word
 [[nodiscard]] query::NamedShape read_body_argument(const BodyArgument& argument);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -15,6 +16,7 @@
 #include "mesh/mesh_file.hpp"
 #include "options.hpp"
 #include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/mesh_solid.hpp"
 #include "protocol/line/json_writer.hpp"
 #include "protocol/line/limits.hpp"
 #include "support/complain.hpp"
@@ -26,6 +28,9 @@ namespace {
 
 constexpr const char* kCheckFooter =
     R"(A mesh bounds a solid when its faces leave no hole, all show their outside, and nowhere cross or meet a third face.
+
+The last row, and "asked_as" with --json, says how the other commands take the file: as the convex body, as the solid that its
+faces bound, as the hull of its points, or not at all (refused), with the code of the refusal and the ways out.
 
 --fail-on takes words between commas; the exit code is 3 when one of them applies:
   open_edge        a face has no neighbour at an edge: the surface has a hole
@@ -73,6 +78,27 @@ CheckedMesh read_checked(const std::string& file) {
   auto hull = ConvexPolytope::from_points(mesh.points);
   if (!hull) refuse(hull.error());
   return {file, std::move(mesh), *std::move(report), *std::move(hull)};
+}
+
+/// How the queries take the file.
+enum class AskedAs { convex, solid, hull, refused };
+
+constexpr const char* to_string(AskedAs as) {
+  constexpr std::array<const char*, 4> kWords = {"convex", "solid", "hull", "refused"};
+  return kWords[static_cast<std::size_t>(as)];
+}
+
+AskedAs asked_as(const CheckedMesh& checked) {
+  if (checked.report.faces == 0) return AskedAs::hull;
+  if (!query::why_hull(checked.report, checked.hull)) return AskedAs::convex;
+  const bool solid = checked.report.crossings_searched && !fault_of_solid(checked.report);
+  return solid ? AskedAs::solid : AskedAs::refused;
+}
+
+/// The code of the refusal; the file is one that queries refuse.
+std::string refused_as(const CheckedMesh& checked) {
+  const auto fault = fault_of_solid(checked.report);
+  return fault ? std::string(to_string(fault->fault)) : "limit_exceeded";
 }
 
 // ---- words for people --------------------------------------------------------------------------------------------
@@ -129,6 +155,26 @@ std::string verdict(const CheckedMesh& checked) {
   return report.convex ? "The faces bound a solid, and it is convex." : "The faces bound a solid, which is not convex.";
 }
 
+std::string queries_in_words(const CheckedMesh& checked) {
+  const std::string ask_hull =
+      "`pdepth depth --hull`, or \"as\":\"hull\" in a line of `pdepth query`, asks for the hull";
+  switch (asked_as(checked)) {
+    case AskedAs::convex:
+      return checked.report.count(MeshFault::inside_out) > 0 ? "ask for the convex body, whichever side its faces show"
+                                                             : "ask for the convex body";
+    case AskedAs::hull:
+      return "ask for the convex hull of the points";
+    case AskedAs::solid:
+      return "ask for the solid that the faces bound; " + ask_hull;
+    case AskedAs::refused:
+      break;
+  }
+  const bool turns = !fault_of_solid(checked.report, true) && checked.report.crossings_searched;
+  return "refuse the file (" + refused_as(checked) +
+         "): " + (turns ? "turn the faces, by \"turn_faces\":true in a line of `pdepth query`" : "mend the mesh") +
+         "; " + ask_hull;
+}
+
 void print_report(const CheckedMesh& checked) {
   const SurfaceReport& report = checked.report;
   fmt::print("\n  {}\n\n  {}\n\n", checked.file, verdict(checked));
@@ -164,11 +210,13 @@ void print_report(const CheckedMesh& checked) {
     print_judged(checked, "slivers", MeshFault::degenerate_face, "", "yes:#faces have no area, which does no harm");
   }
   if (checked.encloses()) print_row("volume", fmt::format("{:.10g}", checked.volume(report.relative_volume)));
-  print_row("hull", fmt::format("{} vertices, volume {:.10g}", checked.hull.num_vertices(),
-                                checked.volume(checked.hull_volume())));
   const auto note = query::why_hull(report, checked.hull);
-  print_row("convex",
-            !note ? "yes: the mesh is its own convex hull" : "no: a query about this file is " + in_words(*note));
+  const double times = note ? note->times_as_large : 0;
+  print_row("hull", fmt::format("{} vertices, volume {:.10g}{}", checked.hull.num_vertices(),
+                                checked.volume(checked.hull_volume()),
+                                times > 0 ? fmt::format(", {:.4g} times the mesh's volume", times) : ""));
+  if (report.faces > 0) print_row("convex", !note ? "yes: the mesh is its own convex hull" : "no: " + note->reason);
+  print_row("queries", queries_in_words(checked));
   fmt::print("\n");
 }
 
@@ -183,6 +231,8 @@ void print_json(const CheckedMesh& checked) {
   writer.key("solid").boolean(report.solid()).key("closed").boolean(report.closed());
   writer.key("oriented").boolean(report.oriented()).key("manifold").boolean(report.manifold());
   writer.key("convex").boolean(!query::why_hull(report, checked.hull));
+  writer.key("asked_as").string(to_string(asked_as(checked)));
+  if (asked_as(checked) == AskedAs::refused) writer.key("refused_as").string(refused_as(checked));
   writer.key("crossings_searched").boolean(report.crossings_searched);
   writer.key("points").integer(report.points).key("duplicate_points").integer(report.points - report.vertices);
   if (checked.mesh.left_out > 0) writer.key("points_left_out").integer(checked.mesh.left_out);

@@ -276,8 +276,8 @@ struct SolidBody {
   bool convex = false;
 };
 
-SolidBody solid_of(std::optional<MeshSolid> loaded, const std::string& word) {
-  if (loaded) return {*std::move(loaded), false};
+SolidBody solid_of(const std::shared_ptr<const MeshSolid>& loaded, const std::string& word) {
+  if (loaded) return {*loaded, false};
   const query::NamedShape shape = read_body_argument({word});
   if (shape.shape.polytope() == nullptr || shape.shape.margin() > 0) {
     query::refuse("unsupported", word + ": beside a solid stand meshes and boxes; `pdepth query` takes other bodies",
@@ -345,10 +345,9 @@ int run_depth(const DepthArguments& arguments) {
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
   if (!arguments.hull && !(arguments.file_a == "-" && arguments.file_b == "-")) {
-    auto solid_a = read_solid_argument(arguments.file_a), solid_b = read_solid_argument(arguments.file_b);
+    const auto solid_a = read_solid_argument(arguments.file_a), solid_b = read_solid_argument(arguments.file_b);
     if (solid_a || solid_b) {
-      return run_solids(arguments, solid_of(std::move(solid_a), arguments.file_a),
-                        solid_of(std::move(solid_b), arguments.file_b));
+      return run_solids(arguments, solid_of(solid_a, arguments.file_a), solid_of(solid_b, arguments.file_b));
     }
   }
   const query::Pair pair = read_pair(arguments);

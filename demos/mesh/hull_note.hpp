@@ -1,6 +1,7 @@
 /// @file
-/// A mesh that is answered as its convex hull: why, and by how much the hull is larger. Queries are about convex
-/// bodies, so that an answer about a mesh that is not convex must say that it is about another body.
+/// A file that is answered as its convex hull: why, and by how much the hull is larger. Points without faces have no
+/// other body, the hull may be what was asked for, and some queries and demos are about hulls alone. An answer about
+/// the hull of a mesh that is not convex must say that it is about another body.
 #pragma once
 
 #include <optional>

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "pd/shape/halfspaces.hpp"
+#include "protocol/line/line_notes.hpp"
 
 namespace pd::query {
 
@@ -139,10 +141,17 @@ NamedShape read_mesh(const Node& node, const Limits& limits) {
   if (as && word != "hull") as->refuse("bad_value", kMeshWords);
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
+  const auto turn = node.find("turn_faces");
+  const bool turned = turn && turn->json().is_boolean() && turn->json().get<bool>();
+  const std::string key = mesh_key(word, turned, file);
+  LineNotes nothing;
+  MeshBody& body = (node.notes() != nullptr ? *node.notes() : nothing).meshes[key];
   try {
-    NamedShape shape = load_mesh_shape(file, limits, as ? MeshAs::hull : MeshAs::found);
-    if (shape.hull_note) node.remark("hull");
-    return shape;
+    if (!body.hull) {
+      body.hull = std::make_shared<const NamedShape>(load_mesh_shape(file, limits, as ? MeshAs::hull : MeshAs::found));
+    }
+    if (body.hull->hull_note) node.remark("hull");
+    return *body.hull;
   } catch (const Refusal& refusal) {
     path.refuse(refusal.code, refusal.message);
   }

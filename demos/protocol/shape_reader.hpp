@@ -46,8 +46,9 @@ inline constexpr const char* kMeshWords = "must be \"solid\", \"hull\" or \"shee
 
 /// How a mesh is to be taken.
 enum class MeshAs {
-  found,  ///< as it is where it is convex, else as its hull, with a note
-  hull,   ///< as its hull, and nothing else is looked at
+  found,   ///< as it is where it is convex, else as its hull, with a note
+  convex,  ///< as it is: a check found it convex
+  hull,    ///< as its hull, and nothing else is looked at
 };
 
 /// The hull of a mesh file's referenced vertices, with a note where the file holds something else. @throws Refusal

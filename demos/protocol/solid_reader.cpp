@@ -47,17 +47,16 @@ MeshFinding as_in_file(MeshFinding finding, const MeshPoints& mesh) {
 
 }  // namespace
 
-std::optional<MeshSolid> load_solid(const std::string& path, const Limits& limits, const SolidWish& wish) {
-  return solid_of_mesh(read_mesh_points(path, limits.max_vertices, kMaxMeshBytes), path, wish);
-}
-
-std::optional<MeshSolid> solid_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish) {
+MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish& wish) {
   const MeshView view{mesh.points, mesh.faces.offsets, mesh.faces.corners};
-  if (mesh.faces.size() == 0 && !wish.always) return std::nullopt;
+  const auto hull = [&](MeshAs as) {
+    return MeshBody{nullptr, std::make_shared<const NamedShape>(hull_of_mesh(std::move(mesh), name, as))};
+  };
+  if (mesh.faces.size() == 0 && !wish.always) return hull(MeshAs::found);
   // Crossings are the dearest part, and a convex mesh has none.
   const auto quick = check_mesh(view, {.crossings = false});
-  if (!quick) return std::nullopt;  // the hull's factory refuses the points by name
-  if (quick->convex && !wish.always) return std::nullopt;
+  if (!quick) return hull(MeshAs::found);  // the hull's factory refuses the points by name
+  if (quick->convex && !wish.always) return hull(MeshAs::convex);
   if (const auto fault = fault_of_solid(*quick, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
   const auto report = check_mesh(view);
   if (!report) refuse(to_string(report.error().code), name + ": " + report.error().message, report.error().where);
@@ -69,7 +68,7 @@ std::optional<MeshSolid> solid_of_mesh(const MeshPoints& mesh, const std::string
         name + ": " + solid.error().message + "; or ask for the convex hull of its vertices (" + wish.hull_words + ")",
         solid.error().where);
   }
-  return *std::move(solid);
+  return {std::make_shared<const MeshSolid>(*std::move(solid)), nullptr};
 }
 
 std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limits) {
@@ -89,19 +88,18 @@ std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limi
   const Node path = node.at("path");
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
-  const std::string key = (wish.always ? "always " : "") + std::string(wish.turn_faces ? "turned " : "") + "/" + file;
+  const std::string key = mesh_key(wish.always ? "solid" : "", wish.turn_faces, file);
   LineNotes* const notes = node.notes();
   if (notes != nullptr) {
-    if (const auto known = notes->solids.find(key); known != notes->solids.end()) return known->second;
+    if (const auto known = notes->meshes.find(key); known != notes->meshes.end()) return known->second.solid;
   }
-  std::shared_ptr<const MeshSolid> solid;
   try {
-    if (auto loaded = load_solid(file, limits, wish)) solid = std::make_shared<const MeshSolid>(*std::move(loaded));
+    MeshBody body = body_of_mesh(read_mesh_points(file, limits.max_vertices, kMaxMeshBytes), file, wish);
+    if (notes != nullptr) notes->meshes.emplace(key, body);
+    return body.solid;
   } catch (const Refusal& refusal) {
     path.refuse(refusal.code, refusal.message);
   }
-  if (notes != nullptr) notes->solids.emplace(key, solid);
-  return solid;
 }
 
 namespace {

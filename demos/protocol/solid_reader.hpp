@@ -9,6 +9,7 @@
 #include "mesh/mesh_file.hpp"
 #include "pd/shape/mesh_solid.hpp"
 #include "protocol/body_reader.hpp"
+#include "protocol/line/line_notes.hpp"
 
 namespace pd::query {
 
@@ -20,14 +21,10 @@ struct SolidWish {
   std::string hull_words = "\"as\":\"hull\"";
 };
 
-/// The solid of a mesh; nothing where its file holds a convex mesh, or points without faces, which are asked as
-/// their hull.
+/// The body of a mesh: its solid, or the hull where the mesh is convex or has no faces.
 /// @throws Refusal by the word of the fault (open_edge, ...) with the faces, their lines of the file, and the ways out;
-/// those of `read_mesh_points`.
-[[nodiscard]] std::optional<MeshSolid> solid_of_mesh(const MeshPoints& mesh, const std::string& name,
-                                                     const SolidWish& wish);
-/// Reads the mesh from a file.
-[[nodiscard]] std::optional<MeshSolid> load_solid(const std::string& path, const Limits& limits, const SolidWish& wish);
+/// those of the hull.
+[[nodiscard]] MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish& wish);
 
 /// The solid of a shape {"type":"mesh"}, as above; null for other shapes, and for meshes asked as their hull. A line
 /// reads a file once.

@@ -162,6 +162,44 @@ TEST_F(MeshDoors, TheCommandsSayItToPeople) {
   expect_words(open.err, {"open_edge", "--hull"});
 }
 
+TEST_F(MeshDoors, CheckSaysHowQueriesTakeTheFile) {
+  const std::string text(kCube);
+  const auto changed = [&](const std::string& name, const std::string& from, const std::string& to) {
+    std::string more = text;
+    more.replace(more.find(from), from.size(), to);
+    return write(name, more);
+  };
+  std::string turned = std::string(kAngle).substr(0, std::string(kAngle).find("f 6"));
+  turned += "f 1 2 3 4 5 6\nf 12 11 10 9 8 7\nf 7 8 2 1\nf 8 9 3 2\nf 9 10 4 3\nf 10 11 5 4\nf 11 12 6 5\nf 12 7 1 6\n";
+  struct Case {
+    std::string file;
+    const char* asked_as;
+    const char* refused_as;
+    const char* words;
+  };
+  const std::vector<Case> cases = {
+      {cube_, "convex", "", "ask for the convex body"},
+      {angle_, "solid", "", "ask for the solid that the faces bound; `pdepth depth --hull`"},
+      {cloud_, "hull", "", "ask for the convex hull of the points"},
+      {open_, "refused", "open_edge", "refuse the file (open_edge): mend the mesh; `pdepth depth --hull`"},
+      {changed("flip.obj", "f 5 6 8 7", "f 7 8 6 5"), "refused", "flipped_face", "(flipped_face): mend the mesh"},
+      {write("turned.obj", turned), "refused", "inside_out", "(inside_out): turn the faces, by \"turn_faces\":true"},
+      {write("two.obj", text + "v 0.5 0.5 0.5\nv 0.7 0.5 0.5\nv 0.5 0.7 0.5\nv 0.5 0.5 2\n"
+                               "f 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n"),
+       "refused", "self_crossing", "(self_crossing): mend the mesh"}};
+  for (const Case& c : cases) {
+    expect_words(run("check '" + c.file + "'").out, {"queries", c.words});
+    const Json told = Json::parse(run("check '" + c.file + "' --json").out);
+    EXPECT_EQ(told.value("asked_as", ""), c.asked_as) << c.file;
+    EXPECT_EQ(told.value("refused_as", ""), c.refused_as) << c.file;
+    // The query is the judge of what the check says.
+    const Json asked = answer(depth_line(mesh(c.file), kUnitBox));
+    const std::string as = asked.contains("error") ? "refused" : asked.value("a_is", "convex");
+    EXPECT_EQ(as, c.asked_as) << asked;
+    EXPECT_EQ(asked.contains("error") ? code_of(asked) : "", c.refused_as) << asked;
+  }
+}
+
 TEST_F(MeshDoors, CheckNamesFaultsAndPlaces) {
   const Outcome cube = run("check cube.obj --fail-on solid,not_convex,duplicate_points");
   EXPECT_EQ(cube.status, 0) << cube.err;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pd/shape/mesh_solid.hpp"
@@ -17,11 +18,24 @@ struct Remark {
   std::string word;
 };
 
+struct NamedShape;
+
+/// A mesh file as the line asks it: the solid, or the hull of a mesh that is convex or has no faces.
+struct MeshBody {
+  std::shared_ptr<const MeshSolid> solid;
+  std::shared_ptr<const NamedShape> hull;
+};
+
+/// Names how a line asks a file. @param as  the word of "as", or nothing
+[[nodiscard]] inline std::string mesh_key(std::string_view as, bool turned, const std::string& file) {
+  return std::string(as) + (turned ? " turned/" : "/") + file;
+}
+
 struct LineNotes {
   std::vector<Remark> remarks;
-  /// Solids of mesh files, by file and wish: the choice of the handler and the handler itself ask for them. Null: the
-  /// mesh is asked as its hull.
-  std::map<std::string, std::shared_ptr<const MeshSolid>> solids;
+  /// Bodies of mesh files, by file and wish: the choice of the handler and the handler itself ask for them, and "a" and
+  /// "b" may be one file. So a line reads and checks a file once.
+  std::map<std::string, MeshBody> meshes;
 };
 
 }  // namespace pd::query
