@@ -9,190 +9,15 @@ the library rather than the command (worlds, contact brackets, Python) name the 
 """
 import argparse
 import json
-import math
 import os
 import pathlib
-import random
 import resource
-import signal
 import subprocess
 import sys
 import tempfile
 
-SECONDS, MEGABYTES = 5.0, 1000.0  # the goal of a query of 1,000 points
-MOST_SECONDS = 200  # of the clock
-ROWS = []
-
-
-class Run:
-    """What a command did, by GNU time: a process that Python starts inherits Python's own peak."""
-
-    def __init__(self, argv, stdin=b"", stdout=None):
-        with tempfile.NamedTemporaryFile() as told, tempfile.TemporaryFile() as source, tempfile.TemporaryFile() as out, \
-                tempfile.TemporaryFile() as err:
-            source.write(stdin)
-            source.seek(0)
-            timed = ["/usr/bin/time", "--quiet", "-f", "%U %S %M", "-o", told.name, *argv]
-            process = subprocess.Popen(timed, stdin=source, stdout=stdout or out, stderr=err, start_new_session=True)
-            try:
-                self.code = process.wait(MOST_SECONDS)
-            except subprocess.TimeoutExpired:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
-                raise
-            out.seek(0)
-            err.seek(0)
-            self.out, self.err = out.read().decode("utf-8", "replace"), err.read().decode("utf-8", "replace")
-            user, system, kilobytes = told.read().split()[-3:]
-        self.signal = self.code - 128 if self.code > 128 else 0
-        self.seconds = float(user) + float(system)
-        self.megabytes = int(kilobytes) / 1024
-
-    def answers(self):
-        return [json.loads(line) for line in self.out.splitlines()]
-
-
-def row(name, seconds=SECONDS, megabytes=MEGABYTES):
-    """A row: a function of a place to work in that returns a Run, or several, and a verdict: "" where all is well."""
-
-    def keep(make):
-        ROWS.append((name, seconds, megabytes, make))
-        return make
-
-    return keep
-
-
-class Place:
-    def __init__(self, program, folder):
-        self.program, self.folder = program, folder
-
-    def write(self, name, content):
-        path = os.path.join(self.folder, name)
-        with open(path, "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        return path
-
-    def run(self, *arguments, stdin=b""):
-        return Run([self.program, *arguments], stdin if isinstance(stdin, bytes) else stdin.encode())
-
-    def ask(self, *lines, options=()):
-        text = "\n".join(line if isinstance(line, str) else json.dumps(line) for line in lines) + "\n"
-        return self.run("query", *options, stdin=text)
-
-
-# ---- bodies ---------------------------------------------------------------------------------------------------------
-
-BOX = {"type": "box", "half_extents": [1, 1, 1]}
-
-
-def at(*place):
-    return {"translation": list(place)}
-
-
-def sphere_points(dimension, count, seed=1):
-    source, rows = random.Random(seed), []
-    for _ in range(count):
-        v = [source.gauss(0, 1) for _ in range(dimension)]
-        length = math.sqrt(sum(x * x for x in v))
-        rows.append([x / length for x in v])
-    return rows
-
-
-def star(rings, around, seed=7):
-    """A star-shaped body with rings * around + 2 vertices, spikes and notches by turns."""
-    source = random.Random(seed)
-    vertices = [[0, 0, 1]]
-    for i in range(rings):
-        theta = math.pi * (i + 1) / (rings + 1)
-        for j in range(around):
-            radius = (0.45 if (i + j) % 2 else 1.0) * source.uniform(0.9, 1.1)
-            phi = 2 * math.pi * (j + 0.5 * (i % 2)) / around
-            vertices.append([radius * math.sin(theta) * math.cos(phi), radius * math.sin(theta) * math.sin(phi),
-                             radius * math.cos(theta)])
-    vertices.append([0, 0, -1])
-    ring = lambda i, j: 1 + i * around + j % around
-    faces = []
-    for j in range(around):
-        faces.append([0, ring(0, j), ring(0, j + 1)])
-        faces.append([len(vertices) - 1, ring(rings - 1, j + 1), ring(rings - 1, j)])
-        for i in range(rings - 1):
-            # The rings are turned against each other by half a step.
-            if i % 2 == 0:
-                faces.append([ring(i, j), ring(i + 1, j), ring(i, j + 1)])
-                faces.append([ring(i, j + 1), ring(i + 1, j), ring(i + 1, j + 1)])
-            else:
-                faces.append([ring(i, j), ring(i + 1, j), ring(i + 1, j + 1)])
-                faces.append([ring(i, j), ring(i + 1, j + 1), ring(i, j + 1)])
-    return {"type": "star", "vertices": vertices, "faces": faces, "center": [0, 0, 0]}
-
-
-def torus(around=8, across=3, big=1.0, small=0.35):
-    text = ""
-    for i in range(around):
-        for j in range(across):
-            u, v = 2 * math.pi * i / around, 2 * math.pi * j / across
-            text += f"v {(big + small * math.cos(v)) * math.cos(u)!r} {(big + small * math.cos(v)) * math.sin(u)!r} " \
-                    f"{small * math.sin(v)!r}\n"
-    number = lambda i, j: 1 + (i % around) * across + j % across
-    for i in range(around):
-        for j in range(across):
-            text += f"f {number(i, j)} {number(i + 1, j)} {number(i + 1, j + 1)}\n"
-            text += f"f {number(i, j)} {number(i + 1, j + 1)} {number(i, j + 1)}\n"
-    return text
-
-
-def comb(corners, turned=False, gap=0.45):
-    """A comb of about so many corners: a spine and thin teeth."""
-    teeth = (corners - 4) // 4
-    ring = [[0.0, -1.0], [float(teeth), -1.0], [float(teeth), 0.0]]
-    for k in reversed(range(teeth)):
-        x = float(k)
-        ring += [[x + 1 - gap / 2, 0.0], [x + 1 - gap / 2, 5.0], [x + gap / 2, 5.0], [x + gap / 2, 0.0]]
-    ring.append([0.0, 0.0])
-    if turned:
-        ring = [[-y, x] for x, y in ring]
-    return {"outer": ring}
-
-
-def jagged(corners, seed):
-    source, ring = random.Random(seed), []
-    for k in range(corners):
-        radius, angle = source.uniform(0.3, 1), 2 * math.pi * k / corners
-        ring.append([radius * math.cos(angle), radius * math.sin(angle)])
-    return {"outer": ring}
-
-
-# ---- judges ---------------------------------------------------------------------------------------------------------
-
-
-def crashed(run):
-    return f"signal {run.signal}" if run.signal else ""
-
-
-def code_of(answer):
-    return answer.get("error", {}).get("code", "")
-
-
-def bracket(run, delta=None, of=("lower", "upper"), index=-1):
-    """An answer with a bracket that is as narrow as asked, or says that it is not."""
-    if crashed(run):
-        return crashed(run), ""
-    answer = run.answers()[index]
-    if "error" in answer:
-        return "refused: " + code_of(answer), ""
-    low, high = answer[of[0]], answer[of[1]]
-    said = f"[{low:.4g}, {high:.4g}]" + (" unreached" if answer.get("bracket_reached") is False else "")
-    if not low <= high:
-        return "a bracket upside down", said
-    wide = delta is not None and high > (1 + delta) * low * (1 + 1e-9) and high - low > 4e-15 * max(1, high)
-    if wide and answer.get("bracket_reached") is not False:
-        return "wider than asked, and nothing says so", said
-    return "", said
-
-
-def refused(answer, codes):
-    return "" if code_of(answer) in codes else f"not refused by name: {json.dumps(answer)[:80]}"
-
+from strangers_parts import (BOX, ROWS, Place, Run, at, bracket, code_of, comb, crashed, jagged, off_ellipsoid, refused, row,
+                             sphere_points, star, torus)
 
 # ---- A: a service with its limits on --------------------------------------------------------------------------------
 
@@ -243,14 +68,6 @@ def _(place):
 
 
 # ---- B: answers -----------------------------------------------------------------------------------------------------
-
-
-def off_ellipsoid(radii, centre, p):
-    """How far outside, to first order; negative inside."""
-    away = [x - c for x, c in zip(p, centre)]
-    norm = math.sqrt(sum((x / r) ** 2 for x, r in zip(away, radii)))
-    slope = math.sqrt(sum((x / r / r) ** 2 for x, r in zip(away, radii))) / norm
-    return (norm - 1) / slope
 
 
 @row("B1 a box and an ellipsoid that touch", 1)
