@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/dropped_worlds.hpp"
 #include "scenes/union_worlds.hpp"
 #include "scenes/world_parts.hpp"
 
@@ -69,6 +70,7 @@ ContactScene bounces(std::uint64_t perturbation) {
   ContactScene scene;
   scene.name = "bounces";
   scene.title = "Balls, boxes and stones that fall on a floor, restitution 0.8";
+  scene.rates = {60, 240, 500};
   scene.goal = ContactGoal::bounce;
   scene.seconds = 10;
   scene.quick_seconds = 3;
@@ -237,6 +239,11 @@ const std::vector<ContactSceneMaker>& contact_scenes() {
       {"slide-t-junctions", [](std::uint64_t p) { return slide(SlideOver::t_junctions, p); }},
       {"slide-decomposition", [](std::uint64_t p) { return slide(SlideOver::decomposition, p); }},
       {"bounces", bounces},
+      {"rebound-50", [](std::uint64_t p) { return rebound(0.5, p); }},
+      {"rebound-80", [](std::uint64_t p) { return rebound(0.8, p); }},
+      {"rebound-100", [](std::uint64_t p) { return rebound(1, p); }},
+      {"heavy-slab", heavy_slab},
+      {"dropped-column", dropped_column},
       {"one-place", one_place},
   };
   return makers;
@@ -255,7 +262,7 @@ ContactScene tower(int count, double half, std::uint64_t perturbation) {
   scene.quick_seconds = 5;
   scene.size = 2 * half;
   // g dt^2 below 3 % of a body.
-  scene.fastest_step = half < 0.002 ? 960 : 240;
+  if (half < 0.002) scene.rates = {960};
   scene.quick = half >= 0.5;
   scene.world.bodies.push_back(ground_box(20 * half));
   for (int i = 0; i < count; ++i) {

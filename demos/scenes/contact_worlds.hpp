@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "scenes/worlds.hpp"
 
@@ -15,23 +16,27 @@ namespace pd::scenes {
 
 /// What a scene is judged by.
 enum class ContactGoal {
-  stand,  ///< bodies stay where they started: fall time, drift, tail speed
-  rest,   ///< bodies come to rest somewhere: deepest penetration, tail speed, bodies lost
-  keep,   ///< the first moving body keeps its speed: `wanted_speed` along x at the end
-  bounce  ///< no energy comes from nowhere
+  stand,    ///< bodies stay where they started: fall time, drift, tail speed
+  rest,     ///< bodies come to rest somewhere: deepest penetration, tail speed, bodies lost
+  keep,     ///< the first moving body keeps its speed: `wanted_speed` along x at the end
+  bounce,   ///< no energy comes from nowhere
+  rebound,  ///< the first bounce keeps the wanted share of the height
+  land      ///< bodies that fall stay above the place that they fell on: how many topple
 };
 
 struct ContactScene {
   std::string name;
   std::string title;
   ContactGoal goal = ContactGoal::stand;
-  double seconds = 10;        ///< how long it runs
-  double quick_seconds = 2;   ///< in a quick run
-  double size = 1;            ///< of one body: the unit of drift and depth
-  double wanted_speed = 0;    ///< keep: of the first moving body, along x; m/s
-  double fastest_step = 240;  ///< steps a second beyond 60 and 240 that small bodies need; else 240
-  bool quick = false;         ///< belongs to a quick run
-  World world;
+  double seconds = 10;                 ///< how long it runs
+  double quick_seconds = 2;            ///< in a quick run
+  double size = 1;                     ///< of one body: the unit of drift and depth
+  double wanted_speed = 0;             ///< keep: of the first moving body, along x; m/s
+  double drop = 0;                     ///< rebound: how far the bodies fall
+  double kept_height = 1;              ///< rebound: share of that height that a bounce keeps, e^2
+  std::vector<double> rates{60, 240};  ///< steps a second; a quick run takes the first
+  bool quick = false;                  ///< belongs to a quick run
+  World world = {};
 };
 
 /// The scenes by name, made when asked for: `perturbation` as above.

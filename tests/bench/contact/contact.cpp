@@ -99,9 +99,9 @@ int run_contact(const ContactOptions& options) {
     const double seconds = options.seconds > 0 ? options.seconds : options.quick ? plan.quick_seconds : plan.seconds;
     std::vector<double> rates = options.rates;
     if (rates.empty()) {
-      rates = options.quick ? std::vector<double>{60} : std::vector<double>{60, 240};
-      if (plan.fastest_step > 240) {
-        rates = {plan.fastest_step};
+      rates = plan.rates;
+      if (options.quick) {
+        rates.resize(1);
       }
     }
     for (const double rate : rates) {

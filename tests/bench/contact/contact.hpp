@@ -12,7 +12,7 @@ namespace pd::bench {
 struct ContactOptions {
   std::vector<std::string> scenes;  ///< names; none: all (quick: the quick ones)
   std::vector<std::string> runs;    ///< names; none: all
-  std::vector<double> rates;        ///< steps a second; none: 60 and 240 (quick: 60)
+  std::vector<double> rates;        ///< steps a second; none: each scene's own (quick: its first)
   /// Of the constraint solver: Bullet's, `pd::apply_recommended`, and "stack": `pd::StackSolver` with those but for ten
   /// sweeps.
   std::vector<std::string> settings{"default", "recommended"};

@@ -14,6 +14,8 @@ namespace {
 
 using scenes::ContactGoal;
 
+/// Share of the height that a bounce should keep.
+constexpr double kBounceError = 0.05;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool from_bullet(const std::string& run) { return run.starts_with("bullet"); }
@@ -72,6 +74,12 @@ class Judge {
       }
       push("speed error", error, best, std::max(0.01, 1.1 * best), error <= std::max(0.01, 1.1 * best));
     }
+    if (ours_->goal == ContactGoal::rebound) {
+      const double best = least(block_, &ContactFigures::bounce_error, others);
+      push("bounce error", ours_->figures.bounce_error, best, kBounceError,
+           ours_->figures.bounce_error <= kBounceError);
+    }
+    if (ours_->goal == ContactGoal::land) at_most("toppled", &ContactFigures::toppled, others, 1, 0);
     at_most("energy gained", &ContactFigures::energy_gained, others, 1.1, 1e-2);
     push("lost", ours_->figures.lost, least(block_, &ContactFigures::lost, others), 0, ours_->figures.lost == 0);
   }
@@ -120,6 +128,8 @@ const std::vector<FigureColumn>& figure_columns() {
                                                  {"fall_s", &ContactFigures::fall_seconds},
                                                  {"tail_speed", &ContactFigures::tail_speed},
                                                  {"final_speed", &ContactFigures::final_speed},
+                                                 {"bounce_error", &ContactFigures::bounce_error},
+                                                 {"toppled", &ContactFigures::toppled},
                                                  {"energy_gained", &ContactFigures::energy_gained},
                                                  {"contacts", &ContactFigures::contacts},
                                                  {"new_points", &ContactFigures::new_points},
@@ -134,17 +144,19 @@ void print_block(const scenes::ContactScene& scene, const std::vector<ContactRow
   const ContactRow& first = block.front();
   fmt::print("{}: {}, {:.0f} Hz, {} settings, {:.0f} s, {} start(s)\n", scene.name, scene.title, first.steps_per_second,
              first.setting, first.seconds, first.starts);
-  fmt::print("  {:<16}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>10}{:>7}{:>10}{:>9}{:>10}{:>9}{:>7}{:>6}\n", "run", "p50 ms",
-             "p99 ms", "max ms", "ns/query", "deepest", "late", "drift", "fell s", "tail m/s", "vx m/s", "energy",
-             "contacts", "new %", "lost");
+  fmt::print("  {:<16}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>10}{:>7}{:>10}{:>9}{:>8}{:>8}{:>10}{:>9}{:>7}{:>6}\n", "run",
+             "p50 ms", "p99 ms", "max ms", "ns/query", "deepest", "late", "drift", "fell s", "tail m/s", "vx m/s",
+             "bounce", "toppled", "energy", "contacts", "new %", "lost");
   for (const ContactRow& row : block) {
     const ContactFigures& f = row.figures;
     fmt::print(
-        "  {:<16}{:>9.4f}{:>9.4f}{:>9.3f}{:>9.0f}{:>10.2g}{:>10.2g}{:>10.2g}{:>7}{:>10.2g}{:>9.4f}{:>10.2g}"
+        "  "
+        "{:<16}{:>9.4f}{:>9.4f}{:>9.3f}{:>9.0f}{:>10.2g}{:>10.2g}{:>10.2g}{:>7}{:>10.2g}{:>9.4f}{:>8.2g}{:>8.2g}{:>10."
+        "2g}"
         "{:>9.1f}{:>7.2f}{:>6.0f}\n",
         row.run, f.step_p50_ms, f.step_p99_ms, f.step_max_ms, f.query_ns, f.deepest, f.deepest_late, f.drift,
         f.fall_seconds >= row.seconds ? "-" : fmt::format("{:.1f}", f.fall_seconds), f.tail_speed, f.final_speed,
-        f.energy_gained, f.contacts, 100 * f.new_points, f.lost);
+        f.bounce_error, f.toppled, f.energy_gained, f.contacts, 100 * f.new_points, f.lost);
   }
   fmt::print("\n");
   std::fflush(stdout);

@@ -45,7 +45,8 @@ struct ContactVerdict {
 
 /// Thresholds: a step's median no longer than Bullet's fastest run, p99 and longest within 1.5 of it; fall time, drift
 /// and tail speed at least those of the best other run, where equal means within 10 % or 1e-4 of a body; nobody lost;
-/// no deeper than Bullet's best; the wanted speed within 1 %; no more energy gained than the best.
+/// no deeper than Bullet's best; the wanted speed within 1 %; the height after a first bounce within 5 % of e^2; no
+/// more bodies toppled and no more energy gained than the best.
 [[nodiscard]] std::vector<ContactVerdict> judge_contact(const std::vector<ContactRow>& rows);
 
 void print_verdicts(const std::vector<ContactRow>& rows);

@@ -50,6 +50,7 @@ class Runner {
       weight_ += scene.world.bodies[i].mass * scene.world.gravity.norm() * scene.size;
     }
     pieces_ = scenes::convex_pieces(scene.world);
+    if (scene.goal == ContactGoal::rebound) rebounds_.resize(starts_.size());
     start_energy_ = scenes::mechanical_energy(bullet_).total();
     figures_.fall_seconds = seconds;
     sample_every_ = std::max(1, static_cast<int>(setting.steps_per_second / 30));
@@ -70,6 +71,7 @@ class Runner {
     }
     ++steps_;
     watch_motion();
+    watch_rebounds();
     const bool late = 4 * steps_ > 3 * num_steps_;
     if (steps_ % sample_every_ == 0) {
       const double deepest = deepest_penetration();
@@ -89,6 +91,8 @@ class Runner {
     figures_.new_points = points_ > 0 ? young_ / points_ : 0;
     figures_.final_speed = static_cast<double>(bullet_.body(bullet_.first_moving()).getLinearVelocity().x());
     figures_.lost = lost();
+    figures_.toppled = toppled();
+    for (const Rebound& body : rebounds_) figures_.bounce_error = std::max(figures_.bounce_error, error_of(body));
     const BulletSolverStatistics statistics = bullet_.solver().statistics();
     figures_.queries = static_cast<double>(statistics.calls);
     figures_.exact_signs = static_cast<double>(statistics.exact_signs);
@@ -97,6 +101,45 @@ class Runner {
   }
 
  private:
+  /// A body that fell, and how high it came after that.
+  struct Rebound {
+    bool moves = false;
+    bool up = false;    ///< it has turned
+    bool down = false;  ///< it is past the top
+    double top = 0;
+    double low = 0;  ///< where it lies on the floor
+  };
+
+  void watch_rebounds() {
+    for (std::size_t i = 0; i < rebounds_.size(); ++i) {
+      Rebound& body = rebounds_[i];
+      const int number = static_cast<int>(i);
+      body.moves = scene_.world.bodies[i].mass > 0;
+      body.low = starts_[i].z() - scene_.drop;
+      const double speed = static_cast<double>(bullet_.body(number).getLinearVelocity().z());
+      body.up = body.up || speed > 0;
+      body.down = body.down || (body.up && speed < 0);
+      if (body.up && !body.down) {
+        body.top = static_cast<double>(bullet_.body(number).getWorldTransform().getOrigin().z());
+      }
+    }
+  }
+  [[nodiscard]] double error_of(const Rebound& body) const {
+    if (!body.moves) return 0;
+    const double kept = body.up ? (body.top - body.low) / scene_.drop : 0;
+    return std::abs(kept / scene_.kept_height - 1);
+  }
+  [[nodiscard]] double toppled() {
+    double count = 0, moving = 0;
+    for (int i = 0; i < bullet_.num_bodies(); ++i) {
+      if (scene_.world.bodies[i].mass == 0) continue;
+      const Vec3 way = to_pd(bullet_.body(i).getWorldTransform().getOrigin()) - starts_[i];
+      count += way.head<2>().norm() <= 0.5 * scene_.size ? 0 : 1;
+      ++moving;
+    }
+    return moving > 0 ? count / moving : 0;
+  }
+
   void watch_motion() {
     double farthest = 0;
     double fastest = 0;
@@ -159,6 +202,7 @@ class Runner {
   BulletScene bullet_;
   std::vector<ConvexPiece> pieces_;
   std::vector<Vec3> starts_;
+  std::vector<Rebound> rebounds_;
   Scratch scratch_;
   ContactFigures figures_;
   std::vector<double> step_ms_;

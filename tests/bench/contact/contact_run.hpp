@@ -31,6 +31,8 @@ struct ContactFigures {
   double fall_seconds = 0;   ///< when a body was half a size away from its start; the whole time where none was
   double tail_speed = 0;     ///< mean over the last tenth of the fastest body's speed; m/s
   double final_speed = 0;    ///< of the first moving body along x at the end; m/s
+  double bounce_error = 0;   ///< rebound: of the height that the first bounce keeps, over what it should be; largest
+  double toppled = 0;        ///< share of the moving bodies that end half a size aside of where they started
   double energy_gained = 0;  ///< largest excess over the start, in units of m g size of all bodies
   double contacts = 0;       ///< mean over the last quarter
   double new_points = 0;     ///< share of points younger than two steps, over the last quarter

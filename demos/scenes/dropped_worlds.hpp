@@ -1,0 +1,16 @@
+/// @file
+/// Scenes of `contact_worlds.hpp` in which bodies are let go from a height or under a heavy load.
+#pragma once
+
+#include "scenes/contact_worlds.hpp"
+
+namespace pd::scenes {
+
+/// Spheres, boxes, cylinders and stones that fall 2 m on a floor with this restitution of each pair.
+[[nodiscard]] ContactScene rebound(double restitution, std::uint64_t perturbation);
+/// A slab of nine boxes on one of a two-hundredth of its weight.
+[[nodiscard]] ContactScene heavy_slab(std::uint64_t perturbation);
+/// Ten boxes of two metres that fall 19 m as a column.
+[[nodiscard]] ContactScene dropped_column(std::uint64_t perturbation);
+
+}  // namespace pd::scenes
