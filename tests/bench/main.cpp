@@ -226,7 +226,8 @@ int hash_command(const Options& o) {
 void add_contact_options(CLI::App& command, ContactOptions& o) {
   command.add_option("--scene,--scenes", o.scenes, "names of scenes (default: all)")->delimiter(',');
   command.add_option("--runs", o.runs, "names of runs (default: all)")->delimiter(',');
-  command.add_option("--rates", o.rates, "steps a second (default: those of each scene; quick the first)")->delimiter(',');
+  command.add_option("--rates", o.rates, "steps a second (default: those of each scene; quick the first)")
+      ->delimiter(',');
   command.add_option("--settings", o.settings, "of the constraint solver")
       ->delimiter(',')
       ->check(CLI::IsMember({"default", "recommended", "stack"}))
