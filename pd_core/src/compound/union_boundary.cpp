@@ -267,11 +267,16 @@ Vec3 UnionBoundary::free_placement(const BoundaryPoint& where) const {
   const Vec3 inwards = centre - x;
   const double length = inwards.norm();
   const Vec3 along = length > 0 ? Vec3(inwards / length) : Vec3::Zero();
-  // Outside the polygon there is free space: straight out of its plane, and near its rim also towards its middle. Steps
-  // grow until they leave the bounded union at the latest.
-  for (double step = 0x1p-54 * std::max(x.cwiseAbs().maxCoeff(), 0x1p-900);; step *= 2) {
-    for (const double slide : {0.0, 1.0, 8.0}) {
-      const Vec3 candidate = x + step * normal + std::min(slide * step, length) * along;
+  // Outside the polygon there is free space: straight out of its plane, and near its rim also towards its middle. In a
+  // gap as narrow as a blade that space is flat, so that a way towards the middle may rise by a small part of itself
+  // only. Steps grow until they leave the bounded union at the latest.
+  const double least = 0x1p-54 * std::max(x.cwiseAbs().maxCoeff(), 0x1p-900);
+  for (double step = least;; step *= 2) {
+    const Vec3 straight = x + step * normal;
+    if (outside_all(straight)) return straight;
+    const Vec3 slid = x + std::min(step, length) * along;
+    for (double rise = step; rise >= std::max(least, 0x1p-40 * step); rise *= 0.125) {
+      const Vec3 candidate = slid + rise * normal;
       if (outside_all(candidate)) return candidate;
     }
   }
