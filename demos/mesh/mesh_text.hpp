@@ -134,8 +134,8 @@ class VertexCollector {
   std::int64_t left_out_ = 0;
   std::vector<Vec3> points_;
   std::vector<std::int32_t> ids_;  ///< of the points in the file, where some are left out
-  MeshFaces faces_;            ///< all elements
-  std::vector<char> is_face_;  ///< of each element
+  MeshFaces faces_;                ///< all elements
+  std::vector<char> is_face_;      ///< of each element
 };
 
 /// Words and lines of a text.
