@@ -10,8 +10,8 @@
 namespace pd::detail {
 
 struct ChildBox {
-  btVector3 lower;
-  btVector3 upper;
+  btVector3 lower = btVector3(0, 0, 0);
+  btVector3 upper = btVector3(0, 0, 0);
 };
 
 /// A child of a compound, or the convex body itself (index -1).
