@@ -78,7 +78,7 @@ TEST_F(MeshFile, BadObj) {
   EXPECT_EQ(refusal("a.obj", "v 0 0 0\nf -2\n"), "unreadable_file");
   EXPECT_EQ(refusal("a.obj", ""), "unreadable_file");
   EXPECT_EQ(refusal("a.obj", "hello\n"), "unreadable_file");
-  EXPECT_EQ(refusal("a.xyz", "0 0 0\n"), "unreadable_file");
+  EXPECT_EQ(refusal("a.txt", "0 0 0\n"), "unreadable_file");
 }
 
 TEST_F(MeshFile, Off) {

@@ -93,8 +93,9 @@ TEST(TimeOfImpact, AFaceThatRocksOnAnEdgeIsProvedAlongItself) {
   rocking.arm = Vec3(0.05, 0.3 + 3e-5, 0);
   for (const bool swapped : {false, true}) {
     const MovingShape still{{&roof, Pose()}, {}};
-    const auto found = swapped ? pd::time_of_impact(still, rocking, 1, scratch, {.distance_tolerance = 1e-5})
-                               : pd::time_of_impact(rocking, still, 1, scratch, {.distance_tolerance = 1e-5});
+    const auto found = swapped
+                           ? pd::time_of_impact(still, rocking, 1, scratch, {.distance_tolerance = 1e-5, .depth = {}})
+                           : pd::time_of_impact(rocking, still, 1, scratch, {.distance_tolerance = 1e-5, .depth = {}});
     EXPECT_FALSE(found.hit);
     EXPECT_EQ(found.certified, 1);
     EXPECT_LE(found.queries, 4);

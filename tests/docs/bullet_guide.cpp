@@ -130,6 +130,7 @@ void meshes() {
   btBvhTriangleMeshShape ground(&triangles, true);
   pd::BulletSolverSettings settings;
   settings.one_sided_meshes = true;  // only where every mesh is the surface of a solid
+  pd::BulletPenetrationDepthSolver solver(settings);
   // [/mesh]
   expect(report->triangles == 2, "two triangles");
   expect(ground.getMeshInterface() == &triangles && settings.one_sided_meshes, "the mesh is Bullet's");

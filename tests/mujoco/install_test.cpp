@@ -89,7 +89,7 @@ TEST(MujocoInstall, PairsThatAreNotTakenAreMujocos) {
   depth_of_boxes(model, data);
   EXPECT_EQ(mujoco_report().answered, 0);
   ASSERT_TRUE(install_mujoco());
-  EXPECT_DOUBLE_EQ(depth_of_boxes(model, data), 0.125);
+  EXPECT_NEAR(depth_of_boxes(model, data), 0.125, 1e-12);
   EXPECT_EQ(mujoco_report().answered, 1);
   EXPECT_EQ(mujoco_report().contact_points, 4);
   uninstall_mujoco();
