@@ -63,7 +63,8 @@ TEST(RollbackGround, BoxesOnARidge) {
     all.steps += cost.steps;
     all.cuts += cost.cuts;
   }
-  EXPECT_GT(all.cuts, 100);
+  // In double precision the boxes balance for longer, and fewer steps are cut.
+  EXPECT_GT(all.cuts, sizeof(btScalar) == sizeof(float) ? 100 : 10);
   EXPECT_LT(all.steps, 3.3 * all.cuts) << all.steps << " steps for " << all.cuts << " cuts";
 }
 
