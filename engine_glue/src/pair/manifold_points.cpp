@@ -209,7 +209,9 @@ void replace_any_points(const PointsOfStep& step, const PointSurroundings* piece
   const bool same_step = seconds == memory.seconds;
   const btScalar threshold = manifold.getContactBreakingThreshold();
   PieceNumbers numbers;
-  const bool together = points_are_alike(result) && (pieces == nullptr || surroundings.numbers(0, numbers));
+  // A patch may hold no point, and then no piece has a number.
+  const bool together =
+      fresh.count > 0 && points_are_alike(result) && (pieces == nullptr || surroundings.numbers(0, numbers));
   std::array<int, 4> entries{-1, -1, -1, -1};  // of new points; -1: no old point goes on in it
   std::array<bool, 4> written{};               // new points
   LastingPoints lasting;
