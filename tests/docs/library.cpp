@@ -1,10 +1,9 @@
 /// @file
 /// The sample of the page on C++, compiled and run.
 // [library]
+#include <cstdio>
 #include <pd/depth/penetration_depth.hpp>
 #include <pd/depth/scratch.hpp>
-
-#include <cstdio>
 
 int main() {
   const pd::ConvexShape cube = *pd::ConvexPolytope::box({0.5, 0.5, 0.5});
