@@ -185,31 +185,44 @@ TEST(PolygonDepth, AnArcCoveredOnBothSidesOfAVertex) {
   EXPECT_NEAR(r.depth({1, 0.25}).depth, oracle::PolygonOracle(p, q).depth({1, 0.25}), 1e-12);
 }
 
+void expect_scaled(const PolygonDepth& a, const PolygonDepth& b, double scale) {
+  ASSERT_EQ(a.contact, b.contact) << scale;
+  ASSERT_EQ(a.lower * scale, b.lower) << scale;
+  ASSERT_EQ(a.upper * scale, b.upper) << scale;
+}
+
 TEST(PolygonDepth, ScalesByPowersOfTwoKeepEveryBit) {
   SmallPolygons next(5);
   for (const double scale : {0x1p-600, 0x1p-30, 0x1p900}) {
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 60; ++i) {
+      const PolygonMethod method = i % 2 == 0 ? PolygonMethod::automatic : PolygonMethod::explicit_sums;
       oracle::Rings p = next.simple(8, 9, true), q = next.convex(5, 4);
-      const auto before = *PolygonDifference::of(pd::test::made(p), pd::test::made(q));
+      const auto before = *PolygonDifference::of(pd::test::made(p), pd::test::made(q), method);
       for (auto* rings : {&p, &q}) {
         for (auto& ring : *rings) {
           for (auto& x : ring) x = {x[0] * scale, x[1] * scale};
         }
       }
-      const auto after = *PolygonDifference::of(pd::test::made(p), pd::test::made(q));
-      const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)};
-      const PolygonDepth a = before.depth(y), b = after.depth({y[0] * scale, y[1] * scale});
-      ASSERT_EQ(a.contact, b.contact);
-      ASSERT_EQ(a.lower * scale, b.lower);
-      ASSERT_EQ(a.upper * scale, b.upper);
+      const auto after = *PolygonDifference::of(pd::test::made(p), pd::test::made(q), method);
+      const Point2 y = {next.eighths(0, 6), next.eighths(0, 6)}, scaled = {y[0] * scale, y[1] * scale};
+      expect_scaled(before.depth(y), after.depth(scaled), scale);
       for (const Leave leave : {Leave::first_exit, Leave::straight, Leave::escape}) {
-        const PolygonDepth c = before.depth_along(y, {3, 1}, leave);
-        const PolygonDepth d = after.depth_along({y[0] * scale, y[1] * scale}, {3, 1}, leave);
-        ASSERT_EQ(c.contact, d.contact);
-        ASSERT_EQ(c.lower * scale, d.lower);
-        ASSERT_EQ(c.upper * scale, d.upper);
+        expect_scaled(before.depth_along(y, {3, 1}, leave), after.depth_along(scaled, {3, 1}, leave), scale);
       }
+      if (HasFatalFailure()) return;
     }
+  }
+}
+
+/// Products of such coordinates overflow: no sum may be taken to cover an edge that it does not reach.
+TEST(PolygonDepth, AVertexFarAwayHidesNoEdge) {
+  const oracle::Rings notched = {{{0, 0}, {2, 0}, {2, 2}, {1, 1}, {0, 2}}};
+  for (const Point2 far : {Point2{1e300, 4}, Point2{4, 1e300}, Point2{1e300, 1e300}}) {
+    const oracle::Rings kite = {{{0, 0}, {4, 0}, far, {2, 2}, {0, 4}}};
+    const auto r = *PolygonDifference::of(pd::test::made(kite), pd::test::made(notched));
+    EXPECT_EQ(r.depth({-3, -3}).contact, PlanarContact::separated);
+    EXPECT_EQ(r.depth({1, -1}).contact, PlanarContact::overlapping);
+    EXPECT_EQ(r.depth({1, -1}).depth, 1) << far[0];  // down, by the lower edges
   }
 }
 

@@ -40,16 +40,20 @@ class RoughSums {
     // Corners err by 2u times the size. Sides are two products of lengths of four sizes at most, and err by 2^7 u
     // size^2. Fractions err by 3u times a difference of two sides: by 2^7 u size^2 along the edge's normal.
     constexpr double kAir = 0x1p-43;
-    const bool in_range = size > 0x1p-400 && size < 0x1p400;
-    air_ = in_range ? kAir * size * size : std::numeric_limits<double>::infinity();
+    in_range_ = size > 0x1p-400 && size < 0x1p400;
+    air_ = kAir * size * size;
   }
 
   static Point2 rounded(const SumPoint& x) { return {x.p[0] - x.q[0], x.p[1] - x.q[1]}; }
 
   /// The share of the segment from s to z (rounded as above). @return false if the two have for certain no point in
-  /// common.
+  /// common. Where squares of the coordinates overflow or underflow nothing is certain: every sum may reach the segment.
   [[nodiscard]] bool cover(std::int32_t sum, const Point2& s, const Point2& z, RoughCover& r) const {
     r = {.sum = sum};
+    if (!in_range_) {
+      r.inner_to = -1;
+      return true;
+    }
     const std::size_t begin = first_[static_cast<std::size_t>(sum)], end = first_[static_cast<std::size_t>(sum) + 1];
     double least = std::numeric_limits<double>::infinity(), greatest = -least;
     const Point2* a = &corners_[end - 1];
@@ -86,6 +90,7 @@ class RoughSums {
   std::vector<Point2> corners_;
   std::vector<std::size_t> first_;  ///< by sum, one more at the end: into `corners_`
   double air_ = 0;
+  bool in_range_ = false;
 };
 
 /// Finds the sums that must be intersected with a candidate exactly.
