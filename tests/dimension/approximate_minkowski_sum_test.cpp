@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "dimension/body_families.hpp"
-#include "dimension/growing_sum.hpp"
+#include "dimension/composed/growing_sum.hpp"
 
 namespace pd::dimension::test {
 namespace {

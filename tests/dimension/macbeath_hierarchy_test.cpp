@@ -1,9 +1,9 @@
-#include "dimension/macbeath_hierarchy.hpp"
+#include "dimension/backends/macbeath_hierarchy.hpp"
 
 #include <gtest/gtest.h>
 
+#include "dimension/backends/macbeath_cover.hpp"
 #include "dimension/body_families.hpp"
-#include "dimension/macbeath_cover.hpp"
 
 namespace pd::dimension::test {
 namespace {

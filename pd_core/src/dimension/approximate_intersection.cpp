@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "dimension/composed_node.hpp"
+#include "dimension/composed/composed_node.hpp"
 #include "dimension/origin_frame.hpp"
 #include "dimension/origin_search.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "dimension/composed/flattened_body.hpp"
+#include "dimension/composed/growing_sum.hpp"
 #include "dimension/equal_planes.hpp"
-#include "dimension/flattened_body.hpp"
-#include "dimension/growing_sum.hpp"
 #include "numeric/floating_point_guard.hpp"
 
 namespace pd::dimension {

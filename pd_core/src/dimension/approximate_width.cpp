@@ -19,7 +19,7 @@ constexpr double kRoom = 1e-10;
 /// Of epsilon, for the structure; the search takes the rest. The kernel's hull is much dearer than the search, which
 /// finds its last digits fast: measured on 1e6 points from .5 to .93, the total still fell at .9 by a third to a half.
 constexpr double kStructureShare = 0.9;
-/// Budget of a search in operations: facets made, and a thousand products of the structure for one.
+/// A search may take so many operations: a facet counts as one, and so do a thousand products of the structure.
 constexpr std::int64_t kMostWork = 1'000'000;
 
 /// The polytope inside K + (-K), in the frame in which K holds the unit ball and so K + (-K) the ball of radius 2.
@@ -149,7 +149,8 @@ Expected<ApproximateWidth<D>> approximate_width(const ComposedBody<D>& body, dou
   if (!found) return found;
   ApproximateWidth<D> width = *found;
   width.bracket_reached = width.bracket_reached && polytope->bracket_reached;
-  width.upper = width.upper / (1 - polytope->epsilon) * (1 + kRoom);
+  // A polytope that was left coarse may promise nothing: the upper bound is infinite then.
+  width.upper = width.upper / std::max(0.0, 1 - polytope->epsilon) * (1 + kRoom);
   width.width = width.upper;
   return width;
 }

@@ -14,8 +14,8 @@
 /// [M] samples the boundary by nearest points to a net (Dudley; Bronshteyn and Ivanov); departure: kernels by a growing
 /// hull
 /// (`epsilon_kernel.hpp`), of the polar body for halfspaces. Sizes are O(1 / epsilon^((d-1)/2)) as measured; the number
-/// of facets of a hull of k points is at most about {1, 2, 7, 32} k on the families tried, d = 2..5. So it needs no
-/// budget beside that of a kernel.
+/// of facets of a hull of k points is at most about {1, 2, 7, 32} k on the families tried, d = 2..5. So the
+/// approximation needs no budget beside that of a kernel.
 #pragma once
 
 #include <vector>

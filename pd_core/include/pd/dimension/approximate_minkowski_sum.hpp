@@ -32,8 +32,8 @@ struct ApproximateSum {
 };
 
 /// Budget: a million facets, where a thousand products of the structures count as one, so some four seconds and 0.6 GB
-/// in R^5. Where it ends first, `body` keeps the larger `epsilon` that was certified so far; an intersection inside is
-/// then refused as limit_exceeded.
+/// in R^5. If it ends first, `body` keeps the larger `epsilon` that was certified so far, and a sum with an
+/// intersection inside is refused as limit_exceeded.
 ///
 /// @param sum      `ComposedBody::sum_of`, `hull_of`, `intersection_of`, affine images and their compositions
 /// @param epsilon  in [1e-6, 1), at least 4 times that of every structure inside; with hulls inside 8 (1 + r) times,

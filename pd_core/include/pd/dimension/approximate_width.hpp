@@ -20,7 +20,7 @@ struct ApproximateWidth {
   double lower = 0;             ///< of the exact width, certified by points of the body
   double upper = 0;             ///< the width of the whole body along `direction`; upper <= (1 + epsilon) lower
   Vector<D> direction;          ///< of length 1
-  bool bracket_reached = true;  ///< false: a budget of operations ended first, and upper > (1 + epsilon) lower
+  bool bracket_reached = true;  ///< false: a budget of operations ended first; upper may exceed (1 + epsilon) lower
   std::int64_t facets = 0;      ///< of the growing polytope, in all
   std::int64_t vertices = 0;    ///< of it
   QueryCounters queries;
@@ -31,7 +31,7 @@ struct ApproximateWidth {
 /// @return ErrorCode::bad_value ("epsilon").
 /// The structure of the backend is built for 0.9 epsilon / (1 + epsilon), the search ends at the rest; bounds up to
 /// rounding (1e-9, relative). Budget of the search: a million facets, where a thousand products of the structure count
-/// as one; where it ends first, the bracket so far stands.
+/// as one; if it ends first, the bracket so far stands.
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
                                                               Backend backend = Backend::kernel);

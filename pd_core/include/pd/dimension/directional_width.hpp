@@ -11,7 +11,7 @@
 /// | kernel | an epsilon-kernel, the graph of its hull, and a table of directions to start climbing from | measured |
 /// | macbeath | the hierarchy of Macbeath regions of [M] | O(log^2 (1 / epsilon)) |
 ///
-/// Budget: the hierarchy of Macbeath regions is built within 12 million operations, about a second. Where it takes
+/// Budget: the hierarchy of Macbeath regions is built within 12 million operations, about a second. If it takes
 /// more, as for 300 points on a sphere of R^5 at epsilon 0.01, the points of a kernel are scanned instead: epsilon
 /// holds, and a query takes a product a point. The kernel's hull has at most n points; 1,000 on a sphere of R^5 take
 /// 27,000 facets.

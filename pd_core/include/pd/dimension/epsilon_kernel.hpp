@@ -9,7 +9,8 @@
 /// alpha)). Here sizes and work are measured (`pdepth-bench arya`). The method is the estimate refinement of Kamenev,
 /// which has the optimal order O(1/epsilon^((d-1)/2)) of points on smooth bodies.
 ///
-/// It needs no budget: a point enters the hull once. 1,000 points on a sphere of R^5 make 27,000 facets in 0.1 s.
+/// The method needs no budget, because a point enters the hull once. 1,000 points on a sphere of R^5 make 27,000 facets
+/// in 0.1 s.
 #pragma once
 
 #include <cstdint>

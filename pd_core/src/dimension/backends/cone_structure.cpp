@@ -1,12 +1,12 @@
-#include "dimension/cone_structure.hpp"
+#include "dimension/backends/cone_structure.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "dimension/backends/kernel_structure.hpp"
 #include "dimension/halfspace_body.hpp"
-#include "dimension/kernel_structure.hpp"
 
 namespace pd::dimension::detail {
 

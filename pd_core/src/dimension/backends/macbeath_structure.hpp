@@ -1,5 +1,5 @@
 /// @file
-/// The macbeath backend of directional width queries: the hierarchy of Macbeath regions over a kernel. Where the build
+/// The macbeath backend of directional width queries is the hierarchy of Macbeath regions over a kernel. If the build
 /// exceeds its budget of operations (`kMostMacbeathWork`), and in R^4 and R^5 for a kernel of 256 points or fewer, the
 /// kernel is scanned instead: the answers keep their epsilon, a query costs a product a point, and `StructureSize`
 /// shows one layer.

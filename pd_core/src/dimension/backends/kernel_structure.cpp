@@ -1,4 +1,4 @@
-#include "dimension/kernel_structure.hpp"
+#include "dimension/backends/kernel_structure.hpp"
 
 #include <algorithm>
 #include <numeric>

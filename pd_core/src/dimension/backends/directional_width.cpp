@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "dimension/cone_structure.hpp"
-#include "dimension/kernel_structure.hpp"
-#include "dimension/macbeath_structure.hpp"
+#include "dimension/backends/cone_structure.hpp"
+#include "dimension/backends/kernel_structure.hpp"
+#include "dimension/backends/macbeath_structure.hpp"
 #include "dimension/validate.hpp"
 #include "numeric/floating_point_guard.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dimension/macbeath_region.hpp"
+#include "dimension/backends/macbeath_region.hpp"
 
 namespace pd::dimension::detail {
 

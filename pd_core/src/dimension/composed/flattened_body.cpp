@@ -1,4 +1,4 @@
-#include "dimension/flattened_body.hpp"
+#include "dimension/composed/flattened_body.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "dimension/composed/growing_sum.hpp"
 #include "dimension/equal_planes.hpp"
-#include "dimension/growing_sum.hpp"
 
 namespace pd::dimension::detail {
 

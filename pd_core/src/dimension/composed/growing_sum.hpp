@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dimension/composed_node.hpp"
+#include "dimension/composed/composed_node.hpp"
 #include "dimension/joggle.hpp"
 #include "dimension/radial_hull.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
@@ -25,11 +25,11 @@ template <int D>
   return body.node().radial ? growth / 2 : growth / (4 * (1 + ratio));
 }
 
-/// Budget of a growth in operations: facets made, and a thousand products of K's structures for one. Some four seconds
-/// and 0.6 GB in R^5.
+/// A growth may take so many operations: a facet counts as one, and so do a thousand products of K's structures. They
+/// take some four seconds and 0.6 GB in R^5.
 inline constexpr std::int64_t kMostGrowthWork = 1'000'000;
 
-/// How a growth ended.
+/// A growth has one of these ends.
 enum class Growth {
   reached,   ///< K shrunk by the limit lies inside
   spent,     ///< the budget ended; `GrowingSum::reached` tells what is certified
@@ -69,7 +69,7 @@ class GrowingSum {
     return Growth::reached;
   }
 
-  /// K shrunk by this lies inside: the limit, or more where the budget ended first.
+  /// K shrunk by this factor lies inside: the limit, or more if the budget ended first.
   [[nodiscard]] double reached() const { return reached_; }
   [[nodiscard]] const RadialHull<D>& hull() const { return hull_; }
   [[nodiscard]] const AffineMap<D>& frame() const { return frame_; }

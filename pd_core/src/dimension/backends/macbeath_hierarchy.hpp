@@ -18,14 +18,14 @@
 #include <memory>
 #include <vector>
 
-#include "dimension/macbeath_region.hpp"
+#include "dimension/backends/macbeath_region.hpp"
 #include "pd/dimension/directional_width.hpp"
 
 namespace pd::dimension::detail {
 
-/// Budget of the build in operations: shadows held against a box, cells walked through, and points that a region is cut
-/// from, eight for one. Some 0.1 microseconds each, and at most 100 MB. Where a body and an epsilon need more, as on
-/// spheres in R^5, no hierarchy is made.
+/// The build may take so many operations. A shadow held against a box counts as one, a cell walked through does, and so
+/// do eight points that a region is cut from. They take some 0.1 microseconds each, and at most 100 MB. If a body and
+/// an epsilon need more, as on spheres in R^5, no hierarchy is made.
 inline constexpr std::int64_t kMostMacbeathWork = 12'000'000;
 
 /// @param points   of K, extreme or not; K is their hull
@@ -33,7 +33,7 @@ inline constexpr std::int64_t kMostMacbeathWork = 12'000'000;
 /// @param epsilon  in (0, 1): supports fall short of h by at most epsilon h, h measured from the frame's O, so by
 /// epsilon width_K at most.
 /// @param most_work  budget of operations
-/// @return null where the budget is spent.
+/// @return null if the budget is spent.
 template <int D>
 [[nodiscard]] std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
                                                                           const AffineMap<D>& frame, double epsilon,

@@ -1,4 +1,4 @@
-#include "dimension/macbeath_structure.hpp"
+#include "dimension/backends/macbeath_structure.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "dimension/kernel_structure.hpp"
-#include "dimension/macbeath_hierarchy.hpp"
+#include "dimension/backends/kernel_structure.hpp"
+#include "dimension/backends/macbeath_hierarchy.hpp"
 
 namespace pd::dimension::detail {
 

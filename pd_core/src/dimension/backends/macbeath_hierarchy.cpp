@@ -1,4 +1,4 @@
-#include "dimension/macbeath_hierarchy.hpp"
+#include "dimension/backends/macbeath_hierarchy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "dimension/macbeath_cover.hpp"
+#include "dimension/backends/macbeath_cover.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension::detail {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "dimension/composed_node.hpp"
+#include "dimension/composed/composed_node.hpp"
 #include "pd/dimension/matrix_inverse.hpp"
 
 namespace pd::dimension {

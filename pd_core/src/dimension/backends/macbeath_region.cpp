@@ -1,4 +1,4 @@
-#include "dimension/macbeath_region.hpp"
+#include "dimension/backends/macbeath_region.hpp"
 
 #include <algorithm>
 #include <cmath>
