@@ -203,7 +203,8 @@ int steps_out_of_a_seam(Thin kind, double aside) {
   return 1000;
 }
 
-// Bullet's are still in after 240 steps; from elsewhere inside of such bodies they take up to 60.
+// With Bullet's contacts the bodies are still inside after 240 steps. From other places inside of such bodies they take
+// up to 60 steps to come out.
 TEST(DeepUnions, AThinBodyBetweenTwoChildrenComesOut) {
   for (const Thin kind : {Thin::plate, Thin::disc, Thin::two_plates}) {
     for (const double aside : {0.01, 0.05}) {

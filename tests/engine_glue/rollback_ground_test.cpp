@@ -1,4 +1,4 @@
-// What RollbackStepper costs on meshes and heightfields, in steps of Bullet: each first contact takes the step that met
+// RollbackStepper has a budget of Bullet's steps on meshes and heightfields: each first contact takes the step that met
 // it, a shorter one or two that end before it, and one for the rest.
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <gtest/gtest.h>

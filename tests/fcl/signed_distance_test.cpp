@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <random>
 #include <vector>
@@ -120,6 +121,42 @@ TEST_F(FclDoor, ChangedGeometriesAreConvertedAgain) {
     passing.setTranslation({4, 0, 0});
     fcl::DistanceResultd here;
     EXPECT_DOUBLE_EQ(queries_.distance(&a, &passing, fcl::DistanceRequestd(), here), 3.25 - 0.5 * (1 + i % 3));
+  }
+}
+
+TEST_F(FclDoor, BorrowedGeometriesMayGo) {
+  fcl::Sphered ball(0.5);
+  std::deque<fcl::Boxd> boxes;
+  const auto borrowed = [](fcl::CollisionGeometryd& geometry) {
+    return fcl::CollisionObjectd(std::shared_ptr<fcl::CollisionGeometryd>(std::shared_ptr<void>(), &geometry));
+  };
+  const fcl::CollisionObjectd a = borrowed(ball);
+  for (int i = 0; i < 600; ++i) {  // more than are kept
+    fcl::CollisionObjectd passing = borrowed(boxes.emplace_back(1 + i % 3, 1, 1));
+    passing.setTranslation({4, 0, 0});
+    fcl::DistanceResultd here;
+    EXPECT_DOUBLE_EQ(queries_.distance(&a, &passing, fcl::DistanceRequestd(), here), 3.5 - 0.5 * (1 + i % 3));
+  }
+}
+
+TEST_F(FclDoor, OneBadGeometryOfTwoObjects) {
+  const auto bad = std::make_shared<fcl::Sphered>(std::numeric_limits<double>::quiet_NaN());
+  const fcl::CollisionObjectd a(bad), b(bad);
+  fcl::CollisionResultd result;
+  for (int i = 1; i <= 3; ++i) {
+    queries_.collide(&a, &b, fcl::CollisionRequestd(), result);
+    EXPECT_EQ(queries_.left_to_fcl(), i);
+  }
+}
+
+TEST_F(FclDoor, ContactsThatAResultHoldsDoNotCount) {
+  const fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(0.5));
+  const fcl::CollisionObjectd ground(std::make_shared<fcl::Halfspaced>(fcl::Vector3d(0, 0, 1), 0.25));
+  fcl::CollisionResultd result;
+  for (std::size_t i = 1; i <= 3; ++i) {
+    EXPECT_EQ(queries_.collide(&ball, &ground, fcl::CollisionRequestd(1, true), result), 1u) << "by FCL";
+    EXPECT_EQ(queries_.collide(&ball, &ball, fcl::CollisionRequestd(1, true), result), 1u);
+    EXPECT_EQ(result.numContacts(), 2 * i);
   }
 }
 

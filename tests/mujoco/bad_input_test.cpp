@@ -1,5 +1,5 @@
 /// @file
-/// What MuJoCo should never hand on, and does: MuJoCo's own function answers, and each reason is named once.
+/// Bad input that MuJoCo hands on: MuJoCo's own function answers, and each reason is named once.
 #include <gtest/gtest.h>
 
 #include <limits>

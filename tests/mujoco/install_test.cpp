@@ -70,6 +70,29 @@ TEST(MujocoInstall, EntriesOfOthersStayTheirs) {
   std::memcpy(mjCOLLISIONFUNC, before.data(), before.size());
 }
 
+TEST(MujocoInstall, AFunctionThatCallsOursIsNotCalledByIt) {
+  const Table before = table();
+  static mjfCollision ours = nullptr;
+  ASSERT_TRUE(install_mujoco());
+  ours = mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_BOX];
+  const mjfCollision above = [](const auto* model, auto* data, auto* contacts, int geom1, int geom2, mjtNum margin) {
+    return ours(model, data, contacts, geom1, geom2, margin);
+  };
+  mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_BOX] = above;
+  MujocoOptions options;
+  options.takes_pair = [](const mjModel*, int, int, void*) { return false; };
+  const auto again = install_mujoco(options);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(*again, 26);
+  EXPECT_EQ(mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_BOX], above);
+  const auto model = test::two_geoms(kBoxes, kBoxes);
+  const auto data = test::mujoco_data(model);
+  EXPECT_GT(depth_of_boxes(model, data), 0) << "MuJoCo's own answer";
+  mjCOLLISIONFUNC[mjGEOM_BOX][mjGEOM_BOX] = ours;
+  uninstall_mujoco();
+  EXPECT_EQ(table(), before);
+}
+
 TEST(MujocoInstall, OptionsAreChecked) {
   const Table before = table();
   for (const double delta : {-1e-9, 1.5, std::numeric_limits<double>::quiet_NaN()}) {

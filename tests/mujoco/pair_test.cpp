@@ -97,7 +97,7 @@ class Pairs : public testing::TestWithParam<std::pair<std::size_t, std::size_t>>
   Scratch scratch_;
 };
 
-/// What MuJoCo means by a contact, for all contacts of one pair.
+/// Checks that all contacts of one pair mean what MuJoCo means by a contact.
 void check_contacts(const mjModel& model, const mjData& data, const PenetrationDepth& exact, double slack) {
   const ConvexShape body[2] = {body_of(model, 0), body_of(model, 1)};
   const ConvexShape point = *ConvexPolytope::from_points(std::vector<Vec3>{Vec3::Zero()});
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Mujoco, Pairs, testing::ValuesIn(all_pairs()), [](const
   return std::string(geoms()[pair.param.first].name) + "_" + geoms()[pair.param.second].name;
 });
 
-/// By hand: no engine of ours has a say in these numbers.
+/// These numbers were computed by hand.
 TEST(MujocoPairs, KnownContacts) {
   ASSERT_TRUE(install_mujoco());
   const double none[4] = {1, 0, 0, 0};

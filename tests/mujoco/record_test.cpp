@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -77,6 +78,42 @@ TEST(MujocoRecord, ARunOfStepsWithWhoeverAnswers) {
   }
   uninstall_mujoco();
   EXPECT_NE(whole_file(path).find("\"time\":0.002"), std::string::npos);
+  std::remove(path.c_str());
+}
+
+TEST(MujocoRecord, InstalledAndUninstalledMeanwhile) {
+  const auto model = test::mujoco_model(kWorld);
+  const auto data = test::mujoco_data(model);
+  mj_forward(model.get(), data.get());
+  unsigned char table[sizeof mjCOLLISIONFUNC];
+  std::memcpy(table, mjCOLLISIONFUNC, sizeof table);
+  const std::string path = path_of("meanwhile");
+  for (int round = 0; round < 2; ++round) {
+    MujocoRecorder recorder(model.get(), path.c_str());
+    for (int again = 0; again < 2; ++again) {
+      const auto installed = install_mujoco();
+      ASSERT_TRUE(installed);
+      EXPECT_EQ(*installed, 27);
+      const std::int64_t before = recorder.contacts();
+      mj_collision(model.get(), data.get());
+      EXPECT_GT(mujoco_report().answered, 0);
+      EXPECT_EQ(recorder.contacts() - before, mujoco_report().answered);
+    }
+    // A refused pair is handed on to MuJoCo, and to nobody twice.
+    const mjtNum was = data->geom_xmat[9];
+    data->geom_xmat[9] = std::numeric_limits<mjtNum>::quiet_NaN();
+    const std::int64_t unsupported = recorder.unsupported();
+    mj_collision(model.get(), data.get());
+    EXPECT_GT(recorder.unsupported(), unsupported);
+    data->geom_xmat[9] = was;
+    uninstall_mujoco();
+    const std::int64_t answered = mujoco_report().answered, before = recorder.contacts();
+    mj_collision(model.get(), data.get());
+    EXPECT_EQ(mujoco_report().answered, answered);
+    EXPECT_GT(recorder.contacts(), before);
+    EXPECT_TRUE(recorder.close());
+    EXPECT_EQ(std::memcmp(table, mjCOLLISIONFUNC, sizeof table), 0);
+  }
   std::remove(path.c_str());
 }
 

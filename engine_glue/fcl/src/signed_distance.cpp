@@ -13,6 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -27,10 +30,10 @@ namespace detail {
 
 namespace {
 
-/// Converted geometries that a thread keeps; when there are more, those that are gone leave.
+/// A table of so many geometries is searched for those that are gone.
 constexpr std::size_t kKeptShapes = 256;
 
-/// The numbers that a primitive is made of; a convex mesh is immutable and has none.
+/// The numbers that a primitive is made of. A convex mesh is immutable and has none.
 std::array<double, 9> numbers_of(const fcl::CollisionGeometry<double>& geometry) {
   const auto put = [](auto... values) { return std::array<double, 9>{static_cast<double>(values)...}; };
   switch (geometry.getNodeType()) {
@@ -60,6 +63,12 @@ std::array<double, 9> numbers_of(const fcl::CollisionGeometry<double>& geometry)
     default:
       return {};
   }
+}
+
+/// True if two geometries have the same bits, so that a NaN equals itself.
+bool same_bits(const std::array<double, 9>& a, const std::array<double, 9>& b) {
+  using Bits = std::array<std::uint64_t, 9>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 Expected<ConvexShape> hull_of(const std::vector<Vec3>& points) {
@@ -103,19 +112,19 @@ Expected<ConvexShape> shape_of(const fcl::CollisionGeometry<double>& geometry, c
 
 class FclPairs {
  public:
-  /// Both objects as bodies; false where FCL has to answer.
+  /// Computes the answer for two objects. @return false if FCL has to answer
   bool ask(const fcl::CollisionObject<double>& a, const fcl::CollisionObject<double>& b, double delta) {
-    const Expected<ConvexShape>* body_a = body(a);
-    const Expected<ConvexShape>* body_b = body(b);
+    body_a_ = body(a);
+    body_b_ = body(b);
     auto pose_a = pose(a), pose_b = pose(b);
-    for (const Error* refusal : {error_of(*body_a), error_of(*body_b), error_of(pose_a), error_of(pose_b)}) {
+    for (const Error* refusal : {error_of(*body_a_), error_of(*body_b_), error_of(pose_a), error_of(pose_b)}) {
       if (refusal == nullptr) continue;
       if (left_++ == 0) reason_ = refusal->where + ": " + refusal->message;
       return false;
     }
     ++answered_;
-    a_ = PosedShape{&**body_a, *pose_a};
-    b_ = PosedShape{&**body_b, *pose_b};
+    a_ = PosedShape{&**body_a_, *pose_a};
+    b_ = PosedShape{&**body_b_, *pose_b};
     answer_ = penetration_depth(a_, b_, scratch_, {.bracket = Bracket::certified, .delta = delta});
     return true;
   }
@@ -127,10 +136,11 @@ class FclPairs {
   std::string reason_;
 
  private:
+  using Body = std::shared_ptr<const Expected<ConvexShape>>;
   struct Kept {
     std::weak_ptr<const fcl::CollisionGeometry<double>> geometry;  ///< keeps the address from meaning another geometry
-    std::array<double, 9> numbers;
-    std::shared_ptr<const Expected<ConvexShape>> body;
+    std::array<double, 9> numbers{};
+    Body body;
   };
 
   template <class T>
@@ -138,20 +148,21 @@ class FclPairs {
     return value ? nullptr : &value.error();
   }
 
-  const Expected<ConvexShape>* body(const fcl::CollisionObject<double>& object) {
+  Body body(const fcl::CollisionObject<double>& object) {
     const std::shared_ptr<const fcl::CollisionGeometry<double>>& geometry = object.collisionGeometry();
     const std::array<double, 9> numbers = numbers_of(*geometry);
     Kept& kept = kept_[geometry.get()];
-    const bool same = !kept.geometry.owner_before(geometry) && !geometry.owner_before(kept.geometry);
-    // NaN is unequal to itself and converted again, which refuses it again.
-    if (!same || kept.body == nullptr || kept.numbers != numbers) {
-      kept = {geometry, numbers, std::make_shared<const Expected<ConvexShape>>(shape_of(*geometry, numbers))};
-      if (kept_.size() > look_through_) {
-        std::erase_if(kept_, [](const auto& entry) { return entry.second.geometry.expired(); });
-        look_through_ = 2 * kept_.size() + kKeptShapes;
-      }
+    // A pointer that owns nothing says nothing about the life of its geometry: its weak pointer is expired.
+    const bool same =
+        !kept.geometry.expired() && !kept.geometry.owner_before(geometry) && !geometry.owner_before(kept.geometry);
+    if (same && kept.body != nullptr && same_bits(kept.numbers, numbers)) return kept.body;
+    Body converted = std::make_shared<const Expected<ConvexShape>>(shape_of(*geometry, numbers));
+    kept = {geometry, numbers, converted};
+    if (kept_.size() > look_through_) {
+      std::erase_if(kept_, [](const auto& entry) { return entry.second.geometry.expired(); });
+      look_through_ = 2 * kept_.size() + kKeptShapes;
     }
-    return kept_[geometry.get()].body.get();
+    return converted;
   }
 
   static Expected<Pose> pose(const fcl::CollisionObject<double>& object) {
@@ -165,6 +176,7 @@ class FclPairs {
 
   std::unordered_map<const fcl::CollisionGeometry<double>*, Kept> kept_;
   std::size_t look_through_ = kKeptShapes;
+  Body body_a_, body_b_;  ///< the last pair's, which no conversion may free
   PosedShape a_{&some_point(), Pose()};
   PosedShape b_{&some_point(), Pose()};
   Scratch scratch_;
@@ -178,6 +190,19 @@ FclQueries::FclQueries() : pairs_(std::make_unique<detail::FclPairs>()) {}
 FclQueries::~FclQueries() = default;
 FclQueries::FclQueries(FclQueries&&) noexcept = default;
 FclQueries& FclQueries::operator=(FclQueries&&) noexcept = default;
+
+namespace {
+
+/// FCL's own contacts, by the rule of `FclQueries::collide`: those that `result` held before do not count.
+std::size_t collide_by_fcl(const fcl::CollisionObject<double>& a, const fcl::CollisionObject<double>& b,
+                           fcl::CollisionRequest<double> request, fcl::CollisionResult<double>& result) {
+  const std::size_t held = result.numContacts();
+  if (request.num_max_contacts < std::numeric_limits<std::size_t>::max() - held) request.num_max_contacts += held;
+  fcl::collide(&a, &b, request, result);
+  return result.numContacts() - held;
+}
+
+}  // namespace
 
 double FclQueries::distance(const fcl::CollisionObject<double>* a, const fcl::CollisionObject<double>* b,
                             const fcl::DistanceRequest<double>& request, fcl::DistanceResult<double>& result) {
@@ -194,7 +219,7 @@ double FclQueries::distance(const fcl::CollisionObject<double>* a, const fcl::Co
 std::size_t FclQueries::collide(const fcl::CollisionObject<double>* a, const fcl::CollisionObject<double>* b,
                                 const fcl::CollisionRequest<double>& request, fcl::CollisionResult<double>& result) {
   if (request.num_max_contacts == 0) return fcl::collide(a, b, request, result);
-  if (!pairs_->ask(*a, *b, 0)) return fcl::collide(a, b, request, result);
+  if (!pairs_->ask(*a, *b, 0)) return collide_by_fcl(*a, *b, request, result);
   const PenetrationDepth& answer = pairs_->answer();
   if (answer.contact == ContactClass::separated) return 0;
   const auto* first = a->collisionGeometry().get();
@@ -211,7 +236,7 @@ std::size_t FclQueries::collide(const fcl::CollisionObject<double>* a, const fcl
         points.points.begin(),
         std::max_element(points.points.begin(), last, [](const auto& p, const auto& q) { return p.depth < q.depth; }));
   }
-  // The first is the bodies' own depth; where only one is asked for, its points are the witnesses.
+  // The first contact has the bodies' own depth. If only one is asked for, its points are the witnesses.
   if (points.count == 0 || request.num_max_contacts == 1) {
     points.points[0] = {answer.witness_a, answer.witness_b, answer.depth, 0};
     points.count = 1;

@@ -6,7 +6,7 @@
 
 namespace pd::detail {
 
-/// The types that MuJoCo's header of this version gives to collision functions: newer ones write `mjPreContact`.
+/// The types that MuJoCo's header of this version gives to collision functions: newer versions write `mjPreContact`.
 template <class Function>
 struct CollisionArguments;
 template <class DataArgument, class ContactArgument>
@@ -48,20 +48,29 @@ void set_normal(Contact& contact, const double normal[3]) {
   }
 }
 
-/// One function in the place of many, and what stood there before.
+/// One function in the place of many, and the functions that stood there before.
 class ReplacedEntries {
  public:
-  /// Replaces the entries of convex pairs that are not null. @return how many now hold `function`.
-  int put(mjfCollision function);
-  /// Puts back those that still hold `function`.
-  void put_back(mjfCollision function);
-  [[nodiscard]] bool active() const { return active_; }
-  /// What stood at the place of two types; never null where `put` replaced it.
+  /// Replaces the entries of convex pairs that are not null. Put a second time, it leaves alone the entries that
+  /// somebody else has replaced since: their functions may call `function`, which must not call them in turn.
+  /// @param above  null, or entries whose function calls those that it replaced: `function` then goes below it
+  /// @return the number of entries that now hold `function`
+  int put(mjfCollision function, ReplacedEntries* above = nullptr);
+  /// Puts back the entries that still hold the function.
+  void put_back(ReplacedEntries* above = nullptr);
+  /// The function that stood at the place of two types; never null where `put` replaced it.
   [[nodiscard]] mjfCollision before(int first, int second) const { return before_[first][second]; }
 
  private:
+  /// The entry of two types, in MuJoCo's table or below `above`.
+  static mjfCollision& entry_of(int first, int second, ReplacedEntries* above);
+
   bool active_ = false;
+  mjfCollision function_ = nullptr;
   mjfCollision before_[mjNGEOMTYPES][mjNGEOMTYPES] = {};
 };
+
+/// The entries of all recorders, which stand above those of `install_mujoco`.
+ReplacedEntries& recorder_entries();
 
 }  // namespace pd::detail

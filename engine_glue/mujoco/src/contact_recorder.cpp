@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,7 @@ namespace detail {
 
 namespace {
 
-/// One point of a contact in the record's words.
+/// One point of a contact, as the record takes it.
 struct RecordedPoint {
   Vec3 on_a, on_b;
   double depth;
@@ -73,20 +75,30 @@ class RecordedModel {
   }
 
   bool close() {
+    const std::scoped_lock lock(mutex_);
     if (record_.file != nullptr) good_ = pd_record_close(&record_) != 0 && good_;
     return good_;
   }
   [[nodiscard]] const mjModel& model() const { return model_; }
-  [[nodiscard]] bool good() const { return good_ && record_.good != 0; }
-  [[nodiscard]] std::int64_t contacts() const { return record_.contacts; }
-  [[nodiscard]] std::int64_t unsupported() const { return unsupported_; }
+  [[nodiscard]] bool good() const {
+    const std::scoped_lock lock(mutex_);
+    return good_ && record_.good != 0;
+  }
+  [[nodiscard]] std::int64_t contacts() const {
+    const std::scoped_lock lock(mutex_);
+    return record_.contacts;
+  }
+  [[nodiscard]] std::int64_t unsupported() const {
+    const std::scoped_lock lock(mutex_);
+    return unsupported_;
+  }
 
  private:
   static Vec3 vector_of(const mjtNum* numbers) {
     return {static_cast<double>(numbers[0]), static_cast<double>(numbers[1]), static_cast<double>(numbers[2])};
   }
 
-  /// The id of a geom's shape, written where it is new; nothing where a geom has none.
+  /// The id of a geom's shape, which is written if it is new; nothing if the geom has no shape.
   std::optional<std::string> shape_id(int geom) {
     if (model_.geom_type[geom] == mjGEOM_PLANE) {
       if (!plane_written_) {
@@ -109,7 +121,7 @@ class RecordedModel {
   }
 
   const mjModel& model_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;  ///< guards what follows
   pd_record record_{};
   bool good_ = false;
   bool plane_written_ = false;
@@ -120,7 +132,7 @@ class RecordedModel {
 
 namespace {
 
-/// The models that are being recorded: MuJoCo's table is the whole process'.
+/// The models that are being recorded. MuJoCo's table belongs to the whole process.
 struct Recordings {
   std::mutex mutex;
   std::map<const mjModel*, RecordedModel*> models;
@@ -148,6 +160,8 @@ int collide_and_record(const mjModel* model, CollisionData* data, CollisionConta
 
 }  // namespace
 
+ReplacedEntries& recorder_entries() { return Recordings::instance().entries; }
+
 }  // namespace detail
 
 MujocoRecorder::MujocoRecorder(const mjModel* model, const char* path) {
@@ -170,7 +184,7 @@ bool MujocoRecorder::close() {
     const std::scoped_lock lock(recordings.mutex);
     const auto found = recordings.models.find(&model_->model());
     if (found != recordings.models.end() && found->second == model_.get()) recordings.models.erase(found);
-    if (recordings.models.empty()) recordings.entries.put_back(&detail::collide_and_record);
+    if (recordings.models.empty()) recordings.entries.put_back();
   }
   return model_->close();
 }
@@ -180,7 +194,7 @@ std::int64_t MujocoRecorder::contacts() const { return model_ ? model_->contacts
 std::int64_t MujocoRecorder::unsupported() const { return model_ ? model_->unsupported() : 0; }
 
 bool record_mujoco(const mjModel* model, const mjData* data, const char* path) {
-  // A copy, since MuJoCo's collision starts by forgetting the contacts and the forces that stand on them.
+  // MuJoCo's collision starts by forgetting the contacts and the forces that stand on them, so it works on a copy.
   mjData* copy = mj_makeData(model);
   if (copy == nullptr) return false;
   mj_copyData(copy, model, data);

@@ -14,14 +14,14 @@ namespace {
 constexpr std::array<const char*, 8> kTypeNames = {"plane",     "hfield",   "sphere", "capsule",
                                                    "ellipsoid", "cylinder", "box",    "mesh"};
 
-/// What half-spaces are answered for.
+/// The core answers half-spaces for bodies of these sizes, in the unit of the model.
 constexpr double kLeastSize = 1e-100;
 constexpr double kLargestSize = 1e100;
 
-/// Half-spaces are answered for coordinates up to this; MuJoCo itself resets a simulation at 1e10.
+/// The core answers half-spaces for coordinates up to this; MuJoCo itself resets a simulation at 1e10.
 constexpr double kFarthest = 1e100;
 
-/// How many numbers of a geom's size its type reads.
+/// The number of entries of `geom_size` that a type reads.
 int numbers_read(int type) {
   switch (type) {
     case mjGEOM_SPHERE:
@@ -37,7 +37,7 @@ int numbers_read(int type) {
   }
 }
 
-/// A mesh of a model as MuJoCo's narrow phase reads it.
+/// A mesh of a model, as MuJoCo's narrow phase reads it.
 struct MeshView {
   std::span<const float> vertices;  ///< three numbers each
   const int* hull = nullptr;        ///< indices of the hull's vertices, where MuJoCo's compiler made a hull
@@ -131,7 +131,7 @@ std::uint64_t fingerprint(const GeomSource& source) {
 struct SharedShapes {
   std::mutex mutex;
   std::unordered_multimap<std::uint64_t, std::weak_ptr<const GeomShape>> shapes;
-  std::size_t look_through = 64;  ///< when the table has grown to this size, shapes that nobody uses leave it
+  std::size_t look_through = 64;  ///< a table of this size is searched for shapes that nobody uses
 
   static SharedShapes& instance() {
     static SharedShapes shapes;

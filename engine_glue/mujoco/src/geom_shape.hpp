@@ -16,14 +16,12 @@
 
 namespace pd::detail {
 
-/// What a shape was made from: equal sources make equal shapes.
+/// The numbers of a geom from which its shape is made. Equal sources make equal shapes.
 struct GeomSource {
   int type = -1;
   std::array<double, 3> size{};       ///< the numbers that the type reads, 0 else
-  std::vector<std::int32_t> corners;  ///< of a mesh: vertices that collide, as indices into the mesh
-  std::vector<float> vertices;        ///< of a mesh: their coordinates, three each
-
-  friend bool operator==(const GeomSource&, const GeomSource&) = default;
+  std::vector<std::int32_t> corners;  ///< vertices of a mesh that collide, as indices into the mesh
+  std::vector<float> vertices;        ///< their coordinates, three each
 };
 
 struct GeomShape {
@@ -32,14 +30,14 @@ struct GeomShape {
   double radius = 0;  ///< of the body, about the origin of its frame
 };
 
-/// Whether the model's geom is what the shape was made from. Time O(1), and O(n) in the vertices of a mesh's hull.
+/// True if the shape was made from the geom as it is now. Time O(1), and O(n) in the vertices of a mesh's hull.
 [[nodiscard]] bool made_from(const GeomShape& shape, const mjModel& model, int geom);
 
-/// Shapes that are in use anywhere in the process, one for all geoms of the same source: clones of a model and threads
-/// share them. Thread-safe.
+/// The shape of a convex geom. All geoms of the same source share one shape, also those of clones of a model and of
+/// other threads, as long as any of them uses it. Thread-safe.
 [[nodiscard]] std::shared_ptr<const GeomShape> shared_shape(const mjModel& model, int geom);
 
-/// A thread's own view: no lock on the way to a shape that is known. Holds the shapes of the last kModels models.
+/// A thread's own view, which finds a known shape without a lock. It holds the shapes of the last kModels models.
 class GeomShapes {
  public:
   /// The shape of a convex geom, or a named refusal in it. Valid until this geom, or another model, is asked for.
@@ -56,10 +54,10 @@ class GeomShapes {
   std::vector<Model> models_;  ///< the one asked last stands first
 };
 
-/// Where the kinematics have put a geom; refused where that is no pose.
+/// The pose that the kinematics have given to a geom; an error if it is NaN, infinite or no rotation.
 [[nodiscard]] Expected<Pose> geom_pose(const mjData& data, int geom);
 
-/// "geom 3 (\"gripper\", mesh)".
+/// The number, name and type of a geom, for messages: geom 3 ("gripper", mesh).
 [[nodiscard]] std::string name_of(const mjModel& model, int geom);
 
 }  // namespace pd::detail

@@ -16,11 +16,11 @@ namespace detail {
 
 namespace {
 
-/// The only state of the process: what stands in MuJoCo's table, and what threads counted.
+/// The only state of the process: the entries in MuJoCo's table, and the counts of its threads.
 struct Installed {
   ReplacedEntries entries;
   MujocoOptions options;
-  std::atomic<std::int64_t> generation{0};  ///< of the report; counters of an earlier one count no more
+  std::atomic<std::int64_t> generation{0};  ///< of the report; counts of an earlier generation are void
 
   std::mutex mutex;  ///< guards what follows
   struct ThreadCounters* threads = nullptr;
@@ -151,12 +151,13 @@ Expected<int> install_mujoco(const MujocoOptions& options) {
   installed.generation.fetch_add(1);
   installed.ended = {};
   installed.named = {};
-  return installed.entries.put(&detail::collide);
+  return installed.entries.put(&detail::collide, &detail::recorder_entries());
 }
 
 void uninstall_mujoco() {
   detail::Installed& installed = detail::Installed::instance();
-  if (installed.entries.active()) installed.entries.put_back(&detail::collide);
+  const std::scoped_lock lock(installed.mutex);
+  installed.entries.put_back(&detail::recorder_entries());
 }
 
 MujocoReport mujoco_report() {

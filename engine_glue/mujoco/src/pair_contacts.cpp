@@ -9,7 +9,7 @@ namespace pd::detail {
 
 namespace {
 
-/// Models whose pairs are remembered; beyond, all are forgotten at once.
+/// Models whose pairs are remembered. Beyond so many, all are forgotten at once.
 constexpr std::size_t kRememberedModels = 16;
 
 /// Four of many points are chosen by their depths. Differences below a thousandth of the reach do not sway the choice
@@ -63,13 +63,13 @@ std::optional<NamedRefusal> PairContacts::ask(GeomPair pair, const MujocoOptions
   return std::nullopt;
 }
 
-double PairContacts::within_margin(const GeomPair& pair) { return std::max(pair.margin, 0.0); }
+double PairContacts::within_margin(const GeomPair& pair) { return std::max(0.0, pair.margin); }
 
 template <class Points>
 ContactManifold PairContacts::steady_four(const GeomPair& pair, Points&& points_within) {
   ContactManifold nearest = points_within(within_margin(pair));
   if (nearest.count < 4) return nearest;
-  ContactManifold steady = points_within(pair.margin + kSteadyReach * pair.size);
+  ContactManifold steady = points_within(within_margin(pair) + kSteadyReach * pair.size);
   const auto last = steady.points.begin() + steady.count;
   const bool all_meet =
       std::all_of(steady.points.begin(), last, [&](const ContactPoint& point) { return -point.depth <= pair.margin; });
@@ -95,7 +95,8 @@ void PairContacts::two_bodies(const GeomPair& pair, const MujocoOptions& options
   DepthSettings settings{.bracket = Bracket::contact, .delta = options.delta, .beyond = within_margin(pair)};
   WarmCertificate* memory = options.remember_pairs ? memory_of(pair) : nullptr;
   PenetrationDepth depth = penetration_depth(a, b, scratch_, settings, memory);
-  if (!depth.bracket_reached) {  // the budget of an engine's step was spent; curved bodies deep inside each other
+  // Curved bodies deep inside each other may spend the budget of an engine's step.
+  if (!depth.bracket_reached) {
     settings.bracket = Bracket::certified;
     depth = penetration_depth(a, b, scratch_, settings);
   }
@@ -132,7 +133,7 @@ void PairContacts::correct_deepest(double signed_distance) {
 }
 
 WarmCertificate* PairContacts::memory_of(const GeomPair& pair) {
-  if (memories_.size() > kRememberedModels) memories_.clear();
+  if (memories_.size() >= kRememberedModels && !memories_.contains(pair.model)) memories_.clear();
   const auto key = static_cast<std::uint64_t>(pair.geom1) << 32 | static_cast<std::uint32_t>(pair.geom2);
   return &memories_[pair.model][key];
 }

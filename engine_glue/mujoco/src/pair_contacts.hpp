@@ -16,7 +16,7 @@
 
 namespace pd::detail {
 
-/// Pairs of two geoms with what is asked of them.
+/// Two geoms of a model, and the margin within which their contacts are wanted.
 struct GeomPair {
   const mjModel* model;
   const mjData* data;
@@ -26,12 +26,13 @@ struct GeomPair {
   double size = 0;  ///< radius of the smaller body, once its shape is known
 };
 
+/// The reason why MuJoCo has to answer a pair, and a text that names the geom.
 struct NamedRefusal {
   MujocoRefusal kind;
   std::string text;
 };
 
-/// What a thread inside a collision function works with.
+/// Contacts of pairs, with the shapes and buffers of one thread.
 class PairContacts {
  public:
   /// Fills `points` with the contacts, whose normal points from the second geom to the first.
@@ -42,6 +43,7 @@ class PairContacts {
   [[nodiscard]] std::int64_t conversions() const { return conversions_; }
 
  private:
+  /// The largest gap of a contact, which is never negative.
   static double within_margin(const GeomPair& pair);
   /// The points within the margin, chosen so that small changes of depth do not change the choice.
   /// @param points_within  the contact points up to a threshold.
@@ -50,6 +52,7 @@ class PairContacts {
   void two_boxes(const GeomPair& pair, const MujocoOptions& options, const PosedShape& a, const PosedShape& b);
   void two_bodies(const GeomPair& pair, const MujocoOptions& options, const PosedShape& a, const PosedShape& b);
   void body_on_plane(const GeomPair& pair, const PosedShape& body, const Pose& plane);
+  /// Gives the deepest point the exact distance of the bodies.
   void correct_deepest(double signed_distance);
   WarmCertificate* memory_of(const GeomPair& pair);
 

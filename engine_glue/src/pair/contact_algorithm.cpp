@@ -126,18 +126,18 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   std::optional<PairAnswer> answer;
   // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
   const std::uint64_t stamp = first ? 0 : world_.stamp();
-  const SharpCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
-  const PairQuestion asked{.a = shape_a,
-                           .pose_a = pose_a,
-                           .b = shape_b,
-                           .pose_b = pose_b,
-                           .shapes = memory != nullptr ? memory->shapes : buffers->recent,
-                           .warm = memory != nullptr ? &memory->warm : nullptr,
-                           .stamp = stamp,
-                           .corners = corners,
-                           .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
-                           .boxes_asked = boxes};
   if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
+    const SharpCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
+    const PairQuestion asked{.a = shape_a,
+                             .pose_a = pose_a,
+                             .b = shape_b,
+                             .pose_b = pose_b,
+                             .shapes = memory != nullptr ? memory->shapes : buffers->recent,
+                             .warm = memory != nullptr ? &memory->warm : nullptr,
+                             .stamp = stamp,
+                             .corners = corners,
+                             .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
+                             .boxes_asked = boxes};
     ContactManifold points;
     // A query may ask for distances of metres. Contacts, and the neighbours that may cover them, lie within the
     // breaking threshold.
@@ -168,7 +168,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       fresh = fresh_points(points);
     }
   }
-  if (memory != nullptr && !of_union && on_one_line(fresh, kEdge * threshold)) {
+  if (memory != nullptr && !of_union && on_one_line(fresh, kEdge * threshold) && this_step().against_fixed()) {
     if (!answer) {
       const CachedShape& found_a = core.find(shape_a, stamp, memory->shapes[0], *buffers);
       const CachedShape& found_b = core.find(shape_b, stamp, memory->shapes[1], *buffers);

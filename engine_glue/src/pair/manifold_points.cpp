@@ -209,7 +209,8 @@ void replace_any_points(const PointsOfStep& step, const PointSurroundings* piece
   const bool same_step = seconds == memory.seconds;
   const btScalar threshold = manifold.getContactBreakingThreshold();
   PieceNumbers numbers;
-  // A patch may hold no point, and then no piece has a number.
+  // No point is left if a link of a multibody needs none of them in this step, or if all are about to bounce. Then
+  // there is no piece to ask for its numbers.
   const bool together =
       fresh.count > 0 && points_are_alike(result) && (pieces == nullptr || surroundings.numbers(0, numbers));
   std::array<int, 4> entries{-1, -1, -1, -1};  // of new points; -1: no old point goes on in it

@@ -27,7 +27,7 @@ struct FreshPoints {
 };
 
 /// Keeps the points that `is_kept` accepts, in their order.
-/// @return the numbers that the kept ones had before.
+/// @return for each kept point, the number that it had before.
 template <class IsKept>
 std::array<int, 4> keep_points(FreshPoints& points, IsKept&& is_kept) {
   std::array<int, 4> before{0, 1, 2, 3};

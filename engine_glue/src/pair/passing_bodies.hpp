@@ -1,7 +1,7 @@
 /// @file
 /// Bodies that meet on an edge alone, and pass each other there.
 ///
-/// Where two edges lie along each other, the bodies are apart along several directions, and the direction of the
+/// If two edges lie along each other, the bodies are apart along several directions, and the direction of the
 /// nearest points is no more than rounding. Points along it stop a body that falls into a notch of its own width at the
 /// rim, on edges that it does not meet. If the bodies are apart along the normal of a facet, and stay so in this step,
 /// they do not touch in it, whatever they do along other directions. One of the bodies must be static or kinematic: in
@@ -14,13 +14,13 @@
 
 namespace pd::detail {
 
-/// Share of the breaking threshold: strips of that width are edges.
+/// A strip is an edge if its width is at most this share of the breaking threshold.
 inline constexpr btScalar kEdge = btScalar(0x1p-12);
 
-/// Whether there are points, and all lie in a strip of about this width: most manifolds end here.
+/// True if there are points, and all lie in a strip of about this width. Two points always do. Time O(1).
 [[nodiscard]] bool on_one_line(const FreshPoints& points, btScalar width);
 
-/// Whether points of two bodies would push in this step although the bodies stay apart along the normal of a facet, up
+/// True if points of two bodies would push in this step although the bodies stay apart along the normal of a facet, up
 /// to the slack of pieces that are meant to meet (`seam_slack`). Smooth bodies have no facets. Time: a support of both
 /// bodies for each facet.
 [[nodiscard]] bool pass_each_other(const PosedShape& a, const PosedShape& b, const FreshPoints& points,

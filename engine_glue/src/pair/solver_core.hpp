@@ -27,7 +27,8 @@ namespace pd::detail {
 
 class SolverInWorld;
 
-/// Which btBoxShapes are taken without their margins; the others as Bullet's GJK sees every shape, core and margin.
+/// Selects the btBoxShapes that are taken without their margins. All others are taken as Bullet's GJK sees every shape,
+/// as a core and a margin.
 struct SharpCorners {
   bool sharp_pair = false;  ///< two of them, as Bullet's own box/box algorithm takes them
   bool sharp_a = false;     ///< A as a part of a compound: rounded, flush boxes would have grooves between them

@@ -37,10 +37,10 @@ class StepReach {
   StepReach(const btCollisionObject& a, const btCollisionObject& b, const btManifoldResult& result, btScalar threshold,
             btScalar seconds);
 
-  /// Whether points can be left out, and one of the bodies is held in its place or on its way.
+  /// True if points can be left out, and one of the bodies is static or kinematic.
   [[nodiscard]] bool against_fixed() const { return !all_ && fixed_; }
-  /// How far the bodies close along a normal (unit, from B to A) at a place until the next step. Requires that their
-  /// motion is known.
+  /// The way by which the bodies close along a normal (unit, from B to A) at a place until the next step. Requires that
+  /// their motion is known.
   [[nodiscard]] btScalar closed_in_step(const btVector3& place, const btVector3& normal) const {
     return seconds_ * coming_at(place).dot(normal);
   }
@@ -57,7 +57,7 @@ class StepReach {
   /// The same of two pieces'.
   void leave_out_idle(ContactManifold& points) const;
   /// Takes out the points that a link of a multibody does not need. Does nothing for rigid bodies.
-  /// @return the numbers that those left had before.
+  /// @return for each point that is left, the number that it had before.
   std::array<int, 4> leave_out_idle_of_links(FreshPoints& points) const;
   /// Takes out the points of two boxes that fly together. Requires that the pair carried nothing in the last step.
   void leave_out_flying(FreshPoints& points) const;

@@ -26,8 +26,8 @@ class FreeFlight {
  public:
   explicit FreeFlight(btDiscreteDynamicsWorld& world) : world_(world) {}
 
-  /// What is in contact with nothing but the other one of these bodies may bounce off it when the next part begins, if
-  /// both have restitution.
+  /// Two bodies that meet at the end of a part. If both have restitution, and one of them touches nothing but the
+  /// other, it may bounce off when the next part begins.
   void expect_impact(const btCollisionObject* a, const btCollisionObject* b);
   /// A part begins at the present state.
   void begin_part();

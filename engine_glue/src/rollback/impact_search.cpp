@@ -30,7 +30,7 @@ constexpr double kNotIn = 0.02;
 /// first quarter, so that pairs that sink steadily are not cut there.
 constexpr int kLooks = 8;
 constexpr int kFirstLook = 2;
-/// Triangles that are kept as convex bodies.
+/// The largest number of triangles that are kept as convex bodies.
 constexpr std::size_t kMostTriangles = 4096;
 /// To 1/2000 of the motion; trials do the rest.
 constexpr int kHalvings = 8;
@@ -372,7 +372,7 @@ double ImpactSearch::ask_start(const Approach& pair, Surface& triangle) {
 }
 
 bool ImpactSearch::is_in_contact(const Approach& pair, double in_contact) {
-  // The nearest triangle is the first.
+  // The triangles are sorted by their reach.
   if (!surface_.empty() && surface_.front().reach <= in_contact) return true;
   return std::any_of(surface_.begin(), surface_.end(), [&](Surface& triangle) {
     return triangle.bound <= in_contact && ask_start(pair, triangle) <= in_contact;
@@ -392,8 +392,8 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   pair.depth.beyond = std::max(way + settings.gap, settings.in_contact);
   StaysApart along(moving_a, duration_);
   read_surface(pair, along);
-  // What touches one triangle is in contact with the surface: on its way along it, it meets the next triangles at
-  // their edges, no deeper than it lies on this one. So one depth is allowed for all.
+  // A body that touches one triangle is in contact with the surface: on its way along it, it meets the next triangles
+  // at their edges, no deeper than it lies on this one. So one depth is allowed for all.
   const bool in_contact = is_in_contact(pair, settings.in_contact);
   const bool still = b.travel == 0;
   const auto proved = [&](const Surface& triangle, double least) {

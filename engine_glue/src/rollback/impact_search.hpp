@@ -113,8 +113,8 @@ class ImpactSearch {
     StillTriangle world;
     double bound;                              ///< no larger than the signed distance where the motion begins
     double reach;                              ///< no smaller than the signed distance there
-    std::shared_ptr<const ConvexShape> shape;  ///< once asked for; null then, too, if the triangle is none
-    std::optional<PenetrationDepth> start;     ///< the answer where the motion begins, once asked for
+    std::shared_ptr<const ConvexShape> shape;  ///< null: not asked for yet, or a corner is not finite
+    std::optional<PenetrationDepth> start;     ///< the answer where the motion begins; empty: not asked for yet
   };
   /// A convex piece that moves against the triangles of a concave one.
   struct Approach {
@@ -125,11 +125,12 @@ class ImpactSearch {
     const MovingShape& moving;  ///< the convex piece
     DepthSettings depth;        ///< tells distances within which the triangles may be met
   };
-  /// The triangles that the convex piece may come to, into `surface_`, the nearest first.
+  /// Fills `surface_` with the triangles that the convex piece may come to, the nearest first.
   void read_surface(const Approach& pair, StaysApart& along);
-  /// The convex body of a triangle; null if its corners are no numbers.
+  /// Returns the convex body of a triangle; null if a corner is not finite. Time O(log n) for a known triangle.
   const std::shared_ptr<const ConvexShape>& shape_of(const TriangleCorners& triangle, double margin);
-  /// The signed distance of the convex piece and a triangle where the motion begins.
+  /// Returns the signed distance of the convex piece and a triangle where the motion begins; HUGE_VAL if a corner is
+  /// not finite. Asks the core once.
   double ask_start(const Approach& pair, Surface& triangle);
   /// True if the convex piece is in contact with a triangle where the motion begins.
   [[nodiscard]] bool is_in_contact(const Approach& pair, double in_contact);
@@ -146,7 +147,7 @@ class ImpactSearch {
   std::vector<Body> bodies_;
   std::vector<int> order_;
   std::vector<Surface> surface_;
-  /// Triangles that were asked for, by their corners and margin: none of these can be stale.
+  /// The convex bodies of triangles by their corners and margin, so that none of them can be stale.
   std::map<std::array<double, 10>, std::shared_ptr<const ConvexShape>> triangles_;
   std::vector<std::size_t> unproved_;  ///< of these, those that the body may meet
   /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.

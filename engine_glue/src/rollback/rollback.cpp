@@ -44,7 +44,7 @@ constexpr double kNothingLeft = 1e-6;
 constexpr int kMostForeseen = 8;
 /// A pair in contact that deepens ends a part when it has this share of the slop left, or less.
 constexpr double kDeepEnough = 0.4;
-/// The shortest trial after one that met something, as a share of it, by what longer ones left to the pair.
+/// The shortest trial that `TrialEnd::before` proposes, as a share of the trial before it.
 constexpr double kLeastShare = 1.0 / 16;
 /// Trials for one contact after which, where none was free of contacts, one of the least length says whether any is.
 /// Later (10) the parts that follow are short, and the cap on cuts is reached in ten times as many steps.
@@ -53,11 +53,7 @@ constexpr int kTrialsBeforeLeast = 4;
 /// (motions that jump between two lengths of a part, contacts that brake each other) looks different from nearer by.
 constexpr int kPatience = 4;
 
-}  // namespace
-
-namespace {
-
-/// What a trial left to a pair at its end.
+/// The clearance that a trial left to a pair at its end.
 struct TrialEnd {
   const btCollisionObject* a;
   const btCollisionObject* b;
@@ -67,9 +63,9 @@ struct TrialEnd {
   TrialEnd(const detail::FoundImpact& impact, double at, double left)
       : a(impact.a.body), b(impact.b.body), time(at), clearance(left) {}
 
-  /// The length of a trial that leaves `wanted`, by this one and a shorter one of the pair that left more. Pairs that
-  /// Bullet brakes come to the end of every trial the deeper the longer it is, and their way in it says nothing about a
-  /// shorter one. HUGE_VAL: not known.
+  /// Estimates the length of a trial that leaves `wanted` from this trial and a shorter one of the pair that left more.
+  /// A longer trial brings a pair that Bullet brakes deeper, and its motion says nothing about a shorter trial.
+  /// @return HUGE_VAL if the two trials do not say
   [[nodiscard]] double before(const TrialEnd& shorter, double wanted) const {
     if (a != shorter.a || b != shorter.b || !(shorter.time < time && shorter.clearance > clearance)) return HUGE_VAL;
     const double rise = (shorter.clearance - clearance) / (time - shorter.time);
@@ -147,15 +143,14 @@ struct RollbackStepper::State {
   [[nodiscard]] static bool sinks(const detail::FoundImpact& impact) {
     return impact.allowed_depth > 0 && !impact.comes_in;
   }
-  /// The clearance that a part is to leave to the impact's pair: the middle of those with which it may end.
+  /// Returns the clearance that a part is to leave to the impact's pair: the middle of those with which it may end.
   [[nodiscard]] double aim(const detail::FoundImpact& impact) const {
     return sinks(impact) ? 0.5 * kDeepEnough * settings.contact_slop : 0.75 * settings.gap;
   }
-  /// When a part is to end so that the impact's pair has about the clearance left that it is to have: on the motion
-  /// that a shorter part would make, as far as it is known. Otherwise on the way of the last trial. @return less than
-  /// `end`.
+  /// Computes when a part is to end so that about the clearance of `aim` is left, on the motion that a shorter part
+  /// would make. If that motion is not known, the motion of the last trial stands for it. @return less than `end`.
   [[nodiscard]] double foresee(const detail::FoundImpact& impact, double end);
-  /// Whether a part of whose motion nothing met anything ended where the impact's pair meets.
+  /// True if a part whose motion met nothing ended where the impact's pair meets.
   [[nodiscard]] bool is_at(const detail::FoundImpact& impact, double clearance) const;
   /// Reports the contact that ended a part, and expects its impact.
   void record(const detail::FoundImpact& impact, const PenetrationDepth& contact, FirstContact& result,

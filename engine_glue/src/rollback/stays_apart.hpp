@@ -38,14 +38,14 @@ class StaysApart {
   /// `body` must outlive the object.
   StaysApart(const MovingShape& body, double duration);
 
-  /// s at the start; -HUGE_VAL if the shape has too many corners for a look at each.
+  /// Returns s at the start; -HUGE_VAL if the shape has too many corners for a look at each.
   [[nodiscard]] double at_start(const Level& direction);
-  /// The point of the core that is the first along a direction, where the motion begins. NaN if the shape has too many
-  /// corners.
+  /// Returns the point of the core that is the first along a direction, in the world, where the motion begins. It is
+  /// NaN if the shape has too many corners.
   [[nodiscard]] Vec3 first_along(const Vec3& direction) const;
   /// True if s(t) >= least is proved for all of the motion.
   [[nodiscard]] bool proved(const Level& direction, double least);
-  /// How far a triangle is apart at the start along the best face of the body's box; -HUGE_VAL without a box.
+  /// Returns the distance of a triangle at the start along the best face of the body's box; -HUGE_VAL without a box.
   [[nodiscard]] double beside_at_start(const StillTriangle& triangle);
   /// True if a triangle is proved to stay apart by `least` along one face of the body's box.
   [[nodiscard]] bool proved_beside(const StillTriangle& triangle, double least);
@@ -57,9 +57,9 @@ class StaysApart {
   static constexpr int kMostParts = 16;
 
   [[nodiscard]] const Pose& pose(int sixteenths);
-  /// min <p, n> at a share of the duration.
+  /// Returns min <p, n> over the points p of the body at a share of the duration; -HUGE_VAL for NaN.
   [[nodiscard]] double height(int sixteenths);
-  /// How far a triangle is apart from each face of the body's box.
+  /// Returns the distances of a triangle from the faces of the body's box.
   [[nodiscard]] Faces beside(const StillTriangle& triangle, int sixteenths);
   void turn_to(const Vec3& normal);
 

@@ -41,7 +41,8 @@ class Collector : public btTriangleCallback {
 
 }  // namespace
 
-// By its Voronoi regions: C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+// The Voronoi region of the point tells the nearest feature: C. Ericson, "Real-Time Collision Detection", 2005, section
+// 5.1.5.
 double distance_from(const Vec3& point, const std::array<Vec3, 3>& corners) {
   const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = point - corners[0];
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);

@@ -32,7 +32,7 @@ struct Whereabouts {
   double radius;
 };
 
-/// How far the nearest point of a triangle is. NaN if the triangle has no area.
+/// The distance of the nearest point of a triangle. NaN if the triangle has no area.
 [[nodiscard]] double distance_from(const Vec3& point, const std::array<Vec3, 3>& corners);
 /// The triangles that a box meets, in the concave shape's frame. Those whose corners are no numbers are among them.
 /// @param near  null, or: triangles that do not come near, margin included, are left out

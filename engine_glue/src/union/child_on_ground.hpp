@@ -1,5 +1,5 @@
 /// @file
-/// A child of a body over triangles that may be flat ground.
+/// Answers the questions of the core's `FlatGround` for a child of one of Bullet's bodies.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -17,7 +17,7 @@
 
 namespace pd::detail {
 
-/// A child over triangles that may be flat.
+/// A child of a body, over triangles that may be flat ground. Lives for one question; its references must outlive it.
 class ChildOnGround final : public StandingBody {
  public:
   struct Asked {

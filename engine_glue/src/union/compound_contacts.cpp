@@ -73,12 +73,12 @@ class ChildrenOfPoint : public PointSurroundings {
   std::optional<ChildrenInResult> inside_;
 };
 
-/// The place of the child of this number in a list.
+/// Returns the place of the child of this number in a list, or the list's end. Time O(n).
 std::vector<Child>::const_iterator place_in(const std::vector<Child>& children, int number) {
   return std::find_if(children.begin(), children.end(), [&](const Child& child) { return child.index == number; });
 }
 
-/// Where a child stands in a list. If it is not there, it is copied from `all` to the end.
+/// Returns the place of a child in a list. If the list does not have it, it is copied from `all` to the end.
 int place_of(int number, const std::vector<Child>& all, std::vector<Child>& children) {
   const auto found = place_in(children, number);
   const auto place = static_cast<int>(found - children.begin());
@@ -86,7 +86,7 @@ int place_of(int number, const std::vector<Child>& all, std::vector<Child>& chil
   return place;
 }
 
-/// The children of two compounds near each other, by Bullet's trees.
+/// Finds the children of two compounds that are near each other, by Bullet's trees.
 class NearChildren final : public NearSides {
  public:
   NearChildren(const UnionQuestion& question, SolverCore& core) : question_(question), core_(core) {}
@@ -99,7 +99,7 @@ class NearChildren final : public NearSides {
  private:
   struct Held {
     std::vector<Child> children;
-    std::vector<std::shared_ptr<CachedShape>> shapes;  ///< as long as they are posed
+    std::vector<std::shared_ptr<CachedShape>> shapes;  ///< keep the posed bodies alive
   };
   bool collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach, Held& held,
                NearSide& side) const {
@@ -313,9 +313,11 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   memory.met = answer.depth.signed_distance() <= gap;
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   reach.leave_out_idle(points);
-  if (const FreshPoints fresh = fresh_points(points);
-      on_one_line(fresh, kEdge * question.threshold) && pass_each_other(answer.a, answer.b, fresh, reach)) {
-    points.count = 0;
+  if (reach.against_fixed()) {
+    const FreshPoints fresh = fresh_points(points);
+    if (on_one_line(fresh, kEdge * question.threshold) && pass_each_other(answer.a, answer.b, fresh, reach)) {
+      points.count = 0;
+    }
   }
   AskedPieces pieces = question.of_pieces(pair.a(), pair.b(), core, buffers);
   count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points), buffers);

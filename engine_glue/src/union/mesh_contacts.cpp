@@ -81,7 +81,8 @@ class PiecesOfPoint : public PointSurroundings {
   std::optional<TriangleInResult> triangle_;
 };
 
-/// Of coordinates: corners of a plane that its author rounded to Bullet's scalar.
+/// Corners of a plane may be off it by this share of their coordinates, because the author of the mesh rounded them to
+/// Bullet's scalar.
 constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
 
 class MeshContacts final : public UnionContacts {
@@ -112,7 +113,8 @@ class MeshContacts final : public UnionContacts {
   /// The contacts of one of them. @return false where a piece has no exact form
   bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
                Patches& patches);
-  /// The contacts with the triangles from number `first` on, if they are flat. @return false: they have to be asked
+  /// Finds the contacts with the triangles from number `first` on, if these are flat. @return false if each triangle
+  /// has to be asked
   bool find_on_flat(ChildOnGround& standing, const btCollisionObjectWrapper& a, const UnionQuestion& question,
                     std::size_t first, Patches& patches);
   /// Whether the body can be asked along the normals of gentle triangles. @param a  the wrapper of the child

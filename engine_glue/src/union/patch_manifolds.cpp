@@ -15,7 +15,7 @@ namespace {
 class PieceOfPoint : public PointSurroundings {
  public:
   PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
-  /// Each of the points is the one that had the number in `before`.
+  /// Says that points were left out: each point now has the piece of the point that had the number in `before`.
   void renumber(const std::array<int, 4>& before) { before_ = before; }
   void enter(int point) override { pieces_.enter(piece_of(point)); }
   void leave() override { pieces_.leave(); }

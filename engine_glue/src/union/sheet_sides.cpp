@@ -24,7 +24,7 @@ bool crosses_plane(const Vec3& from, const Vec3& to, const Vec3& normal, const M
   return normal.dot(from - corner) * normal.dot(to - corner) < 0;
 }
 
-/// True if such a way leads through the triangle.
+/// True if a way leads from one side of a triangle's plane to the other through the triangle.
 bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
   if (!crosses_plane(from, to, normal, met)) return false;
   const Vec3 corner = to_pd(met.corners[0]);
@@ -37,8 +37,8 @@ bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const M
   return true;
 }
 
-/// True if a way that crosses a triangle's plane leads through it or one of nearly its direction: who comes aslant has
-/// come through the triangle beside the one that is the nearest now.
+/// True if a way that crosses a triangle's plane leads through it or through a triangle of nearly its direction. A body
+/// that comes aslant has come through the triangle beside the one that is the nearest now.
 bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, std::span<const MetTriangle> around) {
   return std::any_of(around.begin(), around.end(), [&](const MetTriangle& met) {
     const Vec3 corner = to_pd(met.corners[0]);
@@ -126,7 +126,7 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<con
       if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, corner);
       if (front.isZero() && comes_through && side.dot(before_ - corner) < 0) front = -side;
     } else if (std::abs(cosine) > kOfOneWay && crosses_plane(came, now, normal, met)) {
-      // Who crossed the plane where no triangle is known may have come through one or around a rim.
+      // A body that crossed the plane where no triangle is known came through a triangle or around a rim.
       sure = leads_through_one(came, now, normal, around);
       if (sure) front = -side;
     }

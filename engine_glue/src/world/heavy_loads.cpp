@@ -25,8 +25,8 @@ constexpr btScalar kLoad = 10;
 /// many take a third of the step of a heap of mixed sizes.
 constexpr std::size_t kMostBodies = 8;
 constexpr std::size_t kMostSupported = 6;
-/// Share of the speed that gravity adds in a step. Bodies that close more slowly after the sweeps carry what they
-/// should.
+/// Share of the speed that gravity adds in a step. Bodies that close more slowly after the sweeps carry their
+/// load.
 constexpr btScalar kUnresolved = btScalar(0.1);
 
 /// The rigid body of an object; null for one that impulses do not move.
@@ -238,8 +238,8 @@ class HeavyLoads {
     return index < 0 ? -1 : places_[static_cast<std::size_t>(index)];
   }
 
-  /// A heavy body is taken to feel in the next step, too, what neither gravity nor contacts have done to it in this
-  /// one: the forces of joints and of the host.
+  /// Finds the forces on heavy bodies that neither gravity nor contacts explain: those of joints and of the host. They
+  /// are assumed to act in the next step, too.
   void find_other_forces() {
     for (const Pair& pair : pairs_) {
       const HeavyLoad& load = pair.before;

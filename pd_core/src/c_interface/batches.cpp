@@ -68,6 +68,15 @@ struct Failure {
   ErrorRecord error;
 };
 
+/// Threads that are joined at the end of a scope, also if it ends by an exception (std::jthread is missing in libc++
+/// 13).
+struct JoinedThreads {
+  std::vector<std::thread> threads;
+  ~JoinedThreads() {
+    for (std::thread& thread : threads) thread.join();
+  }
+};
+
 /// Calls `answer(row, workspace, out)`, which writes a row's struct, for every row.
 template <class Struct, class Answer>
 pdepth_status for_each_row(pdepth_context& context, const Rows& rows, Struct* first, std::ptrdiff_t stride,
@@ -103,15 +112,14 @@ pdepth_status for_each_row(pdepth_context& context, const Rows& rows, Struct* fi
     }
   };
   {
-    std::vector<std::thread> others;
-    others.reserve(threads - 1);
+    JoinedThreads others;
+    others.threads.reserve(threads - 1);
     try {
-      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
+      for (std::size_t t = 1; t < threads; ++t) others.threads.emplace_back(work, t);
     } catch (const std::system_error&) {
       // A thread that the system does not give leaves its rows to the others: the answers are the same.
     }
     work(0);
-    for (std::thread& other : others) other.join();
   }
   const Failure& worst = *std::min_element(failures.begin(), failures.end(),
                                            [](const Failure& x, const Failure& y) { return x.row < y.row; });

@@ -114,7 +114,7 @@ void FacetsAnswer::set_overlapping(const UnionBoundary::Nearest& nearest, UnionD
   out.lower = std::ldexp(nearest.lower, exponent);
   out.upper = std::max(out.lower, length_rounded_up(out.translation));
   out.depth = out.upper;
-  // Where no doubles lie between two pieces that nearly meet, the nearest placement is farther than the boundary.
+  // If no doubles lie between two pieces that nearly meet, the nearest placement is farther than the boundary.
   out.bracket_reached = out.closed = out.upper <= (1 + settings_.delta) * out.lower;
   out.normal = nearest.projection ? normal(nearest.where) : Vec3(free.normalized());
   if (!(out.upper > 0)) out.normal = normal(nearest.where);

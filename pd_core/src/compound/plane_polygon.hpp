@@ -36,7 +36,7 @@ enum class Cut : std::uint8_t {
 [[nodiscard]] Cut cut(const PlaneSet& planes, const PlanePolygon& polygon, Side side, PlanePolygon& inner,
                       PlanePolygon* outer);
 
-/// The part of a polygon inside of every wall; nothing where it has no relative interior.
+/// Returns the part of a polygon inside of every wall; nothing if that part has no relative interior.
 [[nodiscard]] std::optional<PlanePolygon> part_inside(const PlaneSet& planes, PlanePolygon polygon,
                                                       std::span<const Side> walls);
 

@@ -133,8 +133,8 @@ class UnionBoundary::NearestSearch {
     return !(std::abs(height) > cell.half * plane.normal.lpNorm<1>() + plane.slack + 0x1p-48 * scale_);
   }
 
-  /// Fills `part_` with the corners of what the cube holds of a facet, in doubles. The cube is taken a little larger
-  /// than it is, by more than the doubles may be wrong, so that nothing of it is lost. False when the part is empty.
+  /// Fills `part_` with the corners of the part of a facet in the cube, in doubles. The cube is taken a little larger
+  /// than it is, by more than the doubles may be wrong, so that no point is lost. Returns false if the part is empty.
   bool clip_roughly(const MinkowskiDifference& built, std::size_t f, const CoverCell& cell) {
     const MinkowskiDifference::Facet& facet = built.facets[f];
     const double scale = boundary_.differences_.scale();
@@ -160,7 +160,7 @@ class UnionBoundary::NearestSearch {
     return !part_.empty();
   }
 
-  /// Whether another P_k holds in its interior the part of a facet in `part_`, for certain.
+  /// True if another P_k holds the part of a facet in `part_` in its interior, for certain.
   bool covered_roughly(std::size_t own) {
     const double rounding = 0x1p-42 * scale_;
     const auto covers = [&](std::int32_t k) {

@@ -26,10 +26,10 @@ std::optional<int> axis_of_revolution(const ConvexShape::Core& core) {
   return std::nullopt;
 }
 
-/// The share of its radius in the curvature of a body of revolution whose axis a turns by the unit vector e; given
-/// e x a. The body is the same in the frame that follows a without spinning about it. That frame turns by
-/// w = e - (e . a) a and w' = -(e . a) (e x a), so that no acceleration in it is larger than
-/// |w|^2 + |w'| = |e x a| (|e x a| + |e . a|) <= sqrt(2) |e x a| times the radius.
+/// Bounds the accelerations of a body of revolution whose axis a turns about the unit vector e, as a share of the
+/// body's radius; given e x a. The body is the same in the frame that follows a without spinning about it. That frame
+/// turns by w = e - (e . a) a and w' = -(e . a) (e x a), so that no acceleration in it is larger than |w|^2 + |w'| = |e
+/// x a| (|e x a| + |e . a|) <= sqrt(2) |e x a| times the radius.
 double across_revolution(const Vec3& e_cross_a) { return std::min(1.0, 1.4142136 * length(e_cross_a)); }
 
 }  // namespace

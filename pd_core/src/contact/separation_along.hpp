@@ -1,6 +1,6 @@
 /// @file
-/// How far two moving bodies are apart along one direction, which stands still or turns with one of them, as a function
-/// of time with a bound on its curvature.
+/// The distance of two moving bodies along one direction, which stands still or turns with one of them, is computed as
+/// a function of time with a bound on its curvature.
 #pragma once
 
 #include <array>
@@ -18,17 +18,18 @@ class MovingSupport {
   /// min <x(time) - pivot(time), n> over the core. `near` is the vertex that answered last.
   [[nodiscard]] double least_along(const Vec3& n, double time, int& near);
   [[nodiscard]] Vec3 pivot_at(double time) const { return pivot_ + time * body_.motion.linear_velocity; }
-  /// >= |omega|^2 times the distance of every point of the core from the axis through the pivot.
+  /// Bounds the acceleration of every point of the core about the pivot: |omega|^2 times its distance from the axis of
+  /// the turn. A body of revolution is seen by a frame that does not spin about the body's own axis.
   [[nodiscard]] double curvature() const { return curvature_; }
   /// >= the distance of every point of the core from the pivot.
   [[nodiscard]] double radius() const { return radius_; }
   [[nodiscard]] double angular_speed() const { return speed_; }
   [[nodiscard]] const Vec3& axis() const { return axis_; }
-  /// >= the distance of every point of the core from `point`, at time 0.
+  /// Bounds the distance of every point of the core from `point`, at time 0.
   [[nodiscard]] double farthest_from(const Vec3& point) const;
 
  private:
-  /// The turn back from `time` to 0. The last two are kept: the end of a duration is asked for again and again.
+  /// Returns the turn back from `time` to 0. The last two are kept: the end of a duration is asked for again and again.
   [[nodiscard]] const Turn& turn_back(double time);
 
   struct TurnAt {
@@ -46,7 +47,7 @@ class MovingSupport {
   double curvature_ = 0;
 };
 
-/// A direction that stands still, or turns with a body of the pair: the unit vector n at the time `since`.
+/// A direction that stands still or turns with a body of the pair. It is the unit vector n at the time `since`.
 struct MovingDirection {
   enum class Frame { common, a, b };
   Vec3 n;
@@ -79,13 +80,13 @@ class MovingSeparation {
   [[nodiscard]] double rounding() const { return rounding_; }
 
  private:
-  /// How the points of one body are and move as the pivot of the other one sees them; upper bounds.
+  /// Bounds the distances and motions of the points of one body as the pivot of the other body sees them.
   struct Seen {
     double angular_speed = -1;  ///< of the pivot's body; negative: not computed yet
     double distance = 0;
     double speed = 0;
     double acceleration = 0;
-    double rounding = 0;  ///< what a direction that turns adds to the error of `at`
+    double rounding = 0;  ///< added to the error of `at` by a direction that turns
   };
   [[nodiscard]] const Seen& seen_from(Frame frame);
 

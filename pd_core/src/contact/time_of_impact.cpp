@@ -30,7 +30,7 @@ class MovingPair {
              const TimeOfImpactSettings& settings)
       : a_(a), b_(b), duration_(duration), scratch_(scratch), settings_(settings), separation_(a, b, duration) {}
 
-  /// The pair at time 0.
+  /// Starts with the pair's answer at time 0.
   void begin() {
     if (settings_.at_start == nullptr) return ask(0);
     answer_ = *settings_.at_start;
@@ -88,10 +88,10 @@ class MovingPair {
     return settings_.allowed_depth + separation_.at(direction, time);
   }
 
-  /// m of `apart_throughout`.
+  /// Returns the m of `apart_throughout`.
   [[nodiscard]] double bulge(Frame frame, double span) { return 0.5 * separation_.curvature(frame) * span * span; }
 
-  /// `follow_normal` along one direction, from the time that it is of.
+  /// Does what `follow_normal` does for one direction, from the time `since` on.
   [[nodiscard]] double follow(const detail::MovingDirection& direction, double goal) {
     double time = direction.since;
     double left = clearance_along(direction, time);

@@ -30,6 +30,7 @@ PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from,
 PD_INLINE void load(Floats& to, const float* from) { __builtin_memcpy(&to, from, sizeof(Floats)); }
 PD_INLINE void store(double* to, const Lanes& from) { __builtin_memcpy(to, &from, sizeof(Lanes)); }
 
+/// Returns the absolute values.
 PD_INLINE Lanes magnitude(const Lanes& v) {
   constexpr std::int64_t kMagnitude = std::numeric_limits<std::int64_t>::max();  // all bits but the sign's
   return (Lanes)((Flags)v & Flags{kMagnitude, kMagnitude, kMagnitude, kMagnitude});
@@ -51,7 +52,7 @@ PD_INLINE unsigned half_mask(const HalfIds& flags) {
 #if defined(__SSE2__)
   HalfFloats signs;
   __builtin_memcpy(&signs, &flags, sizeof(signs));
-  return static_cast<unsigned>(__builtin_ia32_movmskps(signs));
+  return static_cast<unsigned>(_mm_movemask_ps(signs));
 #else
   const HalfIds bits = (flags >> 31) & HalfIds{1, 2, 4, 8};
   return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));

@@ -15,28 +15,28 @@ namespace pd {
 
 namespace {
 
-/// Of the radius of the smaller piece: contacts that solvers leave behind are far below.
+/// Share of the smaller piece's radius from which on pieces are deep. Contacts that solvers leave behind are far below.
 constexpr double kDeep = 0.25;
-/// Share of the smaller piece's extent along the way out from which on a thin piece is deep: what lies between two
-/// others is in one of them by half of it.
+/// Share of the smaller piece's extent along the way out from which on a thin piece is deep: a piece between two others
+/// is in one of them by half of its extent.
 constexpr double kDeepForThin = 0.4;
 /// Thin pieces count where so few pairs are near, and where the bodies come by less than this share of their depth in a
 /// step: a plate that is held in a robot, and not walls of shells that meet.
 constexpr std::size_t kFewPairs = 64;
 constexpr double kHeld = 0.5;
-/// Share of the smaller piece's radius: no extent is asked for what is less deep.
+/// Share of the smaller piece's radius below which no extent is asked for.
 constexpr double kResting = 0x1p-10;
 /// cos 45 degrees.
 constexpr double kTogether = 0.7;
 /// Ways out that are no longer than this times the deepest pair's depth, which none is shorter than, are short enough.
 constexpr double kShort = 1.5;
-/// From here on a shorter one is not looked for.
+/// If a way is no longer than this times that depth, a shorter one is not looked for.
 constexpr double kShortest = 1.05;
-/// Of the pieces in each other, the deepest, whose ways are tried.
+/// The ways of so many of the deepest pieces are tried.
 constexpr std::size_t kMostOwnWays = 4;
 /// Pieces that one straight way may have to pass.
 constexpr int kMostStops = 12;
-/// What one answer may take.
+/// One answer may take so many pairs of pieces and facets of their differences.
 constexpr std::size_t kMostPairs = 1 << 10;
 constexpr std::int64_t kMostFacets = 1 << 14;
 
@@ -83,7 +83,7 @@ void DeepUnion::add(const PiecesAnswer& answer, const ContactManifold& left) {
 void DeepUnion::DeepPairs::add(const PenetrationDepth& depth, const ContactManifold& left) {
   deepest = std::max(deepest, depth.depth);
   if (left.count == 0) return;
-  // A facet that stands in for a covered one is far, and what lies round it was not looked at.
+  // A facet that stands in for a covered one is far, and the pieces around it were not looked at.
   torn = torn || depth.normal.dot(left.normal) < kTogether ||
          std::any_of(normals.begin(), normals.end(),
                      [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
@@ -137,7 +137,7 @@ std::optional<DeepUnion::Exit> DeepUnion::exit_along(const Vec3& n, double limit
   exit.length = deepest_pair_.depth.depth;
   const std::size_t count_b = b_.posed.size();
   const std::size_t count = a_.posed.size() * count_b;
-  // Round and round, until all have been asked at one place.
+  // Pairs are asked in turn, until all of them have been asked at one place.
   int stops = 0;
   for (std::size_t k = 0, free = 0; free < count; k = k + 1 < count ? k + 1 : 0) {
     const std::size_t i = k / count_b;
@@ -167,7 +167,7 @@ std::optional<DeepUnion::Exit> DeepUnion::short_exit(const Vec3& back, const Vec
     auto exit = exit_along(n / length, best ? best->length : kShort * least, scratch);
     if (!exit) return;
     best = exit;
-    // Straight off what parts last it may be shorter still.
+    // The way straight off the facet that parts last may be shorter still.
     if (auto turned = exit_along(exit->facet, exit->length, scratch)) best = turned;
   };
   offer(last);
@@ -180,7 +180,6 @@ std::optional<DeepUnion::Exit> DeepUnion::short_exit(const Vec3& back, const Vec
       offer(own_ways_[i].first * own_ways_[i].second + own_ways_[k].first * own_ways_[k].second);
     }
   }
-  // Back the way it came.
   offer(back);
   return best;
 }

@@ -12,10 +12,10 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Sine of two normals that are not one plane's.
+/// If the sine of two normals is larger, they belong to two planes.
 constexpr double kTurned = 1e-3;
 
-/// Whether a point of the triangle's plane lies in it, moved out by `slack`.
+/// True if a point of the triangle's plane lies in the triangle, whose sides are moved out by `slack`.
 bool holds(const Corners& corners, const Vec3& across, const Vec3& point, double slack) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 outward = (corners[(i + 1) % 3] - corners[i]).cross(across);
@@ -25,7 +25,7 @@ bool holds(const Corners& corners, const Vec3& across, const Vec3& point, double
   return true;
 }
 
-/// Whether four of the triangles are in four planes for certain, which few of them tell where the ground is uneven.
+/// True if four of the triangles are in four planes for certain. If the ground is uneven, the first few tell.
 bool are_of_many_planes(std::span<const Corners> triangles, const std::vector<Vec3>& across, double rounding) {
   std::array<const Vec3*, FlatGround::kMostPlanes> found;
   std::size_t count = 0;
@@ -40,7 +40,7 @@ bool are_of_many_planes(std::span<const Corners> triangles, const std::vector<Ve
     const Corners& at = triangles[i];
     const double longest =
         std::max({(at[1] - at[0]).squaredNorm(), (at[2] - at[1]).squaredNorm(), (at[0] - at[2]).squaredNorm()});
-    // So narrow that rounding of its corners may turn it.
+    // The triangle is so narrow that rounding of its corners may turn it.
     if (kTurned * kTurned * squared <= 64 * rounding * rounding * longest) continue;
     if (count == found.size()) return true;
     found[count++] = &n;
@@ -101,7 +101,7 @@ bool FlatGround::ask(StandingBody& body, const GroundPlace& place, const GroundT
   Plane& plane = planes_[static_cast<std::size_t>(number)];
   const std::size_t count = ground.corners.size();
 
-  // 1. The plane in the world, its normal to the side where the body is.
+  // 1. The plane is put into the world, its normal to the side where the body is.
   const Corners& local = ground.corners[plane.seed];
   const Vec3 corner = ground.mesh.apply(local[0]);
   Vec3 normal = (ground.mesh.apply(local[1]) - corner).cross(ground.mesh.apply(local[2]) - corner).normalized();
@@ -125,13 +125,13 @@ bool FlatGround::ask(StandingBody& body, const GroundPlace& place, const GroundT
     }
   }
 
-  // 2. The body on it.
+  // 2. The body is put on the plane.
   HalfspaceContact found;
   const auto stand = [&] { return body.stand_on({normal, normal.dot(corner) + ground.margin}, found); };
   if (!stand()) return false;
   if (came_over && found.manifold.count > 0) return false;
   if (found.manifold.count > 0 && -found.lower > kShallow * (found.highest - found.lower)) {
-    // Parts that a sheet cuts leave it where the whole is, or some would push one way and some the other for good.
+    // Parts that a sheet cuts leave it on the side of the whole. Else some would push one way and some the other.
     if (!place.is_part || known || ground.one_sided) return false;
     turn_to(place.origin_of_whole);
     if (!stand() || -found.lower - ground.margin > (1 - kShallow) * (found.highest - found.lower)) return false;

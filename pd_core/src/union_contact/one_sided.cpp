@@ -6,7 +6,7 @@ namespace pd {
 
 namespace {
 
-/// Sines: less than a degree behind an edge is the noise of normals there; 25 degrees round the back's normal.
+/// Sines: less than a degree behind an edge is the noise of normals there; 25 degrees around the back's normal.
 constexpr double kSideways = 0.02;
 constexpr double kThrough = 0.9;
 constexpr std::size_t kMostWays = 4;

@@ -10,18 +10,18 @@ namespace {
 constexpr double kOnePatch = 0.9;
 /// cos 60 degrees.
 constexpr double kAlong = 0.5;
-/// Of the breaking threshold: depths of a resting contact differ by so much from step to step.
+/// Depths of a resting contact differ by this share of the breaking threshold from step to step.
 constexpr double kNoise = 1e-3;
-/// Of the breaking threshold: points that near are one. (Bullet merges what lies within the whole of it.)
+/// Points that are nearer than this share of the breaking threshold are one. (Bullet merges points within all of it.)
 constexpr double kMerge = 0.05;
-/// cos 3 degrees: what pushes no farther apart holds a body as one.
+/// cos 3 degrees: points that push no farther apart hold a body as one.
 constexpr double kOneWay = 0.9986;
-/// Of the breaking threshold: points that are so far apart are worth half of those that touch.
+/// Points with a gap of this share of the breaking threshold are worth half of those that touch.
 constexpr double kApart = 1.0 / 16;
-/// What the squared distances and areas of a point of the last step count.
+/// The squared distances and areas of a point of the last step count so many times.
 constexpr double kLasting = 1.2;
 
-/// Of so few points each is compared with those that are kept; more are put in order first.
+/// If there are so few points, each is compared with those that are kept; more are put in order first.
 constexpr std::size_t kFew = 32;
 
 /// The number of a piece's feature pair among those of all pieces.
@@ -223,7 +223,7 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
     while (!left_.empty()) take(left_.front());
     return;
   }
-  // Any direction that no face's edges are likely to have.
+  // No face's edges are likely to have this direction.
   const Vec3 u = n.unitOrthogonal();
   const Vec3 out = u + 0.3 * n.cross(u);
   const double deep = left_.front()->contact.depth - kNoise * breaking_threshold;

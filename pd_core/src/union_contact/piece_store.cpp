@@ -22,7 +22,7 @@ Error refused(ErrorCode code, std::string message, std::string where) {
 
 std::string place(const char* list, std::size_t i) { return list + ("[" + std::to_string(i)) + "]"; }
 
-/// What is wrong with a coordinate or length.
+/// Returns the fault of a coordinate or length, if it has one.
 std::optional<Error> fault_of(double value, const std::string& where) {
   if (!std::isfinite(value)) return refused(ErrorCode::non_finite, "must be a finite number", where);
   if (std::abs(value) > kMaxCoordinate) {
@@ -31,7 +31,8 @@ std::optional<Error> fault_of(double value, const std::string& where) {
   return {};
 }
 
-/// Unit, across the mean plane of a loop; zero if the loop has no area. A power of two keeps products in range.
+/// Returns the unit normal of the mean plane of a loop; zero if the loop has no area. A power of two keeps products in
+/// range.
 Vec3 normal_of(std::span<const Vec3> points, std::span<const std::int32_t> loop) {
   const auto way_to = [&](std::size_t k) {
     return Vec3(points[static_cast<std::size_t>(loop[k])] - points[static_cast<std::size_t>(loop[0])]);
@@ -120,10 +121,11 @@ namespace detail {
 
 namespace {
 
-/// Of coordinates: a matrix that is a rotation up to 1e-6 and its transpose miss each other's inverse by no more.
+/// A matrix that is a rotation up to 1e-6 and its transpose miss each other's inverse by no more than this share of the
+/// coordinates.
 constexpr double kNoInverse = 0x1p-17;
 
-/// The box around a turned and moved box.
+/// Returns a box around a turned and moved box.
 TriangleBox turned(const TriangleBox& box, const Mat3& rotation, const Vec3& translation) {
   const Vec3 middle = rotation * (0.5 * box.low + 0.5 * box.high) + translation;
   Vec3 half = rotation.cwiseAbs() * (0.5 * box.high - 0.5 * box.low);

@@ -1,5 +1,5 @@
 /// @file
-/// The pieces of a body in its own frame with a hierarchy of their boxes, and the same body where it stands.
+/// A body's pieces are stored in its own frame with a hierarchy of their boxes; in a query the body stands in a pose.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace pd::detail {
 
-/// Either the parts of a compound or triangles.
+/// The pieces are either the parts of a compound or triangles.
 struct PieceStore {
   std::optional<Compound> compound;
   std::vector<std::array<Vec3, 3>> triangles;  ///< with an area
@@ -24,10 +24,10 @@ struct PieceStore {
   TriangleTree tree;
 };
 
-/// The body times 2^exponent.
+/// Returns the body times 2^exponent.
 [[nodiscard]] PieceBody scaled(const PieceBody& body, int exponent);
 
-/// A body of pieces in one query. What is asked for is made once: posed shapes of triangles, and pieces as planes.
+/// A body of pieces in one query. Shapes of triangles and pieces as planes are made when they are first asked for.
 class StandingPieces {
  public:
   /// @return out_of_range ("pose") as `Compound::posed`
@@ -35,25 +35,26 @@ class StandingPieces {
 
   [[nodiscard]] bool is_sheet() const { return !store_->compound; }
   [[nodiscard]] int size() const { return static_cast<int>(store_->boxes.size()); }
-  /// The caller's number of a piece.
+  /// Returns the caller's number of a piece.
   [[nodiscard]] int number(int piece) const {
     return is_sheet() ? store_->numbers[static_cast<std::size_t>(piece)] : piece;
   }
-  /// A box in the world that holds the piece, and one that holds all of them.
+  /// Return a box in the world that holds the piece, and one that holds all pieces.
   [[nodiscard]] TriangleBox box(int piece) const;
   [[nodiscard]] TriangleBox whole_box() const;
-  /// The pieces whose boxes meet a box in the world, and perhaps a few more, in the order of their numbers.
+  /// Finds the pieces whose boxes meet a box in the world, and perhaps a few more, in the order of their numbers.
   void meeting(const TriangleBox& world, std::vector<int>& pieces) const;
 
-  /// Null if the piece is a triangle that rounding leaves without an area.
+  /// Returns null if the piece is a triangle that rounding leaves without an area.
   [[nodiscard]] const ConvexShape* shape(int piece);
   /// Requires: the piece has a shape.
   [[nodiscard]] PosedShape posed(int piece) {
     return is_sheet() ? PosedShape{shape(piece), pose_} : parts_[static_cast<std::size_t>(piece)];
   }
-  /// The piece as planes in the world, none where it is curved.
+  /// Returns the piece as planes in the world; there are none if it is curved.
   [[nodiscard]] const UnionPiece& planes(int piece);
-  /// The side of a triangle from which its corners run counter-clockwise, unit and in the world.
+  /// Returns the side of a triangle from which its corners run counter-clockwise, unit and in the world; zero if its
+  /// area vanishes in doubles.
   [[nodiscard]] Vec3 front(int piece) const;
 
  private:
@@ -68,7 +69,7 @@ class StandingPieces {
   std::unordered_map<int, UnionPiece> planes_;
 };
 
-/// One piece of a standing body, as the rule for covered contacts asks about it.
+/// The rule for covered contacts asks about one piece of a standing body through this class.
 class PieceAmong final : public PieceSurroundings {
  public:
   PieceAmong(StandingPieces& all, int piece) : all_(all), piece_(piece) {}

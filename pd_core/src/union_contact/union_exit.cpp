@@ -37,8 +37,8 @@ Extent extent_of(const PosedShape& posed) {
   return extent;
 }
 
-/// The hull of a smooth core's support points in the 26 directions to the faces, edges and corners of a cube. It lies
-/// inside of the core.
+/// Returns the hull of a smooth core's support points in the 26 directions to the faces, edges and corners of a cube.
+/// It lies inside of the core.
 std::optional<ConvexShape> inner_polytope(const ConvexShape& shape) {
   std::vector<Vec3> points;
   const PosedShape at_home{&shape, Pose()};

@@ -20,23 +20,23 @@ namespace {
 
 /// Rounding of poses in double, a few times over (as of `seam_slack`).
 constexpr double kRounding = 0x1p-46;
-/// Directions of contact that two bodies may have.
+/// Two bodies may have so many directions of contact.
 constexpr int kMostPatches = 8;
-/// Pairs of pieces that one answer asks.
+/// One answer asks no more pairs of pieces.
 constexpr std::size_t kMostPiecePairs = std::size_t{1} << 20;
-/// Of the smaller body's half diagonal: points are told apart as if the breaking threshold were this at least, so that
-/// a threshold of 0 tells noise from depth.
+/// Points are told apart as if the breaking threshold were at least this share of the smaller body's half diagonal, so
+/// that noise is told from depth even at a threshold of 0.
 constexpr double kLeastScale = 0x1p-8;
-/// Lengths for bodies of size 1: no longer one makes a difference.
+/// For bodies of size 1, a threshold or way that is longer than this makes no difference.
 constexpr double kFar = 0x1p64;
-/// Of a way out of a triangle: so much farther, a body that follows it is off the triangle beyond rounding.
+/// A body that follows a way out of a triangle so much farther is off the triangle beyond rounding.
 constexpr double kClear = 1 + 0x1p-6;
 
 TriangleBox grown(const TriangleBox& box, double by) {
   return {(box.low.array() - by).matrix(), (box.high.array() + by).matrix()};
 }
 
-/// Pieces near the other body, whole boxes against boxes.
+/// The pieces near the other body are those whose boxes come near the box around that body.
 class NearStanding final : public NearSides {
  public:
   NearStanding(StandingPieces& a, StandingPieces& b) : a_(a), b_(b) {}
@@ -65,9 +65,9 @@ class Asked {
     depth_settings_.beyond = settings.breaking_threshold;
   }
 
-  /// @return false where there are too many pairs of pieces
+  /// Asks all pairs of pieces that are near. @return false if there are too many
   bool ask_pairs();
-  /// @return false where the way out is over its budget
+  /// Adds the way out of the whole if it is needed. @return false if that is over its budget
   bool leave_as_one();
   void choose();
   [[nodiscard]] const Patches& patches() const { return patches_; }
@@ -79,7 +79,7 @@ class Asked {
 
  private:
   void ask(int i, int j);
-  /// The contacts along the fronts of triangles that piece i stands through, where no contact of it leads off them.
+  /// Adds the contacts along the fronts of triangles that piece i stands through, if no contact of it leads off them.
   void add_fronts(int i);
   PiecePair pair_of(PieceAmong& around_a, PieceAmong& around_b, const PosedShape& a, const PosedShape& b) const;
   void add(int i, int j, const ContactManifold& points) {
@@ -132,11 +132,11 @@ void Asked::ask(int i, int j) {
 
 void Asked::add_fronts(int i) {
   const PosedShape a = a_.posed(i);
+  const std::vector<Vec3>& ways = one_sided_.ways_out();
   for (const OneSided::Behind& behind : one_sided_.behind()) {
     const PosedShape b = b_.posed(behind.triangle);
-    const std::vector<Vec3>& ways = one_sided_.ways_out();
     const bool left = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
-      // A little farther than touching, which rounding would decide.
+      // The body is moved a little farther than touching, which rounding would decide.
       const PosedShape moved{a.shape,
                              Pose::from_trusted_matrix(a.pose.rotation(), a.pose.translation() + kClear * way)};
       return penetration_depth(moved, b, scratch_.depth, depth_settings_).contact != ContactClass::overlapping;
@@ -241,7 +241,7 @@ UnionManifold manifold_of(const Asked& asked, bool swapped) {
   return result;
 }
 
-/// The contact of the two pieces that decide the depth of the two unions.
+/// Returns the contact of the two pieces that decide the depth of the two unions.
 Expected<UnionManifold> deciding_pieces(const PosedPieces& a, const PosedPieces& b, double threshold,
                                         UnionManifoldScratch& scratch) {
   const Compound &union_a = *a.body->store().compound, &union_b = *b.body->store().compound;
@@ -266,17 +266,18 @@ Expected<UnionManifold> deciding_pieces(const PosedPieces& a, const PosedPieces&
   return result;
 }
 
-/// The exponent of the bodies' size where doubles lack room for products of lengths, else 0.
+/// Returns the exponent of the bodies' size if doubles lack room for products of lengths, else 0. Two bodies that are
+/// one point, the origin, have no size to bring to 1.
 int extreme_exponent(const StandingPieces& a, const StandingPieces& b) {
   double size = 0;
   for (const StandingPieces* body : {&a, &b}) {
     const TriangleBox box = body->whole_box();
     size = std::max({size, box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff()});
   }
-  return size > 0x1p100 || size < 0x1p-100 ? std::ilogb(std::max(size, 0x1p-1074)) : 0;
+  return size > 0x1p100 || (size > 0 && size < 0x1p-100) ? std::ilogb(size) : 0;
 }
 
-/// The answer about the bodies times 2^-exponent, times 2^exponent.
+/// Answers about the bodies times 2^-exponent, and brings the answer back.
 Expected<UnionManifold> at_size_one(const PosedPieces& a, const PosedPieces& b, const UnionContactSettings& settings,
                                     int exponent, UnionManifoldScratch& scratch) {
   const auto pose = [&](const Pose& of) {

@@ -50,7 +50,8 @@ enum class BulletContacts {
 /// A world that steps (btDynamicsWorld) gets an action (`addAction`) that tells the solver when a step has ended;
 /// shapes are compared with what they were converted from once a step (shape_cache.hpp).
 ///
-/// @return false, and nothing changed, where the world's dispatcher is not a btCollisionDispatcher.
+/// Requires that the world is not stepping. Time O(pairs) in the world's pairs that overlap.
+/// @return false, and nothing changed, if the world's dispatcher is not a btCollisionDispatcher.
 bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver,
              BulletContacts contacts = BulletContacts::one_shot);
 

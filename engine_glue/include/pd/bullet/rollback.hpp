@@ -43,9 +43,8 @@ struct RollbackSettings {
   double least_part = 1.0 / 4096;
   /// Bodies that no contact and no joint touches in a step, or part of one, move by the law of free flight: the
   /// parabola of the forces on them, and the turning of a body without torque. Bullet's own steps are the first order
-  /// of it
-  /// (`src/free_flight.hpp`). A ball dropped from 1 m is where Galilei has it, g h^2 / 2 a step above Bullet's, and
-  /// comes back as high. False: Bullet's own motion throughout.
+  /// of it (`src/rollback/free_flight.hpp`). A ball dropped from 1 m is where Galilei has it, g h^2 / 2 a step above
+  /// Bullet's, and comes back as high. False: Bullet's own motion throughout.
   bool exact_flight = true;
 };
 
@@ -101,9 +100,9 @@ class RollbackStepper {
   ///
   /// Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken per unit of
   /// time (`src/rollback/substep.hpp`). Where friction with restitution would add energy, as Bullet's law of
-  /// impact allows, the impact has so much less restitution that it does not (`src/impact_energy.hpp`). Time: Bullet's
-  /// own for each simulation step. A snapshot a part. A collision query or more for each pair whose swept boxes meet
-  /// and that moves by more than the slop (in steps that are cut: 2.25 gaps).
+  /// impact allows, the impact has so much less restitution that it does not (`src/rollback/impact_energy.hpp`). Time:
+  /// Bullet's own for each simulation step. A snapshot a part. A collision query or more for each pair whose swept
+  /// boxes meet and that moves by more than the slop (in steps that are cut: 2.25 gaps).
   RollbackReport step(btScalar step);
 
   /// Advances like `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most

@@ -63,7 +63,8 @@ class StackSolver : public btSequentialImpulseConstraintSolver {
   [[nodiscard]] const StackSolverStatistics& statistics() const { return statistics_; }
   void reset_statistics() { statistics_ = {}; }
 
-  /// For each body, by its place in the world, how long its group is left alone. `BulletSnapshot` saves it.
+  /// For each body, by its place in the world, the number of steps for which its group is left alone. `BulletSnapshot`
+  /// saves it, and `set_memory` puts it back. Time O(1), and O(bodies) to put it back.
   [[nodiscard]] const btAlignedObjectArray<unsigned>& memory() const;
   void set_memory(const btAlignedObjectArray<unsigned>& memory);
 

@@ -1,5 +1,5 @@
 /// @file
-/// The convex bodies of pdepth as shapes of a contact record: what every recorder that has them writes.
+/// Writes the convex bodies of pdepth as shapes of a contact record (`pd/record/pd_record.h`), for every recorder.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace pd::detail {
 
-/// Writes a core with its margin under an id.
+/// Writes a core with its margin under an id. Coordinates are in the frame of the shape, lengths in its unit.
 struct WriteCore {
   pd_record& record;
   const char* id;
@@ -47,6 +47,8 @@ struct WriteCore {
   }
 };
 
+/// Writes a shape under an id, which must be new in the record. An error of writing shows in `record.good`. Time O(n)
+/// in the vertices of the shape.
 inline void record_shape(pd_record& record, const std::string& id, const ConvexShape& shape) {
   std::visit(WriteCore{record, id.c_str(), shape.margin()}, shape.core());
 }

@@ -3,7 +3,7 @@
 /// polytope, a memory or a search.
 ///
 /// What `penetration_depth` with Bracket::contact and `contact_manifold` say of them, by the fifteen axes of two boxes
-/// (depth/facets/gauss_boxes.hpp) and two rectangles cut by each other (Sutherland, Hodgman 1974). Where axes are
+/// (depth/facets/gauss_boxes.hpp) and two rectangles cut by each other (Sutherland, Hodgman 1974). If axes are
 /// equally near up to rounding, either may be taken, and exchanged bodies may take the other.
 #pragma once
 

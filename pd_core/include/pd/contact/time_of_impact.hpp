@@ -12,10 +12,9 @@
 /// length. The normal of the distance at the span's start is n. It stands still or, if that proves more, turns with one
 /// of the bodies: a face that rocks on an edge stays apart along its own normal. The bound on g'' then has the terms of
 /// a frame that turns. The function s is followed to where it has nearly vanished, and the next distance gives the next
-/// n. This is B. Mirtich's conservative advancement
-/// ("Impulse-based dynamic simulation", 1996), with a bound of second order in place of his of first, along E. Catto's
-/// separation functions
-/// ("Continuous collision", GDC 2013), with a proof in place of his root finding.
+/// n. This is B. Mirtich's conservative advancement ("Impulse-based dynamic simulation", 1996), with a bound of second
+/// order in place of his of first, along E. Catto's separation functions ("Continuous collision", GDC 2013), with a
+/// proof in place of his root finding.
 #pragma once
 
 #include "pd/depth/penetration_depth.hpp"
@@ -40,9 +39,10 @@ struct MovingShape {
 /// without rotation, the rotation is the start's own, to the bit.
 [[nodiscard]] Pose pose_at(const MovingShape& body, double time);
 
-/// How much a moving shape bends off a chord. The least coordinate of the shape along a unit direction is a function of
-/// time. Over a span h it lies below its chord by curvature_bound * x (h - x) / 2 at most, x since the span began.
-/// A cylinder or cone that turns about its own axis has 0.
+/// Bounds how far a moving shape bends off a chord. The least coordinate of the shape along a unit direction is a
+/// function of time. Over a span h it lies below its chord by curvature_bound * x (h - x) / 2 at most, at the time x
+/// after the span began. Unit of length per unit of time squared. For a cylinder or cone that turns about its own axis
+/// it is rounding alone. Time O(v) in v vertices of a polytope.
 [[nodiscard]] double curvature_bound(const MovingShape& body);
 
 /// Largest distance of a point of the shape from the origin of its frame, margin included.
@@ -59,7 +59,7 @@ struct TimeOfImpactSettings {
   int max_queries = 1000;
   /// Without a hit, whether `contact` is asked for at the end of the duration; else it is of the last time looked at.
   bool contact_at_end = true;
-  /// Null, or the pair's answer at time 0 with the settings below: it is not asked for again.
+  /// The pair's answer at time 0 with the settings below, if the caller has it; else null. It saves one query.
   const PenetrationDepth* at_start = nullptr;
   DepthSettings depth;
 };

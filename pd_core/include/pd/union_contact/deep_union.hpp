@@ -1,5 +1,6 @@
 /// @file
-/// Two unions of convex pieces that are deep in each other: out the shortest way of the whole, not torn between pieces.
+/// If two unions of convex pieces are deep in each other, they are led out by a short way of the whole, and are not
+/// torn between pieces.
 ///
 /// A piece that is far inside another union has no answer of its own that holds for the whole: its nearest exits lead
 /// into other pieces, and pairs of pieces push against each other. There the shortest way out of the whole
@@ -17,7 +18,7 @@
 
 namespace pd {
 
-/// Pieces of one union where they stand.
+/// Pieces of one union in the common frame.
 struct NearSide {
   std::vector<PosedShape> posed;
   std::vector<int> numbers;  ///< of the pieces, as the host counts them
@@ -27,12 +28,13 @@ struct NearSide {
 class NearSides {
  public:
   virtual ~NearSides() = default;
+
   /// Sets `a` and `b` to the pieces that come within `reach` of the other body. They stay valid until the next call.
-  /// @return false where a piece within reach has no exact form, or there is none
+  /// @return false if a piece within reach has no exact form, or if no piece of a or of b is within reach
   virtual bool collect(double reach, NearSide& a, NearSide& b) = 0;
 };
 
-/// An answer about two pieces, by their numbers.
+/// An answer about two pieces, with the numbers that the host gave them.
 struct PiecesAnswer {
   PenetrationDepth depth;
   PosedShape a{};
@@ -48,8 +50,11 @@ struct DeepBuffers {
   UnionExit& exit;
 };
 
+/// The answers about the pairs of pieces of two unions, and the way out of the whole if they ask for one. Lengths are
+/// in the unit of the input; poses, normals and ways in the common frame.
 class DeepUnion {
  public:
+  /// Forgets the answers of the last step.
   void clear();
   /// Takes note of what two pieces said about each other, and of what the rule of covered_contact.hpp left of it. The
   /// answer's shapes are used until `clear`.
@@ -58,10 +63,10 @@ class DeepUnion {
   /// one's radius or more. Either no contact of theirs is left, or those that are left lead more than 45 degrees apart
   /// from each other or from the pieces' own answers.
   [[nodiscard]] bool needed() const { return solid_.need_a_way(); }
-  /// Asks the same in a step. Where few pieces are near and the bodies hardly move, a thin piece is deep by two fifths
-  /// of its extent along its own way out.
-  /// @param way        that the bodies come against each other in the step
-  /// @param num_pairs  of pieces that are near
+  /// Asks the same in a step. If few pieces are near and the bodies hardly move, a thin piece also counts as deep, from
+  /// two fifths of its extent along its own way out.
+  /// @param way        length by which the bodies come closer in the step
+  /// @param num_pairs  number of pairs of pieces that are near
   [[nodiscard]] bool needed_in_step(double way, std::size_t num_pairs) const;
 
   struct Way {
@@ -71,20 +76,22 @@ class DeepUnion {
   };
   enum class Outcome {
     found,        ///< the shortest way
-    nearly,       ///< one that is at most half as long again, or where a piece is smooth, about the shortest
+    nearly,       ///< a way that is at most half as long again or, if a piece is smooth, about the shortest
     apart,        ///< only margins meet
     over_budget,  ///< more pairs of pieces within reach, or facets of their differences, than one answer may take
     unsupported   ///< a piece within reach has no exact form
   };
   struct Question {
     NearSides& near;
-    double threshold;      ///< up to which gap a pair of points is a contact
+    double threshold;      ///< >= 0: a pair of points with a wider gap is no contact
     double pose_rounding;  ///< as of `seam_slack`
-    Vec3 back;             ///< along which A came: the velocity of B less A's, or zero
+    Vec3 back;             ///< back the way that A came: the velocity of B less that of A, or zero
   };
-  /// The shortest way out of b's cores for a's, all pieces that it could meet included, or one that is little longer
-  /// (`nearly`); rounded pieces go on by their margins. Time as said in union_exit.hpp for the pieces within reach.
-  /// @param last  unit, along which the pair was led out in the last step, or zero; set to the way found
+  /// Finds the shortest way out of the cores of B for those of A, all pieces that it could meet included, or one that
+  /// is little longer (`nearly`). Rounded pieces go on by their margins. Requires: an answer of overlapping pieces was
+  /// added. Time: O(p) queries of depth for p pairs of pieces within reach, and then as said in union_exit.hpp.
+  /// @param last  unit, along which the pair was led out in the last step, or zero; set to the direction found
+  /// @param way   set if the outcome is `found` or `nearly`
   Outcome find_way(const Question& question, const DeepBuffers& buffers, Vec3& last, Way& way);
 
  private:
@@ -95,18 +102,18 @@ class DeepUnion {
   struct Side : NearSide {
     std::vector<Box> boxes;
   };
-  /// @return whether all pieces within `reach` of the other body have an exact form
+  /// Collects the pieces and their boxes. @return what `NearSides::collect` returns
   bool collect(double reach, NearSides& near);
 
   /// Tells whether A moved along the deepest pair's way out is free of B: then the unions' depth is that pair's, since
   /// the union of the differences P_ij holds each of them. Requires: all pieces within that reach are collected.
   [[nodiscard]] bool deepest_pair_leads_out(Scratch& scratch) const;
-  /// A's piece number i moved by `way`; empty if the box of B's piece number j is apart from it or what is left of
-  /// their depth is rounding.
+  /// Returns A's piece number i moved by `way`; empty if the box of B's piece number j is apart from it or what is left
+  /// of their depth is rounding.
   [[nodiscard]] std::optional<PosedShape> still_in(std::size_t i, std::size_t j, const Vec3& way,
                                                    Scratch& scratch) const;
 
-  /// The answers of pairs that are deep.
+  /// The pairs of pieces that are deep, by their answers.
   struct DeepPairs {
     double deepest = 0;
     std::vector<Vec3> normals;  ///< of their contacts that are left
@@ -121,7 +128,7 @@ class DeepUnion {
   };
 
   using OwnWay = std::pair<double, Vec3>;
-  /// A straight way for A out of B, not to the nearest place for certain.
+  /// A straight way for A out of B need not lead to the nearest place.
   struct Exit {
     Vec3 along = Vec3::UnitX();  ///< unit
     double length = 0;
@@ -129,13 +136,15 @@ class DeepUnion {
     std::size_t b = 0;
     Vec3 facet = Vec3::UnitX();  ///< the normal by which they part
   };
-  /// Out along `n` (unit), where that is no longer than `limit`. Requires: all pieces within that reach are collected.
+  /// Leads out along `n` (unit), if that is no longer than `limit`. Requires: all pieces within that reach are
+  /// collected.
   [[nodiscard]] std::optional<Exit> exit_along(const Vec3& n, double limit, Scratch& scratch) const;
-  /// A way that is at most half as long again as the deepest pair's own. No way is shorter than that. The way of the
-  /// last step is tried, the ways of the deepest pieces and of two of them together, and back the way that A came. Each
-  /// is turned straight off the facet that parts last. Much cheaper than the shortest, and the same from step to step.
+  /// Finds a way that is at most half as long again as the deepest pair's own. No way is shorter than that. The way of
+  /// the last step is tried, the ways of the deepest pieces and of two of them together, and back the way that A came.
+  /// Each is turned straight off the facet that parts last. This is much cheaper than the shortest way, and its answer
+  /// is the same from step to step.
   [[nodiscard]] std::optional<Exit> short_exit(const Vec3& back, const Vec3& last, Scratch& scratch);
-  /// The contact that leads out. @return false where it has no points
+  /// Sets the contact that leads out. @return false if it has no points
   bool lead_out(const Exit& exit, double threshold, const DeepBuffers& buffers, Way& way) const;
 
   PiecesAnswer deepest_pair_;     ///< of all pieces

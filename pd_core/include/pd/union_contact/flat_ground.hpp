@@ -32,48 +32,51 @@ class StandingBody {
   virtual ~StandingBody() = default;
   /// The body's contact with a half-space. @return false if the host has no answer
   virtual bool stand_on(const Halfspace3& ground, HalfspaceContact& contact) = 0;
-  /// The body that `stand_on` was answered for.
+  /// Returns the body that `stand_on` was answered for.
   [[nodiscard]] virtual PosedShape posed() const = 0;
   /// Drops the points that `pd::drop_covered` drops, if the body is a piece of a union.
   virtual void drop_covered(ContactManifold& points) = 0;
 
   /// True if the host remembers from which side the body came to triangles.
   [[nodiscard]] virtual bool remembers_sides() const { return false; }
-  /// The remembered side of a triangle, unit and in the mesh's frame; zero: not known.
+  /// Returns the remembered side of a triangle, unit and in the mesh's frame; zero if it is not known.
   [[nodiscard]] virtual Vec3 side_of(std::size_t /*triangle*/, const Vec3& /*normal*/) const { return Vec3::Zero(); }
-  /// The body's middle in the last step, in the mesh's frame.
+  /// Returns the body's middle in the last step, in the mesh's frame.
   [[nodiscard]] virtual Vec3 middle_before() const { return Vec3::Zero(); }
-  /// The body is on this side of a triangle.
+  /// Takes note that the body is on this side of a triangle: unit, in the mesh's frame.
   virtual void keep_side(std::size_t /*triangle*/, const Vec3& /*side*/) {}
 };
 
-/// All triangles of a mesh that the body may reach.
+/// All triangles of a mesh that the body may reach. Lengths are in the unit of the input.
 struct GroundTriangles {
   std::span<const std::array<Vec3, 3>> corners;  ///< in the mesh's frame; each triangle has an area
   const Pose& mesh;
   double margin = 0;
-  double corner_rounding = 0;  ///< of coordinates: so far corners of a plane may be off it
+  double corner_rounding = 0;  ///< share of the largest coordinate by which corners of a plane may be off it
   double pose_rounding = 0;    ///< as of `seam_slack`
   bool one_sided = false;      ///< the mesh has fronts only, where corners run counter-clockwise
 };
 
+/// The place of the body in the world.
 struct GroundPlace {
   Vec3 origin;           ///< of the body
   Vec3 origin_of_whole;  ///< of the union that it is a part of
   bool is_part = false;
 };
 
-/// Keeps its memory from step to step, and nothing that an answer could depend on.
+/// The planes under a body. An object reuses its buffers from step to step, and no answer depends on earlier ones.
 class FlatGround {
  public:
-  /// Floor and two walls.
+  /// A floor and two walls are the most that is answered.
   static constexpr int kMostPlanes = 3;
 
-  /// @return false: the triangles are to be asked one by one
-  /// Time O(k) in the triangles, and a support each way and a face of the body a plane.
+  /// Finds the body's contacts with the planes of the triangles.
+  /// @return false if the triangles are to be asked one by one
+  /// Time O(k) in k triangles. For each plane it takes a support each way and a face of the body.
   bool find(StandingBody& body, const GroundPlace& place, const GroundTriangles& ground);
 
-  /// Calls `visit(point, triangle)` for each contact that was found, as a manifold of one point.
+  /// Calls `visit(point, triangle)` for each contact that was found, as a manifold of one point. Requires: `find`
+  /// returned true.
   template <class Visit>
   void for_each_point(const Visit& visit) const {
     for (const Plane& plane : planes_) {
@@ -94,13 +97,13 @@ class FlatGround {
     Vec3 front = Vec3::Zero();               ///< where the body is, unit and in the mesh's frame
   };
 
-  /// @return false where there are more planes than may be
+  /// Gives every triangle the number of its plane. @return false if there are more than `kMostPlanes`
   bool sort_by_plane(const GroundTriangles& ground);
-  /// @return false where the plane's triangles have to be asked
+  /// Asks the body about one plane. @return false if the plane's triangles have to be asked
   bool ask(StandingBody& body, const GroundPlace& place, const GroundTriangles& ground, int number);
-  /// The side of the plane that the body came from, unit and in the mesh's frame; zero: not known.
+  /// Returns the side of the plane that the body came from, unit and in the mesh's frame; zero if it is not known.
   [[nodiscard]] Vec3 known_front(const StandingBody& body, std::size_t num_triangles, int number) const;
-  /// Finds the triangles under the plane's points. @return false where a point lies over none
+  /// Finds the triangles under the plane's points. @return false if a point lies over none
   bool find_under(const PosedShape& body, const Vec3& normal, const GroundTriangles& ground, int number);
 
   std::vector<Vec3> across_;   ///< twice the area along the normal

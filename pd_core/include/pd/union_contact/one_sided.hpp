@@ -1,5 +1,5 @@
 /// @file
-/// Meshes as surfaces of solids: a body leaves a triangle by its front.
+/// Meshes may be surfaces of solids: a body then leaves a triangle by its front.
 ///
 /// The shortest way off a sheet leads to either side. For a solid's surface the way backward is none: it leads on into
 /// the solid. A contact that leads backward is dropped if the body is apart from the triangle, or leaves it over an
@@ -14,15 +14,18 @@
 
 namespace pd {
 
+/// The contacts of one body A with the triangles of a mesh B. Vectors are in the world, lengths in the unit of the
+/// input.
 class OneSided {
  public:
+  /// Forgets all contacts.
   void clear();
 
   /// Takes the answer about a body A and triangle number `triangle`, whose front is `front` (unit, in the world).
-  /// @return whether the answer's own contact counts
+  /// @return true if the answer's own contact counts. Time O(1).
   bool admit(const PenetrationDepth& answer, const Vec3& front, int triangle);
 
-  /// The body stands through or behind a triangle that it is to leave by its front.
+  /// Takes note that the body stands through or behind a triangle that it is to leave by its front (unit).
   void add_behind(int triangle, const Vec3& front) { behind_.push_back({triangle, front}); }
 
   /// Takes a contact with the front of a triangle that was found another way: it ends by this translation of A.
@@ -33,14 +36,16 @@ class OneSided {
     if (answer.contact == ContactClass::overlapping) add_way(answer.depth * answer.normal);
   }
 
+  /// A triangle that the body stands through, and its front.
   struct Behind {
     int triangle;
     Vec3 front;
   };
-  /// The triangles that the body stands through and would leave by the back.
+  /// Returns the triangles that the body stands through and would leave by the back.
   [[nodiscard]] const std::vector<Behind>& behind() const { return behind_; }
 
-  /// Translations of A by which the contacts that count end, longest first, at most four.
+  /// Returns translations of A by which the contacts that count end, longest first, at most four; shorter ones are
+  /// dropped. Time O(k log k) in k contacts.
   [[nodiscard]] const std::vector<Vec3>& ways_out();
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// The contact points of many pieces, sorted by normal into patches, and four of each patch chosen.
+/// The contact points of many pieces are sorted by normal into patches, and four points of each patch are chosen.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct PatchPoint {
   int piece = -1;  ///< handed to `Patches::add`
 };
 
-/// At most four points of about one normal.
+/// At most four points of about one normal; none if all points fit another patch better.
 struct Patch {
   std::array<PatchPoint, 4> points;
   int count = 0;
@@ -33,9 +33,12 @@ struct LastPatch {
   int count = 0;
 };
 
+/// The points of one step and the patches chosen of them. Points are in the world, lengths in the unit of the input.
 class Patches {
  public:
+  /// Forgets points and patches.
   void clear();
+  /// Adds the points of a manifold.
   /// @param piece  handed back with the point
   /// @param i, j  numbers of the piece that do not change from step to step: features are told apart by them
   void add(const ContactManifold& manifold, int piece, int i, int j);
@@ -76,16 +79,16 @@ class Patches {
     bool kept;
   };
   static void add(const PatchPoint& point, Patch& patch);
-  /// The patches of the last step that some point belongs to.
+  /// Takes over the patches of the last step that some point belongs to.
   void go_on(std::span<const LastPatch> last);
-  /// The deepest first, of equal ones that which was added first.
+  /// Sorts the points, the deepest first. Equally deep points keep the order in which they were added.
   void sort_by_depth();
   void choose_in(int patch, double breaking_threshold, std::span<const LastPatch> last);
   /// Finds points among those left that touch and push another way than the points chosen beside them.
   void find_twins(double breaking_threshold);
   /// Adds the twins as patches of their own.
   void add_twins(int most, std::span<const LastPatch> last);
-  /// Into `left_`: of points of the patch that lie within `merge` of each other the deepest. O(p log p).
+  /// Fills `left_` with the deepest of the patch's points that lie within `merge` of each other. O(p log p).
   void keep_one_of_each(int patch, double merge);
 
   std::vector<Point> points_;

@@ -1,5 +1,5 @@
 /// @file
-/// The memory that a pair with a mesh or compound has of its pieces, handed from step to step.
+/// A pair with a mesh or compound has a memory of every two pieces, which is handed from step to step.
 #pragma once
 
 #include <algorithm>

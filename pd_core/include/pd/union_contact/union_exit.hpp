@@ -76,9 +76,9 @@ class UnionExit {
     Vec3 nearest = Vec3::Zero();
   };
 
-  /// Puts polytopes in the place of smooth pieces. @return false where one is too large for a polytope
+  /// Puts polytopes in the place of smooth pieces. @return false if one is too large for a polytope
   bool stand_in(std::vector<PosedShape>& pieces);
-  /// Lets all pieces wait. @return false where a smooth one is too large for a polytope
+  /// Lets all pieces wait. @return false if a smooth one is too large for a polytope
   bool begin(std::span<const PosedShape> a, std::span<const PosedShape> b, double pose_rounding, Scratch& scratch);
   /// How deep or far apart the pair is, and lets it wait again until it has to be built.
   void measure(std::size_t piece);

@@ -1,14 +1,15 @@
 /// @file
-/// The contact of two bodies of many pieces, each taken as one body: no contact with edges and faces inside of it.
+/// The contact of two bodies of many pieces takes each of them as one body: edges and faces inside of it have no
+/// contact.
 ///
-/// Every two pieces that are near each other are asked as if they were alone, and covered_contact.hpp decides what of
-/// their answer holds for the whole. Where pieces of two solid bodies are so deep in each other that nothing of it
-/// does, the way out of the whole answers (deep_union.hpp). What is left is sorted by normal into patches of at most
+/// Every two pieces that are near each other are asked as if they were alone, and covered_contact.hpp decides which
+/// part of their answer holds for the whole. If pieces of two solid bodies are so deep in each other that no part does,
+/// the way out of the whole answers (deep_union.hpp). The remaining points are sorted by normal into patches of at most
 /// four points (patches.hpp).
 ///
 /// A sheet has two sides, and each triangle is left by the nearer one; or one side (`one_sided`), from which the
 /// corners run counter-clockwise, as the surface of a solid has (one_sided.hpp). Points are those of one placement:
-/// nothing is known of the step before.
+/// nothing is known of the step before. Points and normals are in the common frame, lengths in the unit of the input.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ namespace pd {
 
 struct UnionContactSettings {
   double breaking_threshold = 0;  ///< >= 0: pairs of points with a wider gap are left out
-  /// >= 0: how far the bodies may move against each other before contacts are found again. The part of a facet that is
+  /// >= 0: the bodies may move so far against each other before contacts are found again. The part of a facet that is
   /// looked at around a contact grows by it.
   double way = 0;
   bool one_sided = false;  ///< sheets have fronts only
@@ -65,6 +66,8 @@ struct UnionManifoldScratch {
   UnionExit exit = {};
 };
 
+/// Finds the contact of two bodies of pieces.
+///
 /// @return ErrorCode::unsupported ("a") if both bodies are sheets, which have no inside.
 /// @return ErrorCode::unsupported ("one_sided") if none is a sheet.
 /// @return ErrorCode::bad_value ("breaking_threshold", "way"), out_of_range ("pose_a", "pose_b").

@@ -13,7 +13,7 @@ namespace pd::detail {
 
 namespace {
 
-/// |column of R| <= 1 + 1e-6 (Pose).
+/// A column of a pose's rotation is no longer than 1 + 1e-6 (Pose).
 constexpr double kLongestAxis = 1 + 0x1p-19;
 /// Sines below this are rounding.
 constexpr double kParallelSine = 8 * kUnitRoundoff;
@@ -36,10 +36,10 @@ PD_INLINE void load_box(AxisVectors& axes, AxisVectors& edges, Lanes& half, cons
   edges.y = axes.y * half;
   edges.z = axes.z * half;
 }
-/// To the next axis: (x, y, z) -> (y, z, x).
+/// Gives every lane the number of the next axis: (x, y, z) -> (y, z, x).
 PD_INLINE Lanes turned(const Lanes& v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
 PD_INLINE AxisVectors turned(const AxisVectors& v) { return {turned(v.x), turned(v.y), turned(v.z)}; }
-/// An axis, and its half edge, in all lanes.
+/// Puts an axis of a box into all lanes; `edge_of` puts its half edge.
 PD_INLINE AxisVectors axis_of(const BoxRows& box, int i) {
   const Lanes zero = {0, 0, 0, 0};
   return {zero + box.x[i], zero + box.y[i], zero + box.z[i]};
@@ -54,23 +54,23 @@ PD_INLINE void axes_product(AxisVectors& n, const AxisVectors& u, const AxisVect
   n.y = u.z * v.x - u.x * v.z;
   n.z = u.x * v.y - u.y * v.x;
 }
-/// |<n, v>|
+/// Computes |<n, v>| lane by lane.
 PD_INLINE Lanes height_along(const AxisVectors& n, const AxisVectors& v) {
   return magnitude(n.x * v.x + n.y * v.y + n.z * v.z);
 }
 
-/// The nearest axes so far, lane by lane.
+/// Holds the nearest axes so far, lane by lane.
 struct NearestAxes {
   Lanes key, lower_key, slivers, axis;
   AxisVectors n;
 };
 
 struct AxisErrors {
-  double turn;      ///< of an axis' height
+  double turn;      ///< error of the height of P along a cross product of axes
   double parallel;  ///< squared lengths of products up to this are rounding
 };
 
-/// What a block of axes is about.
+/// A block holds four normals of facets.
 struct AxisBlock {
   int block;
   AxisVectors n;
@@ -78,7 +78,8 @@ struct AxisBlock {
   Lanes half_u, half_v;  ///< of the edges
 };
 
-/// @param exact   there are no errors
+/// Compares a block of normals with the nearest so far, and stores the block's lower keys.
+/// @param exact  true if products of the axes have no rounding errors
 template <bool exact>
 PD_INLINE void consider(NearestAxes& best, const AxisBlock& of, const AxisErrors& errors,
                         double (&lower_keys)[kBoxAxisSlots]) {
@@ -125,7 +126,7 @@ PD_INLINE void nearest_of_all(const PosedBoxes& boxes, const AxisErrors& errors,
   const AxisVectors edge_a[3] = {edge_of(a, 0), edge_of(a, 1), edge_of(a, 2)};
   const AxisVectors edges_b_1 = turned(edges_b), edges_b_2 = turned(edges_b_1);
 
-  // Facets of A: x x y, y x z, z x x.
+  // The facets of A have the normals x x y, y x z and z x x.
   AxisBlock of;
   of.block = 0;
   axes_product(of.n, axes_a, turned(axes_a));
@@ -134,7 +135,7 @@ PD_INLINE void nearest_of_all(const PosedBoxes& boxes, const AxisErrors& errors,
   of.half_u = half_a;
   of.half_v = turned(half_a);
   consider<exact>(best, of, errors, lower_keys);
-  // Of B.
+  // The facets of B have such products of the axes of B.
   of.block = 1;
   axes_product(of.n, axes_b, turned(axes_b));
   of.height = height_along(of.n, edges_b_2) + height_along(of.n, edge_a[0]) + height_along(of.n, edge_a[1]) +
@@ -142,7 +143,7 @@ PD_INLINE void nearest_of_all(const PosedBoxes& boxes, const AxisErrors& errors,
   of.half_u = half_b;
   of.half_v = turned(half_b);
   consider<exact>(best, of, errors, lower_keys);
-  // An edge of A and one of B.
+  // The other facets are spanned by an edge of A and an edge of B.
   of.half_v = half_b;
   for (int i = 0; i < 3; ++i) {
     of.block = 2 + i;
@@ -154,8 +155,8 @@ PD_INLINE void nearest_of_all(const PosedBoxes& boxes, const AxisErrors& errors,
   }
   if (exact) best.lower_key = best.key;
 
-  // Lane 1 holds the facets across x, lane 2 those across y. Of equal ones the first of them wins: of cubes in one
-  // place no axis is nearer than another, and x is no host's way up.
+  // Lane 1 holds the facets across x, lane 2 those across y. The first of equally near axes
+  // wins: if two cubes are in one place, no axis is nearer than another, and no host takes x as the way up.
   int lane = 1;
   out.key = best.key[1];
   out.lower_key = best.lower_key[1];
@@ -182,7 +183,7 @@ PD_CLONES void nearest_box_axis(const PosedBoxes& boxes, const AxisErrors& error
   }
 }
 
-/// A vector in one lane a coordinate.
+/// Puts a vector into lanes, one for each coordinate.
 PD_INLINE Lanes lanes_of(double x, double y, double z) { return Lanes{x, y, z, 0}; }
 PD_INLINE Lanes lanes_of(const Vec3& v) { return lanes_of(v.x(), v.y(), v.z()); }
 PD_INLINE Vec3 vector_of(const Lanes& v) { return {v[0], v[1], v[2]}; }
@@ -193,15 +194,15 @@ PD_INLINE Lanes cross(const Lanes& u, const Lanes& v) {
 }
 PD_INLINE double within_one(double x) { return x < -1 ? -1 : x > 1 ? 1 : x; }
 
-/// Where the edge of B comes nearest to that of A, from -1 to 1, by the gap between their middles; of parallel ones,
-/// anywhere.
+/// Finds the point of B's edge that is nearest to A's edge: -1 and 1 are the ends. Given are the half edges and the gap
+/// between the middles. If the edges are parallel, the middle is as good as any point.
 PD_INLINE double crossing(const Lanes& edge_a, const Lanes& edge_b, const Lanes& gap) {
   const Lanes n = cross(edge_a, edge_b);
   const double squared = dot(n, n);
   return squared > 0 ? within_one(dot(cross(gap, edge_a), n) / squared) : 0;
 }
 
-/// The points of a box farthest along a direction, up to a level: a centre and the half edges that may be added with
+/// The points of a box that are farthest along a direction, up to a level, are a centre and half edges, each added with
 /// any weight from -1 to 1.
 struct FaceOfBox {
   Lanes centre;
@@ -211,6 +212,7 @@ struct FaceOfBox {
   int farthest;  ///< vertex
 };
 
+/// Finds the face of a box along a direction. Requires: `out.centre` is the centre of the box.
 /// @param spanned  the edges that span the face for certain, as bits
 PD_INLINE void find_face(FaceOfBox& out, const BoxRows& of, const Lanes& along, int spanned, double level) {
   out.count = out.farthest = 0;
@@ -250,7 +252,7 @@ TwoDoubles two(const double* x, int pair) { return TwoDoubles{x[2 * pair], x[2 *
 }  // namespace
 
 std::optional<BoxFrame> box_frame(const ConvexPolytope& p) {
-  // Vertices are in lexicographic order, z changes fastest: between equal ones all are equal.
+  // Vertices are in lexicographic order, and z changes fastest: all coordinates between two equal ones are equal.
   if (p.num_vertices() != 8) return std::nullopt;
   const double *const x = p.x(), *const y = p.y(), *const z = p.z();
   const TwoDoubles ends = two(z, 0);
@@ -276,7 +278,7 @@ int farthest_of_box(const BoxRows& of, const Vec3& normal, double sign) {
 }
 
 bool PosedBoxes::has_single_axes() const {
-  // By their bits, since GCC 12 takes roundings to float and back, side by side in one vector, for none at all.
+  // The bits are tested, because GCC 12 drops roundings to float and back that stand side by side in one vector.
   constexpr std::uint64_t kBeyond = (std::uint64_t{1} << (53 - 24)) - 1;
   std::uint64_t bits = 0;
   for (const BoxRows* box : {&a, &b}) {
@@ -329,7 +331,7 @@ BoxDistance distance_of_boxes(const PosedBoxes& boxes) {
   const Vec3 n(nearest.n[0], nearest.n[1], nearest.n[2]);
   const double along_centre = n.x() * boxes.centre[0] + n.y() * boxes.centre[1] + n.z() * boxes.centre[2];
   out.normal = n * ((along_centre > 0 ? -1 : 1) / n.norm());
-  // Where the normal is asked for, too, it errs by 3u and its length by 3u, and h_P by their reach.
+  // The normal errs by 3u and its length by 3u, which changes h_P by as much times the reach.
   out.rounding = box_rounding(boxes.reach) + 8 * kUnitRoundoff * boxes.reach;
   out.height = std::copysign(std::sqrt(std::abs(nearest.key)), nearest.key);
   out.slivers = exact ? 0 : kLongestAxis * (kParallelSine + 2 * kBoxTurn) * nearest.slivers;

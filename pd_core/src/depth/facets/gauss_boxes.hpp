@@ -1,10 +1,10 @@
 /// @file
-/// The kernel of Gauss maps for two boxes: P = B + (-A) is a zonotope of six generators, whose facets' normals are the
-/// cross products of pairs of them, fifteen up to sign. Along u x v, the product of two edges, the other four half
-/// edges reach.
+/// The kernel of Gauss maps for two boxes uses that P = B + (-A) is a zonotope of six generators. The normals of its
+/// facets are the cross products of pairs of generators, fifteen up to sign. Along u x v, the product of two edges, the
+/// other four half edges reach.
 ///
-/// What the depth of two boxes (gauss_sat_boxes.hpp) and their contact points (contact/box_contact.hpp) are made of.
-/// Compiled for several instruction sets; every lane on its own: the same bits on each.
+/// The depth of two boxes (gauss_sat_boxes.hpp) and their contact points (contact/box_contact.hpp) are made of it. It
+/// is compiled for several instruction sets. Every lane is computed on its own, so that all of them give the same bits.
 #pragma once
 
 #include <optional>
@@ -22,13 +22,13 @@ struct BoxFrame {
   Vec3 half_extents;
 };
 
-/// Centre and half extents, rounded, of a polytope that is exactly such a box.
+/// Returns centre and half extents, rounded, of a polytope that is exactly such a box; else nothing.
 [[nodiscard]] std::optional<BoxFrame> box_frame(const ConvexPolytope& p);
 
 /// Vertices of a box are numbered lexicographically: 4 for +x, 2 for +y, 1 for +z.
 constexpr int bit_of_box_axis(int axis) { return 4 >> axis; }
 
-/// The facet of such a polytope across an axis, at its upper or lower end.
+/// Returns the facet of such a polytope across an axis, at its upper or lower end.
 [[nodiscard]] int facet_of_box(const ConvexPolytope& p, int axis, bool positive);
 
 /// The rows of a posed box's rotation and its half extents, each with a 0 behind them.
@@ -42,14 +42,15 @@ struct BoxRows {
   [[nodiscard]] Vec3 half_edge(int k) const { return half_extents[k] * axis(k); }
 };
 
-/// The vertex of a box that is farthest along sign * normal; on equal heights the one with the lower id.
+/// Returns the vertex of a box that is farthest along sign * normal; on equal heights the one with the lowest id.
 [[nodiscard]] int farthest_of_box(const BoxRows& of, const Vec3& normal, double sign);
 
-/// Fifteen axes in blocks of four slots, the last of each empty: block 0 holds those of A's edges lane and lane + 1,
-/// block 1 those of B's, block 2 + i those of A's edge i and B's edge lane.
+/// The fifteen axes stand in blocks of four slots, and the last slot of each block is empty. Block 0 holds the products
+/// of A's edges lane and lane + 1, block 1 those of B's, block 2 + i those of A's edge i and B's edge lane.
 inline constexpr int kBoxAxes = 15;
 inline constexpr int kBoxAxisSlots = 20;
 
+/// A slot by its block and lane.
 struct BoxAxis {
   int block, lane;
   explicit constexpr BoxAxis(int slot) : block(slot / 4), lane(slot % 4) {}
@@ -70,33 +71,34 @@ struct BoxAxis {
 /// by 4u.
 inline constexpr double kBoxTurn = 12 * kUnitRoundoff;
 
+/// Two boxes in one frame.
 struct PosedBoxes {
   BoxRows a, b;
   double centre[3];  ///< of P: of B from that of A
   double reach;      ///< at least the distance of any two of the boxes' points
 
-  /// Whether all numbers of the axes have the 24 digits of single precision: their products are exact, so that even
-  /// edges turned by 1e-7 span a plane known to 2u.
+  /// True if all numbers of the axes have the 24 digits of single precision. Their products are then exact, so that
+  /// even edges turned by 1e-7 span a plane known to 2u.
   [[nodiscard]] bool has_single_axes() const;
-  /// L, rounded: |c| + sum |g| a coordinate.
+  /// Returns the largest |coordinate| of P, rounded: |c| + sum |g| for each coordinate.
   [[nodiscard]] double greatest_coordinate() const;
-  /// Of P over its centre, along a normal of any length.
+  /// Returns the height of P over its centre, along a normal of any length.
   [[nodiscard]] double height_along(const Vec3& n) const;
-  /// How far the points of a foot may lie beside it by rounding.
+  /// Bounds the rounding of the points that meet at a foot.
   [[nodiscard]] double slack() const { return 64 * kUnitRoundoff * reach; }
   [[nodiscard]] Vec3 centre_vector() const { return {centre[0], centre[1], centre[2]}; }
-  /// The product of the two axes that span the facets of a slot, of any length.
+  /// Returns the cross product of the two axes that span the facets of a slot.
   [[nodiscard]] Vec3 normal_of(BoxAxis axis) const;
-  /// Of unit length, away from P's centre as the origin sees it.
+  /// Returns n at unit length, turned away from P's centre as the origin sees it.
   [[nodiscard]] Vec3 outward(const Vec3& n) const { return n * ((n.dot(centre_vector()) > 0 ? -1 : 1) / n.norm()); }
 };
 
-/// Where two boxes are along the axis that tells their signed distance.
+/// The signed distance of two boxes and the axis that tells it.
 struct BoxDistance {
   int axis = 0;         ///< a slot
   Vec3 normal;          ///< unit; away from P's centre as the origin sees it
   double height = 0;    ///< of P along the normal, over the origin: the depth, or minus a gap; errs by `rounding`
-  double rounding = 0;  ///< that of the normal included
+  double rounding = 0;  ///< error of `height`, that of the normal included
   double depth = 0;     ///< > 0: certified, a ball of this radius about the origin lies in P
   double slivers = 0;   ///< taken off that depth, for edges parallel up to rounding
   /// By slot: sign * square of the facets' distance, less the error of their normal's turn; infinity where edges are
@@ -113,7 +115,7 @@ struct BoxDistance {
 /// times its length.
 [[nodiscard]] BoxDistance distance_of_boxes(const PosedBoxes& boxes);
 
-/// A pair of points, one of either box, whose difference is the foot of the origin on P's plane.
+/// A pair of points, one of either body, whose difference is the foot of the origin on a plane of P.
 struct FootPoints {
   Vec3 point_a = Vec3::Zero();
   Vec3 point_b = Vec3::Zero();
@@ -122,8 +124,8 @@ struct FootPoints {
   VertexPair farthest{0, 0};
 };
 
-/// The foot of the origin on the plane of `found`, met by points of both faces that are found by projecting from one to
-/// the other: of two flush faces that cross, no corner lies on the other.
+/// Finds the foot of the origin on the plane of `found` as points of both faces, by projecting from one face to the
+/// other: if two flush faces cross, no corner of one need lie on the other.
 /// @param centre_a  of A, in the frame of the answer
 /// @param level     heights that count as one
 [[nodiscard]] FootPoints foot_of_boxes(const PosedBoxes& boxes, const Vec3& centre_a, const BoxDistance& found,

@@ -32,14 +32,14 @@ enum class GaussSatStatus : std::uint8_t { certified, separated, undecided };
 
 struct GaussSatDepth {
   GaussSatStatus status = GaussSatStatus::undecided;
-  /// Certified facets; of separated bodies the normal, the separating direction, and the piece across it (a facet
-  /// that is -1 is not known).
+  /// The nearest facet, if it is certified. If the bodies are separated: the separating direction as the normal, and
+  /// the piece across it, which is not known if its facet is -1.
   NearFacets nearest;
   double largest = 0;  ///< |coordinate| of P; certified depths only
-  /// A point of either body, relative to A's translation, where the point below the origin does not lie inside of the
-  /// winner alone: faces of both meet in its plane. Always there for boxes that are certified.
+  /// A point of either body, relative to A's translation, if the point below the origin does not lie inside of the
+  /// winner alone: faces of both bodies meet in its plane. Boxes that are certified always have it.
   std::optional<FootPoints> foot;
-  VertexPair corner{0, 0};  ///< of the winner, or else of P, farthest along the normal
+  VertexPair corner{0, 0};  ///< of the winner, else the vertices of P farthest along the normal
 };
 
 /// True if both bodies are solids of so few facets.

@@ -72,8 +72,9 @@ class BoxesQuery {
   }
 
  private:
-  /// What most boxes far apart are shown by, sooner than by fifteen axes. Rounding decides nothing here: the distance
-  /// is searched for, and a search that finds none leaves the pair to others.
+  /// Tells whether the line of centres separates the boxes, which it does for most boxes that are far apart, sooner
+  /// than fifteen axes. Rounding decides nothing here: the distance is searched for, and a search that finds none
+  /// leaves the pair to others.
   [[nodiscard]] bool apart_along_centres() const {
     // P holds a ball about its centre as large as those in the boxes.
     const double inner = a_.frame.half_extents.minCoeff() + b_.frame.half_extents.minCoeff();
@@ -85,16 +86,16 @@ class BoxesQuery {
     return {farthest_of_box(boxes_.a, normal, -1), farthest_of_box(boxes_.b, normal, 1)};
   }
 
-  /// The winner by its features.
+  /// Names the winner by its features.
   void name(const BoxDistance& found, const VertexPair& corner, GaussSatDepth& out) const {
     const GaussPiece piece = piece_of(BoxAxis(found.axis), found.normal, corner);
     out.corner = {piece.a[0], piece.b[0]};
     name_piece(piece, {Vec3::Zero(), piece.a[0], piece.b[0]}, out.nearest);
   }
 
-  /// The facet of P of an axis.
+  /// Returns the facet of P that lies across an axis.
   /// @param normal  unit, outward
-  /// @param corner  farthest along it
+  /// @param corner  the vertices farthest along the normal
   [[nodiscard]] GaussPiece piece_of(BoxAxis axis, const Vec3& normal, const VertexPair& corner) const {
     const auto [va, vb] = corner;
     GaussPiece out{-1, -1, {static_cast<std::int8_t>(va), 0}, {static_cast<std::int8_t>(vb), 0}};
@@ -141,9 +142,9 @@ class BoxesQuery {
   }
 
   /// Edges of flush faces cross along the faces' own normal, and those turned by little against each other know it
-  /// badly. But a point of P as far along the normal as `foot_lower` keeps every plane that is turned from it by a
-  /// small angle away by that times its cosine; and the plane on P's other side, where P's centre is certain to lie
-  /// behind that one: the other is then farther.
+  /// badly. But if a point of P lies as far along the normal as `foot_lower`, every plane that is turned by a small
+  /// angle is at least that times the cosine away. So is the plane on P's other side, if P's centre is certain to lie
+  /// behind the turned plane: the other one is then farther.
   [[nodiscard]] double lower_beside_foot(const BoxDistance& found, double foot_lower) const {
     constexpr double kSmallAngle = 0x1p-28;  // its cosine rounds to 1
     double lower = foot_lower * (1 - kUnitRoundoff);
@@ -161,7 +162,7 @@ class BoxesQuery {
     return lower;
   }
 
-  /// Lists the facets of P that may be nearest. None: the class is in doubt, or there are more than there is room for.
+  /// Lists the facets of P that may be nearest. The list is empty if the class is in doubt.
   void list_near(const BoxDistance& found, NearGaussPieces& near, NearFacets& nearest) const {
     near.count = 0;
     near.parallel = 0;

@@ -40,8 +40,8 @@ struct GaussPiece {
   [[nodiscard]] bool is_of_edges() const { return facet_a < 0 && facet_b < 0; }
 };
 
-/// The facets of P that are not much farther than the nearest one of either body: what the next frames look at
-/// (remembered_pieces.hpp), and among which exact numbers tell the nearest (gauss_ties.hpp).
+/// The facets of P that are not much farther than the nearest one of either body. The next frames look at them
+/// (remembered_pieces.hpp), and exact numbers tell the nearest of them (gauss_ties.hpp).
 struct NearGaussPieces {
   static constexpr int kMost = 64;
   struct Measured {
@@ -50,10 +50,10 @@ struct NearGaussPieces {
   };
   double band = 0;        ///< asked for: how much farther
   double radius = 0;      ///< all facets of P that are no farther are listed, if `complete`
-  bool complete = false;  ///< they fit
+  bool complete = false;  ///< the list has room for them
   bool open = false;      ///< a side of an edge near them is open: some of them may be no facets of P
-  /// Of boxes: bit 3 i + j says that edge i of A and edge j of B are parallel up to rounding. If they are not exactly,
-  /// their facets are not listed, and may be as near.
+  /// For boxes, bit 3 i + j says that edge i of A and edge j of B are parallel up to rounding. If they are not exactly
+  /// parallel, their facets are not listed, and may be as near.
   unsigned parallel = 0;
   double beyond = 0;      ///< no facet of P that is not listed is nearer; 0: not known
   bool all_told = false;  ///< every facet that is nearer is listed; else one of several in a plane
@@ -64,7 +64,8 @@ struct NearGaussPieces {
     pieces[count] = {key, piece};
     count += static_cast<int>(count < kMost);
   }
-  /// Drops what is farther, and what was not listed may be as near as that, less an error.
+  /// Drops the pieces that are farther than `distance`. Facets that are not listed may then be as near as `distance`
+  /// less an error.
   void keep_within(double distance, double error) {
     int kept = 0;
     for (int i = 0; i < count; ++i) {
@@ -87,7 +88,7 @@ struct ThinPair {
 struct ThinPairs {
   static constexpr int kMost = 256;
   int count = 0;
-  double unoriented = 0;  ///< those whose normal may point either way are no nearer, once all are bounded
+  double unoriented = 0;  ///< pairs whose normal may point either way are no nearer, once all pairs are bounded
   ThinPair pairs[kMost + 1];
 };
 

@@ -10,7 +10,7 @@ namespace pd::detail {
 
 namespace {
 
-/// Where nothing is known of a direction.
+/// An angle that is larger than any small one; it stands for a direction of which nothing is known.
 constexpr double kAnyTurn = 1;
 /// Facets turned by more are compared by their distances.
 constexpr double kSmallTurn = 0x1p-20;
@@ -20,8 +20,8 @@ class Ties {
   Ties(const PosedPair& pair, const PolytopeDifference& difference, const NearGaussPieces& near)
       : pair_(pair), difference_(difference), near_(near), turned_(pair.pose_a(), pair.pose_b()) {}
 
-  /// Up to rounding several vertices, or parallel edges, are as far along a piece's normal. Any of them may be the
-  /// farthest.
+  /// Finds the nearest facet. Up to rounding several vertices, or parallel edges, are as far along a piece's normal,
+  /// and any of them may be the farthest.
   [[nodiscard]] std::optional<ProvenFacet> nearest(SupportFaces& faces) const {
     std::optional<ProvenFacet> proven;
     const auto proves = [&](int i, Piece& holder, int a, int b) {
@@ -53,7 +53,7 @@ class Ties {
   }
 
  private:
-  /// A piece with its features, its unit normal and a corner.
+  /// A piece has its features, its unit normal and a corner.
   struct Piece : NearFacets {
     DifferenceVertex corner;
   };
@@ -66,7 +66,7 @@ class Ties {
     return out;
   }
 
-  /// The facet of a piece, if that holds the foot, supports P and is the nearest.
+  /// Returns the facet of a piece, if it holds the foot, supports P and is the nearest.
   std::optional<ProvenFacet> prove(int i, Piece& holder, SupportFaces& faces) const {
     const double flush = flush_turn(holder);
     if (!(flush > 0)) return std::nullopt;
@@ -77,7 +77,8 @@ class Ties {
     return prove_facet(pair_, facet, near_.beyond * pair_.inwards(), faces);
   }
 
-  /// Up to what angle other facets are no nearer; not above 0 where the piece does not hold the foot for certain.
+  /// Returns an angle up to which other facets are no nearer; not above 0 if the piece does not hold the foot for
+  /// certain.
   [[nodiscard]] double flush_turn(Piece& holder) const {
     const double height = holder.corner.x.dot(holder.normal);
     if (!(height > 0)) return 0;
@@ -87,6 +88,7 @@ class Ties {
     const double sharpness = 1 + slenderness(holder);
     return std::min(kSmallTurn, (*inside - foot_rounding(difference_) * sharpness * sharpness) / height);
   }
+  /// Bounds the lengths of a piece's sides over its least width.
   [[nodiscard]] double slenderness(const NearFacets& piece) const {
     if (piece.kind == NearFacetsBuffers::Kind::edges) {
       const Vec3 e = edge(difference_.posed_a(), piece.edge_a), f = edge(difference_.posed_b(), piece.edge_b);
@@ -134,13 +136,14 @@ class Ties {
     });
   }
 
-  /// At least the angle between the holder's normal and that of a piece; `kAnyTurn` where that is large.
+  /// Bounds the angle between the holder's normal and that of a piece from above; `kAnyTurn` if it is large.
   [[nodiscard]] double turn_from(const NearFacets& holder, const NearFacets& other) const {
     if (!(other.normal.dot(holder.normal) > 0)) return kAnyTurn;
     const double turn = other.normal.cross(holder.normal).norm() + normal_error(holder) + normal_error(other);
     return turn * (1 + 0x1p-10);
   }
-  /// Facets' normals err by 33u when they are turned; edges by 14u of their body's radius each, their product by 4u.
+  /// Bounds the error of a normal. The normals of facets err by 33u when they are turned. Edges err by 14u of their
+  /// body's radius each, and their product by 4u.
   [[nodiscard]] double normal_error(const NearFacets& piece) const {
     if (piece.kind != NearFacetsBuffers::Kind::edges) return 0x1p-46;
     const Vec3 e = edge(difference_.posed_a(), piece.edge_a), f = edge(difference_.posed_b(), piece.edge_b);

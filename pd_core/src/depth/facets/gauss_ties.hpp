@@ -1,5 +1,6 @@
 /// @file
-/// Which of the facets of P that are nearest to the origin up to rounding is the nearest, on the stored numbers.
+/// Several facets of P may be the nearest to the origin up to rounding. The nearest of them on the stored numbers is
+/// found and proved here.
 ///
 /// Bodies that lie face on face and are turned as a whole have many: the normals of both faces, and the products of
 /// their edges, differ by the rounding of two rotations, and P has a facet along each of them. The facet that holds the
@@ -16,13 +17,14 @@
 
 namespace pd::detail {
 
-/// The piece as a facet of P. Of edges, (b[1] - b[0]) x (a[1] - a[0]) points outwards.
+/// Returns the piece as a facet of P. If it is made of edges, (b[1] - b[0]) x (a[1] - a[0]) points outwards.
 [[nodiscard]] FacetOfDifference facet_of(const PosedPair& pair, const NearFacets& piece);
 
+/// Finds the nearest of the listed facets and proves it.
 /// @param difference  of the same bodies, supports prepared
-/// @param near    has `all_told`, and may hold pieces that are no facets of P.
-/// @param faces   filled with the faces in the facet's plane.
-/// @return nothing where two are exactly as near, or double-double does not tell.
+/// @param near   has `all_told`, and may hold pieces that are no facets of P.
+/// @param faces  filled with the faces in the facet's plane.
+/// @return nothing if two facets are exactly as near, or if double-double does not tell.
 [[nodiscard]] std::optional<ProvenFacet> nearest_of_ties(const PosedPair& pair, const PolytopeDifference& difference,
                                                          const NearGaussPieces& near, SupportFaces& faces);
 

@@ -9,11 +9,11 @@
 
 namespace pd::detail {
 
-/// `Bracket::contact` where P lies in a ball that is smaller than what may be left open: two balls about one centre,
-/// say. Any size.
+/// Answers `Bracket::contact` if P lies in a ball that is smaller than the width that may be left open, for example two
+/// balls about one centre. Bodies may have any size.
 bool answer_at_one_place(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Always answers.
+/// Answers `Bracket::contact`, always.
 ///
 /// The origin surely inside: the surface's bounds. Else the signed distance c of the cores lies in [-h_P(n), |x|] for
 /// any unit n and any point x of P: x from GJK in doubles or double-double, n from the search, from GJK, or across what

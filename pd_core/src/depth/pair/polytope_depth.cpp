@@ -28,7 +28,8 @@ bool answer_slender(const PolytopePair& pair, const DepthSettings& settings, Pen
   return bracket == Bracket::certified && answer_slender_near_box(pair, settings, out);
 }
 
-/// [A] section 2 below the bounds of a surface; bodies that it shows apart end at their closest points.
+/// Answers by [A] section 2 below the bounds of a surface. Bodies that the surface shows apart end at their closest
+/// points.
 void answer_as_decomposed(PolytopeQuery& query, PenetrationDepth& out) {
   query.surface = grow_surface(query, out);
   if (query.surface.status == ExpansionStatus::separated) {
@@ -38,7 +39,7 @@ void answer_as_decomposed(PolytopeQuery& query, PenetrationDepth& out) {
   }
 }
 
-/// Sizes that doubles cannot square, and that no power of two brings to size 1.
+/// Answers for sizes that doubles cannot square, and that no power of two brings to size 1.
 void answer_beyond_doubles(PolytopeQuery& query, PenetrationDepth& out) {
   out.method = Method::expansion;
   if (!answer_at_one_place(query, out)) answer_by_closest_point(query, out);
@@ -60,7 +61,7 @@ void polytope_depth(const PolytopePair& pair, const DepthSettings& settings, Scr
     answer_as_decomposed(query, out);
   } else if (answer_by_stages(query, out).answer != answer_from_contact_facet && warm != nullptr &&
              query.for_contact() && warm->state().facets.pause == 0) {
-    // What the next frame may try, where it will try.
+    // The next frame may try these facets, if its pause is over.
     learn_contact_facet(0, *pair.a, *pair.pose_a, out, warm->state().facets);
     learn_contact_facet(1, *pair.b, *pair.pose_b, out, warm->state().facets);
   }

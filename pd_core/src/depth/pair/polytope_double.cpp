@@ -54,7 +54,7 @@ void face_below_origin(const PolytopeQuery& query, int f, const Vec3& normal, Di
   }
 }
 
-/// The features that make a piece of P's boundary.
+/// Sets the features that make a piece of P's boundary.
 void set_features_of(const NearFacets& found, PenetrationDepth& out) {
   const auto [a, b] = std::pair(found.edge_a, found.edge_b);
   const Feature facet{Feature::Kind::facet, found.facet, -1};
@@ -75,7 +75,7 @@ void set_features_of(const NearFacets& found, PenetrationDepth& out) {
   }
 }
 
-/// The point below the origin on a piece that holds it; depth and normal are set.
+/// Sets the witnesses of the point below the origin on a piece that holds it. Requires: depth and normal are set.
 void set_witnesses_on(const PolytopePair& pair, const NearFacets& found, PenetrationDepth& out) {
   if (found.kind == NearFacetsBuffers::Kind::facet_of_a) {
     out.witness_b = pair.pose_b->apply(pair.b->vertex(found.vertex)) + pair.margins.b * out.normal;
@@ -94,7 +94,7 @@ void set_witnesses_on(const PolytopePair& pair, const NearFacets& found, Penetra
   }
 }
 
-/// Class, bracket and contact of a certified piece that holds the point below the origin.
+/// Sets class, bracket and contact of a certified piece that holds the point below the origin.
 void set_answer(const PolytopeQuery& query, const NearFacets& found, PenetrationDepth& out) {
   set_depth(query.pair, found.lower, found.upper, found.normal, out);
   set_features_of(found, out);
@@ -159,10 +159,10 @@ bool apart_between_places(const PolytopeDifference& difference) {
   return difference.support(back, nullptr).x.dot(back) < 0;
 }
 
-/// How much farther than the nearest facet others are listed for a proof, in units of the reach: beyond rounding.
+/// For a proof, facets are listed that are farther than the nearest one by this many reaches: more than rounding.
 constexpr double kTieBand = 0x1p-44;
 
-/// An answer of the Gauss maps in doubles.
+/// Answers from what the Gauss maps have found, in doubles.
 bool answer_from_gauss_maps(PolytopeQuery& query, const GaussSatDepth& found, PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
   const NearFacets& nearest = found.nearest;
@@ -195,7 +195,7 @@ bool answer_from_gauss_maps(PolytopeQuery& query, const GaussSatDepth& found, Pe
   return true;
 }
 
-/// Two boxes by the kernel for boxes.
+/// Answers for two boxes by the kernel for boxes.
 bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
   const BoxQuestion question = query.for_contact()                  ? BoxQuestion::signed_depth
@@ -211,8 +211,8 @@ bool answer_boxes(PolytopeQuery& query, PenetrationDepth& out) {
   return prove_gauss_maps(query, found, near, out);
 }
 
-/// Of the facets of P between the bounds of a surface, the nearest (facets/near_facets.hpp); for the tightest bracket
-/// it is proved.
+/// Answers by the nearest of the facets of P between the bounds of a surface (facets/near_facets.hpp). For the tightest
+/// bracket it is proved.
 bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surface, PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
   const NearFacets found = nearest_of_near_facets(

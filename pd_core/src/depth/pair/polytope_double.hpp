@@ -14,14 +14,14 @@ namespace pd::detail {
 /// Width of the bracket that doubles are asked for, as the goal of an expansion.
 [[nodiscard]] ExpansionGoal expansion_goal(const PolytopeQuery& query);
 
-/// Bodies that a support towards P's centre shows apart, by the closest points at once.
+/// Answers for bodies that a support towards P's centre shows apart, by the closest points at once.
 bool answer_few_apart(PolytopeQuery& query, PenetrationDepth& out);
 
-/// All facets of P by the bodies' Gauss maps (facets/gauss_sat.hpp); for the tightest bracket the nearest one is
-/// proved.
+/// Answers from all facets of P by the bodies' Gauss maps (facets/gauss_sat.hpp). For the tightest bracket the nearest
+/// one is proved.
 bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
+/// Answers for small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
 bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start
@@ -31,7 +31,7 @@ bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);
 /// Whether a bracket of the surface in the scratch is as narrow as the caller asked, whatever ended its search.
 [[nodiscard]] bool narrow_enough(const PolytopeQuery& query, const ExpansionResult& found);
 
-/// The surface's nearest face, whose bracket ended the search.
+/// Answers by the surface's nearest face, whose bracket ended the search.
 bool answer_from_surface(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Witnesses and features of a face of the surface, or of those in its plane where the origin projects.
@@ -40,11 +40,11 @@ void set_contact_of_face(const PolytopeQuery& query, int face, const Vec3& unit_
 /// Witnesses and features of the closest points of the cores; `out.normal` is set.
 void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& nearest, PenetrationDepth& out);
 
-/// The bounds of a surface that stopped early, the upper one lowered by supports along the normals of its nearest
-/// faces.
+/// Returns the bounds of a surface that stopped early, the upper one lowered by supports along the normals of its
+/// nearest faces.
 [[nodiscard]] ExpansionResult bounded(PolytopeQuery& query, ExpansionResult surface, Statistics& statistics);
 
-/// Many facets are nearly as near: among those alone, else in the way of [A].
+/// Answers if many facets are nearly as near: among those alone, else in the way of [A].
 bool answer_among_many_facets(PolytopeQuery& query, PenetrationDepth& out);
 
 /// What is left after the margins may be far smaller than the cores' distance: no relative error of that would do.

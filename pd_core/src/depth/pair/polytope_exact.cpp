@@ -84,7 +84,7 @@ std::optional<ProvenFacet> prove_nearest(PolytopeQuery& query, std::span<const S
   return prove_nearest_facet(posed, near, beyond * posed.inwards(), first_of_equals, query.buffers.faces);
 }
 
-/// Three corners of a piece.
+/// Returns three corners of a piece.
 SurfaceCorners corners_of(const PosedPair& posed, const GaussPiece& piece) {
   const VertexPair first{piece.a[0], piece.b[0]};
   if (piece.is_of_edges()) return {{first, {piece.a[1], piece.b[0]}, {piece.a[0], piece.b[1]}}};
@@ -96,7 +96,8 @@ SurfaceCorners corners_of(const PosedPair& posed, const GaussPiece& piece) {
   return {{{first.a, loop[0]}, {first.a, loop[1]}, {first.a, loop[2]}}};
 }
 
-/// True if edges of boxes that are parallel up to rounding are parallel.
+/// True if the edges of boxes that are parallel up to rounding are exactly parallel.
+/// @param pairs  as `NearGaussPieces::parallel`
 bool are_parallel(const PosedPair& posed, unsigned pairs) {
   for (int i = 0; i < 9; ++i) {
     if ((pairs >> i & 1U) == 0 || (i % 4 == 0 && posed.same_rotation())) continue;

@@ -27,8 +27,8 @@ bool prove_surface(PolytopeQuery& query, PenetrationDepth& out);
 /// @param beyond  no other piece is nearer to the origin; 0: not known.
 bool prove_near_facets(PolytopeQuery& query, double beyond, PenetrationDepth& out);
 
-/// The nearest facet that the Gauss maps tell, or of several that they leave (facets/gauss_sat.hpp), also where planes
-/// differ by rounding.
+/// Proves the nearest facet that the Gauss maps tell, or the nearest of several that they leave (facets/gauss_sat.hpp),
+/// also if the planes differ by rounding only.
 bool prove_gauss_maps(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near, PenetrationDepth& out);
 
 /// Exact expansion from the surface's nearest face, the origin inside the surface for certain.

@@ -1,6 +1,6 @@
 /// @file
-/// What the stages of one query about two posed polytopes share (stages.hpp). Of what a stage finds only the surface's
-/// result passes to the next ones.
+/// The stages of one query about two posed polytopes share this state (stages.hpp). A stage passes nothing on to the
+/// next ones but the result of the surface.
 #pragma once
 
 #include <optional>
@@ -50,7 +50,7 @@ class PolytopeQuery {
     return exact_ ? 1 + exact_->stages().double_double + exact_->stages().exact : 0;
   }
 
-  /// Whether both are boxes, looked for on first use.
+  /// True if both bodies are boxes. It is found out on first use.
   bool boxes() {
     if (!boxes_known_) {
       boxes_known_ = true;

@@ -12,9 +12,10 @@
 
 namespace pd::detail {
 
-/// Small solids from the facets that were near; most frames of a slowly moving pair from the nearest face of the saved
-/// surface, which is still a supporting plane of P (expansion/cached_surface.hpp); bodies that were apart from the
-/// vertices around their last closest point.
+/// Answers from the last frame. Small solids are answered from the facets that were near. A slowly moving pair is
+/// mostly answered from the nearest face of the saved surface, which is still a supporting plane of P
+/// (expansion/cached_surface.hpp). Bodies that were apart are answered from the vertices around their last closest
+/// point.
 bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Whether a surface or a facet has been saved, of whatever pair: the bodies overlapped in the last frame.

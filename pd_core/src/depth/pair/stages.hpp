@@ -1,6 +1,6 @@
 /// @file
-/// The order in which a query about two polytopes asks its stages, as data: which bodies, methods, brackets and memory
-/// a stage is for, and what it needs from the search. The page docs/one_query.md prints this table.
+/// A query about two polytopes asks its stages in the order of this table. A row says which bodies, methods, brackets
+/// and memory a stage is for, and what it needs from the search. The page docs/one_query.md prints the table.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace pd::detail {
 
 enum class Bodies : std::uint8_t {
   any,
-  few_vertices,  ///< supports scan them all; no two boxes
+  few_vertices,  ///< supports scan all vertices; not two boxes
   few_facets     ///< two solids of up to 32 vertices and 64 facets (`gauss_sat_applies`)
 };
 
-/// What has to be known of a surface inside P, which is grown when a stage asks for it first.
+/// A stage needs this of the surface inside P, which is grown when a stage asks for it first.
 enum class Needs : std::uint8_t {
   nothing,
   surface,
@@ -26,12 +26,12 @@ enum class Needs : std::uint8_t {
   over_budget    ///< the search stopped because many facets are nearly as near, the origin inside
 };
 
-/// Brackets as bits.
+/// Returns the bit of a bracket in `Stage::brackets`.
 constexpr std::uint8_t bit_of(Bracket bracket) {
   return static_cast<std::uint8_t>(1U << static_cast<unsigned>(bracket));
 }
 
-/// A stage looks at nothing that its row says.
+/// A stage does not check again what its row says.
 struct Stage {
   std::string_view name;
   /// Answers, or passes on and leaves nothing behind but statistics.
@@ -43,15 +43,15 @@ struct Stage {
   Needs needs;
 };
 
-/// The last stage always answers.
+/// Returns the table, in order. The last stage always answers.
 [[nodiscard]] std::span<const Stage> stages();
 
-/// As docs/one_query.md has it.
+/// Returns the words of docs/one_query.md.
 [[nodiscard]] std::string_view name_of(Bodies bodies);
 [[nodiscard]] std::string_view name_of(Needs needs);
 
-/// Asks them one after the other and returns the one that answered. Requires a size `within_range`, and a method that
-/// searches.
+/// Asks the stages one after the other and returns the one that answered. Requires a size `within_range`, and a method
+/// that searches.
 const Stage& answer_by_stages(PolytopeQuery& query, PenetrationDepth& out);
 
 }  // namespace pd::detail

@@ -2,16 +2,20 @@
 /// Exact contacts in MuJoCo: one call replaces the collision functions of convex pairs, another puts MuJoCo's own back.
 ///
 ///   if (const auto installed = pd::install_mujoco(); !installed) std::puts(installed.error().message.c_str());
-///   ... mj_step(model, data) as ever ...
+///   mj_step(model, data);
 ///   pd::uninstall_mujoco();
 ///
 /// Boxes, spheres, capsules, cylinders, ellipsoids and meshes (their convex hulls, as MuJoCo takes them) are answered
 /// against each other and against planes. Height fields, distance fields and soft bodies stay MuJoCo's. Contacts mean
 /// what MuJoCo means by them: `pos` midway between the two surfaces, the normal from the first geom to the second,
-/// `dist` negative in depth, points nearer than the margin; the gap stays the engine's business.
+/// `dist` negative in depth, points nearer than the margin. MuJoCo applies the gap. Positions and normals are in the
+/// frame of the world, lengths in the unit of the model.
 ///
-/// A contact is a function of the model and of the poses in `mjData` alone, as MuJoCo's own. The same state gives the
-/// same bits, on any thread and after any history, unless `remember_pairs` is set.
+/// A contact depends on the model and on the poses in `mjData` alone, like MuJoCo's own. One state gives the same bits
+/// on any thread and after any history, unless `remember_pairs` is set.
+///
+/// The time of a pair is that of `penetration_depth` and `contact_manifold`, and O(n) more to compare the n vertices of
+/// a mesh with those that were converted.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -31,21 +35,22 @@ struct MujocoOptions {
   /// Each thread keeps the last answer of each pair and begins with it. Hulls of many vertices are answered faster; the
   /// last bits then depend on what the thread was asked before.
   bool remember_pairs = false;
-  /// Says which pairs pdepth answers; null: all. Asked for every pair in every step, from every thread.
+  /// Says which pairs pdepth answers; null: all. It is called for every pair in every step, by several threads at once.
   bool (*takes_pair)(const mjModel* model, int geom1, int geom2, void* user) = nullptr;
-  /// Gets one line when a pair is left to MuJoCo for the first time for a reason; null: silence.
+  /// Gets one line when a pair is left to MuJoCo for the first time for a reason; null: silence. Any thread that is
+  /// inside MuJoCo may call it.
   void (*warning)(const char* line, void* user) = &print_warning;
-  void* user = nullptr;
+  void* user = nullptr;  ///< is handed to `takes_pair` and `warning`
 
   /// Writes the line to the standard error stream.
   static void print_warning(const char* line, void* user);
 };
 
-/// Why a pair got MuJoCo's own contact.
+/// The reason why a pair got MuJoCo's own contact.
 enum class MujocoRefusal : std::uint8_t {
-  pose,  ///< NaN, infinite, or no rotation (the kinematics were never run)
-  size,  ///< a geom whose size is not positive and finite
-  mesh,  ///< a mesh whose vertices are missing or not finite
+  pose,  ///< a pose is NaN, infinite or no rotation (the kinematics were never run)
+  size,  ///< a size is not positive and finite
+  mesh,  ///< vertices of a mesh are missing or not finite
 };
 inline constexpr int kMujocoRefusals = 3;
 
@@ -55,20 +60,22 @@ struct MujocoReport {
   std::int64_t contact_points = 0;                   ///< written for them
   std::int64_t conversions = 0;                      ///< geoms made into shapes
   std::array<std::int64_t, kMujocoRefusals> left{};  ///< pairs left to MuJoCo, by MujocoRefusal
-  std::array<std::string, kMujocoRefusals> first{};  ///< the first of each: which geom, what is wrong, what is right
+  std::array<std::string, kMujocoRefusals> first{};  ///< the first pair of each: its geom and the error
 };
 
-/// Replaces the entries of `mjCOLLISIONFUNC` for convex pairs and planes, where the table has any. Called again, it
-/// changes the options and starts the report afresh.
+/// Replaces the entries of `mjCOLLISIONFUNC` for convex pairs and planes; null entries stay null. Called again, it
+/// changes the options and starts the report afresh; entries that somebody else has replaced since stay theirs.
+/// Requires that no thread is inside MuJoCo, because the table belongs to the whole process.
 ///
 /// @return the number of entries that are pdepth's, or ErrorCode::bad_value ("delta") or unsupported (the library is of
 /// another version than the header that pdepth was compiled with).
-/// Not while a thread is inside MuJoCo: the table is the whole process'.
 Expected<int> install_mujoco(const MujocoOptions& options = {});
 
-/// Puts back what stood in the table before. An entry that somebody else has replaced since stays theirs.
+/// Puts back the entries that stood in the table before. An entry that somebody else has replaced since stays theirs.
+/// Requires that no thread is inside MuJoCo. Does nothing if nothing is installed.
 void uninstall_mujoco();
 
+/// The counts so far, of all threads. May be called at any time, by any thread. Time O(threads).
 [[nodiscard]] MujocoReport mujoco_report();
 
 }  // namespace pd
