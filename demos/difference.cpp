@@ -71,8 +71,8 @@ std::string figures_of(const Bodies& bodies, const PenetrationDepth& answer, std
   writer.key("a").string(bodies.name_a);
   writer.key("b").string(bodies.name_b);
   query::write_depth_answer(answer, bodies.a, bodies.b, nanoseconds, writer);
-  if (bodies.a.hull_note) writer.key("a_is").string("hull");
-  if (bodies.b.hull_note) writer.key("b_is").string("hull");
+  query::write_hull_note("a", bodies.a, writer);
+  query::write_hull_note("b", bodies.b, writer);
   writer.end_object();
   return text + "\n";
 }

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Programs and shared libraries as SECURITY.md promises them: a stack protector, checked library calls (_FORTIFY_SOURCE), all
+# Checks that programs and shared libraries are as SECURITY.md promises: a stack protector, checked library calls (_FORTIFY_SOURCE), all
 # symbols bound before the first one is used (-z now, -z relro), no stack that runs, addresses that the system chooses.
 #
 #   packaging/hardening.sh FILE|FOLDER...
 #
-# Reads ELF files with readelf; of a folder those that are programs or shared libraries. Ends with 1 where something is missing.
+# It reads ELF files with readelf, and in a folder all programs and shared libraries. It ends with 1 if something is missing.
 # packaging/debian.sh runs it on what it has built.
 set -euo pipefail
 (($# > 0)) || { sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }

@@ -5,7 +5,8 @@
 #   packaging/wasm.sh files    all but the module, around the one that was built before
 #
 # Debian: apt-get install emscripten cmake ninja-build libeigen3-dev libboost-dev nodejs. No fast math and no contraction, so that the
-# answers have the bits of every other build; wasm128 vectors take the place of the instruction sets of x86-64.
+# answers have the bits of every other build. wasm128 vectors take the place of the instruction sets of x86-64: Eigen sees them as
+# SSE2, since the order in which it adds the terms of a product depends on the size of its vectors.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 for tool in em++ cmake ninja node; do
@@ -17,7 +18,10 @@ if [[ ${1-} != files ]]; then
   # Boost alone from the system's headers: the others are those of another machine.
   mkdir -p "${work}/include"
   ln -sfn /usr/include/boost "${work}/include/boost"
-  flags='-msimd128 -fwasm-exceptions -fvisibility=hidden'
+  : >"${work}/include/mmintrin.h" # Eigen includes it beside SSE2's header and uses nothing of it; emscripten has none
+  # With SSE2 Eigen writes assembler of x86 for GCC up to 6.2, as which Clang reports itself, and other assembler from 6.0 on. Between
+  # both, for its arithmetic of versions, lies 5.99.
+  flags='-msimd128 -msse2 -fgnuc-version=5.99 -fwasm-exceptions -fvisibility=hidden'
   emcmake cmake -S . -B "${work}" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="${flags}" \
     -DCMAKE_CXX_FLAGS_RELEASE='-O2 -DNDEBUG' -DCMAKE_UNITY_BUILD=ON -DPD_ISA=baseline -DPD_PRECOMPILED_HEADERS=OFF \
     -DPD_HARDENED=OFF -DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_RENDER=OFF -DPD_WITH_TESTS=OFF -DPD_WITH_DEMOS=OFF -DPD_WITH_PYTHON=OFF \

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <set>
 
 #include "mesh/mesh_file.hpp"
 #include "protocol/line/json_writer.hpp"
@@ -25,13 +24,10 @@ struct Hull {
 };
 
 std::vector<std::string> mesh_files(const std::string& folder) {
-  const std::set<std::string> endings{".obj", ".off", ".ply", ".stl", ".gltf", ".glb"};
   std::vector<std::string> files;
   std::error_code error;
   for (std::filesystem::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::string ending = it->path().extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (endings.contains(ending)) files.push_back(it->path().string());
+    if (query::is_mesh_name(it->path())) files.push_back(it->path().string());
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -14,7 +14,7 @@ namespace pd::audit {
 /// by 1 % and by 10 %, and centred on each other. The hulls are those of `query::read_mesh_points`.
 class MeshCases {
  public:
-  /// @param folder  searched with its folders for OBJ, STL, PLY, OFF and glTF files
+  /// @param folder  searched with its folders for OBJ, STL, PLY, OFF, glTF, XYZ and PCD files
   MeshCases(const std::string& folder, const AccuracySettings& settings);
   ~MeshCases();
   MeshCases(const MeshCases&) = delete;

@@ -90,7 +90,7 @@ const std::string& standard_input() {
   return bytes;
 }
 
-/// The mesh that an argument names. A refusal names where the mesh came from.
+/// Reads the mesh that an argument names. A refusal begins with the file's name, or says that it was standard input.
 query::MeshPoints read_points_of(const std::string& word) {
   if (word != "-") return query::read_mesh_points(word, kLimits.max_vertices, query::kMaxMeshBytes);
   try {
@@ -103,7 +103,7 @@ query::MeshPoints read_points_of(const std::string& word) {
 std::string name_of(const std::string& word) { return word == "-" ? kStandardInput : word; }
 
 /// Reads and checks a file once: a mesh is looked at as a solid and then as a hull.
-query::MeshBody& mesh_argument(const std::string& word) {
+const query::MeshBody& mesh_argument(const std::string& word) {
   static std::map<std::string, query::MeshBody> known;
   const auto [place, fresh] = known.try_emplace(word);
   if (fresh) place->second = query::body_of_mesh(read_points_of(word), name_of(word), {.hull_words = "--hull"});

@@ -80,7 +80,7 @@ CheckedMesh read_checked(const std::string& file) {
   return {file, std::move(mesh), *std::move(report), *std::move(hull)};
 }
 
-/// How the queries take the file.
+/// The body as which the queries take the file.
 enum class AskedAs { convex, solid, hull, refused };
 
 constexpr const char* to_string(AskedAs as) {

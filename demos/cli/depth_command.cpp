@@ -376,8 +376,8 @@ int run_depth(const DepthArguments& arguments) {
     query::JsonWriter writer(out);
     writer.begin_object();
     query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
-    if (pair.a.hull_note) writer.key("a_is").string("hull");
-    if (pair.b.hull_note) writer.key("b_is").string("hull");
+    query::write_hull_note("a", pair.a, writer);
+    query::write_hull_note("b", pair.b, writer);
     writer.end_object();
     fmt::print("{}\n", out);
   } else {

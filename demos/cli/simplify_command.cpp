@@ -117,7 +117,8 @@ int run_simplify(const SimplifyArguments& arguments) {
   progress.begin(fmt::format("measuring {} facets", hull->num_facets()));
   const Excess excess = measure(*hull, sample(scan.points, kChecked));
   progress.end();
-  fmt::print("scan      {}  ({} points)\n", printable(arguments.input), scan.points.size());
+  fmt::print("scan      {}  ({} points{})\n", printable(arguments.input), scan.points.size(),
+             scan.left_out > 0 ? fmt::format("; {} without a measurement (NaN) are left out", scan.left_out) : "");
   fmt::print("hull      {}  ({} vertices, {} facets, {:.1f} ms)\n", printable(arguments.output), hull->num_vertices(),
              hull->num_facets(), milliseconds);
   fmt::print("side      {}, epsilon {}\n", arguments.side, arguments.epsilon);
@@ -138,7 +139,7 @@ void add_simplify_command(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<SimplifyArguments>();
   CLI::App* command = app.add_subcommand("simplify", "A small convex hull of a dense scan, with a stated error");
   command->footer(kSimplifyFooter);
-  command->add_option("SCAN", arguments->input, "Points or mesh: PLY, OBJ, STL, OFF or glTF")->required();
+  command->add_option("SCAN", arguments->input, "Points or mesh: OBJ, STL, PLY, OFF, glTF, XYZ or PCD")->required();
   command->add_option("-o,--output", arguments->output, "The hull, as OBJ")
       ->required()
       ->check(refuse_other_meshes, "FILE.obj");

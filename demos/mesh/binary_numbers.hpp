@@ -1,5 +1,5 @@
 /// @file
-/// Numbers of mesh formats that are bytes, one after the other, in either byte order.
+/// Reads numbers of mesh formats that are stored as bytes, one after the other, in either byte order.
 #pragma once
 
 #include <bit>
@@ -12,7 +12,7 @@ namespace pd::query {
 
 enum class NumberType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// Bytes of a number.
+/// Returns how many bytes a number takes.
 inline int size_of(NumberType type) {
   switch (type) {
     case NumberType::int8:

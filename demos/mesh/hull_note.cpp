@@ -44,6 +44,10 @@ std::optional<HullNote> why_hull(const SurfaceReport& report, const ConvexPolyto
 
 namespace {
 
+std::string words_of_left_out(std::int64_t count) {
+  return count == 0 ? "" : " (left out: " + std::to_string(count) + " without a measurement, NaN)";
+}
+
 /// Crossings are the dearest part, and nothing hangs on them here: a surface that bends nowhere inwards has none.
 Expected<SurfaceReport> quick_check(const MeshPoints& mesh) {
   return check_mesh({mesh.points, mesh.faces.offsets, mesh.faces.corners}, {.crossings = false});
@@ -53,18 +57,20 @@ Expected<SurfaceReport> quick_check(const MeshPoints& mesh) {
 
 std::string not_convex_because(const MeshPoints& mesh) {
   const auto report = quick_check(mesh);
-  return report ? reason_of(*report) : report.error().message;
+  return report ? reason_of(*report) + words_of_left_out(mesh.left_out) : report.error().message;
 }
 
 std::optional<HullNote> why_hull(const MeshPoints& mesh, const ConvexPolytope& hull) {
   const auto report = quick_check(mesh);
   if (!report) return HullNote{report.error().message, hull.num_vertices(), 0};
-  return why_hull(*report, hull);
+  std::optional<HullNote> note = why_hull(*report, hull);
+  if (note) note->left_out = mesh.left_out;
+  return note;
 }
 
 std::string in_words(const HullNote& note) {
-  std::string words =
-      "asked as the convex hull, since " + note.reason + ": " + std::to_string(note.vertices) + " vertices";
+  std::string words = "asked as the convex hull, since " + note.reason + words_of_left_out(note.left_out) + ": " +
+                      std::to_string(note.vertices) + " vertices";
   if (note.times_as_large > 0) {
     std::array<char, 40> number{};
     std::snprintf(number.data(), number.size(), "%.4g", note.times_as_large);

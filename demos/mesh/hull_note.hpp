@@ -1,9 +1,10 @@
 /// @file
-/// A file that is answered as its convex hull: why, and by how much the hull is larger. Points without faces have no
-/// other body, the hull may be what was asked for, and some queries and demos are about hulls alone. An answer about
+/// A note says why a file is answered as its convex hull, and by how much the hull is larger. Points without faces have
+/// no other body, the hull may be what was asked for, and some queries and demos are about hulls alone. An answer about
 /// the hull of a mesh that is not convex must say that it is about another body.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,7 @@ struct HullNote {
   std::string reason;         ///< "the mesh is not convex"
   int vertices = 0;           ///< of the hull
   double times_as_large = 0;  ///< volume of the hull in volumes of the mesh; 0: the mesh encloses none
+  std::int64_t left_out = 0;  ///< points of the file without a measurement (NaN), which the hull does not hold
 };
 
 /// Says in a few words why a mesh is not convex; empty for a mesh that is.

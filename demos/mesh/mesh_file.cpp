@@ -41,6 +41,7 @@ MeshPoints read_by_first_bytes(const std::string& bytes, std::int64_t max_vertic
   }
   if (word.ends_with("OFF")) return read_off(text, max_vertices);
   if (word == "ply") return read_ply(text, max_vertices);
+  if (text.starts_with("# .PCD") || word == "VERSION" || word == "FIELDS") return read_pcd(text, max_vertices);
   // An STL of bytes: 80 of any kind, the number of triangles, 50 for each.
   constexpr std::size_t kHead = 84, kTriangle = 50;
   const bool binary = text.size() >= kHead && (text.size() - kHead) % kTriangle == 0 && text.find('\0') != text.npos;
@@ -59,14 +60,18 @@ MeshPoints read_mesh_bytes(const std::string& bytes, std::int64_t max_vertices) 
   return require_vertices(read_by_first_bytes(bytes, max_vertices));
 }
 
-MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes) {
+bool is_mesh_name(const std::filesystem::path& path) {
   static constexpr const char* kEndings[] = {".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".xyz", ".pcd"};
   const std::string ending = lower_ending(path);
-  if (std::none_of(std::begin(kEndings), std::end(kEndings), [&](const char* known) { return ending == known; })) {
+  return std::any_of(std::begin(kEndings), std::end(kEndings), [&](const char* known) { return ending == known; });
+}
+
+MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes) {
+  if (!is_mesh_name(path)) {
     refuse("unreadable_file", path + ": the file ending must be .obj, .off, .ply, .stl, .gltf, .glb, .xyz or .pcd", "");
   }
   try {
-    return require_vertices(read_by_ending(path, ending, max_vertices, max_bytes));
+    return require_vertices(read_by_ending(path, lower_ending(path), max_vertices, max_bytes));
   } catch (const Refusal& refusal) {
     const bool named = refusal.message.starts_with(path);
     refuse(refusal.code, named ? refusal.message : path + ": " + refusal.message, "");

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,12 @@ struct MeshPoints {
   /// The file's polygons, as indices of `points`. Formats that repeat a vertex for each face (STL, and glTF for each
   /// normal) hold its point several times.
   MeshFaces faces;
-  /// Points of the file that are not there: a PCD or XYZ file has NaN where nothing was measured.
+  /// Number of points that are left out: a PCD or XYZ file has NaN where nothing was measured.
   std::int64_t left_out = 0;
 };
+
+/// True if the file's ending is that of a format which `read_mesh_points` reads.
+[[nodiscard]] bool is_mesh_name(const std::filesystem::path& path);
 
 /// Reads a mesh by its file ending (.obj, .off, .ply, .stl, .gltf, .glb, .xyz, .pcd; any case).
 ///
@@ -49,7 +53,8 @@ struct MeshPoints {
 /// vertices than `max_vertices`, more bytes than `max_bytes`, nodes or JSON nested too deep).
 [[nodiscard]] MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes);
 
-/// Reads a mesh that has no name, from a pipe. Its first bytes tell its kind; text that is no OFF, PLY or STL is OBJ.
+/// Reads a mesh that has no name, from a pipe. Its first bytes tell its kind; text that is no OFF, PLY, STL or PCD is
+/// OBJ.
 /// @throws Refusal as `read_mesh_points`; unsupported for glTF, which names files beside it.
 [[nodiscard]] MeshPoints read_mesh_bytes(const std::string& bytes, std::int64_t max_vertices);
 

@@ -35,7 +35,7 @@ class VertexCollector {
     if (left_out_ > 0) ids_.push_back(static_cast<std::int32_t>(size() + left_out_));
     points_.push_back(point);
   }
-  /// A point of the file that is none: a place without a measurement.
+  /// Counts a point without a measurement, which is in the file and not in the mesh.
   void leave_out() {
     if (left_out_++ > 0) return;
     ids_.resize(points_.size());

@@ -1,5 +1,6 @@
 /// @file
-/// Points without faces: XYZ, rows of numbers, and PCD, the format of the Point Cloud Library, as text and as bytes.
+/// Reads points without faces: XYZ, rows of numbers, and PCD, the format of the Point Cloud Library, as text and as
+/// bytes.
 #include <array>
 #include <optional>
 
@@ -27,7 +28,7 @@ bool is_comment(std::string_view line) {
   return line[begin] == '#' || line.substr(begin).starts_with("//");
 }
 
-/// The number of points that stands alone in the first row of some files.
+/// Returns the number of points, which stands alone in the first row of some files.
 std::optional<std::int64_t> lone_count(std::string_view line) {
   std::int64_t count = 0;
   if (!parse_index(next_number(line), count) || count < 0) return std::nullopt;
@@ -40,7 +41,7 @@ struct Field {
   std::int64_t count = 1;
 };
 
-/// What a PCD file says before its points.
+/// The header of a PCD file tells what the numbers of each point mean.
 struct CloudHeader {
   std::vector<Field> fields;
   std::optional<std::int64_t> points;
@@ -66,7 +67,7 @@ std::optional<NumberType> number_type(char kind, std::int64_t bytes) {
   }
 }
 
-/// The header, line by line: a keyword and its words. SIZE, TYPE and COUNT follow FIELDS.
+/// Reads the header line by line: a keyword and its words. SIZE, TYPE and COUNT follow FIELDS.
 class CloudHeaderReader {
  public:
   explicit CloudHeaderReader(TextCursor& cursor) : cursor_(cursor) {}
@@ -84,11 +85,15 @@ class CloudHeaderReader {
  private:
   void take(std::string_view keyword, std::string_view rest) {
     if (keyword == "FIELDS") {
+      if (!header_.fields.empty()) refuse_line(cursor_.line_number(), "a second FIELDS line");
       for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+        if (header_.fields.size() == kMostFields) refuse("limit_exceeded", "the points have more than 1024 fields", "");
         header_.fields.push_back({std::string(word)});
       }
       sizes_.assign(header_.fields.size(), 4);
       kinds_.assign(header_.fields.size(), 'F');
+    } else if (header_.fields.empty() && (keyword == "SIZE" || keyword == "TYPE" || keyword == "COUNT")) {
+      refuse_line(cursor_.line_number(), std::string(keyword) + " stands before FIELDS");
     } else if (keyword == "SIZE" || keyword == "COUNT") {
       for (std::size_t k = 0; k < header_.fields.size(); ++k) {
         (keyword == "SIZE" ? sizes_[k] : header_.fields[k].count) = positive(next_word(rest), keyword);
@@ -128,6 +133,8 @@ class CloudHeaderReader {
   }
 
   static constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  /// A scan has some ten fields. A file of names alone must not fill the memory.
+  static constexpr std::size_t kMostFields = 1024;
   TextCursor& cursor_;
   CloudHeader header_;
   std::vector<std::int64_t> sizes_;
@@ -143,7 +150,7 @@ void add_measured(const Vec3& point, VertexCollector& vertices) {
   }
 }
 
-/// Which fields are x, y and z.
+/// Finds the fields x, y and z by name.
 std::array<std::size_t, 3> axes_of(const CloudHeader& header) {
   std::array<std::size_t, 3> at{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -3,7 +3,7 @@
 const {PdepthError} = pdepth;
 const refuse = (code, message, place) => { throw new PdepthError(code, message, place); };
 
-/** Points on a sphere that are the same everywhere: a fixed sequence of numbers. */
+/** Makes points on a sphere that are the same everywhere, of a fixed sequence of numbers. */
 function gemPoints(count, seed) {
   let state = seed;
   const random = () => { state = Math.imul(state ^ state >>> 15, 0x2c1b3c6d) + 0x9e3779b9 | 0; return (state >>> 0) / 2 ** 32; };
@@ -52,11 +52,16 @@ const kShapes = {
 const kStart = {a: {name: 'Prism', pose: {t: [0.35, -0.1, 1.0], q: product(aboutAxis([1, 0.3, 0], 0.5), [0, 0, 0, 1])}},
                 b: {name: 'Box', pose: {t: [0, 0, 0], q: product(aboutAxis([0, 0, 1], 0.3), [0, 0, 0, 1])}}};
 
-/** A pose of the protocol as {t, q} or {t, m}. */
+/** Refuses what is no object, and a key of it that is none of the names. */
+function allowOnly(json, names, place) {
+  if (json === null || typeof json !== 'object') refuse('bad_value', 'must be an object', place);
+  for (const key of Object.keys(json)) if (!names.includes(key)) refuse('bad_value', `is none of ${names.join(', ')}`, `${place}.${key}`);
+}
+/** Reads a pose of the protocol as {t, q} or {t, m}. */
 function readPose(json, place) {
   if (json === undefined || json === null) return {t: [0, 0, 0], q: [0, 0, 0, 1]};
-  const allowed = ['translation', 'quaternion_wxyz', 'rotation_row_major'];
-  for (const key of Object.keys(json)) if (!allowed.includes(key)) refuse('bad_value', `is none of ${allowed.join(', ')}`, `${place}.${key}`);
+  allowOnly(json, ['translation', 'quaternion_wxyz', 'rotation_row_major'], place);
+  if (json.quaternion_wxyz !== undefined && json.rotation_row_major !== undefined) refuse('bad_value', 'give a quaternion or a matrix, not both', place);
   const numbers = (name, count) => {
     const found = json[name];
     if (!Array.isArray(found) || found.length !== count || !found.every(x => typeof x === 'number')) refuse('bad_value', `must be ${count} numbers`, `${place}.${name}`);
@@ -78,7 +83,7 @@ const kFields = {box: ['half_extents'], sphere: ['radius'], ellipsoid: ['radii']
                  cylinder: ['radius', 'half_height', 'axis'], cone: ['radius', 'half_height', 'axis'], convex: ['vertices', 'faces'],
                  sphere_hull: ['spheres'], halfspaces: ['planes'], compound: ['parts']};
 
-/** One convex shape of the protocol. */
+/** Makes one convex shape of the protocol. */
 function convexShape(json, place) {
   const make = {
     box: () => new pdepth.Box(json.half_extents), sphere: () => new pdepth.Sphere(json.radius), ellipsoid: () => new pdepth.Ellipsoid(json.radii),
@@ -107,13 +112,11 @@ function located(place, step) {
 function checkFields(json, place) {
   if (json === null || typeof json !== 'object') refuse('bad_value', 'must be an object', place);
   if (json.type === 'mesh' || json.type === 'star') refuse('unsupported', `a ${json.type} is asked by the command; drop its file for the hull`, `${place}.type`);
-  const fields = kFields[json.type] ?? refuse('bad_value', `"${json.type}" is none of ${Object.keys(kFields).join(', ')}`, `${place}.type`);
-  for (const key of Object.keys(json)) {
-    if (!['type', 'margin', ...fields].includes(key)) refuse('bad_value', `a ${json.type} has no such field`, `${place}.${key}`);
-  }
+  const fields = Object.hasOwn(kFields, json.type) ? kFields[json.type] : refuse('bad_value', `"${json.type}" is none of ${Object.keys(kFields).join(', ')}`, `${place}.type`);
+  allowOnly(json, ['type', 'margin', ...fields], place);
   for (const key of fields) if (json[key] === undefined && key !== 'faces') refuse('bad_value', 'is missing', `${place}.${key}`);
 }
-/** A body: the whole shape, and its convex parts in the body's frame. */
+/** Makes a body: the whole shape, and its convex parts in the body's frame, all margins of compounds included but the body's own. */
 function makeBody(json, name, place) {
   checkFields(json, place);
   if (json.type !== 'compound') {
@@ -122,9 +125,12 @@ function makeBody(json, name, place) {
   }
   if (!Array.isArray(json.parts) || json.parts.length === 0) refuse('too_few_points', 'must hold parts', `${place}.parts`);
   const parts = json.parts.flatMap((each, i) => {
-    const inside = makeBody(each.shape, '', `${place}.parts[${i}].shape`);
-    const pose = readPose(each.pose, `${place}.parts[${i}].pose`);
-    return inside.parts.map(leaf => ({shape: leaf.shape, pose: composed(pose, leaf.pose)}));
+    const here = `${place}.parts[${i}]`;
+    allowOnly(each, ['shape', 'pose'], here);
+    const inside = makeBody(each.shape, '', `${here}.shape`);
+    const pose = readPose(each.pose, `${here}.pose`);
+    const swept = shape => inside.margin ? shape.withMargin(inside.margin) : shape;
+    return inside.parts.map(leaf => ({shape: swept(leaf.shape), pose: composed(pose, leaf.pose)}));
   });
   let shape = located(place, () => new pdepth.Compound(parts.map(leaf => ({shape: leaf.shape, pose: libraryPose(leaf.pose)}))));
   if (json.margin) shape = located(place, () => shape.withMargin(json.margin));
@@ -142,7 +148,7 @@ function freeBody(body) {
 }
 
 const lineOf = state => JSON.stringify({query: 'depth', a: state.a.body.json, b: state.b.body.json, pose_a: poseJson(state.a.pose), pose_b: poseJson(state.b.pose)});
-/** A pasted line as two bodies and poses. */
+/** Reads a pasted line as two bodies and poses. */
 function readLine(text) {
   let line = text.trim();
   const quoted = line.match(/'(\{.*\})'/s);
@@ -153,6 +159,10 @@ function readLine(text) {
   } catch (error) {
     refuse('bad_json', error.message, 'line');
   }
+  if (json === null || typeof json !== 'object') refuse('bad_json', 'must be an object', 'line');
+  const names = ['id', 'query', 'a', 'b', 'pose_a', 'pose_b'];
+  const other = Object.keys(json).find(key => !names.includes(key));
+  if (other !== undefined) refuse('unsupported', `the page asks with ${names.join(', ')} alone; give the line to the command`, `line.${other}`);
   if (json.query !== undefined && json.query !== 'depth' && json.query !== 'distance') refuse('unsupported', `"${json.query}" is neither depth nor distance`, 'line.query');
   return {a: {body: makeBody(json.a, 'Pasted', 'a'), pose: readPose(json.pose_a, 'pose_a')},
           b: {body: makeBody(json.b, 'Pasted', 'b'), pose: readPose(json.pose_b, 'pose_b')}};

@@ -1,4 +1,4 @@
-// build.mjs SINGLE PAGE: the page with everything inside: SINGLE is the package's classic script (build/npm/package/single.js).
+// build.mjs SINGLE PAGE: writes the page with everything inside. SINGLE is the package's classic script (build/npm/package/single.js).
 // A page that was opened from a file may fetch nothing.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';

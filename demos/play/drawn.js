@@ -1,6 +1,6 @@
-// What is drawn of bodies and of their difference: triangles and edges. Nothing here is used for an answer.
+// Bodies and their difference become triangles and edges here, for drawing alone. No answer uses them.
 
-/** Directions of a sphere with its triangles: an icosahedron, each triangle cut into four `level` times. */
+/** Makes directions of a sphere with their triangles: an icosahedron, each triangle cut into four `level` times. */
 function sphereMesh(level) {
   const points = [], triangles = [];
   for (const s of [-1, 1]) for (const t of [-1, 1]) points.push([0, s, t * golden], [s, t * golden, 0], [t * golden, 0, s]);
@@ -26,7 +26,7 @@ function sphereMesh(level) {
 }
 const kFine = sphereMesh(4), kCoarse = sphereMesh(3);
 
-/** Facets as points and loops; `exact` where they are the body's own. */
+/** Returns facets as points and loops; `exact` is true if they are the body's own. */
 function surfaceOf(shape) {
   const {points, offsets, corners} = shape.surface();
   const rows = Array.from({length: points.length / 3}, (_, i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]]);
@@ -38,7 +38,7 @@ function leafSurface(shape) {
   if (about.facets > 0 && about.margin === 0) return surfaceOf(shape);
   return {points: kFine.directions.map(d => pdepth.support(shape, null, d).point), loops: kFine.triangles, exact: false};
 }
-/** Surfaces of a body's parts, in the body's frame. */
+/** Makes the surfaces of a body's parts, in the body's frame. */
 function eyeOf(body) {
   return body.parts.map(leaf => {
     const swept = body.margin ? leaf.shape.withMargin(body.margin) : leaf.shape;
@@ -49,11 +49,11 @@ function eyeOf(body) {
   });
 }
 /**
- * Edges between facets that meet at an angle. Points of a difference and of an overlap are rounded, so that a facet falls into several
+ * Finds the edges between facets that meet at an angle. Points of a difference and of an overlap are rounded, so that a facet falls into several
  * that are nearly coplanar, with slivers between them; these are no edges for the eye.
  */
 function edgesOf({points, loops}) {
-  const beside = new Map(), size = Math.max(...points.map(length));
+  const beside = new Map(), size = greatestLength(points);
   for (const loop of loops) {
     const n = cross(minus(points[loop[1]], points[loop[0]]), minus(points[loop[loop.length - 1]], points[loop[0]]));
     if (length(n) < 1e-9 * size * size) continue;
@@ -75,14 +75,15 @@ function normalOf(points, loop) {
   return times(1 / (length(n) || 1), n);
 }
 
-/** The pieces of B + (-A) for bodies that are turned and not moved: one for each pair of parts. */
+/** Makes the pieces of B + (-A) for bodies that are turned and not moved: one for each pair of parts. */
 function differenceOf(a, b, turnA, turnB) {
   const pieces = [];
   for (const [i, eyeA] of a.eye.entries()) {
     for (const [j, eyeB] of b.eye.entries()) {
       if (pieces.length >= 120) return pieces;
       const exact = eyeA.exact && eyeB.exact && eyeA.points.length * eyeB.points.length <= 3000;
-      pieces.push(exact ? exactPiece(eyeA, eyeB, turnA, turnB) : sampledPiece(a, b, i, j, turnA, turnB));
+      const parts = [a.body.parts[i], b.body.parts[j]], spread = (a.body.margin ?? 0) + (b.body.margin ?? 0);
+      pieces.push(exact ? exactPiece(eyeA, eyeB, turnA, turnB) : sampledPiece(parts, [turnA, turnB], spread));
     }
   }
   return pieces;
@@ -104,18 +105,13 @@ function exactPiece(eyeA, eyeB, turnA, turnB) {
   });
   return piece;
 }
-function sampledPiece(a, b, i, j, turnA, turnB) {
-  const leaves = [a.body.parts[i], b.body.parts[j]];
-  const spread = (a.body.margin ?? 0) + (b.body.margin ?? 0);
-  const far = (leaf, turn, d) => {
-    const local = turnedBack(turn, d);
-    return turned(turn, pdepth.support(leaf.shape, libraryPose(leaf.pose), local).point);
-  };
-  const points = kCoarse.directions.map(d => add(minus(far(leaves[1], turnB, d), far(leaves[0], turnA, times(-1, d))), times(spread, d)));
+function sampledPiece(parts, turns, spread) {
+  const far = (k, d) => turned(turns[k], pdepth.support(parts[k].shape, libraryPose(parts[k].pose), turnedBack(turns[k], d)).point);
+  const points = kCoarse.directions.map(d => add(minus(far(1, d), far(0, times(-1, d))), times(spread, d)));
   return {points, loops: kCoarse.triangles, exact: false, kinds: kCoarse.triangles.map(() => 3)};
 }
 
-/** The solids that two bodies share: for pairs of polytopes, up to a size that is quick. */
+/** Finds the solids that two bodies share, for pairs of polytopes up to a size that is quick. */
 function overlapOf(a, b) {
   const solids = [];
   const planes = (eye, turn, t) => eye.loops.map(loop => {
@@ -138,7 +134,7 @@ function overlapOf(a, b) {
   return solids;
 }
 
-/** The nearest triangle that a ray meets, as a distance; Infinity for none. */
+/** Returns the distance of the nearest triangle that a ray meets; Infinity for none. */
 function rayMeets(origin, way, {eye, pose}) {
   const m = rotationOf(pose), o = turnedBack(m, minus(origin, pose.t)), d = turnedBack(m, way);
   let nearest = Infinity;

@@ -1,4 +1,4 @@
-// Points of meshes: OBJ, STL (both kinds), PLY (ascii and binary). The body is their convex hull, in the numbers of the file.
+// Reads the points of meshes: OBJ, STL (both kinds), PLY (ascii and binary). The body is their convex hull, in the numbers of the file.
 
 const kLargestFile = 128e6;
 
@@ -50,6 +50,7 @@ function plyPoints(buffer, text) {
     }
     return points;
   }
+  if (places.some(k => !/^(float|double)/.test(fields[k].type))) refuse('bad_file', 'must have x, y, z as float or double', 'the header');
   const little = format === 'binary_little_endian';
   const offsets = fields.map((_, i) => fields.slice(0, i).reduce((sum, field) => sum + sizes[field.type], 0));
   const stride = fields.reduce((sum, field) => sum + (sizes[field.type] ?? refuse('bad_file', `${field.type} is no number`, 'the header')), 0);
@@ -58,13 +59,13 @@ function plyPoints(buffer, text) {
   for (let i = 0; i < count; ++i) {
     for (const k of places) {
       const p = i * stride + offsets[k];
-      points.push(finite(sizes[fields[k].type] === 8 ? view.getFloat64(p, little) : view.getFloat32(p, little), `vertex ${i}`));
+      points.push(finite(fields[k].type.endsWith('64') || fields[k].type === 'double' ? view.getFloat64(p, little) : view.getFloat32(p, little), `vertex ${i}`));
     }
   }
   return points;
 }
 
-/** The hull of a file's points as a body that holds the hull's own points alone, so that its line is short. */
+/** Makes the hull of a file's points a body, of the hull's own points alone, so that its line is short. */
 async function bodyOfFile(file) {
   return locatedIn(file.name, async () => {
     if (file.size > kLargestFile) refuse('limit_exceeded', `has ${(file.size / 1e6).toFixed(0)} MB; the page takes up to ${kLargestFile / 1e6}`, 'the file');

@@ -1,4 +1,4 @@
-// The page: what a visitor does changes the state, and the state is asked and drawn once a frame.
+// A visitor changes the state of the page, and the state is asked and drawn once a frame.
 
 const byId = id => document.getElementById(id);
 const calm = matchMedia('(prefers-reduced-motion: reduce)');
@@ -43,7 +43,7 @@ function setBody(role, body, pose) {
   if (renderer) drawBody(role, thing);
 }
 function frameAll() {
-  const reach = ({eye}) => Math.max(...eye.flatMap(each => each.points.map(length)));
+  const reach = ({eye}) => greatestLength(eye.flatMap(each => each.points));
   unit = Math.max(reach(state.a), reach(state.b));
   const centre = times(0.5, add(state.a.pose.t, state.b.pose.t));
   const radius = Math.max(reach(state.a) + length(minus(state.a.pose.t, centre)), reach(state.b) + length(minus(state.b.pose.t, centre)));
@@ -119,7 +119,7 @@ function frame(now) {
       if (renderer) showPictures();
       changed = false;
       spoken.settle();
-      byId('line').value = `echo '${lineOf(state)}' | pdepth query`;
+      byId('line').value = `echo '${lineOf(state).replaceAll("'", '\\u0027')}' | pdepth query`;  // a quote would end the shell's word
     }
     if (growth < 1) {
       growth = Math.min(1, (now - grownFrom) / 1100);
@@ -229,7 +229,7 @@ canvas.addEventListener('pointermove', event => {
     held.turns = true;
   }
   if (held.role === 'look') return look(-0.008 * dx, 0.008 * dy);
-  const {right, up, back, scale} = aim(panes().cells[0], frames[0]);
+  const {right, up, scale} = aim(panes().cells[0], frames[0]);
   if (held.turns) {
     turnBody(held.role, up, 0.01 * dx);
     turnBody(held.role, right, 0.01 * dy);

@@ -38,7 +38,7 @@ function clear(group) {
   }
 }
 const linear = hex => [hex >> 16 & 255, hex >> 8 & 255, hex & 255].map(c => Math.pow(c / 255, 2.2));
-/** Triangles of a surface. @param colour  of a facet's number */
+/** Makes the triangles of a surface. @param colour  of a facet's number */
 function solid({points, loops}, colour) {
   const positions = [], colours = [];
   loops.forEach((loop, f) => {
@@ -80,7 +80,7 @@ function addMark(group, geometry, colour, at, {along, order, opacity = 1, lit: s
   mesh.renderOrder = order;
   group.add(mesh);
 }
-/** An arrow that is seen through what stands before it. @param unit  size of the picture */
+/** Draws an arrow that is seen through the bodies before it. @param unit  size of the picture */
 function addArrow(group, from, to, colour, unit) {
   const way = minus(to, from), size = length(way);
   addMark(group, new THREE.SphereGeometry(0.026 * unit, 20, 14), kColours.dark, from, {order: 30});
@@ -103,7 +103,7 @@ function placeBody(role, {pose}) {
   groups[role].position.set(...t);
   groups[role].quaternion.set(x, y, z, w);
 }
-/** A metric grid below the bodies that fades with the distance. */
+/** Draws a metric grid below the bodies that fades with the distance. */
 function drawFloor(unit, depth) {
   clear(groups.floor);
   const step = 10 ** Math.floor(Math.log10(1.2 * unit)), reach = Math.ceil(3.2 * unit / step) * step;
@@ -121,7 +121,6 @@ function drawFloor(unit, depth) {
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
   geometry.setAttribute('color', new THREE.Float32BufferAttribute(colours, 4));
   groups.floor.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({vertexColors: true, transparent: true, depthWrite: false})));
-  return step;
 }
 function drawShared(solids) {
   clear(groups.shared);
@@ -135,7 +134,7 @@ function drawMarks(answer, unit) {
   const isApart = answer.contact === 'separated';
   addArrow(groups.marks, answer.witnessA, answer.witnessB, isApart ? kColours.dark : kColours.way, unit);
 }
-/** The difference where both bodies stand at the origin, and the facet that the ball touches. */
+/** Draws the difference of the bodies as if both stood at the origin. */
 function drawDifference(pieces) {
   clear(groups.facets);
   for (const piece of pieces) {
@@ -162,7 +161,7 @@ function drawBall(radius, unit) {
   if (radius > 0) addMark(groups.ball, new THREE.SphereGeometry(radius, 48, 32), kColours.ball, [0, 0, 0], {order: 5, opacity: 0.45, lit: true, through: false});
 }
 
-/** Where the two pictures lie on the canvas, in CSS pixels. */
+/** Returns the places of the two pictures on the canvas, in CSS pixels. */
 function panes() {
   const width = canvas.parentElement.clientWidth, isWide = width >= 560;
   const tall = isWide ? Math.max(300, Math.min(0.74 * width, 0.78 * innerHeight)) : 0.9 * width;
@@ -202,7 +201,7 @@ function render(frames) {
     renderer.render(scene, camera);
   });
 }
-/** A point of the left picture in CSS pixels of the canvas. */
+/** Projects a point of the left picture to CSS pixels of the canvas. */
 function onCanvas(point, frame) {
   const pane = panes().cells[0];
   aim(pane, frame);

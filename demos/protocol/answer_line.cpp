@@ -12,6 +12,7 @@
 #include "protocol/handlers.hpp"
 #include "protocol/line/bounded_line.hpp"
 #include "protocol/line/line_notes.hpp"
+#include "protocol/pair_reader.hpp"
 #include "protocol/solid_queries.hpp"
 #include "protocol/solid_reader.hpp"
 #include "protocol/union_queries.hpp"
@@ -74,14 +75,18 @@ Handler find_handler(const Node& line, const Limits& limits) {
   name_node.refuse("unknown_query", "there is no query \"" + shortened(name) + "\"; known: " + known);
 }
 
-/// "a_is":"hull" where a body, or a part of it, is a mesh that is answered as its convex hull.
+/// Writes "a_is" where a body, or a part of it, is a mesh, and how many points of its files are left out.
 void write_remarks(const std::vector<Remark>& remarks, JsonWriter& answer) {
   for (const std::string_view body : {"a", "b"}) {
-    const auto found = std::find_if(remarks.begin(), remarks.end(), [&](const Remark& remark) {
+    std::string_view word;
+    std::int64_t left_out = 0;
+    for (const Remark& remark : remarks) {
       const std::string_view path = remark.path;
-      return path.starts_with(body) && (path.size() == 1 || path[1] == '.');
-    });
-    if (found != remarks.end()) answer.key(std::string(body) + "_is").string(found->word);
+      if (!path.starts_with(body) || (path.size() > 1 && path[1] != '.')) continue;
+      if (word.empty()) word = remark.word;
+      left_out += remark.left_out;
+    }
+    if (!word.empty()) write_body_note(body, word, left_out, answer);
   }
 }
 

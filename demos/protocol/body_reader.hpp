@@ -22,7 +22,7 @@ struct NamedBody {
   [[nodiscard]] std::vector<int> feature_ids(int part, const Feature& feature) const;
 };
 
-/// Whether "a" or "b" of a line names a body that is not convex.
+/// True if "a" or "b" of a line names a body that is not convex.
 [[nodiscard]] bool names_non_convex(const Node& line);
 
 /// Reads any shape. Compounds nest kMaxCompoundNesting deep.

@@ -8,14 +8,14 @@
 
 namespace pd::query {
 
-/// Whether a body is composed of others.
+/// True if a body is composed of others.
 [[nodiscard]] bool is_composed(const Node& body);
 
-/// Of the first body met.
+/// The dimension of the first body met.
 /// @throws Refusal: those of `read_dimension`; limit_exceeded for too deep a nesting, bad_value for an empty list.
 [[nodiscard]] int composed_dimension(const Node& body, const Limits& limits, int nesting = 0);
 
-/// What the structures inside are built with.
+/// The share of epsilon and the structure with which the bodies inside are built.
 struct Preparation {
   double epsilon;
   dimension::Backend backend;
@@ -26,7 +26,7 @@ template <int D>
 [[nodiscard]] dimension::ComposedBody<D> read_composed(const Node& body, const Limits& limits,
                                                        const Preparation& preparation, int nesting = 0);
 
-/// Says that a budget of operations ended first, and the epsilon that the answer keeps all the same.
+/// Writes that a budget of operations ended first, and the epsilon that the answer still keeps.
 void write_reached(double epsilon, JsonWriter& answer);
 
 /// The answer of `ask(share)`, structures inside built for a share of epsilon: a quarter for sums. Hulls ask for more,

@@ -15,8 +15,7 @@ constexpr std::int64_t kMostFacets = std::int64_t{1} << 26;
 
 void answer_decomposition(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "verify"});
-  const auto verify = line.find("verify");
-  if (verify && !verify->json().is_boolean()) verify->refuse("bad_value", "must be true or false");
+  const bool verify = read_flag(line, "verify");
   const Pair pair = read_pair(line, session.limits);
   const ConvexPolytope& a = require_polytope(pair.a, line.at("a"));
   const ConvexPolytope& b = require_polytope(pair.b, line.at("b"));
@@ -41,9 +40,9 @@ void answer_decomposition(const Node& line, Session& session, JsonWriter& answer
     answer.key("family").string(c.family == Decomposition::Family::a ? "A" : "B").end_object();
   }
   answer.end_array();
-  if (verify && verify->json().get<bool>()) {
+  if (verify) {
     const Expected<DecompositionCheck> check = check_decomposition(family, a, pair.pose_a, b, pair.pose_b, kMostFacets);
-    if (!check) verify->refuse(check.error());
+    if (!check) line.at("verify").refuse(check.error());
     // Lemma 2.3 is about bodies that meet; where they only touch, two lines may.
     const ContactClass contact = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch).contact;
     const std::int64_t violations = contact == ContactClass::separated  ? 0

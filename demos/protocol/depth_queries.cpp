@@ -108,6 +108,15 @@ std::string feature_kind(const PenetrationDepth& result) {
   return std::string(a) + "-" + std::string(b);
 }
 
+void write_body_note(std::string_view body, std::string_view is, std::int64_t left_out, JsonWriter& answer) {
+  answer.key(std::string(body) + "_is").string(is);
+  if (left_out > 0) answer.key(std::string(body) + "_points_left_out").integer(left_out);
+}
+
+void write_hull_note(std::string_view body, const NamedShape& shape, JsonWriter& answer) {
+  if (shape.hull_note) write_body_note(body, "hull", shape.hull_note->left_out, answer);
+}
+
 void write_depth_fields(const PenetrationDepth& result, JsonWriter& answer) {
   answer.key("class").string(to_string(result.contact));
   answer.key("depth").number(result.depth);

@@ -99,12 +99,12 @@ Expected<dimension::ApproximateSum<D>> approximate_composed(const Node& a, const
   });
 }
 
-/// A polytope inside, every width at least 1 - `epsilon` of the composed body's.
+/// A polytope inside a composed body. Each of its widths is at least 1 - `epsilon` times that of the composed body.
 template <int D>
 struct InsideComposed {
   Body<D> body;
-  double epsilon;
-  bool reached;
+  double epsilon;  ///< kept by the body
+  bool reached;    ///< false: a budget ended before the epsilon that was asked for
 };
 template <int D>
 InsideComposed<D> body_of_composed(const Node& a, const Limits& limits, double epsilon, Backend backend) {

@@ -13,13 +13,6 @@ double read_breaking_threshold(const Node& line) {
   return threshold;
 }
 
-bool read_one_sided(const Node& line) {
-  const auto node = line.find("one_sided");
-  if (!node) return false;
-  if (!node->json().is_boolean()) node->refuse("bad_value", "must be true or false");
-  return node->json().get<bool>();
-}
-
 void write_contact_point(const ContactPoint& point, JsonWriter& answer) {
   answer.key("position_a").vector(point.position_a);
   answer.key("position_b").vector(point.position_b);
@@ -41,7 +34,7 @@ void write_manifold(const ContactManifold& manifold, JsonWriter& answer) {
 void answer_contact_manifold(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold", "one_sided"});
   const double threshold = read_breaking_threshold(line);
-  if (read_one_sided(line)) {
+  if (read_flag(line, "one_sided")) {
     line.at("one_sided")
         .refuse("unsupported", "only a sheet has sides; give a mesh as one (\"as\":\"sheet\"), or leave one_sided out");
   }

@@ -60,9 +60,11 @@ void write_depth_fields(const PenetrationDepth& result, JsonWriter& answer);
 /// The field "breaking_threshold", 0 where it is not given.
 /// @throws Refusal bad_value when negative.
 [[nodiscard]] double read_breaking_threshold(const Node& line);
-/// The field "one_sided", false where it is not given.
-[[nodiscard]] bool read_one_sided(const Node& line);
-/// The fields of a contact point within its object.
+/// Writes the fields "a_is" and, where points of a file are left out, "a_points_left_out". @param body  "a" or "b"
+void write_body_note(std::string_view body, std::string_view is, std::int64_t left_out, JsonWriter& answer);
+/// Writes the note of a body that is answered as its hull, and nothing for others.
+void write_hull_note(std::string_view body, const NamedShape& shape, JsonWriter& answer);
+/// Writes the fields of a contact point into the open object.
 void write_contact_point(const ContactPoint& point, JsonWriter& answer);
 /// The fields "normal" and "points".
 void write_manifold(const ContactManifold& manifold, JsonWriter& answer);

@@ -30,13 +30,6 @@ PolygonMethod read_polygon_method(const Node& line) {
   node->refuse("bad_value", "unknown method; known: auto, implicit, explicit");
 }
 
-bool read_flag(const Node& line, std::string_view key) {
-  const auto node = line.find(key);
-  if (!node) return false;
-  if (!node->json().is_boolean()) node->refuse("bad_value", "must be true or false");
-  return node->json().get<bool>();
-}
-
 std::int64_t read_max_comparisons(const Node& line) {
   const auto node = line.find("max_comparisons");
   return node ? read_integer(*node, 1, std::int64_t{1} << 40) : kPolygonComparisons;

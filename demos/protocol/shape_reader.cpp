@@ -141,16 +141,14 @@ NamedShape read_mesh(const Node& node, const Limits& limits) {
   if (as && word != "hull") as->refuse("bad_value", kMeshWords);
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
-  const auto turn = node.find("turn_faces");
-  const bool turned = turn && turn->json().is_boolean() && turn->json().get<bool>();
-  const std::string key = mesh_key(word, turned, file);
+  const std::string key = mesh_key(word, read_flag(node, "turn_faces"), file);
   LineNotes nothing;
   MeshBody& body = (node.notes() != nullptr ? *node.notes() : nothing).meshes[key];
   try {
     if (!body.hull) {
       body.hull = std::make_shared<const NamedShape>(load_mesh_shape(file, limits, as ? MeshAs::hull : MeshAs::found));
     }
-    if (body.hull->hull_note) node.remark("hull");
+    if (const auto& note = body.hull->hull_note) node.remark("hull", note->left_out);
     return *body.hull;
   } catch (const Refusal& refusal) {
     path.refuse(refusal.code, refusal.message);
@@ -248,7 +246,7 @@ NamedShape hull_of_mesh(MeshPoints mesh, const std::string& name, MeshAs as) {
   if (!hull) refuse(to_string(hull.error().code), name + ": " + hull.error().message, hull.error().where);
   std::optional<HullNote> note;
   if (as == MeshAs::found) note = why_hull(mesh, *hull);
-  if (as == MeshAs::hull) note = HullNote{"that is what was asked for", hull->num_vertices(), 0};
+  if (as == MeshAs::hull) note = HullNote{"that is what was asked for", hull->num_vertices(), 0, mesh.left_out};
   return {std::move(hull).value(), std::move(mesh.ids), std::move(note)};
 }
 

@@ -41,10 +41,10 @@ struct NamedShape {
 /// Reads a pose; the identity where a part is missing.
 [[nodiscard]] Pose read_pose(const Node& node);
 
-/// What "as" of a mesh may say.
+/// Names the words that "as" of a mesh may hold, for refusals.
 inline constexpr const char* kMeshWords = "must be \"solid\", \"hull\" or \"sheet\"";
 
-/// How a mesh is to be taken.
+/// The ways in which a hull is made of a mesh.
 enum class MeshAs {
   found,   ///< as it is where it is convex, else as its hull, with a note
   convex,  ///< as it is: a check found it convex

@@ -81,10 +81,7 @@ std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limi
     if (word != "solid") as->refuse("bad_value", kMeshWords);
     wish.always = true;
   }
-  if (const auto turn = node.find("turn_faces")) {
-    if (!turn->json().is_boolean()) turn->refuse("bad_value", "must be true or false");
-    wish.turn_faces = turn->json().get<bool>();
-  }
+  wish.turn_faces = read_flag(node, "turn_faces");
   const Node path = node.at("path");
   const std::string file = read_string(path);
   if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");

@@ -13,7 +13,7 @@
 
 namespace pd::query {
 
-/// How a file's mesh is asked as a solid.
+/// Options by which a file's mesh is asked as a solid.
 struct SolidWish {
   bool always = false;      ///< also where the mesh is convex
   bool turn_faces = false;  ///< a mesh that is wholly inside out is turned

@@ -17,7 +17,7 @@ bool is_sheet(const Node& line, std::string_view key) {
   return type != body->json().end() && *type == "mesh" && as != body->json().end() && *as == "sheet";
 }
 
-/// The faces of a mesh file. Refusals name faces by their numbers in the file, from 0.
+/// Reads the faces of a mesh file as a sheet. Refusals name faces by their numbers in the file, from 0.
 PieceBody read_sheet(const Node& node, const Limits& limits) {
   allow_only(node, {"type", "margin", "path", "as", "turn_faces"});
   if (const auto turn = node.find("turn_faces")) {
@@ -73,7 +73,7 @@ void answer_union_contact_manifold(const Node& line, Session& session, JsonWrite
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "breaking_threshold", "one_sided"});
   UnionContactSettings settings;
   settings.breaking_threshold = read_breaking_threshold(line);
-  settings.one_sided = read_one_sided(line);
+  settings.one_sided = read_flag(line, "one_sided");
   const PieceBody a = read_pieces(line, "a", session.limits), b = read_pieces(line, "b", session.limits);
   const Pose pose_a = read_optional_pose(line, "pose_a"), pose_b = read_optional_pose(line, "pose_b");
   UnionManifoldScratch scratch{session.scratch, session.manifold_scratch};

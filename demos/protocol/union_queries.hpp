@@ -25,7 +25,7 @@ struct BodyPair {
 /// Reads "a", "b" and their poses.
 [[nodiscard]] BodyPair read_bodies(const Node& line, const Limits& limits);
 
-/// "max_work" of a Minkowski difference, kDifferenceWork where it is not given.
+/// Reads "max_work" of a Minkowski difference; kDifferenceWork if it is not given.
 [[nodiscard]] std::int64_t read_max_work(const Node& line);
 
 /// The fields of a union's depth answer from "class" to "stats".
@@ -34,7 +34,7 @@ void write_union_answer(const UnionDepth& result, const BodyPair& pair, std::int
 /// True if "a" or "b" of a line is a mesh that is asked as a sheet of triangles.
 [[nodiscard]] bool names_sheet(const Node& line);
 
-/// Contacts of bodies that need not be convex, sheets included.
+/// Answers contact_manifold for bodies that need not be convex, sheets included.
 void answer_union_contact_manifold(const Node& line, Session& session, JsonWriter& answer);
 void answer_union_time_of_impact(const Node& line, Session& session, JsonWriter& answer);
 

@@ -118,25 +118,7 @@ py::dict manifold_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py
   const PosedShape second{&convex_of(*b, "b"), read_pose(pose_b, "pose_b")};
   const PenetrationDepth answer = penetration_depth(first, second, workspace().scratch);
   const ContactManifold manifold = contact_manifold(first, second, answer, threshold, workspace().manifold);
-  const auto count = static_cast<py::ssize_t>(manifold.count);
-  Array on_a({count, py::ssize_t{3}}), on_b({count, py::ssize_t{3}}), depths(count);
-  py::array_t<std::int64_t> ids(count);
-  for (py::ssize_t i = 0; i < count; ++i) {
-    const ContactPoint& point = manifold.points[static_cast<std::size_t>(i)];
-    for (int k = 0; k < 3; ++k) {
-      on_a.mutable_at(i, k) = point.position_a[k];
-      on_b.mutable_at(i, k) = point.position_b[k];
-    }
-    depths.mutable_at(i) = point.depth;
-    ids.mutable_at(i) = point.feature_id;
-  }
-  py::dict fields;
-  fields["normal"] = array_of(manifold.normal);
-  fields["position_a"] = on_a;
-  fields["position_b"] = on_b;
-  fields["depth"] = depths;
-  fields["feature_id"] = ids;
-  return fields;
+  return contact_fields(manifold.normal, {manifold.points.begin(), manifold.points.begin() + manifold.count});
 }
 
 py::dict derivatives_pair(const py::object& shape_a, const py::object& shape_b, py::handle pose_a, py::handle pose_b) {
@@ -345,6 +327,28 @@ Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const
   }
   const Compound whole_a = a.compound(), whole_b = b.compound();
   return penetration_depth({&whole_a, pose_a}, {&whole_b, pose_b}, space.scratch, {.delta = settings.union_delta});
+}
+
+py::dict contact_fields(const Vec3& normal, const std::vector<ContactPoint>& points) {
+  const auto count = static_cast<py::ssize_t>(points.size());
+  Array on_a({count, py::ssize_t{3}}), on_b({count, py::ssize_t{3}}), depths(count);
+  py::array_t<std::int64_t> ids(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const ContactPoint& point = points[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k) {
+      on_a.mutable_at(i, k) = point.position_a[k];
+      on_b.mutable_at(i, k) = point.position_b[k];
+    }
+    depths.mutable_at(i) = point.depth;
+    ids.mutable_at(i) = point.feature_id;
+  }
+  py::dict fields;
+  fields["normal"] = array_of(normal);
+  fields["position_a"] = on_a;
+  fields["position_b"] = on_b;
+  fields["depth"] = depths;
+  fields["feature_id"] = ids;
+  return fields;
 }
 
 void bind_pair_queries(py::module_& module) {

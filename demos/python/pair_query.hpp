@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pd/compound/compound_depth.hpp"
 #include "pd/contact/manifold.hpp"
@@ -38,6 +39,9 @@ struct QuerySettings {
 [[nodiscard]] Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
                                        const QuerySettings& settings, Workspace& space,
                                        WarmCertificate* warm = nullptr);
+
+/// Makes the fields that Python shows of contact points: their normal, and an array for each property.
+[[nodiscard]] py::dict contact_fields(const Vec3& normal, const std::vector<ContactPoint>& points);
 
 /// Declares `Depth` and the queries of one pair.
 void bind_pair_queries(py::module_& module);

@@ -1,6 +1,7 @@
 /// @file
-/// Contacts of unions and of meshes as sheets of triangles.
+/// Python asks here for contacts of unions, and of meshes as sheets of triangles.
 #include <memory>
+#include <vector>
 
 #include "pd/union_contact/union_manifold.hpp"
 #include "python/pair_query.hpp"
@@ -9,7 +10,7 @@ namespace pd::python {
 
 namespace {
 
-/// A mesh as triangles without an inside: contacts alone take one.
+/// A mesh as triangles without an inside, which contacts alone take.
 struct Sheet {
   PieceBody pieces;
 };
@@ -35,36 +36,27 @@ PieceBody pieces_of(const py::object& shape) {
   return PieceBody::of_compound(shape.cast<const Body&>().compound());
 }
 
-/// The points of a patch.
+/// Makes the fields that Python shows of a patch.
 py::dict fields_of(const UnionContactPatch& patch) {
   const auto count = static_cast<py::ssize_t>(patch.count);
-  Array on_a({count, py::ssize_t{3}}), on_b({count, py::ssize_t{3}}), normals({count, py::ssize_t{3}}), depths(count);
-  py::array_t<std::int64_t> ids(count), pieces_a(count), pieces_b(count);
+  std::vector<ContactPoint> contacts;
+  Array normals({count, py::ssize_t{3}});
+  py::array_t<std::int64_t> pieces_a(count), pieces_b(count);
   for (py::ssize_t i = 0; i < count; ++i) {
     const UnionContactPoint& point = patch.points[static_cast<std::size_t>(i)];
-    for (int k = 0; k < 3; ++k) {
-      on_a.mutable_at(i, k) = point.contact.position_a[k];
-      on_b.mutable_at(i, k) = point.contact.position_b[k];
-      normals.mutable_at(i, k) = point.normal[k];
-    }
-    depths.mutable_at(i) = point.contact.depth;
-    ids.mutable_at(i) = point.contact.feature_id;
+    contacts.push_back(point.contact);
+    for (int k = 0; k < 3; ++k) normals.mutable_at(i, k) = point.normal[k];
     pieces_a.mutable_at(i) = point.piece_a;
     pieces_b.mutable_at(i) = point.piece_b;
   }
-  py::dict fields;
-  fields["normal"] = array_of(patch.normal);
-  fields["position_a"] = on_a;
-  fields["position_b"] = on_b;
-  fields["depth"] = depths;
-  fields["feature_id"] = ids;
+  py::dict fields = contact_fields(patch.normal, contacts);
   fields["normals"] = normals;
   fields["piece_a"] = pieces_a;
   fields["piece_b"] = pieces_b;
   return fields;
 }
 
-/// The patches of points, and how many contacts were covered.
+/// Returns the patches, and how many contacts were covered. Without a patch, one without points holds the normal.
 py::tuple union_manifold_pair(const py::object& a, const py::object& b, py::handle pose_a, py::handle pose_b,
                               const UnionContactSettings& settings) {
   if (!(settings.breaking_threshold >= 0)) refuse("bad_value", "a length >= 0", "breaking_threshold");

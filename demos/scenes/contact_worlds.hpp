@@ -14,7 +14,7 @@
 
 namespace pd::scenes {
 
-/// What a scene is judged by.
+/// Each scene is judged by one of these goals.
 enum class ContactGoal {
   stand,    ///< bodies stay where they started: fall time, drift, tail speed
   rest,     ///< bodies come to rest somewhere: deepest penetration, tail speed, bodies lost

@@ -6,9 +6,9 @@
 
 namespace pd::scenes {
 
-/// Spheres, boxes, cylinders and stones that fall 2 m on a floor with this restitution of each pair.
+/// Spheres, boxes and cylinders that fall 2 m on a floor with this restitution of each pair.
 [[nodiscard]] ContactScene rebound(double restitution, std::uint64_t perturbation);
-/// A slab of nine boxes on one of a two-hundredth of its weight.
+/// A slab of nine boxes that lies on a slab of a two-hundredth of its weight.
 [[nodiscard]] ContactScene heavy_slab(std::uint64_t perturbation);
 /// Ten boxes of two metres that fall 19 m as a column.
 [[nodiscard]] ContactScene dropped_column(std::uint64_t perturbation);

@@ -1,6 +1,6 @@
 /// @file
-/// Where the fields of pdepth.h's structs lie in the memory of the WebAssembly module, so that pdepth.js holds no
-/// number that a compiler knows better.
+/// Tells pdepth.js where the fields of pdepth.h's structs lie in the memory of the WebAssembly module, so that the
+/// script holds no number that a compiler knows better.
 #include <cstddef>
 #include <cstdint>
 

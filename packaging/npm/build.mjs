@@ -1,4 +1,4 @@
-// build.mjs MODULE FOLDER: the npm package around pdepth.wasm. Last line: sizes.
+// build.mjs MODULE FOLDER: makes the npm package around pdepth.wasm, and prints the sizes in its last line.
 //
 // module.js, shapes.js and queries.js are parts of one text, in this order. It becomes an ES module beside the binary, a classic
 // script with the binary inside (`pdepth.ready`, for pages opened from a file), and an ES module around that script.

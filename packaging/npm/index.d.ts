@@ -13,7 +13,7 @@ export type Rows = Numbers | ReadonlyArray<Numbers>;
 export type Vector = [number, number, number];
 
 /**
- * Where a body stands; nothing is the identity. As numbers: 3 (position), 7 (position, then x, y, z, w) or 12 (position, then a
+ * The place and attitude of a body; nothing is the identity. An array holds 3 (position), 7 (position, then x, y, z, w) or 12 (position, then a
  * rotation matrix by rows).
  */
 export type Pose = null | undefined | Numbers | {
@@ -24,7 +24,7 @@ export type Pose = null | undefined | Numbers | {
   matrix?: Numbers;
 };
 
-/** Why something was refused. */
+/** The error of everything that is refused. */
 export class PdepthError extends Error {
   /**
    * The word of pdepth.h's status ("non_finite", "not_a_rotation", ...), or one of this package: "freed" (a shape or pair was used
@@ -78,7 +78,7 @@ export abstract class Shape {
   readonly freed: boolean;
   /** The shape swept by a ball, in addition to the margin that it has. Rounded corners are exact, too. */
   withMargin(margin: number): Shape;
-  /** What the shape is made of. @param part of a compound, from 0 */
+  /** Tells what the shape is made of. @param part of a compound, from 0 */
   describe(part?: number): Description;
   /** Facets for drawing. Refused with "unsupported" where the core is curved. */
   surface(part?: number): Surface;
@@ -116,7 +116,7 @@ export class Pair {
 export interface Settings {
   /** Compounds and contact manifolds take "automatic". */
   method?: 'automatic' | 'expansion' | 'overlay' | 'decomposition' | 'shallow' | 'grid';
-  /** How narrow `lower` and `upper` are: the exact depth rounded down and up; within 2e-14 of the size; or as `contactTolerance` says. */
+  /** The gap between `lower` and `upper`: the exact depth rounded down and up; within 2e-14 of the size; or as `contactTolerance` says. */
   bracket?: 'tightest' | 'certified' | 'contact';
   /** Bodies farther apart than this are not told apart any further. */
   beyond?: number;
@@ -196,7 +196,7 @@ export interface Motion {
   /** From the point about which the body turns to the origin of its frame. */
   arm?: Numbers;
 }
-/** When two moving convex bodies first touch; the poses are those at time 0. `certified`: no contact happens before, proved. */
+/** Finds when two moving convex bodies first touch; the poses are those at time 0. `certified`: no contact happens before, proved. */
 export function timeOfImpact(a: Shape, poseA: Pose, b: Shape, poseB: Pose,
     movement: {a?: Motion; b?: Motion; duration: number; distanceTolerance?: number; allowedDepth?: number}, options?: PairOptions):
     {hit: boolean; reached: boolean; queries: number; time: number; certified: number; contact: Answer};

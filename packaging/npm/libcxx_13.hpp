@@ -1,6 +1,6 @@
 /// @file
-/// C++20 that libc++ 13 lacks, with which Debian's emscripten builds: included before every source of the WebAssembly
-/// module, and of nothing else. Each part leaves when a newer library has it.
+/// Debian's emscripten builds with libc++ 13, and this file adds the parts of C++20 that it lacks. The file is included
+/// before every source of the WebAssembly module, and nowhere else. Each part leaves when a newer library has it.
 #pragma once
 
 #include <array>

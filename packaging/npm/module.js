@@ -3,7 +3,7 @@
 // Every answer has the bits of the C and C++ libraries. A moves by `translation`, B stays; `normal` is the way on which A leaves B.
 // The types and their comments stand in index.d.ts.
 
-/** A refusal, by the code of pdepth.h ("non_finite") and the place where the fault is ("points[3]"). */
+/** A refusal holds the code of pdepth.h ("non_finite") and the place of the fault ("points[3]"). */
 export class PdepthError extends Error {
   constructor(code, message, place) {
     super(place ? `${code}: ${message} (${place})` : `${code}: ${message}`);
@@ -78,8 +78,10 @@ export async function start(source) {
 // Arguments of one call lie in a block that is used again and again.
 let block = 0, blockSize = 0, used = 0;
 
-/** Room for arguments, zeroed, until the next public call. */
+/** Makes room for arguments, zeroed, until the next public call. */
 function room(size) {
+  // Bit operations would wrap a larger size around, and the module's memory ends here.
+  if (!(size <= 2 ** 31 - 65536)) refuse('out_of_memory', `no memory for ${size} bytes of arguments`, '');
   size = (size + 15) & ~15;
   if (used + size > blockSize) {
     // Rooms that were given away stay where they are until the call has ended.
@@ -136,7 +138,7 @@ function check(status) {
 
 // ---- Reading arguments
 
-/** Numbers of an array, a typed array or an array of rows, as doubles in the module. Returns [pointer, count of numbers]. */
+/** Writes numbers of an array, a typed array or an array of rows as doubles. Returns [pointer, count of numbers]. */
 function writeNumbers(values, place, rowLength) {
   if (values == null || typeof values !== 'object' || typeof values.length !== 'number') {
     refuse('bad_value', 'must be an array of numbers or a typed array', place);
@@ -148,7 +150,7 @@ function writeNumbers(values, place, rowLength) {
   }
   const pointer = room(8 * Math.max(count, 1));
   const first = pointer >> 3;
-  if (!nested && ArrayBuffer.isView(values)) {
+  if (!nested && ArrayBuffer.isView(values) && typeof values[0] !== 'bigint') {
     doubles.set(values, first);
     return [pointer, count];
   }
@@ -176,33 +178,44 @@ function readNumber(x, place) {
   return x;
 }
 
-/** A pose of the caller into a pdepth_pose. */
+function readWhole(x, least, place) {
+  if (!Number.isSafeInteger(x) || x < least) refuse('bad_value', `${String(x)} is no whole number from ${least}`, place);
+  return x;
+}
+
+/** Refuses a key of the caller's object that is none of the names. */
+function allowOnly(object, names, place) {
+  for (const key of Object.keys(object ?? {})) {
+    if (!names.includes(key)) refuse('bad_value', `is none of ${names.join(', ')}`, `${place}.${key}`);
+  }
+}
+
+/** Writes a pose of the caller into a pdepth_pose. */
 function fillPose(into, pose, place) {
   if (pose == null) return;
-  let form = kTranslation, numbers = pose;
+  let numbers = pose;
   if (typeof pose.length !== 'number') {
-    const {position = [0, 0, 0], quaternion, matrix} = pose;
+    allowOnly(pose, ['position', 'quaternion', 'matrix'], place);
+    const {quaternion, matrix} = pose, position = pose.position ?? [0, 0, 0];
     if (quaternion && matrix) refuse('bad_value', 'has a quaternion and a matrix', place);
     if (position.length !== 3) refuse('bad_value', 'must have 3 numbers', `${place}.position`);
     if (quaternion && quaternion.length !== 4) refuse('bad_value', 'must have the 4 numbers x, y, z, w', `${place}.quaternion`);
     if (matrix && matrix.length !== 9) refuse('bad_value', 'must have 9 numbers, by rows', `${place}.matrix`);
     numbers = [...position, ...(quaternion ?? matrix ?? [])];
   }
-  form = kFormOfLength[numbers.length];
+  const form = kFormOfLength[numbers.length];
   if (form === undefined) refuse('bad_value', `has ${numbers.length} numbers, instead of 3 (position), 7 (and x, y, z, w) or 12 (and a matrix by rows)`, place);
   words[(into + at.pose.form) >> 2] = form;
   const first = (into + at.pose.numbers) >> 3;
   for (let i = 0; i < numbers.length; ++i) doubles[first + i] = readNumber(numbers[i], `${place}[${i}]`);
 }
 
-const knownSettings = ['method', 'bracket', 'beyond', 'delta', 'contactTolerance', 'seed'];
+const kSettings = ['method', 'bracket', 'beyond', 'delta', 'contactTolerance', 'seed'];
 
-/** Settings of the caller as a pdepth_settings, or 0. */
+/** Writes settings of the caller as a pdepth_settings. Returns its place, or 0 for none. */
 function writeSettings(settings) {
   if (settings == null) return 0;
-  for (const key of Object.keys(settings)) {
-    if (!knownSettings.includes(key)) refuse('bad_value', `is no setting; there are ${knownSettings.join(', ')}`, `settings.${key}`);
-  }
+  allowOnly(settings, kSettings, 'settings');
   const out = struct('settings');
   const choose = (names, value, place) => {
     const found = names.indexOf(value);
@@ -219,6 +232,9 @@ function writeSettings(settings) {
   if (settings.contactTolerance !== undefined) {
     doubles[(out + at.settings.contact_tolerance) >> 3] = readNumber(settings.contactTolerance, 'settings.contactTolerance');
   }
-  if (settings.seed !== undefined) longs[(out + at.settings.seed) >> 3] = BigInt(settings.seed);
+  if (settings.seed !== undefined) {
+    if (typeof settings.seed !== 'bigint') readWhole(settings.seed, 0, 'settings.seed');
+    longs[(out + at.settings.seed) >> 3] = BigInt(settings.seed);
+  }
   return out;
 }

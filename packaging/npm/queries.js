@@ -83,18 +83,19 @@ export function manifold(a, poseA, b, poseB, breakingThreshold = 0, options) {
 
 function fillMotion(into, motion, place) {
   const fields = {linearVelocity: 'linear_velocity', angularVelocity: 'angular_velocity', arm: 'arm'};
+  allowOnly(motion, Object.keys(fields), place);
   for (const [key, value] of Object.entries(motion ?? {})) {
-    if (!fields[key]) refuse('bad_value', `is none of ${Object.keys(fields).join(', ')}`, `${place}.${key}`);
     const first = (into + at.motion[fields[key]]) >> 3;
     if (value?.length !== 3) refuse('bad_value', 'must have 3 numbers', `${place}.${key}`);
     for (let k = 0; k < 3; ++k) doubles[first + k] = readNumber(value[k], `${place}.${key}[${k}]`);
   }
 }
 
-/** When two moving convex bodies first touch. */
+/** Finds when two moving convex bodies first touch. */
 export function timeOfImpact(a, poseA, b, poseB, movement, options) {
   return call(() => {
     const question = writeQuestion(a, poseA, b, poseB, options), moves = struct('movement');
+    allowOnly(movement, ['a', 'b', 'duration', 'distanceTolerance', 'allowedDepth'], 'movement');
     fillMotion(moves + at.movement.a, movement.a, 'movement.a');
     fillMotion(moves + at.movement.b, movement.b, 'movement.b');
     doubles[(moves + at.movement.duration) >> 3] = readNumber(movement.duration, 'movement.duration');
@@ -147,7 +148,7 @@ export function support(shape, pose, direction) {
 
 // ---- Batches
 
-/** One shape, or one for each row, as an array of pointers. Returns [pointer, stride, rows or -1]. */
+/** Writes one shape, or one for each row, as an array of pointers. Returns [pointer, stride, rows or -1]. */
 function writeShapes(shapes, place) {
   const many = Array.isArray(shapes);
   const row = room(4 * Math.max(many ? shapes.length : 1, 1));
@@ -156,7 +157,7 @@ function writeShapes(shapes, place) {
   return [row, many ? 4 : 0, many ? shapes.length : -1];
 }
 
-/** Poses of all rows into a pdepth_pose_array; one pose of the row's length stands for all. Returns the rows, or -1. */
+/** Writes the poses of all rows into a pdepth_pose_array; one pose of the row's length stands for all. Returns the rows, or -1. */
 function fillPoses(into, poses, form, place) {
   if (poses == null) return -1;
   const length = {position: 3, quaternion: 7, matrix: 12}[form] ?? refuse('bad_value', `"${form}" is none of position, quaternion, matrix`, `${place}Form`);
@@ -174,6 +175,7 @@ const camel = name => name.replace(/_(.)/g, (_, letter) => letter.toUpperCase())
 /** Depths of many rows in one call, as columns. */
 export function depthBatch({a, posesA, formA = 'quaternion', b, posesB, formB = 'quaternion', settings, count}) {
   return call(() => {
+    if (count !== undefined) readWhole(count, 0, 'count');
     const batch = struct('batch');
     const written = writeSettings(settings);
     const [pointerA, strideA, rowsA] = writeShapes(a, 'a');

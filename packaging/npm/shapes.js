@@ -54,7 +54,7 @@ export class Shape extends Owned {
   withMargin(margin) {
     return new Shape(made('pdepth_with_margin', () => [shapePointer(this, 'shape'), readNumber(margin, 'margin')]));
   }
-  /** What the shape is made of. */
+  /** Tells what the shape is made of. */
   describe(part = 0) {
     return call(() => {
       const out = struct('shape_info');
@@ -129,10 +129,14 @@ export class Convex extends Shape {
   constructor(points, faces) {
     super(faces === undefined ? shapeOfRows('pdepth_convex_hull', points, 'points', 3) : made('pdepth_convex_faces', () => {
       const [pointer, count] = writeNumbers(points, 'points', 3);
-      const corners = faces.flatMap ? faces.flatMap(face => [...face]) : refuse('bad_value', 'must be an array of loops', 'faces');
+      if (!Array.isArray(faces)) refuse('bad_value', 'must be an array of loops', 'faces');
+      const loops = faces.map((face, i) => face?.[Symbol.iterator] ? [...face] : refuse('bad_value', 'must be a loop of point numbers', `faces[${i}]`));
+      const corners = loops.flat();
+      // The module's integers would turn other values into numbers of other points.
+      loops.forEach((loop, i) => loop.forEach(v => { if (v !== (v | 0)) refuse('bad_value', `${String(v)} is no point number`, `faces[${i}]`); }));
       const offsets = room(4 * (faces.length + 1)), vertices = room(4 * corners.length), out = struct('faces');
       let next = 0;
-      faces.forEach((face, i) => { words[(offsets >> 2) + i] = next; next += face.length; });
+      loops.forEach((loop, i) => { words[(offsets >> 2) + i] = next; next += loop.length; });
       words[(offsets >> 2) + faces.length] = next;
       words.set(corners, vertices >> 2);
       words[(out + at.faces.points) >> 2] = pointer;

@@ -83,8 +83,13 @@ LineNotes* Node::notes() const {
   return root->notes_;
 }
 
-void Node::remark(std::string word) const {
-  if (LineNotes* const line = notes()) line->remarks.push_back({path(), std::move(word)});
+void Node::remark(std::string word, std::int64_t left_out) const {
+  LineNotes* const line = notes();
+  if (line == nullptr) return;
+  const std::string here = path();
+  const bool said = std::any_of(line->remarks.begin(), line->remarks.end(),
+                                [&](const Remark& remark) { return remark.path == here; });
+  if (!said) line->remarks.push_back({here, std::move(word), left_out});
 }
 
 void Node::refuse(std::string_view code, std::string message) const { query::refuse(code, std::move(message), path()); }
@@ -129,6 +134,13 @@ std::int64_t read_integer(const Node& node, std::int64_t low, std::int64_t high)
                 "must lie in [" + std::to_string(low) + ", " + std::to_string(high) + "], is " + shown(node.json()));
   }
   return static_cast<std::int64_t>(value);
+}
+
+bool read_flag(const Node& object, std::string_view key) {
+  const auto node = object.find(key);
+  if (!node) return false;
+  if (!node->json().is_boolean()) node->refuse("bad_value", "must be true or false");
+  return node->json().get<bool>();
 }
 
 std::string read_string(const Node& node) {

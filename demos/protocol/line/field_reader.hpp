@@ -40,8 +40,8 @@ class Node {
 
   /// The notes of the line that this node is a part of, or null.
   [[nodiscard]] LineNotes* notes() const;
-  /// Has the answer say a word about this node.
-  void remark(std::string word) const;
+  /// Has the answer say a word about this node, once for each node. @param left_out  as in Remark
+  void remark(std::string word, std::int64_t left_out = 0) const;
   [[noreturn]] void refuse(std::string_view code, std::string message) const;
   /// Passes a factory's refusal on, its `where` taken as a path below this node.
   [[noreturn]] void refuse(const Error& error) const;
@@ -77,6 +77,8 @@ T value_or_refuse(Expected<T> expected, const Node& node) {
 /// A whole number in [low, high]; 3.0 is one.
 [[nodiscard]] std::int64_t read_integer(const Node& node, std::int64_t low, std::int64_t high);
 [[nodiscard]] std::string read_string(const Node& node);
+/// The member of that name, true or false; false where there is none.
+[[nodiscard]] bool read_flag(const Node& object, std::string_view key);
 /// `count` numbers; a refusal names the component.
 [[nodiscard]] std::vector<double> read_numbers(const Node& node, std::size_t count);
 [[nodiscard]] Vec3 read_vector(const Node& node);

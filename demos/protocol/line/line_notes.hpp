@@ -1,7 +1,8 @@
 /// @file
-/// What the readers of one line note for the rest of its answer.
+/// Notes that the readers of one line make for the rest of its answer.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,6 +17,7 @@ namespace pd::query {
 struct Remark {
   std::string path;
   std::string word;
+  std::int64_t left_out = 0;  ///< points of a file without a measurement (NaN), which the body does not hold
 };
 
 struct NamedShape;
@@ -26,7 +28,7 @@ struct MeshBody {
   std::shared_ptr<const NamedShape> hull;
 };
 
-/// Names how a line asks a file. @param as  the word of "as", or nothing
+/// Makes a key of the way in which a line asks a file. @param as  the word of "as", or nothing
 [[nodiscard]] inline std::string mesh_key(std::string_view as, bool turned, const std::string& file) {
   return std::string(as) + (turned ? " turned/" : "/") + file;
 }

@@ -241,9 +241,9 @@ class DirectionalDepth(Fields):
 class Manifold(Fields):
     """normal [3]; position_a and position_b [k, 3], depth [k], feature_id [k] with k <= 4.
 
-    Of unions and sheets also normals [k, 3], piece_a and piece_b [k] (numbers of parts or faces), patches (a list of
-    Manifold, one for each direction of contact; the first holds the deepest point) and covered (contacts of two pieces
-    that were dropped or turned because other pieces cover them).
+    A contact of unions or sheets also has normals [k, 3], piece_a and piece_b [k] (numbers of parts or faces), patches
+    (a list of Manifold, one for each direction of contact; the first holds the deepest point) and covered (contacts of
+    two pieces that were dropped or turned because other pieces cover them).
     """
 
 
@@ -271,7 +271,7 @@ def directional_depth(a, b, direction, pose_a=None, pose_b=None, *, threads=None
     return Batch(_core.directional_rows(bodies_a, bodies_b, poses_a, poses_b, rows, count, _threads(threads)), lead)
 
 
-#: What stands for one body of a contact.
+#: The classes of one body of a contact.
 _ONE = (_core.Shape, _core.Sheet)
 
 
@@ -295,6 +295,8 @@ def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, 
             raise refused("a: sheets are asked pair by pair, not in a batch (unsupported)")
         return _union_manifold(a, b, pose_a, pose_b, breaking_threshold, one_sided)
     if _is_batch(a, b, pose_a, pose_b):
+        if one_sided:
+            raise refused("one_sided: only a sheet has sides, and sheets are asked pair by pair (unsupported)")
         (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
         fields = _core.manifold_rows(bodies_a, bodies_b, poses_a, poses_b, count, breaking_threshold, _threads(threads))
         for name in ("position_a", "position_b"):

@@ -1,2 +1,2 @@
-// What the page takes of three.js; demos/report/README.md says how three.min.js is made of it.
+// The pages use these parts of three.js; demos/report/README.md says how three.min.js is made of this file.
 export {WebGLRenderer, Scene, PerspectiveCamera, BufferGeometry, Float32BufferAttribute, Mesh, MeshLambertMaterial, MeshBasicMaterial, LineSegments, LineBasicMaterial, DirectionalLight, HemisphereLight, SphereGeometry, ConeGeometry, CylinderGeometry, Group, Vector3, DoubleSide, FrontSide, BackSide} from 'three';
