@@ -1,5 +1,5 @@
 /// @file
-/// What the line protocol says of a box that slides over many pieces, against the manifolds of a Bullet world.
+/// The line protocol's contacts of a box that slides over many pieces are those of the manifolds of a Bullet world.
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>

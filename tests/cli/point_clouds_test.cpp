@@ -93,6 +93,28 @@ TEST_F(PointClouds, CloudsThatAreNotReadAreRefusedByName) {
   EXPECT_EQ(refusal("e.pcd", pcd_head("4 4 4", "F F F", 0, "ascii")),
             "unreadable_file: e.pcd: line 10: POINTS needs whole numbers from 1 to 2^40");
   EXPECT_EQ(refusal("f.pcd", "solid\n"), "unreadable_file: f.pcd: line 1: no line of a PCD header begins with solid");
+  EXPECT_EQ(refusal("g.pcd", "SIZE 8 8 8\nFIELDS x y z\n"),
+            "unreadable_file: g.pcd: line 1: SIZE stands before FIELDS");
+  EXPECT_EQ(refusal("h.pcd", "FIELDS x y z\nFIELDS x\n"), "unreadable_file: h.pcd: line 2: a second FIELDS line");
+  std::string names = "FIELDS";
+  for (int i = 0; i <= 1024; ++i) names += " x";
+  EXPECT_EQ(refusal("i.pcd", names + "\n"), "limit_exceeded: i.pcd: the points have more than 1024 fields");
+}
+
+TEST_F(PointClouds, AnAnswerSaysHowManyPointsAreLeftOut) {
+  const std::string rows = "nan nan nan\n0 0 0\n1 0 0\nnan nan nan\n0 1 0\n0 0 1\n";
+  const std::string cloud = R"({"type":"mesh","path":")" + write("a.xyz", rows) + "\"}";
+  for (const std::string& body : {cloud, R"({"type":"compound","parts":[{"shape":)" + cloud + "}]}"}) {
+    const Json found = answer(depth_line(kUnitBox, body));
+    EXPECT_EQ(found.value("b_is", ""), "hull") << found;
+    EXPECT_EQ(found.value("b_points_left_out", 0), 2) << found;
+    EXPECT_FALSE(found.contains("a_points_left_out")) << found;
+  }
+}
+
+TEST_F(PointClouds, ACloudThatComesWithoutANameIsKnownByItsFirstBytes) {
+  EXPECT_EQ(query::read_mesh_bytes(pcd_head("8 8 8", "F F F", 1, "ascii") + "7 0.1 0.2 0.3 0 0 1\n", 100).points,
+            (std::vector<Vec3>{kCorners[0]}));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-from strangers_parts import (BOX, ROWS, Place, Run, at, bracket, code_of, comb, crashed, jagged, off_ellipsoid, refused, row,
+from strangers_parts import (BOX, ROWS, SMALL, Place, Run, at, bracket, code_of, comb, crashed, jagged, off_ellipsoid, refused, row,
                              sphere_points, star, torus)
 
 # ---- A: a service with its limits on --------------------------------------------------------------------------------
@@ -116,26 +116,26 @@ UNION = {"type": "compound", "parts": [{"shape": BOX}, {"shape": {"type": "conve
     [0.5, 0.5, 0.5], [2.5, 0.6, 0.4], [0.7, 2.4, 0.5], [0.6, 0.5, 2.6]]}}]}
 
 for k in (8, 10, 12, 24):
-    @row(f"C1 an ellipsoid [1, 1, 2^-{k}] on a union", 0.3)
+    @row(f"C1 an ellipsoid [1, 1, 2^-{k}] on a union", SMALL)
     def _(place, k=k):
         run = place.ask({"id": 1, "query": "depth", "a": {"type": "ellipsoid", "radii": [1, 1, 2.0 ** -k]}, "b": UNION})
         return (run, *bracket(run, 1e-2))
 
 for radius in (0.01, 0.003, 7e-5):
-    @row(f"C2 a sphere of {radius:g} in a star of 22", 0.3)
+    @row(f"C2 a sphere of {radius:g} in a star of 22", SMALL)
     def _(place, radius=radius):
         run = place.ask({"id": 1, "query": "depth", "a": {"type": "sphere", "radius": radius}, "b": star(4, 5)})
         return (run, *bracket(run, 1e-2))
 
 
-@row("C3 a coin of 2^-12 in a star of 6", 0.3)
+@row("C3 a coin of 2^-12 in a star of 6", SMALL)
 def _(place):
     run = place.ask({"id": 1, "query": "depth", "b": star(1, 4),
                      "a": {"type": "cylinder", "radius": 0.2, "half_height": 2.0 ** -12, "axis": "z"}})
     return (run, *bracket(run, 1e-2))
 
 for rings, around in ((4, 6), (3, 17)):
-    @row(f"C4 minkowski_difference of two stars of {rings * around + 2}")
+    @row(f"C4 minkowski_difference of two stars of {rings * around + 2}", SMALL)
     def _(place, rings=rings, around=around):
         run = place.ask({"id": 1, "query": "minkowski_difference", "a": star(rings, around), "b": star(rings, around, 8)})
         answer = run.answers()[0] if not run.signal else {}
@@ -185,21 +185,21 @@ for name, p, q in (("combs of 260", comb(260), comb(260)), ("a comb of 260 and t
             "refused by name" if "error" in answer else f"depth {answer['depth']:.4g}"
 
 for thin in (1e-18, 1e-150):
-    @row(f"C7 width by grid of a box 1 x 1 x {thin:g}", 0.5)
+    @row(f"C7 width by grid of a box 1 x 1 x {thin:g}", SMALL)
     def _(place, thin=thin):
         run = place.ask({"id": 1, "query": "width", "method": "grid", "delta": 0.1,
                          "a": {"type": "box", "half_extents": [1, 1, thin]}})
         return (run, *bracket(run, 0.1))
 
 
-@row("C8 shallow with delta 1.1e-5 on 32 vertices", 0.5)
+@row("C8 shallow with delta 1.1e-5 on 32 vertices", SMALL)
 def _(place):
     a, b = ({"type": "convex", "vertices": sphere_points(3, 32, seed)} for seed in (5, 6))
     run = place.ask({"id": 1, "query": "depth", "method": "shallow", "delta": 1.1e-5, "a": a, "b": b})
     return (run, *bracket(run, 1.1e-5))
 
 
-@row("C9 two tori of 48 triangles as solids", 1)
+@row("C9 two tori of 48 triangles as solids", SMALL)
 def _(place):
     file = place.write("torus.obj", torus())
     run = place.ask({"id": 1, "query": "depth", "a": {"type": "mesh", "path": file}, "b": {"type": "mesh", "path": file},
@@ -369,6 +369,9 @@ def main():
     parser.add_argument("--markdown", action="store_true", help="a table for the notebook")
     arguments = parser.parse_args()
     program = os.path.abspath(arguments.program)
+    for needed in (program, "/usr/bin/time"):
+        if not os.access(needed, os.X_OK):
+            parser.error(f"{needed} is not there; /usr/bin/time is in Debian's package time")
     resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))  # a row without a bound ends here
     line = "| {} | {} | {} | {} |" if arguments.markdown else "{:<68} {:>14}  {:>16}  {}"
     print(line.format("row", "goal", "took", "verdict"))
@@ -393,7 +396,7 @@ def main():
         if name.startswith(arguments.only):
             print(line.format(name, "", "", "held by " + where))
     if missed:
-        print(f"\n{missed} rows miss their goal" if not arguments.markdown else f"\n{missed} rows miss their goal.")
+        print(f"\n{missed} rows miss their goal.")
     return 1 if missed else 0
 
 

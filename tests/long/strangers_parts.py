@@ -1,4 +1,4 @@
-"""What the rows of strangers_input.py are made of: commands that are timed, bodies, judges."""
+"""The parts of strangers_input.py: commands that are timed, bodies, judges."""
 import json
 import math
 import os
@@ -8,12 +8,13 @@ import subprocess
 import tempfile
 
 SECONDS, MEGABYTES = 5.0, 1000.0  # the goal of a query of 1,000 points
+SMALL = 0.1  # seconds, the goal of a query of up to 64 vertices
 MOST_SECONDS = 200  # of the clock
 ROWS = []
 
 
 class Run:
-    """What a command did, by GNU time: a process that Python starts inherits Python's own peak."""
+    """The outcome of a command, measured by GNU time (Debian: `time`): a process that Python starts inherits Python's own peak."""
 
     def __init__(self, argv, stdin=b"", stdout=None):
         with tempfile.NamedTemporaryFile() as told, tempfile.TemporaryFile() as source, tempfile.TemporaryFile() as out, \
@@ -161,18 +162,18 @@ def code_of(answer):
     return answer.get("error", {}).get("code", "")
 
 
-def bracket(run, delta=None, of=("lower", "upper"), index=-1):
+def bracket(run, delta):
     """An answer with a bracket that is as narrow as asked, or says that it is not."""
     if crashed(run):
         return crashed(run), ""
-    answer = run.answers()[index]
+    answer = run.answers()[-1]
     if "error" in answer:
         return "refused: " + code_of(answer), ""
-    low, high = answer[of[0]], answer[of[1]]
+    low, high = answer["lower"], answer["upper"]
     said = f"[{low:.4g}, {high:.4g}]" + (" unreached" if answer.get("bracket_reached") is False else "")
     if not low <= high:
         return "a bracket upside down", said
-    wide = delta is not None and high > (1 + delta) * low * (1 + 1e-9) and high - low > 4e-15 * max(1, high)
+    wide = high > (1 + delta) * low * (1 + 1e-9) and high - low > 4e-15 * max(1, high)
     if wide and answer.get("bracket_reached") is not False:
         return "wider than asked, and nothing says so", said
     return "", said
@@ -183,7 +184,7 @@ def refused(answer, codes):
 
 
 def off_ellipsoid(radii, centre, p):
-    """How far outside, to first order; negative inside."""
+    """The distance outside of an ellipsoid, to first order; negative inside."""
     away = [x - c for x, c in zip(p, centre)]
     norm = math.sqrt(sum((x / r) ** 2 for x, r in zip(away, radii)))
     slope = math.sqrt(sum((x / r / r) ** 2 for x, r in zip(away, radii))) / norm

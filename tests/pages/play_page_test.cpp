@@ -1,6 +1,6 @@
 /// @file
-/// The page to play with in headless Chromium, opened from a file: what it shows is what the command answers, for every
-/// body of its list, after drags, keys, dropped files and pasted lines; wrong input leaves it alive; a phone's width.
+/// Opens the page to play with in headless Chromium, from a file. The page shows the answers of the command for every
+/// body of its list, after drags, keys, dropped files and pasted lines. It survives wrong input and fits a phone.
 /// packaging/wasm.sh makes the page.
 #include <gtest/gtest.h>
 #include <stdlib.h>

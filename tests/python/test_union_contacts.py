@@ -65,6 +65,7 @@ def test_one_side_or_two():
 @pytest.mark.parametrize("ask, code, where", [
     (lambda: pdepth.contact_manifold(floor(), floor()), "unsupported", "a"),
     (lambda: pdepth.contact_manifold(BOX, BOX, one_sided=True), "unsupported", "one_sided"),
+    (lambda: pdepth.contact_manifold([BOX, BOX], BOX, one_sided=True), "unsupported", "one_sided"),
     (lambda: pdepth.contact_manifold(BOX, floor(), breaking_threshold=-1), "bad_value", "breaking_threshold"),
     (lambda: pdepth.contact_manifold(BOX, floor(), np.tile(np.eye(4), (3, 1, 1))), "unsupported", "a"),
     (lambda: pdepth.Sheet([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]]), "bad_faces", "faces[0]"),

@@ -85,8 +85,6 @@ foreach(unit RANGE 2 25)
 endforeach()
 expect(file_rules engine_glue/src/pair/a.hpp "/// @file\n#pragma once\n" "")
 expect(file_rules engine_glue/src/pair/b.hpp "/// @file\n#pragma once\n" "26 units, more than 25")
-set(further_files "")
-expect(file_rules pd_core/src/dimension/a.cpp "" "1 units are fewer than crowded_folders says")
 
 file(REMOVE_RECURSE ${WORK})
 if(wrong GREATER 0)

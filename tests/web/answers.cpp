@@ -1,5 +1,5 @@
 /// @file
-/// Answers of libpdepth.so to compare those of WebAssembly with, bit for bit.
+/// Asks libpdepth.so, so that the answers of WebAssembly can be compared bit for bit.
 ///
 ///     web_answers PAIRS FILE    writes the questions, and prints how many answers there are and their hash
 ///
@@ -30,7 +30,7 @@ struct Release {
 };
 using Shape = std::unique_ptr<pdepth_shape, Release>;
 
-/// FNV-1a over 32-bit words, and a second lane that the first one stirs: what JavaScript computes quickly, too.
+/// Hashes 32-bit words: FNV-1a, and a second lane that the first one stirs. JavaScript computes both quickly, too.
 class Hash {
  public:
   void add(std::uint32_t word) {
@@ -171,7 +171,7 @@ class Questions {
   std::int64_t answers_ = 0;
 };
 
-/// Four answers.
+/// Asks for four answers about two hulls.
 void ask_sharp(Questions& questions, std::int64_t i, Random& random) {
   static constexpr std::array kSizes = {4, 6, 8, 8, 12, 16, 24, 48};
   const auto family = static_cast<pd::scenes::PairFamily>(i % pd::scenes::kPairFamilies);
@@ -196,7 +196,7 @@ void ask_sharp(Questions& questions, std::int64_t i, Random& random) {
   questions.ask(settings);
 }
 
-/// One answer.
+/// Asks for one answer about two curved bodies.
 void ask_curved(Questions& questions, Random& random) {
   const Shape a = questions.curved(random);
   const Shape b = questions.curved(random);

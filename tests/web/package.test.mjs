@@ -1,7 +1,9 @@
 // The npm package as its users have it: installed from the tarball in a folder of its own.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
 import {test} from 'node:test';
+import {pathToFileURL} from 'node:url';
 import {Worker} from 'node:worker_threads';
 import * as pdepth from 'pdepth';
 
@@ -78,6 +80,14 @@ test('wrong input is refused by name and place', () => {
   refused(() => pdepth.depth(cube, null, cube, null, {delta: 2}), 'bad_value', 'settings.delta');
   refused(() => pdepth.depthAlong(cube, null, cube, null, [0, 0, 0]), 'zero_direction', 'direction');
   refused(() => new Cone(1, 1).surface(), 'unsupported', 'part');
+  const corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+  refused(() => new Convex(corners, [[0, 2, 1.5]]), 'bad_value', 'faces[0]');
+  refused(() => new Convex(corners, null), 'bad_value', 'faces');
+  refused(() => new Convex(BigInt64Array.of(0n, 0n, 0n)), 'bad_value', 'points[0]');
+  refused(() => pdepth.depth(cube, {translation: [9, 0, 0]}, cube, null), 'bad_value', 'poseA.translation');
+  refused(() => pdepth.depth(cube, null, cube, null, {seed: 0.5}), 'bad_value', 'settings.seed');
+  refused(() => pdepth.depthBatch({a: cube, b: cube, count: -1}), 'bad_value', 'count');
+  refused(() => pdepth.depthBatch({a: cube, b: cube, count: 2 ** 28}), 'out_of_memory', '');
   assert.equal(pdepth.depth(cube, null, cube, null).depth, 1);  // the library lives on
 });
 
@@ -164,7 +174,7 @@ test('the single file, and the module without a loader', async () => {
   const single = await import('pdepth/single');
   assert.equal(single.depth(new single.Box([1, 1, 1]), null, new single.Sphere(1), [1.5, 0, 0]).depth, 0.5);
   assert.equal(typeof globalThis.pdepth.depth, 'function');
-  const core = await import('pdepth/core?again');
+  const core = await import(`${pathToFileURL(createRequire(import.meta.url).resolve('pdepth/core'))}?again`);
   assert.throws(() => new core.Sphere(1), {code: 'not_ready'});
 });
 

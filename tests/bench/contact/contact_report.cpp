@@ -150,10 +150,8 @@ void print_block(const scenes::ContactScene& scene, const std::vector<ContactRow
   for (const ContactRow& row : block) {
     const ContactFigures& f = row.figures;
     fmt::print(
-        "  "
-        "{:<16}{:>9.4f}{:>9.4f}{:>9.3f}{:>9.0f}{:>10.2g}{:>10.2g}{:>10.2g}{:>7}{:>10.2g}{:>9.4f}{:>8.2g}{:>8.2g}{:>10."
-        "2g}"
-        "{:>9.1f}{:>7.2f}{:>6.0f}\n",
+        "  {:<16}{:>9.4f}{:>9.4f}{:>9.3f}{:>9.0f}{:>10.2g}{:>10.2g}{:>10.2g}{:>7}{:>10.2g}{:>9.4f}"
+        "{:>8.2g}{:>8.2g}{:>10.2g}{:>9.1f}{:>7.2f}{:>6.0f}\n",
         row.run, f.step_p50_ms, f.step_p99_ms, f.step_max_ms, f.query_ns, f.deepest, f.deepest_late, f.drift,
         f.fall_seconds >= row.seconds ? "-" : fmt::format("{:.1f}", f.fall_seconds), f.tail_speed, f.final_speed,
         f.bounce_error, f.toppled, f.energy_gained, f.contacts, 100 * f.new_points, f.lost);

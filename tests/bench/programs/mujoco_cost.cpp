@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "mujoco/mujoco_model.hpp"
 #include "pd/mujoco/contact_recorder.hpp"
 #include "pd/mujoco/install.hpp"
@@ -20,12 +20,7 @@
 namespace {
 
 using namespace pd;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+using bench::processor_seconds;
 
 struct Scene {
   std::string name;
