@@ -10,6 +10,8 @@
 #include <typeinfo>
 
 #include "pair/box_contacts.hpp"
+#include "pair/flight_memory.hpp"
+#include "pair/friction_anchor.hpp"
 #include "pair/manifold_points.hpp"
 #include "pair/passing_bodies.hpp"
 #include "pair/solver_core.hpp"
@@ -108,6 +110,12 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   const btScalar threshold = reach_of_contacts(*result, manifold, shape_a, shape_b);
   // A pair that had points is asked at once: it hardly ever parts in a step, and the query says so if it does.
   const bool touched = memory != nullptr && memory->num_points > 0;
+  const bool own_boxes = boxes && memory != nullptr;
+  const BoxesInFlight in_flight{shape_a, pose_a, shape_b, pose_b, threshold};
+  if (own_boxes && memory->flight.known()) {
+    if (flies_on(in_flight, info, *result)) return;
+    memory->flight.forget();
+  }
   if (!touched && boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
     manifold_.clear();
     return;
@@ -119,7 +127,6 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     return;
   }
   const auto this_step = [&] { return StepReach(*result, threshold, info.m_timeStep); };
-  const bool own_boxes = boxes && memory != nullptr;
   const btScalar reach = own_boxes && !touched ? this_step().of_boxes(shape_a, shape_b) : threshold;
   auto buffers = core.buffers.lease();
   FreshPoints fresh;
@@ -182,9 +189,32 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       fresh.count = 0;
     }
   }
-  if (own_boxes && StepReach::may_be_idle(fresh, threshold)) this_step().leave_out_idle(fresh);
-  if (own_boxes && fresh.count > 0 && manifold_.carries_nothing()) this_step().leave_out_flying(fresh);
+  const bool idle = own_boxes && StepReach::may_be_idle(fresh, threshold);
+  if (idle) this_step().leave_out_idle(fresh);
+  if (!own_boxes || fresh.count == 0 || !manifold_.carries_nothing()) {
+    manifold_.replace(fresh, time_of(info), *result);
+    return;
+  }
+  const StepReach unloaded = this_step();
+  const btVector3 normal = fresh.points[0].normal;
+  unloaded.leave_out_flying(fresh);
   manifold_.replace(fresh, time_of(info), *result);
+  const bool all_lasting = !idle && manifold.getNumContacts() == fresh.count;
+  if (all_lasting && unloaded.as_fast_as_each_other() && !Bounce(manifold, *result, time_of(info)).possible()) {
+    memory->flight.begin(in_flight, normal, unloaded, manifold);
+  }
+}
+
+bool ContactAlgorithm::flies_on(const BoxesInFlight& boxes, const btDispatcherInfo& info, btManifoldResult& result) {
+  PairMemory& memory = *manifold_.memory();
+  if (!memory.flight.same_place(boxes, manifold_.get()) || !manifold_.carries_nothing() || world_.core().closed())
+    return false;
+  // Callbacks are told of each point in each step.
+  if (!points_are_alike(result) || gContactProcessedCallback != nullptr) return false;
+  if (!memory.flight.same_flight(StepReach(result, boxes.threshold, info.m_timeStep))) return false;
+  memory.flight.move_points(boxes, manifold_.get());
+  memory.seconds = time_of(info);
+  return true;
 }
 
 void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver, const btCollisionObjectWrapper& of_a,

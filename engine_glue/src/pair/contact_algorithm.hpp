@@ -33,6 +33,8 @@ class ContactAlgorithm final : public AlgorithmShell {
   [[nodiscard]] bool sharp_parts() const;
 
  private:
+  /// True if two boxes fly together as in the last step: their points are moved along, and nothing is asked.
+  bool flies_on(const BoxesInFlight& boxes, const btDispatcherInfo& info, btManifoldResult& result);
   void process_by_bullet(btConvexPenetrationDepthSolver& solver, const btCollisionObjectWrapper& a,
                          const btCollisionObjectWrapper& b, const btDispatcherInfo& info, btManifoldResult& result);
 

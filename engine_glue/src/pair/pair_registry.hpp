@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "pair/flight_memory.hpp"
 #include "pair/impulse_trend.hpp"
 #include "pair/sheet_memory.hpp"
 #include "pair/standing_still.hpp"
@@ -81,6 +82,7 @@ struct PairMemory {
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
   HeavyLoad load;
+  FlightMemory flight;  ///< of two boxes
 
   /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
   [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
@@ -92,7 +94,7 @@ struct PairMemory {
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {
     return patch < 0 && num_points == 0 && pieces.empty() && standing.empty() && sheet.empty() && union_refusals == 0 &&
-           !load.known && warm.memory_bytes() == sizeof(warm);
+           !load.known && !flight.known() && warm.memory_bytes() == sizeof(warm);
   }
 };
 

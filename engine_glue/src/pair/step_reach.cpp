@@ -21,6 +21,8 @@ constexpr btScalar kTouching = btScalar(1e-3);
 constexpr btScalar kFlying = 4;
 /// Bodies fly together where their velocities differ by less than this share of their speed, which is rounding.
 constexpr btScalar kTogether = btScalar(1e-3);
+/// A body does not turn where its rim moves by less than this share of that difference.
+constexpr btScalar kNotTurning = btScalar(1e-2);
 
 }  // namespace
 
@@ -101,11 +103,26 @@ std::array<int, 4> StepReach::leave_out_idle_of_links(FreshPoints& points) const
   });
 }
 
-void StepReach::leave_out_flying(FreshPoints& points) const {
-  if (all_) return;
+btScalar StepReach::noise_of_speeds() const { return kTogether * std::min(a_.velocity.length(), b_.velocity.length()); }
+
+bool StepReach::as_fast_as_each_other() const {
   const btScalar speed = std::min(a_.velocity.length(), b_.velocity.length());
-  const btScalar least = kFlying * std::max(a_.gained.length(), b_.gained.length()), noise = kTogether * speed;
-  if (!(speed > least) || (a_.velocity - b_.velocity).length() > noise) return;
+  const btScalar least = kFlying * std::max(a_.gained.length(), b_.gained.length());
+  return !all_ && speed > least && (a_.velocity - b_.velocity).length() <= noise_of_speeds();
+}
+
+bool StepReach::fly_together(btScalar radius) const {
+  const btScalar turn = std::max(a_.turn.length(), b_.turn.length());
+  return as_fast_as_each_other() && turn * radius <= kNotTurning * noise_of_speeds();
+}
+
+bool StepReach::may_be_stopped(const btVector3& normal) const {
+  return closing_alone(a_.centre, normal) > noise_of_speeds();
+}
+
+void StepReach::leave_out_flying(FreshPoints& points) const {
+  if (!as_fast_as_each_other()) return;
+  const btScalar noise = noise_of_speeds();
   keep_points(points, [&](const FreshPoint& point) {
     const bool touching = point.distance > -kTouching * threshold_;
     return !touching || closing_alone(point.point_on_b, point.normal) > noise;

@@ -59,7 +59,17 @@ class StepReach {
   /// Takes out the points that a link of a multibody does not need. Does nothing for rigid bodies.
   /// @return for each point that is left, the number that it had before.
   std::array<int, 4> leave_out_idle_of_links(FreshPoints& points) const;
-  /// Takes out the points of two boxes that fly together. Requires that the pair carried nothing in the last step.
+  /// True if both bodies fly, as fast as each other. False where points must not be left out.
+  [[nodiscard]] bool as_fast_as_each_other() const;
+  /// True if both bodies fly, as fast as each other, and neither turns but by rounding. False where points must not be
+  /// left out.
+  /// @param radius  of the larger body, about its centre
+  [[nodiscard]] bool fly_together(btScalar radius) const;
+  /// True if the own speed of one of two bodies that fly together leads against the other along a normal (unit, from B
+  /// to A): a third body that stops the other one would press them together.
+  [[nodiscard]] bool may_be_stopped(const btVector3& normal) const;
+  /// Takes out the points of two boxes that fly together which are not needed. Requires that the pair carried nothing
+  /// in the last step.
   void leave_out_flying(FreshPoints& points) const;
 
  private:
@@ -67,6 +77,8 @@ class StepReach {
   [[nodiscard]] btVector3 coming_at(const btVector3& place) const;
   /// @param near  up to which gap all are
   [[nodiscard]] bool is_needed(btScalar distance, btScalar closing, btScalar near) const;
+  /// Below this, a difference of two bodies' speeds is rounding.
+  [[nodiscard]] btScalar noise_of_speeds() const;
   /// How fast two bodies may come together at a place, if another contact stops one of them.
   [[nodiscard]] btScalar closing_alone(const btVector3& place, const btVector3& normal) const;
 
