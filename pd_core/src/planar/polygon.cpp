@@ -6,7 +6,7 @@
 #include <string>
 
 #include "pd/numeric/predicates.hpp"
-#include "planar/ring_check.hpp"
+#include "planar/ring_links.hpp"
 
 namespace pd {
 
@@ -96,13 +96,20 @@ std::string describe(const detail::RingFault& fault, const std::string& edge, co
   switch (fault.kind) {
     case Kind::crossing:
       return "the edges that start at " + edge + " and " + other + " cross; rings must not cross";
+    case Kind::overlapping:
+      return "the edges that start at " + edge + " and " + other +
+             " overlap along a segment; rings may touch in single points only";
     case Kind::touching:
     case Kind::meeting:
-      return "the rings touch at " + edge + " and " + other + "; they may not share a point";
+      return "the ring touches itself at " + edge + " and " + other + "; only different rings may share a point";
     case Kind::hole_outside:
       return "the hole of " + edge + " lies outside the outer ring or reaches out of it";
     case Kind::hole_in_hole:
-      return "the hole of " + edge + " starts inside the hole of " + other + "; holes must be apart";
+      return "the hole of " + edge + " starts inside the hole of " + other +
+             "; holes must be apart but for single points";
+    case Kind::cut_in_two:
+      return "the interior is cut in two by rings that touch, of which one is the hole of " + edge +
+             "; give each connected part as a polygon of its own";
   }
   return {};
 }
@@ -143,20 +150,49 @@ Expected<Polygon> Polygon::from_rings(std::span<const Point2> outer, std::span<c
     }
     r.ring_start_.push_back(begin + size);
   }
-  if (const auto fault = detail::find_ring_fault({r.points_, r.next_, r.previous_, ring_of})) {
-    using Kind = detail::RingFault::Kind;
-    const bool edges = fault->kind == Kind::crossing || fault->kind == Kind::touching;
-    const auto named = [&](int v) { return edges ? r.caller_edge(v) : r.caller_id(v); };
-    const VertexId first = named(fault->edge);
-    const std::string other = fault->other_edge < 0 ? "" : edge_name(named(fault->other_edge));
-    return Error{ErrorCode::bad_value, describe(*fault, edge_name(first), other), edge_name(first)};
+  // Named while the corners are still those that the caller gave.
+  for (int v = 0; v < r.num_vertices(); ++v) {
+    const int second = r.next(v), third = r.next(second);
+    const std::int32_t x = r.caller_id(v).index, y = r.caller_id(second).index, z = r.caller_id(third).index;
+    const bool ascending = (x < y && y < z) || (y < z && z < x) || (z < x && x < y);
+    r.caller_edge_.push_back(r.caller_id(ascending ? v : second));
   }
+  const detail::Rings flat{r.points_, r.next_, r.previous_, ring_of};
+  detail::RingCheck check = detail::check_rings(flat);
+  detail::RingLinks links;
+  if (!check.fault && check.shared_points) {
+    links = detail::link_touching_rings(flat, check.touches);
+    check.fault = links.fault;
+  }
+  if (check.fault) {
+    using Kind = detail::RingFault::Kind;
+    const detail::RingFault& fault = *check.fault;
+    const bool edges = fault.kind == Kind::crossing || fault.kind == Kind::overlapping || fault.kind == Kind::touching;
+    const auto named = [&](int v) { return edges ? r.caller_edge(v) : r.caller_id(v); };
+    const VertexId first = named(fault.edge);
+    const std::string other = fault.other_edge < 0 ? "" : edge_name(named(fault.other_edge));
+    return Error{ErrorCode::bad_value, describe(fault, edge_name(first), other), edge_name(first)};
+  }
+  if (check.shared_points) r.take(std::move(links));
   r.convex_ = r.num_rings() == 1;
   for (int v = 0; v < r.num_vertices(); ++v) {
     r.turn_.push_back(static_cast<std::int8_t>(orient2d(r.point(r.previous(v)), r.point(v), r.point(r.next(v)))));
     if (r.turn_.back() < 0) r.convex_ = false;
   }
   return r;
+}
+
+void Polygon::take(detail::RingLinks links) {
+  std::vector<VertexId> ids, edges;
+  for (const std::int32_t v : links.vertex) ids.push_back(caller_id(v));
+  for (const std::int32_t v : links.edge) edges.push_back(caller_edge(v));
+  points_ = std::move(links.points);
+  ring_start_ = std::move(links.ring_start);
+  next_ = std::move(links.next);
+  previous_ = std::move(links.previous);
+  next_here_ = std::move(links.next_here);
+  caller_id_ = std::move(ids);
+  caller_edge_ = std::move(edges);
 }
 
 }  // namespace pd

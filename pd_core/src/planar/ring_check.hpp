@@ -1,6 +1,6 @@
 /// @file
-/// Do rings cross, touch, or lie where they must not? A plane sweep (Shamos and Hoey, "Geometric intersection
-/// problems", 1976) on exact orientation signs, in time O(n log n).
+/// Do rings cross, overlap, or lie where they must not, and where do they touch? A plane sweep (Shamos and Hoey,
+/// "Geometric intersection problems", 1976) on exact orientation signs, in time O(n log n).
 #pragma once
 
 #include <optional>
@@ -22,12 +22,32 @@ struct Rings {
 };
 
 struct RingFault {
-  enum class Kind { crossing, touching, meeting, hole_outside, hole_in_hole } kind;
+  enum class Kind { crossing, overlapping, touching, meeting, hole_outside, hole_in_hole, cut_in_two } kind;
   int edge;        ///< by its first vertex; where vertices meet and of holes, the vertex
   int other_edge;  ///< -1 where there is none
 };
 
-/// The first fault along the sweep, or nothing when the rings bound a polygon.
-[[nodiscard]] std::optional<RingFault> find_ring_fault(const Rings& rings);
+/// A vertex of another ring inside an edge.
+struct RingTouch {
+  int edge;
+  int vertex;
+};
+
+struct RingCheck {
+  std::optional<RingFault> fault;  ///< the first one along the sweep
+  std::vector<RingTouch> touches;  ///< along the sweep
+  bool shared_points = false;      ///< vertices of different rings coincide, or there are touches
+};
+
+[[nodiscard]] RingCheck check_rings(const Rings& rings);
+
+/// A direction from a point where rings touch: along the edge that leaves it, or back along the one that arrives.
+struct RingDirection {
+  int vertex;  ///< of the corner; of an edge that passes, its first vertex
+  Point2 to;
+  bool out;
+};
+/// Sorts directions counter-clockwise, beginning just after straight down. Those on one line stay side by side.
+void sort_around(const Point2& centre, std::vector<RingDirection>& directions);
 
 }  // namespace pd::detail

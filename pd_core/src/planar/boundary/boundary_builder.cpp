@@ -104,7 +104,8 @@ void BoundaryBuilder::next_sum() {
   crossed_.clear();
 }
 
-/// The displaced edge that starts at vertex v, and the arc at v where P is convex there.
+/// The displaced edge that starts at vertex v, and the arc at v where P is convex there. If rings touch there, the arc
+/// is the first vertex's: it holds the directions in which no part of P at the point lies farther.
 void BoundaryBuilder::add_arc_candidates(int v) {
   const std::int32_t owner = triangulation_.owner[at(v)];
   const ConvexSum& sum = r_.sums_[at(owner)];
@@ -112,15 +113,35 @@ void BoundaryBuilder::add_arc_candidates(int v) {
   while (sum.corners()[at(a)] != v) ++a;
   const int edge = sum.edge_of_corner(a);
   r_.candidates_.push_back({owner, edge, 1, 2 * v});
-  if (p_.turn(v) < 0) return;
-  // -B's edges strictly between the directions of P's edges into v and out of it; they come just before the latter.
-  const NegatedChain& chain = sum.chain();
+  if (p_.first_here(v) != v) return;
+  const ChainRange own = arc_at(sum.chain(), v);
+  ChainRange common = own;
+  for (int w = p_.next_here(v); w != v; w = p_.next_here(w)) {
+    common = common.in_common(arc_at(sum.chain(), w), sum.chain().size());
+  }
+  if (common.count <= 0) return;
+  // The arc's edges come just before the edge out of v.
+  const int skipped = (common.first - own.first + sum.chain().size()) % sum.chain().size();
+  r_.candidates_.push_back({owner, (edge - own.count + skipped + sum.size()) % sum.size(), common.count, 2 * v + 1});
+}
+
+/// -B's edges strictly between the directions of P's edges into v and out of it; none where P is not convex there.
+BoundaryBuilder::ChainRange BoundaryBuilder::arc_at(const NegatedChain& chain, int v) const {
+  if (p_.turn(v) <= 0) return {0, 0};
   const PlaneDirection in{p_.point(p_.previous(v)), p_.point(v)}, out{p_.point(v), p_.point(p_.next(v))};
   int after_in = chain.edges_before(in);
   if (after_in < chain.size() && compare_angles(chain.edge(after_in), in) == 0) ++after_in;
   int count = chain.edges_before(out) - after_in;
   if (compare_angles(in, out) > 0) count += chain.size();
-  if (count > 0) r_.candidates_.push_back({owner, (edge - count + sum.size()) % sum.size(), count, 2 * v + 1});
+  return {after_in % chain.size(), std::max(0, count)};
+}
+
+/// Both turn by less than 180 degrees, so that what they have in common is one range.
+BoundaryBuilder::ChainRange BoundaryBuilder::ChainRange::in_common(const ChainRange& other, int size) const {
+  const int ahead = (other.first - first + size) % size;
+  const int from_other = std::min(count, ahead + other.count) - ahead;
+  if (from_other > 0) return {other.first, from_other};
+  return {first, std::min(count, ahead + other.count - size)};
 }
 
 /// The id of the candidate that an edge of a sum is a part of, or -1: it then lies inside some other sum.
@@ -129,11 +150,16 @@ int BoundaryBuilder::candidate_at(int sum_index, int edge) const {
   const ConvexSum::Parts parts = sum.parts(edge);
   const std::int32_t v = sum.corners()[at(parts.a)];
   if (parts.of_triangle) return p_.next(v) == next_corner(sum, parts.a) ? 2 * v : -1;
-  if (p_.turn(v) < 0) return -1;
   const PlaneDirection d = sum.chain().edge(parts.b);
-  const bool between = cross_sign({p_.point(p_.previous(v)), p_.point(v)}, d) > 0 &&
-                       cross_sign(d, {p_.point(v), p_.point(p_.next(v))}) > 0;
-  return between ? 2 * v + 1 : -1;
+  int first = v;
+  for (int w = v;;) {
+    const bool between = p_.turn(w) > 0 && cross_sign({p_.point(p_.previous(w)), p_.point(w)}, d) > 0 &&
+                         cross_sign(d, {p_.point(w), p_.point(p_.next(w))}) > 0;
+    if (!between) return -1;
+    first = std::min(first, w);
+    w = p_.next_here(w);
+    if (w == v) return 2 * first + 1;
+  }
 }
 
 // While Q slides along the candidate, a point x of it, x + Q covers the candidate's points + Q. Measured along x, y and

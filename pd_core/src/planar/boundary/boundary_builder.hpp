@@ -23,6 +23,12 @@ class BoundaryBuilder {
   void build_explicit(std::int64_t max_comparisons);
 
  private:
+  /// Consecutive edges of -B, modulo their number.
+  struct ChainRange {
+    int first, count;
+    [[nodiscard]] ChainRange in_common(const ChainRange& other, int size) const;
+  };
+  [[nodiscard]] ChainRange arc_at(const NegatedChain& chain, int vertex) const;
   void add_arc_candidates(int vertex);
   void add_edge_candidates();
   /// All sums, to be searched for those near a candidate.

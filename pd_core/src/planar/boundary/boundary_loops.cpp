@@ -1,5 +1,6 @@
 // Stretches into closed curves: the end of each is the start of another, and equality of such points is decided
 // exactly.
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <unordered_map>
@@ -36,10 +37,13 @@ double round_point(Junction& j, double scale) {
   if (w > 0) {
     j.rounded = {e.x.value / e.w.value, e.y.value / e.w.value};
     double error = 0;
+    bool good = true;  // false where something overflowed to NaN, which no maximum would keep
     for (const auto& [c, value] : {std::pair{e.x, j.rounded[0]}, std::pair{e.y, j.rounded[1]}}) {
-      error = std::max(error, (c.error + std::abs(value) * e.w.error) / w + 0x1p-51 * std::abs(value));
+      const double bound = (c.error + std::abs(value) * e.w.error) / w + 0x1p-51 * std::abs(value);
+      good = good && bound <= 0x1p-40 * scale;
+      error = std::max(error, bound);
     }
-    if (error <= 0x1p-40 * scale) return error;
+    if (good) return error;
   }
   const auto x = point_at<Dyadic>(j.span, j.place);
   j.rounded = {quotient(x.x, x.w), quotient(x.y, x.w)};
@@ -153,7 +157,8 @@ class Linker {
   double cell_ = 0;
 };
 
-/// The stretch with an edge that starts at the least point of R, which is P's least vertex less Q's greatest.
+/// The stretch with an edge that starts at the least point of R, which is P's least vertex less Q's greatest. If
+/// rings touch there, several may start at it: the lowest one has the unbounded face on its right.
 int outer_stretch(const SumBoundary& boundary, const std::vector<Stretch>& stretches) {
   const SumPoint* least = nullptr;
   std::vector<SumPoint> zeroth;
@@ -161,6 +166,8 @@ int outer_stretch(const SumBoundary& boundary, const std::vector<Stretch>& stret
   for (const SumPoint& x : zeroth) {
     if (least == nullptr || x.p < least->p || (x.p == least->p && least->q < x.q)) least = &x;
   }
+  int best = -1;
+  PlaneDirection lowest;
   for (int i = 0; i < static_cast<int>(stretches.size()); ++i) {
     const Stretch& s = stretches[at(i)];
     const Candidate& c = boundary.candidate(s);
@@ -175,11 +182,15 @@ int outer_stretch(const SumBoundary& boundary, const std::vector<Stretch>& stret
         continue;
       }
       const SumPoint x = boundary.sum(c).vertex(0);
-      if (x.p == least->p && x.q == least->q) return i;
+      if (x.p != least->p || x.q != least->q) continue;
+      const PlaneDirection d = boundary.sum(c).direction(0);
+      if (best >= 0 && compare_angles(d, lowest) >= 0) continue;
+      best = i;
+      lowest = d;
     }
   }
-  assert(false);
-  return 0;
+  assert(best >= 0);
+  return std::max(best, 0);
 }
 
 }  // namespace

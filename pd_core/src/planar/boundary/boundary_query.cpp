@@ -60,11 +60,14 @@ void BoundaryQuery::add_ray_items() {
       const auto x = point_at<Estimate>(e, *place);
       const double w = std::abs(x.w.value) - x.w.error;
       const Point2 middle = {x.x.value / x.w.value, x.y.value / x.w.value};
-      const double error = std::max((x.x.error + std::abs(middle[0]) * x.w.error) / w + 0x1p-52 * std::abs(middle[0]),
-                                    (x.y.error + std::abs(middle[1]) * x.w.error) / w + 0x1p-52 * std::abs(middle[1]));
+      const auto bound = [&](double e, double value) {
+        return (e + std::abs(value) * x.w.error) / w + 0x1p-52 * std::abs(value);
+      };
+      const double error_x = bound(x.x.error, middle[0]), error_y = bound(x.y.error, middle[1]);
+      const double error = std::max(error_x, error_y);
       // Crossings at small angles err by more than others; the size says by how much, so that they are good all the
       // same.
-      if (w > 0 && error <= 0x1p-24 * ends.size) {
+      if (w > 0 && error_x <= 0x1p-24 * ends.size && error_y <= 0x1p-24 * ends.size) {  // both: one may be NaN
         *rounded = middle;
         ends.size = std::max(ends.size, 0x1p52 * error);
       } else {

@@ -29,7 +29,10 @@ class Region {
     latest_.assign(id_.size(), -1);
     is_merge_.assign(id_.size(), false);
     for (std::int32_t v = 0; v < static_cast<std::int32_t>(id_.size()); ++v) order_.push_back(v);
-    std::sort(order_.begin(), order_.end(), [&](int a, int b) { return point(a) < point(b); });
+    // Corners at one point are passed as if each were moved a little into its own part of the region.
+    std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+      return point(a) != point(b) ? point(a) < point(b) : rank(a) != rank(b) ? rank(a) < rank(b) : a < b;
+    });
   }
 
   void cut(std::vector<std::array<std::int32_t, 3>>& triangles) {
@@ -48,6 +51,14 @@ class Region {
   [[nodiscard]] int previous(int v) const { return previous_[at(v)]; }
   [[nodiscard]] int side(int a, int b, int c) const { return orient2d(point(a), point(b), point(c)); }
 
+  /// Into which part of the plane round its point a corner's region reaches: 0 to the left alone or nearly all round,
+  /// 2 to the right in the same way, 1 up or down.
+  [[nodiscard]] int rank(int v) const {
+    const bool in_from_left = point(previous(v)) < point(v);
+    if (in_from_left != (point(next(v)) < point(v))) return 1;
+    return in_from_left == (side(previous(v), v, next(v)) > 0) ? 0 : 2;
+  }
+
   /// The status holds the edges that run rightwards, by their first vertex: the region lies above each.
   struct Probe {
     int vertex;
@@ -58,7 +69,8 @@ class Region {
     bool operator()(int e, int f) const {
       if (e == f) return false;
       if (region->point(e) < region->point(f)) return region->side(e, region->next(e), f) > 0;
-      return region->side(f, region->next(f), e) < 0;
+      const int side = region->side(f, region->next(f), e);
+      return side != 0 ? side < 0 : region->side(f, region->next(f), region->next(e)) < 0;
     }
     bool operator()(int e, Probe p) const { return region->side(e, region->next(e), p.vertex) > 0; }
     bool operator()(Probe p, int e) const { return region->side(e, region->next(e), p.vertex) < 0; }

@@ -14,10 +14,25 @@ namespace pd::detail {
 
 namespace {
 
-std::vector<std::int32_t> ring_ids(const Polygon& polygon, int ring, bool reversed) {
-  std::vector<std::int32_t> ids(at(polygon.ring_end(ring) - polygon.ring_begin(ring)));
-  std::iota(ids.begin(), ids.end(), polygon.ring_begin(ring));
-  if (reversed) std::reverse(ids.begin(), ids.end());
+/// The boundary as closed walks round the interior.
+std::vector<std::vector<std::int32_t>> walks_of(const Polygon& polygon) {
+  std::vector<std::vector<std::int32_t>> walks;
+  std::vector<bool> walked(at(polygon.num_vertices()), false);
+  for (std::int32_t first = 0; first < polygon.num_vertices(); ++first) {
+    if (walked[at(first)]) continue;
+    walks.emplace_back();
+    for (std::int32_t v = first; !walked[at(v)]; v = polygon.next(v)) {
+      walked[at(v)] = true;
+      walks.back().push_back(v);
+    }
+  }
+  return walks;
+}
+
+/// A ring as it was given, turned round for what lies beyond it, each point by its first vertex.
+std::vector<std::int32_t> beyond_ring(const Polygon& polygon, int ring) {
+  std::vector<std::int32_t> ids;
+  for (int v = polygon.ring_end(ring) - 1; v >= polygon.ring_begin(ring); --v) ids.push_back(polygon.first_here(v));
   return ids;
 }
 
@@ -39,14 +54,19 @@ std::array<Point2, 4> enclosing_box(std::span<const Point2> points) {
   return {low, Point2{high[0], low[1]}, high, Point2{low[0], high[1]}};
 }
 
-void link_neighbours(std::vector<Triangle>& triangles) {
+/// Triangles on both sides of an edge may have its ends as different vertices, at the same points.
+void link_neighbours(const Polygon& polygon, std::vector<Triangle>& triangles) {
   struct Side {
     std::int32_t low, high, triangle, edge;
   };
   std::vector<Side> sides;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
     for (std::int32_t k = 0; k < 3; ++k) {
-      const std::int32_t a = triangles[at(t)].vertex[at(k)], b = triangles[at(t)].vertex[at((k + 1) % 3)];
+      const auto end = [&](std::int32_t corner) {
+        const std::int32_t v = triangles[at(t)].vertex[at(corner)];
+        return v < polygon.num_vertices() ? polygon.first_here(v) : v;
+      };
+      const std::int32_t a = end(k), b = end((k + 1) % 3);
       sides.push_back({std::min(a, b), std::max(a, b), t, k});
     }
   }
@@ -150,25 +170,22 @@ Triangulation triangulate(const Polygon& polygon, bool with_outside) {
   r.points.assign(polygon.points().begin(), polygon.points().end());
   for (const Point2& corner : enclosing_box(polygon.points())) r.points.push_back(corner);
 
-  std::vector<std::vector<std::int32_t>> rings;
-  for (int ring = 0; ring < polygon.num_rings(); ++ring) rings.push_back(ring_ids(polygon, ring, false));
   std::vector<std::array<std::int32_t, 3>> corners;
-  triangulate_region(r.points, rings, corners);
+  triangulate_region(r.points, walks_of(polygon), corners);
   r.num_inside = static_cast<int>(corners.size());
   if (with_outside) {
     const std::int32_t box = polygon.num_vertices();
-    const std::vector<std::vector<std::int32_t>> around = {{box, box + 1, box + 2, box + 3},
-                                                           ring_ids(polygon, 0, true)};
+    const std::vector<std::vector<std::int32_t>> around = {{box, box + 1, box + 2, box + 3}, beyond_ring(polygon, 0)};
     triangulate_region(r.points, around, corners);
     for (int ring = 1; ring < polygon.num_rings(); ++ring) {
-      const std::vector<std::vector<std::int32_t>> hole = {ring_ids(polygon, ring, true)};
+      const std::vector<std::vector<std::int32_t>> hole = {beyond_ring(polygon, ring)};
       triangulate_region(r.points, hole, corners);
     }
   }
   for (std::size_t t = 0; t < corners.size(); ++t) {
     r.triangles.push_back({corners[t], {-1, -1, -1}, static_cast<int>(t) < r.num_inside});
   }
-  link_neighbours(r.triangles);
+  link_neighbours(polygon, r.triangles);
   Flips(r.points, r.triangles).run();
 
   r.owner.assign(at(polygon.num_vertices()), -1);

@@ -16,7 +16,9 @@
 namespace pd::detail {
 
 struct Triangle {
-  std::array<std::int32_t, 3> vertex;     ///< counter-clockwise
+  /// Counter-clockwise. If rings touch, a triangle inside has the vertex of its own corner, one outside the first
+  /// vertex at the point.
+  std::array<std::int32_t, 3> vertex;
   std::array<std::int32_t, 3> neighbour;  ///< across the edge from vertex[k] to vertex[k + 1]; -1 past the box
   bool inside;                            ///< in the polygon
 };
