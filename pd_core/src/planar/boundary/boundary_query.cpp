@@ -60,8 +60,8 @@ void BoundaryQuery::add_ray_items() {
       const auto x = point_at<Estimate>(e, *place);
       const double w = std::abs(x.w.value) - x.w.error;
       const Point2 middle = {x.x.value / x.w.value, x.y.value / x.w.value};
-      const auto bound = [&](double e, double value) {
-        return (e + std::abs(value) * x.w.error) / w + 0x1p-52 * std::abs(value);
+      const auto bound = [&](double rounding, double value) {
+        return (rounding + std::abs(value) * x.w.error) / w + 0x1p-52 * std::abs(value);
       };
       const double error_x = bound(x.x.error, middle[0]), error_y = bound(x.y.error, middle[1]);
       const double error = std::max(error_x, error_y);
