@@ -5,16 +5,21 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "audit/audit_answer.hpp"
 #include "mesh/hull_note.hpp"
 #include "mesh/mesh_file.hpp"
+#include "pd/solid/solid_parts.hpp"
 #include "protocol/answer_line.hpp"
+#include "protocol/solid_reader.hpp"
 #include "python/arrays.hpp"
 #include "python/rows.hpp"
 #include "support/refusal.hpp"
@@ -55,6 +60,57 @@ py::tuple mesh_points(const std::string& path, bool check) {
   } catch (const query::Refusal& refusal) {
     refuse(refusal.code, refusal.message, path);
   }
+}
+
+/// Scales the points of a mesh along the axes. The faces of a mirrored mesh run the other way.
+void rescale(query::MeshPoints& mesh, const Vec3& scale) {
+  for (Vec3& point : mesh.points) point = point.cwiseProduct(scale);
+  if (scale.prod() > 0) return;
+  for (std::size_t f = 0; f + 1 < mesh.faces.offsets.size(); ++f) {
+    std::reverse(mesh.faces.corners.begin() + mesh.faces.offsets[f],
+                 mesh.faces.corners.begin() + mesh.faces.offsets[f + 1]);
+  }
+}
+
+Array vertices_of(const ConvexPolytope& polytope) {
+  Array points({static_cast<py::ssize_t>(polytope.num_vertices()), py::ssize_t{3}});
+  for (int v = 0; v < polytope.num_vertices(); ++v) {
+    for (int k = 0; k < 3; ++k) points.mutable_at(v, k) = polytope.vertex(v)[k];
+  }
+  return points;
+}
+
+/// The solid of a closed mesh as vertices of convex parts, one part where the mesh is convex. The parts cover the
+/// solid and reach at most about `tolerance` beyond it; they are the solid exactly where doubles hold their corners.
+py::list mesh_parts(const std::string& path, py::handle scale, double tolerance) {
+  const Vec3 factors = read_vector(scale, "scale");
+  const query::Limits limits;
+  py::list parts;
+  try {
+    query::MeshPoints mesh = query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
+    if (mesh.faces.size() == 0)
+      query::refuse("bad_faces", "the file has points and no faces, so that it bounds no solid", "");
+    rescale(mesh, factors);
+    std::optional<SolidParts> solid;
+    query::MeshBody body;
+    {
+      const py::gil_scoped_release unlocked;
+      body = query::body_of_mesh(std::move(mesh), path, {.hull_words = "meshes=\"hull\""});
+      if (body.solid) {
+        auto cut = SolidParts::from_solid(*body.solid, {.tolerance = tolerance});
+        if (!cut) query::refuse(to_string(cut.error().code), cut.error().message, "");
+        solid = std::move(cut).value();
+      }
+    }
+    if (!solid) {
+      parts.append(vertices_of(*body.hull->shape.polytope()));
+    } else {
+      for (const Compound::Part& part : solid->outer().parts()) parts.append(vertices_of(*part.shape.polytope()));
+    }
+  } catch (const query::Refusal& refusal) {
+    refuse(refusal.code, refusal.message, path);
+  }
+  return parts;
 }
 
 struct Input {
@@ -108,5 +164,6 @@ PYBIND11_MODULE(_protocol, module) {
   module.def("answer", &pd::python::answer);
   module.def("answer_many", &pd::python::answer_many);
   module.def("mesh_points", &pd::python::mesh_points);
+  module.def("mesh_parts", &pd::python::mesh_parts);
   module.def("audit", &pd::python::audit);
 }

@@ -1,13 +1,26 @@
 """A wheel, and pip install of the source tree: what comes out runs without the tree."""
 import os
 import pathlib
+import re
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 import pytest
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 BUILT = TOP / "build" / "release"
+
+
+def test_colcon_finds_a_package_of_the_same_version():
+    package = ElementTree.parse(TOP / "package.xml").getroot()
+    assert package.tag == "package" and package.get("format") == "3"
+    assert package.findtext("name") == "pdepth" and package.findtext("export/build_type") == "cmake"
+    version = re.search(r"project\(pdepth VERSION ([\d.]+)", (TOP / "CMakeLists.txt").read_text())[1]
+    assert package.findtext("version") == version
+    assert f'version = "{version}"' in (TOP / "pyproject.toml").read_text()
+    assert package.find("maintainer").get("email") and package.findtext("license") == "Zlib"
+    assert {"eigen", "boost"} <= {each.text for each in package.findall("depend")}
 
 
 @pytest.mark.skipif(not (BUILT / "CMakeCache.txt").exists(), reason="needs the objects of build/release")

@@ -30,7 +30,8 @@ def test_functions_have_the_parameters_of_their_stubs():
 
 
 def test_classes_have_the_members_of_their_stubs():
-    of_objects = {"Answer", "DirectionalDepth", "Manifold", "Derivatives", "Batch", "Sweep", "Refused"}  # set when made
+    of_objects = {"Answer", "DirectionalDepth", "Manifold", "Derivatives", "Batch", "Sweep", "Refused", "Robot",
+                  "RobotDistances"}  # set when made
     for node in TREE.body:
         if isinstance(node, ast.ClassDef) and node.name not in of_objects:
             for member in node.body:

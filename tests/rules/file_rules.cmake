@@ -13,7 +13,7 @@ cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
 
 set(rooms CMakeLists.txt engine_glue pd_core packaging demos tests render README.md)
-set(tool_files CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff pyproject.toml SECURITY.md)
+set(tool_files CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff package.xml pyproject.toml SECURITY.md)
 set(ignored_by_git build out compile_commands.json)
 set(max_lines 500)
 set(max_units 25)

@@ -9,7 +9,7 @@ set(wrong 0)
 macro(expect script file content report)
   file(REMOVE_RECURSE ${WORK})
   foreach(entry CMakeLists.txt README.md pyproject.toml CMakePresets.json LICENSE CHANGELOG.md CONTRIBUTING.md CITATION.cff
-                SECURITY.md engine_glue/CMakeLists.txt packaging/release.sh
+                SECURITY.md package.xml engine_glue/CMakeLists.txt packaging/release.sh
                 demos/CMakeLists.txt tests/CMakeLists.txt render/CMakeLists.txt pd_core/CMakeLists.txt)
     file(WRITE ${WORK}/${entry} "")
   endforeach()

@@ -6,6 +6,8 @@ from typing import Any, Callable, Iterable, Iterator, Literal, Mapping, Optional
 import numpy as np
 import numpy.typing as npt
 
+from . import record as record
+
 __version__: str
 ERRORS: Tuple[str, ...]
 CONTACTS: Tuple[str, str, str]
@@ -135,6 +137,36 @@ class Batch:
 
 class RowBatch(Batch):
     def of_row(self, i: int) -> dict[str, Any]: ...
+
+class RobotDistances(Batch):
+    signed_distance: Floats
+    lower: Floats
+    upper: Floats
+    normal: Floats
+    witness_a: Floats
+    witness_b: Floats
+    pair: npt.NDArray[np.int64]
+    by_q: Floats
+    unique: npt.NDArray[np.bool_]
+
+class Robot:
+    name: str
+    links: Tuple[str, ...]
+    joints: Tuple[str, ...]
+    coordinates: Tuple[str, ...]
+    limits: Floats
+    pairs: Tuple[Tuple[str, str], ...]
+    @classmethod
+    def from_urdf(cls, path: Union[str, os.PathLike[str]], *, srdf: Union[None, str, os.PathLike[str]] = ...,
+                  package_roots: Union[None, str, os.PathLike[str], Sequence[Union[str, os.PathLike[str]]],
+                                       Mapping[str, Union[str, os.PathLike[str]]]] = ...,
+                  meshes: Literal["solid", "hull"] = ..., tolerance: float = ...) -> Robot: ...
+    @property
+    def dof(self) -> int: ...
+    def shape(self, link: str) -> Optional[Shape]: ...
+    def poses(self, q: npt.ArrayLike) -> Floats: ...
+    def distances(self, q: npt.ArrayLike, *, pairs: Optional[Iterable[Tuple[str, str]]] = ..., nearest: bool = ...,
+                  derivatives: bool = ..., bracket: Bracket = ..., threads: Optional[int] = ...) -> RobotDistances: ...
 
 class Answer:
     def __getattr__(self, name: str) -> Any: ...

@@ -1,0 +1,145 @@
+"""Robots: links with collision shapes, forward kinematics, and signed distances of their pairs of links."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._errors import refused
+from ._queries import _threads
+from ._robot_bodies import body_of, one_shape
+from ._robot_distances import How, Question, RobotDistances, refuse_rows
+from ._robot_model import allowed_pairs
+from ._robot_tree import Tree
+
+
+class Robot:
+    """A tree of links and joints with collision shapes, read by from_urdf. Immutable.
+
+    name; links, joints: names. coordinates: names of the numbers of a joint vector q, in metres or radians, dof of them.
+    limits: [dof, 2], which bound no question. pairs: the pairs of links that `distances` asks, which are those with
+    shapes that move against each other, without adjacent links (no third link with a shape between them along the joints)
+    and without those that an SRDF file disables.
+
+    A revolute, continuous or prismatic joint has one coordinate. A planar joint has three: two places in the plane across
+    its axis, and an angle. A floating joint has six: a place, and a rotation vector (axis times angle). A joint that
+    mimics another has none.
+    """
+
+    def __init__(self, model):
+        self._tree = Tree(model)
+        self._bodies = [body_of(link) for link in model.links]
+        self._pairs = allowed_pairs(model)
+        self.name = model.name
+        self.links = tuple(link.name for link in model.links)
+        self.joints = tuple(joint.name for joint in self._tree.joints)
+        self.coordinates, self.limits = tuple(self._tree.coordinates), self._tree.limits
+        self.pairs = tuple((self.links[i], self.links[j]) for i, j in self._pairs)
+
+    @classmethod
+    def from_urdf(cls, path, *, srdf=None, package_roots=None, meshes="solid", tolerance=0.0):
+        """Reads a URDF file.
+
+        srdf: an SRDF file, whose disable_collisions leave out pairs. package_roots: {package: its folder}, or a folder, or
+        a list of folders, that hold packages; meshes lie below these or the file's own folder. meshes: "solid" cuts
+        closed meshes that are not convex into convex parts, which reach at most about `tolerance` beyond the solid (fewer
+        parts); "hull" takes the convex hulls.
+
+        Raises Refused with file and line: 'unreadable_file', 'missing_field' (a package without a root, too), 'bad_value',
+        'non_finite', 'unsupported', and what a mesh's reader says.
+        """
+        from ._robot_meshes import Meshes
+        from ._robot_urdf import read_srdf, read_urdf
+
+        model = read_urdf(path, Meshes(path, package_roots, meshes, tolerance))
+        if srdf is not None:
+            read_srdf(srdf, model)
+        return cls(model)
+
+    @property
+    def dof(self):
+        """The number of coordinates."""
+        return len(self.coordinates)
+
+    def __repr__(self):
+        return f"<Robot {self.name!r}: {len(self.links)} links, {self.dof} coordinates, {len(self.pairs)} pairs>"
+
+    def shape(self, link):
+        """The collision shape of a link, in the link's frame; None for a link without one."""
+        return one_shape(self._bodies[self._link(link, "link")])
+
+    def poses(self, q):
+        """Poses of all links for joint vectors: [..., dof] to [..., links, 4, 4], in the root link's frame.
+
+        Raises Refused: 'bad_value' for a wrong number of coordinates, 'non_finite' at q[i].
+        """
+        q, lead = self._vectors(q)
+        _require_finite(q, lead)
+        frames, _ = self._tree.frames(q)
+        return np.moveaxis(frames, 0, 1).reshape((*lead, len(self.links), 4, 4))
+
+    def distances(self, q, *, pairs=None, nearest=False, derivatives=False, bracket="certified", threads=None):
+        """Signed distances of pairs of links for joint vectors [..., dof]: positive apart, minus the depth where they overlap.
+
+        Answers RobotDistances [..., pairs]: signed_distance, its certified bracket lower and upper, normal (from the second
+        link to the first), witness_a, witness_b, pair (a row of the pairs asked), and error. In a batch, a joint vector that
+        is not finite is its rows' error. pairs: pairs of names to ask, instead of the robot's own. nearest=True answers
+        the pair of the least signed distance alone, for [...]; balls around the links tell which pairs need no question.
+
+        derivatives=True adds by_q [..., dof], from normals and witness points, and `unique`, where the derivative is
+        proved to exist. Where several points are as near, such as on parallel faces, by_q is that of one pair of them.
+        Links of several shapes are never proved unique.
+
+        bracket: "certified" (as narrow as rounding for polytopes and capsules, 1e-6 of the depth for curved bodies), or
+        "tightest" or "contact" as in depth; derivatives have the tightest. Work is spread over `threads` cores, all by
+        default; the bits are the same for any number.
+
+        Raises Refused: 'bad_value' for a wrong number of coordinates, an unknown link, or a link without a shape.
+        """
+        q, lead = self._vectors(q)
+        asked, threads = self._pairs if pairs is None else self._named(pairs), _threads(threads)
+        if not lead:
+            _require_finite(q, lead)
+        if nearest and not asked:
+            raise refused("pairs: there are none, so that none is nearest (bad_value)")
+        bad = ~np.isfinite(q).all(axis=1)
+        question = Question(self._tree, self._bodies, np.where(bad[:, None], 0.0, q), asked, How(bracket, threads))
+        columns = question.nearest(derivatives) if nearest else question.all(derivatives)
+        refuse_rows(columns, bad)
+        own = 1 if nearest else 2  # dimensions of a column that are rows of the batch
+        flat = {name: column.reshape((-1, *column.shape[own:])) for name, column in columns.items()}
+        return RobotDistances(flat, lead if nearest else (*lead, len(asked)))
+
+    def _link(self, name, argument):
+        if name not in self.links:
+            raise refused(f"{argument}: the robot has no link {name!r}; its links: {', '.join(self.links)} (bad_value)")
+        return self.links.index(name)
+
+    def _named(self, pairs):
+        asked = []
+        for i, pair in enumerate(pairs):
+            if isinstance(pair, str) or len(pair) != 2 or pair[0] == pair[1]:
+                raise refused(f"pairs[{i}]: must be the names of two links, not {pair!r} (bad_value)")
+            asked.append(tuple(self._link(name, f"pairs[{i}]") for name in pair))
+            for name, link in zip(pair, asked[-1]):
+                if self._bodies[link] is None:
+                    raise refused(f"pairs[{i}]: the link {name!r} has no collision shape (bad_value)")
+        return asked
+
+    def _vectors(self, q):
+        """Joint vectors as [n, dof], and their leading dimensions."""
+        try:
+            array = np.asarray(q)
+        except ValueError:
+            raise refused(f"q: rows of different lengths; give [..., {self.dof}] (bad_value)") from None
+        if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
+            raise refused(f"q: dtype {array.dtype} is not taken; give float64 (bad_value)")
+        if array.ndim < 1 or array.shape[-1] != self.dof:
+            raise refused(f"q: has shape {array.shape}, needs [..., {self.dof}]: {', '.join(self.coordinates)} (bad_value)")
+        return array.astype(float).reshape((int(np.prod(array.shape[:-1])), self.dof)), array.shape[:-1]
+
+
+def _require_finite(q, lead):
+    bad = np.argwhere(~np.isfinite(q))
+    if len(bad):
+        place = (*np.unravel_index(bad[0, 0], lead), bad[0, 1]) if lead else bad[0, 1:]
+        raise refused(f"q[{', '.join(str(int(i)) for i in place)}]: must be finite (non_finite)")
