@@ -286,6 +286,8 @@ def test_a_mesh_that_is_not_convex_stays_a_solid(read, tmp_path):
     assert np.allclose(solid.signed_distance[:, 0], [0.15, -0.1, -0.05], rtol=0, atol=1e-9)
     hull = read(text, meshes="hull").distances(q, pairs=pair)
     assert hull.signed_distance[0, 0] < 0 and read(text, meshes="hull").shape("a").is_convex
+    coarse = read(text, tolerance=2.0)  # one part, which covers the solid
+    assert coarse.shape("a").is_convex and coarse.distances(q, pairs=pair).signed_distance[0, 0] < 0
     (tmp_path / "L.obj").write_text(corner(7))
     with pytest.raises(pdepth.Refused, match="has a hole there") as caught:
         read(text)

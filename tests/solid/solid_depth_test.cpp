@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "pd/compound/compound_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
@@ -80,6 +82,47 @@ TEST(SolidDepth, WideBracketsAreSaidAndHold) {
   // A vertex of either that lies in the other stays there for a shorter way than the lower end.
   for (const Vec3& way : {Vec3(found.translation.normalized()), Vec3::UnitX().eval(), Vec3::UnitZ().eval()}) {
     EXPECT_EQ(classify({&solid, moved(0.999 * found.lower * way)}, {&solid, pose}), ContactClass::overlapping);
+  }
+}
+
+/// True if a part holds a point, up to rounding.
+bool holds(const Compound& parts, const Vec3& x) {
+  return std::any_of(parts.parts().begin(), parts.parts().end(), [&](const Compound::Part& part) {
+    const ConvexPolytope& polytope = *part.shape.polytope();
+    for (int f = 0; f < polytope.num_facets(); ++f) {
+      const Vec3& corner = polytope.vertex(polytope.facet_vertices(f).front());
+      if (polytope.facet_normal(f).normalized().dot(x - corner) > 1e-9) return false;
+    }
+    return true;
+  });
+}
+
+TEST(SolidParts, OuterPartsCoverTheSolidAtEveryTolerance) {
+  std::mt19937_64 random(77);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 8; ++i) {
+    const Cells cells = random_cells(random, 2 + i % 5, {i, 0, -i});
+    const StarBody star = random_star(random, i % 2, {0.5, 1, 2});
+    const bool grid = i % 2 == 0;
+    const MeshSolid solid = solid_of(grid ? mesh_of(cells) : mesh_of(star));
+    const Compound known = grid ? boxes_of(cells) : star.tetrahedra();
+    for (const double tolerance : {0.0, 0.3, 20.0}) {
+      const auto parts = SolidParts::from_solid(solid, {.tolerance = tolerance});
+      ASSERT_TRUE(parts) << i << ": " << parts.error().message;
+      for (const Compound::Part& part : known.parts()) {
+        const ConvexPolytope& polytope = *part.shape.polytope();
+        for (int k = 0; k < 20; ++k) {
+          Vec3 x = Vec3::Zero();
+          double weights = 0;
+          for (int v = 0; v < polytope.num_vertices(); ++v) {
+            const double weight = k < polytope.num_vertices() ? (v == k ? 1.0 : 0.0) : share(random);
+            x += weight * polytope.vertex(v);
+            weights += weight;
+          }
+          EXPECT_TRUE(holds(parts->outer(), x / weights)) << i << " at tolerance " << tolerance << ", point " << k;
+        }
+      }
+    }
   }
 }
 

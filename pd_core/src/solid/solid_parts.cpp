@@ -130,8 +130,13 @@ class Partition {
   /// The plane shifted outwards by at least a length.
   [[nodiscard]] Side above(Side plane, double length) {
     const detail::Dyadic3 normal = planes_.exact_normal(plane);
-    const double size = planes_.normal(plane).norm() * (1 + 0x1p-40);
-    const detail::Dyadic offset = planes_.exact_offset(plane) + detail::Dyadic(size) * detail::Dyadic(length);
+    // The normal in doubles is the exact one times 2^-top.
+    int top = 0;
+    for (const detail::Dyadic& c : {normal.x, normal.y, normal.z}) {
+      if (c.sign() != 0) top = std::max(top, detail::top_bit(c.mantissa()) + c.exponent());
+    }
+    const detail::Dyadic size = detail::Dyadic(planes_.normal(plane).norm() * (1 + 0x1p-40)).scaled(top);
+    const detail::Dyadic offset = planes_.exact_offset(plane) + size * detail::Dyadic(length);
     return planes_.add(normal, offset.scaled(exponent_of(solid_)));
   }
 
