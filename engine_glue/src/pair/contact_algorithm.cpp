@@ -94,7 +94,7 @@ bool ContactAlgorithm::sharp_parts() const { return world_.core().settings.union
 void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         const btDispatcherInfo& info, btManifoldResult* result) {
   SolverCore& core = world_.core();
-  const bool first = manifold_.take(*a, *b);
+  const bool first = manifold_.take(*a, *b, *result);
   btPersistentManifold& manifold = manifold_.get();
   PairMemory* const memory = manifold_.memory();
   result->setPersistentManifold(&manifold);

@@ -6,6 +6,7 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
 #include <memory>
+#include <typeinfo>
 
 #include "pair/manifold_points.hpp"
 #include "pair/pair_registry.hpp"
@@ -15,31 +16,36 @@
 namespace pd::detail {
 
 /// Taken from the dispatcher at the first query, and given back with the pair; or one that Bullet shares between pairs,
-/// which is added to, never cleared, and has no memory.
+/// which is added to, never cleared, and has no memory. A query between steps (contactTest, getClosestPoints) makes an
+/// algorithm of its own, which lives for that query: memory begins with the second question, or with a step.
 class OwnManifold {
  public:
   OwnManifold(SolverCore& core, btDispatcher& dispatcher, btPersistentManifold* shared)
-      : core_(core), dispatcher_(dispatcher), manifold_(shared) {}
+      : core_(core), dispatcher_(dispatcher), manifold_(shared), shared_(shared != nullptr) {}
   ~OwnManifold() {
-    if (!memory_) return;
-    core_.pairs.remove(manifold_);
+    if (shared_ || manifold_ == nullptr) return;
+    if (memory_) core_.pairs.remove(manifold_);
     dispatcher_.releaseManifold(manifold_);
   }
   OwnManifold(const OwnManifold&) = delete;
   OwnManifold& operator=(const OwnManifold&) = delete;
 
   /// @return whether it was taken just now
-  bool take(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) {
-    if (manifold_ != nullptr) return false;
-    manifold_ = dispatcher_.getNewManifold(a.getCollisionObject(), b.getCollisionObject());
-    memory_ = std::make_unique<PairMemory>();
-    core_.pairs.add(manifold_, memory_.get());
-    return true;
+  bool take(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btManifoldResult& result) {
+    if (shared_) return false;
+    const bool first = manifold_ == nullptr;
+    if (first) manifold_ = dispatcher_.getNewManifold(a.getCollisionObject(), b.getCollisionObject());
+    const bool in_step = typeid(result) == typeid(btManifoldResult);
+    if (!memory_ && (in_step || !first)) {
+      memory_ = std::make_unique<PairMemory>();
+      core_.pairs.add(manifold_, memory_.get());
+    }
+    return first;
   }
 
   /// Requires `take`.
   [[nodiscard]] btPersistentManifold& get() const { return *manifold_; }
-  /// Null: it is shared.
+  /// Null: it is shared, or this is the only question of a query.
   [[nodiscard]] PairMemory* memory() const { return memory_.get(); }
 
   /// True if no point of the last step carried a load.
@@ -50,7 +56,7 @@ class OwnManifold {
     return true;
   }
   void clear() {
-    if (memory_) manifold_->clearManifold();
+    if (!shared_) manifold_->clearManifold();
   }
   /// Puts this step's points in place of the last step's, or adds them to a shared one.
   void replace(FreshPoints fresh, const StepTime& seconds, btManifoldResult& result) {
@@ -69,16 +75,17 @@ class OwnManifold {
   }
   /// After Bullet's detector has added points of its own.
   void refresh(btManifoldResult& result) {
-    if (memory_) result.refreshContactPoints();
+    if (!shared_) result.refreshContactPoints();
   }
   void append_to(btManifoldArray& manifolds) const {
-    if (memory_) manifolds.push_back(manifold_);
+    if (!shared_ && manifold_ != nullptr) manifolds.push_back(manifold_);
   }
 
  private:
   SolverCore& core_;
   btDispatcher& dispatcher_;
   btPersistentManifold* manifold_;
+  bool shared_;
   std::unique_ptr<PairMemory> memory_;
 };
 

@@ -54,7 +54,7 @@ void PlaneAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
                                       const btDispatcherInfo& info, btManifoldResult* result) {
   const btCollisionObjectWrapper& body = swapped_ ? *b : *a;
   const btCollisionObjectWrapper& plane = swapped_ ? *a : *b;
-  const bool first = manifold_.take(body, plane);
+  const bool first = manifold_.take(body, plane, *result);
   result->setPersistentManifold(&manifold_.get());
   FreshPoints fresh;
   if (find(body, plane, first, *result, fresh)) {

@@ -53,12 +53,14 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
   btPersistentManifold& first = s.manifolds.first(*one.getCollisionObject(), *other.getCollisionObject());
   result->setPersistentManifold(&first);
   if (!s.world.core().closed()) {
-    // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
-    const std::uint64_t stamp = std::exchange(s.used, true) ? s.world.stamp() : 0;
+    // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
+    // compared: a stamp of its own has each of them compared once.
+    SolverCore& core = s.world.core();
+    const std::uint64_t stamp = std::exchange(s.used, true) ? s.world.stamp() : core.next_stamp();
     const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
     const UnionQuestion question{one, other, time_of(info), threshold, stamp, *result};
     s.patches.clear();
-    if (s.contacts->find(question, s.world.core(), s.manifolds.memory(), s.patches)) {
+    if (s.contacts->find(question, core, s.manifolds.memory(), s.patches)) {
       s.bullets.release();
       s.contacts->replace(question, s.patches, s.manifolds);
       return;
