@@ -186,6 +186,7 @@ function aim(pane, {centre, radius}) {
 function render(frames) {
   if (!renderer) return;
   const {width, height, cells} = panes();
+  if (width === 0) return;  // another tab is shown
   const ratio = Math.min(devicePixelRatio, 2);
   if (canvas.width !== Math.floor(width * ratio) || canvas.height !== Math.floor(height * ratio)) {
     renderer.setPixelRatio(ratio);

@@ -1,4 +1,5 @@
-// build.mjs MODULE FOLDER: makes the npm package around pdepth.wasm, and prints the sizes in its last line.
+// build.mjs MODULES FOLDER: makes the npm package around pdepth.wasm and pdepth-convex.wasm, which lie in the folder MODULES, and prints
+// the sizes in its last line.
 //
 // module.js, shapes.js and queries.js are parts of one text, in this order. It becomes an ES module beside the binary, a classic
 // script with the binary inside (`pdepth.ready`, for pages opened from a file), and an ES module around that script.
@@ -8,24 +9,27 @@ import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {gzipSync} from 'node:zlib';
 
-const [modulePath, folder] = process.argv.slice(2);
+const [modules, folder] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, '../..');
 const out = join(resolve(folder), 'package');
 rmSync(out, {recursive: true, force: true});
 mkdirSync(out, {recursive: true});
 
-const binary = readFileSync(modulePath);
+const [binary, convex] = ['pdepth.wasm', 'pdepth-convex.wasm'].map(name => readFileSync(join(modules, name)));
 const text = ['module.js', 'shapes.js', 'queries.js'].map(name => readFileSync(join(here, name), 'utf8')).join('\n');
 const names = [...text.matchAll(/^export (?:async )?(?:class|function) (\w+)/gm)].map(found => found[1]);
-const packed = gzipSync(binary, {level: 9});
+const gzipped = bytes => gzipSync(bytes, {level: 9});
+const packed = gzipped(binary);
 
 writeFileSync(join(out, 'pdepth.wasm'), binary);
-writeFileSync(join(out, 'pdepth.js'), text);
-writeFileSync(join(out, 'index.js'), `import {start} from './pdepth.js';
-export * from './pdepth.js';
+writeFileSync(join(out, 'pdepth-convex.wasm'), convex);
+// Each module has a script of its own, so that a program can hold both; their shapes do not mix.
+for (const name of ['pdepth', 'pdepth-convex']) writeFileSync(join(out, `${name}.js`), text);
+const loader = name => `import {start} from './${name}.js';
+export * from './${name}.js';
 
-const address = new URL('pdepth.wasm', import.meta.url);
+const address = new URL('${name}.wasm', import.meta.url);
 if (address.protocol === 'file:' && typeof process !== 'undefined' && process.versions?.node) {
   const {readFile} = await import('node:fs/promises');
   await start(await readFile(address));
@@ -34,7 +38,9 @@ if (address.protocol === 'file:' && typeof process !== 'undefined' && process.ve
 }
 /** Resolves when the library may be used; a module that imports this one need not wait for it. */
 export const ready = Promise.resolve();
-`);
+`;
+writeFileSync(join(out, 'index.js'), loader('pdepth'));
+writeFileSync(join(out, 'convex.js'), loader('pdepth-convex'));
 writeFileSync(join(out, 'single.js'), `(() => {
 'use strict';
 ${text.replace(/^export /gm, '')}
@@ -63,4 +69,5 @@ try {
 }
 const kilobytes = size => `${(size / 1000).toFixed(0)} kB`;
 console.log(`${tarball}: module ${kilobytes(binary.length)}, gzipped ${kilobytes(packed.length)}; ` +
-            `single file gzipped ${kilobytes(gzipSync(readFileSync(join(out, 'single.js')), {level: 9}).length)}`);
+            `for convex bodies ${kilobytes(convex.length)}, gzipped ${kilobytes(gzipped(convex).length)}; ` +
+            `single file gzipped ${kilobytes(gzipped(readFileSync(join(out, 'single.js'))).length)}`);

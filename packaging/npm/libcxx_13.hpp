@@ -1,6 +1,7 @@
 /// @file
 /// Debian's emscripten builds with libc++ 13, and this file adds the parts of C++20 that it lacks. The file is included
 /// before every source of the WebAssembly module, and nowhere else. Each part leaves when a newer library has it.
+/// The emulation of SSE2 is completed here, too.
 #pragma once
 
 #include <array>
@@ -10,6 +11,9 @@
 #include <cstdlib>
 #include <memory>
 #include <system_error>
+
+/// WebAssembly rounds to nearest and keeps subnormals, so emscripten's `_mm_getcsr` never asks for a change back.
+inline void _mm_setcsr(unsigned int) {}
 
 #if _LIBCPP_VERSION < 14000
 namespace std {  // NOLINT(cert-dcl58-cpp): the names are the library's own

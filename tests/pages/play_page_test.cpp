@@ -44,19 +44,20 @@ class PlayPage : public ::testing::Test {
     return *browser_;
   }
   /// Waits until the answer to the last change is shown.
-  static void settled() {
-    browser_->evaluate(
-        "(async () => { const c = document.getElementById('space');"
-        "const two = () => new Promise(go => requestAnimationFrame(() => requestAnimationFrame(go)));"
-        "for (let i = 0; i < 2000 && !c.dataset.frames; ++i) await two(); await two(); })()");
+  static void settled(const std::string& picture = "space") {
+    browser_->evaluate("(async () => { const c = document.getElementById('" + picture +
+                       "');"
+                       "const two = () => new Promise(go => requestAnimationFrame(() => requestAnimationFrame(go)));"
+                       "for (let i = 0; i < 2000 && !c.dataset.frames; ++i) await two(); await two(); })()");
   }
   static nlohmann::json of(const std::string& expression) { return browser_->evaluate(expression); }
   static std::string text(const std::string& id) { return of("document.getElementById('" + id + "').textContent"); }
+  static void click(const std::string& id) { of("document.getElementById('" + id + "').click()"); }
   static bool is_refused() { return !of("document.getElementById('refusal').hidden").get<bool>(); }
 
-  /// Runs the line that the page shows, as a visitor would.
-  static nlohmann::json native() {
-    std::string line = of("document.getElementById('line').value");
+  /// Runs a line that the page shows, as a visitor would.
+  static nlohmann::json native(const std::string& shown) {
+    std::string line = of("document.getElementById('" + shown + "').value");
     line.replace(line.rfind("pdepth query"), 6, std::string("'") + PDEPTH_PROGRAM + "'");
     std::FILE* const pipe = ::popen(line.c_str(), "r");
     std::string answer;
@@ -66,13 +67,15 @@ class PlayPage : public ::testing::Test {
     return nlohmann::json::parse(answer);
   }
   /// The depth (or distance) that is shown has the bits of the command's.
-  static void expect_native(const std::string& what) {
-    settled();
-    const nlohmann::json found = native();
+  /// @param tab  what the names of the tab's elements end in
+  static void expect_native(const std::string& what, const std::string& tab = "") {
+    settled(tab.empty() ? "space" : "plane");
+    const nlohmann::json found = native("line" + tab);
+    const std::string depth = "document.getElementById('depth" + tab + "').dataset.";
     ASSERT_TRUE(found.contains("class")) << what << ": " << found;
-    const std::string contact = of("document.getElementById('depth').dataset.contact");
+    const std::string contact = of(depth + "contact");
     EXPECT_EQ(contact, found.at("class")) << what;
-    const auto shown = nlohmann::json::parse(of("document.getElementById('depth').dataset.value").get<std::string>());
+    const auto shown = nlohmann::json::parse(of(depth + "value").get<std::string>());
     EXPECT_EQ(shown.get<double>(), found.at(contact == "separated" ? "distance" : "depth").get<double>()) << what;
   }
   static void expect_quiet() {
@@ -119,7 +122,7 @@ TEST_F(PlayPage, ADragMovesABodyAndTheAnswerFollows) {
   EXPECT_NE(of("document.getElementById('space').toDataURL()"), picture);
   EXPECT_GT(std::stoi(of("document.getElementById('space').dataset.frames").get<std::string>()), frames);
   expect_native("after a drag");
-  of("document.getElementById('out').click()");
+  click("out");
   settled();
   EXPECT_NE(of("document.getElementById('depth').dataset.contact"), "overlapping");
   expect_quiet();
@@ -172,7 +175,7 @@ TEST_F(PlayPage, DroppedFilesAndPastedLines) {
   EXPECT_EQ(of("document.getElementById('depth').dataset.value"), "0.5");
   expect_native("a pasted line");
   const std::string line = of("document.getElementById('line').value");
-  of("document.getElementById('copy_link').click()");
+  click("copy_link");
   settled();
   const std::string link = of("location.hash");
   open();
@@ -210,7 +213,7 @@ TEST_F(PlayPage, WrongInputIsNamedAndThePageLivesOn) {
   refused("ends before its 800 vertices");
   settled();
   EXPECT_EQ(of("document.getElementById('line').value"), before);
-  of("document.getElementById('reset').click()");
+  click("reset");
   settled();
   EXPECT_FALSE(is_refused());
   expect_native("after all that");
@@ -220,17 +223,55 @@ TEST_F(PlayPage, WrongInputIsNamedAndThePageLivesOn) {
 TEST_F(PlayPage, FitsAPhoneInLightAndDark) {
   for (const char* scheme : {"light", "dark"}) {
     open(390, scheme);
-    EXPECT_LE(of("document.documentElement.scrollWidth").get<int>(), 390) << scheme;
-    const auto small =
-        of("[...document.querySelectorAll('button, select')].filter(e => e.offsetHeight < 36 || "
-           "e.getBoundingClientRect().right > 390).map(e => e.id)");
-    EXPECT_TRUE(small.empty()) << small;
+    for (const char* tab : {"tab_polygons", "tab_bodies"}) {
+      click(tab);
+      EXPECT_LE(of("document.documentElement.scrollWidth").get<int>(), 390) << scheme << ", " << tab;
+      const auto small =
+          of("[...document.querySelectorAll('button, select')].filter(e => e.offsetParent && (e.offsetHeight < 36 || "
+             "e.getBoundingClientRect().right > 390)).map(e => e.id)");
+      EXPECT_TRUE(small.empty()) << small;
+    }
     expect_quiet();
   }
   const auto unnamed =
       of("[...document.querySelectorAll('select, textarea, input, button, canvas')].filter(e => !e.labels?.length && "
          "!e.textContent.trim() && !e.getAttribute('aria-label')).map(e => e.outerHTML)");
   EXPECT_TRUE(unnamed.empty()) << unnamed;
+}
+
+TEST_F(PlayPage, PolygonsFitWhereTheirTabSays) {
+  open();
+  click("tab_polygons");
+  expect_native("at first", "_plane");
+  for (const char* name : {"Comb", "Corner"}) {
+    of("(() => { const s = document.getElementById('shape_p'); s.value = '" + std::string(name) +
+       "'; s.dispatchEvent(new Event('change')); })()");
+    expect_native(name, "_plane");
+  }
+  drop("wedge.svg", "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0L2 0L1 1.5Z'/></svg>");
+  EXPECT_EQ(of("document.getElementById('shape_p').value"), "wedge.svg");
+  EXPECT_EQ(text("corners_plane").substr(0, 2), "3 ");
+  expect_native("a dropped SVG", "_plane");
+  click("draw_p");
+  of("(() => { const s = document.getElementById('plane'), b = s.getBoundingClientRect();"
+     "const send = (kind, x, y) => s.dispatchEvent(new PointerEvent(kind, {pointerId: 1, clientX: b.left + x * "
+     "b.width, "
+     "clientY: b.top + y * b.height}));"
+     "s.setPointerCapture = () => {};"
+     "send('pointerdown', 0.3, 0.3);"
+     "for (const [x, y] of [[0.7, 0.3], [0.7, 0.7], [0.5, 0.45], [0.3, 0.7]]) send('pointermove', x, y);"
+     "send('pointerup', 0.3, 0.7); })()");
+  expect_native("a drawn polygon", "_plane");
+  EXPECT_EQ(text("corners_plane").substr(0, 2), "5 ");
+  click("out_plane");
+  expect_native("after the way out", "_plane");
+  EXPECT_NE(of("document.getElementById('depth_plane').dataset.contact"), "overlapping");
+  drop("eight.svg", "<svg xmlns='http://www.w3.org/2000/svg'><polygon points='0,0 2,2 2,0 0,2'/></svg>");
+  EXPECT_NE(text("refusal_plane").find("crosses itself (eight.svg)"), std::string::npos) << text("refusal_plane");
+  drop("wrong.svg", "<svg");
+  EXPECT_NE(text("refusal_plane").find("no well-formed SVG"), std::string::npos) << text("refusal_plane");
+  expect_native("after all that", "_plane");
+  expect_quiet();
 }
 
 /// The licence goes wherever the code goes.

@@ -154,10 +154,10 @@ test('batches are the single answers, in columns', () => {
 });
 
 test('memory grows and comes back', () => {
-  const hulls = Array.from({length: 300}, (_, k) => new Convex(Float64Array.from({length: 900}, (_, i) => Math.sin(1 + i * (k + 1)))));
+  const hulls = Array.from({length: 100}, (_, k) => new Convex(Float64Array.from({length: 900}, (_, i) => Math.sin(1 + i * (k + 1)))));
   for (const hull of hulls) assert.ok(pdepth.depth(hull, null, cube, [0.5, 0, 0]).depth > 0);
   for (const hull of hulls) hull.free();
-  const rows = 200000, poses = new Float64Array(3 * rows).fill(0.25);
+  const rows = 80000, poses = new Float64Array(3 * rows).fill(0.25);
   assert.equal(pdepth.depthBatch({a: cube, b: cube, posesA: poses, formA: 'position'}).depth[rows - 1], 0.75);
 });
 
@@ -167,7 +167,17 @@ test('the same in a worker', async () => {
     worker.once('message', resolve);
     worker.once('error', reject);
   });
-  assert.deepEqual(answer, pdepth.depth(cube, null, cube, [0.75, 0, 0]));
+  assert.deepEqual(answer, {depth: pdepth.depth(cube, null, cube, [0.75, 0, 0]), refusal: null});
+});
+
+test('the smaller module answers for convex bodies with the same bits, and refuses compounds by name', async () => {
+  const answers = await new Promise((resolve, reject) => {
+    const worker = new Worker(new URL('worker.mjs', import.meta.url), {workerData: 'pdepth/convex'});
+    worker.once('message', resolve);
+    worker.once('error', reject);
+  });
+  assert.deepEqual(answers.depth, pdepth.depth(cube, null, cube, [0.75, 0, 0]));
+  assert.deepEqual(answers.refusal, ['unsupported', 'parts']);
 });
 
 test('the single file, and the module without a loader', async () => {

@@ -22,6 +22,13 @@
 
 namespace pd::c_interface {
 
+/// The small WebAssembly module answers for convex bodies alone. The linker then drops what only compounds need.
+#ifdef PD_CONVEX_ALONE
+inline constexpr bool kHasCompounds = false;
+#else
+inline constexpr bool kHasCompounds = true;
+#endif
+
 /// A refusal on its way to the border.
 struct Refused {
   pdepth_status status;

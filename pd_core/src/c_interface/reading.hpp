@@ -84,7 +84,9 @@ struct Question {
   const Settings& settings;
   pdepth_pair* pair;
 
-  [[nodiscard]] bool is_convex() const { return posed_a.shape != nullptr && posed_b.shape != nullptr; }
+  [[nodiscard]] bool is_convex() const {
+    return !kHasCompounds || (posed_a.shape != nullptr && posed_b.shape != nullptr);
+  }
   /// Refuses compounds.
   void require_convex() const;
 };

@@ -184,6 +184,7 @@ pdepth_status pdepth_with_margin(pdepth_context* context, const pdepth_shape* bo
 
 pdepth_status pdepth_compound(pdepth_context* context, const pdepth_part* parts, int64_t count, pdepth_shape** shape) {
   return at_border(context, [&] {
+    if (!kHasCompounds) refuse(PDEPTH_UNSUPPORTED, "the module for convex bodies makes no compounds", "parts");
     require_count(count, "count");
     given(shape, "shape");
     std::vector<Compound::Placed> placed;
