@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -80,17 +83,22 @@ Array vertices_of(const ConvexPolytope& polytope) {
   return points;
 }
 
+query::MeshPoints scaled_mesh(const std::string& path, py::handle scale) {
+  const query::Limits limits;
+  query::MeshPoints mesh = query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
+  if (mesh.faces.size() == 0) {
+    query::refuse("bad_faces", "the file has points and no faces, so that it bounds no solid", "");
+  }
+  rescale(mesh, read_vector(scale, "scale"));
+  return mesh;
+}
+
 /// The solid of a closed mesh as vertices of convex parts, one part where the mesh is convex. The parts cover the
 /// solid and reach at most about `tolerance` beyond it; they are the solid exactly where doubles hold their corners.
-py::list mesh_parts(const std::string& path, py::handle scale, double tolerance) {
-  const Vec3 factors = read_vector(scale, "scale");
-  const query::Limits limits;
+py::list solid_parts(const std::string& path, py::handle scale, double tolerance) {
   py::list parts;
   try {
-    query::MeshPoints mesh = query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
-    if (mesh.faces.size() == 0)
-      query::refuse("bad_faces", "the file has points and no faces, so that it bounds no solid", "");
-    rescale(mesh, factors);
+    query::MeshPoints mesh = scaled_mesh(path, scale);
     std::optional<SolidParts> solid;
     query::MeshBody body;
     {
@@ -106,6 +114,58 @@ py::list mesh_parts(const std::string& path, py::handle scale, double tolerance)
       parts.append(vertices_of(*body.hull->shape.polytope()));
     } else {
       for (const Compound::Part& part : solid->outer().parts()) parts.append(vertices_of(*part.shape.polytope()));
+    }
+  } catch (const query::Refusal& refusal) {
+    refuse(refusal.code, refusal.message, path);
+  }
+  return parts;
+}
+
+/// The points of each connected part of a mesh, in the order of the parts' first faces. Points with equal coordinates
+/// are one vertex.
+py::list connected_parts(const std::string& path, py::handle scale) {
+  py::list parts;
+  try {
+    const query::MeshPoints mesh = scaled_mesh(path, scale);
+    const auto points = static_cast<std::int32_t>(mesh.points.size());
+    std::vector<std::int32_t> above(mesh.points.size());
+    std::iota(above.begin(), above.end(), 0);
+    const auto root = [&](std::int32_t v) {
+      while (above[static_cast<std::size_t>(v)] != v) {
+        auto& up = above[static_cast<std::size_t>(v)];
+        up = above[static_cast<std::size_t>(up)];
+        v = up;
+      }
+      return v;
+    };
+    std::map<std::array<double, 3>, std::int32_t> first;
+    for (std::int32_t v = 0; v < points; ++v) {
+      const Vec3& x = mesh.points[static_cast<std::size_t>(v)];
+      above[static_cast<std::size_t>(v)] = first.try_emplace({x[0], x[1], x[2]}, v).first->second;
+    }
+    const auto corner = [&](std::int32_t c) { return mesh.faces.corners[static_cast<std::size_t>(c)]; };
+    const auto begin = [&](std::int64_t f) { return mesh.faces.offsets[static_cast<std::size_t>(f)]; };
+    for (std::int64_t f = 0; f < mesh.faces.size(); ++f) {
+      for (std::int32_t c = begin(f) + 1; c < begin(f + 1); ++c) {
+        above[static_cast<std::size_t>(root(corner(c)))] = root(corner(begin(f)));
+      }
+    }
+    std::map<std::int32_t, std::size_t> number;
+    std::vector<std::vector<Vec3>> members;
+    std::vector<bool> taken(mesh.points.size(), false);
+    for (const std::int32_t v : mesh.faces.corners) {
+      if (taken[static_cast<std::size_t>(v)]) continue;
+      taken[static_cast<std::size_t>(v)] = true;
+      const auto [found, fresh] = number.try_emplace(root(v), members.size());
+      if (fresh) members.emplace_back();
+      members[found->second].push_back(mesh.points[static_cast<std::size_t>(v)]);
+    }
+    for (const std::vector<Vec3>& part : members) {
+      Array array({static_cast<py::ssize_t>(part.size()), py::ssize_t{3}});
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        for (int k = 0; k < 3; ++k) array.mutable_at(static_cast<py::ssize_t>(i), k) = part[i][k];
+      }
+      parts.append(array);
     }
   } catch (const query::Refusal& refusal) {
     refuse(refusal.code, refusal.message, path);
@@ -164,6 +224,7 @@ PYBIND11_MODULE(_protocol, module) {
   module.def("answer", &pd::python::answer);
   module.def("answer_many", &pd::python::answer_many);
   module.def("mesh_points", &pd::python::mesh_points);
-  module.def("mesh_parts", &pd::python::mesh_parts);
+  module.def("solid_parts", &pd::python::solid_parts);
+  module.def("connected_parts", &pd::python::connected_parts);
   module.def("audit", &pd::python::audit);
 }

@@ -1,5 +1,6 @@
 """Robots: files, forward kinematics, signed distances with derivatives, and everything that is refused."""
 import pickle
+import warnings
 
 import numpy as np
 import pdepth
@@ -162,7 +163,7 @@ def test_distances_are_those_of_single_pairs(read):
             assert found.upper[i, k] >= found.signed_distance[i, k] >= found.lower[i, k]
 
 
-def test_the_nearest_pair_is_that_of_all_and_threads_change_no_bit(read):
+def test_the_nearest_pair_is_that_of_all_and_threads_change_no_bit(read, monkeypatch):
     robot = read(ARM)
     q = vectors(robot, 200)
     everything = robot.distances(q, threads=1)
@@ -174,6 +175,9 @@ def test_the_nearest_pair_is_that_of_all_and_threads_change_no_bit(read):
             assert np.array_equal(nearest.witness_a, everything.witness_a[np.arange(200), nearest.pair])
     again = pickle.loads(pickle.dumps(robot)).distances(q.reshape(20, 10, 4), threads=2)
     assert np.array_equal(again.signed_distance.reshape(200, -1), everything.signed_distance)
+    monkeypatch.setattr("pdepth._robot._AT_ONCE", 64)
+    pieces = robot.distances(q, nearest=True, derivatives=True)
+    assert np.array_equal(pieces.by_q, nearest.by_q) and np.array_equal(pieces.pair, nearest.pair)
     one = robot.distances(q[3], nearest=True)
     assert one.signed_distance.shape == () and one.of_row(())["pair"] == nearest.pair[3]
     assert robot.distances(np.zeros((0, 4))).signed_distance.shape == (0, len(robot.pairs))
@@ -206,8 +210,11 @@ def test_joint_vectors_that_are_not_finite_are_refused_by_row(read):
     assert np.isfinite(found.signed_distance[[0, 1, 3, 4]]).all()
     assert robot.distances(q, nearest=True).error.tolist() == [0, 0, 2, 0, 0]
     q[2, 1] = 0
-    q[3, 3] = 1e200  # the hand is beyond any distance that has a square
-    far = robot.distances(q)
+    q[3, 3], q[4, 3] = 1e200, 1e308  # the hand is beyond any distance that has a square
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        far = robot.distances(q, derivatives=True)
+        robot.distances(q, nearest=True)
     assert not np.isnan(far.signed_distance[far.error == 0]).any()
     for ask in (robot.poses, robot.distances):
         with pytest.raises(pdepth.Refused) as caught:
@@ -218,9 +225,10 @@ def test_joint_vectors_that_are_not_finite_are_refused_by_row(read):
 ODD = f'<robot name="r"><link name="a">{shape("<box size=&quot;1 1 1&quot;/>")}</link>'.replace("&quot;", '"')
 
 
-@pytest.mark.parametrize("text, code, told", [
+NO_ROBOTS = [
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 0.6"'), "bad_value", "arm.urdf line 3: size of <box> must be 3 numbers"),
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 0 0.2"'), "bad_value", "the sizes of <box> must be positive"),
+    (ARM.replace('"0.6 0.6 0.2"', '"0.6 1e305 0.2"'), "out_of_range", "arm.urdf line 3: <geometry>: half_extents[1]: "),
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 nan 0.2"'), "non_finite", "must be finite"),
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 0x1 0.2"'), "bad_value", "must be numbers"),
     (ARM.replace('radius="0.1"', ""), "missing_field", '<cylinder> needs the attribute radius="..."'),
@@ -248,7 +256,10 @@ ODD = f'<robot name="r"><link name="a">{shape("<box size=&quot;1 1 1&quot;/>")}<
      "hangs on the joints 'x' and 'y'"),
     (ODD + '<link name="b"/><link name="c"/>' + joint("x", "fixed", "c", "b") + joint("y", "fixed", "b", "c") + "</robot>",
      "unsupported", "part of a ring"),
-])
+]
+
+
+@pytest.mark.parametrize("text, code, told", NO_ROBOTS, ids=[told for _, _, told in NO_ROBOTS])
 def test_files_that_are_no_robot_are_refused_with_their_line(read, text, code, told):
     with pytest.raises(pdepth.Refused) as caught:
         read(text)
@@ -266,6 +277,43 @@ def test_meshes_are_looked_for_below_the_roots_alone(read, tmp_path):
     beside = read(ARM.replace("package://parts/", ""), package_roots=None)
     assert by_name.shape("hand") == beside.shape("hand")
     assert beside.shape("hand").vertices.min(axis=0).tolist() == [0, 0, -0.3]
+
+
+def test_a_sweep_is_the_batch_in_files_and_resumes(read, tmp_path):
+    robot = read(ARM)
+    q = vectors(robot, 90)
+    q[57] = np.nan
+    options = {"out": tmp_path / "out", "chunk": 40, "progress": False}
+    done = robot.sweep(q, nearest=True, **options)
+    found = robot.distances(q, nearest=True)
+    assert (len(done.files), done.computed, done.count) == (3, 3, 90)
+    assert all(np.array_equal(done[name], found[name], equal_nan=True) for name in found)
+    done.files[1].unlink()
+    assert robot.sweep(q, nearest=True, **options).computed == 1
+    assert robot.sweep(q, **options).computed == 3
+    assert read(ARM.replace('"0 0 2"', '"0 1 2"')).sweep(q, **options).computed == 3
+    assert read(ARM).sweep(q, **options).computed == 3 and read(ARM).sweep(q, **options).computed == 0
+    with pytest.raises(pdepth.Refused, match=r"needs \[n, 4\]"):
+        robot.sweep(q[0], **options)
+
+
+def test_a_cluster_writes_the_same_bytes(read, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    robot, q = read(ARM), vectors(read(ARM), 30)
+    here = robot.sweep(q, out=tmp_path / "here", chunk=10, progress=False)
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None, processes=False) as cluster, \
+            distributed.Client(cluster) as client:
+        there = robot.sweep(q, client, out=tmp_path / "there", chunk=10, progress=False)
+    assert [file.read_bytes() for file in here.files] == [file.read_bytes() for file in there.files]
+
+
+def test_a_picture_shows_the_robot_where_it_is(read):
+    pytest.importorskip("pdepth._picture", reason="built without the renderer")
+    robot = read(ARM)
+    one, other = (robot.picture([0.3, angle, 0.5, 0.1], size=(160, 90)) for angle in (0.2, -1))
+    assert one.shape == (90, 160, 3) and (one != other).any(axis=2).mean() > 0.02
+    with pytest.raises(pdepth.Refused, match="one joint vector"):
+        robot.picture(np.zeros((2, 4)))
 
 
 def corner(faces=8):
@@ -299,7 +347,28 @@ def test_a_mesh_that_is_not_convex_stays_a_solid(read, tmp_path):
     for wrong in ({"meshes": "pieces"}, {"tolerance": -1}, {"tolerance": "1"}):
         with pytest.raises(pdepth.Refused) as caught:
             read(text, **wrong)
-        assert caught.value.code == "bad_value" and caught.value.where == next(iter(wrong))
+        assert caught.value.code == "bad_value" and caught.value.where.startswith(next(iter(wrong)))
+
+
+def test_each_connected_part_of_a_mesh_may_be_convex_and_links_may_differ(read, tmp_path):
+    text = f"""<robot name="r"><link name="a">{shape('<mesh filename="L.obj" scale="-1 1 2"/>')}</link>
+      <link name="b">{shape('<mesh filename="two.obj" scale="-1 1 2"/>')}</link>{joint("x", "floating", "a", "b")}</robot>"""
+    (tmp_path / "L.obj").write_text(corner())
+    # Two tetrahedra; the second one's faces name vertices of their own, as files of triangles do.
+    corners = [line for line in TETRA.splitlines() if line.startswith("v")]
+    faces = [[int(i) for i in line.split()[1:]] for line in TETRA.splitlines() if line.startswith("f")]
+    apart = [f"v {4 + float(x)} {y} {z}" for face in faces for x, y, z in (corners[i - 1].split()[1:] for i in face)]
+    lines = corners + apart + ["f " + " ".join(map(str, face)) for face in faces]
+    lines += [f"f {i} {i + 1} {i + 2}" for i in range(5, 17, 3)]
+    (tmp_path / "two.obj").write_text("\n".join(lines))
+    robot = read(text, meshes={"b": "parts"})
+    low = [sorted(part.vertices.min(axis=0).tolist()[0] for part, _ in robot.shape(link)._arguments["parts"]) for link in "ab"]
+    assert len(low[0]) == 2 and low[1] == [-5, -1]
+    assert read(text, meshes={"a": "hull", "b": "parts"}).shape("a").is_convex
+    for wrong, where in (({"c": "hull"}, "meshes['c']"), ({"a": "hulls"}, "meshes['a']")):
+        with pytest.raises(pdepth.Refused) as caught:
+            read(text, meshes=wrong)
+        assert caught.value.code == "bad_value" and caught.value.where == where
 
 
 @pytest.mark.parametrize("ask, code, where", [

@@ -48,7 +48,8 @@ class RecordFile:
             except (ValueError, KeyError, TypeError):
                 raise refused(f"{self._path}: is no contact record; give another path (unreadable_file)") from None
             if engine != self._engine:
-                raise refused(f"{self._path}: is a record of {engine!r}, not of {self._engine!r}; give another path (bad_value)")
+                told = f"is a record of {engine!r}, not of {self._engine!r}; give another path"
+                raise refused(f"{self._path}: {told} (bad_value)")
             for line in file:
                 if line.startswith('{"shape"') and line.endswith("\n"):
                     self._take_shape(line)

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from ._core import Pose
 from ._errors import refused
+from ._picture_call import picture
 from ._queries import _threads
 from ._robot_bodies import body_of, one_shape
 from ._robot_distances import How, Question, RobotDistances, refuse_rows
 from ._robot_model import allowed_pairs
+from ._robot_motion import QUIET
 from ._robot_tree import Tree
+from ._shapes import Compound
+
+#: Joint vectors of which all poses are held in memory.
+_AT_ONCE = 1 << 14
 
 
 class Robot:
-    """A tree of links and joints with collision shapes, read by from_urdf. Immutable.
+    """A tree of links and joints with collision shapes, read by from_urdf or from_sdf. Immutable.
 
     name; links, joints: names. coordinates: names of the numbers of a joint vector q, in metres or radians, dof of them.
     limits: [dof, 2], which bound no question. pairs: the pairs of links that `distances` asks, which are those with
@@ -42,7 +49,8 @@ class Robot:
         srdf: an SRDF file, whose disable_collisions leave out pairs. package_roots: {package: its folder}, or a folder, or
         a list of folders, that hold packages; meshes lie below these or the file's own folder. meshes: "solid" cuts
         closed meshes that are not convex into convex parts, which reach at most about `tolerance` beyond the solid (fewer
-        parts); "hull" takes the convex hulls.
+        parts); "hull" takes convex hulls; "parts" takes the convex hull of each connected part, for files that hold a
+        convex decomposition; {link: one of these} chooses by link, "solid" for others.
 
         Raises Refused with file and line: 'unreadable_file', 'missing_field' (a package without a root, too), 'bad_value',
         'non_finite', 'unsupported', and what a mesh's reader says.
@@ -51,6 +59,22 @@ class Robot:
         from ._robot_urdf import read_srdf, read_urdf
 
         model = read_urdf(path, Meshes(path, package_roots, meshes, tolerance))
+        if srdf is not None:
+            read_srdf(srdf, model)
+        return cls(model)
+
+    @classmethod
+    def from_sdf(cls, path, *, srdf=None, package_roots=None, meshes="solid", tolerance=0.0):
+        """Reads the one model of an SDF file; poses are in the model's frame. Arguments and errors as in from_urdf.
+
+        A link on which no joint leads stands where the file puts it. A ball joint has three coordinates, a rotation
+        vector. Models inside of models, and joints with two axes or a screw, are refused as 'unsupported'.
+        """
+        from ._robot_meshes import Meshes
+        from ._robot_sdf import read_sdf
+        from ._robot_urdf import read_srdf
+
+        model = read_sdf(path, Meshes(path, package_roots, meshes, tolerance))
         if srdf is not None:
             read_srdf(srdf, model)
         return cls(model)
@@ -74,7 +98,8 @@ class Robot:
         """
         q, lead = self._vectors(q)
         _require_finite(q, lead)
-        frames, _ = self._tree.frames(q)
+        with np.errstate(**QUIET):
+            frames, _ = self._tree.frames(q)
         return np.moveaxis(frames, 0, 1).reshape((*lead, len(self.links), 4, 4))
 
     def distances(self, q, *, pairs=None, nearest=False, derivatives=False, bracket="certified", threads=None):
@@ -101,13 +126,46 @@ class Robot:
             _require_finite(q, lead)
         if nearest and not asked:
             raise refused("pairs: there are none, so that none is nearest (bad_value)")
-        bad = ~np.isfinite(q).all(axis=1)
-        question = Question(self._tree, self._bodies, np.where(bad[:, None], 0.0, q), asked, How(bracket, threads))
-        columns = question.nearest(derivatives) if nearest else question.all(derivatives)
-        refuse_rows(columns, bad)
+        pieces = [self._answer(q[begin:begin + _AT_ONCE], asked, (nearest, derivatives), How(bracket, threads))
+                  for begin in range(0, max(len(q), 1), _AT_ONCE)]
+        columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
         own = 1 if nearest else 2  # dimensions of a column that are rows of the batch
         flat = {name: column.reshape((-1, *column.shape[own:])) for name, column in columns.items()}
         return RobotDistances(flat, lead if nearest else (*lead, len(asked)))
+
+    def _answer(self, q, asked, wish, how):
+        nearest, derivatives = wish
+        bad = ~np.isfinite(q).all(axis=1)
+        with np.errstate(**QUIET):
+            question = Question(self._tree, self._bodies, np.where(bad[:, None], 0.0, q), asked, how)
+            columns = question.nearest(derivatives) if nearest else question.all(derivatives)
+        refuse_rows(columns, bad)
+        return columns
+
+    def sweep(self, q, client=None, *, out, chunk=10_000, threads=None, progress=True, **options):
+        """Asks `distances` for many joint vectors [n, dof] and writes the answers to `out` as they come; see pdepth.sweep.
+
+        q may be an np.memmap, which stays on disk. client: a distributed.Client, else this machine. chunk: joint vectors a
+        file, chunk_K.npz, which holds the columns of `distances`; pair them with `pairs`. options: pairs, nearest,
+        derivatives and bracket of `distances`. Answers a Sweep.
+        """
+        from ._sweep import run
+
+        how = {"out": out, "chunk": chunk, "threads": threads, "progress": progress}
+        return run(_JointVectors(self, q), client, how, options)
+
+    def picture(self, q, **view):
+        """Draws the robot at one joint vector, as pdepth.picture does with the same size, azimuth and elevation.
+
+        Raises Refused as poses and picture, and 'bad_value' for a robot without shapes.
+        """
+        q, lead = self._vectors(q)
+        _require_finite(q, lead)
+        if lead or all(body is None for body in self._bodies):
+            raise refused(f"q: a picture shows one joint vector [{self.dof}] of a robot with shapes (bad_value)")
+        frames, _ = self._tree.frames(q)
+        bodies = [(one_shape(body), Pose(frames[link, 0])) for link, body in enumerate(self._bodies) if body is not None]
+        return picture(Compound(bodies), **view)
 
     def _link(self, name, argument):
         if name not in self.links:
@@ -124,6 +182,13 @@ class Robot:
                 if self._bodies[link] is None:
                     raise refused(f"pairs[{i}]: the link {name!r} has no collision shape (bad_value)")
         return asked
+
+    def _told(self):
+        """What the robot is made of, as JSON takes it."""
+        bodies = [body and [body[0].protocol(), body[1].tolist()] for body in self._bodies]
+        joints = [[j.name, j.kind, j.parent, j.child, j.before.tolist(), j.axis.tolist(), j.after.tolist(), j.mimic]
+                  for j in self._tree.joints]
+        return [self.links, bodies, joints, self.pairs]
 
     def _vectors(self, q):
         """Joint vectors as [n, dof], and their leading dimensions."""
@@ -143,3 +208,23 @@ def _require_finite(q, lead):
     if len(bad):
         place = (*np.unravel_index(bad[0, 0], lead), bad[0, 1]) if lead else bad[0, 1:]
         raise refused(f"q[{', '.join(str(int(i)) for i in place)}]: must be finite (non_finite)")
+
+
+class _JointVectors:
+    """A question of a sweep: signed distances of a robot, by rows of joint vectors."""
+
+    def __init__(self, robot, q):
+        if np.ndim(q) != 2 or np.shape(q)[1] != robot.dof:
+            raise refused(f"q: has shape {np.shape(q)}, needs [n, {robot.dof}] (bad_value)")
+        self.shared, self._q, self.count = robot, q, len(q)
+
+    def told(self):
+        return self.shared._told()
+
+    def rows(self, begin, end):
+        return (np.asarray(self._q[begin:end], dtype=float),)
+
+    @staticmethod
+    def chunk(robot, q, threads, options):
+        found = robot.distances(q, threads=threads, **options)
+        return {name: found[name] for name in found}

@@ -12,20 +12,23 @@ from ._errors import refused
 from ._shapes import Compound, ConvexPolytope
 
 #: Ways to take a mesh.
-WISHES = ("solid", "hull")
+WISHES = ("solid", "hull", "parts")
 
 
 class Meshes:
     """Meshes of one robot's file. package_roots: {package: its folder}, or folders that hold packages."""
 
     def __init__(self, path, package_roots, wish, tolerance):
-        if wish not in WISHES:
-            raise refused(f"meshes: must be one of {', '.join(map(repr, WISHES))}, not {wish!r} (bad_value)")
+        self._wishes = wish if isinstance(wish, dict) else {None: wish}
+        for link, each in self._wishes.items():
+            if each not in WISHES:
+                where = "meshes" if link is None else f"meshes[{link!r}]"
+                raise refused(f"{where}: must be one of {', '.join(map(repr, WISHES))}, not {each!r} (bad_value)")
         if not isinstance(tolerance, (int, float)) or not 0 <= tolerance < np.inf:
             raise refused(f"tolerance: must be a length >= 0, not {tolerance!r} (bad_value)")
         self._home = os.path.realpath(os.path.dirname(os.fspath(path)) or ".")
         self._packages, self._folders = _roots(package_roots)
-        self._wish, self._tolerance, self._paths, self._shapes = wish, float(tolerance), {}, {}
+        self._tolerance, self._paths, self._shapes = float(tolerance), {}, {}
 
     def locate(self, nodes):
         """Finds the files of all meshes, so that packages that are missing are named together."""
@@ -67,14 +70,21 @@ class Meshes:
         node.refuse(f"{name!r} leads out of the robot's folder; name the folder in package_roots if the file is meant",
                     "unreadable_file")
 
-    def shape(self, node, scale, convex):
+    def check_links(self, links):
+        """Refuses a wish for a link that is not there."""
+        for link in self._wishes:
+            if link is not None and link not in links:
+                raise refused(f"meshes[{link!r}]: the robot has no such link; its links: {', '.join(links)} (bad_value)")
+
+    def shape(self, node, scale, link, convex):
         """The shape of a mesh that was located, in the unit of the robot."""
         if not scale.all():
             node.refuse("the scale of a mesh must differ from zero along each axis")
-        key = (self._paths[node], tuple(scale), convex)
+        wish = "hull" if convex else self._wishes.get(link, self._wishes.get(None, "solid"))
+        key = (self._paths[node], tuple(scale), wish)
         if key not in self._shapes:
             try:
-                self._shapes[key] = _read(self._paths[node], scale, "hull" if convex else self._wish, self._tolerance)
+                self._shapes[key] = _read(self._paths[node], scale, wish, self._tolerance)
             except _core.Refused as error:
                 told = str(error)[len(error.where) + 2:-len(error.code) - 3].removeprefix(f"{self._paths[node]}: ")
                 node.refuse(f"{os.path.basename(self._paths[node])}: {told}", error.code)
@@ -100,5 +110,7 @@ def _read(path, scale, wish, tolerance):
 
     if wish == "hull":
         return ConvexPolytope(_protocol.mesh_points(path, False)[0] * scale)
-    parts = [ConvexPolytope(points) for points in _protocol.mesh_parts(path, scale, tolerance)]
+    connected = wish == "parts"
+    found = _protocol.connected_parts(path, scale) if connected else _protocol.solid_parts(path, scale, tolerance)
+    parts = [ConvexPolytope(points) for points in found]
     return parts[0] if len(parts) == 1 else Compound(parts)

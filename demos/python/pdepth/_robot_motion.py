@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+#: Lengths beyond the largest double become infinite, and the pairs that they place are refused as rows.
+QUIET = {"over": "ignore", "invalid": "ignore"}
+
 
 def compose(a, b):
     """The product of poses [..., 4, 4]."""

@@ -25,12 +25,12 @@ class Tree:
         self.limits = np.array(limits, dtype=float).reshape((-1, 2))
         #: [joints, links]: the link moves with the joint.
         self.below = np.zeros((len(self.joints), len(model.links)), dtype=bool)
+        above = {joint.child: row for row, joint in enumerate(self.joints)}
         for row in range(len(self.joints) - 1, -1, -1):
-            child = self._link[self.joints[row].child]
-            self.below[row, child] = True
-            for later in range(row + 1, len(self.joints)):
-                if self._link[self.joints[later].parent] == child:
-                    self.below[row] |= self.below[later]
+            joint = self.joints[row]
+            self.below[row, self._link[joint.child]] = True
+            if joint.parent in above:
+                self.below[above[joint.parent]] |= self.below[row]
 
     def _values(self, joint, q):
         """The numbers of a joint, the columns of q that they follow, and with which factor."""

@@ -16,8 +16,12 @@ def read_urdf(path, meshes):
     nodes = [(link, part) for link in root.all("link") for part in link.all("collision")]
     meshes.locate([mesh for _, part in nodes for mesh in part.need("geometry").all("mesh")])
     links = {id(node): Link(node.word("name"), node.where) for node in root.all("link")}
+    meshes.check_links([link.name for link in links.values()])
     for link, part in nodes:
-        links[id(link)].parts.append((_shape(part.need("geometry"), meshes), _origin(part)))
+        into = links[id(link)]
+        geometry = part.need("geometry")
+        shape = geometry.attempt(lambda: _shape(geometry, into.name, meshes))
+        into.parts.append((shape, _origin(part)))
     if not links:
         root.refuse("has no <link>", "missing_field")
     return Model(root.attributes.get("name", ""), list(links.values()), [_joint(node) for node in root.all("joint")])
@@ -30,7 +34,7 @@ def _origin(node):
     return matrix_of(origin.numbers("xyz", 3, (0, 0, 0)), origin.numbers("rpy", 3, (0, 0, 0)))
 
 
-def _shape(geometry, meshes):
+def _shape(geometry, link, meshes):
     for node in geometry.children:
         kind = node.tag.removeprefix("drake:")
         if kind == "box":
@@ -44,7 +48,7 @@ def _shape(geometry, meshes):
             return Ellipsoid(positive(node, [node.numbers(name, 1)[0] for name in "abc"]))
         if kind == "mesh":
             convex = node.first("drake:declare_convex") is not None
-            return meshes.shape(node, node.numbers("scale", 3, (1, 1, 1)), convex)
+            return meshes.shape(node, node.numbers("scale", 3, (1, 1, 1)), link, convex)
         node.refuse(f"<{node.tag}> is no shape that is read; known: box, sphere, cylinder, capsule, ellipsoid, mesh",
                     "unsupported")
     geometry.refuse("<geometry> is empty; it needs a shape such as <box size=\"1 1 1\"/>", "missing_field")
@@ -63,13 +67,15 @@ def _joint(node):
     axis, along = np.array([1.0, 0.0, 0.0]), node.first("axis")
     if along is not None and kind in WITH_AXIS:
         axis = unit(along, along.numbers("xyz", 3), name)
-    joint = Joint(name, kind, node.need("parent").word("link"), node.need("child").word("link"), _origin(node), axis, node.where)
+    parent, child = (node.need(end).word("link") for end in ("parent", "child"))
+    joint = Joint(name, kind, parent, child, _origin(node), axis, node.where)
     limit = node.first("limit")
     if kind in ("revolute", "prismatic") and limit is not None:
         joint.limits = (limit.numbers("lower", 1, (0,)).item(), limit.numbers("upper", 1, (0,)).item())
     mimic = node.first("mimic")
     if mimic is not None:
-        joint.mimic = (mimic.word("joint"), mimic.numbers("multiplier", 1, (1,)).item(), mimic.numbers("offset", 1, (0,)).item())
+        factor, offset = mimic.numbers("multiplier", 1, (1,)).item(), mimic.numbers("offset", 1, (0,)).item()
+        joint.mimic = (mimic.word("joint"), factor, offset)
     return joint
 
 

@@ -8,6 +8,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from ._core import Refused
 from ._errors import refused
 
 #: A robot's description is text; one of this size is a mistake.
@@ -34,6 +35,15 @@ class Node:
 
     def refuse(self, told, code="bad_value"):
         raise refused(f"{self.where}: {told} ({code})")
+
+    def attempt(self, make):
+        """make(), whose refusal is told with this element's line, unless it has one."""
+        try:
+            return make()
+        except Refused as error:
+            if " line " in error.where:
+                raise
+            self.refuse(f"<{self.tag}>: {str(error)[:-len(error.code) - 3]}", error.code)
 
     def word(self, attribute):
         """An attribute that must be there."""

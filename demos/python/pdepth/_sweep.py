@@ -45,9 +45,9 @@ def _chunk(shapes, pairs, poses_a, poses_b, threads, options):
     return {name: found[name] for name in found}
 
 
-def _inputs_digest(head, pairs, poses_a, poses_b):
+def _inputs_digest(head, rows):
     digest = hashlib.sha256(head)
-    for part in (pairs, poses_a, poses_b):
+    for part in rows:
         digest.update(np.ascontiguousarray(part).tobytes())
     return digest.hexdigest()
 
@@ -73,21 +73,27 @@ class _Progress:
             print(f"{self.done} of {self.total} pairs, {now - self.start:.0f} s", end=end, file=sys.stderr, flush=True)
 
 
-class _Inputs:
-    """Pairs and poses by rows, whether they are arrays (memory-mapped ones stay on disk) or functions."""
+class _Pairs:
+    """Pairs and poses by rows, whether they are arrays (memory-mapped ones stay on disk) or functions.
+
+    A question of a sweep has `count` rows, of which rows(begin, end) are arrays; `shared`, which a worker gets once; and
+    chunk(shared, *rows, threads, options), which answers columns.
+    """
+
+    chunk = staticmethod(_chunk)
 
     def __init__(self, shapes, pairs, poses):
-        self.shapes = list(shapes)
-        for i, shape in enumerate(self.shapes):
+        self.shared = list(shapes)
+        for i, shape in enumerate(self.shared):
             if not isinstance(shape, Shape):
                 raise refused(f"shapes[{i}]: must be a pdepth shape, not {type(shape).__name__} (bad_value)")
         self.pairs = np.asarray(pairs) if not isinstance(pairs, np.memmap) else pairs
         if self.pairs.ndim != 2 or self.pairs.shape[1] != 2 or self.pairs.dtype.kind not in "iu":
             raise refused(f"pairs: has shape {self.pairs.shape} and dtype {self.pairs.dtype}, needs [n, 2] integers (bad_value)")
-        outside = (self.pairs < 0) | (self.pairs >= len(self.shapes))
+        outside = (self.pairs < 0) | (self.pairs >= len(self.shared))
         if outside.any():
             row = int(np.argmax(outside.any(axis=1)))
-            raise refused(f"pairs[{row}]: shapes are numbered 0 to {len(self.shapes) - 1} (out_of_range)")
+            raise refused(f"pairs[{row}]: shapes are numbered 0 to {len(self.shared) - 1} (out_of_range)")
         self.count = len(self.pairs)
         self.poses = poses
         if not callable(poses):
@@ -97,6 +103,9 @@ class _Inputs:
                 if np.shape(column) != (self.count, 4, 4):
                     raise refused(f"{name}: has shape {np.shape(column)}, needs {(self.count, 4, 4)} (bad_value)")
 
+    def told(self):
+        return [shape.protocol() for shape in self.shared]
+
     def rows(self, begin, end):
         pairs = np.ascontiguousarray(self.pairs[begin:end], dtype=np.int64)
         poses_a, poses_b = self.poses(begin, end) if callable(self.poses) else (each[begin:end] for each in self.poses)
@@ -105,14 +114,14 @@ class _Inputs:
 
 def _run_here(inputs, missing, finish, threads, options):
     for rows, path, digest in missing:
-        finish(path, _chunk(inputs.shapes, *rows, threads, options), digest, len(rows[0]))
+        finish(path, inputs.chunk(inputs.shared, *rows, threads, options), digest, len(rows[0]))
 
 
 def _run_on(client, inputs, missing, finish, threads, options):
     """Twice as many chunks under way as the cluster has threads: workers never wait, memory stays bounded."""
     from distributed import as_completed
 
-    shapes = client.scatter(inputs.shapes, broadcast=True, hash=False)
+    shared = client.scatter(inputs.shared, broadcast=True, hash=False)
     waiting, known = iter(missing), {}
 
     def submit():
@@ -122,7 +131,7 @@ def _run_on(client, inputs, missing, finish, threads, options):
         rows, path, digest = work
         with warnings.catch_warnings():  # rows are large, sent once, and kept here until a worker has answered them
             warnings.filterwarnings("ignore", "Large object", UserWarning)
-            future = client.submit(_chunk, shapes, *rows, threads, options, pure=False)
+            future = client.submit(inputs.chunk, shared, *rows, threads, options, pure=False)
         known[future] = (path, digest, len(rows[0]))
         return future
 
@@ -150,14 +159,20 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
     of what was asked and of pdepth's version. A file whose inputs are the same is kept when the sweep is called again;
     anything else is computed anew. The bytes are the same with and without a cluster. Answers a Sweep.
     """
-    inputs = _Inputs(shapes, pairs, poses)
+    how = {"out": out, "chunk": chunk, "threads": threads, "progress": progress}
+    return run(_Pairs(shapes, pairs, poses), client, how, options)
+
+
+def run(inputs, client, how, options):
+    """Runs a question of many rows in chunks. how: the arguments out, chunk, threads and progress of `sweep`."""
+    out, chunk, threads, progress = (how[name] for name in ("out", "chunk", "threads", "progress"))
     if not isinstance(chunk, int) or chunk < 1:
         raise refused(f"chunk: must be an integer from 1, not {chunk!r} (bad_value)")
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     from . import __version__
 
-    asked = [__version__, [shape.protocol() for shape in inputs.shapes], options]
+    asked = [__version__, inputs.told(), options]
     head = json.dumps(asked, sort_keys=True).encode()
     shown = _Progress(inputs.count, progress)
     files = [folder / f"chunk_{k:06d}.npz" for k in range(-(-inputs.count // chunk))]
@@ -167,7 +182,7 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
         for k, path in enumerate(files):
             begin, end = k * chunk, min((k + 1) * chunk, inputs.count)
             rows = inputs.rows(begin, end)
-            digest = _inputs_digest(head, *rows)
+            digest = _inputs_digest(head, rows)
             if _is_done(path, digest):
                 shown.step(end - begin)
             else:

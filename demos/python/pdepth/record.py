@@ -243,9 +243,11 @@ def _link_shape(client: Any, body: int, link: int, mesh_hulls: bool) -> Any:
         if kind == _GEOM_PLANE:
             return {"type": "plane", "normal": list(sizes), "offset": 0}, place
         made = {_GEOM_SPHERE: lambda: Sphere(sizes[0]), _GEOM_BOX: lambda: Box(np.array(sizes) / 2),
-                _GEOM_CYLINDER: lambda: Cylinder(sizes[1], sizes[0] / 2), _GEOM_CAPSULE: lambda: Capsule(sizes[1], sizes[0] / 2)}
+                _GEOM_CYLINDER: lambda: Cylinder(sizes[1], sizes[0] / 2),
+                _GEOM_CAPSULE: lambda: Capsule(sizes[1], sizes[0] / 2)}
         if kind == _GEOM_MESH and mesh_hulls:
-            made[kind] = lambda: ConvexPolytope(client.getMeshData(body, link)[1], margin=client.getDynamicsInfo(body, link)[11])
+            margin = client.getDynamicsInfo(body, link)[11]
+            made[kind] = lambda m=margin: ConvexPolytope(client.getMeshData(body, link)[1], margin=m)
         if kind not in made:
             warnings.warn(f"body {body}, link {link}: a record holds no shape of type {kind}; its pairs are left out", stacklevel=2)
             return None, np.eye(4)
