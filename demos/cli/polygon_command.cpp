@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -37,6 +38,9 @@ Without --direction the least move over all directions is found. With --complete
   --complete=escape    by any motion: Q comes to where a way leads out, not into a hole that it fits in
 --complete alone is straight with --direction, escape without.
 
+If Q fits exactly into a hole or a notch, the place has no area and is no way out: the answer says that Q fits, and --seats
+lists all such displacements.
+
 Examples:
   pdepth polygon plate.svg tool.json
   pdepth polygon sheet.svg#plate part.svg --direction 0,1 --complete
@@ -51,6 +55,7 @@ struct PolygonArguments {
   std::string picture;
   std::optional<double> flatness;
   std::string complete;  ///< one of the three words below, or nothing
+  bool seats = false;
   bool json = false;
 };
 
@@ -135,8 +140,12 @@ std::string feature_in_words(const Polygon& polygon, const Polygon::VertexId& id
 }
 
 /// What the answer says, in one line.
-std::string verdict(const PolygonPair& pair, const PolygonDepth& result) {
+std::string verdict(const PolygonPair& pair, const PolygonDepth& result, bool seat) {
   const std::string way = pair.direction ? " along the direction" : "";
+  if (seat && pair.leave == Leave::first_exit) {
+    return "Q fits exactly where it is: no insides meet, but it cannot leave without overlap; this moves Q clear" +
+           way + ".";
+  }
   if (pair.leave == Leave::straight) {
     if (result.depth == 0) {
       return pair.direction ? "Nothing is in Q's way along the direction." : "Q can leave straight as it is.";
@@ -158,13 +167,29 @@ std::string verdict(const PolygonPair& pair, const PolygonDepth& result) {
   return "P and Q are apart.";
 }
 
+/// The places where Q fits exactly, the first ten of each kind.
+void print_seats(const PolygonDifference::Seats& seats) {
+  constexpr std::size_t kMost = 10;
+  const auto row = [](const std::string& words) { print_row("fits at", words); };
+  for (std::size_t i = 0; i < std::min(kMost, seats.points.size()); ++i) {
+    row(fmt::format("({:.10g}, {:.10g})", seats.points[i][0], seats.points[i][1]));
+  }
+  for (std::size_t i = 0; i < std::min(kMost, seats.slots.size()); ++i) {
+    const auto& [a, b] = seats.slots[i];
+    row(fmt::format("({:.10g}, {:.10g}) to ({:.10g}, {:.10g}), a slot", a[0], a[1], b[0], b[1]));
+  }
+  const std::size_t all = seats.points.size() + seats.slots.size();
+  if (all == 0) row("no displacement of Q exactly");
+  if (std::max(seats.points.size(), seats.slots.size()) > kMost) row(fmt::format("{} places in all", all));
+}
+
 void print_result(const PolygonArguments& arguments, const PolygonPair& pair, const PolygonDifference& r,
                   const PolygonDepth& result, std::int64_t nanoseconds) {
   const std::string unit = pair.p.unit.empty() ? "" : " " + pair.p.unit;
   fmt::print("\n");
   print_polygon("P", arguments.file_p, pair.p);
   print_polygon("Q", arguments.file_q, pair.q);
-  fmt::print("\n{}\n\n", verdict(pair, result));
+  fmt::print("\n{}\n\n", verdict(pair, result, r.seat(pair.place)));
   print_row("depth", fmt::format("{}{}", result.depth, unit));
   if (result.depth > 0) {
     print_row("bracket", fmt::format("[{}, {}]", result.lower, result.upper));
@@ -178,6 +203,7 @@ void print_result(const PolygonArguments& arguments, const PolygonPair& pair, co
     print_row("of P", feature_in_words(pair.p.polygon, result.feature->p, result.feature->p_edge));
     print_row("of Q", feature_in_words(pair.q.polygon, result.feature->q, result.feature->q_edge));
   }
+  if (arguments.seats) print_seats(r.seats());
   const PolygonDifference::Statistics s = r.statistics();
   fmt::print("\n");
   print_row("method", fmt::format("{}: {} convex sums, {} pieces of boundary, {} {}, {}",
@@ -190,7 +216,7 @@ int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, con
                  const PolygonDepth& result) {
 #ifdef PDEPTH_WITH_DEMOS
   return demo::write_polygon_picture({&pair.p.polygon, &pair.q.polygon, pair.place, pair.p.unit, pair.p.drawing}, r,
-                                     result, verdict(pair, result), arguments.picture);
+                                     result, verdict(pair, result, r.seat(pair.place)), arguments.picture);
 #else
   (void)pair;
   (void)r;
@@ -214,7 +240,8 @@ int run_polygon(const PolygonArguments& arguments) {
     std::string out;
     query::JsonWriter writer(out);
     writer.begin_object();
-    query::write_polygon_answers({result}, false, writer);
+    query::write_polygon_answers({result}, {r->seat(pair.place)}, false, writer);
+    if (arguments.seats) query::write_seats(r->seats(), writer);
     query::write_polygon_statistics(*r, nanoseconds, writer);
     writer.end_object();
     fmt::print("{}\n", out);
@@ -244,6 +271,7 @@ void add_polygon_command(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   command->add_option("--picture", arguments->picture, "Draw P, Q and all forbidden placements as a PNG")
       ->check(refuse_other_pictures, "FILE.png");
+  command->add_flag("--seats", arguments->seats, "List the displacements at which Q fits exactly: points and slots");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers polygon_depth");
   command->callback([arguments, &action] { action = [arguments] { return run_polygon(*arguments); }; });
 }

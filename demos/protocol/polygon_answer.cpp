@@ -28,7 +28,8 @@ void write_feature(const std::optional<PlanarFeature>& feature, JsonWriter& answ
 
 }  // namespace
 
-void write_polygon_answers(const std::vector<PolygonDepth>& answers, bool list, JsonWriter& answer) {
+void write_polygon_answers(const std::vector<PolygonDepth>& answers, const std::vector<bool>& seats, bool list,
+                           JsonWriter& answer) {
   const auto field = [&](const char* one, const char* many, const auto& write) {
     answer.key(list ? many : one);
     if (list) answer.begin_array();
@@ -42,6 +43,24 @@ void write_polygon_answers(const std::vector<PolygonDepth>& answers, bool list, 
   field("translation", "translations", [&](const PolygonDepth& a) { write_point2(a.translation, answer); });
   field("normal", "normals", [&](const PolygonDepth& a) { write_point2(a.normal, answer); });
   field("feature", "features", [&](const PolygonDepth& a) { write_feature(a.feature, answer); });
+  answer.key(list ? "seats" : "seat");
+  if (list) answer.begin_array();
+  for (const bool seat : seats) answer.boolean(seat);
+  if (list) answer.end_array();
+}
+
+void write_seats(const PolygonDifference::Seats& seats, JsonWriter& answer) {
+  answer.key("slots").begin_array();
+  for (const auto& slot : seats.slots) {
+    answer.begin_array();
+    write_point2(slot[0], answer);
+    write_point2(slot[1], answer);
+    answer.end_array();
+  }
+  answer.end_array();
+  answer.key("seat_points").begin_array();
+  for (const Point2& x : seats.points) write_point2(x, answer);
+  answer.end_array();
 }
 
 void write_polygon_statistics(const PolygonDifference& r, std::int64_t nanoseconds, JsonWriter& answer) {

@@ -122,17 +122,10 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
   if (!r) line.refuse(r.error());
   const std::vector<PolygonDepth> answers = question.answers(*r, placements, line);
   const std::int64_t nanoseconds = watch.nanoseconds();
-  write_polygon_answers(answers, placements_node.has_value() || question.fixed_set, answer);
-  if (slots) {
-    answer.key("slots").begin_array();
-    for (const auto& slot : r->slots()) {
-      answer.begin_array();
-      write_point2(slot[0], answer);
-      write_point2(slot[1], answer);
-      answer.end_array();
-    }
-    answer.end_array();
-  }
+  std::vector<bool> seats;  // of a placement, once for every direction
+  for (const Point2& y : placements) seats.insert(seats.end(), directions, r->seat(y));
+  write_polygon_answers(answers, seats, placements_node.has_value() || question.fixed_set, answer);
+  if (slots) write_seats(r->seats(), answer);
   write_polygon_statistics(*r, nanoseconds, answer);
 }
 

@@ -86,7 +86,9 @@ render::PlaneFigure difference_figure(const PolygonScene& scene, const PolygonDi
                             .colour = curve.arc ? palette::kBodyB : palette::kBodyA,
                             .width_pixels = 3.2});
   }
-  for (const auto& slot : r.slots()) {
+  const PolygonDifference::Seats seats = r.seats();
+  for (const Point2& x : seats.points) figure.dots.push_back({.at = x, .radius_pixels = 2.5});
+  for (const auto& slot : seats.slots) {
     figure.lines.push_back(
         {.points = {slot[0], slot[1]}, .colour = palette::kInkSoft, .width_pixels = 1.5, .dashed = true});
   }

@@ -71,7 +71,25 @@ TEST(PolygonQuery, SlotsAreListedAndNoWayOut) {
                                  kUnitSquare, R"("placements":[[3,4]],"slots":true)"));
   EXPECT_EQ(reply.at("classes").at(0), "overlapping");
   EXPECT_EQ(reply.at("depths").at(0), 4.0);
-  EXPECT_FALSE(reply.at("slots").empty());
+  EXPECT_EQ(reply.at("slots"), Json::parse("[[[3.0,3.0],[3.0,6.0]]]"));
+  EXPECT_TRUE(reply.at("seat_points").empty());
+  EXPECT_EQ(reply.at("seats"), Json::parse("[true]"));
+}
+
+TEST(PolygonQuery, ASeatIsToldBesideTheClass) {
+  const std::string hole = R"({"outer":[[0,0],[10,0],[10,10],[0,10]],"holes":[[[3,3],[4,3],[4,4],[3,4]]]})";
+  const Json reply = answer(line(hole, R"({"outer":[[3,3],[4,3],[4,4],[3,4]]})", R"("slots":true)"));
+  EXPECT_EQ(reply.at("class"), "overlapping");
+  EXPECT_EQ(reply.at("seat"), true);
+  EXPECT_EQ(reply.at("seat_points"), Json::parse("[[0.0,0.0]]"));
+  EXPECT_TRUE(reply.at("slots").empty());
+  EXPECT_EQ(answer(line(hole, kUnitSquare, "")).at("seat"), false);
+}
+
+TEST(PolygonQuery, RingsMayTouch) {
+  const Json reply = answer(line(R"({"outer":[[0,0],[8,0],[8,8],[0,8]],"holes":[[[4,0],[6,4],[2,4]]]})", kUnitSquare,
+                                 R"("placements":[[3.5,1.75],[3.5,2.75]])"));
+  EXPECT_EQ(reply.at("classes"), Json::parse(R"(["overlapping","separated"])"));
 }
 
 TEST(PolygonQuery, Refusals) {

@@ -95,9 +95,13 @@ TEST(PolygonDepth, ASlotOfZeroWidthIsNoWayOut) {
   EXPECT_EQ(r.statistics().loops, 1);
   EXPECT_EQ(r.contact({3, 4}), PlanarContact::overlapping);
   EXPECT_EQ(r.depth({3, 4}).depth, 5);
-  EXPECT_FALSE(r.slots().empty());
-  for (const auto& slot : r.slots()) EXPECT_EQ(slot[0][0], 3);
-  EXPECT_TRUE(PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 3)))->slots().empty());
+  const PolygonDifference::Seats seats = r.seats();
+  EXPECT_TRUE(seats.points.empty());
+  ASSERT_EQ(seats.slots.size(), 1u);  // once, and whole
+  EXPECT_EQ(seats.slots[0], (std::array<Point2, 2>{{{3, 3}, {3, 5}}}));
+  EXPECT_TRUE(r.seat({3, 4}) && r.seat({3, 3}));
+  EXPECT_FALSE(r.seat({3, 5.5}) || r.seat({2, 4}));
+  EXPECT_TRUE(PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 3)))->seats().slots.empty());
   EXPECT_EQ(PolygonDifference::of(pd::test::made(rings), pd::test::made(square(0, 1)))->statistics().loops, 2);
 }
 

@@ -151,6 +151,18 @@ std::vector<Vec> PolygonOracle::places(const Vec& y) const {
   return places;
 }
 
+std::vector<Vec> PolygonOracle::seats() const {
+  std::vector<Vec> places = this->places({0, 0});
+  std::sort(places.begin(), places.end());
+  std::vector<Vec> found;
+  for (const Vec& x : places) {
+    const auto near = [&](const Vec& y) { return norm(minus(x, y)) < kZero; };
+    if (std::any_of(found.begin(), found.end(), near)) continue;
+    if (!overlap(x) && interior(x)) found.push_back(x);
+  }
+  return found;
+}
+
 double PolygonOracle::depth(const Vec& y) const {
   std::vector<Vec> places = this->places(y);
   std::sort(places.begin(), places.end(),

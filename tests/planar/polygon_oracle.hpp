@@ -23,6 +23,10 @@ class PolygonOracle {
   /// Is y in the interior of the closure of {y : int P meets int (Q + y)}? In that closure?
   [[nodiscard]] bool interior(const Vec& y) const;
   [[nodiscard]] std::string contact(const Vec& y) const;
+  /// Do the interiors of P and Q + y meet?
+  [[nodiscard]] bool overlap(const Vec& y) const;
+  /// Interior without overlap, among the ends and crossings of contacts: single seats, and ends of slots.
+  [[nodiscard]] std::vector<Vec> seats() const;
   /// Distance from an interior placement to the nearest one that is not.
   [[nodiscard]] double depth(const Vec& y) const;
   /// Least t >= 0 for which y + t d/|d| is not interior.
@@ -37,7 +41,6 @@ class PolygonOracle {
   struct Segment {
     Vec a, b;
   };
-  [[nodiscard]] bool overlap(const Vec& y) const;
   /// Ends and crossings of contacts, and the feet of y on them.
   [[nodiscard]] std::vector<Vec> places(const Vec& y) const;
   [[nodiscard]] std::vector<double> critical(const Vec& y, const Vec& d) const;

@@ -15,7 +15,8 @@ from ._queries import Fields, _is_batch, cores
 from ._shapes import _plain, pose_fields
 
 #: Fields that hold lists of unequal lengths, or of words: they stay lists.
-_RAGGED = {"facets", "facet_kinds", "classes", "levels", "size_classes", "indices_of_parts", "slots", "feature", "stats"}
+_RAGGED = {"facets", "facet_kinds", "classes", "levels", "size_classes", "indices_of_parts", "slots", "seat_points",
+           "feature", "stats"}
 
 #: Fields that place a body.
 _POSES = {"pose", "pose_a", "pose_b"}
@@ -85,7 +86,8 @@ _WIDTH = {"width": 0.0, "lower": 0.0, "upper": 0.0, "normal": [0.0] * 3}
 _SUM = {"vertices": [[0.0] * 3], "facets": [[0]], "K": 0, "facet_kinds": [""]}
 _HULL = {"vertices": [[0.0] * 3], "vertex_ids": [0], "facets": [[0]], "affine_dim": 0}
 _IMPACT = {"hit": False, "time": 0.0, "certified": 0.0, **_MEETING}
-_PLANAR = {"class": "separated", "depth": 0.0, "lower": 0.0, "upper": 0.0, "translation": [0.0] * 2, "normal": [0.0] * 2}
+_PLANAR = {"class": "separated", "depth": 0.0, "lower": 0.0, "upper": 0.0, "translation": [0.0] * 2, "normal": [0.0] * 2,
+           "seat": False}
 
 
 def query_many(name, rows, *, threads=None):
@@ -169,8 +171,9 @@ def time_of_impact(a, b, pose_a=None, pose_b=None, *, velocity_a=None, angular_v
 def polygon_depth(p, q, *, threads=None, **options):
     """Depth of two polygons in the plane; q moves. p, q: [n, 2] outlines, or {"outer": ..., "holes": [...]}.
 
-    options: direction, complete, direction_set, placements, slots, method: see the protocol's planar queries. Lists of
-    polygons (one for all, or one a row) answer a RowBatch; the options then hold for every row.
+    options: direction, complete, direction_set, placements, slots, method: see the protocol's planar queries. `seat` says
+    that q fits exactly; slots=True lists all such places. Lists of polygons (one for all, or one a row) answer a RowBatch;
+    the options then hold for every row.
     """
     def listed(value):
         return not isinstance(value, dict) and len(value) > 0 and (isinstance(value[0], dict) or np.ndim(value[0]) == 2)

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "numeric/quotient.hpp"
+#include "planar/boundary/seats.hpp"
 #include "planar/difference_state.hpp"
 #include "planar/polygon_answer.hpp"
 #include "planar/straight_escape.hpp"
@@ -197,17 +199,27 @@ std::vector<PolygonDifference::Curve> PolygonDifference::boundary_curves() const
   return curves;
 }
 
-std::vector<std::array<Point2, 2>> PolygonDifference::slots() const {
-  const detail::SumBoundary& b = state_->boundary;
-  const double sign = state_->swapped ? -1 : 1;
-  std::vector<std::array<Point2, 2>> slots;
-  for (const detail::Stretch& s : b.slots()) {
-    for (int e = detail::SumBoundary::first_edge(s); e <= detail::SumBoundary::last_edge(s); ++e) {
-      const detail::EdgePart part = b.part(s, e);
-      slots.push_back({rounded_point(part.span, part.from, sign), rounded_point(part.span, part.to, sign)});
-    }
+bool PolygonDifference::seat(const Point2& placement) const {
+  const detail::BoundaryQuery& query = state_->query;
+  const Point2 y = state_->turned(placement);
+  return query.contact(y) == PlanarContact::overlapping && query.is_seat(y);
+}
+
+PolygonDifference::Seats PolygonDifference::seats() const {
+  const State& s = *state_;
+  // The budget was kept by the boundary at hand, whose steps are repeated.
+  const detail::SumBoundary boundary(s.p, s.q, s.implicit, std::numeric_limits<std::int64_t>::max(), true);
+  Seats seats{detail::single_seats(detail::BoundaryQuery(boundary)), detail::whole_slots(boundary)};
+  if (!s.swapped) return seats;
+  const auto turned = [](Point2& x) { x = {0 - x[0], 0 - x[1]}; };
+  for (Point2& x : seats.points) turned(x);
+  for (auto& slot : seats.slots) {
+    turned(slot[0]);
+    turned(slot[1]);
+    std::swap(slot[0], slot[1]);
   }
-  return slots;
+  std::sort(seats.points.begin(), seats.points.end());
+  return seats;
 }
 
 }  // namespace pd

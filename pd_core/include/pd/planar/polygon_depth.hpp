@@ -3,7 +3,8 @@
 /// away.
 ///
 /// P is fixed, Q placed at y (every point of Q plus y) and Q MOVES. The forbidden placements are R = P + (-Q),
-/// regularised: the interior of the closure of {y : int P meets int (Q + y)}. A slot of zero width is no way out. Then
+/// regularised: the interior of the closure of {y : int P meets int (Q + y)}. A place of zero area where Q fits exactly
+/// (a seat: a point, or a slot of zero width) is no way out. Then
 ///   sigma_d(y) = min {t >= 0 : y + t d/|d| not in R},     sigma(y) = min over d: the distance from y to the boundary
 ///   of R.
 /// [D] Dobkin, Hershberger, Kirkpatrick, Suri, "Computing the intersection-depth of polyhedra", 1993, sections 2 and 4.
@@ -109,8 +110,16 @@ class PolygonDifference {
     std::vector<Point2> points;
   };
   [[nodiscard]] std::vector<Curve> boundary_curves() const;
-  /// The slots of zero width, rounded: segments along which two sums abut and none lies over them.
-  [[nodiscard]] std::vector<std::array<Point2, 2>> slots() const;
+  /// The interiors of P and Q do not meet at the placement, and yet it is no way out: Q fits exactly, and every small
+  /// move but along a slot makes the two overlap.
+  [[nodiscard]] bool seat(const Point2& placement) const;
+  /// All such placements, rounded.
+  struct Seats {
+    std::vector<Point2> points;                ///< single ones, in lexicographic order
+    std::vector<std::array<Point2, 2>> slots;  ///< segments that Q can slide along, each once, the lesser end first
+  };
+  /// Time O(that of making the difference).
+  [[nodiscard]] Seats seats() const;
 
  private:
   friend class DirectionSet;

@@ -33,10 +33,10 @@ void ArcCover::cut_edge(int edge, CandidateCover& cover) {
     case ConvexSum::Cover::Kind::inside:
       crossings_ += part->from.kind == Place::Kind::line ? 1 : 0;
       crossings_ += part->to.kind == Place::Kind::line ? 1 : 0;
-      cover.covered.add(interval);
+      cover.add(interval);
       break;
     case ConvexSum::Cover::Kind::same_edge:
-      if (gives_way_(sum_, part->edge)) cover.covered.add(interval);
+      if (gives_way_(sum_, part->edge)) cover.add(interval);
       break;
     case ConvexSum::Cover::Kind::opposite_edge:
       cover.abutting.push_back(interval);
@@ -133,7 +133,7 @@ void ArcCover::grow(int low, int seed, int high, CandidateCover& cover) {
     (vertex_inside(middle) ? inside : outside) = middle;
   }
   const int last = inside;
-  if (first < last) cover.covered.add({{first, {}}, {last, {}}});
+  if (first < last) cover.add({{first, {}}, {last, {}}});
   if (first > low) cut_edge(first - 1, cover);
   if (last < high) cut_edge(last, cover);
 }

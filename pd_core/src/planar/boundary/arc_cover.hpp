@@ -13,6 +13,13 @@ namespace pd::detail {
 struct CandidateCover {
   CoveredIntervals covered;                          ///< inside, or along an edge that it gives way to
   std::vector<CoveredIntervals::Interval> abutting;  ///< along an edge in the opposite direction
+  bool keep_parts = false;
+  std::vector<CoveredIntervals::Interval> parts;  ///< covered ones as they came, if they are kept
+
+  void add(const CoveredIntervals::Interval& interval) {
+    covered.add(interval);
+    if (keep_parts) parts.push_back(interval);
+  }
 };
 
 class ArcCover {

@@ -10,6 +10,7 @@
 
 #include "numeric/at.hpp"
 #include "planar/boundary/convex_parts.hpp"
+#include "planar/boundary/seats.hpp"
 
 namespace pd::detail {
 
@@ -75,7 +76,7 @@ void BoundaryBuilder::build_implicit() {
           return id >= 0 && id < candidate.id;
         },
         r_.counts_);
-    CandidateCover cover{{r_, candidate}, {}};
+    CandidateCover cover{{r_, candidate}, {}, with_seats_, {}};
     reach_of(candidate);
     flood(candidate, candidate.sum, cutter, cover);
     keep(candidate, cover);
@@ -280,6 +281,9 @@ void BoundaryBuilder::keep(const Candidate& candidate, const CandidateCover& cov
   }
   const auto rest = all.rest();
   for (const auto& part : rest) r_.stretches_.push_back({index, part.from, part.to});
+  if (with_seats_) {
+    for (const Position& x : seat_places_of(r_, candidate, cover)) r_.seat_places_.push_back({index, x});
+  }
   if (!rest.empty()) return;
   while (!near_.empty() && near_.back().candidate == index) near_.pop_back();
 }
@@ -288,16 +292,18 @@ void BoundaryBuilder::keep(const Candidate& candidate, const CandidateCover& cov
 void BoundaryBuilder::compact() {
   std::vector<std::int32_t> number(r_.candidates_.size(), -1);
   std::vector<Candidate> kept;
-  for (auto* list : {&r_.stretches_, &r_.slots_}) {
-    for (Stretch& s : *list) {
-      std::int32_t& n = number[at(s.candidate)];
-      if (n < 0) {
-        n = static_cast<std::int32_t>(kept.size());
-        kept.push_back(r_.candidates_[at(s.candidate)]);
-      }
-      s.candidate = n;
+  const auto keep_candidate = [&](std::int32_t& candidate) {
+    std::int32_t& n = number[at(candidate)];
+    if (n < 0) {
+      n = static_cast<std::int32_t>(kept.size());
+      kept.push_back(r_.candidates_[at(candidate)]);
     }
+    candidate = n;
+  };
+  for (auto* list : {&r_.stretches_, &r_.slots_}) {
+    for (Stretch& s : *list) keep_candidate(s.candidate);
   }
+  for (SeatPlace& m : r_.seat_places_) keep_candidate(m.candidate);
   r_.candidates_ = std::move(kept);
   for (NearSum& near : near_) near.candidate = number[at(near.candidate)];
   std::sort(near_.begin(), near_.end(), [](const NearSum& a, const NearSum& b) {
@@ -392,7 +398,7 @@ void BoundaryBuilder::cut_edge_candidate(const Candidate& candidate, const SumSe
 
   ArcCover cutter(
       r_, candidate, [&](int sum, int) { return sum < candidate.sum; }, r_.counts_);
-  CandidateCover cover{{r_, candidate}, {}};
+  CandidateCover cover{{r_, candidate}, {}, with_seats_, {}};
   for (const std::int32_t sum : needed_) {
     if (cover.covered.whole()) break;
     near_.push_back({index_of(candidate), sum});
@@ -442,58 +448,6 @@ void BoundaryBuilder::add_edge_candidates() {
         r_.candidates_.push_back({i, t, 1, static_cast<std::int32_t>(r_.candidates_.size())});
     }
   }
-}
-
-SumBoundary::SumBoundary(const Polygon& p, const Polygon& q, bool implicit, std::int64_t max_comparisons) {
-  BoundaryBuilder builder(*this, p, q);
-  if (implicit) {
-    builder.build_implicit();
-  } else {
-    builder.build_explicit(max_comparisons);
-  }
-}
-
-Box2 SumBoundary::box(const Candidate& c, int begin, int end) const {
-  Box2 box;
-  const auto add = [&](const SumPoint& x) { box.add(Point2{x.p[0] - x.q[0], x.p[1] - x.q[1]}); };
-  if (end - begin == 1) {
-    const Span e = edge(c, begin);
-    add(e.s);
-    add(e.z);
-    return box.widened();
-  }
-  const ConvexSum::Parts parts = sum(c).parts(sum_edge(c, begin));
-  const Box2 q = sum(c).chain().box(parts.b, end - begin);
-  const Point2& p = sum(c).corner(parts.a);
-  box.add(Point2{p[0] - q.high[0], p[1] - q.high[1]});
-  box.add(Point2{p[0] - q.low[0], p[1] - q.low[1]});
-  return box.widened();
-}
-
-EdgePart SumBoundary::part(const Stretch& s, int e) const {
-  EdgePart r{edge(candidate(s), e), {}, {Place::Kind::end, {}, {}}};
-  if (e == s.from.edge) r.from = s.from.at;
-  if (e == s.to.edge) r.to = s.to.at;
-  return r;
-}
-
-SumBoundary::Contact SumBoundary::contact(const Stretch& s, int e) const {
-  const Candidate& c = candidate(s);
-  const ConvexSum::Parts parts = sum(c).parts(sum_edge(c, e));
-  const auto& vertices = chain_vertices_[static_cast<std::size_t>(c.sum) % chains_.size()];
-  const std::size_t b = static_cast<std::size_t>(parts.b);
-  return {sum(c).corners()[at(parts.a)], vertices[b], parts.of_triangle, parts.of_chain};
-}
-
-std::size_t SumBoundary::memory_bytes() const {
-  std::size_t bytes = (p_points_.capacity() + q_points_.capacity()) * sizeof(Point2) +
-                      sums_.capacity() * sizeof(ConvexSum) + candidates_.capacity() * sizeof(Candidate) +
-                      (stretches_.capacity() + slots_.capacity()) * sizeof(Stretch);
-  for (const auto& chain : chains_) bytes += static_cast<std::size_t>(chain->size() + 1) * sizeof(Point2);
-  for (const ConvexSum& sum : sums_) bytes += sum.memory_bytes();
-  for (const ConvexPart& part : parts_) bytes += sizeof(ConvexPart) + at(part.size()) * sizeof(std::int32_t);
-  for (const auto& list : chain_vertices_) bytes += list.capacity() * sizeof(std::int32_t);
-  return bytes;
 }
 
 }  // namespace pd::detail

@@ -16,7 +16,8 @@ struct NearSum {
 
 class BoundaryBuilder {
  public:
-  BoundaryBuilder(SumBoundary& boundary, const Polygon& p, const Polygon& q) : r_(boundary), p_(p), q_(q) {}
+  BoundaryBuilder(SumBoundary& boundary, const Polygon& p, const Polygon& q, bool with_seats)
+      : r_(boundary), p_(p), q_(q), with_seats_(with_seats) {}
 
   void build_implicit();
   /// Gives up where it takes more comparisons of a candidate with a sum. An exact one counts as kExactComparison.
@@ -51,6 +52,7 @@ class BoundaryBuilder {
   SumBoundary& r_;
   const Polygon& p_;
   const Polygon& q_;
+  bool with_seats_;
   Triangulation triangulation_;
   std::vector<std::int32_t> seen_;  ///< per triangle: the candidate that met it last
   std::vector<std::int32_t> queue_;

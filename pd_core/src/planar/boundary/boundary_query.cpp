@@ -140,6 +140,16 @@ PlanarContact BoundaryQuery::contact_by_sums(const Point2& y, std::optional<Boun
   return found ? PlanarContact::touching : PlanarContact::overlapping;
 }
 
+bool BoundaryQuery::is_seat(const Point2& y) const {
+  Box2 here;
+  here.add(y);
+  const SumPoint x = point(y);
+  bool inside = false;
+  sum_tree_.visit([&](const Box2& box) { return !inside && box.meets(here); },
+                  [&](std::int32_t i) { inside = inside || boundary_.sums()[at(i)].locate(x).inside; });
+  return !inside;
+}
+
 std::optional<Place> BoundaryQuery::last_exit(const Point2& y, const Point2& d) const {
   const Span ray{point(y), {{0, 0}, d}, {}};
   std::optional<Place> best;

@@ -49,7 +49,13 @@ class BoundaryQuery {
   /// For a placement outside R: does it lie in the unbounded face, or on its boundary?
   [[nodiscard]] bool in_unbounded_face(const Point2& y) const;
 
+  /// For a placement in R: do the interiors of P and Q not meet there?
+  [[nodiscard]] bool is_seat(const Point2& y) const;
+
+  [[nodiscard]] const SumBoundary& boundary() const { return boundary_; }
   [[nodiscard]] const BoxTree& stretch_tree() const { return stretch_tree_; }
+  [[nodiscard]] const BoxTree& sum_tree() const { return sum_tree_; }
+  [[nodiscard]] const BoxTree& slot_tree() const { return slot_tree_; }
   [[nodiscard]] const TurnedBoxes& ray_tree() const { return ray_tree_; }
   [[nodiscard]] Span span_of(const BoundaryPoint& x) const;
   [[nodiscard]] std::size_t memory_bytes() const {

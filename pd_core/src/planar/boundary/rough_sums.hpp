@@ -47,7 +47,8 @@ class RoughSums {
   static Point2 rounded(const SumPoint& x) { return {x.p[0] - x.q[0], x.p[1] - x.q[1]}; }
 
   /// The share of the segment from s to z (rounded as above). @return false if the two have for certain no point in
-  /// common. Where squares of the coordinates overflow or underflow nothing is certain: every sum may reach the segment.
+  /// common. Where squares of the coordinates overflow or underflow nothing is certain: every sum may reach the
+  /// segment.
   [[nodiscard]] bool cover(std::int32_t sum, const Point2& s, const Point2& z, RoughCover& r) const {
     r = {.sum = sum};
     if (!in_range_) {

@@ -43,6 +43,12 @@ struct Stretch {
   std::int32_t loop = -1;  ///< which closed curve of the boundary; 0 is the outer one
 };
 
+/// A place on a candidate where parts meet that sums cover, and that lies inside none of these sums.
+struct SeatPlace {
+  std::int32_t candidate;
+  Position at;
+};
+
 /// An edge of a stretch, whole or cut.
 struct EdgePart {
   Span span;
@@ -68,8 +74,8 @@ struct BoundaryCounts {
 class SumBoundary {
  public:
   /// Implicit: q convex, candidates are arcs. Explicit: every edge of every sum of two convex parts is one, within a
-  /// budget of comparisons.
-  SumBoundary(const Polygon& p, const Polygon& q, bool implicit, std::int64_t max_comparisons);
+  /// budget of comparisons. `with_seats`: places that may be seats are kept as well.
+  SumBoundary(const Polygon& p, const Polygon& q, bool implicit, std::int64_t max_comparisons, bool with_seats = false);
   SumBoundary(const SumBoundary&) = delete;  // sums point into its lists
   SumBoundary& operator=(const SumBoundary&) = delete;
 
@@ -77,6 +83,9 @@ class SumBoundary {
   [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
   /// Where two sums abut and no third lies over it.
   [[nodiscard]] const std::vector<Stretch>& slots() const { return slots_; }
+  [[nodiscard]] const std::vector<SeatPlace>& seat_places() const { return seat_places_; }
+  /// The place, as `from` on its edge.
+  [[nodiscard]] EdgePart place(const SeatPlace& m) const;
   [[nodiscard]] const BoundaryCounts& counts() const { return counts_; }
   [[nodiscard]] int num_loops() const { return num_loops_; }
   /// False if the budget ended first: then there are sums and no stretches.
@@ -114,6 +123,7 @@ class SumBoundary {
   std::vector<ConvexSum> sums_;
   std::vector<Candidate> candidates_;
   std::vector<Stretch> stretches_, slots_;
+  std::vector<SeatPlace> seat_places_;
   BoundaryCounts counts_;
   int num_loops_ = 0;
   bool complete_ = true;
