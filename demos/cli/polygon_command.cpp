@@ -27,7 +27,8 @@ namespace {
 
 constexpr const char* kPolygonFooter =
     R"(P stays and Q moves, as in the paper; everywhere else the first body moves. A file is
-  FILE.json     {"outer":[[x,y],...],"holes":[[[x,y],...],...]}, in P's unit
+  FILE.json     {"outer":[[x,y],...],"holes":[[[x,y],...],...],"margin":r}, in P's unit; holes and margin may be left out.
+                A disc of radius r sweeps the polygon; one point with a margin is a disc
   FILE.svg#ID   an element of a drawing: path, rect, circle, ellipse, polygon or polyline, with the transforms above it;
                 #ID may be left out where there is one. The inside follows fill-rule; fill and stroke do not matter
 Lengths are in the unit of the width of P's page (user units where it has none). In drawings y points down, and nothing is
@@ -45,6 +46,7 @@ Examples:
   pdepth polygon plate.svg tool.json
   pdepth polygon sheet.svg#plate part.svg --direction 0,1 --complete
   pdepth polygon sheet.svg#plate part.svg --complete=straight
+  pdepth polygon plate.svg tool.svg --margin 0,0.5     a tool with a clearance of half a unit
   pdepth polygon frame.json peg.json --place-q 2.25,4 --picture out.png)";
 
 struct PolygonArguments {
@@ -54,7 +56,8 @@ struct PolygonArguments {
   std::string place;
   std::string picture;
   std::optional<double> flatness;
-  std::string complete;  ///< one of the three words below, or nothing
+  std::string complete;         ///< one of the three words below, or nothing
+  std::vector<double> margins;  ///< none, one for both, or one each
   bool seats = false;
   bool json = false;
 };
@@ -68,6 +71,8 @@ struct PolygonPair {
   Point2 place = {0, 0};
   std::optional<Point2> direction;
   Leave leave = Leave::first_exit;
+  PlanarMargins margins = {};
+  [[nodiscard]] bool swept() const { return margins.p > 0 || margins.q > 0; }
 };
 
 Point2 parse_point(const std::string& text, const std::string& option) {
@@ -91,17 +96,34 @@ PolygonPair read_pair(const PolygonArguments& arguments) {
   const query::Limits limits{.max_vertices = 10'000'000};
   drawing::PolygonFile p = drawing::read_polygon_file(arguments.file_p, arguments.flatness, "", limits);
   drawing::PolygonFile q = drawing::read_polygon_file(arguments.file_q, arguments.flatness, p.unit, limits);
-  PolygonPair pair{std::move(p), std::move(q), {0, 0}, std::nullopt, Leave::first_exit};
+  PolygonPair pair{std::move(p), std::move(q), {0, 0}, std::nullopt, Leave::first_exit, {}};
   if (!arguments.place.empty()) pair.place = parse_point(arguments.place, "--place-q");
   if (!arguments.direction.empty()) {
     pair.direction = parse_point(arguments.direction, "--direction");
     if (*pair.direction == Point2{0, 0}) query::refuse("zero_direction", "--direction must not be 0,0", "");
   }
   pair.leave = leave_of(arguments);
+  // A file's own disc and that of the option sweep one after the other.
+  const std::vector<double>& margins = arguments.margins;
+  pair.margins = {pair.p.margin + (margins.empty() ? 0 : margins.front()),
+                  pair.q.margin + (margins.empty() ? 0 : margins.back())};
+  if (pair.swept() && !arguments.picture.empty()) {
+    query::refuse("unsupported", "--picture is for polygons without a margin", "");
+  }
+  if (pair.swept() && arguments.seats) {
+    query::refuse("unsupported", "--seats is for polygons without a margin", "");
+  }
   return pair;
 }
 
 PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r) {
+  if (pair.swept()) {
+    const Expected<PolygonDepth> found =
+        pair.direction ? r.swept_depth_along(pair.place, *pair.direction, pair.margins, pair.leave)
+                       : r.swept_depth(pair.place, pair.margins, pair.leave);
+    if (!found) query::refuse(to_string(found.error().code), found.error().message, found.error().where);
+    return *found;
+  }
   if (pair.direction) return r.depth_along(pair.place, *pair.direction, pair.leave);
   switch (pair.leave) {
     case Leave::straight:
@@ -116,11 +138,13 @@ PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r) {
 
 // ---- words for people --------------------------------------------------------------------------------------------
 
-void print_polygon(std::string_view name, const std::string& file, const drawing::PolygonFile& polygon) {
+void print_polygon(std::string_view name, const std::string& file, const drawing::PolygonFile& polygon, double margin) {
   const int holes = polygon.polygon.num_rings() - 1;
   std::string words = fmt::format("{}  ({} vertices", file, polygon.polygon.num_vertices());
+  if (polygon.polygon.is_point()) words = file + "  (a point";
   if (holes > 0) words += fmt::format(", {} {}", holes, holes == 1 ? "hole" : "holes");
-  if (polygon.polygon.convex()) words += ", convex";
+  if (polygon.polygon.convex() && !polygon.polygon.is_point()) words += ", convex";
+  if (margin > 0) words += fmt::format(", swept by a disc of radius {:.10g}", margin);
   if (polygon.flatness > 0) {
     words += fmt::format("; curves within {:.3g}{}{}", polygon.flatness, polygon.unit.empty() ? "" : " ", polygon.unit);
   }
@@ -187,9 +211,9 @@ void print_result(const PolygonArguments& arguments, const PolygonPair& pair, co
                   const PolygonDepth& result, std::int64_t nanoseconds) {
   const std::string unit = pair.p.unit.empty() ? "" : " " + pair.p.unit;
   fmt::print("\n");
-  print_polygon("P", arguments.file_p, pair.p);
-  print_polygon("Q", arguments.file_q, pair.q);
-  fmt::print("\n{}\n\n", verdict(pair, result, r.seat(pair.place)));
+  print_polygon("P", arguments.file_p, pair.p, pair.margins.p);
+  print_polygon("Q", arguments.file_q, pair.q, pair.margins.q);
+  fmt::print("\n{}\n\n", verdict(pair, result, !pair.swept() && r.seat(pair.place)));
   print_row("depth", fmt::format("{}{}", result.depth, unit));
   if (result.depth > 0) {
     print_row("bracket", fmt::format("[{}, {}]", result.lower, result.upper));
@@ -216,7 +240,8 @@ int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, con
                  const PolygonDepth& result) {
 #ifdef PDEPTH_WITH_DEMOS
   return demo::write_polygon_picture({&pair.p.polygon, &pair.q.polygon, pair.place, pair.p.unit, pair.p.drawing}, r,
-                                     result, verdict(pair, result, r.seat(pair.place)), arguments.picture);
+                                     result, verdict(pair, result, !pair.swept() && r.seat(pair.place)),
+                                     arguments.picture);
 #else
   (void)pair;
   (void)r;
@@ -240,7 +265,8 @@ int run_polygon(const PolygonArguments& arguments) {
     std::string out;
     query::JsonWriter writer(out);
     writer.begin_object();
-    query::write_polygon_answers({result}, {r->seat(pair.place)}, false, writer);
+    const std::vector<bool> seats = pair.swept() ? std::vector<bool>() : std::vector<bool>{r->seat(pair.place)};
+    query::write_polygon_answers({result}, seats, false, writer);
     if (arguments.seats) query::write_seats(r->seats(), writer);
     query::write_polygon_statistics(*r, nanoseconds, writer);
     writer.end_object();
@@ -271,6 +297,10 @@ void add_polygon_command(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   command->add_option("--picture", arguments->picture, "Draw P, Q and all forbidden placements as a PNG")
       ->check(refuse_other_pictures, "FILE.png");
+  command->add_option("--margin", arguments->margins, "Radius of a disc that sweeps both polygons, or two for P,Q")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--seats", arguments->seats, "List the displacements at which Q fits exactly: points and slots");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers polygon_depth");
   command->callback([arguments, &action] { action = [arguments] { return run_polygon(*arguments); }; });

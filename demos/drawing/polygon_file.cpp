@@ -66,7 +66,7 @@ std::string edge_ends(const query::PolygonRings& rings, std::string_view where) 
 }
 
 Polygon checked(const query::PolygonRings& rings) {
-  Expected<Polygon> polygon = Polygon::from_rings(rings.outer, rings.holes);
+  Expected<Polygon> polygon = query::polygon_of(rings);
   if (!polygon) {
     const Error& error = polygon.error();
     query::refuse(to_string(error.code), error.message, error.where + edge_ends(rings, error.where));
@@ -103,7 +103,7 @@ query::PolygonRings sorted_rings(std::vector<std::vector<Point2>> all, const Svg
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (std::abs(twice_area(all[i])) > std::abs(twice_area(all[outer]))) outer = i;
   }
-  query::PolygonRings rings{all[outer], {}};
+  query::PolygonRings rings{all[outer], {}, 0};
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i == outer) continue;
     if (!outline.even_odd && (twice_area(all[i]) > 0) == (twice_area(all[outer]) > 0)) {
@@ -160,7 +160,7 @@ PolygonFile read_drawing(const std::string& text, const std::string& id, std::op
   }
   const double distance = flatness ? *flatness : kUsualFlatness * diagonal(outline);
   try {
-    return {checked(flatten(outline, distance, limits)), outline.unit, true, curved ? distance : 0};
+    return {checked(flatten(outline, distance, limits)), outline.unit, true, curved ? distance : 0, 0};
   } catch (const query::Refusal& refusal) {
     query::refuse(refusal.code, outline.element + ": " + refusal.message, refusal.where);
   }
@@ -180,7 +180,8 @@ PolygonFile read_polygon_file(const std::string& path, std::optional<double> fla
     if (!file.ends_with(".json")) {
       query::refuse("unreadable_file", "the file ending must be .svg or .json", "");
     }
-    return {checked(read_json(read_text(file), limits)), "", false, 0};
+    const query::PolygonRings rings = read_json(read_text(file), limits);
+    return {checked(rings), "", false, 0, rings.margin};
   } catch (const query::Refusal& refusal) {
     query::refuse(refusal.code, path + ": " + refusal.message, refusal.where);
   }

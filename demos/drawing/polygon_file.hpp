@@ -17,6 +17,7 @@ struct PolygonFile {
   bool drawing = false;  ///< an SVG: y points down
   /// Every point of a curve lies within this distance of an edge of the polygon; 0 where all pieces are straight.
   double flatness = 0;
+  double margin = 0;  ///< of a JSON polygon that has one
 };
 
 /// @param path      FILE.json, FILE.svg, or FILE.svg#ID for one element of several

@@ -43,6 +43,7 @@ void write_polygon_answers(const std::vector<PolygonDepth>& answers, const std::
   field("translation", "translations", [&](const PolygonDepth& a) { write_point2(a.translation, answer); });
   field("normal", "normals", [&](const PolygonDepth& a) { write_point2(a.normal, answer); });
   field("feature", "features", [&](const PolygonDepth& a) { write_feature(a.feature, answer); });
+  if (seats.empty()) return;
   answer.key(list ? "seats" : "seat");
   if (list) answer.begin_array();
   for (const bool seat : seats) answer.boolean(seat);

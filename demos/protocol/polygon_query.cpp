@@ -40,6 +40,9 @@ struct Question {
   Leave leave = Leave::first_exit;
   std::vector<Point2> directions;  ///< empty: the least over all
   bool fixed_set = false;          ///< given as a "direction_set"
+  PlanarMargins margins = {};
+
+  [[nodiscard]] bool swept() const { return margins.p > 0 || margins.q > 0; }
 
   /// Of every placement, direction after direction.
   [[nodiscard]] std::vector<PolygonDepth> answers(const PolygonDifference& r, const std::vector<Point2>& placements,
@@ -48,20 +51,37 @@ struct Question {
     std::vector<PolygonDepth> found(placements.size() * count);
     for (std::size_t d = 0; d < count; ++d) {
       std::optional<DirectionSet> trapezoids;  // [D] section 6; of one direction at a time, for the sake of memory
-      if (fixed_set && leave == Leave::first_exit && placements.size() >= kWorthPreprocessing) {
+      if (fixed_set && !swept() && leave == Leave::first_exit && placements.size() >= kWorthPreprocessing) {
         auto made = DirectionSet::of(r, {&directions[d], 1});
         if (!made) line.refuse(made.error());
         trapezoids = std::move(*made);
       }
       for (std::size_t i = 0; i < placements.size(); ++i) {
-        found[i * count + d] = trapezoids ? trapezoids->depth(placements[i], 0) : answer(r, placements[i], d);
+        found[i * count + d] = trapezoids ? trapezoids->depth(placements[i], 0) : answer(r, placements[i], d, line);
       }
+    }
+    return found;
+  }
+  /// Of every answer; nothing is said of swept polygons.
+  [[nodiscard]] std::vector<bool> seats(const PolygonDifference& r, const std::vector<Point2>& placements) const {
+    std::vector<bool> found;
+    if (swept()) return found;
+    for (const Point2& y : placements) {
+      found.insert(found.end(), std::max<std::size_t>(1, directions.size()), r.seat(y));
     }
     return found;
   }
 
  private:
-  [[nodiscard]] PolygonDepth answer(const PolygonDifference& r, const Point2& y, std::size_t direction) const {
+  [[nodiscard]] PolygonDepth answer(const PolygonDifference& r, const Point2& y, std::size_t direction,
+                                    const Node& line) const {
+    if (swept()) {
+      const Expected<PolygonDepth> found = directions.empty()
+                                               ? r.swept_depth(y, margins, leave)
+                                               : r.swept_depth_along(y, directions[direction], margins, leave);
+      if (!found) line.refuse(found.error());
+      return *found;
+    }
     if (!directions.empty()) return r.depth_along(y, directions[direction], leave);
     if (leave == Leave::straight) return r.straight_escape_depth(y);
     return leave == Leave::escape ? r.escape_depth(y) : r.depth(y);
@@ -98,7 +118,7 @@ Question read_question(const Node& line) {
 void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "p", "q", "direction", "method", "complete", "direction_set", "placements", "slots",
                     "max_comparisons"});
-  const Question question = read_question(line);
+  Question question = read_question(line);
   const PolygonMethod method = read_polygon_method(line);
   const bool slots = read_flag(line, "slots");
   const std::int64_t max_comparisons = read_max_comparisons(line);
@@ -109,7 +129,13 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
   if (placements.size() * directions > static_cast<std::size_t>(session.limits.max_vertices)) {
     line.refuse("limit_exceeded", "more answers than --max-vertices");
   }
-  const Polygon p = read_polygon(line.at("p"), session.limits), q = read_polygon(line.at("q"), session.limits);
+  const SweptPolygon swept_p = read_polygon(line.at("p"), session.limits);
+  const SweptPolygon swept_q = read_polygon(line.at("q"), session.limits);
+  const Polygon &p = swept_p.polygon, &q = swept_q.polygon;
+  question.margins = {swept_p.margin, swept_q.margin};
+  if (slots && question.swept()) {
+    line.at("slots").refuse("unsupported", "slots are listed for polygons without a margin");
+  }
   const bool one_convex = p.convex() || q.convex();
   if (!one_convex || method == PolygonMethod::explicit_sums) {
     const std::int64_t sums = static_cast<std::int64_t>(p.num_vertices()) * q.num_vertices();
@@ -122,9 +148,8 @@ void answer_polygon_depth(const Node& line, Session& session, JsonWriter& answer
   if (!r) line.refuse(r.error());
   const std::vector<PolygonDepth> answers = question.answers(*r, placements, line);
   const std::int64_t nanoseconds = watch.nanoseconds();
-  std::vector<bool> seats;  // of a placement, once for every direction
-  for (const Point2& y : placements) seats.insert(seats.end(), directions, r->seat(y));
-  write_polygon_answers(answers, seats, placements_node.has_value() || question.fixed_set, answer);
+  write_polygon_answers(answers, question.seats(*r, placements), placements_node.has_value() || question.fixed_set,
+                        answer);
   if (slots) write_seats(r->seats(), answer);
   write_polygon_statistics(*r, nanoseconds, answer);
 }

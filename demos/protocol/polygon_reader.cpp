@@ -37,8 +37,8 @@ std::vector<Point2> read_points2(const Node& node, const Limits& limits, bool di
 
 PolygonRings read_polygon_rings(const Node& node, const Limits& limits) {
   require_object(node);
-  allow_only(node, {"outer", "holes"});
-  PolygonRings rings{read_ring(node.at("outer"), limits), {}};
+  allow_only(node, {"outer", "holes", "margin"});
+  PolygonRings rings{read_ring(node.at("outer"), limits), {}, 0};
   std::size_t vertices = rings.outer.size();
   if (const auto list = node.find("holes")) {
     require_array(*list, "an array of holes, each an array of points [x,y]");
@@ -51,14 +51,24 @@ PolygonRings read_polygon_rings(const Node& node, const Limits& limits) {
                                          std::to_string(limits.max_vertices) + " (--max-vertices)");
     }
   }
+  if (const auto margin = node.find("margin")) {
+    rings.margin = read_number(*margin);
+    if (rings.margin < 0) margin->refuse("bad_value", "a margin must not be negative");
+    if (rings.margin > 1e300) margin->refuse("out_of_range", "a margin must be at most 1e300");
+  }
   return rings;
 }
 
-Polygon read_polygon(const Node& node, const Limits& limits) {
+Expected<Polygon> polygon_of(const PolygonRings& rings) {
+  if (rings.margin > 0 && rings.outer.size() == 1 && rings.holes.empty()) return Polygon::at_point(rings.outer.front());
+  return Polygon::from_rings(rings.outer, rings.holes);
+}
+
+SweptPolygon read_polygon(const Node& node, const Limits& limits) {
   const PolygonRings rings = read_polygon_rings(node, limits);
-  Expected<Polygon> polygon = Polygon::from_rings(rings.outer, rings.holes);
+  Expected<Polygon> polygon = polygon_of(rings);
   if (!polygon) node.refuse(polygon.error());
-  return std::move(polygon).value();
+  return {std::move(polygon).value(), rings.margin};
 }
 
 }  // namespace pd::query

@@ -14,11 +14,18 @@ namespace pd::query {
 struct PolygonRings {
   std::vector<Point2> outer;
   std::vector<std::vector<Point2>> holes;
+  double margin = 0;
 };
-/// {"outer":[[x,y],...],"holes"?:[...]}, at most --max-vertices in all.
+/// {"outer":[[x,y],...],"holes"?:[...],"margin"?:r}, at most --max-vertices in all.
 [[nodiscard]] PolygonRings read_polygon_rings(const Node& node, const Limits& limits);
-/// The same, checked; a refusal names the edge at fault ("p.holes[0][2]").
-[[nodiscard]] Polygon read_polygon(const Node& node, const Limits& limits);
+/// Checked. A single point with a margin is a disc.
+[[nodiscard]] Expected<Polygon> polygon_of(const PolygonRings& rings);
+struct SweptPolygon {
+  Polygon polygon;
+  double margin;
+};
+/// Rings, checked; a refusal names the edge at fault ("p.holes[0][2]").
+[[nodiscard]] SweptPolygon read_polygon(const Node& node, const Limits& limits);
 [[nodiscard]] Point2 read_point2(const Node& node);
 /// As read_point2; zero_direction for [0,0].
 [[nodiscard]] Point2 read_direction2(const Node& node);

@@ -92,6 +92,21 @@ TEST(PolygonQuery, RingsMayTouch) {
   EXPECT_EQ(reply.at("classes"), Json::parse(R"(["overlapping","separated"])"));
 }
 
+TEST(PolygonQuery, MarginsSweepAndDiscsAreSweptPoints) {
+  const std::string square = R"({"outer":[[0,0],[4,0],[4,4],[0,4]],"margin":0.5})";
+  const std::string disc = R"({"outer":[[0,0]],"margin":1.5})";
+  const Json reply = answer(line(square, disc, R"("placements":[[1,2],[5,2],[6,2],[7,7]])"));
+  EXPECT_EQ(reply.at("classes"), Json::parse(R"(["overlapping","overlapping","touching","separated"])"));
+  EXPECT_EQ(reply.at("depths"), Json::parse("[3.0,1.0,0.0,0.0]"));
+  EXPECT_FALSE(reply.contains("seats"));
+  EXPECT_EQ(answer(line(disc, R"({"outer":[[3,0]],"margin":2})", "")).at("depth"), 0.5);
+  const Json notched =
+      answer(line(R"({"outer":[[0,0],[6,0],[6,2],[2,2],[2,6],[0,6]]})", disc, R"("placements":[[1,1]])"));
+  const double lower = notched.at("lowers").at(0), upper = notched.at("uppers").at(0);
+  EXPECT_LE(upper - lower, 2e-6 * upper);
+  EXPECT_EQ(notched.at("depths").at(0), upper);
+}
+
 TEST(PolygonQuery, Refusals) {
   const auto refused = [](const std::string& text, const char* code, const char* where) {
     const Json reply = answer(text);
@@ -108,6 +123,9 @@ TEST(PolygonQuery, Refusals) {
   refused(line(kFrame, kFrame, R"("method":"implicit")"), "unsupported", "method");
   refused(line(kFrame, kFrame, R"("method":"fast")"), "bad_value", "method");
   refused(R"({"id":1,"query":"polygon_depth","p":{"outer":[[0,0],[1,0],[0,1]]}})", "missing_field", "q");
+  refused(line(R"({"outer":[[0,0]]})", kUnitSquare, ""), "too_few_points", "p.outer");
+  refused(line(kUnitSquare, R"({"outer":[[0,0]],"margin":-1})", ""), "bad_value", "q.margin");
+  refused(line(R"({"outer":[[0,0],[1,0],[0,1]],"margin":1})", kUnitSquare, R"("slots":true)"), "unsupported", "slots");
 }
 
 }  // namespace

@@ -204,6 +204,7 @@ def test_the_other_queries():
     assert impact.hit and abs(impact.time - 1.5) < 1e-8
     square = [[0, 0], [2, 0], [2, 2], [0, 2]]
     assert pdepth.polygon_depth(square, [[1, 0.5], [3, 0.5], [3, 1.5], [1, 1.5]]).depth == 1
+    assert pdepth.polygon_depth(square, {"outer": [[0, 0]], "margin": 0.5}).depth == 0.5
     kernel = pdepth.query("approx_width", a={"points": np.eye(4).tolist() + [[0, 0, 0, 0]]}, epsilon=0.1)
     assert 0 < kernel.width <= 0.5 * 1.2
     with pytest.raises(pdepth.Refused, match="unknown"):

@@ -169,7 +169,9 @@ def time_of_impact(a, b, pose_a=None, pose_b=None, *, velocity_a=None, angular_v
 
 
 def polygon_depth(p, q, *, threads=None, **options):
-    """Depth of two polygons in the plane; q moves. p, q: [n, 2] outlines, or {"outer": ..., "holes": [...]}.
+    """Depth of two polygons in the plane; q moves. p, q: [n, 2] outlines, or {"outer": ..., "holes": [...], "margin": r}.
+
+    A disc of the radius "margin" sweeps the polygon; an outline of one point with a margin is a disc.
 
     options: direction, complete, direction_set, placements, slots, method: see the protocol's planar queries. `seat` says
     that q fits exactly; slots=True lists all such places. Lists of polygons (one for all, or one a row) answer a RowBatch;

@@ -182,6 +182,18 @@ Expected<Polygon> Polygon::from_rings(std::span<const Point2> outer, std::span<c
   return r;
 }
 
+Expected<Polygon> Polygon::at_point(const Point2& point) {
+  if (auto error = check_numbers({&point, 1}, -1)) return *std::move(error);
+  Polygon r;
+  r.points_ = {point};
+  r.ring_start_ = {0, 1};
+  r.next_ = r.previous_ = {0};
+  r.turn_ = {1};
+  r.caller_id_ = r.caller_edge_ = {{-1, 0}};
+  r.convex_ = true;
+  return r;
+}
+
 void Polygon::take(detail::RingLinks links) {
   std::vector<VertexId> ids, edges;
   for (const std::int32_t v : links.vertex) ids.push_back(caller_id(v));

@@ -37,8 +37,12 @@ Expected<PolygonDifference> PolygonDifference::of(const Polygon& p, const Polygo
     return Error{ErrorCode::unsupported,
                  "the implicit method needs a convex polygon; both have reflex corners or holes", "method"};
   }
+  const bool point = p.is_point() || q.is_point();
+  if (point && method == PolygonMethod::explicit_sums) {
+    return Error{ErrorCode::unsupported, "explicit sums need two polygons of an area; one is a point", "method"};
+  }
   const bool implicit = one_convex && method != PolygonMethod::explicit_sums;
-  const bool swapped = implicit && !q.convex();
+  const bool swapped = implicit && (!q.convex() || (p.is_point() && !q.is_point()));
   PolygonDifference r;
   r.state_ = swapped ? std::make_shared<const State>(q, p, implicit, true, max_comparisons)
                      : std::make_shared<const State>(p, q, implicit, false, max_comparisons);
@@ -98,6 +102,7 @@ PolygonDepth PolygonDifference::straight_escape_depth(const Point2& placement) c
   const Point2 y = s.turned(placement);
   PolygonDepth answer;
   answer.contact = s.query.contact(y);
+  if (s.boundary.stretches().empty()) return answer;
   const detail::StraightEscape::Way way = detail::StraightEscape(s.boundary, s.query, y).run();
   if (!way.exit) return answer;
   detail::fill(answer, way.move, s.swapped);

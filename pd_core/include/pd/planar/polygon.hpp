@@ -45,6 +45,11 @@ class Polygon {
   ///         "outer[3]", "holes[0][2]".
   static Expected<Polygon> from_rings(std::span<const Point2> outer, std::span<const std::vector<Point2>> holes = {});
 
+  /// A single point: the middle of a disc, whose radius is the margin of a swept question (PlanarMargins).
+  /// @return non_finite or out_of_range as above.
+  static Expected<Polygon> at_point(const Point2& point);
+  [[nodiscard]] bool is_point() const { return points_.size() == 1; }
+
   [[nodiscard]] int num_vertices() const { return static_cast<int>(points_.size()); }
   [[nodiscard]] int num_rings() const { return static_cast<int>(ring_start_.size()) - 1; }
   /// All vertices, ring after ring: the outer one counter-clockwise, then the holes clockwise (the interior is on the

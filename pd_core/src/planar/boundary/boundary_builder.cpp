@@ -114,7 +114,7 @@ void BoundaryBuilder::add_arc_candidates(int v) {
   while (sum.corners()[at(a)] != v) ++a;
   const int edge = sum.edge_of_corner(a);
   r_.candidates_.push_back({owner, edge, 1, 2 * v});
-  if (p_.first_here(v) != v) return;
+  if (p_.first_here(v) != v || sum.chain().size() == 0) return;
   const ChainRange own = arc_at(sum.chain(), v);
   ChainRange common = own;
   for (int w = p_.next_here(v); w != v; w = p_.next_here(w)) {
@@ -174,8 +174,9 @@ void BoundaryBuilder::reach_of(const Candidate& candidate) {
     reach_.direction[2] = normal;
     const NegatedChain& chain = sum.chain();
     // Along the outer normal of e, -B's farthest vertex is that of the edge's own place.
-    const double one = along(normal, chain.point(chain.edges_before(e.d) % chain.size()));
-    const double two = along(normal, chain.point(chain.edges_before(e.d.reversed()) % chain.size()));
+    const int size = std::max(1, chain.size());
+    const double one = along(normal, chain.point(chain.edges_before(e.d) % size));
+    const double two = along(normal, chain.point(chain.edges_before(e.d.reversed()) % size));
     reach_.low[2] = std::min(one, two);
     reach_.high[2] = std::max(one, two);
   } else {

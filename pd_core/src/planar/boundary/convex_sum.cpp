@@ -5,7 +5,7 @@
 namespace pd::detail {
 
 NegatedChain::NegatedChain(std::vector<Point2> points)
-    : points_(std::move(points)), size_(static_cast<int>(points_.size())) {
+    : points_(std::move(points)), size_(points_.size() == 1 ? 0 : static_cast<int>(points_.size())) {
   // -B's least vertex is B's greatest.
   const auto greatest = std::max_element(points_.begin(), points_.end());
   first_ = static_cast<int>(greatest - points_.begin());
@@ -21,6 +21,10 @@ NegatedChain::NegatedChain(std::vector<Point2> points)
 
 Box2 NegatedChain::box(int first, int count) const {
   Box2 box;
+  if (size_ == 0) {
+    box.add(point(0));
+    return box;
+  }
   box.add(point(first % size_));
   box.add(point((first + count) % size_));
   for (const std::int32_t k : extreme_) {

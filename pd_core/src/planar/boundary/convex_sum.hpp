@@ -19,14 +19,14 @@ namespace pd::detail {
 /// -B for a convex polygon B: its edges by their angle in (-90, 270] degrees.
 class NegatedChain {
  public:
-  /// `points`: B counter-clockwise, no three collinear.
+  /// `points`: B counter-clockwise, no three collinear. A single point has no edges.
   explicit NegatedChain(std::vector<Point2> points);
 
   [[nodiscard]] int size() const { return size_; }
   /// B's vertex k (mod size), k <= size: -point(k) is vertex k of -B. Vertex 0 is the least of -B.
   [[nodiscard]] const Point2& point(int k) const { return points_[static_cast<std::size_t>(k)]; }
   /// Of the caller's points, the one that is vertex k.
-  [[nodiscard]] int index(int k) const { return (first_ + k) % size_; }
+  [[nodiscard]] int index(int k) const { return size_ == 0 ? 0 : (first_ + k) % size_; }
   [[nodiscard]] PlaneDirection edge(int k) const { return {point(k + 1), point(k)}; }
   /// How many edges have a smaller angle than d.
   [[nodiscard]] int edges_before(const PlaneDirection& d) const;

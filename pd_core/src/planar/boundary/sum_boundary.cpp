@@ -7,6 +7,7 @@ namespace pd::detail {
 
 SumBoundary::SumBoundary(const Polygon& p, const Polygon& q, bool implicit, std::int64_t max_comparisons,
                          bool with_seats) {
+  if (p.is_point()) return;  // so is q: R has no area
   BoundaryBuilder builder(*this, p, q, with_seats);
   if (implicit) {
     builder.build_implicit();

@@ -1,0 +1,158 @@
+// Polygons swept by discs, and discs: analytic cases, convex pairs exactly, the others between polygons that the disc
+// covers and that cover it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pd/planar/convex_polygon.hpp"
+#include "pd/planar/polygon_depth.hpp"
+#include "planar/small_polygons.hpp"
+
+namespace {
+
+using oracle::Rings;
+using pd::ErrorCode;
+using pd::Leave;
+using pd::PlanarContact;
+using pd::PlanarMargins;
+using pd::Point2;
+using pd::Polygon;
+using pd::PolygonDepth;
+using pd::PolygonDifference;
+using pd::test::made;
+using pd::test::SmallPolygons;
+using pd::test::text;
+
+const Rings kSquare = {{{0, 0}, {4, 0}, {4, 4}, {0, 4}}};
+
+TEST(SweptDepth, TwoDiscs) {
+  const Polygon a = *Polygon::at_point({1, 1}), b = *Polygon::at_point({0, 0});
+  const auto r = *PolygonDifference::of(a, b);
+  const PolygonDepth deep = *r.swept_depth({4, 5}, {4, 3});  // the centres are 5 apart
+  EXPECT_EQ(deep.contact, PlanarContact::overlapping);
+  EXPECT_EQ(deep.depth, 2);
+  EXPECT_NEAR(deep.translation[0], 1.2, 1e-15);
+  EXPECT_NEAR(deep.translation[1], 1.6, 1e-15);
+  EXPECT_EQ(r.swept_depth({4, 5}, {4, 1})->contact, PlanarContact::touching);
+  EXPECT_EQ(r.swept_depth({4, 5}, {2, 1})->contact, PlanarContact::separated);
+  EXPECT_EQ(r.swept_depth({1, 1}, {2, 1})->depth, 3);
+  EXPECT_NEAR(r.swept_depth_along({1, 1}, {0, -1}, {2, 1})->depth, 3, 1e-9);
+  EXPECT_EQ(r.contact({1, 1}), PlanarContact::separated);  // points have no inside
+}
+
+TEST(SweptDepth, ADiscAndASquare) {
+  const Polygon disc = *Polygon::at_point({0, 0});
+  for (const bool turned : {false, true}) {
+    const auto r = *PolygonDifference::of(turned ? disc : made(kSquare), turned ? made(kSquare) : disc);
+    const auto at = [&](double x, double y) { return turned ? Point2{-x, -y} : Point2{x, y}; };
+    const PlanarMargins margins = turned ? PlanarMargins{2, 0} : PlanarMargins{0, 2};
+    EXPECT_EQ(r.swept_depth(at(1, 2), margins)->depth, 3);
+    EXPECT_EQ(r.swept_depth(at(5, 2), margins)->depth, 1);
+    EXPECT_EQ(r.swept_depth(at(5, 2), margins)->translation, at(1, 0));
+    EXPECT_EQ(r.swept_depth(at(4, 2), margins)->depth, 2);                            // the centre on the edge
+    EXPECT_NEAR(r.swept_depth(at(5, 5), margins)->depth, 2 - std::sqrt(2.0), 1e-15);  // beyond a corner
+    EXPECT_EQ(r.swept_depth(at(6, 2), margins)->contact, PlanarContact::touching);
+    EXPECT_EQ(r.swept_depth(at(6, 6), margins)->contact, PlanarContact::separated);
+    EXPECT_NEAR(r.swept_depth_along(at(2, 2), at(0, 1), margins)->depth, 4, 1e-9);
+    EXPECT_EQ(r.swept_depth(at(1, 2), margins, Leave::escape)->depth, 3);
+    EXPECT_NEAR(r.swept_depth_along(at(-9, 2), at(1, 0), margins, Leave::straight)->depth, 15, 1e-9);
+  }
+}
+
+TEST(SweptDepth, AReflexCornerHoldsADiscAwayFromIt) {
+  // A notch at (2, 2) with a right angle: the disc of radius 1 comes to rest at (3, 3).
+  const Rings bracket = {{{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 6}, {0, 6}}};
+  const auto r = *PolygonDifference::of(made(bracket), *Polygon::at_point({0, 0}));
+  const PolygonDepth answer = *r.swept_depth({1.75, 1.75}, {0, 1});
+  EXPECT_NEAR(answer.depth, std::sqrt(2.0) * 1.25, 1e-5);
+  EXPECT_LE(answer.lower, std::sqrt(2.0) * 1.25);
+  EXPECT_GE(answer.upper, std::sqrt(2.0) * 1.25);
+  EXPECT_LE(answer.upper - answer.lower, 1.01e-6 * answer.upper);
+  EXPECT_EQ(r.swept_depth({3, 3}, {0, 1})->contact, PlanarContact::touching);
+  EXPECT_NEAR(r.swept_depth({1, 5}, {0, 1})->depth, 2, 1e-9);
+}
+
+TEST(SweptDepth, ConvexPairsAreExact) {
+  SmallPolygons next(88);
+  int overlapping = 0;
+  for (int i = 0; i < pd::test::planar_cases(200); ++i) {
+    const auto r = *PolygonDifference::of(made(next.convex(6, 8)), made(next.convex(5, 5)));
+    const Point2 y = {next.eighths(-8, 12), next.eighths(-8, 12)};
+    const PlanarMargins margins = {next.whole(0, 8) / 4.0, next.whole(1, 8) / 4.0};
+    const double radius = margins.p + margins.q;
+    const PolygonDepth bare = r.depth(y), swept = *r.swept_depth(y, margins);
+    EXPECT_TRUE(swept.upper == swept.lower || swept.upper == std::nextafter(swept.lower, 1e300));
+    if (bare.contact == PlanarContact::overlapping) {
+      EXPECT_NEAR(swept.depth, bare.depth + radius, 1e-14 * swept.depth);
+      ++overlapping;
+    }
+    if (swept.contact != PlanarContact::overlapping) continue;
+    const Point2 there = {y[0] + swept.translation[0], y[1] + swept.translation[1]};
+    EXPECT_LE(r.swept_depth(there, margins)->depth, 1e-14 * (1 + radius));
+    EXPECT_NEAR(r.swept_depth_along(y, swept.normal, margins)->depth, swept.depth, 1e-8 * swept.depth);
+  }
+  EXPECT_GT(overlapping, pd::test::planar_cases(200) / 20);
+}
+
+/// The disc of radius r about each corner of a convex polygon, as a polygon of 96 corners: inside, or around it.
+Rings rounded(const Rings& polygon, double r, bool around) {
+  constexpr int kCorners = 96;
+  std::vector<Point2> points;
+  for (const auto& x : polygon[0]) {
+    for (int k = 0; k < kCorners; ++k) {
+      const double angle = 2 * M_PI * (k + 0.5) / kCorners;
+      const double reach = around ? r / std::cos(M_PI / kCorners) * (1 + 1e-12) : r * (1 - 1e-12);
+      points.push_back({x[0] + reach * std::cos(angle), x[1] + reach * std::sin(angle)});
+    }
+  }
+  const pd::ConvexPolygon hull = *pd::ConvexPolygon::from_points(points);
+  Rings ring(1);
+  for (int v = 0; v < hull.num_vertices(); ++v) ring[0].push_back(hull.vertex(v));
+  return ring;
+}
+
+TEST(SweptDepth, LiesBetweenPolygonsInsideTheDiscAndAroundIt) {
+  SmallPolygons next(89);
+  int overlapping = 0, wide = 0;
+  for (int i = 0; i < pd::test::planar_cases(25); ++i) {
+    const Rings p = i % 3 == 0 ? next.touching(6) : next.simple(8, 7, true), q = next.convex(4, 3);
+    const double radius = next.whole(1, 12) / 8.0;
+    const auto r = *PolygonDifference::of(made(p), made(q));
+    const auto inner = *PolygonDifference::of(made(p), made(rounded(q, radius, false)));
+    const auto outer = *PolygonDifference::of(made(p), made(rounded(q, radius, true)));
+    for (int k = 0; k < 4; ++k) {
+      const Point2 y = {next.eighths(-1, 6), next.eighths(-1, 6)};
+      const Point2 d = {double(next.whole(-3, 3)), double(next.whole(1, 3))};
+      const std::string what = text(p) + " q " + text(q) + " r " + std::to_string(radius) + " y " +
+                               std::to_string(y[0]) + "," + std::to_string(y[1]);
+      const PolygonDepth answer = *r.swept_depth(y, {radius, 0});
+      ASSERT_GE(answer.upper * (1 + 1e-9) + 1e-9, inner.depth(y).depth) << what;
+      ASSERT_LE(answer.lower * (1 - 1e-9) - 1e-9, outer.depth(y).depth) << what;
+      ASSERT_LE(answer.lower, answer.upper) << what;
+      wide += answer.upper - answer.lower > 1.01e-6 * answer.upper ? 1 : 0;
+      overlapping += answer.contact == PlanarContact::overlapping ? 1 : 0;
+      for (const Leave leave : {Leave::first_exit, Leave::straight}) {
+        const PolygonDepth along = *r.swept_depth_along(y, d, {0, radius}, leave);
+        ASSERT_GE(along.upper * (1 + 1e-9) + 1e-9, inner.depth_along(y, d, leave).depth) << what;
+        ASSERT_LE(along.lower * (1 - 1e-9) - 1e-9, outer.depth_along(y, d, leave).depth) << what;
+        ASSERT_LE(along.lower, along.upper);
+      }
+    }
+  }
+  EXPECT_GT(overlapping, pd::test::planar_cases(25));
+  EXPECT_EQ(wide, 0);
+}
+
+TEST(SweptDepth, Refusals) {
+  const auto r = *PolygonDifference::of(made({{{0, 0}, {4, 0}, {4, 4}, {3, 1}}}), made(kSquare));
+  EXPECT_EQ(r.swept_depth({0, 0}, {-1, 0}).error().code, ErrorCode::bad_value);
+  EXPECT_EQ(r.swept_depth({0, 0}, {0, std::nan("")}).error().where, "q.margin");
+  EXPECT_EQ(r.swept_depth({0, 0}, {1, 0}, Leave::escape).error().code, ErrorCode::unsupported);
+  EXPECT_EQ(r.swept_depth_along({0, 0}, {1, 0}, {1, 0}, Leave::escape).error().where, "complete");
+  EXPECT_EQ(
+      PolygonDifference::of(*Polygon::at_point({0, 0}), made(kSquare), pd::PolygonMethod::explicit_sums).error().code,
+      ErrorCode::unsupported);
+  EXPECT_EQ(Polygon::at_point({std::nan(""), 0}).error().code, ErrorCode::non_finite);
+}
+
+}  // namespace
