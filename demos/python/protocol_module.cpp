@@ -121,42 +121,97 @@ py::list solid_parts(const std::string& path, py::handle scale, double tolerance
   return parts;
 }
 
-/// The points of each connected part of a mesh, in the order of the parts' first faces. Points with equal coordinates
-/// are one vertex.
+/// Numbers in sets that grow together.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0); }
+  std::int32_t root(std::int32_t v) {
+    while (up(v) != v) v = up(v) = up(up(v));
+    return v;
+  }
+  void unite(std::int32_t v, std::int32_t w) { up(root(v)) = root(w); }
+
+ private:
+  std::int32_t& up(std::int32_t v) { return above_[static_cast<std::size_t>(v)]; }
+  std::vector<std::int32_t> above_;
+};
+
+using Edges = std::map<std::pair<std::int32_t, std::int32_t>, int>;
+
+/// The number of faces of each edge, its ends by the numbers that `name` gives them.
+template <class Name>
+Edges edges_of(const query::MeshPoints& mesh, Name&& name) {
+  Edges edges;
+  for (std::int64_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto begin = static_cast<std::size_t>(mesh.faces.offsets[static_cast<std::size_t>(f)]);
+    const auto end = static_cast<std::size_t>(mesh.faces.offsets[static_cast<std::size_t>(f) + 1]);
+    for (std::size_t c = begin; c < end; ++c) {
+      const std::int32_t v = name(mesh.faces.corners[c]), w = name(mesh.faces.corners[c + 1 < end ? c + 1 : begin]);
+      ++edges[std::minmax(v, w)];
+    }
+  }
+  return edges;
+}
+
+/// @throws Refusal open_edge for an edge with an odd number of faces. @param same  the number of each vertex
+void require_closed(const query::MeshPoints& mesh, const std::vector<std::int32_t>& same) {
+  for (const auto& [edge, faces] : edges_of(mesh, [&](std::int32_t v) { return same[static_cast<std::size_t>(v)]; })) {
+    if (faces % 2 == 0 || edge.first == edge.second) continue;
+    const Vec3& x = mesh.points[static_cast<std::size_t>(edge.first)];
+    const Vec3& y = mesh.points[static_cast<std::size_t>(edge.second)];
+    const auto told = [](const Vec3& at) {
+      return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
+    };
+    query::refuse("open_edge",
+                  "the edge from " + told(x) + " to " + told(y) + " has " + std::to_string(faces) +
+                      (faces == 1 ? " face" : " faces") +
+                      ", so that a connected part has a hole there; mend the mesh, or take its hull (meshes=\"hull\")",
+                  "");
+  }
+}
+
+/// Sets of vertices that faces connect. Parts that are closed by the file's own numbers of vertices stay apart, even
+/// where they touch, as those of a convex decomposition do. Others have their vertices repeated for each face, or along
+/// seams, so that equal coordinates connect them.
+Sets connected(const query::MeshPoints& mesh) {
+  Sets sets(mesh.points.size());
+  const Edges faces_of_edge = edges_of(mesh, [](std::int32_t v) { return v; });
+  for (const auto& [edge, faces] : faces_of_edge) sets.unite(edge.first, edge.second);
+  std::vector<bool> open(mesh.points.size(), false);
+  for (const auto& [edge, faces] : faces_of_edge) {
+    if (faces != 2) open[static_cast<std::size_t>(sets.root(edge.first))] = true;
+  }
+  std::vector<bool> joins(mesh.points.size(), false);
+  for (const std::int32_t v : mesh.faces.corners) {
+    joins[static_cast<std::size_t>(v)] = open[static_cast<std::size_t>(sets.root(v))];
+  }
+  std::map<std::array<double, 3>, std::int32_t> first;
+  std::vector<std::int32_t> same(mesh.points.size());
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    same[v] = static_cast<std::int32_t>(v);
+    if (!joins[v]) continue;
+    const Vec3& x = mesh.points[v];
+    const auto number = static_cast<std::int32_t>(v);
+    same[v] = first.try_emplace({x[0], x[1], x[2]}, number).first->second;
+    sets.unite(number, same[v]);
+  }
+  require_closed(mesh, same);
+  return sets;
+}
+
+/// The points of each connected part of a mesh, in the order of the parts' first faces.
 py::list connected_parts(const std::string& path, py::handle scale) {
   py::list parts;
   try {
     const query::MeshPoints mesh = scaled_mesh(path, scale);
-    const auto points = static_cast<std::int32_t>(mesh.points.size());
-    std::vector<std::int32_t> above(mesh.points.size());
-    std::iota(above.begin(), above.end(), 0);
-    const auto root = [&](std::int32_t v) {
-      while (above[static_cast<std::size_t>(v)] != v) {
-        auto& up = above[static_cast<std::size_t>(v)];
-        up = above[static_cast<std::size_t>(up)];
-        v = up;
-      }
-      return v;
-    };
-    std::map<std::array<double, 3>, std::int32_t> first;
-    for (std::int32_t v = 0; v < points; ++v) {
-      const Vec3& x = mesh.points[static_cast<std::size_t>(v)];
-      above[static_cast<std::size_t>(v)] = first.try_emplace({x[0], x[1], x[2]}, v).first->second;
-    }
-    const auto corner = [&](std::int32_t c) { return mesh.faces.corners[static_cast<std::size_t>(c)]; };
-    const auto begin = [&](std::int64_t f) { return mesh.faces.offsets[static_cast<std::size_t>(f)]; };
-    for (std::int64_t f = 0; f < mesh.faces.size(); ++f) {
-      for (std::int32_t c = begin(f) + 1; c < begin(f + 1); ++c) {
-        above[static_cast<std::size_t>(root(corner(c)))] = root(corner(begin(f)));
-      }
-    }
+    Sets sets = connected(mesh);
     std::map<std::int32_t, std::size_t> number;
     std::vector<std::vector<Vec3>> members;
     std::vector<bool> taken(mesh.points.size(), false);
     for (const std::int32_t v : mesh.faces.corners) {
       if (taken[static_cast<std::size_t>(v)]) continue;
       taken[static_cast<std::size_t>(v)] = true;
-      const auto [found, fresh] = number.try_emplace(root(v), members.size());
+      const auto [found, fresh] = number.try_emplace(sets.root(v), members.size());
       if (fresh) members.emplace_back();
       members[found->second].push_back(mesh.points[static_cast<std::size_t>(v)]);
     }

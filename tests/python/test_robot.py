@@ -354,17 +354,22 @@ def test_each_connected_part_of_a_mesh_may_be_convex_and_links_may_differ(read, 
     text = f"""<robot name="r"><link name="a">{shape('<mesh filename="L.obj" scale="-1 1 2"/>')}</link>
       <link name="b">{shape('<mesh filename="two.obj" scale="-1 1 2"/>')}</link>{joint("x", "floating", "a", "b")}</robot>"""
     (tmp_path / "L.obj").write_text(corner())
-    # Two tetrahedra; the second one's faces name vertices of their own, as files of triangles do.
-    corners = [line for line in TETRA.splitlines() if line.startswith("v")]
-    faces = [[int(i) for i in line.split()[1:]] for line in TETRA.splitlines() if line.startswith("f")]
-    apart = [f"v {4 + float(x)} {y} {z}" for face in faces for x, y, z in (corners[i - 1].split()[1:] for i in face)]
-    lines = corners + apart + ["f " + " ".join(map(str, face)) for face in faces]
-    lines += [f"f {i} {i + 1} {i + 2}" for i in range(5, 17, 3)]
+    # Three tetrahedra. The second one touches the first in an edge; the third one's faces name vertices of their own, as
+    # files of triangles do.
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    points = np.vstack([corners, corners * [1, -1, 1], corners[faces.ravel()] + [4, 0, 0]])
+    loops = np.vstack([faces, faces[:, ::-1] + 4, np.arange(8, 20).reshape(4, 3)]) + 1
+    lines = [f"v {x} {y} {z}" for x, y, z in points.tolist()] + [f"f {a} {b} {c}" for a, b, c in loops.tolist()]
     (tmp_path / "two.obj").write_text("\n".join(lines))
     robot = read(text, meshes={"b": "parts"})
-    low = [sorted(part.vertices.min(axis=0).tolist()[0] for part, _ in robot.shape(link)._arguments["parts"]) for link in "ab"]
-    assert len(low[0]) == 2 and low[1] == [-5, -1]
+    low = [[part.vertices.min(axis=0).tolist() for part, _ in robot.shape(link)._arguments["parts"]] for link in "ab"]
+    assert len(low[0]) == 2 and low[1] == [[-1, 0, 0], [-1, -1, 0], [-5, 0, 0]]
     assert read(text, meshes={"a": "hull", "b": "parts"}).shape("a").is_convex
+    (tmp_path / "two.obj").write_text("\n".join(lines[:-1]))
+    with pytest.raises(pdepth.Refused, match=r"the edge from \(-[45].* has 1 face") as caught:
+        read(text, meshes={"b": "parts"})
+    assert caught.value.code == "open_edge"
     for wrong, where in (({"c": "hull"}, "meshes['c']"), ({"a": "hulls"}, "meshes['a']")):
         with pytest.raises(pdepth.Refused) as caught:
             read(text, meshes=wrong)
