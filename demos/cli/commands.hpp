@@ -12,7 +12,8 @@ enum ExitCode : int {
   kDone = 0,
   kFailed = 1,          ///< the work could not be finished: no room on the disk, no GL context
   kBadUsage = 2,        ///< an unknown option, or input that cannot be read
-  kConditionFails = 3,  ///< `audit`: a condition of --fail-on does not hold; `check`: one of its faults is there
+  kConditionFails = 3,  ///< `audit`: a condition of --fail-on does not hold; `check`: one of its faults is there;
+                        ///< `decompose`: the error was not reached
   kInterrupted = 130,   ///< Ctrl-C
 };
 
@@ -25,6 +26,7 @@ void add_polygon_command(CLI::App& app, Action& action);
 void add_query_command(CLI::App& app, Action& action);
 void add_minimise_command(CLI::App& app, Action& action);
 void add_simplify_command(CLI::App& app, Action& action);
+void add_decompose_command(CLI::App& app, Action& action);
 void add_audit_command(CLI::App& app, Action& action);
 void add_accuracy_command(CLI::App& app, Action& action);
 void add_demo_command(CLI::App& app, Action& action);

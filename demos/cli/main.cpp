@@ -36,13 +36,15 @@ constexpr const char* kFooter = R"(Examples:
          "b":{"type":"sphere","radius":1},"pose_b":{"translation":[1.5,0,0]}}' | tr -d '\n' | pdepth query
   pdepth audit contacts.jsonl --fail-on missed=0,phantom=0,depth_error=1e-4
   pdepth simplify scan.ply --epsilon 1e-3 -o hull.obj
+  pdepth decompose gear.obj --error 1e-3 -o parts.obj
   pdepth demo stacking --out frames
 
 Exit codes:
   0    done; for `query`: every line has its answer (an error object is one)
   1    the work could not be finished (output that cannot be written, no graphics)
   2    bad usage, or input that cannot be read; for `audit`: not all could be judged
-  3    for `audit`: a condition of --fail-on does not hold; for `check`: a fault of --fail-on is there
+  3    for `audit`: a condition of --fail-on does not hold; for `check`: a fault of --fail-on is there;
+       for `decompose`: the error was not reached
   130  stopped by Ctrl-C
 
 `pdepth SUBCOMMAND --help` says more; `pdepth help --man FOLDER` writes manual pages, and
@@ -178,6 +180,7 @@ int main(int argc, char** argv) {
   pd::cli::add_query_command(app, action);
   pd::cli::add_minimise_command(app, action);
   pd::cli::add_simplify_command(app, action);
+  pd::cli::add_decompose_command(app, action);
   pd::cli::add_audit_command(app, action);
   pd::cli::add_accuracy_command(app, action);
   pd::cli::add_demo_command(app, action);

@@ -45,7 +45,7 @@ std::string refuse_other_meshes(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension.empty() || extension == ".obj" ? "" : file + ": the hull is written as OBJ: name it *.obj";
+  return extension.empty() || extension == ".obj" ? "" : file + ": meshes are written as OBJ: name it *.obj";
 }
 
 void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option) {

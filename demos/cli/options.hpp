@@ -19,7 +19,7 @@ namespace pd::cli {
 /// Says how a command that cannot draw comes to draw. @return kBadUsage
 int refuse_picture(const std::string& file);
 
-/// A check for options: hulls are written as OBJ, whatever the file is called.
+/// A check for options: hulls and parts are written as OBJ, whatever the file is called.
 [[nodiscard]] std::string refuse_other_meshes(const std::string& file);
 
 /// Refuses to write over what is read: a Refusal where an output is one of the inputs, by whatever name. `option` is

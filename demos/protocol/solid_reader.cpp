@@ -38,7 +38,7 @@ MeshFinding as_in_file(MeshFinding finding, const MeshPoints& mesh) {
 [[noreturn]] void refuse_fault(const std::string& path, const MeshFinding& finding, const MeshPoints& mesh,
                                const SolidWish& wish) {
   const bool inside_out = finding.fault == MeshFault::inside_out;
-  const std::string way_out = inside_out ? "ask for the mesh turned (\"turn_faces\":true)" : "mend the mesh";
+  const std::string way_out = inside_out ? "ask for the mesh turned (" + wish.turn_words + ")" : "mend the mesh";
   refuse(to_string(finding.fault),
          path + ": " + in_words(as_in_file(finding, mesh)) + lines_of(finding, mesh.faces) + "; " + way_out +
              ", or ask for the convex hull of its vertices (" + wish.hull_words + "). `pdepth check` names every fault",

@@ -19,6 +19,8 @@ struct SolidWish {
   bool turn_faces = false;  ///< a mesh that is wholly inside out is turned
   /// Words by which a person or a program asks for the hull instead; refusals quote them.
   std::string hull_words = "\"as\":\"hull\"";
+  /// Words by which one asks for a mesh turned.
+  std::string turn_words = "\"turn_faces\":true";
 };
 
 /// The body of a mesh: its solid, or the hull where the mesh is convex or has no faces.

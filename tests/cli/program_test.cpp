@@ -273,6 +273,75 @@ TEST_F(Program, SimplifyEnclosesTheScanOrIsEnclosed) {
   EXPECT_EQ(run("simplify cloud.obj -o nowhere/x.obj").status, 1);
 }
 
+/// The volume of each group of an OBJ.
+std::vector<double> group_volumes(const std::string& obj) {
+  std::vector<double> volumes;
+  std::vector<Vec3> points;
+  std::istringstream text(obj);
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "o") volumes.push_back(0);
+    if (word == "v") {
+      points.emplace_back();
+      words >> points.back().x() >> points.back().y() >> points.back().z();
+    }
+    if (word != "f") continue;
+    std::vector<Vec3> loop;
+    for (std::size_t v = 0; words >> v;) loop.push_back(points.at(v - 1));
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) volumes.back() += loop[0].dot(loop[k].cross(loop[k + 1])) / 6;
+  }
+  return volumes;
+}
+
+TEST_F(Program, DecomposeWritesConvexPartsWithACertifiedError) {
+  write("L.obj",
+        "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
+        "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n");
+  for (const char* side : {"", " --inside"}) {
+    const Outcome two = run(std::string("decompose L.obj --error 1e-3 -o parts.obj") + side);
+    ASSERT_EQ(two.status, 0) << two.err;
+    EXPECT_NE(two.out.find("error_reached yes"), std::string::npos) << two.out;
+    EXPECT_NE(two.out.find("at most 0, certified; asked: 0.001"), std::string::npos) << two.out;
+    const std::vector<double> volumes = group_volumes(read("parts.obj"));
+    ASSERT_EQ(volumes.size(), 2u);
+    EXPECT_NEAR(volumes[0] + volumes[1], 3, 1e-12);
+  }
+  ASSERT_EQ(run("decompose L.obj --error 20% -o one.obj").status, 0);
+  EXPECT_EQ(group_volumes(read("one.obj")), std::vector<double>{3.5});
+  const Outcome early = run("decompose L.obj --error 1e-3 --max-parts 1 -o early.obj");
+  EXPECT_EQ(early.status, 3);
+  EXPECT_NE(early.out.find("error_reached no"), std::string::npos) << early.out;
+  EXPECT_EQ(group_volumes(read("early.obj")).size(), 1u);
+}
+
+TEST_F(Program, DecomposeRefusesByName) {
+  write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const Outcome open = run("decompose open.obj -o parts.obj");
+  EXPECT_EQ(open.status, 2);
+  EXPECT_NE(open.err.find("open_edge"), std::string::npos) << open.err;
+  EXPECT_NE(open.err.find("`pdepth simplify`"), std::string::npos) << open.err;
+  write("out.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+  const Outcome inside_out = run("decompose out.obj -o parts.obj");
+  EXPECT_EQ(inside_out.status, 2);
+  EXPECT_NE(inside_out.err.find("--turn-faces"), std::string::npos) << inside_out.err;
+  EXPECT_EQ(run("decompose out.obj --turn-faces -o parts.obj").status, 0);
+  for (const char* words : {"--error 0", "--error=-1", "--error nan", "--error inf", "--error 0%", "--error much",
+                            "--max-parts 0", "--max-steps 0"}) {
+    const Outcome refused = run(std::string("decompose cube.obj -o parts.obj ") + words);
+    EXPECT_EQ(refused.status, 2) << words;
+    EXPECT_FALSE(refused.err.empty()) << words;
+  }
+  write("cloud.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
+  const Outcome cloud = run("decompose cloud.xyz -o parts.obj");
+  EXPECT_EQ(cloud.status, 2) << cloud.out;
+  EXPECT_FALSE(cloud.err.empty());
+  EXPECT_EQ(run("decompose cube.obj -o cube.obj").status, 2);
+  EXPECT_EQ(run("decompose cube.obj -o parts.stl").status, 2);
+  EXPECT_EQ(run("decompose cube.obj -o nowhere/parts.obj").status, 1);
+}
+
 TEST_F(Program, EveryMethodAnswersThePairOfPolytopes) {
   for (const char* method : {"auto", "expansion", "overlay", "decomposition", "shallow", "grid"}) {
     const Outcome outcome = run(std::string("depth cube.obj spike.off --json --method ") + method);

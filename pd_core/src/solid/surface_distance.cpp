@@ -14,8 +14,10 @@ class NearestPoint {
   NearestPoint(const PosedSolids& solids, Body body, const Vec3& x, double enough)
       : solids_(solids), body_(body), x_(x), enough_(enough) {}
 
-  double run() {
-    visit(0, gap(0));
+  void search() { visit(0, gap(0)); }
+  [[nodiscard]] std::int32_t triangle() const { return triangle_; }
+  /// At most the distance.
+  [[nodiscard]] double distance() const {
     return std::max(0.0, std::sqrt(squared_) * (1 - 0x1p-48) - 8 * solids_.error());
   }
 
@@ -32,7 +34,11 @@ class NearestPoint {
     if (least >= squared_ || squared_ < enough_ * enough_) return;
     const TriangleNode& here = node(at);
     if (here.is_leaf()) {
-      for (std::int32_t t = here.first; t < here.last; ++t) test(t);
+      for (std::int32_t t = here.first; t < here.last; ++t) {
+        const double before = squared_;
+        test(t);
+        if (squared_ < before) triangle_ = t;
+      }
       return;
     }
     const double left = gap(here.left), right = gap(here.right);
@@ -73,12 +79,40 @@ class NearestPoint {
   const Vec3& x_;
   double enough_;
   double squared_ = HUGE_VAL;
+  std::int32_t triangle_ = 0;
 };
 
 }  // namespace
 
 double distance_to_surface(const PosedSolids& solids, Body body, const Vec3& x, double enough) {
-  return NearestPoint(solids, body, x, enough).run();
+  NearestPoint nearest(solids, body, x, enough);
+  nearest.search();
+  return nearest.distance();
+}
+
+NearestTriangle nearest_triangle(const PosedSolids& solids, Body body, const Vec3& x) {
+  NearestPoint nearest(solids, body, x, 0);
+  nearest.search();
+  return {nearest.triangle(), nearest.distance()};
+}
+
+double reach_to_triangle(const PosedTriangle& triangle, const Vec3& x) {
+  // Any point of the triangle bounds the distance from above, so that it does no harm where rounding picks another.
+  const Vec3 &p = triangle[0].x, u = triangle[1].x - p, v = triangle[2].x - p, w = x - p;
+  const Vec3 n = u.cross(v);
+  const double area = n.squaredNorm();
+  double squared = HUGE_VAL;
+  if (area > 0) {
+    const double r = w.cross(v).dot(n) / area, s = u.cross(w).dot(n) / area;
+    if (r >= 0 && s >= 0 && r + s <= 1) squared = (w - r * u - s * v).squaredNorm();
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 edge = triangle[(k + 1) % 3].x - triangle[k].x, from = x - triangle[k].x;
+    const double length = edge.squaredNorm();
+    const double along = length > 0 ? std::clamp(from.dot(edge) / length, 0.0, 1.0) : 0;
+    squared = std::min(squared, (from - along * edge).squaredNorm());
+  }
+  return std::sqrt(squared) * (1 + 0x1p-48) + 0x1p-46;
 }
 
 }  // namespace pd::detail

@@ -1,0 +1,176 @@
+/// @file
+/// `pdepth decompose MESH --error E -o PARTS.obj`: a closed mesh in, convex parts with a certified error out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "commands.hpp"
+#include "files/decimal_number.hpp"
+#include "mesh/mesh_file.hpp"
+#include "options.hpp"
+#include "pd/numeric/whole_file.hpp"
+#include "pd/solid/convex_decomposition.hpp"
+#include "progress.hpp"
+#include "protocol/line/limits.hpp"
+#include "protocol/pair_reader.hpp"
+#include "protocol/solid_reader.hpp"
+#include "support/complain.hpp"
+#include "support/refusal.hpp"
+
+namespace pd::cli {
+
+namespace {
+
+constexpr const char* kDecomposeFooter =
+    R"(The mesh must bound a solid (`pdepth check` tells). By default the parts cover the solid:
+  outer   every point of the solid lies in a part, and no point of a part is farther from the solid than the error
+  --inside  every part lies in the solid, and no point of the solid is farther from the parts than the error
+
+The error is a length in the file's unit, or with % a share of the diagonal of the mesh's bounding box. What is printed as
+"error" is certified for every point, and not sampled. The parts are few, but not the fewest that there are.
+
+Where --max-parts or --max-steps ends the work early, the parts are written all the same and the row "error" says that the
+error was not reached; the exit code is then 3.
+
+Examples:
+  pdepth decompose gear.obj --error 1e-3 -o parts.obj
+  pdepth decompose gear.stl --error 1% --inside -o inside.obj)";
+
+struct DecomposeArguments {
+  std::string input;
+  std::string output;
+  std::string error = "1%";
+  bool inside = false;
+  bool turn_faces = false;
+  std::int64_t max_parts = DecompositionSettings().max_parts;
+  std::int64_t max_steps = DecompositionSettings().max_steps;
+};
+
+constexpr std::int64_t kMostMeshPoints = 50'000'000;
+
+double diagonal_of(const MeshSolid& solid) {
+  const TriangleNode& root = solid.nodes().front();
+  const Vec3 half = 0.5 * root.high - 0.5 * root.low;
+  const double largest = half.cwiseAbs().maxCoeff();
+  return largest > 0 ? 2 * largest * (half / largest).norm() : 0;
+}
+
+/// "0.01", or "1%" of the diagonal.
+double read_error(const std::string& text, double diagonal) {
+  std::string_view number = text;
+  const bool share = number.ends_with('%');
+  if (share) number.remove_suffix(1);
+  double value = 0;
+  if (!query::parse_decimal(number, value)) {
+    query::refuse("bad_value", "--error: \"" + text + "\" is no number, and no number with %", "");
+  }
+  if (share) value *= diagonal / 100;
+  if (!(value > 0) || !std::isfinite(value)) {
+    query::refuse("bad_value", "--error: must be finite and greater than 0", "");
+  }
+  return value;
+}
+
+std::string obj_of(const SolidDecomposition& found, const DecomposeArguments& arguments) {
+  std::string text = fmt::format("# {} convex parts that {} {}; certified error {}\n", found.parts.parts().size(),
+                                 arguments.inside ? "lie in" : "cover", printable(arguments.input), found.error);
+  const auto out = std::back_inserter(text);
+  std::int64_t first = 1, number = 0;
+  for (const Compound::Part& part : found.parts.parts()) {
+    const ConvexPolytope& polytope = *part.shape.polytope();
+    fmt::format_to(out, "o part_{}\n", number++);
+    for (int v = 0; v < polytope.num_vertices(); ++v) {
+      const Vec3 p = polytope.vertex(v);
+      fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
+    }
+    for (int f = 0; f < polytope.num_facets(); ++f) {
+      text += "f";
+      for (const std::int32_t v : polytope.facet_vertices(f)) fmt::format_to(out, " {}", first + v);
+      text += "\n";
+    }
+    first += polytope.num_vertices();
+  }
+  return text;
+}
+
+int run_decompose(const DecomposeArguments& arguments) {
+  refuse_to_overwrite({arguments.input}, arguments.output, "--output");
+  if (arguments.max_parts < 1) query::refuse("bad_value", "--max-parts: must be 1 or more", "");
+  if (arguments.max_steps < 1) query::refuse("bad_value", "--max-steps: must be 1 or more", "");
+  Progress progress("reading " + arguments.input);
+  query::MeshPoints mesh = query::read_mesh_points(arguments.input, kMostMeshPoints, query::kMaxMeshBytes);
+  const query::SolidWish wish{.always = true,
+                              .turn_faces = arguments.turn_faces,
+                              .hull_words = "`pdepth simplify`",
+                              .turn_words = "--turn-faces"};
+  const auto solid = query::body_of_mesh(std::move(mesh), arguments.input, wish).solid;
+  DecompositionSettings settings;
+  settings.error = read_error(arguments.error, diagonal_of(*solid));
+  settings.inside = arguments.inside;
+  settings.max_parts = arguments.max_parts;
+  settings.max_steps = arguments.max_steps;
+  progress.begin(fmt::format("cutting {} triangles", solid->triangles().size()));
+  settings.watch = [&, told = std::int64_t{-1}](const DecompositionSettings::Progress& now) mutable {
+    if (now.parts == told) return;
+    told = now.parts;
+    progress.begin(fmt::format("{} parts", now.parts));
+  };
+  const query::Stopwatch watch;
+  const auto found = decompose(*solid, settings);
+  if (!found) {
+    query::refuse(to_string(found.error().code), arguments.input + ": " + found.error().message, found.error().where);
+  }
+  if (!write_whole_file(arguments.output, obj_of(*found, arguments))) {
+    complain("{} cannot be written", arguments.output);
+    return kFailed;
+  }
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  progress.end();
+  int most = 0;
+  for (const Compound::Part& part : found->parts.parts()) most = std::max(most, part.shape.polytope()->num_vertices());
+  print_row("solid", fmt::format("{}  ({} triangles, volume {:.6g})", arguments.input, solid->triangles().size(),
+                                 found->solid_volume));
+  print_row("parts", fmt::format("{}  ({} of at most {} vertices, {})", arguments.output, found->parts.parts().size(),
+                                 most, duration_in_words(nanoseconds)));
+  print_row("error",
+            fmt::format("at most {:.6g}, certified; asked: {:.6g}{}", found->error, settings.error,
+                        found->error_reached ? "" : " (not reached: --max-parts or --max-steps ended the work)"));
+  print_row("error_reached", found->error_reached ? "yes" : "no");
+  print_row("side", arguments.inside ? "every part lies in the solid" : "the parts cover the solid");
+  print_row("volume",
+            fmt::format("{:.6g} of the solid's, summed over the parts", found->parts_volume / found->solid_volume));
+  return found->error_reached ? kDone : kConditionFails;
+}
+
+}  // namespace
+
+void add_decompose_command(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<DecomposeArguments>();
+  CLI::App* command = app.add_subcommand("decompose", "Convex parts of a closed mesh, with a certified error");
+  command->footer(kDecomposeFooter);
+  command->add_option("MESH", arguments->input, "A closed mesh: OBJ, STL, PLY, OFF or glTF")->required();
+  command->add_option("-o,--output", arguments->output, "The parts, as OBJ with a group for each")
+      ->required()
+      ->check(refuse_other_meshes, "FILE.obj");
+  command
+      ->add_option("--error", arguments->error,
+                   "The most that parts differ from the solid: a length in the file's unit, or % of the diagonal")
+      ->capture_default_str();
+  command->add_flag("--inside", arguments->inside,
+                    "Parts that lie in the solid, instead of parts that cover the solid");
+  command->add_flag("--turn-faces", arguments->turn_faces, "Turns the faces of a mesh that is wholly inside out");
+  command->add_option("--max-parts", arguments->max_parts, "Ends the work at so many parts")->capture_default_str();
+  command
+      ->add_option("--max-steps", arguments->max_steps,
+                   "Ends the work after so many bounds and pieces of faces, of a microsecond or several each")
+      ->capture_default_str();
+  command->callback([arguments, &action] { action = [arguments] { return run_decompose(*arguments); }; });
+}
+
+}  // namespace pd::cli
