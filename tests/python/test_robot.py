@@ -287,6 +287,7 @@ def test_a_sweep_is_the_batch_in_files_and_resumes(read, tmp_path):
     done = robot.sweep(q, nearest=True, **options)
     found = robot.distances(q, nearest=True)
     assert (len(done.files), done.computed, done.count) == (3, 3, 90)
+    assert repr(done).startswith("<Sweep of 90 joint vectors in 3 files")
     assert all(np.array_equal(done[name], found[name], equal_nan=True) for name in found)
     done.files[1].unlink()
     assert robot.sweep(q, nearest=True, **options).computed == 1

@@ -213,6 +213,8 @@ def _require_finite(q, lead):
 class _JointVectors:
     """A question of a sweep: signed distances of a robot, by rows of joint vectors."""
 
+    noun = "joint vectors"
+
     def __init__(self, robot, q):
         if np.ndim(q) != 2 or np.shape(q)[1] != robot.dof:
             raise refused(f"q: has shape {np.shape(q)}, needs [n, {robot.dof}] (bad_value)")

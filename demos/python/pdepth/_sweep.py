@@ -21,8 +21,9 @@ from ._files import save_arrays
 class Sweep:
     """What a sweep has written: `files` in the order of the pairs, `computed` of them by this call, the rest resumed."""
 
-    def __init__(self, folder, files, count, computed):
-        self.folder, self.files, self.count, self.computed = folder, files, count, computed
+    def __init__(self, folder, files, rows, computed):
+        self.folder, self.files, self.computed = folder, files, computed
+        self.count, self._noun = rows
 
     def __iter__(self):
         """The chunks in order, each a dictionary of arrays; one in memory at a time."""
@@ -35,7 +36,7 @@ class Sweep:
         return np.concatenate([chunk[name] for chunk in self])
 
     def __repr__(self):
-        return f"<Sweep of {self.count} pairs in {len(self.files)} files, {self.computed} of them computed now: {self.folder}>"
+        return f"<Sweep of {self.count} {self._noun} in {len(self.files)} files, {self.computed} of them computed now: {self.folder}>"
 
 
 def _chunk(shapes, pairs, poses_a, poses_b, threads, options):
@@ -61,7 +62,8 @@ def _is_done(path, digest):
 
 
 class _Progress:
-    def __init__(self, total, shown):
+    def __init__(self, total, noun, shown):
+        self.noun = noun
         self.total, self.shown, self.done, self.start, self.last = total, shown, 0, time.monotonic(), 0.0
 
     def step(self, pairs):
@@ -70,17 +72,17 @@ class _Progress:
         if self.shown and (now - self.last > 0.5 or self.done == self.total):
             self.last = now
             end = "\n" if self.done == self.total else "\r"
-            print(f"{self.done} of {self.total} pairs, {now - self.start:.0f} s", end=end, file=sys.stderr, flush=True)
+            print(f"{self.done} of {self.total} {self.noun}, {now - self.start:.0f} s", end=end, file=sys.stderr, flush=True)
 
 
 class _Pairs:
     """Pairs and poses by rows, whether they are arrays (memory-mapped ones stay on disk) or functions.
 
-    A question of a sweep has `count` rows, of which rows(begin, end) are arrays; `shared`, which a worker gets once; and
+    A question of a sweep has `count` rows, each a `noun`, of which rows(begin, end) are arrays; `shared`, which a worker gets once; and
     chunk(shared, *rows, threads, options), which answers columns.
     """
 
-    chunk = staticmethod(_chunk)
+    chunk, noun = staticmethod(_chunk), "pairs"
 
     def __init__(self, shapes, pairs, poses):
         self.shared = list(shapes)
@@ -174,7 +176,7 @@ def run(inputs, client, how, options):
 
     asked = [__version__, inputs.told(), options]
     head = json.dumps(asked, sort_keys=True).encode()
-    shown = _Progress(inputs.count, progress)
+    shown = _Progress(inputs.count, inputs.noun, progress)
     files = [folder / f"chunk_{k:06d}.npz" for k in range(-(-inputs.count // chunk))]
     computed = 0
 
@@ -198,4 +200,4 @@ def run(inputs, client, how, options):
         _run_here(inputs, missing(), finish, threads, options)
     else:
         _run_on(client, inputs, missing(), finish, threads or 1, options)
-    return Sweep(folder, files, inputs.count, computed)
+    return Sweep(folder, files, (inputs.count, inputs.noun), computed)
