@@ -24,7 +24,8 @@ pd_add_module(pdepth_wasm_convex pdepth-convex)
 target_compile_definitions(pdepth_wasm_convex PRIVATE PD_CONVEX_ALONE)
 # Folders that most questions never enter, or only when a body is made, are compiled for the least size. Properties of a source would
 # take it out of its folder's unity, so they are given to the file that CMake generates for the folder.
-foreach(folder shape shape_hull shape_mesh structure structure_bipartite structure_hierarchy structure_overlay depth depth_rays compound)
+foreach(folder shape_hull shape_mesh structure structure_bipartite structure_hierarchy structure_overlay depth depth_rays depth_certificate numeric
+        compound)
   set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/pd_core.dir/Unity/unity_src_${folder}_cxx.cxx
                               PROPERTIES COMPILE_OPTIONS "-Oz;-finline-functions")
 endforeach()
