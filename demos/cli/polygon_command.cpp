@@ -140,7 +140,11 @@ PolygonDepth answer_of(const PolygonPair& pair, const PolygonDifference& r) {
 
 void print_polygon(std::string_view name, const std::string& file, const drawing::PolygonFile& polygon, double margin) {
   const int holes = polygon.polygon.num_rings() - 1;
-  std::string words = fmt::format("{}  ({} vertices", file, polygon.polygon.num_vertices());
+  int vertices = 0;  // without the points where another ring touches an edge
+  for (int v = 0; v < polygon.polygon.num_vertices(); ++v) {
+    vertices += polygon.polygon.caller_id(v).ring == polygon.polygon.caller_edge(v).ring ? 1 : 0;
+  }
+  std::string words = fmt::format("{}  ({} vertices", file, vertices);
   if (polygon.polygon.is_point()) words = file + "  (a point";
   if (holes > 0) words += fmt::format(", {} {}", holes, holes == 1 ? "hole" : "holes");
   if (polygon.polygon.convex() && !polygon.polygon.is_point()) words += ", convex";

@@ -134,6 +134,14 @@ TEST_F(Program, PolygonForPeopleAndPrograms) {
   EXPECT_EQ(depth("--direction 0,1"), 6.0);
   EXPECT_EQ(depth("--complete"), 3.25);
   EXPECT_EQ(depth("--direction 2,0 --complete"), 7.75);
+  EXPECT_NEAR(depth("--margin 0.25").get<double>(), 1.25, 1e-6);  // half more on the whole
+  EXPECT_NEAR(depth("--margin 0.25,0").get<double>(), 1, 1e-6);
+  write("wide.svg", R"(<svg xmlns="http://www.w3.org/2000/svg"><rect width="4" height="4"/></svg>)");
+  const Outcome fits = run("polygon frame.json wide.svg --place-q 3,3 --seats");
+  for (const char* words : {"fits exactly where it is", "(3, 3)"}) {
+    EXPECT_NE(fits.out.find(words), std::string::npos) << words << "\n" << fits.out;
+  }
+  EXPECT_EQ(run("polygon frame.json wide.svg --seats --margin 1").status, 2);
   write("bow.svg", R"(<svg><path id="bow" d="M0 0L4 4L4 0L0 4z"/></svg>)");
   const Outcome crossed = run("polygon bow.svg peg.svg");
   EXPECT_EQ(crossed.status, 2);

@@ -94,16 +94,29 @@ class Sweep {
     status_.erase(it);
   }
 
+  /// The lowest edge of the status through a point, or else the one above. An edge that ends there is known to be one.
+  [[nodiscard]] Status::iterator lowest_at(std::span<const std::int32_t> here) const {
+    for (const int x : here) {
+      for (const int e : {at(rings_.previous, x), x}) {
+        if (right(e) != x) continue;
+        auto it = place_[static_cast<std::size_t>(e)];
+        while (it != status_.begin() && side(*std::prev(it), x) == 0) --it;
+        return it;
+      }
+    }
+    return status_.lower_bound(Probe{here.front()});
+  }
+
   /// All vertices at one point.
   void pass(std::span<const std::int32_t> here) {
     const int v = here.front();
-    const auto lowest = status_.lower_bound(Probe{v});
+    const auto lowest = lowest_at(here);
     const int under = lowest == status_.begin() ? -1 : *std::prev(lowest);
     std::vector<int> passing;
     for (auto it = lowest; it != status_.end() && side(*it, v) == 0; ++it) {
       if (point(right(*it)) != point(v)) passing.push_back(*it);
     }
-    look_around(here, passing, under);
+    if (here.size() > 1 || !passing.empty() || !seen(ring(v))) look_around(here, passing, under);
     if (check_.fault) return;
     for (const int e : passing) check_.touches.push_back({e, v});
     check_.shared_points = check_.shared_points || here.size() + passing.size() > 1;
@@ -182,6 +195,9 @@ class Sweep {
     return at(rings_.previous, d.vertex);
   }
 
+  [[nodiscard]] bool seen(int ring) const {
+    return static_cast<std::size_t>(ring) < ring_seen_.size() && ring_seen_[static_cast<std::size_t>(ring)];
+  }
   /// @return true the first time.
   bool see(int ring) {
     if (ring_seen_.size() <= static_cast<std::size_t>(ring)) ring_seen_.resize(static_cast<std::size_t>(ring) + 1);
