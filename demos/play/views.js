@@ -34,9 +34,16 @@ function clear(group) {
   for (const child of [...group.children]) {
     group.remove(child);
     child.geometry.dispose();
-    child.material.dispose();
   }
 }
+/** Returns the material of these options, which is kept: when the last one of a kind goes, its shaders go, and compiling takes a frame's time. */
+function materialOf(Material, options) {
+  if (!materials.has(Material)) materials.set(Material, new Map());
+  const made = materials.get(Material), key = JSON.stringify(options);
+  if (!made.has(key)) made.set(key, new Material(options));
+  return made.get(key);
+}
+const materials = new Map();
 const linear = hex => [hex >> 16 & 255, hex >> 8 & 255, hex & 255].map(c => Math.pow(c / 255, 2.2));
 /** Makes the triangles of a surface. @param colour  of a facet's number */
 function solid({points, loops}, colour) {
@@ -59,7 +66,7 @@ function solid({points, loops}, colour) {
 function addSolid(group, surface, colour, {opacity, order}) {
   const geometry = solid(surface, colour);
   [THREE.BackSide, THREE.FrontSide].forEach((side, i) => {
-    const material = new THREE.MeshLambertMaterial({vertexColors: true, transparent: opacity < 1, opacity, side, depthWrite: opacity === 1});
+    const material = materialOf(THREE.MeshLambertMaterial, {vertexColors: true, transparent: opacity < 1, opacity, side, depthWrite: opacity === 1});
     const mesh = new THREE.Mesh(geometry, material);
     mesh.renderOrder = order + i;
     group.add(mesh);
@@ -68,13 +75,13 @@ function addSolid(group, surface, colour, {opacity, order}) {
 function addLines(group, ends, colour, opacity, order) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(ends.flat(), 3));
-  const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: colour, transparent: true, opacity}));
+  const lines = new THREE.LineSegments(geometry, materialOf(THREE.LineBasicMaterial, {color: colour, transparent: true, opacity}));
   lines.renderOrder = order;
   group.add(lines);
 }
 function addMark(group, geometry, colour, at, {along, order, opacity = 1, lit: shaded = false, through = true}) {
   const Material = shaded ? THREE.MeshLambertMaterial : THREE.MeshBasicMaterial;
-  const mesh = new THREE.Mesh(geometry, new Material({color: colour, transparent: true, opacity, depthTest: !through, depthWrite: false}));
+  const mesh = new THREE.Mesh(geometry, materialOf(Material, {color: colour, transparent: true, opacity, depthTest: !through, depthWrite: false}));
   mesh.position.set(...at);
   if (along) mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(...along));
   mesh.renderOrder = order;
@@ -120,7 +127,7 @@ function drawFloor(unit, depth) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
   geometry.setAttribute('color', new THREE.Float32BufferAttribute(colours, 4));
-  groups.floor.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({vertexColors: true, transparent: true, depthWrite: false})));
+  groups.floor.add(new THREE.LineSegments(geometry, materialOf(THREE.LineBasicMaterial, {vertexColors: true, transparent: true, depthWrite: false})));
 }
 function drawShared(solids) {
   clear(groups.shared);
