@@ -1,9 +1,11 @@
 #include "protocol/stream/line_recorder.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 #include "protocol/line/line_source.hpp"
@@ -11,6 +13,22 @@
 namespace pd::query {
 
 namespace {
+
+/// Held while a line is written or the file's end is looked at: a line that another program is about to write would
+/// pass for one that was cut. Where a file system has no locks, lines are still written by one call each.
+class FileLock {
+ public:
+  explicit FileLock(int file) : file_(file) {
+    while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  ~FileLock() { ::flock(file_, LOCK_UN); }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int file_;
+};
 
 bool ends_within_a_line(int file) {
   struct stat status {};
@@ -25,7 +43,12 @@ LineRecorder::LineRecorder(RecordSettings settings) : settings_(std::move(settin
   if (!active()) return;
   file_ = ::open(settings_.path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) file_ = ::open(settings_.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);  // a pipe, or not to be read
-  good_ = file_ >= 0 && (!ends_within_a_line(file_) || write_all(file_, "\n"));
+  if (file_ < 0) {
+    good_ = false;
+    return;
+  }
+  const FileLock lock(file_);
+  good_ = !ends_within_a_line(file_) || write_all(file_, "\n");
 }
 
 LineRecorder::~LineRecorder() {
@@ -40,7 +63,9 @@ void LineRecorder::keep(std::string_view line, const LineAnswer& answer, double 
   if (!every && !slow && !surprising) return;
   const std::string whole = std::string(line) + '\n';
   const std::scoped_lock lock(mutex_);
-  good_ = good_ && write_all(file_, whole);
+  if (!good_) return;
+  const FileLock file_lock(file_);
+  good_ = write_all(file_, whole);
 }
 
 }  // namespace pd::query
