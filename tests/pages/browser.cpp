@@ -162,8 +162,9 @@ nlohmann::json Browser::evaluate(const std::string& expression) {
 
 void Browser::press(const std::string& key) {
   const bool letter = key.size() == 1;
-  const nlohmann::json codes{{"ArrowLeft", 37}, {"ArrowUp", 38}, {"ArrowRight", 39}, {"ArrowDown", 40},
-                             {"Tab", 9},        {"Home", 36},    {"End", 35},        {"Enter", 13}};
+  const nlohmann::json codes{{"PageUp", 33},     {"PageDown", 34},  {"ArrowLeft", 37}, {"ArrowUp", 38},
+                             {"ArrowRight", 39}, {"ArrowDown", 40}, {"Tab", 9},        {"Home", 36},
+                             {"End", 35},        {"Enter", 13}};
   nlohmann::json parameters{{"key", key}, {"code", key == " " ? "Space" : key}};
   parameters["windowsVirtualKeyCode"] = letter ? static_cast<int>(key[0]) : codes.at(key).get<int>();
   if (letter) parameters["text"] = key;
