@@ -62,7 +62,7 @@ struct Question {
     }
     return found;
   }
-  /// Of every answer; nothing is said of swept polygons.
+  /// Tells for every answer whether Q fits exactly there; empty for swept polygons, of which nothing is said.
   [[nodiscard]] std::vector<bool> seats(const PolygonDifference& r, const std::vector<Point2>& placements) const {
     std::vector<bool> found;
     if (swept()) return found;

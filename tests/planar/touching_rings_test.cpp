@@ -180,7 +180,7 @@ TEST(TouchingRings, AnInteriorInTwoPartsIsRefused) {
   // Three holes around a triangle: each touches the two others.
   expect_refused(frame_with({{{2, 2}, {6, 2}, {4, 1}}, {{6, 2}, {4, 6}, {7, 5}}, {{4, 6}, {2, 2}, {1, 5}}}),
                  "holes[1][0]", "cut in two");
-  // The same with a way through.
+  // With a way through, the interior is connected again.
   EXPECT_EQ(
       made(frame_with({{{2, 2}, {6, 2}, {4, 1}}, {{6, 2}, {4, 6}, {7, 5}}, {{4, 6}, {2, 3}, {1, 5}}})).num_rings(), 4);
 }

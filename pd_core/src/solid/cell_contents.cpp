@@ -72,7 +72,7 @@ double CellContents::largest_rise() const {
   return most;
 }
 
-/// What a plane leaves on its two sides.
+/// Points of the contents on the two sides of a plane.
 struct CellContents::Sides {
   std::vector<Vec3> below, above;
   std::size_t parted = 0;  ///< number of pieces of faces that the plane cuts
@@ -113,7 +113,7 @@ CellContents::Sides CellContents::sides_of(const PlaneSet& planes, Side plane) c
     if (height <= kOnPlane) sides.below.push_back(x);
     if (height >= -kOnPlane) sides.above.push_back(x);
   }
-  // Where an edge of the cell runs in the solid, it goes on to the plane.
+  // An edge of the cell that runs in the solid goes on to the plane.
   for (const PlanePolygon& facet : here_.cell.facets()) {
     for (std::size_t k = 0; k < facet.corners.size(); ++k) {
       const Vec3 &p = facet.corners[k], &q = facet.corners[(k + 1) % facet.corners.size()];

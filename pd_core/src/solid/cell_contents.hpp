@@ -1,5 +1,6 @@
 /// @file
-/// What a cell holds of a solid, in doubles: corners, and planes along which to cut.
+/// The contents of a cell are the part of a solid that lies in it: their corners in doubles, and planes along which to
+/// cut them.
 #pragma once
 
 #include <optional>

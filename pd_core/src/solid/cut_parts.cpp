@@ -196,7 +196,7 @@ class InnerParts : public Cutting {
     parts_ = merged(std::move(parts_), {.gap = 0x1p-40 * scale(),
                                         .error_of = [&](const ConvexPolytope& hull) { return error_of(hull); },
                                         .goes_on = [&] { return steps() < settings_.max_steps; }});
-    // What lies near a part lies near the merged part that holds it.
+    // A merged part holds the parts that it replaces, so that no point of the solid is farther from it than from them.
     for (SolidPart& part : parts_) part.error = largest;
     return {std::move(parts_), steps()};
   }

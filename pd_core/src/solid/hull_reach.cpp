@@ -53,12 +53,13 @@ struct ReachPiece {
   }
 };
 
-/// The part of a polygon where sign * x[axis] <= sign * place.
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, int axis, double sign, double place) {
+/// The part of a polygon where a height, linear in x, is not positive.
+template <class Height>
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Height& height) {
   std::vector<Vec3> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const double a = sign * (from[axis] - place), b = sign * (to[axis] - place);
+    const double a = height(from), b = height(to);
     if (a <= 0) kept.push_back(from);
     if ((a < 0 && b > 0) || (a > 0 && b < 0)) kept.emplace_back(from + a / (a - b) * (to - from));
   }
@@ -98,19 +99,11 @@ class ShrunkPiece {
   [[nodiscard]] bool thick() const { return thick_; }
 
   [[nodiscard]] bool meets(const PosedTriangle& triangle) const {
-    std::vector<Vec3> polygon = {triangle[0].x, triangle[1].x, triangle[2].x}, kept;
-    for (std::size_t h = 0; h < normals_.size(); ++h) {
-      kept.clear();
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-        const double a = normals_[h].dot(from) - offsets_[h], b = normals_[h].dot(to) - offsets_[h];
-        if (a <= 0) kept.push_back(from);
-        if ((a < 0 && b > 0) || (a > 0 && b < 0)) kept.emplace_back(from + a / (a - b) * (to - from));
-      }
-      if (kept.empty()) return false;
-      std::swap(polygon, kept);
+    std::vector<Vec3> polygon = {triangle[0].x, triangle[1].x, triangle[2].x};
+    for (std::size_t h = 0; h < normals_.size() && !polygon.empty(); ++h) {
+      polygon = clipped(polygon, [&](const Vec3& x) { return normals_[h].dot(x) - offsets_[h]; });
     }
-    return true;
+    return !polygon.empty();
   }
 
  private:
@@ -192,7 +185,7 @@ class ReachSearch {
       ReachPiece half{piece.box, {}, {}, piece.upper, piece.place, piece.triangles};
       (sign > 0 ? half.box.high : half.box.low)[axis] = place;
       for (const Patch& patch : piece.patches) {
-        std::vector<Vec3> corners = clipped(patch.corners, axis, sign, place);
+        std::vector<Vec3> corners = clipped(patch.corners, [&](const Vec3& x) { return sign * (x[axis] - place); });
         if (!corners.empty()) half.patches.push_back({patch.facet, std::move(corners)});
       }
       add_corners(half);

@@ -16,6 +16,22 @@ int exponent_of(const MeshSolid& solid) {
   return size > 0 ? std::ilogb(size) : 0;
 }
 
+Vec3 middle_of(const ConvexCell& cell) {
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (const PlanePolygon& facet : cell.facets()) {
+    for (const Vec3& corner : facet.corners) sum += corner;
+    count += static_cast<double>(facet.corners.size());
+  }
+  return sum / count;
+}
+
+/// True if a point in doubles lies inside of a cell, off its walls.
+bool lies_inside(const PlaneSet& planes, const ConvexCell& cell, const Vec3& x) {
+  return std::all_of(cell.facets().begin(), cell.facets().end(),
+                     [&](const PlanePolygon& facet) { return planes.sign_at_point(facet.plane, x) < 0; });
+}
+
 }  // namespace
 
 SolidCells::SolidCells(const MeshSolid& solid)
@@ -107,17 +123,8 @@ PosedPoint SolidCells::posed(const Vec3& x) const {
 }
 
 std::optional<bool> SolidCells::middle_is_solid(const ConvexCell& cell) const {
-  Vec3 middle = Vec3::Zero();
-  double count = 0;
-  for (const PlanePolygon& facet : cell.facets()) {
-    for (const Vec3& corner : facet.corners) middle += corner;
-    count += static_cast<double>(facet.corners.size());
-  }
-  middle /= count;
-  const bool inside = std::all_of(cell.facets().begin(), cell.facets().end(), [&](const PlanePolygon& facet) {
-    return planes_.sign_at_point(facet.plane, middle) < 0;
-  });
-  if (!inside) return std::nullopt;
+  const Vec3 middle = middle_of(cell);
+  if (!lies_inside(planes_, cell, middle)) return std::nullopt;
   return place_in(alone_, Body::b, posed(middle)).winding > 0;
 }
 
@@ -137,19 +144,9 @@ bool SolidCells::may_be_solid_at(const SolidCell& here, const Vec3& corner) cons
   // A corner of a piece of a face, or next to one: within rounding of the solid.
   constexpr double kNear = 0x1p-42;
   if (clear <= kNear) return true;
-  Vec3 middle = Vec3::Zero();
-  double count = 0;
-  for (const PlanePolygon& facet : here.cell.facets()) {
-    for (const Vec3& x : facet.corners) middle += x;
-    count += static_cast<double>(facet.corners.size());
-  }
-  middle /= count;
-  const Vec3 inwards = middle - corner;
+  const Vec3 inwards = middle_of(here.cell) - corner;
   const Vec3 inner = corner + std::min(1.0, 0.5 * clear / inwards.norm()) * inwards;
-  const bool inside = std::all_of(here.cell.facets().begin(), here.cell.facets().end(), [&](const PlanePolygon& facet) {
-    return planes_.sign_at_point(facet.plane, inner) < 0;
-  });
-  return !inside || holds(inner);
+  return !lies_inside(planes_, here.cell, inner) || holds(inner);
 }
 
 }  // namespace pd::detail
