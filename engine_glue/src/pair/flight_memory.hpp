@@ -2,10 +2,10 @@
 /// Two boxes that fly together, as those of a block that falls, keep the points of the step in which they were last
 /// asked.
 ///
-/// As long as neither body turns, and their positions differ from those of the question by the rounding of positions
-/// alone, the answer's facet stays the nearest one up to that rounding. The points move along with B, and their
-/// distances change by the part of the rounding along the normal. A block that falls would ask each of its pairs in
-/// each step otherwise, although nothing has happened between them.
+/// While their poses differ from those of the question by the rounding of poses alone, the answer's facet stays the
+/// nearest one up to that rounding. The points move along with B, and their distances change by the part of the
+/// rounding along the normal. A block that falls would ask each of its pairs in each step otherwise, although nothing
+/// has happened between them.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
