@@ -43,8 +43,9 @@ export function start(source: BufferSource | WebAssembly.Module | Response): Pro
 export function version(): string;
 
 export interface Description {
-  /** False: a compound. */
+  /** False: a compound or a solid of a mesh. */
   isConvex: boolean;
+  /** 0 where the mesh of a solid was asked about. */
   parts: number;
   /** Dimension of the part's core without its margin: 0 a point, 1 a segment, 2 a polygon, 3 a solid. */
   dimension: number;
@@ -63,8 +64,10 @@ export interface Surface {
 
 /** A vertex, edge or facet of one body, in the library's own numbers; {@link Shape.pointsOf} leads back to the caller's. */
 export interface Feature {
+  /** "none" where the body is curved, and often for solids that overlap. */
   kind: 'none' | 'vertex' | 'edge' | 'facet';
-  part: number;
+  /** Of a compound, from 0; "mesh": `first` is a face of the mesh that a {@link Solid} was made from. */
+  part: number | 'mesh';
   first: number;
   second: number;
 }
@@ -78,10 +81,10 @@ export abstract class Shape {
   readonly freed: boolean;
   /** The shape swept by a ball, in addition to the margin that it has. Rounded corners are exact, too. */
   withMargin(margin: number): Shape;
-  /** Tells what the shape is made of. @param part of a compound, from 0 */
-  describe(part?: number): Description;
+  /** Tells what the shape is made of. @param part of a compound, from 0; "mesh": the mesh of a solid, its faces as triangles */
+  describe(part?: number | 'mesh'): Description;
   /** Facets for drawing. Refused with "unsupported" where the core is curved. */
-  surface(part?: number): Surface;
+  surface(part?: number | 'mesh'): Surface;
   /** The points of a feature of an answer, as numbers of the rows that the shape was made from. */
   pointsOf(feature: Feature): number[];
 }
@@ -96,11 +99,25 @@ export class Cylinder extends Shape { constructor(radius: number, halfHeight: nu
 /** Base at -halfHeight, apex at halfHeight. */
 export class Cone extends Shape { constructor(radius: number, halfHeight: number, axis?: 'x' | 'y' | 'z'); }
 /** The convex hull of points; with faces (loops of point numbers, counter-clockwise from outside) they are checked and not trusted. */
-export class Convex extends Shape { constructor(points: Rows, faces?: ReadonlyArray<Iterable<number> & {length: number}>); }
+export class Convex extends Shape { constructor(points: Rows, faces?: ReadonlyArray<ArrayLike<number>> | Uint16Array | Int32Array | Uint32Array); }
 /** The solid of all x with n x <= d. @param planes rows of 4 numbers: n (any length), d */
 export class Halfspaces extends Shape { constructor(planes: Rows); }
 /** The convex hull of spheres. @param spheres rows of 4 numbers: centre, radius >= 0 */
 export class HullOfSpheres extends Shape { constructor(spheres: Rows); }
+/**
+ * The solid that a closed mesh bounds: not convex in general, with cavities and several shells.
+ *
+ * Depth and `apart`, of solids and of a solid and a convex polytope without margin, ask the mesh itself. All else needs the solid as convex
+ * parts: refused with "unsupported" where no doubles hold their corners, with "limit_exceeded" above 512 parts. A mesh that bounds no solid
+ * is refused by its fault (open_edge, flipped_face, self_crossing, inside_out ...) and the face.
+ */
+export class Solid extends Shape {
+  /**
+   * @param faces loops of point numbers, counter-clockwise from outside, or triangles in a typed array
+   * @param options turnFaces: a mesh that is wholly inside out is turned
+   */
+  constructor(points: Rows, faces: ReadonlyArray<ArrayLike<number>> | Uint16Array | Int32Array | Uint32Array, options?: {turnFaces?: boolean});
+}
 /** The union of shapes, each at a pose in the compound's frame. */
 export class Compound extends Shape { constructor(parts: ReadonlyArray<{shape: Shape; pose?: Pose}>); }
 

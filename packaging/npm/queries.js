@@ -18,7 +18,7 @@ function writeQuestion(a, poseA, b, poseB, options) {
 const vector = place => [doubles[place >> 3], doubles[(place >> 3) + 1], doubles[(place >> 3) + 2]];
 function readFeature(place) {
   const w = place >> 2;
-  return {kind: kFeatures[words[w + (at.feature.kind >> 2)]], part: words[w + (at.feature.part >> 2)],
+  return {kind: kFeatures[words[w + (at.feature.kind >> 2)]], part: words[w + (at.feature.part >> 2)] === kMesh ? 'mesh' : words[w + (at.feature.part >> 2)],
           first: words[w + (at.feature.first >> 2)], second: words[w + (at.feature.second >> 2)]};
 }
 function readAnswer(p) {

@@ -58,7 +58,7 @@ export class Shape extends Owned {
   describe(part = 0) {
     return call(() => {
       const out = struct('shape_info');
-      check(wasm.pdepth_shape_describe(context, shapePointer(this, 'shape'), part, out));
+      check(wasm.pdepth_shape_describe(context, shapePointer(this, 'shape'), partNumber(part), out));
       const word = name => words[(out + at.shape_info[name]) >> 2];
       return {isConvex: word('is_convex') === 1, parts: word('parts'), dimension: word('dimension'), vertices: word('vertices'),
               facets: word('facets'), margin: doubles[(out + at.shape_info.margin) >> 3]};
@@ -69,11 +69,11 @@ export class Shape extends Owned {
     const {vertices, facets} = this.describe(part);
     return call(() => {
       const out = struct('surface');
-      const corners = facets > 0 ? 2 * (vertices + facets - 2) : 0;
+      const corners = part === 'mesh' ? 3 * facets : facets > 0 ? 2 * (vertices + facets - 2) : 0;
       const rooms = [room(24 * vertices), room(4 * (facets + 1)), room(4 * corners)];
       see();
       ['points', 'offsets', 'corners'].forEach((name, i) => { words[(out + at.surface[name]) >> 2] = rooms[i]; });
-      check(wasm.pdepth_shape_surface(context, shapePointer(this, 'shape'), part, out));
+      check(wasm.pdepth_shape_surface(context, shapePointer(this, 'shape'), partNumber(part), out));
       return {points: doubles.slice(rooms[0] >> 3, (rooms[0] >> 3) + 3 * vertices),
               offsets: words.slice(rooms[1] >> 2, (rooms[1] >> 2) + facets + 1),
               corners: words.slice(rooms[2] >> 2, (rooms[2] >> 2) + corners)};
@@ -84,13 +84,20 @@ export class Shape extends Owned {
     return call(() => {
       const asked = room(at.feature.size), count = room(8);
       words[(asked + at.feature.kind) >> 2] = kFeatures.indexOf(feature.kind);
-      for (const key of ['part', 'first', 'second']) words[(asked + at.feature[key]) >> 2] = feature[key];
+      words[(asked + at.feature.part) >> 2] = partNumber(feature.part);
+      for (const key of ['first', 'second']) words[(asked + at.feature[key]) >> 2] = feature[key];
       check(wasm.pdepth_feature_points(context, shapePointer(this, 'shape'), asked, 0, count));
       const found = words[count >> 2], out = room(4 * found);
       check(wasm.pdepth_feature_points(context, shapePointer(this, 'shape'), asked, out, count));
       return Array.from(words.slice(out >> 2, (out >> 2) + found));
     });
   }
+}
+
+const kMesh = -1;
+/** The number of a part, or pdepth.h's word for the mesh of a solid. */
+function partNumber(part) {
+  return part === 'mesh' ? kMesh : readWhole(part, 0, 'part');
 }
 
 const kAxes = {x: 0, y: 1, z: 2};
@@ -105,6 +112,36 @@ function shapeOfRows(name, rows, place, length) {
     const [pointer, count] = writeNumbers(rows, place, length);
     return [pointer, BigInt(count / length)];
   });
+}
+
+/** Writes loops of point numbers, or triangles in a typed array, as a pdepth_faces. */
+function writeFaces(points, faces) {
+  const [pointer, count] = writeNumbers(points, 'points', 3);
+  const triangles = ArrayBuffer.isView(faces);
+  if (!triangles && !Array.isArray(faces)) refuse('bad_value', 'must be an array of loops, or a typed array of triangles', 'faces');
+  if (triangles && faces.length % 3 !== 0) refuse('bad_value', `has ${faces.length} numbers, which is no multiple of 3`, 'faces');
+  const number = triangles ? faces.length / 3 : faces.length;
+  const loop = i => triangles ? faces.subarray(3 * i, 3 * i + 3)
+      : typeof faces[i]?.length === 'number' && typeof faces[i] === 'object' ? faces[i] : refuse('bad_value', 'must be a loop of point numbers', `faces[${i}]`);
+  let corners = 0;
+  for (let i = 0; i < number; ++i) corners += loop(i).length;
+  const offsets = room(4 * (number + 1)), vertices = room(4 * corners), out = struct('faces');
+  let next = 0;
+  for (let i = 0; i < number; ++i) {
+    words[(offsets >> 2) + i] = next;
+    for (const v of loop(i)) {
+      // The module's integers would turn other values into numbers of other points.
+      if (v !== (v | 0)) refuse('bad_value', `${String(v)} is no point number`, `faces[${i}]`);
+      words[(vertices >> 2) + next++] = v;
+    }
+  }
+  words[(offsets >> 2) + number] = next;
+  words[(out + at.faces.points) >> 2] = pointer;
+  longs[(out + at.faces.num_points) >> 3] = BigInt(count / 3);
+  words[(out + at.faces.offsets) >> 2] = offsets;
+  longs[(out + at.faces.num_faces) >> 3] = BigInt(number);
+  words[(out + at.faces.vertices) >> 2] = vertices;
+  return out;
 }
 
 export class Box extends Shape {
@@ -128,23 +165,16 @@ export class Cone extends Shape {
 export class Convex extends Shape {
   constructor(points, faces) {
     super(faces === undefined ? shapeOfRows('pdepth_convex_hull', points, 'points', 3) : made('pdepth_convex_faces', () => {
-      const [pointer, count] = writeNumbers(points, 'points', 3);
-      if (!Array.isArray(faces)) refuse('bad_value', 'must be an array of loops', 'faces');
-      const loops = faces.map((face, i) => face?.[Symbol.iterator] ? [...face] : refuse('bad_value', 'must be a loop of point numbers', `faces[${i}]`));
-      const corners = loops.flat();
-      // The module's integers would turn other values into numbers of other points.
-      loops.forEach((loop, i) => loop.forEach(v => { if (v !== (v | 0)) refuse('bad_value', `${String(v)} is no point number`, `faces[${i}]`); }));
-      const offsets = room(4 * (faces.length + 1)), vertices = room(4 * corners.length), out = struct('faces');
-      let next = 0;
-      loops.forEach((loop, i) => { words[(offsets >> 2) + i] = next; next += loop.length; });
-      words[(offsets >> 2) + faces.length] = next;
-      words.set(corners, vertices >> 2);
-      words[(out + at.faces.points) >> 2] = pointer;
-      longs[(out + at.faces.num_points) >> 3] = BigInt(count / 3);
-      words[(out + at.faces.offsets) >> 2] = offsets;
-      longs[(out + at.faces.num_faces) >> 3] = BigInt(faces.length);
-      words[(out + at.faces.vertices) >> 2] = vertices;
-      return [out];
+      return [writeFaces(points, faces)];
+    }));
+  }
+}
+/** The solid that a closed mesh bounds; loops of point numbers, or a typed array of triangles. */
+export class Solid extends Shape {
+  constructor(points, faces, options = {}) {
+    super(made('pdepth_mesh_solid', () => {
+      allowOnly(options, ['turnFaces'], 'options');
+      return [writeFaces(points, faces), options.turnFaces ? 1 : 0];
     }));
   }
 }

@@ -35,21 +35,11 @@ int32_t pdepth_version(void);
 // ---- Status and errors
 
 typedef int32_t pdepth_status;
+enum { PDEPTH_OK = 0, PDEPTH_BAD_VALUE = 1, PDEPTH_NON_FINITE = 2, PDEPTH_OUT_OF_RANGE = 3 };
+enum { PDEPTH_TOO_FEW_POINTS = 4, PDEPTH_NOT_FULL_DIMENSIONAL = 5, PDEPTH_NOT_CONVEX = 6, PDEPTH_BAD_FACES = 7 };
+enum { PDEPTH_NOT_CLOSED = 8, PDEPTH_NOT_A_ROTATION = 9, PDEPTH_ZERO_DIRECTION = 10, PDEPTH_UNBOUNDED = 11 };
+enum { PDEPTH_UNSUPPORTED = 12, PDEPTH_LIMIT_EXCEEDED = 13 };
 enum {
-  PDEPTH_OK = 0,
-  PDEPTH_BAD_VALUE = 1,
-  PDEPTH_NON_FINITE = 2,
-  PDEPTH_OUT_OF_RANGE = 3,
-  PDEPTH_TOO_FEW_POINTS = 4,
-  PDEPTH_NOT_FULL_DIMENSIONAL = 5,
-  PDEPTH_NOT_CONVEX = 6,
-  PDEPTH_BAD_FACES = 7,
-  PDEPTH_NOT_CLOSED = 8,
-  PDEPTH_NOT_A_ROTATION = 9,
-  PDEPTH_ZERO_DIRECTION = 10,
-  PDEPTH_UNBOUNDED = 11,
-  PDEPTH_UNSUPPORTED = 12,
-  PDEPTH_LIMIT_EXCEEDED = 13,
   PDEPTH_NULL_ARGUMENT = 100,  ///< a pointer that has to name something is NULL
   PDEPTH_OUT_OF_MEMORY = 101,  ///< the allocator returned NULL; the context may be used on
   PDEPTH_IN_USE = 102,         ///< another thread is in a call with the same context or pair
@@ -143,7 +133,7 @@ pdepth_status pdepth_cone(pdepth_context* context, double radius, double half_he
 /// Time O(n log n), O(n^2) at worst.
 pdepth_status pdepth_convex_hull(pdepth_context* context, const double* points, int64_t count, pdepth_shape** shape);
 
-/// A closed convex surface: face f is the loop vertices[offsets[f]] .. vertices[offsets[f + 1] - 1] of point numbers,
+/// Faces over points: face f is the loop vertices[offsets[f]] .. vertices[offsets[f + 1] - 1] of point numbers,
 /// counter-clockwise seen from outside.
 typedef struct pdepth_faces {
   uint32_t size;
@@ -165,6 +155,16 @@ pdepth_status pdepth_halfspaces(pdepth_context* context, const double* planes, i
 /// @param spheres  [count x 4]: centre, radius >= 0. Time at most O(count + 2^18) a sphere.
 pdepth_status pdepth_hull_of_spheres(pdepth_context* context, const double* spheres, int64_t count,
                                      pdepth_shape** shape);
+/// The solid that a closed mesh bounds: not convex in general, with cavities and several shells.
+/// @param turn_faces  not 0: a mesh that is wholly inside out is turned; 0: it is refused.
+/// Errors: as `pdepth_convex_hull`, and bad_faces, not_closed, limit_exceeded; the message begins with the fault
+/// (open_edge, flipped_face, not_manifold, self_crossing, inside_out, not_planar, degenerate_face). Time O(n log n).
+///
+/// Depth and apart, of solids and of a solid and a convex polytope without margin, ask the mesh itself. All else needs
+/// the solid as convex parts, which its first such query cuts: unsupported where no doubles hold their corners,
+/// limit_exceeded above 512 parts or 20,000 pieces of faces.
+pdepth_status pdepth_mesh_solid(pdepth_context* context, const pdepth_faces* mesh, int32_t turn_faces,
+                                pdepth_shape** shape);
 /// The shape swept by a ball of radius `margin` >= 0, in addition to the margin that it has.
 pdepth_status pdepth_with_margin(pdepth_context* context, const pdepth_shape* body, double margin,
                                  pdepth_shape** shape);
@@ -178,15 +178,17 @@ pdepth_status pdepth_compound(pdepth_context* context, const pdepth_part* parts,
 
 typedef struct pdepth_shape_info {
   uint32_t size;
-  int32_t is_convex;  ///< 0: made by `pdepth_compound`
-  int32_t parts;      ///< 1 for a convex shape
+  int32_t is_convex;  ///< 0: a compound or a mesh solid
+  int32_t parts;      ///< 1 for a convex shape; 0 where the mesh is asked about
   // The rest is about one part. Counts are 0 where its core is curved.
   int32_t dimension;  ///< of the core without its margin: 0 a point, 1 a segment, 2 a polygon, 3 a solid
   int32_t vertices;
   int32_t facets;
   double margin;
 } pdepth_shape_info;
-/// @param part  from 0; 0 for a convex shape. Error: out_of_range.
+enum { PDEPTH_PART_MESH = -1 };  ///< in place of a part: the mesh of a solid, its facets cut into triangles
+/// @param part  from 0; 0 for a convex shape. Error: out_of_range. The parts of a solid whose corners no doubles hold
+/// lie in the solid, up to rounding.
 pdepth_status pdepth_shape_describe(pdepth_context* context, const pdepth_shape* shape, int32_t part,
                                     pdepth_shape_info* info);
 
@@ -196,7 +198,8 @@ typedef struct pdepth_surface {
   int32_t reserved;
   double* points;    ///< [vertices x 3], in the frame of the shape; rounded for parts of compounds
   int32_t* offsets;  ///< [facets + 1]: facet f is corners[offsets[f]] .. corners[offsets[f + 1] - 1]
-  int32_t* corners;  ///< [2 (vertices + facets - 2)], 0 without facets: vertices, counter-clockwise from outside
+  /// [2 (vertices + facets - 2)], 0 without facets, [3 facets] for a mesh: vertices, counter-clockwise from outside.
+  int32_t* corners;
 } pdepth_surface;
 /// Writes the facets, for drawing. Errors: out_of_range; unsupported where the core is curved.
 pdepth_status pdepth_shape_surface(pdepth_context* context, const pdepth_shape* shape, int32_t part,
@@ -210,14 +213,9 @@ enum {
   PDEPTH_OVERLAPPING = 2  ///< their interiors meet
 };
 
-enum {
-  PDEPTH_METHOD_AUTOMATIC = 0,  ///< exact for (rounded) polytopes, within (1 + delta) for curved bodies
-  PDEPTH_METHOD_EXPANSION = 1,
-  PDEPTH_METHOD_OVERLAY = 2,
-  PDEPTH_METHOD_DECOMPOSITION = 3,
-  PDEPTH_METHOD_SHALLOW = 4,
-  PDEPTH_METHOD_GRID = 5
-};
+enum { PDEPTH_METHOD_AUTOMATIC = 0 };  ///< exact for (rounded) polytopes, within (1 + delta) for curved bodies
+enum { PDEPTH_METHOD_EXPANSION = 1, PDEPTH_METHOD_OVERLAY = 2, PDEPTH_METHOD_DECOMPOSITION = 3 };
+enum { PDEPTH_METHOD_SHALLOW = 4, PDEPTH_METHOD_GRID = 5 };
 
 enum {
   PDEPTH_BRACKET_TIGHTEST = 0,   ///< lower and upper are the exact depth rounded down and up
@@ -271,8 +269,8 @@ enum { PDEPTH_FEATURE_NONE = 0, PDEPTH_FEATURE_VERTEX = 1, PDEPTH_FEATURE_EDGE =
 
 /// A face of one body, in the library's own numbers; `pdepth_feature_points` leads back to the caller's.
 typedef struct pdepth_feature {
-  int32_t kind;    ///< PDEPTH_FEATURE_...; none where the body is curved
-  int32_t part;    ///< of a compound, from 0
+  int32_t kind;    ///< PDEPTH_FEATURE_...; none where the body is curved; of overlapping solids often none
+  int32_t part;    ///< of a compound, from 0; PDEPTH_PART_MESH: `first` is a face of the caller's mesh
   int32_t first;   ///< vertex, first vertex of the edge, or facet
   int32_t second;  ///< second vertex of the edge, or -1
 } pdepth_feature;
@@ -308,8 +306,9 @@ typedef struct pdepth_answer {
 /// Errors: unsupported (the method does not answer for these shapes), bad_value (settings); of compounds out_of_range
 /// and limit_exceeded, too.
 /// Once the context has grown, two convex bodies allocate nothing, unless exact arithmetic is needed (`exact_signs`).
-/// Compounds allocate. Time: near-linear in the number of vertices at worst, as measured; logarithmic for shallow
-/// contacts. With compounds: one query for each pair of parts whose boxes meet, then at worst O(m^3 n^3) cuts.
+/// Compounds and solids allocate. Time: near-linear in the number of vertices at worst, as measured; logarithmic for
+/// shallow contacts. With compounds: one query for each pair of parts whose boxes meet, then at worst O(m^3 n^3) cuts.
+/// Solids: pairs of triangles whose boxes meet; where they overlap, both are cut into parts, and as compounds.
 pdepth_status pdepth_depth(pdepth_context* context, const pdepth_question* question, pdepth_answer* answer);
 
 /// Tells if two bodies are apart by more than `distance` >= 0: the question of a broadphase.

@@ -1,9 +1,13 @@
 #include "c_interface/answers.hpp"
 
+#include <optional>
+#include <utility>
+
 #include "pd/compound/compound_depth.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/derivatives.hpp"
 #include "pd/depth/penetration_depth.hpp"
+#include "pd/solid/solid_depth.hpp"
 
 namespace pd::c_interface {
 
@@ -37,15 +41,59 @@ PenetrationDepth convex_depth(const Question& question, Workspace& space) {
                            memory.certificate());
 }
 
+void require_automatic(const Question& question) {
+  if (question.settings.depth.method == Method::automatic) return;
+  refuse(PDEPTH_UNSUPPORTED, "compounds and solids are answered by PDEPTH_METHOD_AUTOMATIC", "settings.method");
+}
+
 UnionDepth union_depth(const Question& question, Workspace& space) {
-  if (question.settings.depth.method != Method::automatic) {
-    refuse(PDEPTH_UNSUPPORTED, "compounds are answered by PDEPTH_METHOD_AUTOMATIC", "settings.method");
-  }
+  require_automatic(question);
   const PairUse memory(question.pair);
-  return value_of(penetration_depth(PosedCompound{&question.a.whole, question.posed_a.pose},
-                                    PosedCompound{&question.b.whole, question.posed_b.pose}, space.scratch,
-                                    question.settings.of_unions, memory.of_unions()),
+  return value_of(penetration_depth(PosedCompound{&question.a.whole("question.a"), question.posed_a.pose},
+                                    PosedCompound{&question.b.whole("question.b"), question.posed_b.pose},
+                                    space.scratch, question.settings.of_unions, memory.of_unions()),
                   "question");
+}
+
+/// A body as a solid: its own mesh, or that of a convex polytope.
+class AsSolid {
+ public:
+  explicit AsSolid(const pdepth_shape& shape) : solid_(shape.solid ? &shape.solid->mesh() : nullptr) {
+    const ConvexShape* const convex = shape.convex();
+    if (convex == nullptr || convex->polytope() == nullptr || convex->margin() != 0) return;
+    if (Expected<MeshSolid> made = MeshSolid::from_polytope(*convex->polytope())) {
+      solid_ = &made_.emplace(std::move(made).value());
+    }
+  }
+  AsSolid(const AsSolid&) = delete;
+  AsSolid& operator=(const AsSolid&) = delete;
+  [[nodiscard]] const MeshSolid* get() const { return solid_; }
+  /// @param face  of a SolidDepth. Faces of polytopes are their facets.
+  [[nodiscard]] pdepth_feature feature(std::int32_t face) const {
+    if (face < 0) return {PDEPTH_FEATURE_NONE, 0, -1, -1};
+    return {PDEPTH_FEATURE_FACET, made_ ? 0 : PDEPTH_PART_MESH, face, -1};
+  }
+
+ private:
+  std::optional<MeshSolid> made_;
+  const MeshSolid* solid_;
+};
+
+/// Two meshes, or a mesh and a polytope. False where one of the bodies is no mesh, so that nothing was asked.
+bool answered_by_meshes(const Question& question, Workspace& space, pdepth_answer& out) {
+  if (!question.a.solid && !question.b.solid) return false;
+  const AsSolid a(question.a), b(question.b);
+  if (a.get() == nullptr || b.get() == nullptr) return false;
+  require_automatic(question);
+  const SolidSettings settings{.delta = question.settings.of_unions.delta};
+  const SolidDepth found =
+      value_of(penetration_depth(PosedSolid{a.get(), question.posed_a.pose}, PosedSolid{b.get(), question.posed_b.pose},
+                                 space.scratch, settings),
+               "question");
+  write_depth(found, out);
+  out.feature_a = a.feature(found.face_a);
+  out.feature_b = b.feature(found.face_b);
+  return true;
 }
 
 void write_gradient(const PoseGradient& gradient, double (&out)[6]) {
@@ -106,6 +154,7 @@ void ask_depth(const Question& question, Workspace& space, pdepth_answer& out) {
     write_depth(convex_depth(question, space), out);
     return;
   }
+  if (answered_by_meshes(question, space, out)) return;
   const UnionDepth found = union_depth(question, space);
   write_depth(found, out);
   out.bracket_reached = found.bracket_reached && found.closed ? 1 : 0;

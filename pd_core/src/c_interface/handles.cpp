@@ -67,6 +67,18 @@ void ErrorRecord::set(pdepth_status code, std::string_view text, std::string_vie
                 static_cast<int>(place.size()), place.data());
 }
 
+const SolidParts& SolidBody::parts(const char* argument) const {
+  if (!kHasCompounds) refuse(PDEPTH_UNSUPPORTED, "the module for convex bodies cuts no solids", argument);
+  const std::scoped_lock lock(cutting_);
+  if (!parts_) {
+    // The caller's own source may be gone before this body is.
+    const AllocationScope scope(source_);
+    parts_.emplace(SolidParts::from_solid(mesh_));
+  }
+  if (!*parts_) refuse(parts_->error(), argument);
+  return **parts_;
+}
+
 pdepth_status ErrorRecord::take_exception(std::int64_t row) noexcept {
   try {
     throw;
@@ -83,6 +95,18 @@ pdepth_status ErrorRecord::take_exception(std::int64_t row) noexcept {
 }
 
 }  // namespace pd::c_interface
+
+const pd::Compound& pdepth_shape::whole(const char* argument) const {
+  if (!solid) return *made;
+  const pd::SolidParts& parts = solid->parts(argument);
+  if (!parts.exact()) {
+    pd::c_interface::refuse(PDEPTH_UNSUPPORTED,
+                            "this needs the solid as convex parts, whose corners no doubles hold here; depth and apart "
+                            "of solids and convex polytopes need none",
+                            argument);
+  }
+  return parts.inner();
+}
 
 using namespace pd::c_interface;  // NOLINT(google-build-using-namespace): the functions of C stand in no namespace
 

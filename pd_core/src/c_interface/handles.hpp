@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +20,8 @@
 #include "pd/numeric/expected.hpp"
 #include "pd/shape/compound.hpp"
 #include "pd/shape/convex_shape.hpp"
+#include "pd/shape/mesh_solid.hpp"
+#include "pd/solid/solid_parts.hpp"
 #include "pdepth/pdepth.h"
 
 namespace pd::c_interface {
@@ -90,6 +94,22 @@ class Use {
   std::atomic<bool>* flag_;
 };
 
+/// A solid that a closed mesh bounds, and its convex parts, which are cut when a query first needs them.
+class SolidBody {
+ public:
+  /// @param source  of the memory, now and later.
+  SolidBody(MeshSolid mesh, const MemorySource& source) : mesh_(std::move(mesh)), source_(source) {}
+  [[nodiscard]] const MeshSolid& mesh() const { return mesh_; }
+  /// Refuses a solid with too many parts. @param argument  that the refusal names
+  [[nodiscard]] const SolidParts& parts(const char* argument) const;
+
+ private:
+  MeshSolid mesh_;
+  MemorySource source_;
+  mutable std::mutex cutting_;
+  mutable std::optional<Expected<SolidParts>> parts_;
+};
+
 }  // namespace pd::c_interface
 
 struct pdepth_context {
@@ -102,12 +122,22 @@ struct pdepth_context {
 
 struct pdepth_shape {
   std::atomic<std::int64_t> references{1};
-  pd::Compound whole;
+  std::optional<pd::Compound> made;                 ///< nothing: a solid
+  std::optional<pd::c_interface::SolidBody> solid;  ///< nothing: a convex shape or a compound
   bool is_convex;
 
-  pdepth_shape(pd::Compound body, bool convex) : whole(std::move(body)), is_convex(convex) {}
-  /// The convex body, or nullptr for a compound.
-  [[nodiscard]] const pd::ConvexShape* convex() const { return is_convex ? &whole.parts().front().shape : nullptr; }
+  pdepth_shape(pd::Compound body, bool convex) : made(std::move(body)), is_convex(convex) {}
+  pdepth_shape(pd::MeshSolid mesh, const pd::c_interface::MemorySource& source) : is_convex(false) {
+    solid.emplace(std::move(mesh), source);
+  }
+  /// The convex body, or nullptr for a compound or a solid.
+  [[nodiscard]] const pd::ConvexShape* convex() const { return is_convex ? &made->parts().front().shape : nullptr; }
+  /// The body as a union of convex shapes. Refuses a solid whose parts no doubles hold.
+  [[nodiscard]] const pd::Compound& whole(const char* argument) const;
+  /// For drawing: the parts of a solid lie in it, up to rounding.
+  [[nodiscard]] const pd::Compound& drawn(const char* argument) const {
+    return solid ? solid->parts(argument).inner() : *made;
+  }
 };
 
 struct pdepth_pair {

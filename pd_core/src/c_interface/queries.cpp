@@ -44,8 +44,9 @@ pdepth_directional ask_directional(const Question& question, const Vec3& directi
                           0, 0);
   }
   const UnionDirectionalDepth found =
-      value_of(directional_depth(PosedCompound{&question.a.whole, question.posed_a.pose},
-                                 PosedCompound{&question.b.whole, question.posed_b.pose}, direction, space.scratch),
+      value_of(directional_depth(PosedCompound{&question.a.whole("question.a"), question.posed_a.pose},
+                                 PosedCompound{&question.b.whole("question.b"), question.posed_b.pose}, direction,
+                                 space.scratch),
                "");
   return directional_of(found, found.part_a, found.part_b);
 }
@@ -220,7 +221,7 @@ pdepth_status pdepth_support(pdepth_context* context, const pdepth_shape* shape,
       write_answer(ask_support({convex, place}, along), out);
       return;
     }
-    const std::vector<PosedShape> parts = value_of(body.whole.posed(place), "");
+    const std::vector<PosedShape> parts = value_of(body.whole("shape").posed(place), "");
     pdepth_support_answer best{};
     for (std::size_t i = 0; i < parts.size(); ++i) {
       pdepth_support_answer found = ask_support(parts[i], along);

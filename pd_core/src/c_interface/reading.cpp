@@ -118,7 +118,7 @@ const Settings& read_settings(const pdepth_settings* settings, SettingsRoom& roo
 
 void Question::require_convex() const {
   if (is_convex()) return;
-  refuse(PDEPTH_UNSUPPORTED, "this query takes convex shapes, no compounds",
+  refuse(PDEPTH_UNSUPPORTED, "this query takes convex shapes, no compounds and no solids",
          posed_a.shape == nullptr ? "question.a" : "question.b");
 }
 

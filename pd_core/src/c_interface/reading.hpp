@@ -75,7 +75,7 @@ using SettingsRoom = std::optional<Settings>;
 /// The settings by default where the pointer is NULL. @param room  holds the others.
 [[nodiscard]] const Settings& read_settings(const pdepth_settings* settings, SettingsRoom& room);
 
-/// Two bodies and how they are asked about. The shape of a posed body is nullptr for a compound.
+/// Two bodies and how they are asked about. The shape of a posed body is nullptr for a compound or a solid.
 struct Question {
   const pdepth_shape& a;
   const pdepth_shape& b;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "c_interface/answers.hpp"
 #include "c_interface/handles.hpp"
 #include "c_interface/reading.hpp"
 #include "pd/shape/halfspaces.hpp"
@@ -36,13 +37,32 @@ std::vector<Vec3> read_points(const double* numbers, std::int64_t count) {
   return points;
 }
 
-/// The core calls points of a polytope its vertices.
-ConvexPolytope polytope_of(Expected<ConvexPolytope>&& made) {
+/// The core calls points of a polytope or a mesh its vertices.
+template <class Body>
+Body callers_words(Expected<Body>&& made) {
   if (!made && made.error().where.starts_with("vertices")) {
     refuse({made.error().code, made.error().message, "points" + made.error().where.substr(8)}, "");
   }
   return value_of(std::move(made), "");
 }
+ConvexPolytope polytope_of(Expected<ConvexPolytope>&& made) { return callers_words(std::move(made)); }
+
+/// The loops of a `pdepth_faces`, which stay in the caller's memory.
+struct ReadFaces {
+  std::vector<Vec3> points;
+  std::span<const std::int32_t> offsets, corners;
+
+  ReadFaces(const pdepth_faces* faces, const std::string& argument) {
+    const pdepth_faces& read = read_struct(faces, argument.c_str());
+    require_count(read.num_faces, (argument + ".num_faces").c_str());
+    points = read_points(read.points, read.num_points);
+    offsets = {&given(read.offsets, (argument + ".offsets").c_str()), static_cast<std::size_t>(read.num_faces) + 1};
+    if (offsets.back() < 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
+      refuse(PDEPTH_BAD_FACES, "offsets rise from 0 to the number of corners", argument + ".offsets");
+    }
+    corners = {&given(read.vertices, (argument + ".vertices").c_str()), static_cast<std::size_t>(offsets.back())};
+  }
+};
 
 /// Makes a convex shape at the border.
 template <class Make>
@@ -61,11 +81,42 @@ pdepth_status make_round(pdepth_context* context, pdepth_shape** shape, RoundFac
 }
 
 const Compound::Part& part_of(const pdepth_shape& shape, std::int32_t part, const char* argument) {
-  const std::vector<Compound::Part>& parts = shape.whole.parts();
+  const std::vector<Compound::Part>& parts = shape.drawn("shape").parts();
   if (part < 0 || static_cast<std::size_t>(part) >= parts.size()) {
     refuse(PDEPTH_OUT_OF_RANGE, "the shape has the parts 0 to " + std::to_string(parts.size() - 1), argument);
   }
   return parts[static_cast<std::size_t>(part)];
+}
+
+const MeshSolid& mesh_of(const pdepth_shape& shape) {
+  if (!shape.solid) refuse(PDEPTH_OUT_OF_RANGE, "PDEPTH_PART_MESH is for solids alone", "part");
+  return shape.solid->mesh();
+}
+
+void write_mesh(const MeshSolid& mesh, const pdepth_surface& room) {
+  double* point = room.points;
+  for (std::size_t v = 0; point != nullptr && v < mesh.vertices().size(); ++v, point += 3) {
+    write_vector(mesh.vertices()[v], point);
+  }
+  for (std::size_t t = 0; t < mesh.triangles().size(); ++t) {
+    if (room.offsets != nullptr) room.offsets[t] = static_cast<std::int32_t>(3 * t);
+    if (room.corners != nullptr) std::ranges::copy(mesh.triangles()[t].vertices, room.corners + 3 * t);
+  }
+  if (room.offsets != nullptr) {
+    room.offsets[mesh.triangles().size()] = static_cast<std::int32_t>(3 * mesh.triangles().size());
+  }
+}
+
+/// The points of a face of the caller's mesh, each once, in rising order.
+std::vector<std::int32_t> corners_of_face(const MeshSolid& mesh, std::int32_t face) {
+  std::vector<std::int32_t> corners;
+  for (const MeshSolid::Triangle& triangle : mesh.triangles()) {
+    if (triangle.face == face) corners.insert(corners.end(), triangle.vertices.begin(), triangle.vertices.end());
+  }
+  if (corners.empty()) refuse(PDEPTH_OUT_OF_RANGE, "the mesh has no such face", "feature.first");
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
 }
 
 void require_below(std::int32_t number, int count, const char* argument) {
@@ -140,17 +191,20 @@ pdepth_status pdepth_convex_hull(pdepth_context* context, const double* points, 
 
 pdepth_status pdepth_convex_faces(pdepth_context* context, const pdepth_faces* faces, pdepth_shape** shape) {
   return make_convex(context, shape, [&] {
-    const pdepth_faces& read = read_struct(faces, "faces");
-    require_count(read.num_faces, "faces.num_faces");
-    const std::vector<Vec3> points = read_points(read.points, read.num_points);
-    const auto loops = static_cast<std::size_t>(read.num_faces);
-    const std::span<const std::int32_t> offsets(&given(read.offsets, "faces.offsets"), loops + 1);
-    if (offsets.back() < 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
-      refuse(PDEPTH_BAD_FACES, "offsets rise from 0 to the number of corners", "faces.offsets");
-    }
-    const std::span<const std::int32_t> corners(&given(read.vertices, "faces.vertices"),
-                                                static_cast<std::size_t>(offsets.back()));
-    return polytope_of(ConvexPolytope::from_faces(points, offsets, corners));
+    const ReadFaces read(faces, "faces");
+    return polytope_of(ConvexPolytope::from_faces(read.points, read.offsets, read.corners));
+  });
+}
+
+pdepth_status pdepth_mesh_solid(pdepth_context* context, const pdepth_faces* mesh, int32_t turn_faces,
+                                pdepth_shape** shape) {
+  return at_border(context, [&] {
+    if (!kHasCompounds) refuse(PDEPTH_UNSUPPORTED, "the module for convex bodies makes no solids", "mesh");
+    given(shape, "shape");
+    const ReadFaces read(mesh, "mesh");
+    *shape = new pdepth_shape(callers_words(MeshSolid::from_faces({read.points, read.offsets, read.corners},
+                                                                  {.turn_faces = turn_faces != 0})),
+                              context->source);
   });
 }
 
@@ -178,7 +232,7 @@ pdepth_status pdepth_with_margin(pdepth_context* context, const pdepth_shape* bo
   return at_border(context, [&] {
     const pdepth_shape& from = given(body, "body");
     given(shape, "shape");
-    *shape = new pdepth_shape(value_of(from.whole.with_margin(margin), ""), from.is_convex);
+    *shape = new pdepth_shape(value_of(from.whole("body").with_margin(margin), ""), from.is_convex);
   });
 }
 
@@ -191,8 +245,9 @@ pdepth_status pdepth_compound(pdepth_context* context, const pdepth_part* parts,
     for (std::int64_t i = 0; i < count; ++i) {
       const pdepth_part& part = (&given(parts, "parts"))[i];
       const std::string where = "parts[" + std::to_string(i) + "]";
-      placed.push_back(
-          {given(part.shape, (where + ".shape").c_str()).whole, read_pose(part.pose, (where + ".pose").c_str())});
+      const std::string shape_name = where + ".shape";
+      placed.push_back({given(part.shape, shape_name.c_str()).whole(shape_name.c_str()),
+                        read_pose(part.pose, (where + ".pose").c_str())});
     }
     *shape = new pdepth_shape(value_of(Compound::from_compounds(placed), ""), false);
   });
@@ -203,11 +258,18 @@ pdepth_status pdepth_shape_describe(pdepth_context* context, const pdepth_shape*
   return at_border(context, [&] {
     const pdepth_shape& body = given(shape, "shape");
     pdepth_shape_info& out = answer_struct(info, "info");
-    const ConvexShape& core = part_of(body, part, "part").shape;
     pdepth_shape_info found{};
     found.is_convex = body.is_convex ? 1 : 0;
-    found.parts = static_cast<std::int32_t>(body.whole.parts().size());
     found.dimension = 3;
+    if (part == PDEPTH_PART_MESH) {
+      const MeshSolid& mesh = mesh_of(body);
+      found.vertices = static_cast<std::int32_t>(mesh.vertices().size());
+      found.facets = static_cast<std::int32_t>(mesh.triangles().size());
+      write_answer(found, out);
+      return;
+    }
+    const ConvexShape& core = part_of(body, part, "part").shape;
+    found.parts = static_cast<std::int32_t>(body.drawn("shape").parts().size());
     found.margin = core.margin();
     if (const ConvexPolytope* const polytope = core.polytope()) {
       found.dimension = polytope->affine_dimension();
@@ -222,6 +284,10 @@ pdepth_status pdepth_shape_surface(pdepth_context* context, const pdepth_shape* 
                                    const pdepth_surface* surface) {
   return at_border(context, [&] {
     const pdepth_surface& room = read_struct(surface, "surface");
+    if (part == PDEPTH_PART_MESH) {
+      write_mesh(mesh_of(given(shape, "shape")), room);
+      return;
+    }
     const Compound::Part& asked = part_of(given(shape, "shape"), part, "part");
     const ConvexPolytope* const polytope = asked.shape.polytope();
     if (polytope == nullptr) refuse(PDEPTH_UNSUPPORTED, "a curved core has no facets", "part");
@@ -248,9 +314,15 @@ pdepth_status pdepth_feature_points(pdepth_context* context, const pdepth_shape*
     const std::int32_t room = given(count, "count");
     if (room < 0) refuse(PDEPTH_BAD_VALUE, "must be the room in `points`, 0 or more", "count");
     if (room > 0) given(points, "points");
-    const ConvexShape& core = part_of(given(shape, "shape"), asked.part, "feature.part").shape;
     std::int32_t found = 0;
-    if (asked.kind != PDEPTH_FEATURE_NONE) {
+    if (asked.part == PDEPTH_PART_MESH && asked.kind != PDEPTH_FEATURE_NONE) {
+      if (asked.kind != PDEPTH_FEATURE_FACET) refuse(PDEPTH_OUT_OF_RANGE, "a mesh has facets alone", "feature.kind");
+      for (const std::int32_t vertex : corners_of_face(mesh_of(given(shape, "shape")), asked.first)) {
+        if (found < room) points[found] = vertex;
+        ++found;
+      }
+    } else if (asked.kind != PDEPTH_FEATURE_NONE) {
+      const ConvexShape& core = part_of(given(shape, "shape"), asked.part, "feature.part").shape;
       const ConvexPolytope* const polytope = core.polytope();
       if (polytope == nullptr) refuse(PDEPTH_OUT_OF_RANGE, "a curved core has no features", "feature.kind");
       for_each_vertex(*polytope, asked, [&](std::int32_t vertex) {
