@@ -81,7 +81,7 @@ const rotationOf = ({q, m}) => m ?? matrixOf(q);
 
 const kFields = {box: ['half_extents'], sphere: ['radius'], ellipsoid: ['radii'], capsule: ['radius', 'half_height', 'axis'],
                  cylinder: ['radius', 'half_height', 'axis'], cone: ['radius', 'half_height', 'axis'], convex: ['vertices', 'faces'],
-                 sphere_hull: ['spheres'], halfspaces: ['planes'], compound: ['parts']};
+                 sphere_hull: ['spheres'], halfspaces: ['planes'], compound: ['parts'], mesh: ['path', 'as']};
 
 /** Makes one convex shape of the protocol. */
 function convexShape(json, place) {
@@ -111,14 +111,32 @@ function located(place, step) {
 }
 function checkFields(json, place) {
   if (json === null || typeof json !== 'object') refuse('bad_value', 'must be an object', place);
-  if (json.type === 'mesh' || json.type === 'star') refuse('unsupported', `a ${json.type} is asked by the command; drop its file for the hull`, `${place}.type`);
+  if (json.type === 'star') refuse('unsupported', 'a star is asked by the command', `${place}.type`);
   const fields = Object.hasOwn(kFields, json.type) ? kFields[json.type] : refuse('bad_value', `"${json.type}" is none of ${Object.keys(kFields).join(', ')}`, `${place}.type`);
   allowOnly(json, ['type', 'margin', ...fields], place);
-  for (const key of fields) if (json[key] === undefined && key !== 'faces') refuse('bad_value', 'is missing', `${place}.${key}`);
+  for (const key of fields) if (json[key] === undefined && key !== 'faces' && key !== 'as') refuse('bad_value', 'is missing', `${place}.${key}`);
+}
+/**
+ * Makes the solid of a mesh that was dropped. Its parts are for the pictures, since their corners may be rounded; where there are too many, the
+ * pictures of the overlap and the difference are left out.
+ */
+function meshBody(json, name, place) {
+  const mesh = droppedMeshes.get(json.path) ?? refuse('unreadable_file', `"${json.path}" was not dropped; a page reads no files by itself`, `${place}.path`);
+  if (json.margin || (json.as ?? 'solid') !== 'solid') refuse('unsupported', 'a mesh is a solid without margin here', `${place}.${json.margin ? 'margin' : 'as'}`);
+  const shape = located(json.path, () => new pdepth.Solid(Float64Array.from(mesh.points), mesh.faces));
+  const still = {t: [0, 0, 0], q: [0, 0, 0, 1]}, parts = [];
+  try {
+    const count = shape.describe().parts;
+    for (let i = 0; i < count; ++i) parts.push({shape: new pdepth.Convex(shape.surface(i).points), pose: still});
+  } catch (error) {
+    if (!(error instanceof PdepthError)) throw error;
+  }
+  return {json, name, shape, parts, skin: [welded(surfaceOf(shape, 'mesh'))]};
 }
 /** Makes a body: the whole shape, and its convex parts in the body's frame, all margins of compounds included but the body's own. */
 function makeBody(json, name, place) {
   checkFields(json, place);
+  if (json.type === 'mesh') return meshBody(json, name, place);
   if (json.type !== 'compound') {
     const shape = convexShape(json, place);
     return {json, name, shape, parts: [{shape, pose: {t: [0, 0, 0], q: [0, 0, 0, 1]}}]};
@@ -127,6 +145,7 @@ function makeBody(json, name, place) {
   const parts = json.parts.flatMap((each, i) => {
     const here = `${place}.parts[${i}]`;
     allowOnly(each, ['shape', 'pose'], here);
+    if (each.shape?.type === 'mesh') refuse('unsupported', 'a mesh stands alone here; the command takes it as a part', `${here}.shape`);
     const inside = makeBody(each.shape, '', `${here}.shape`);
     const pose = readPose(each.pose, `${here}.pose`);
     const swept = shape => inside.margin ? shape.withMargin(inside.margin) : shape;

@@ -11,7 +11,7 @@ const read = (folder, name) => readFileSync(join(folder, name), 'utf8');
 const escaped = text => text.replace(/&/g, '&amp;').replace(/</g, '&lt;');
 // A replacement as a function keeps $ as it is.
 const script = text => `<script>\n${text.replace(/<\/script/g, '<\\/script')}</script>\n`;
-const own = ['rotation.js', 'bodies.js', 'files.js', 'drawn.js', 'views.js', 'play.js', 'plane.js', 'polygons.js'].map(name => read(here, name)).join('\n');
+const own = ['rotation.js', 'bodies.js', 'files.js', 'gltf.js', 'drawn.js', 'views.js', 'play.js', 'plane.js', 'polygons.js'].map(name => read(here, name)).join('\n');
 const licence = read(three, 'three.LICENSE');
 writeFileSync(page, read(here, 'index.html')
   .replace('<!-- style -->', () => `<style>\n${read(here, 'play.css')}</style>`)

@@ -27,11 +27,20 @@ function sphereMesh(level) {
 const kFine = sphereMesh(4), kCoarse = sphereMesh(3);
 
 /** Returns facets as points and loops; `exact` is true if they are the body's own. */
-function surfaceOf(shape) {
-  const {points, offsets, corners} = shape.surface();
+function surfaceOf(shape, part = 0) {
+  const {points, offsets, corners} = shape.surface(part);
   const rows = Array.from({length: points.length / 3}, (_, i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]]);
   const loops = Array.from({length: offsets.length - 1}, (_, f) => Array.from(corners.slice(offsets[f], offsets[f + 1])));
   return {points: rows, loops, exact: true};
+}
+/** Makes equal points one, so that edges find both of their facets. */
+function welded({points, loops}) {
+  const first = new Map(), number = points.map((p, i) => {
+    const key = p.join();
+    if (!first.has(key)) first.set(key, i);
+    return first.get(key);
+  });
+  return {points, loops: loops.map(loop => loop.map(v => number[v])), exact: true};
 }
 function leafSurface(shape) {
   const about = shape.describe();
@@ -135,10 +144,10 @@ function overlapOf(a, b) {
 }
 
 /** Returns the distance of the nearest triangle that a ray meets; Infinity for none. */
-function rayMeets(origin, way, {eye, pose}) {
+function rayMeets(origin, way, {skin, pose}) {
   const m = rotationOf(pose), o = turnedBack(m, minus(origin, pose.t)), d = turnedBack(m, way);
   let nearest = Infinity;
-  for (const {points, loops} of eye) {
+  for (const {points, loops} of skin) {
     for (const loop of loops) {
       for (let i = 2; i < loop.length; ++i) {
         const p = points[loop[0]], u = minus(points[loop[i - 1]], p), v = minus(points[loop[i]], p);

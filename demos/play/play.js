@@ -31,7 +31,8 @@ async function attempt(step) {
 
 function setBody(role, body, pose) {
   const old = state[role];
-  const thing = {body, pose, eye: eyeOf(body)};
+  const parts = eyeOf(body);
+  const thing = {body, pose, eye: parts, skin: body.skin ?? parts};  // the skin is what is seen from outside
   state[role] = thing;
   if (old && old.body !== body) freeBody(old.body);
   const select = byId(`shape_${role}`);
@@ -43,7 +44,7 @@ function setBody(role, body, pose) {
   if (renderer) drawBody(role, thing);
 }
 function frameAll() {
-  const reach = ({eye}) => greatestLength(eye.flatMap(each => each.points));
+  const reach = ({skin}) => greatestLength(skin.flatMap(each => each.points));
   unit = Math.max(reach(state.a), reach(state.b));
   const centre = times(0.5, add(state.a.pose.t, state.b.pose.t));
   const radius = Math.max(reach(state.a) + length(minus(state.a.pose.t, centre)), reach(state.b) + length(minus(state.b.pose.t, centre)));
@@ -68,7 +69,7 @@ function timeOfAnswer(question) {
 }
 const fixed = (x, digits = 5) => x === 0 ? '0' : Math.abs(x) >= 1e6 || Math.abs(x) < 1e-4 ? x.toExponential(digits - 2) : x.toFixed(digits);
 const triple = v => v.map(x => fixed(x, 4).replace('-', '\u2212')).join(', ');
-const featureWords = (feature, thing) => feature.kind === 'none' ? 'curved' : thing.body.parts.length > 1 ? `${feature.kind} of part ${feature.part}` : feature.kind;
+const featureWords = (feature, thing) => feature.kind === 'none' ? thing.body.skin ? 'mesh' : 'curved' : feature.part === 'mesh' ? `face ${feature.first} of the mesh` : thing.body.parts.length > 1 ? `${feature.kind} of part ${feature.part}` : feature.kind;
 const kindOf = {overlapping: 'depth', touching: 'depth: the bodies touch', separated: 'distance'};
 
 function showFigures() {
@@ -318,7 +319,7 @@ for (const role of ['a', 'b']) {
 }
 async function takeFile(file, role) {
   if (!file) return;
-  const body = await bodyOfFile(file);
+  const body = await bodyOfFile(file, byId('files_as').value);
   // The file's body stands where the old one stood, with its own size.
   setBody(role, body, state[role].pose);
   frameAll();
@@ -347,6 +348,7 @@ async function copy(text, what) {
 }
 byId('copy_line').addEventListener('click', () => copy(byId('line').value, 'Line'));
 byId('copy_link').addEventListener('click', () => attempt(() => {
+  for (const role of ['a', 'b']) if (state[role].body.skin) refuse('unsupported', 'a link holds no file; copy the line, and give it to the command beside the file', `${role}.path`);
   const link = location.href.replace(/#.*/, '') + '#' + encodeURIComponent(lineOf(state));
   if (link.length > 32000) refuse('limit_exceeded', `the link would have ${link.length} letters; copy the line instead`, 'link');
   history.replaceState(null, '', link);

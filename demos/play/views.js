@@ -100,7 +100,7 @@ function addArrow(group, from, to, colour, unit) {
 const inkColour = () => isDark.matches ? 0xdfe5ec : 0x23272e;
 function drawBody(role, thing) {
   clear(groups[role]);
-  for (const surface of thing.eye) {
+  for (const surface of thing.skin) {
     addSolid(groups[role], surface, () => kColours[role], {opacity: role === 'a' ? 0.6 : 0.68, order: role === 'a' ? 4 : 2});
     if (surface.exact) addLines(groups[role], edgesOf(surface), inkColour(), 0.75, 8);
   }

@@ -157,8 +157,7 @@ TEST_F(CSolids, PartsServeWhereTheMeshCannot) {
 TEST_F(CSolids, FeaturesAreFacesOfTheCallersMesh) {
   const Shape hook = solid(context_, test::mesh_of(kHook));
   const Shape box = make_shape(context_, &pdepth_box, std::array<double, 3>{0.25, 0.25, 0.25}.data());
-  const pdepth_answer answer =
-      depth(hook.get(), box.get(), *Pose::from_matrix(Mat3::Identity(), Vec3(2.5, 0.5, 1.25)));
+  const pdepth_answer answer = depth(hook.get(), box.get(), *Pose::from_matrix(Mat3::Identity(), Vec3(2.5, 0.5, 1.25)));
   EXPECT_EQ(answer.contact, PDEPTH_TOUCHING);
   ASSERT_EQ(answer.feature_a.kind, PDEPTH_FEATURE_FACET);
   EXPECT_EQ(answer.feature_a.part, PDEPTH_PART_MESH);

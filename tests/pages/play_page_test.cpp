@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "pages/browser.hpp"
@@ -59,6 +60,7 @@ class PlayPage : public ::testing::Test {
   static nlohmann::json native(const std::string& shown) {
     std::string line = of("document.getElementById('" + shown + "').value");
     line.replace(line.rfind("pdepth query"), 6, std::string("'") + PDEPTH_PROGRAM + "'");
+    line = "cd '" + folder_.string() + "' && " + line;  // where the dropped files lie
     std::FILE* const pipe = ::popen(line.c_str(), "r");
     std::string answer;
     std::array<char, 4096> bytes{};
@@ -90,6 +92,7 @@ class PlayPage : public ::testing::Test {
        "'; s.dispatchEvent(new Event('change')); })()");
   }
   static void drop(const std::string& name, const std::string& content) {
+    std::ofstream(folder_ / name) << content;
     of("(() => { const data = new DataTransfer(); data.items.add(new File([" + nlohmann::json(content).dump() + "], '" +
        name + "')); dispatchEvent(new DragEvent('drop', {dataTransfer: data, clientX: 5, clientY: 5})); })()");
     of("new Promise(go => setTimeout(go, 200))");
@@ -165,13 +168,14 @@ TEST_F(PlayPage, KeysMoveAndTurn) {
 
 TEST_F(PlayPage, DroppedFilesAndPastedLines) {
   open();
-  drop("wedge.obj", "v 0 0 0\nv 1.25 0 0\nv 0 1.5 0\nv 0 0 1.125\nf 1 3 2\n");
+  drop("wedge.obj", "v 0 0 0\nv 1.25 0 0\nv 0 1.5 0\nv 0 0 1.125\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf -4 -1 -2\n");
   EXPECT_EQ(of("document.getElementById('shape_a').value"), "wedge.obj");
   expect_native("a dropped OBJ");
   drop("cube.ply",
        "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
   expect_native("a dropped PLY");
+  of("document.getElementById('files_as').value = 'hull'");
   drop("corner.stl",
        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.5\nendloop\nendfacet\n"
        "facet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 0\nvertex 0 1 0.5\nendloop\nendfacet\nendsolid\n");
@@ -191,6 +195,116 @@ TEST_F(PlayPage, DroppedFilesAndPastedLines) {
   expect_quiet();
 }
 
+/// A prism of the shape of an L, as OBJ.
+constexpr const char* kCornerObj =
+    "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
+    "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
+
+/// The same prism as glTF: single precision, triangles, a node that moves it by (0.25, 0, 0).
+std::string corner_gltf() {
+  const std::string make =
+      "(() => { const xy = [[0,0],[2,0],[2,1],[1,1],[1,2],[0,2]];"
+      "const points = new Float32Array([0, 1].flatMap(z => xy.flatMap(p => [...p, z])));"
+      "const flat = [[0,1,2],[0,2,3],[0,3,4],[0,4,5]], sides = [0,1,2,3,4,5].flatMap(i => { const j = (i + 1) % 6;"
+      "return [[i, j, j + 6], [i, j + 6, i + 6]]; });"
+      "const order = new Uint16Array([...flat.map(t => [...t].reverse()), ...flat.map(t => t.map(v => v + 6)), "
+      "...sides].flat());"
+      "const bytes = [...new Uint8Array(points.buffer), ...new Uint8Array(order.buffer)];"
+      "return JSON.stringify({asset: {version: '2.0'}, scenes: [{nodes: [0]}], nodes: [{mesh: 0, translation: [0.25, "
+      "0, 0]}],"
+      "meshes: [{primitives: [{attributes: {POSITION: 0}, indices: 1}]}],"
+      "accessors: [{bufferView: 0, componentType: 5126, count: 12, type: 'VEC3'}, {bufferView: 1, componentType: 5123, "
+      "count: order.length, type: 'SCALAR'}],"
+      "bufferViews: [{buffer: 0, byteLength: 144}, {buffer: 0, byteOffset: 144, byteLength: 2 * order.length}],"
+      "buffers: [{byteLength: bytes.length, uri: 'data:application/octet-stream;base64,' + "
+      "btoa(String.fromCharCode(...bytes))}]}); })()";
+  return make;
+}
+
+TEST_F(PlayPage, MeshesAreSolids) {
+  open();
+  choose("b", "Box");
+  drop("corner.obj", kCornerObj);
+  ASSERT_FALSE(is_refused()) << text("refusal");
+  EXPECT_EQ(of("document.getElementById('shape_a').value"), "corner.obj");
+  expect_native("a solid");
+  of("document.getElementById('space').focus()");
+  for (const char* key : {"ArrowRight", "PageDown", "PageDown"}) browser_->press(key);
+  expect_native("a solid that was moved");
+  click("copy_link");
+  settled();
+  EXPECT_NE(text("refusal").find("a link holds no file"), std::string::npos) << text("refusal");
+  const std::string line = of("document.getElementById('line').value");
+  click("reset");
+  settled();
+  paste(line);
+  ASSERT_FALSE(is_refused()) << text("refusal");
+  EXPECT_EQ(of("document.getElementById('line').value"), line) << "the page knows the file that was dropped";
+  const std::string gltf = of(corner_gltf());
+  drop("corner.gltf", gltf);
+  ASSERT_FALSE(is_refused()) << text("refusal");
+  expect_native("a dropped glTF");
+  const std::string depth = of("document.getElementById('depth').dataset.value");
+  // The same file as GLB.
+  of("(() => { const json = " + nlohmann::json(gltf).dump() +
+     ", pad = json + ' '.repeat(-json.length & 3), head = new Uint32Array([0x46546c67, 2, 20 + pad.length, pad.length, "
+     "0x4e4f534a]), data = new DataTransfer(); data.items.add(new File([head, pad], 'corner.glb'));"
+     "dispatchEvent(new DragEvent('drop', {dataTransfer: data, clientX: 5, clientY: 5})); })()");
+  of("new Promise(go => setTimeout(go, 200))");
+  settled();
+  ASSERT_FALSE(is_refused()) << text("refusal");
+  EXPECT_EQ(of("document.getElementById('shape_a').value"), "corner.glb");
+  EXPECT_EQ(of("document.getElementById('depth').dataset.value"), depth);
+  of("document.getElementById('files_as').value = 'hull'");
+  drop("corner.obj", kCornerObj);
+  EXPECT_NE(of("document.getElementById('line').value").get<std::string>().find("\"convex\""), std::string::npos);
+  expect_native("the hull of the mesh");
+  expect_quiet();
+}
+
+TEST_F(PlayPage, WrongMeshesAreNamedAndThePageLivesOn) {
+  open();
+  const std::string before = of("document.getElementById('line').value");
+  const auto refused = [](const std::string& name, const std::string& content, const std::string& words) {
+    drop(name, content);
+    EXPECT_TRUE(is_refused()) << words;
+    EXPECT_NE(text("refusal").find(words), std::string::npos) << text("refusal");
+  };
+  const std::string corner = kCornerObj;
+  refused("open.obj", corner.substr(0, corner.find("f 6 5")) + "f 7 8 9 10 11 12\n", "open_edge");
+  refused("open.obj", corner.substr(0, corner.find("f 6 5")) + "f 7 8 9\n", "Choose \"convex hulls\"");
+  refused("wrong.obj", corner + "f 1 2 99\n", "bad_faces");
+  refused("word.obj", corner + "f a b c\n", "word.obj, line 21");
+  refused("zero.obj", corner + "f 0 1 2\n", "\"0\" is no vertex");
+  refused("cut.gltf", R"({"asset":)", "bad_file");
+  refused("old.gltf", R"({"asset":{"version":"1.0"}})", "only glTF 2 is read");
+  refused("empty.gltf", R"({"asset":{"version":"2.0"}})", "too_few_points");
+  refused(
+      "outside.gltf",
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0}],)"
+      R"("buffers":[{"uri":"corner.bin"}]})",
+      "is a file of its own");
+  refused(
+      "short.gltf",
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0}],)"
+      R"("buffers":[{"uri":"data:;base64,AAAA"}]})",
+      "reaches beyond its buffer (short.gltf, accessors[0])");
+  refused("cut.glb", std::string("glTF"), "ends in the header");
+  // A file that is too large is not read at all.
+  of("(() => { const file = new File(['v'], 'huge.obj'), data = {files: [file]};"
+     "Object.defineProperty(file, 'size', {value: 3e9});"
+     "const event = new Event('drop'); Object.assign(event, {dataTransfer: data, clientX: 5}); dispatchEvent(event); "
+     "})()");
+  of("new Promise(go => setTimeout(go, 200))");
+  EXPECT_NE(text("refusal").find("has 3000 MB"), std::string::npos) << text("refusal");
+  settled();
+  EXPECT_EQ(of("document.getElementById('line').value"), before);
+  expect_native("after all that");
+  expect_quiet();
+}
+
 TEST_F(PlayPage, WrongInputIsNamedAndThePageLivesOn) {
   open();
   const std::string before = of("document.getElementById('line').value");
@@ -203,7 +317,7 @@ TEST_F(PlayPage, WrongInputIsNamedAndThePageLivesOn) {
   paste(R"({"query":"depth","a":{"type":"box","half_extents":[1,-1,1]},"b":{"type":"sphere","radius":1}})");
   refused("(a.half_extents[1])");
   paste(R"({"query":"depth","a":{"type":"mesh","path":"x.obj"},"b":{"type":"sphere","radius":1}})");
-  refused("(a.type)");
+  refused("\"x.obj\" was not dropped");
   paste(
       R"({"query":"depth","a":{"type":"sphere","radius":1},"b":{"type":"sphere","radius":1},"pose_b":{"translation":[1,null,0]}})");
   refused("(pose_b.translation)");
@@ -212,7 +326,7 @@ TEST_F(PlayPage, WrongInputIsNamedAndThePageLivesOn) {
   drop("empty.obj", "# nothing\n");
   refused("too_few_points");
   drop("x.doc", "nothing");
-  refused("none of obj, stl, ply");
+  refused("none of obj, stl, ply, gltf, glb");
   drop("cut.ply",
        "ply\nformat binary_little_endian 1.0\nelement vertex 800\nproperty float x\nproperty float y\nproperty float "
        "z\nend_header\n0");
