@@ -17,14 +17,15 @@ class BulletsStandIn {
   BulletsStandIn(const BulletsStandIn&) = delete;
   BulletsStandIn& operator=(const BulletsStandIn&) = delete;
 
+  /// @param table  of the dispatcher's own configuration, from which the algorithm comes
   void process(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo& info,
-               btManifoldResult* result) {
+               btManifoldResult* result, ContactTable table = ContactTable::contacts) {
     if (algorithm_ == nullptr) {
       // Bullet's constructor leaves the manifold unset, and its compound algorithm hands the manifold on to its
       // children's pairs.
       btCollisionAlgorithmConstructionInfo own(&dispatcher_, 0);
       own.m_manifold = nullptr;
-      algorithm_ = world_.bullets_algorithm(own, a, b);
+      algorithm_ = world_.bullets_algorithm(own, a, b, table);
     }
     algorithm_->processCollision(a, b, info, result);
   }

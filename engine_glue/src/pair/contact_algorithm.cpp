@@ -14,10 +14,11 @@
 #include "pair/friction_anchor.hpp"
 #include "pair/manifold_points.hpp"
 #include "pair/passing_bodies.hpp"
+#include "pair/points_of_pieces.hpp"
 #include "pair/solver_core.hpp"
 #include "pair/step_reach.hpp"
 #include "pd/bullet/scalar.hpp"
-#include "pieces/asked_pieces.hpp"
+#include "pieces/piece_wrapper.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/moving_body.hpp"
 #include "shapes/prefetch.hpp"
@@ -59,18 +60,6 @@ btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentMan
   const btScalar asked = result.m_closestPointDistanceThreshold;
   const bool spheres = a.getShapeType() == SPHERE_SHAPE_PROXYTYPE && b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
   return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
-}
-
-/// The closest point alone, of bodies that are farther apart than contacts reach. Bullet's queries get one point for
-/// each pair of a compound's children, too.
-ContactManifold closest_point_of(const PenetrationDepth& depth) {
-  ContactManifold closest;
-  closest.normal = depth.normal;
-  closest.points[0].position_a = depth.witness_a;
-  closest.points[0].position_b = depth.witness_b;
-  closest.points[0].depth = -depth.signed_distance();
-  closest.count = 1;
-  return closest;
 }
 
 /// What the query reads of a pair's memory: first of all, before bounding boxes are compared.
@@ -146,8 +135,6 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                              .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
                              .boxes_asked = boxes};
     ContactManifold points;
-    // A query may ask for distances of metres. Contacts, and the neighbours that may cover them, lie within the
-    // breaking threshold.
     const auto asked_reach = static_cast<double>(threshold);
     const double contact_reach =
         of_union ? std::min(asked_reach, static_cast<double>(manifold.getContactBreakingThreshold())) : asked_reach;
@@ -157,20 +144,15 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       return;
     }
     if (outcome == SolverCore::Outcome::answered) {
-      const double distance = answer->depth.signed_distance();
-      if (of_union && distance > contact_reach) {
-        if (distance <= asked_reach) points = closest_point_of(answer->depth);
-      } else if (of_union) {
+      if (of_union) {
         buffers->near.begin_pair(stamp);
-        AskedPieces pieces(*a, *b,
-                           {.threshold = contact_reach,
-                            .seconds = static_cast<double>(info.m_timeStep),
-                            .shapes = {core.cache, stamp},
-                            .near = buffers->near,
-                            .cover = buffers->cover,
-                            .manifold = buffers->manifold});
-        count_covered(keep_uncovered(pieces.as(answer->a, answer->b), answer->depth, AnswerPoints::made, points),
-                      *buffers);
+        keep_points_of_pieces({.a = *a,
+                               .b = *b,
+                               .contact_reach = contact_reach,
+                               .asked_reach = asked_reach,
+                               .seconds = static_cast<double>(info.m_timeStep),
+                               .shapes = {core.cache, stamp}},
+                              *answer, *buffers, points);
       }
       fresh = fresh_points(points);
     }

@@ -23,20 +23,6 @@ namespace pd::detail {
 
 namespace {
 
-/// Two children in place of their bodies in the result.
-class ChildrenInResult {
- public:
-  ChildrenInResult(btManifoldResult& result, const btCollisionObjectWrapper& a, const Child& child_a,
-                   const btCollisionObjectWrapper& b, const Child& child_b)
-      : a_(result, a, child_a), b_(result, b, child_b) {}
-  [[nodiscard]] const btCollisionObjectWrapper& a() const { return a_.wrapper(); }
-  [[nodiscard]] const btCollisionObjectWrapper& b() const { return b_.wrapper(); }
-
- private:
-  ChildInResult a_;
-  ChildInResult b_;
-};
-
 /// What was over the budget is asked again after 1, 3, 7, ... steps, 31 at the most: it costs the budget each time.
 constexpr int kMostRefusals = 5;
 

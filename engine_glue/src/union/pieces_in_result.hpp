@@ -74,6 +74,20 @@ class ChildInResult {
   PieceInResult placed_;
 };
 
+/// Two children in place of their bodies in the result.
+class ChildrenInResult {
+ public:
+  ChildrenInResult(btManifoldResult& result, const btCollisionObjectWrapper& a, const Child& child_a,
+                   const btCollisionObjectWrapper& b, const Child& child_b)
+      : a_(result, a, child_a), b_(result, b, child_b) {}
+  [[nodiscard]] const btCollisionObjectWrapper& a() const { return a_.wrapper(); }
+  [[nodiscard]] const btCollisionObjectWrapper& b() const { return b_.wrapper(); }
+
+ private:
+  ChildInResult a_;
+  ChildInResult b_;
+};
+
 /// A triangle of a mesh.
 class TriangleInResult {
  public:

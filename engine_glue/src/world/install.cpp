@@ -77,6 +77,8 @@ void take_tables(btCollisionDispatcher& dispatcher, detail::Installation& instal
   for_each_compound_pair([&](int i, int j) {
     dispatcher.registerCollisionCreateFunc(
         i, j, whole ? installation.compound() : configuration->getCollisionAlgorithmCreateFunc(i, j));
+    dispatcher.registerClosestPointsCreateFunc(
+        i, j, whole ? installation.compound_query() : configuration->getClosestPointsAlgorithmCreateFunc(i, j));
   });
 }
 
@@ -135,7 +137,10 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
     dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
   };
   for_each_ground_pair([&](int i, int j, bool) { give_back(i, j); });
-  for_each_compound_pair(give_back);
+  for_each_compound_pair([&](int i, int j) {
+    give_back(i, j);
+    dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
+  });
   renew_pairs(world);
   return true;
 }

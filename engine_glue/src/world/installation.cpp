@@ -27,6 +27,7 @@ Installation::Installation(SolverCore& core, InstalledIn in)
       mesh_(*this, {mesh_contacts, false}),
       swapped_mesh_(*this, {mesh_contacts, true}),
       compound_(*this, {compound_contacts, false}),
+      compound_query_(*this, {}),
       compound_on_plane_(*this, {plane_contacts, false}),
       swapped_compound_on_plane_(*this, {plane_contacts, true}),
       plane_(*this, {false}),

@@ -9,6 +9,7 @@
 #include "pair/contact_algorithm.hpp"
 #include "pair/plane_algorithm.hpp"
 #include "pair/solver_in_world.hpp"
+#include "union/compound_query.hpp"
 #include "union/union_algorithm.hpp"
 
 namespace pd::detail {
@@ -28,6 +29,8 @@ class Installation final : public SolverInWorld {
   [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
   /// For the table of contacts: pairs with a compound, of compounds and convex bodies.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }
+  /// For the table of closest points: the same pairs.
+  [[nodiscard]] btCollisionAlgorithmCreateFunc* compound_query() { return &compound_query_; }
   /// For the table of contacts: convex against plane, or (`swapped`) plane against convex.
   [[nodiscard]] btCollisionAlgorithmCreateFunc* plane(bool swapped) { return swapped ? &swapped_plane_ : &plane_; }
   /// For the table of contacts: compound against plane, or (`swapped`) plane against compound.
@@ -71,6 +74,7 @@ class Installation final : public SolverInWorld {
   CreateFuncOf<UnionAlgorithm> mesh_;
   CreateFuncOf<UnionAlgorithm> swapped_mesh_;
   CreateFuncOf<UnionAlgorithm> compound_;
+  CreateFuncOf<CompoundQuery> compound_query_;
   CreateFuncOf<UnionAlgorithm> compound_on_plane_;
   CreateFuncOf<UnionAlgorithm> swapped_compound_on_plane_;
   CreateFuncOf<PlaneAlgorithm> plane_;
