@@ -26,7 +26,7 @@ std::vector<AccuracyEngine> find_engines(const std::vector<std::string>& program
   std::vector<AccuracyEngine> engines;
   for (const std::string& program : programs.empty() ? installed_recorders() : programs) {
     const std::vector<std::string> names = engines_of(program);
-    if (names.empty()) complaints.push_back(program + " names no engines (--list)");
+    if (names.empty()) complaints.push_back(program + ": no recorder: `" + program + " --list` names no engine");
     for (const std::string& name : names) {
       const bool wanted = only.empty() || std::find(only.begin(), only.end(), name) != only.end();
       const bool known =

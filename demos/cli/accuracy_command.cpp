@@ -21,6 +21,7 @@
 #include "scenes/shape_families.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"
+#include "usage.hpp"
 
 namespace pd::cli {
 
@@ -149,16 +150,16 @@ void add_accuracy_command(CLI::App& app, Action& action) {
   command->add_option("--engines", arguments->engines, "Only these")->delimiter(',');
   command->add_option("--families", arguments->only_families, "Only these")
       ->delimiter(',')
-      ->check(CLI::IsMember(all_families()));
+      ->check(one_of(all_families()));
   command->add_option("--pairs", settings.pairs, "Pairs of a family at each of its four depths")
-      ->check(CLI::Range(1, 100'000))
+      ->check(number_between(1, 100'000))
       ->capture_default_str();
   command->add_option("--vertices", settings.vertices, "Vertices of a body, where its family leaves the choice")
-      ->check(CLI::Range(4, 100'000))
+      ->check(number_between(4, 100'000))
       ->capture_default_str();
-  command->add_option("--seed", settings.seed)->capture_default_str();
+  command->add_option("--seed", settings.seed, "Seed of the generated pairs")->capture_default_str();
   command->add_option("--tolerance", settings.tolerance, "Of missed and phantom, relative to a pair's size")
-      ->check(CLI::Range(1e-15, 1.0))
+      ->check(number_between(1e-15, 1.0))
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "Write engine by family to this file");
   command->add_option("--cases", arguments->cases, "The pairs of convex bodies of this contact record")

@@ -18,6 +18,7 @@
 #include "progress.hpp"
 #include "report/page.hpp"
 #include "support/complain.hpp"
+#include "usage.hpp"
 
 namespace pd::cli {
 
@@ -157,7 +158,7 @@ void add_audit_command(CLI::App& app, Action& action) {
   command
       ->add_option("--tolerance", arguments->tolerance,
                    "Relative to a pair's size; 1e-6 for float32 records and 1e-12 for float64 ones unless given")
-      ->check(CLI::Range(1e-15, 1.0));
+      ->check(number_between(1e-15, 1.0));
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   command->add_option("--csv", arguments->csv, "Write a row for each contact to this file");
   command->add_option("--junit", arguments->junit, "Write the conditions as tests to this file");
@@ -165,7 +166,7 @@ void add_audit_command(CLI::App& app, Action& action) {
   command->add_flag("--force", arguments->force, "Replace a report.html that pdepth did not write");
   command->add_option("--fail-on", arguments->fail_on, "What is allowed, e.g. missed=0,phantom=0,depth_error=1e-4");
   command->add_option("--worst", settings.worst_kept, "Contacts to show, the worst first")
-      ->check(CLI::Range(0, 10'000))
+      ->check(number_between(0, 10'000))
       ->capture_default_str();
   add_threads_option(*command, settings.threads, "judge");
   add_limit_options(*command, settings.limits);

@@ -6,11 +6,14 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "mesh/mesh_file.hpp"
 #include "options.hpp"
 #include "protocol/solid_reader.hpp"
 #include "support/refusal.hpp"
@@ -26,6 +29,7 @@ constexpr const char* kStandardInput = "standard input";
 struct Primitive {
   std::string_view name;
   std::string_view sizes;  ///< as help names them
+  std::string_view meaning;
   std::size_t count;
   Expected<ConvexShape> (*make)(const std::vector<double>& sizes);
 };
@@ -36,18 +40,21 @@ Expected<ConvexShape> make_box(const std::vector<double>& n) {
   return ConvexShape(*std::move(box));
 }
 
+constexpr std::string_view kRadiusAndHeight = "radius and half the height, along z";
+
 constexpr std::array kPrimitives{
-    Primitive{"box", "X,Y,Z", 3, make_box},
-    Primitive{"sphere", "R", 1, [](const std::vector<double>& n) { return ConvexShape::sphere(n[0]); }},
-    Primitive{"ellipsoid", "X,Y,Z", 3,
+    Primitive{"box", "X,Y,Z", "half extents", 3, make_box},
+    Primitive{"sphere", "R", "the radius", 1, [](const std::vector<double>& n) { return ConvexShape::sphere(n[0]); }},
+    Primitive{"ellipsoid", "X,Y,Z", "radii", 3,
               [](const std::vector<double>& n) {
                 return ConvexShape::ellipsoid({n[0], n[1], n[2]});
               }},
-    Primitive{"capsule", "R,H", 2,
+    Primitive{"capsule", "R,H", kRadiusAndHeight, 2,
               [](const std::vector<double>& n) { return ConvexShape::capsule(n[0], n[1], kAlongZ); }},
-    Primitive{"cylinder", "R,H", 2,
+    Primitive{"cylinder", "R,H", kRadiusAndHeight, 2,
               [](const std::vector<double>& n) { return ConvexShape::cylinder(n[0], n[1], kAlongZ); }},
-    Primitive{"cone", "R,H", 2, [](const std::vector<double>& n) { return ConvexShape::cone(n[0], n[1], kAlongZ); }},
+    Primitive{"cone", "R,H", kRadiusAndHeight, 2,
+              [](const std::vector<double>& n) { return ConvexShape::cone(n[0], n[1], kAlongZ); }},
 };
 
 const Primitive* find_primitive(std::string_view word) {
@@ -62,12 +69,16 @@ query::NamedShape shape_of(const Primitive& primitive, const std::string& word) 
   const std::vector<double> sizes = parse_numbers(word.substr(primitive.name.size() + 1), word);
   if (sizes.size() != primitive.count) {
     query::refuse("bad_value",
-                  fmt::format("{}: {} expected, {}:{}", word, primitive.count == 1 ? "a number is" : "numbers are",
-                              primitive.name, primitive.sizes),
+                  fmt::format("{}: expected is {}:{}, {}", word, primitive.name, primitive.sizes, primitive.meaning),
                   "");
   }
   Expected<ConvexShape> shape = primitive.make(sizes);
-  if (!shape) query::refuse(to_string(shape.error().code), word + ": " + shape.error().message, "");
+  if (!shape) {
+    query::refuse(to_string(shape.error().code),
+                  fmt::format("{}: {} ({}:{} is {})", word, shape.error().message, primitive.name, primitive.sizes,
+                              primitive.meaning),
+                  "");
+  }
   return {*std::move(shape), {}};
 }
 
@@ -90,9 +101,24 @@ const std::string& standard_input() {
   return bytes;
 }
 
+/// A word that names no file, but may have been meant as a primitive: "Box:1,1,1", "cube:1", "sphere".
+void refuse_unknown_primitive(const std::string& word) {
+  std::error_code missing;
+  if (query::is_mesh_name(word) || std::filesystem::exists(word, missing)) return;
+  std::string forms;
+  for (const Primitive& primitive : kPrimitives) {
+    forms += fmt::format("{}{}:{}", forms.empty() ? "" : ", ", primitive.name, primitive.sizes);
+  }
+  query::refuse("unreadable_file", word + ": neither a file nor a primitive; the primitives are " + forms, "");
+}
+
 /// Reads the mesh that an argument names. A refusal begins with the file's name, or says that it was standard input.
 query::MeshPoints read_points_of(const std::string& word) {
-  if (word != "-") return query::read_mesh_points(word, kLimits.max_vertices, query::kMaxMeshBytes);
+  if (word != "-") {
+    refuse_unknown_primitive(word);
+    refuse_folder(word);
+    return query::read_mesh_points(word, kLimits.max_vertices, query::kMaxMeshBytes);
+  }
   try {
     return query::read_mesh_bytes(standard_input(), kLimits.max_vertices);
   } catch (const query::Refusal& refusal) {

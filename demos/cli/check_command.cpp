@@ -69,6 +69,7 @@ struct CheckedMesh {
 };
 
 CheckedMesh read_checked(const std::string& file) {
+  refuse_folder(file);
   query::MeshPoints mesh = query::read_mesh_points(file, kMostChecked, query::kMaxMeshBytes);
   const auto refuse = [&](const Error& error) {
     query::refuse(to_string(error.code), file + ": " + error.message, error.where);

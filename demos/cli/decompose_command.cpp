@@ -104,6 +104,7 @@ int run_decompose(const DecomposeArguments& arguments) {
   if (arguments.max_parts < 1) query::refuse("bad_value", "--max-parts: must be 1 or more", "");
   if (arguments.max_steps < 1) query::refuse("bad_value", "--max-steps: must be 1 or more", "");
   Progress progress("reading " + arguments.input);
+  refuse_folder(arguments.input);
   query::MeshPoints mesh = query::read_mesh_points(arguments.input, kMostMeshPoints, query::kMaxMeshBytes);
   const query::SolidWish wish{.always = true,
                               .turn_faces = arguments.turn_faces,

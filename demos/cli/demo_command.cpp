@@ -16,6 +16,7 @@
 #ifdef PDEPTH_WITH_DEMOS
 #include "report/page.hpp"
 #include "support/demo_registry.hpp"
+#include "usage.hpp"
 #endif
 
 namespace pd::cli {
@@ -153,14 +154,14 @@ Examples:
   command->add_option("FILES", options.inputs, "Meshes, for the demos that take some");
   command->add_option("--scene", options.scene, "One scene of stacking or rollback; `list` names them");
   command->add_option("--steps", options.steps, "Steps of the simulation; 0 = the demo's own choice")
-      ->check(CLI::Range(0, 1'000'000))
+      ->check(number_between(0, 1'000'000))
       ->capture_default_str();
   command->add_option("--size", arguments->size, "Size of a frame, WIDTHxHEIGHT [1280x720]");
   command->add_option("--out", arguments->out, "Folder for the files [pdepth_out/NAME]");
   command->add_option("--report", arguments->report,
                       "Make a page: DIR/report.html, with the demo's files in DIR/NAME beside it");
   command->add_option("--solver", options.solver, "The solver shown first")
-      ->check(CLI::IsMember({"exact", "approx", "bullet-epa", "bullet-minkowski"}));
+      ->check(one_of({"exact", "approx", "bullet-epa", "bullet-minkowski"}));
   command->add_option("--seed", options.seed, "Seed of what is random")->capture_default_str();
   command->add_option("--trace", options.trace, "A search that `pdepth depth --trace` wrote, drawn (difference)");
   command->add_flag("--video", options.video, "Also write an H.264 film (needs ffmpeg)");

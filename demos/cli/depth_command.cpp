@@ -21,6 +21,7 @@
 #include "support/complain.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
+#include "usage.hpp"
 #endif
 
 namespace pd::cli {
@@ -68,9 +69,19 @@ Pose parse_pose(const std::string& text, const std::string& option) {
       for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = n[static_cast<std::size_t>(3 + i)];
       return Pose::from_matrix(rotation, {n[0], n[1], n[2]});
     }
-    query::refuse("bad_value", option + ": a pose is 3, 7 or 12 numbers, not " + std::to_string(n.size()), "");
+    query::refuse(
+        "bad_value",
+        option +
+            ": a pose is x,y,z with no rotation, a quaternion or a matrix: 3, 7 or 12 numbers between commas, not " +
+            std::to_string(n.size()),
+        "");
   }();
-  if (!pose) query::refuse(to_string(pose.error().code), option + ": " + pose.error().message, "");
+  if (!pose) {
+    query::refuse(to_string(pose.error().code),
+                  fmt::format("{}: {}{}", option, pose.error().message,
+                              n.size() == 7 ? "; seven numbers are x,y,z and a unit quaternion w,x,y,z" : ""),
+                  "");
+  }
   return *pose;
 }
 
@@ -400,14 +411,14 @@ void add_depth_command(CLI::App& app, Action& action) {
   command->add_option("--margin", arguments->margins, "Radius of a ball that sweeps both bodies, or two for A,B")
       ->delimiter(',')
       ->expected(1, 2)
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_of_zero_or_more());
   CLI::Option* const direction =
       command->add_option("--direction", arguments->direction, "How far A must move along X,Y,Z [the best direction]");
-  command->add_option("--method", arguments->method, "Engine")
-      ->check(CLI::IsMember(method_words()))
+  command->add_option("--method", arguments->method, "How the search is made; the exact methods give one answer")
+      ->check(one_of(method_words()))
       ->capture_default_str();
   command->add_option("--delta", arguments->delta, "grid: relative error; shallow: balance of rays and facets")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(number_between(1e-6, 1.0))
       ->capture_default_str();
   command->add_option("--picture", arguments->picture, "Draw the pair and its Minkowski difference as a PNG")
       ->check(refuse_other_pictures, "FILE.png");

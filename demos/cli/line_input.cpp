@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "support/complain.hpp"
+#include "usage.hpp"
 
 namespace pd::cli {
 
@@ -21,16 +22,16 @@ void add_limit_options(CLI::App& command, query::Limits& limits) {
   command.add_flag_callback(
       "--no-files", [&limits] { limits.files = false; }, "Refuse shapes that name a file");
   command.add_option("--max-line", limits.max_line, "Longest line in bytes")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above_zero())
       ->capture_default_str();
   command.add_option("--max-vertices", limits.max_vertices, "Most vertices of one shape")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{50'000'000}))
+      ->check(number_between(std::int64_t{1}, std::int64_t{50'000'000}))
       ->capture_default_str();
 }
 
 void add_threads_option(CLI::App& command, int& threads, const std::string& purpose) {
   command.add_option("--threads", threads, "Threads that " + purpose + "; 0 = one for each processor")
-      ->check(CLI::Range(0, 256))
+      ->check(number_between(0, 256))
       ->capture_default_str();
 }
 

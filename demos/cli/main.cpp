@@ -23,6 +23,7 @@
 #include "report/page_files.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -56,28 +57,12 @@ std::string licenses() {
       pd::report::kThreeLicense);
 }
 
-/// The subcommand that was meant, within two letters; empty where none is near.
-std::string nearest_subcommand(const CLI::App& app, const std::string& word) {
-  std::string nearest;
-  std::size_t least = 3;
+std::vector<std::string> subcommands(const CLI::App& app) {
+  std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    const std::string& name = command->get_name();
-    std::vector<std::size_t> row(name.size() + 1);
-    for (std::size_t k = 0; k <= name.size(); ++k) row[k] = k;
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      std::size_t corner = row[0]++;
-      for (std::size_t k = 1; k <= name.size(); ++k) {
-        const std::size_t changed = corner + (word[i] != name[k - 1]);
-        corner = row[k];
-        row[k] = std::min({changed, row[k] + 1, row[k - 1] + 1});
-      }
-    }
-    if (row.back() < least) {
-      least = row.back();
-      nearest = name;
-    }
+    names.push_back(command->get_name());
   }
-  return nearest;
+  return names;
 }
 
 /// `help --man FOLDER` or `help --completion bash`.
@@ -132,7 +117,7 @@ int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& ac
   }
   if (asks_for_manual(words)) return write_manual(app, words);
   const std::string& first = words.front();
-  const std::string meant = nearest_subcommand(app, first);
+  const std::string meant = pd::cli::nearest_word(subcommands(app), first);
   if (!first.starts_with('-') && meant != first) {
     pd::complain("there is no subcommand \"{}\"; {}", first,
                  meant.empty() ? "`pdepth --help` lists them" : "did you mean \"" + meant + "\"?");
@@ -142,11 +127,14 @@ int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& ac
     std::reverse(words.begin(), words.end());  // as the parser wants them
     app.parse(words);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
+      pd::cli::complain_of_usage(app, error);
+      return pd::cli::kBadUsage;
+    }
     std::ostringstream out, err;
-    const int code = app.exit(error, out, err);
+    (void)app.exit(error, out, err);
     fmt::print("{}", out.str());
-    fmt::print(stderr, "{}", pd::printable(err.str(), "\n"));
-    return code == 0 ? pd::cli::kDone : pd::cli::kBadUsage;
+    return pd::cli::kDone;
   }
   try {
     return action();

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "line_input.hpp"
 #include "support/complain.hpp"
 
 namespace pd::cli {
@@ -147,10 +149,7 @@ int run_minimise(const MinimiseArguments& arguments) {
   std::ifstream file;
   if (arguments.input != "-") {
     file.open(arguments.input);
-    if (!file) {
-      complain("{}: cannot be read", arguments.input);
-      return kBadUsage;
-    }
+    if (!file) return cannot_read(arguments.input, errno);
   }
   std::istream& input = arguments.input == "-" ? std::cin : file;
   while (text.find_first_not_of(" \t\r") == std::string::npos && std::getline(input, text)) {

@@ -48,6 +48,13 @@ std::string refuse_other_meshes(const std::string& file) {
   return extension.empty() || extension == ".obj" ? "" : file + ": meshes are written as OBJ: name it *.obj";
 }
 
+void refuse_folder(const std::string& word) {
+  std::error_code missing;  // a missing file is refused by its reader
+  if (std::filesystem::is_directory(word, missing)) {
+    query::refuse("unreadable_file", word + ": a folder; a file is expected", "");
+  }
+}
+
 void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option) {
   for (const std::string& input : inputs) {
     std::error_code missing;  // equal to nothing

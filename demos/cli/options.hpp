@@ -22,6 +22,9 @@ int refuse_picture(const std::string& file);
 /// A check for options: hulls and parts are written as OBJ, whatever the file is called.
 [[nodiscard]] std::string refuse_other_meshes(const std::string& file);
 
+/// A Refusal where a mesh's file is expected and the word names a folder.
+void refuse_folder(const std::string& word);
+
 /// Refuses to write over what is read: a Refusal where an output is one of the inputs, by whatever name. `option` is
 /// named in it. An empty name is no file.
 void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option);

@@ -19,6 +19,7 @@
 #include "support/complain.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/polygon_picture.hpp"
+#include "usage.hpp"
 #endif
 
 namespace pd::cli {
@@ -294,17 +295,17 @@ void add_polygon_command(CLI::App& app, Action& action) {
   command
       ->add_flag(fmt::format("--complete{{{}}}", kByDirection), arguments->complete,
                  "Get away for good, not only clear of P: --complete=straight or --complete=escape")
-      ->check(CLI::IsMember({kStraight, kEscape, kByDirection}).description(""));
+      ->check(one_of({kStraight, kEscape, kByDirection}).description(""));
   command->add_option("--place-q", arguments->place, "Displacement X,Y of Q before it is looked at [0,0]");
   command
       ->add_option("--flatness", arguments->flatness, "Greatest distance of a curve from its chords [1e-4 of the size]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_zero());
   command->add_option("--picture", arguments->picture, "Draw P, Q and all forbidden placements as a PNG")
       ->check(refuse_other_pictures, "FILE.png");
   command->add_option("--margin", arguments->margins, "Radius of a disc that sweeps both polygons, or two for P,Q")
       ->delimiter(',')
       ->expected(1, 2)
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_of_zero_or_more());
   command->add_flag("--seats", arguments->seats, "List the displacements at which Q fits exactly: points and slots");
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers polygon_depth");
   command->callback([arguments, &action] { action = [arguments] { return run_polygon(*arguments); }; });

@@ -18,6 +18,7 @@
 #include "protocol/schema.hpp"
 #include "protocol/stream/query_stream.hpp"
 #include "support/complain.hpp"
+#include "usage.hpp"
 
 namespace pd::cli {
 
@@ -107,15 +108,15 @@ void add_query_command(CLI::App& app, Action& action) {
       ->add_option("--max-time", settings.budget.milliseconds,
                    "Milliseconds for a line; then, of a depth, a coarse run's certified bracket, else limit_exceeded "
                    "(0: no bound)")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{86'400'000}))
+      ->check(number_between(std::int64_t{0}, std::int64_t{86'400'000}))
       ->capture_default_str();
   command->add_option("--max-memory", settings.budget.megabytes, "Megabytes for a line (0: no bound)")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 30))
+      ->check(number_between(std::int64_t{0}, std::int64_t{1} << 30))
       ->capture_default_str();
   command->add_option("--record", settings.record.path, "Append the lines that were asked to this file");
   command->add_option("--record-above", settings.record.above_milliseconds, "Record only lines that took longer, in ms")
       ->needs("--record")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_of_zero_or_more());
   command
       ->add_flag("--record-unreached", settings.record.unreached,
                  "Record only lines whose bracket was not reached, or that hit a limit")

@@ -22,6 +22,7 @@
 #include "support/refusal.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/simplify_picture.hpp"
+#include "usage.hpp"
 #endif
 
 namespace pd::cli {
@@ -94,6 +95,7 @@ int run_simplify(const SimplifyArguments& arguments) {
   refuse_to_overwrite({arguments.input}, arguments.output, "--output");
   refuse_to_overwrite({arguments.input, arguments.output}, arguments.picture, "--picture");
   Progress progress("reading " + arguments.input);
+  refuse_folder(arguments.input);
   const query::MeshPoints scan = query::read_mesh_points(arguments.input, kMostPoints, query::kMaxMeshBytes);
   progress.begin(fmt::format("looking for a hull of {} points", scan.points.size()));
   const query::Stopwatch watch;
@@ -146,7 +148,7 @@ void add_simplify_command(CLI::App& app, Action& action) {
   command->add_option("--epsilon", arguments->epsilon, "Error, relative to the scan's extent, in [1e-6, 1)")
       ->capture_default_str();
   command->add_option("--side", arguments->side, "Encloses the scan, or is enclosed by it")
-      ->check(CLI::IsMember({"outer", "inner"}))
+      ->check(one_of({"outer", "inner"}))
       ->capture_default_str();
   command->add_option("--picture", arguments->picture, "Draw scan and hull side by side as a PNG")
       ->check(refuse_other_pictures, "FILE.png");

@@ -22,9 +22,10 @@ MeshPoints read_binary(std::string_view bytes, std::int64_t max_vertices) {
   const std::uint32_t triangles = little_endian_word(bytes.data() + 80);
   if (bytes.size() < kHeaderBytes + kTriangleBytes * std::size_t{triangles}) {
     refuse("unreadable_file",
-           "a binary STL of " + std::to_string(triangles) + " triangles needs " +
-               std::to_string(kHeaderBytes + kTriangleBytes * std::size_t{triangles}) + " bytes, the file has " +
-               std::to_string(bytes.size()),
+           "neither a text STL, which begins with \"solid\", nor a whole binary one: for its " +
+               std::to_string(triangles) + " triangles " +
+               std::to_string(kHeaderBytes + kTriangleBytes * std::size_t{triangles}) +
+               " bytes are needed, the file has " + std::to_string(bytes.size()),
            "");
   }
   VertexCollector vertices(max_vertices);

@@ -5,6 +5,8 @@ A line of its own in a page:
     {{ include FILE # HEADING }}  one section of it, without its heading
     {{ opening FILE }}            what stands between its first heading and its first section
     {{ code FILE }}               the file as a block of code
+    {{ python reference }}        every public name of the Python package, from its docstrings
+    {{ chart KIND WORDS }}        the table before it as a chart (chart.py)
 In a line: {{ api WORDS }} links to the reference of the C++ headers, and {{ api WORDS # FILE.hpp }} to one header's page there.
 Doxygen writes the reference into the site's folder api, where it is installed; without it the words stand alone.
 Links to files of the project become links to the page that shows the file, pictures come along, and what no page shows
@@ -17,11 +19,18 @@ import posixpath
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from mkdocs.structure.nav import Link
+
+# mkdocs loads this file by its path, and leaves its neighbours where no import finds them.
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import chart  # noqa: E402
+import python_reference  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 # Which page shows a file.
@@ -37,7 +46,7 @@ SHOWN = {
     "pd_core/docs/search_trace.md": "search_trace.md",
 }
 # Pages whose file need not be there: a part of the project that was left out.
-OPTIONAL = {"python.md": "demos/python/README.md"}
+OPTIONAL = {"python.md": "demos/python/README.md", "python_api.md": "demos/python/README.md"}
 # The page to play with, where packaging/wasm.sh has made it.
 PLAY = ROOT / "build/npm/play.html"
 DOXYGEN = shutil.which("doxygen")
@@ -51,9 +60,29 @@ def left_out():
     return {page for page, source in OPTIONAL.items() if not (ROOT / source).exists()}
 
 
+def version():
+    return re.search(r"^project\(pdepth VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(), re.M)[1]
+
+
+def commit():
+    asked = subprocess.run(["git", "-c", f"safe.directory={ROOT}", "-C", str(ROOT), "rev-parse", "--short=12", "HEAD"], capture_output=True,
+                           text=True, check=False)
+    return f", commit {asked.stdout.strip()}" if asked.returncode == 0 else ""
+
+
+def kept(entries, gone):
+    """The entries of the navigation, without the pages that are left out."""
+    for entry in entries:
+        (title, target), = entry.items()
+        if isinstance(target, list):
+            yield {title: list(kept(target, gone))}
+        elif target not in gone:
+            yield entry
+
+
 def on_config(config):
-    gone = left_out()
-    config["nav"] = [entry for entry in config["nav"] if not gone.intersection(entry.values())]
+    config["nav"] = list(kept(config["nav"], left_out()))
+    config["copyright"] = f"pdepth {version()}{commit()}"
     return config
 
 
@@ -106,9 +135,8 @@ def on_post_build(config):
     if not DOXYGEN:
         logging.getLogger("mkdocs.hooks").info("The reference of the C++ headers is left out: doxygen is not installed")
         return
-    version = re.search(r"^project\(pdepth VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(), re.M)[1]
     settings = (ROOT / "pd_core/docs/Doxyfile").read_text()
-    settings += f"PROJECT_NUMBER = {version}\nOUTPUT_DIRECTORY = \"{Path(config['site_dir']).resolve()}\"\n"
+    settings += f"PROJECT_NUMBER = {version()}\nOUTPUT_DIRECTORY = \"{Path(config['site_dir']).resolve()}\"\n"
     done = subprocess.run([DOXYGEN, "-"], input=settings, cwd=ROOT, capture_output=True, text=True)
     if done.returncode or done.stderr:
         raise PluginError(f"doxygen: {done.stderr}")
@@ -181,7 +209,7 @@ def on_page_markdown(markdown, page, config, files):
             raise PluginError(f"{page.file.src_path}: there is no {name}")
         text = source.read_text()
         if kind == "code":
-            language = {".cpp": "cpp", ".h": "c", ".py": "python"}[source.suffix]
+            language = {".cpp": "cpp", ".h": "c", ".py": "python", ".yml": "yaml"}[source.suffix]
             return f"```{language}\n{text.rstrip()}\n```"
         if heading:
             text = section_of(text, heading, name)
@@ -191,4 +219,17 @@ def on_page_markdown(markdown, page, config, files):
             text = re.split(r"^## ", text, flags=re.M)[0]
         return linked_from(text, os.path.dirname(name), page.file.src_path)
 
-    return outside_code(DIRECTIVE.sub(expanded, markdown), lambda part: API.sub(api_link, part))
+    text = DIRECTIVE.sub(expanded, markdown)
+    if "{{ python reference }}" in text:
+        try:
+            text = text.replace("{{ python reference }}", python_reference.page(ROOT))
+        except python_reference.Missing as missing:
+            raise PluginError(str(missing))
+    text = outside_code(chart.with_charts(text), lambda part: API.sub(api_link, part))
+    return text + f"\n\n<small>Source of this page: {source_of(page.file.src_path)}</small>\n"
+
+
+def source_of(name):
+    """The file that a reader changes to change the page."""
+    shown = [file for file, page in SHOWN.items() if page == name and name != "index.md"]
+    return ", ".join(f"<code>{file}</code>" for file in [f"pd_core/docs/pages/{name}", *shown])

@@ -138,6 +138,55 @@ TEST_F(Newcomer, FindsQueriesVersionAndSchema) {
   EXPECT_NE(read("out").find(", commit "), std::string::npos) << read("out");
 }
 
+struct Mistake {
+  const char* typed;
+  const char* answer;  ///< words of the complaint
+};
+
+TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
+  write("part.stl",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n# not the text of an STL\n");
+  std::filesystem::create_directory(path() / "folder");
+  constexpr Mistake kMistakes[] = {
+      {"pdepth deph a b", R"(no subcommand "deph"; did you mean "depth"?)"},
+      {"pdepth --verson", "there is no option --verson; did you mean --version?"},
+      {"pdepth depth", "A is missing: Body that moves"},
+      {"pdepth depth cube.obj", "B is missing: Body that stays"},
+      {"pdepth depth a b --jsn", "there is no option --jsn; did you mean --json?"},
+      {"pdepth depth a b -json", "there is no option -json; did you mean --json?"},
+      {"pdepth depth a b --pose 1,2,3", "there is no option --pose; did you mean --pose-a?"},
+      {"pdepth depth my cube.obj box:1,1,1", "box:1,1,1 is one word too many; a name with blanks needs quotes"},
+      {"pdepth depth sphere:1 sphere:1 --pose-b 1 2 3", "2 and 3 are words too many"},
+      {"pdepth depth sphere:1 sphere:1 --margin 1mm", R"(--margin: "1mm" is no number)"},
+      {"pdepth depth sphere:1 sphere:1 --margin -1", "--margin: -1 must be 0 or more"},
+      {"pdepth depth sphere:1 sphere:1 --delta 5", "--delta: 5 must lie in [1e-06, 1]"},
+      {"pdepth depth sphere:1 sphere:1 --method overlap",
+       R"(--method: there is no "overlap"; did you mean "overlay"?)"},
+      {"pdepth depth sphere:1 sphere:1 --pose-b 0,0,0,0,0,0,90", "a unit quaternion w,x,y,z"},
+      {"pdepth depth cube:1 box:1,1,1", "neither a file nor a primitive; the primitives are box:X,Y,Z, sphere:R"},
+      {"pdepth depth Box:1,1,1 box:1,1,1", "neither a file nor a primitive"},
+      {"pdepth depth box:1 box:1,1,1", "expected is box:X,Y,Z, half extents"},
+      {"pdepth depth sphere:0 box:1,1,1", "sphere:R is the radius"},
+      {"pdepth depth folder box:1,1,1", "folder: a folder; a file is expected"},
+      {"pdepth check folder", "folder: a folder; a file is expected"},
+      {"pdepth check part.stl", "neither a text STL"},
+      {"pdepth simplify cube.obj", "--output is missing: The hull, as OBJ"},
+      {"pdepth simplify cube.obj -o x.obj --epsilon 1mm", R"(--epsilon: "1mm" is no number)"},
+      {"pdepth simplify cube.obj -o x.obj --side out", R"(there is no "out"; did you mean)"},
+      {"pdepth audit", "RECORD is missing: The record, JSON lines"},
+      {"pdepth audit r.jsonl --report", "--report needs a value: Write report.html"},
+      {"pdepth query --threads many", R"(--threads: "many" is no number)"},
+      {"pdepth query --record-above 3 lines.jsonl", "--record-above requires --record"},
+      {"pdepth depth a b --direction 1,0,0 --method grid", "--direction and --method do not go together"},
+      {"pdepth minimise none.jsonl --predicate true", "none.jsonl: No such file"},
+      {"pdepth accuracy --recorder none", "none: no recorder"},
+  };
+  for (const Mistake& mistake : kMistakes) {
+    EXPECT_EQ(shell(mistake.typed), 2) << mistake.typed;
+    EXPECT_TRUE(says(mistake.answer)) << mistake.typed << ": " << read("err");
+  }
+}
+
 TEST_F(Newcomer, HasManualPagesAndCompletion) {
   EXPECT_EQ(shell("pdepth help --man pages"), 0);
   EXPECT_EQ(shell("pdepth --help | sed -n 's/^  \\([a-z]*\\)  .*/\\1/p'"), 0);

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-LIMITS = {"openings": 0, "long sentences": 23, "decimals": 0}
+LIMITS = {"openings": 0, "long sentences": 13, "decimals": 0}
 OPENING = re.compile(r"(Of|As|The same|What|Whether|Where)\b")
 DECIMAL = re.compile(r"(?<![\w.\])}/*-])-?\.\d")
 MARK = re.compile(r"^\s*//[/!]?<?\s?|\s+//[/!]?<\s?")
