@@ -1,9 +1,10 @@
 """A table of a page as a chart, drawn when the site is built, so that figures stand in one place.
 
     {{ chart lines WORDS }}   after a table: both axes logarithmic, the first column along x, a line for each further column
-    {{ chart bars WORDS }}    after a table: a bar for each number, rows by the first column, and a line at 1
+    {{ chart bars WORDS }}    after a table: a bar for each number, rows by the first column
+    {{ chart ratios WORDS }}  the same with a line at 1
 
-WORDS name the vertical axis. A cell that is not a number leaves a gap. Colours follow the page, light or dark.
+WORDS name the axis of the figures. A cell that is not a number leaves a gap. Colours follow the page, light or dark.
 """
 import math
 import re
@@ -12,7 +13,7 @@ from html import escape
 # Told apart by eyes that do not tell red from green.
 COLOURS = ("#3b7dd8", "#e08a1e", "#2a9d6f", "#a05bb0", "#c0504d")
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 680, 330, 64, 16, 34, 46
-TABLE = re.compile(r"((?:^\|.*\|\n)+)\n\{\{ chart (lines|bars) ([^}]+?) \}\}$", re.M)
+TABLE = re.compile(r"((?:^\|.*\|\n)+)\n\{\{ chart (lines|bars|ratios) ([^}]+?) \}\}$", re.M)
 
 
 def number(cell):
@@ -95,7 +96,7 @@ def lines(head, rows, words):
     return frame(parts, head[1:], f"lines of {words}", HEIGHT)
 
 
-def bars(head, rows, words):
+def bars(head, rows, words, line_at_one=False):
     """Bars lie, so that their names may be long."""
     cells = [[number(cell) for cell in row[1:]] for row in rows]
     columns = len(head) - 1
@@ -113,7 +114,7 @@ def bars(head, rows, words):
             begin, end = sorted((x(0), x(value)))
             parts.append(f'<rect x="{begin:.1f}" y="{y + c * tall:.1f}" width="{max(end - begin, 1):.1f}" height="{tall - 1}" '
                          f'fill="{COLOURS[c % len(COLOURS)]}"/>' + text(end + 4, y + c * tall + 9.5, rows[k][c + 1], "start", ' font-size="10"'))
-    if x.high > 1:
+    if line_at_one:
         parts.append(line(x(1), TOP, x(1), bottom, "one"))
     parts.append(text((left + WIDTH) / 2, bottom + 34, words))
     return frame(parts, head[1:], f"bars of {words}", bottom + 42)
@@ -123,6 +124,6 @@ def with_charts(markdown):
     def drawn(match):
         table, kind, words = match.groups()
         head, rows = rows_of(table)
-        return f"{table}\n{(lines if kind == 'lines' else bars)(head, rows, words)}"
+        return f"{table}\n{lines(head, rows, words) if kind == 'lines' else bars(head, rows, words, kind == 'ratios')}"
 
     return TABLE.sub(drawn, markdown)
