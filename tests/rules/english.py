@@ -1,8 +1,9 @@
-"""Counts what makes English hard to read, in documents and public headers: `english.py ROOT [--list]`.
+"""Counts what makes English hard to read, in documents, public headers and docstrings: `english.py ROOT [--list]`.
 
 Counted are comments that begin with a word that no sentence should begin with, sentences of more than 35 words, and decimals
 without a leading zero. Each count has a limit below. The limits only go down.
 """
+import ast
 import re
 import subprocess
 import sys
@@ -17,7 +18,7 @@ WORDS = 35
 
 def documents(root):
     """The pages that a reader meets; the notebook, results and the changelog are records."""
-    names = subprocess.run(["git", "-c", f"safe.directory={root}", "-C", str(root), "ls-files", "*.md", "*.hpp", "*.h"],
+    names = subprocess.run(["git", "-c", f"safe.directory={root}", "-C", str(root), "ls-files", "*.md", "*.hpp", "*.h", "demos/python/pdepth/*.py"],
                            capture_output=True, text=True, check=True).stdout.split()
     for name in names:
         record = name.startswith(("tests/", "CHANGELOG"))
@@ -46,6 +47,14 @@ def comments(text):
         yield start, "\n".join(run)
 
 
+def docstrings(text):
+    """The docstrings of a module, as (line, text); an argument on a line of its own is a paragraph."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node):
+            words = re.sub(r"\n(?=[\w*]+(?:, [\w*]+)*: )", "\n\n", ast.get_docstring(node))
+            yield getattr(node, "lineno", 1), words
+
+
 def prose(text):
     """The text without code, tables, formulas, links and lists' marks."""
     text = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
@@ -63,7 +72,9 @@ def sentences(text):
 
 def findings(name, text):
     header = not name.endswith(".md")
-    blocks = list(comments(text)) if header else [(1, text)]
+    blocks = [(1, text)]
+    if header:
+        blocks = list(docstrings(text) if name.endswith(".py") else comments(text))
     for line, block in blocks:
         first = re.sub(r"^\s*@file\b\s*", "", block).lstrip()
         if header and OPENING.match(first):
@@ -88,7 +99,7 @@ def main(root, listed):
     over = [kind for kind in LIMITS if counts[kind] > LIMITS[kind]]
     for kind, count in counts.items():
         print(f"{kind}: {count}, at most {LIMITS[kind]}")
-    print(f"in {words} words of documents and public headers")
+    print(f"in {words} words of documents, public headers and docstrings")
     return not over
 
 

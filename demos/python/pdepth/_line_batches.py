@@ -19,10 +19,12 @@ _CODES = {name: index for index, name in enumerate(ERRORS)}
 class RowBatch(Batch):
     """Answers of many questions, one row each, in the order asked (of poses with more dimensions: C order).
 
-    Numbers are columns [n] and vectors [n, d], NaN (or 0, False, "") where the row was refused; `contact` is an index into
-    pdepth.CONTACTS. A list without a fixed size, such as `vertices`, is one array of all rows' items, of which row i has
-    items vertices_offsets[i] to vertices_offsets[i + 1]; a list of lists, such as `facets`, is an array of all numbers
-    with facets_loops, where each list begins, and facets_offsets, which lists are row i's. `of_row` cuts a row out.
+    Numbers are columns [n] and vectors [n, d]. They are NaN (or 0, False, "") where the row was refused. `contact` is an
+    index into pdepth.CONTACTS.
+
+    A list without a fixed size, such as `vertices`, is one array of the items of all rows. Row i has the items from
+    vertices_offsets[i] to vertices_offsets[i + 1]. A list of lists, such as `facets`, is an array of all numbers:
+    facets_loops says where each list begins, and facets_offsets which lists belong to row i. `of_row` cuts a row out.
     """
 
     def __init__(self, fields):

@@ -48,7 +48,7 @@ def _field(name, value):
 
 
 def _not_finite(value, path=""):
-    """Where the first number stands that is not finite."""
+    """The place of the first number that is not finite."""
     if isinstance(value, dict):
         inner = ((f"{path}.{key}" if path else key, each) for key, each in value.items())
     elif isinstance(value, list):
@@ -96,8 +96,10 @@ def query_many(name, rows, *, threads=None):
 
         pdepth.query_many("approx_width", [{"a": {"points": p}, "epsilon": 0.1} for p in clouds]).width
 
-    rows: dictionaries of the query's fields, shapes and poses may be objects. What a row's bodies refuse is that row's
-    `error`, an index into pdepth.ERRORS; a row that is no such question raises Refused. `stats` and features are left out.
+    rows: dictionaries of the query's fields; shapes and poses may be objects.
+
+    A refusal of a row's bodies is that row's `error`, an index into pdepth.ERRORS. A row that is no such question raises
+    Refused. `stats` and features are left out.
     """
     return ask_lines([_row_line(name, row) for row in rows], threads)
 
@@ -205,8 +207,11 @@ def audit(records, *, tolerance=None, worst=5, fail_on=None, threads=None):
     """Judges contact records (the protocol's "Contact records") against the exact answer.
 
     records: a path, or an iterable of lines: dictionaries, JSON texts; shapes and poses may be pdepth objects.
+    fail_on: conditions such as "missed=0,phantom=0,depth_error=1e-4". The answer's `fail_on` then says which of them hold,
+    and `ok` is True where all do.
+
     Answers the judge's JSON as an object (contacts, judged, missed, phantom, depth_error, ..., worst), with `table` for
-    people. fail_on: e.g. "missed=0,phantom=0,depth_error=1e-4"; then `fail_on` says which hold and `ok` whether all do.
+    people.
     Raises Refused at the first line that cannot be read.
     """
     from . import _protocol

@@ -21,9 +21,12 @@ def _compiled():
 def picture(a, b=None, pose_a=None, pose_b=None, *, size=(960, 540), azimuth=-58.0, elevation=20.0, difference=False):
     """Draws one body, or two with what parts them, as [height, width, 3] uint8 (sRGB).
 
-    A is blue, B amber; the arrow is the translation that frees A, its label the depth and its certified bracket.
-    azimuth, elevation: the view, in degrees. difference=True draws the Minkowski difference P = B + (-A) beside two
-    polytopes. Raises Refused 'unsupported' where OSMesa (Debian: libosmesa6) or the renderer is missing.
+    A is blue, B amber. The arrow is the translation that frees A, its label the depth and its certified bracket.
+
+    azimuth, elevation: the view, in degrees.
+    difference: True draws the Minkowski difference P = B + (-A) beside two polytopes.
+
+    Raises Refused 'unsupported' where OSMesa (Debian: libosmesa6) or the renderer is missing.
     """
     if b is None and difference:
         raise refused("b: a difference needs two bodies (missing_field)")

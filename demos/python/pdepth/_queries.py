@@ -20,10 +20,12 @@ FEATURES = ("none", "vertex", "edge", "facet")
 class Batch:
     """A struct of arrays, one row a pair; the leading dimensions are those of the poses.
 
-    error is 0 for an answered row, else an index into pdepth.ERRORS; the numbers of such a row are NaN, and no exception
-    is raised. contact is an index into pdepth.CONTACTS. feature_a and feature_b are [..., 4]: an index into
-    pdepth.FEATURES, the part of a union, and the shape's own numbers of the vertex (rows of `shape.vertices`), the two
-    vertices of the edge, or the facet (of `shape.facets`).
+    error: 0 for an answered row, else an index into pdepth.ERRORS. The numbers of such a row are NaN, and no exception is
+    raised.
+    contact: an index into pdepth.CONTACTS.
+    feature_a, feature_b: [..., 4]. First an index into pdepth.FEATURES, then the part of a union, then the shape's own
+    numbers: a vertex (row of `shape.vertices`), the two vertices of an edge, or a facet (of `shape.facets`).
+    The other columns are named and meant as the attributes of Depth.
     """
 
     def __init__(self, fields, lead):
@@ -67,7 +69,7 @@ _IDENTITY = np.eye(4)[None]
 
 
 def _listed(pose):
-    """Whether a list holds poses, each in a form of its own."""
+    """True for a list of poses, each in a form of its own."""
     return isinstance(pose, list) and (not pose or any(each is None or isinstance(each, (_core.Pose, tuple)) for each in pose))
 
 
@@ -157,20 +159,24 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
           threads=None):
     """Penetration depth of two bodies with a proof, or their distance when they are apart.
 
-    a, b: shapes, or lists of n shapes. pose_a, pose_b: None (identity), a Pose, a [4, 4] matrix, (R, t); or [n, 4, 4]
-    (any leading dimensions), or a list of poses. World point = R * local + t. A moves by `translation`, B stays.
+    A moves by `translation`, B stays. World point = R * local + t. Lengths are in the unit of the input. One pair answers
+    a Depth, several answer a Batch.
 
-    One pair answers a Depth: contact, depth, lower, upper, distance, translation, normal, witness_a, witness_b, feature_a,
-    feature_b. Several answer a Batch of arrays; rows are answered on `threads` cores (all of them by default) with the
-    interpreter's lock released, and give the same bits for any number of threads.
-
-    method: 'auto' (exact for polytopes, swept or not; 1 + delta for curved bodies and unions), 'expansion', 'overlay',
-    'decomposition', 'shallow', 'grid'. delta: relative error in (0, 1]. bracket: 'tightest', 'certified' or 'contact'.
-    beyond: bodies farther apart than this distance need not be told apart any further; such a pair may be answered as
-    'separated' with distance_lower > beyond, certified, a wide distance_upper, and witnesses that are points of the bodies
-    but not the closest (what a broadphase's hit asks; unions take no notice). Anything nearer is answered as ever.
-    warm: for one pair a Warm; for a batch True makes the rows along `axis` (a leading dimension) frames of one pair, each
-    started from the last; other dimensions are pairs of their own.
+    a, b: shapes, or lists of n shapes.
+    pose_a, pose_b: None (the identity), a Pose, a [4, 4] matrix, or (R, t). For many: [n, 4, 4] with any leading
+    dimensions, or a list of poses.
+    method: 'auto', 'expansion', 'overlay', 'decomposition', 'shallow' or 'grid'. 'auto' is exact for polytopes, swept or
+    not, and within 1 + delta for curved bodies and unions.
+    delta: the relative error, in (0, 1].
+    bracket: 'tightest' (the exact depth rounded down and up), 'certified' (half the time) or 'contact' (bounded cost).
+    beyond: a distance from which on you need no distance. A pair that is farther apart may be answered as 'separated' with
+    distance_lower > beyond, certified, a wide distance_upper, and witnesses that are not the closest points. Anything
+    nearer is answered as ever. Unions take no notice.
+    warm: for one pair a Warm. For a batch, True makes the rows along `axis` frames of one pair, each started from the last;
+    other dimensions are pairs of their own.
+    axis: a leading dimension of the poses, for warm=True.
+    threads: cores that answer a batch, all by default. The interpreter's lock is released, and the bits are the same for
+    any number.
 
     Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
     """
@@ -213,9 +219,9 @@ def distance(a, b, pose_a=None, pose_b=None, *, threads=None):
 
 
 def intersects(a, b, pose_a=None, pose_b=None, *, threads=None):
-    """Whether the bodies have a point in common (touching counts): exact for polytopes. A bool, or [n] bools for many.
+    """Answers if the bodies have a point in common, exactly for polytopes; touching counts. A bool, or [n] bools for many.
 
-    For many, a row that is refused is False; use depth to see why. No distance is searched for (depth's beyond=0).
+    For many, a row that is refused is False; depth says why. No distance is searched for.
     Shapes and poses as in depth. Raises Refused as depth.
     """
     found = depth(a, b, pose_a, pose_b, beyond=0.0, threads=threads)
@@ -235,15 +241,22 @@ class Fields:
 
 
 class DirectionalDepth(Fields):
-    """contact, depth, lower, upper, normal."""
+    """Depth along a direction: contact, depth, lower <= exact depth <= upper, and the normal of the facet at the exit."""
 
 
 class Manifold(Fields):
-    """normal [3]; position_a and position_b [k, 3], depth [k], feature_id [k] with k <= 4.
+    """Points of a contact, k <= 4 of them.
 
-    A contact of unions or sheets also has normals [k, 3], piece_a and piece_b [k] (numbers of parts or faces), patches
-    (a list of Manifold, one for each direction of contact; the first holds the deepest point) and covered (contacts of
-    two pieces that were dropped or turned because other pieces cover them).
+    normal: [3], unit, from B to A.
+    position_a, position_b: [k, 3], on the surfaces.
+    depth: [k], > 0 inside, < 0 a gap.
+    feature_id: [k], the same number while the same two features meet.
+
+    A contact of unions or sheets also has:
+    normals: [k, 3], one for each point.
+    piece_a, piece_b: [k], numbers of parts or faces.
+    patches: a list of Manifold, one for each direction of contact; the first holds the deepest point.
+    covered: how many contacts of two pieces were dropped or turned because other pieces cover them.
     """
 
 
@@ -317,9 +330,13 @@ def derivatives(a, b, pose_a=None, pose_b=None, *, threads=None):
     """The signed depth (> 0 inside, < 0 a gap) of convex bodies and its derivatives by both poses.
 
     A pose has six numbers: translation, and a rotation vector about the pose's own translation, in the world's axes.
-    by_a, by_b: [6]. unique_direction: the least direction is unique, and the first three of each exist; unique_witness:
-    the pair of witnesses is, too, and the last three exist (parallel faces have the first and not the second). What does
-    not exist is NaN. For one pair also stable_features and, where it holds, normal_by_a, witness_a_by_b, ...: [3, 6];
+
+    by_a, by_b: [6]. Numbers that do not exist are NaN.
+    unique_direction: the least direction is unique, and the first three of each exist.
+    unique_witness: the pair of witnesses is unique, too, and the last three exist. Parallel faces have a unique direction
+    without a unique witness.
+
+    For one pair also stable_features and, where it holds, normal_by_a, witness_a_by_b, ...: [3, 6];
     those of curved bodies were measured, not bounded.
 
     For many: a Batch with signed_depth, the three flags, by_a and by_b beside the columns of depth.

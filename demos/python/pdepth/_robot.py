@@ -22,10 +22,12 @@ _AT_ONCE = 1 << 14
 class Robot:
     """A tree of links and joints with collision shapes, read by from_urdf or from_sdf. Immutable.
 
-    name; links, joints: names. coordinates: names of the numbers of a joint vector q, in metres or radians, dof of them.
-    limits: [dof, 2], which bound no question. pairs: the pairs of links that `distances` asks, which are those with
-    shapes that move against each other, without adjacent links (no third link with a shape between them along the joints)
-    and without those that an SRDF file disables.
+    name: the model's.
+    links, joints: names.
+    coordinates: names of the numbers of a joint vector q, in metres or radians, dof of them.
+    limits: [dof, 2]. They bound no question.
+    pairs: the pairs of links that `distances` asks. They have shapes that move against each other. Adjacent links, with
+    no third link with a shape between them along the joints, are left out, and so are pairs that an SRDF file disables.
 
     A revolute, continuous or prismatic joint has one coordinate. A planar joint has three: two places in the plane across
     its axis, and an angle. A floating joint has six: a place, and a rotation vector (axis times angle). A joint that
@@ -46,11 +48,14 @@ class Robot:
     def from_urdf(cls, path, *, srdf=None, package_roots=None, meshes="solid", tolerance=0.0):
         """Reads a URDF file.
 
-        srdf: an SRDF file, whose disable_collisions leave out pairs. package_roots: {package: its folder}, or a folder, or
-        a list of folders, that hold packages; meshes lie below these or the file's own folder. meshes: "solid" cuts
-        closed meshes that are not convex into convex parts, which reach at most about `tolerance` beyond the solid (fewer
-        parts); "hull" takes convex hulls; "parts" takes the convex hull of each connected part, for files that hold a
-        convex decomposition; {link: one of these} chooses by link, "solid" for others.
+        srdf: an SRDF file, whose disable_collisions leave out pairs.
+        package_roots: {package: its folder}, or a folder or a list of folders that hold packages. Meshes lie below these
+        or below the file's own folder.
+        meshes: for all links one of these words, or {link: word} with "solid" for the links that are not named. The word
+        "solid" cuts closed meshes that are not convex into convex parts. The word "hull" takes convex hulls. The word
+        "parts" takes the hull of each connected part, for files that hold a convex decomposition.
+        tolerance: how far, about, the parts of a "solid" may reach beyond the solid, in metres; a tolerance gives fewer
+        parts.
 
         Raises Refused with file and line: 'unreadable_file', 'missing_field' (a package without a root, too), 'bad_value',
         'non_finite', 'unsupported', and what a mesh's reader says.
@@ -105,18 +110,17 @@ class Robot:
     def distances(self, q, *, pairs=None, nearest=False, derivatives=False, bracket="certified", threads=None):
         """Signed distances of pairs of links for joint vectors [..., dof]: positive apart, minus the depth where they overlap.
 
-        Answers RobotDistances [..., pairs]: signed_distance, its certified bracket lower and upper, normal (from the second
-        link to the first), witness_a, witness_b, pair (a row of the pairs asked), and error. In a batch, a joint vector that
-        is not finite is its rows' error. pairs: pairs of names to ask, instead of the robot's own. nearest=True answers
-        the pair of the least signed distance alone, for [...]; balls around the links tell which pairs need no question.
+        Answers RobotDistances [..., pairs]. In a batch, a joint vector that is not finite is its rows' error.
 
-        derivatives=True adds by_q [..., dof], from normals and witness points, and `unique`, where the derivative is
-        proved to exist. Where several points are as near, such as on parallel faces, by_q is that of one pair of them.
+        pairs: pairs of names to ask, instead of the robot's own.
+        nearest: True answers for each joint vector the pair of the least signed distance alone. Balls around the links
+        tell which pairs need no question.
+        derivatives: True adds by_q [..., dof], from normals and witness points, and `unique`, where the derivative is
+        proved to exist. If several points are equally near, such as on parallel faces, by_q is that of one pair of them.
         Links of several shapes are never proved unique.
-
         bracket: "certified" (as narrow as rounding for polytopes and capsules, 1e-6 of the depth for curved bodies), or
-        "tightest" or "contact" as in depth; derivatives have the tightest. Work is spread over `threads` cores, all by
-        default; the bits are the same for any number.
+        "tightest" or "contact" as in depth. Derivatives have the tightest.
+        threads: cores that answer, all by default. The bits are the same for any number.
 
         Raises Refused: 'bad_value' for a wrong number of coordinates, an unknown link, or a link without a shape.
         """
@@ -145,9 +149,13 @@ class Robot:
     def sweep(self, q, client=None, *, out, chunk=10_000, threads=None, progress=True, **options):
         """Asks `distances` for many joint vectors [n, dof] and writes the answers to `out` as they come; see pdepth.sweep.
 
-        q may be an np.memmap, which stays on disk. client: a distributed.Client, else this machine. chunk: joint vectors a
-        file, chunk_K.npz, which holds the columns of `distances`; pair them with `pairs`. options: pairs, nearest,
-        derivatives and bracket of `distances`. Answers a Sweep.
+        q: [n, dof]; an np.memmap stays on disk.
+        client: a distributed.Client, else this machine.
+        out: the folder of the answers.
+        chunk: joint vectors a file, chunk_K.npz, which holds the columns of `distances`.
+        options: pairs, nearest, derivatives and bracket of `distances`.
+
+        Answers a Sweep.
         """
         from ._sweep import run
 
@@ -184,7 +192,7 @@ class Robot:
         return asked
 
     def _told(self):
-        """What the robot is made of, as JSON takes it."""
+        """The robot's parts in a form that JSON takes."""
         bodies = [body and [body[0].protocol(), body[1].tolist()] for body in self._bodies]
         joints = [[j.name, j.kind, j.parent, j.child, j.before.tolist(), j.axis.tolist(), j.after.tolist(), j.mimic]
                   for j in self._tree.joints]

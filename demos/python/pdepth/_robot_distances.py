@@ -20,7 +20,16 @@ _COLUMNS = {"error": ((), np.uint8), "signed_distance": ((), float), "lower": ((
 
 
 class RobotDistances(Batch):
-    """Signed distances of pairs of links, as Robot.distances says: a struct of arrays, one row a pair and joint vector."""
+    """Signed distances of pairs of links: a struct of arrays, one row a pair and joint vector.
+
+    signed_distance: positive apart, minus the depth where the links overlap.
+    lower, upper: the certified bracket of the signed distance.
+    normal: from the second link to the first.
+    witness_a, witness_b: a point of each link.
+    pair: a row of the pairs that were asked.
+    by_q, unique: the derivative by the joint vector, and where it is proved to exist; with derivatives=True.
+    error: 0, or an index into pdepth.ERRORS.
+    """
 
 
 class How(NamedTuple):

@@ -25,7 +25,7 @@ def _plain(value):
 
 
 def _numbers(value):
-    """What a shape keeps of an argument that was taken: words, and numbers as floats."""
+    """An argument in the form in which a shape keeps it: words, and numbers as floats."""
     if isinstance(value, str):
         return value
     return np.asarray(value, dtype=float).tolist()

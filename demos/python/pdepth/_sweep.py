@@ -19,7 +19,7 @@ from ._files import save_arrays
 
 
 class Sweep:
-    """What a sweep has written: `files` in the order of the pairs, `computed` of them by this call, the rest resumed."""
+    """The files of a sweep: `files` in the order of the pairs, `computed` of them by this call, the others kept from before."""
 
     def __init__(self, folder, files, rows, computed):
         self.folder, self.files, self.computed = folder, files, computed
@@ -152,10 +152,15 @@ def _run_on(client, inputs, missing, finish, threads, options):
 def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None, progress=True, **options):
     """Asks depth for many pairs and writes the answers to `out` as they come.
 
-    shapes: a list; pairs: [n, 2] rows of it; poses: (poses_a, poses_b), each [n, 4, 4] (np.memmap stays on disk), or a
-    function of (begin, end) that gives those rows, called once a chunk. client: a distributed.Client, else this machine.
-    chunk: pairs a file. threads: of one chunk; by default all cores here and 1 on a cluster. options: method, delta,
-    bracket, beyond of depth.
+    shapes: a list.
+    pairs: [n, 2], rows of that list.
+    poses: (poses_a, poses_b), each [n, 4, 4], or a function of (begin, end) that gives those rows, called once a chunk. An
+    np.memmap stays on disk.
+    client: a distributed.Client, else this machine.
+    out: the folder of the answers.
+    chunk: pairs a file.
+    threads: cores for one chunk; by default all cores here and 1 on a cluster.
+    options: method, delta, bracket and beyond of depth.
 
     File chunk_K.npz holds the columns of depth's Batch for pairs [K * chunk, (K + 1) * chunk) and `inputs`, the SHA-256
     of what was asked and of pdepth's version. A file whose inputs are the same is kept when the sweep is called again;

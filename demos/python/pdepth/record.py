@@ -26,7 +26,7 @@ __all__ = ["Recorded", "mujoco", "pybullet"]
 
 
 class Recorded(NamedTuple):
-    """What one call wrote, and how many contacts and pairs it left out."""
+    """Counts of one call: contacts written, and contacts and pairs left out."""
 
     contacts: int     #: pairs that the engine reports in contact
     apart: int        #: pairs that the engine looked at and reports apart
