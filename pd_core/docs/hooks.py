@@ -65,6 +65,8 @@ def version():
 
 
 def commit():
+    if not shutil.which("git"):
+        return ""
     asked = subprocess.run(["git", "-c", f"safe.directory={ROOT}", "-C", str(ROOT), "rev-parse", "--short=12", "HEAD"], capture_output=True,
                            text=True, check=False)
     return f", commit {asked.stdout.strip()}" if asked.returncode == 0 else ""
