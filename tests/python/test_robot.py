@@ -396,3 +396,8 @@ def test_bad_questions_are_refused_by_name(read, ask, code, where):
     with pytest.raises(pdepth.Refused) as caught:
         ask(read(ARM))
     assert (caught.value.code, caught.value.where) == (code, where)
+
+
+def test_a_robot_is_read_from_a_file():
+    with pytest.raises(TypeError, match="from_urdf"):
+        pdepth.Robot("arm.urdf")

@@ -35,6 +35,8 @@ class Robot:
     """
 
     def __init__(self, model):
+        if not hasattr(model, "links"):
+            raise TypeError("a robot is read from a file: pdepth.Robot.from_urdf(path) or pdepth.Robot.from_sdf(path)")
         self._tree = Tree(model)
         self._bodies = [body_of(link) for link in model.links]
         self._pairs = allowed_pairs(model)
