@@ -145,6 +145,8 @@ query::NamedShape shape_of_mesh(const BodyArgument& argument) {
 
 }  // namespace
 
+bool names_mesh(const std::string& word) { return find_primitive(word) == nullptr; }
+
 std::shared_ptr<const MeshSolid> read_solid_argument(const std::string& word) {
   return find_primitive(word) != nullptr ? nullptr : mesh_argument(word).solid;
 }
@@ -156,6 +158,22 @@ query::NamedShape read_body_argument(const BodyArgument& argument) {
   auto swept = body.shape.with_margin(argument.margin);
   if (!swept) query::refuse(to_string(swept.error().code), "--margin: " + swept.error().message, "");
   body.shape = *std::move(swept);
+  return body;
+}
+
+query::NamedBody read_parts_argument(const BodyArgument& argument) {
+  if (find_primitive(argument.word) != nullptr) {
+    query::NamedShape shape = read_body_argument(argument);
+    Compound compound(shape.shape);
+    return {std::move(compound), {std::move(shape)}};
+  }
+  query::NamedBody body =
+      query::parts_of_mesh(read_points_of(argument.word), name_of(argument.word), {.hull_words = "--hull"});
+  if (argument.margin > 0) {
+    auto swept = body.compound.with_margin(argument.margin);
+    if (!swept) query::refuse(to_string(swept.error().code), "--margin: " + swept.error().message, "");
+    body.compound = *std::move(swept);
+  }
   return body;
 }
 

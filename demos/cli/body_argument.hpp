@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pd/shape/mesh_solid.hpp"
+#include "protocol/body_reader.hpp"
 #include "protocol/shape_reader.hpp"
 
 namespace pd::cli {
@@ -25,11 +26,17 @@ struct BodyArgument {
   query::MeshAs as = query::MeshAs::found;  ///< of meshes
 };
 
+/// True unless the word is a primitive.
+[[nodiscard]] bool names_mesh(const std::string& word);
+
 /// The solid of a mesh that is closed and not convex; null for other bodies. @throws query::Refusal that names the
 /// fault of a mesh with holes, or one that crosses itself
 [[nodiscard]] std::shared_ptr<const MeshSolid> read_solid_argument(const std::string& word);
 
 /// Reads the body. @throws query::Refusal that begins with the word
 [[nodiscard]] query::NamedShape read_body_argument(const BodyArgument& argument);
+
+/// The body as a union: a mesh's groups, or one convex shape. @throws query::Refusal that begins with the word
+[[nodiscard]] query::NamedBody read_parts_argument(const BodyArgument& argument);
 
 }  // namespace pd::cli

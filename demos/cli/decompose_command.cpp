@@ -48,6 +48,7 @@ struct DecomposeArguments {
   std::string error = "1%";
   bool inside = false;
   bool turn_faces = false;
+  bool json = false;
   std::int64_t max_parts = DecompositionSettings().max_parts;
   std::int64_t max_steps = DecompositionSettings().max_steps;
 };
@@ -99,6 +100,57 @@ std::string obj_of(const SolidDecomposition& found, const DecomposeArguments& ar
   return text;
 }
 
+struct Outcome {
+  const MeshSolid& solid;
+  const SolidDecomposition& found;
+  double asked = 0;
+  std::int64_t nanoseconds = 0;
+
+  [[nodiscard]] int most_vertices() const {
+    int most = 0;
+    for (const Compound::Part& part : found.parts.parts()) most = std::max(most, part.shape.polytope()->num_vertices());
+    return most;
+  }
+};
+
+void print_text(const DecomposeArguments& arguments, const Outcome& outcome) {
+  const SolidDecomposition& found = outcome.found;
+  print_row("solid", fmt::format("{}  ({} triangles, volume {:.6g})", arguments.input, outcome.solid.triangles().size(),
+                                 found.solid_volume));
+  print_row("parts", fmt::format("{}  ({} of at most {} vertices, {})", arguments.output, found.parts.parts().size(),
+                                 outcome.most_vertices(), duration_in_words(outcome.nanoseconds)));
+  print_row("error",
+            fmt::format("at most {:.6g}, certified; asked: {:.6g}{}", found.error, outcome.asked,
+                        found.error_reached ? "" : " (not reached: --max-parts or --max-steps ended the work)"));
+  print_row("error_reached", found.error_reached ? "yes" : "no");
+  print_row("side", arguments.inside ? "every part lies in the solid" : "the parts cover the solid");
+  print_row("volume",
+            fmt::format("{:.6g} of the solid's, summed over the parts", found.parts_volume / found.solid_volume));
+}
+
+void print_json(const DecomposeArguments& arguments, const Outcome& outcome) {
+  const SolidDecomposition& found = outcome.found;
+  std::string out;
+  query::JsonWriter writer(out);
+  writer.begin_object();
+  writer.key("input").string(arguments.input);
+  writer.key("output").string(arguments.output);
+  writer.key("triangles").integer(static_cast<std::int64_t>(outcome.solid.triangles().size()));
+  writer.key("side").string(arguments.inside ? "inner" : "outer");
+  writer.key("parts").integer(static_cast<std::int64_t>(found.parts.parts().size()));
+  writer.key("most_vertices").integer(outcome.most_vertices());
+  writer.key("error").number(found.error);
+  writer.key("error_asked").number(outcome.asked);
+  writer.key("error_reached").boolean(found.error_reached);
+  writer.key("solid_volume").number(found.solid_volume);
+  writer.key("parts_volume").number(found.parts_volume);
+  writer.key("stats").begin_object();
+  writer.key("steps").integer(found.steps);
+  writer.key("nanoseconds").integer(outcome.nanoseconds);
+  writer.end_object().end_object();
+  fmt::print("{}\n", out);
+}
+
 int run_decompose(const DecomposeArguments& arguments) {
   refuse_to_overwrite({arguments.input}, arguments.output, "--output");
   if (arguments.max_parts < 1) query::refuse("bad_value", "--max-parts: must be 1 or more", "");
@@ -133,19 +185,8 @@ int run_decompose(const DecomposeArguments& arguments) {
   }
   const std::int64_t nanoseconds = watch.nanoseconds();
   progress.end();
-  int most = 0;
-  for (const Compound::Part& part : found->parts.parts()) most = std::max(most, part.shape.polytope()->num_vertices());
-  print_row("solid", fmt::format("{}  ({} triangles, volume {:.6g})", arguments.input, solid->triangles().size(),
-                                 found->solid_volume));
-  print_row("parts", fmt::format("{}  ({} of at most {} vertices, {})", arguments.output, found->parts.parts().size(),
-                                 most, duration_in_words(nanoseconds)));
-  print_row("error",
-            fmt::format("at most {:.6g}, certified; asked: {:.6g}{}", found->error, settings.error,
-                        found->error_reached ? "" : " (not reached: --max-parts or --max-steps ended the work)"));
-  print_row("error_reached", found->error_reached ? "yes" : "no");
-  print_row("side", arguments.inside ? "every part lies in the solid" : "the parts cover the solid");
-  print_row("volume",
-            fmt::format("{:.6g} of the solid's, summed over the parts", found->parts_volume / found->solid_volume));
+  const Outcome outcome{*solid, *found, settings.error, nanoseconds};
+  arguments.json ? print_json(arguments, outcome) : print_text(arguments, outcome);
   return found->error_reached ? kDone : kConditionFails;
 }
 
@@ -166,6 +207,7 @@ void add_decompose_command(CLI::App& app, Action& action) {
   command->add_flag("--inside", arguments->inside,
                     "Parts that lie in the solid, instead of parts that cover the solid");
   command->add_flag("--turn-faces", arguments->turn_faces, "Turns the faces of a mesh that is wholly inside out");
+  command->add_flag("--json", arguments->json, "Print one JSON object instead of rows");
   command->add_option("--max-parts", arguments->max_parts, "Ends the work at so many parts")->capture_default_str();
   command
       ->add_option("--max-steps", arguments->max_steps,

@@ -18,6 +18,7 @@
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
 #include "protocol/solid_queries.hpp"
+#include "protocol/union_queries.hpp"
 #include "support/complain.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
@@ -34,8 +35,9 @@ Poses: x,y,z moves; x,y,z,qw,qx,qy,qz also turns (a unit quaternion, scalar firs
 x,y,z,r11,r12,r13,r21,...,r33 turns by a matrix. World point = R * point + (x,y,z).
 
 A moves by the translation, B stays. A closed mesh that is not convex is asked as the solid that it bounds; --hull asks
-for the convex hull of its vertices instead, and the answer says so. A mesh with holes bounds no solid and is refused;
-`pdepth check FILE` tells every fault.
+for the convex hull of its vertices instead, and the answer says so; --parts asks for the union of the file's parts: the
+groups of an OBJ (o, g), or the meshes of a glTF. A mesh with holes bounds no solid and is refused; `pdepth check FILE`
+tells every fault.
 
 Examples:
   pdepth depth box:1,1,1 sphere:0.5 --pose-b 1.25,0,0
@@ -56,6 +58,7 @@ struct DepthArguments {
   std::string trace;
   bool json = false;
   bool hull = false;
+  bool parts = false;
 };
 
 Pose parse_pose(const std::string& text, const std::string& option) {
@@ -237,15 +240,21 @@ void require_polytopes(const query::Pair& pair, const std::string& option) {
   }
 }
 
-query::Pair read_pair(const DepthArguments& arguments) {
+/// A and B with their margins.
+std::pair<BodyArgument, BodyArgument> bodies_of(const DepthArguments& arguments) {
   if (arguments.file_a == "-" && arguments.file_b == "-") {
     query::refuse("bad_value", "A and B: standard input holds one mesh, so only one of them may be -", "");
   }
   const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
   const std::vector<double>& margins = arguments.margins;
-  const double margin_a = margins.empty() ? 0 : margins.front(), margin_b = margins.empty() ? 0 : margins.back();
-  return {read_body_argument({arguments.file_a, margin_a, as}), read_body_argument({arguments.file_b, margin_b, as}),
-          parse_pose(arguments.pose_a, "--pose-a"), parse_pose(arguments.pose_b, "--pose-b")};
+  return {{arguments.file_a, margins.empty() ? 0 : margins.front(), as},
+          {arguments.file_b, margins.empty() ? 0 : margins.back(), as}};
+}
+
+query::Pair read_pair(const DepthArguments& arguments) {
+  const auto [a, b] = bodies_of(arguments);
+  return {read_body_argument(a), read_body_argument(b), parse_pose(arguments.pose_a, "--pose-a"),
+          parse_pose(arguments.pose_b, "--pose-b")};
 }
 
 /// --direction: how far A must move that way.
@@ -352,9 +361,65 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
   return kDone;
 }
 
+// ---- parts -------------------------------------------------------------------------------------------------------
+
+void print_parts(const DepthArguments& arguments, const query::BodyPair& pair, const UnionDepth& result,
+                 std::int64_t nanoseconds) {
+  const auto print_union = [](std::string_view name, const std::string& word, const query::NamedBody& body) {
+    const std::size_t count = body.parts.size();
+    print_row(name, fmt::format("{}  (union of {} convex part{})", word == "-" ? "standard input" : word, count,
+                                count == 1 ? "" : "s"));
+  };
+  fmt::print("\n");
+  print_union("A", arguments.file_a, pair.a);
+  print_union("B", arguments.file_b, pair.b);
+  print_sentence("A and B", result.contact);
+  print_answer(result);
+  if (!query::feature_kind(result).empty()) {
+    const auto part = [](const query::NamedBody& body, int index, const Feature& feature) {
+      return fmt::format("{} of convex part {}", feature_in_words(feature, body.parts[static_cast<std::size_t>(index)]),
+                         index);
+    };
+    print_row("of A", part(pair.a, result.part_a, result.feature_a));
+    print_row("of B", part(pair.b, result.part_b, result.feature_b));
+  }
+  print_statistics(to_string(result.method), result.statistics, nanoseconds);
+}
+
+/// --parts: the groups of files as unions.
+int run_parts(const DepthArguments& arguments) {
+  if (arguments.method != "auto") query::refuse("unsupported", "--method: unions are answered by auto", "");
+  if (!arguments.picture.empty() || !arguments.trace.empty() || !arguments.direction.empty()) {
+    query::refuse("unsupported", "--picture, --trace and --direction are for convex bodies here, and not for --parts",
+                  "");
+  }
+  const auto [a, b] = bodies_of(arguments);
+  const query::BodyPair pair{read_parts_argument(a), read_parts_argument(b), parse_pose(arguments.pose_a, "--pose-a"),
+                             parse_pose(arguments.pose_b, "--pose-b")};
+  Scratch scratch;
+  const query::Stopwatch watch;
+  const auto result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, UnionSettings());
+  if (!result) query::refuse(to_string(result.error().code), result.error().message, "");
+  const std::int64_t nanoseconds = watch.nanoseconds();
+  if (!arguments.json) {
+    print_parts(arguments, pair, *result, nanoseconds);
+    return kDone;
+  }
+  std::string out;
+  query::JsonWriter writer(out);
+  writer.begin_object();
+  query::write_union_answer(*result, pair, nanoseconds, writer);
+  if (names_mesh(arguments.file_a)) writer.key("a_is").string("parts");
+  if (names_mesh(arguments.file_b)) writer.key("b_is").string("parts");
+  writer.end_object();
+  fmt::print("{}\n", out);
+  return kDone;
+}
+
 int run_depth(const DepthArguments& arguments) {
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
+  if (arguments.parts) return run_parts(arguments);
   if (!arguments.hull && !(arguments.file_a == "-" && arguments.file_b == "-")) {
     const auto solid_a = read_solid_argument(arguments.file_a), solid_b = read_solid_argument(arguments.file_b);
     if (solid_a || solid_b) {
@@ -424,7 +489,10 @@ void add_depth_command(CLI::App& app, Action& action) {
       ->check(refuse_other_pictures, "FILE.png");
   command->add_option("--trace", arguments->trace,
                       "Write the search step by step, as JSON lines (`pdepth demo difference --trace` draws them)");
-  command->add_flag("--hull", arguments->hull, "Ask for the convex hulls of the vertices, not for solids");
+  CLI::Option* const hull =
+      command->add_flag("--hull", arguments->hull, "Ask for the convex hulls of the vertices, not for solids");
+  command->add_flag("--parts", arguments->parts, "Ask for the unions of the files' groups, each convex or a solid")
+      ->excludes(hull);
   command->add_flag("--json", arguments->json, "Print one JSON object, as `pdepth query` answers");
   for (const char* other : {"--method", "--trace", "--picture"}) direction->excludes(command->get_option(other));
   command->callback([arguments, &action] { action = [arguments] { return run_depth(*arguments); }; });

@@ -307,6 +307,9 @@ class SceneReader {
       const Node primitives = node.at("primitives");
       mesh = MeshReader(primitives, buffers_, vertices_).read();
     }
+    const auto name = node.find("name");
+    // Every showing is a group: a mesh may be shown several times.
+    vertices_.begin_group(std::to_string(shown_++), name && name->json().is_string() ? read_string(*name) : "mesh");
     const std::int64_t first = vertices_.size();
     for (const Vec3& point : mesh->points) vertices_.add(placement * point);
     // A mirror turns every face inside out.
@@ -329,6 +332,7 @@ class SceneReader {
   std::optional<Node> mesh_list_;
   GltfBuffers& buffers_;
   VertexCollector& vertices_;
+  std::int64_t shown_ = 0;
   std::vector<std::vector<std::int64_t>> children_;
   std::vector<char> has_parent_;
   std::vector<std::optional<GltfMesh>> meshes_;

@@ -24,6 +24,9 @@ struct MeshFaces {
   std::vector<std::int32_t> corners;
   /// Line of the file for each face; empty for formats without lines.
   std::vector<std::int32_t> lines;
+  /// Group of each face, as an index of `group_names`; empty for formats without groups.
+  std::vector<std::int32_t> groups;
+  std::vector<std::string> group_names;
 
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(offsets.size()) - 1; }
 };

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -78,7 +79,16 @@ class VertexCollector {
     if (line > 0) faces_.lines.push_back(line);
   }
 
+  /// Elements from here on belong to the group of an object, which may go on with an earlier group of the same names.
+  void begin_group(const std::string& object, const std::string& group) {
+    // Elements before the first name are a group without a name.
+    if (faces_.group_names.empty() && faces_.size() > 0) group_ = number_of_group("", "");
+    faces_.groups.resize(static_cast<std::size_t>(faces_.size()), group_);
+    group_ = number_of_group(object, group);
+  }
+
   [[nodiscard]] MeshPoints finish() && {
+    if (!faces_.group_names.empty()) faces_.groups.resize(static_cast<std::size_t>(faces_.size()), group_);
     MeshPoints mesh;
     mesh.left_out = left_out_;
     mesh.faces.lines = {};
@@ -107,6 +117,18 @@ class VertexCollector {
   static constexpr std::int64_t kCornersPerVertex = 16;
   static constexpr std::int64_t kMostCorners = std::numeric_limits<std::int32_t>::max();
 
+  std::int32_t number_of_group(const std::string& object, const std::string& group) {
+    const auto own = object_numbers_.try_emplace(object, static_cast<std::int32_t>(object_numbers_.size())).first;
+    const auto next = static_cast<std::int32_t>(faces_.group_names.size());
+    const auto [place, fresh] = group_numbers_.try_emplace({own->second, group}, next);
+    if (fresh) {
+      // A long name of an object is not held once for each of its groups.
+      constexpr std::size_t kShown = 40;
+      const std::string first = object.substr(0, kShown), second = group.substr(0, kShown);
+      faces_.group_names.push_back(first.empty() || second.empty() ? first + second : first + "/" + second);
+    }
+    return place->second;
+  }
   void mark(std::size_t f, std::vector<std::int32_t>& number) const {
     for (auto k = static_cast<std::size_t>(faces_.offsets[f]); k < static_cast<std::size_t>(faces_.offsets[f + 1]);
          ++k) {
@@ -127,11 +149,16 @@ class VertexCollector {
       }
       kept.offsets.push_back(static_cast<std::int32_t>(kept.corners.size()));
       if (!faces_.lines.empty()) kept.lines.push_back(faces_.lines[f]);
+      if (!faces_.groups.empty()) kept.groups.push_back(faces_.groups[f]);
     }
+    kept.group_names = faces_.group_names;
   }
 
   std::int64_t limit_;
   std::int64_t left_out_ = 0;
+  std::int32_t group_ = 0;
+  std::map<std::string, std::int32_t> object_numbers_;
+  std::map<std::pair<std::int32_t, std::string>, std::int32_t> group_numbers_;
   std::vector<Vec3> points_;
   std::vector<std::int32_t> ids_;  ///< of the points in the file, where some are left out
   MeshFaces faces_;                ///< all elements

@@ -21,17 +21,26 @@ std::string_view logical_line(TextCursor& cursor, std::string& joined) {
   return joined;
 }
 
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  return first == text.npos ? "" : std::string(text.substr(first, text.find_last_not_of(" \t\r") + 1 - first));
+}
+
 }  // namespace
 
 MeshPoints read_obj(std::string_view bytes, std::int64_t max_vertices) {
   VertexCollector vertices(max_vertices);
   TextCursor cursor(bytes);
-  std::string joined;
+  std::string joined, object, group;
   while (!cursor.at_end()) {
     std::string_view rest = logical_line(cursor, joined);
     const std::string_view keyword = next_word(rest);
     if (keyword == "v") {
       vertices.add(read_point(rest, cursor.line_number()));  // a fourth number is a weight, further ones a colour
+    } else if (keyword == "o" || keyword == "g") {
+      (keyword == "o" ? object : group) = trimmed(rest);
+      if (keyword == "o") group.clear();
+      vertices.begin_group(object, group);
     } else if (keyword == "f" || keyword == "l" || keyword == "p") {
       for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
         std::int64_t index = 0;

@@ -16,7 +16,8 @@ bool is_non_convex(const Node& line, std::string_view key) {
   const auto body = line.find(key);
   if (!body || !body->json().is_object()) return false;
   const auto type = body->json().find("type");
-  return type != body->json().end() && (*type == "compound" || *type == "star");
+  if (type == body->json().end()) return false;
+  return *type == "compound" || *type == "star" || is_mesh_of_parts(*body);
 }
 
 NamedBody read_nested(const Node& node, const Limits& limits, int depth);
@@ -76,13 +77,15 @@ NamedBody read_star(const Node& node, const Limits& limits) {
 NamedBody read_nested(const Node& node, const Limits& limits, int depth) {
   require_object(node);
   const std::string type = read_string(node.at("type"));
+  const bool parts = is_mesh_of_parts(node);
   const auto solid = type == "mesh" ? read_solid(node, limits) : nullptr;
-  if (type != "compound" && type != "star" && !solid) {
+  if (type != "compound" && type != "star" && !solid && !parts) {
     NamedShape shape = read_shape(node, limits);
     Compound compound(shape.shape);
     return {std::move(compound), {std::move(shape)}};
   }
-  NamedBody body = solid                ? parts_of_solid(*solid, node)
+  NamedBody body = parts                ? read_mesh_parts(node, limits)
+                   : solid              ? parts_of_solid(*solid, node)
                    : type == "compound" ? read_compound(node, limits, depth)
                                         : read_star(node, limits);
   if (const auto margin_node = node.find("margin")) {

@@ -135,6 +135,11 @@ NamedShape read_mesh(const Node& node, const Limits& limits) {
         "this query is for convex shapes; for solids there are depth, distance, intersect and, where their convex "
         "parts have exact corners, the queries of compounds");
   }
+  if (as && word == "parts") {
+    as->refuse(
+        "unsupported",
+        "this query is for convex shapes; for a mesh as a compound of its parts there are the queries of compounds");
+  }
   if (as && word == "sheet") {
     as->refuse("unsupported", "a sheet has no inside: contact_manifold alone takes one, as its \"a\" or \"b\"");
   }

@@ -42,7 +42,7 @@ struct NamedShape {
 [[nodiscard]] Pose read_pose(const Node& node);
 
 /// Names the words that "as" of a mesh may hold, for refusals.
-inline constexpr const char* kMeshWords = "must be \"solid\", \"hull\" or \"sheet\"";
+inline constexpr const char* kMeshWords = "must be \"solid\", \"hull\", \"parts\" or \"sheet\"";
 
 /// The ways in which a hull is made of a mesh.
 enum class MeshAs {

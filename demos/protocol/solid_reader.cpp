@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/mesh_groups.hpp"
 #include "pd/solid/solid_parts.hpp"
 #include "protocol/line/line_notes.hpp"
 
@@ -77,7 +78,7 @@ std::shared_ptr<const MeshSolid> read_solid(const Node& node, const Limits& limi
   SolidWish wish;
   if (const auto as = node.find("as")) {
     const std::string word = read_string(*as);
-    if (word == "hull" || word == "sheet") return nullptr;
+    if (word == "hull" || word == "sheet" || word == "parts") return nullptr;
     if (word != "solid") as->refuse("bad_value", kMeshWords);
     wish.always = true;
   }
@@ -133,6 +134,7 @@ std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& l
   if (const auto type = node.find("type")) {
     if (type->json() == "compound" || type->json() == "star") return nullptr;
   }
+  if (is_mesh_of_parts(node)) return nullptr;
   if (auto solid = read_solid(node, limits)) {
     node.remark("solid");
     return solid;
@@ -144,27 +146,91 @@ std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& l
   return std::make_shared<const MeshSolid>(*std::move(solid));
 }
 
-NamedBody parts_of_solid(const MeshSolid& solid, const Node& node) {
+bool is_mesh_of_parts(const Node& node) {
+  if (!is_mesh(node)) return false;
+  const auto as = node.json().find("as");
+  return as != node.json().end() && *as == "parts";
+}
+
+namespace {
+
+/// Corners of parts are no vertices of the file.
+NamedShape without_ids(const ConvexShape& shape) {
+  std::int32_t most = 0;
+  for (int v = 0; v < shape.polytope()->num_vertices(); ++v) {
+    most = std::max<std::int32_t>(most, shape.polytope()->caller_id(v));
+  }
+  return {shape, std::vector<std::int32_t>(static_cast<std::size_t>(most) + 1, -1)};
+}
+
+/// The convex parts of a solid, which are the solid exactly. @param name  of the solid, in front of the refusal
+std::vector<NamedShape> exact_parts(const MeshSolid& solid, const std::string& name, const std::string& way_out) {
   const auto parts = SolidParts::from_solid(solid);
-  const std::string way_out =
-      "; depth, distance and intersect of solids and convex polytopes need no parts, and \"as\":\"hull\" asks for the "
-      "convex hull";
-  if (!parts) node.refuse(to_string(parts.error().code), parts.error().message + way_out);
+  if (!parts) refuse(to_string(parts.error().code), name + parts.error().message + way_out, "");
   if (!parts->exact()) {
-    node.refuse("unsupported",
-                "this query needs the solid as convex parts, whose corners no doubles hold here" + way_out);
+    refuse("unsupported",
+           name + "this query needs the solid as convex parts, whose corners no doubles hold here" + way_out, "");
   }
-  node.remark("solid");
-  NamedBody body{parts->inner(), {}};
-  for (const Compound::Part& part : body.compound.parts()) {
-    // Corners of parts are no vertices of the file.
-    std::int32_t most = 0;
-    for (int v = 0; v < part.shape.polytope()->num_vertices(); ++v) {
-      most = std::max<std::int32_t>(most, part.shape.polytope()->caller_id(v));
+  std::vector<NamedShape> shapes;
+  for (const Compound::Part& part : parts->inner().parts()) shapes.push_back(without_ids(part.shape));
+  return shapes;
+}
+
+/// @throws Refusal limit_exceeded for more shapes than a compound holds.
+NamedBody union_of(std::vector<NamedShape> shapes) {
+  std::vector<Compound::Part> parts;
+  for (const NamedShape& shape : shapes) parts.push_back({shape.shape, Pose()});
+  auto compound = Compound::from_parts(std::move(parts));
+  if (!compound) refuse(to_string(compound.error().code), compound.error().message, "");
+  return {*std::move(compound), std::move(shapes)};
+}
+
+}  // namespace
+
+NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish) {
+  std::vector<MeshGroup> groups = groups_of(mesh);
+  if (groups.empty()) refuse("bad_faces", name + ": the file holds points and no faces, and so no parts", "");
+  const std::string way_out =
+      "; `pdepth decompose` writes convex parts with a stated error, and " + wish.hull_words + " asks for the hull";
+  std::vector<NamedShape> shapes;
+  for (MeshGroup& group : groups) {
+    const std::string full_name = name + ": " + group.name;
+    const MeshBody body = body_of_mesh(std::move(group.mesh), full_name, wish);
+    if (body.hull) {
+      shapes.push_back(*body.hull);
+      continue;
     }
-    body.parts.push_back({part.shape, std::vector<std::int32_t>(static_cast<std::size_t>(most) + 1, -1)});
+    for (NamedShape& shape : exact_parts(*body.solid, full_name + ": ", way_out)) shapes.push_back(std::move(shape));
   }
-  return body;
+  return union_of(std::move(shapes));
+}
+
+NamedBody read_mesh_parts(const Node& node, const Limits& limits) {
+  allow_only(node, {"type", "margin", "path", "as", "turn_faces"});
+  const Node path = node.at("path");
+  const std::string file = read_string(path);
+  if (!limits.files) path.refuse("unreadable_file", "files are not read here (--no-files)");
+  SolidWish wish;
+  wish.turn_faces = read_flag(node, "turn_faces");
+  try {
+    NamedBody body = parts_of_mesh(read_mesh_points(file, limits.max_vertices, kMaxMeshBytes), file, wish);
+    node.remark("parts");
+    return body;
+  } catch (const Refusal& refusal) {
+    path.refuse(refusal.code, refusal.message);
+  }
+}
+
+NamedBody parts_of_solid(const MeshSolid& solid, const Node& node) {
+  try {
+    NamedBody body = union_of(exact_parts(solid, "",
+                                          "; depth, distance and intersect of solids and convex polytopes need no "
+                                          "parts, and \"as\":\"hull\" asks for the convex hull"));
+    node.remark("solid");
+    return body;
+  } catch (const Refusal& refusal) {
+    node.refuse(refusal.code, refusal.message);
+  }
 }
 
 }  // namespace pd::query

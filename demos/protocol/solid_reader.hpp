@@ -38,6 +38,18 @@ struct SolidWish {
 /// Either body of a query about solids: a mesh's, or a convex polytope's without a margin; null for others.
 [[nodiscard]] std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& limits);
 
+/// True if a shape is a mesh whose groups are asked as the parts of a compound ("as":"parts").
+[[nodiscard]] bool is_mesh_of_parts(const Node& node);
+
+/// The union of the groups of a mesh file, each of which is convex or a solid with parts as `parts_of_solid` takes
+/// them.
+/// @throws Refusal as `body_of_mesh` and `parts_of_solid`, with the part that is at fault; bad_faces for a file without
+/// faces.
+[[nodiscard]] NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish);
+
+/// The same for a shape {"type":"mesh","as":"parts"}.
+[[nodiscard]] NamedBody read_mesh_parts(const Node& node, const Limits& limits);
+
 /// The union of the convex parts of a solid.
 /// @throws Refusal unsupported where the parts are not the solid exactly, limit_exceeded for too many of them.
 [[nodiscard]] NamedBody parts_of_solid(const MeshSolid& solid, const Node& node);

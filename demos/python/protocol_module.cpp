@@ -24,6 +24,7 @@
 #include "protocol/answer_line.hpp"
 #include "protocol/solid_reader.hpp"
 #include "python/arrays.hpp"
+#include "python/mesh_parts.hpp"
 #include "python/rows.hpp"
 #include "support/refusal.hpp"
 
@@ -280,6 +281,7 @@ PYBIND11_MODULE(_protocol, module) {
   module.def("answer_many", &pd::python::answer_many);
   module.def("mesh_points", &pd::python::mesh_points);
   module.def("solid_parts", &pd::python::solid_parts);
+  module.def("mesh_parts", &pd::python::mesh_parts);
   module.def("connected_parts", &pd::python::connected_parts);
   module.def("audit", &pd::python::audit);
 }

@@ -3,7 +3,9 @@
 /// hull is asked, the answer says so; `pdepth check` says why.
 #include <sys/wait.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -47,6 +49,84 @@ class MeshDoors : public ::testing::Test, protected TemporaryFolder {
   const std::string cloud_ = write("cloud.obj", std::string(kCube).substr(0, std::string(kCube).find('f')));
   const std::string open_ = write("open.obj", std::string(kCube).substr(0, std::string(kCube).rfind('f')));
 };
+
+/// The corners of a box as OBJ, and its faces for vertices numbered after `before`.
+std::string box_obj(const std::array<double, 6>& b, int before) {
+  std::string text;
+  for (int k = 0; k < 8; ++k) {
+    text += "v";
+    for (std::size_t i = 0; i < 3; ++i) text += " " + std::to_string(b[i + 3 * (static_cast<std::size_t>(k >> i & 1))]);
+    text += "\n";
+  }
+  for (const auto& face : {std::array{1, 3, 4, 2}, std::array{5, 6, 8, 7}, std::array{1, 2, 6, 5},
+                           std::array{3, 7, 8, 4}, std::array{1, 5, 7, 3}, std::array{2, 4, 8, 6}}) {
+    text += "f";
+    for (const int v : face) text += " " + std::to_string(before + v);
+    text += "\n";
+  }
+  return text;
+}
+
+/// The groups of a file are the parts of a compound: boxes that abut are no solid as they stand in the file.
+TEST_F(MeshDoors, GroupsAreAskedAsParts) {
+  const std::string two = "o foot\n" + box_obj({0, 0, 0, 2, 1, 1}, 0) + "o leg\n" + box_obj({0, 1, 0, 1, 2, 1}, 8);
+  const std::string file = write("parts.obj", two);
+  const std::string parts = R"(,"as":"parts")";
+  const Json apart = answer(depth_line(mesh(file, parts), mesh(cube_), R"("pose_b":{"translation":[1.1,1.1,0]})"));
+  EXPECT_EQ(apart.at("class"), "separated");
+  EXPECT_NEAR(apart.at("distance").get<double>(), 0.1, 1e-15);
+  EXPECT_EQ(apart.at("a_is"), "parts");
+  const Json deep = answer(depth_line(mesh(cube_), mesh(file, parts), R"("pose_a":{"translation":[0.5,0.75,0]})"));
+  EXPECT_EQ(deep.at("class"), "overlapping");
+  EXPECT_EQ(deep.at("b_is"), "parts");
+  // The file's own solid, the L, says the same.
+  EXPECT_EQ(deep.at("depth"),
+            answer(depth_line(mesh(cube_), mesh(angle_), R"("pose_a":{"translation":[0.5,0.75,0]})")).at("depth"));
+  // A part that is a solid is its convex parts; names stand beside numbers where a part is refused.
+  const std::string angle = write("angled.obj", "g bracket\n" + std::string(kAngle));
+  EXPECT_NEAR(answer(depth_line(mesh(angle, parts), mesh(cube_), R"("pose_b":{"translation":[1.1,1.1,0]})"))
+                  .at("distance")
+                  .get<double>(),
+              0.1, 1e-15);
+  const std::string lid = write("lid.obj", two.substr(0, two.rfind('f')));
+  const Json refused = answer(depth_line(mesh(lid, parts), mesh(cube_), "")).at("error");
+  EXPECT_EQ(refused.at("code"), "open_edge");
+  EXPECT_EQ(refused.at("where"), "a.path");
+  expect_words(refused.at("message"), {"part 1 (\"leg\")", "\"as\":\"hull\""});
+  const Outcome people = run("depth parts.obj cube.obj --parts --pose-b 1.1,1.1,0");
+  expect_words(people.out, {"parts.obj  (union of 2 convex parts)", "0.1"});
+  EXPECT_EQ(Json::parse(run("depth parts.obj box:1,1,1 --parts --json").out).value("a_is", ""), "parts");
+  EXPECT_EQ(run("depth parts.obj cube.obj --parts --hull").status, 2);
+  EXPECT_EQ(run("depth parts.obj cube.obj --parts --direction 0,0,1").status, 2);
+  const Json unsupported = answer(R"({"query":"width","a":)" + mesh(file, parts) + R"(,"b":)" + mesh(cube_) + "}");
+  EXPECT_TRUE(unsupported.contains("error"));
+  EXPECT_TRUE(answer(depth_line(mesh(cloud_, parts), mesh(cube_), "")).contains("error")) << "no faces, no parts";
+}
+
+/// A glTF shows one mesh at two places: each showing is a part.
+TEST_F(MeshDoors, MeshesOfAGltfAreParts) {
+  std::string bytes;
+  const auto put = [&](const auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (int k = 0; k < 8; ++k) {
+    for (int i = 0; i < 3; ++i) put(static_cast<float>(k >> i & 1));
+  }
+  for (const auto& f : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3},
+                        std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}}) {
+    for (const std::size_t k : {0U, 1U, 2U, 0U, 2U, 3U}) put(static_cast<std::uint16_t>(f[k]));
+  }
+  write("two.bin", bytes);
+  const std::string file = write("two.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+    "nodes":[{"mesh":0},{"mesh":0,"translation":[3,0,0]}],"buffers":[{"uri":"two.bin","byteLength":168}],
+    "bufferViews":[{"buffer":0,"byteLength":96},{"buffer":0,"byteOffset":96,"byteLength":72}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3"},
+                 {"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}],
+    "meshes":[{"name":"cube","primitives":[{"attributes":{"POSITION":0},"indices":1}]}]})");
+  // A cube between the two, whose hull holds the cube.
+  const std::string pose = R"("pose_b":{"translation":[1.5,0,0]})";
+  const Json apart = answer(depth_line(mesh(file, R"(,"as":"parts")"), mesh(cube_), pose));
+  EXPECT_EQ(apart.at("distance"), 0.5) << apart;
+  EXPECT_EQ(answer(depth_line(mesh(file, R"(,"as":"hull")"), mesh(cube_), pose)).at("class"), "overlapping");
+}
 
 TEST_F(MeshDoors, AMeshThatIsNotConvexIsAskedAsTheSolid) {
   // A cube in the notch of the L: the solids are 0.1 apart, their hulls overlap.

@@ -316,6 +316,11 @@ TEST_F(Program, DecomposeWritesConvexPartsWithACertifiedError) {
     ASSERT_EQ(volumes.size(), 2u);
     EXPECT_NEAR(volumes[0] + volumes[1], 3, 1e-12);
   }
+  const Json facts = Json::parse(run("decompose L.obj --error 1e-3 -o parts.obj --json").out);
+  EXPECT_EQ(facts.at("parts"), 2);
+  EXPECT_EQ(facts.at("error_reached"), true);
+  EXPECT_LE(facts.at("error").get<double>(), 1e-3);
+  EXPECT_EQ(facts.at("side"), "outer");
   ASSERT_EQ(run("decompose L.obj --error 20% -o one.obj").status, 0);
   EXPECT_EQ(group_volumes(read("one.obj")), std::vector<double>{3.5});
   const Outcome early = run("decompose L.obj --error 1e-3 --max-parts 1 -o early.obj");

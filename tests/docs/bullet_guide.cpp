@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <pd/bullet/compound.hpp>
 #include <pd/bullet/contact_recorder.hpp>
 #include <pd/bullet/debug_draw.hpp>
 #include <pd/bullet/install.hpp>
@@ -15,6 +16,8 @@
 #include <pd/bullet/solver_settings.hpp>
 #include <pd/bullet/stack_solver.hpp>
 #include <pd/bullet/world_queries.hpp>
+#include <pd/solid/convex_decomposition.hpp>
+#include <vector>
 
 namespace {
 
@@ -198,6 +201,30 @@ void record() {
   std::remove("contacts.jsonl");
 }
 
+void parts() {
+  const std::vector<pd::Vec3> points{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0},
+                                     {0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {1, 1, 1}, {1, 2, 1}, {0, 2, 1}};
+  const std::vector<int> offsets{0, 6, 12, 16, 20, 24, 28, 32, 36};
+  const std::vector<int> corners{5, 4, 3, 2, 1, 0, 6, 7, 8,  9, 10, 11, 0,  1,  7, 6, 1, 2,
+                                 8, 7, 2, 3, 9, 8, 3, 4, 10, 9, 4,  5,  11, 10, 5, 0, 6, 11};
+  // [parts]
+  const auto solid = pd::MeshSolid::from_faces({points, offsets, corners});  // face f: corners[offsets[f]] and on
+  if (!solid) std::exit(1);                                                  // solid.error() names the fault
+  const auto found = pd::decompose(*solid, {.error = 1e-3});
+  if (!found || !found->error_reached) std::exit(1);
+  const auto made = pd::compound_of(found->parts);  // owns the shapes: it must outlive the body
+  if (!made) std::exit(1);
+  const btScalar mass = 2;
+  const pd::Vec3 inertia = made->inertia.diagonal();  // for a mass of 1
+  btRigidBody body(mass, nullptr, made->shape.get(),
+                   mass * btVector3(btScalar(inertia.x()), btScalar(inertia.y()), btScalar(inertia.z())));
+  const pd::Vec3 centre = made->origin;  // where the body's origin stands in the mesh's frame
+  body.setWorldTransform(
+      btTransform(btQuaternion::getIdentity(), btVector3(btScalar(centre.x()), btScalar(centre.y()), 4)));
+  // [/parts]
+  expect(made->children.size() == 2, "an L is two convex parts");
+}
+
 struct CountingDrawer final : btIDebugDraw {
   int lines = 0;
   void drawLine(const btVector3&, const btVector3&, const btVector3&) override { ++lines; }
@@ -235,6 +262,7 @@ int main() {
   snapshot();
   queries();
   record();
+  parts();
   draw();
   std::printf("every sample of the guide holds\n");
 }

@@ -66,6 +66,45 @@ def test_polytopes_from_faces_halfspaces_and_meshes(tmp_path):
         pdepth.ConvexPolytope.from_mesh(file, hull=True)
 
 
+def box_lines(low, high, before):
+    corners = [[(low, high)[k >> i & 1][i] for i in range(3)] for k in range(8)]
+    faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]]
+    return [f"v {x} {y} {z}" for x, y, z in corners] + ["f " + " ".join(str(before + v) for v in f) for f in faces]
+
+
+def test_compounds_of_meshes(tmp_path):
+    # An L of two boxes: as groups of a file they abut, as one prism they are a solid.
+    groups = tmp_path / "groups.obj"
+    lines = ["o foot", *box_lines((0, 0, 0), (2, 1, 1), 0), "g leg", *box_lines((0, 1, 0), (1, 2, 1), 8)]
+    groups.write_text("\n".join(lines) + "\n")
+    base = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+    vertices = np.array([(x, y, z) for z in (0, 1) for x, y in base], float)
+    sides = [[i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i] for i in range(6)]
+    prism = SimpleNamespace(vertices=vertices, faces=[[5, 4, 3, 2, 1, 0], [6, 7, 8, 9, 10, 11], *sides])
+    cube = pdepth.Box([0.5, 0.5, 0.5])
+    notch, deep = pdepth.Pose(translation=[1.75, 1.75, 0.5]), pdepth.Pose(translation=[0.5, 1.0, 0.5])
+    for compound, reached in ((pdepth.Compound.from_mesh(groups), None), (pdepth.Compound.from_mesh(prism), None),
+                              (pdepth.Compound.from_mesh(prism, error=1e-6), 1e-6),
+                              (pdepth.Compound.from_mesh(prism, error=1e-6, side="inner"), 1e-6)):
+        assert (compound.error is None) == (reached is None) and (reached is None or 0 <= compound.error <= reached)
+        assert pdepth.depth(compound, cube, pose_b=notch).distance == pytest.approx(0.25, abs=1e-6)
+        assert pdepth.depth(compound, cube, pose_b=deep).depth == pytest.approx(1, abs=1e-5)
+        assert eval(repr(compound), vars(pdepth)) == compound
+    one = pdepth.Compound.from_mesh(prism, error=1.0, margin=0.25)
+    assert len(one._arguments["parts"]) == 1 and one.margin == 0.25
+    # The hull reaches the middle of the notch's diagonal, which lies 0.5 from both of the notch's faces.
+    assert 0.5 <= one.error < 0.51
+    groups.write_text("\n".join(lines[:-1]) + "\n")
+    with pytest.raises(pdepth.Refused, match="groups.obj.*leg") as refused:
+        pdepth.Compound.from_mesh(groups)
+    assert refused.value.code == "open_edge"
+    inside_out = SimpleNamespace(vertices=vertices, faces=[face[::-1] for face in prism.faces])
+    with pytest.raises(pdepth.Refused, match="turn_faces=True") as refused:
+        pdepth.Compound.from_mesh(inside_out, error=0.1)
+    assert refused.value.code == "inside_out"
+    assert pdepth.Compound.from_mesh(inside_out, error=0.1, turn_faces=True).error < 0.1
+
+
 BAD = [
     (lambda: pdepth.SphereHull([[0, 0, 0, 1], [1, 0, 0, -1]]), "spheres[1]", "bad_value", "-1"),
     (lambda: pdepth.ConvexPolytope(CUBE.T), "points", "bad_value", "transposed"),
@@ -84,6 +123,14 @@ BAD = [
     (lambda: pdepth.Compound([(pdepth.Sphere(1), np.diag([1, 1, -1, 1]))]), "parts[0].pose", "not_a_rotation", "reflection"),
     (lambda: pdepth.ConvexPolytope.from_mesh("no/such.obj"), "no/such.obj", "unreadable_file", ""),
     (lambda: pdepth.ConvexPolytope.from_mesh(3), "mesh", "bad_value", "int"),
+    (lambda: pdepth.Compound.from_mesh("no/such.obj", error=1), "no/such.obj", "unreadable_file", ""),
+    (lambda: pdepth.Compound.from_mesh(3), "mesh", "bad_value", "int"),
+    (lambda: pdepth.Compound.from_mesh(SimpleNamespace(vertices=CUBE, faces=[[0, 1, 8]])), "mesh.faces[0]", "out_of_range", ""),
+    (lambda: pdepth.Compound.from_mesh(SimpleNamespace(vertices=CUBE, faces=[]), error=1), "mesh", "bad_faces", ""),
+    (lambda: pdepth.Compound.from_mesh(SimpleNamespace(vertices=CUBE * np.nan, faces=[[0, 1, 2]])), "mesh", "non_finite", ""),
+    (lambda: pdepth.Compound.from_mesh("no/such.obj", error=-1), "error", "bad_value", "greater than 0"),
+    (lambda: pdepth.Compound.from_mesh("no/such.obj", error=np.nan), "error", "bad_value", ""),
+    (lambda: pdepth.Compound.from_mesh("no/such.obj", side="left"), "side", "bad_value", "left"),
     (lambda: pdepth.ConvexPolytope.from_mesh(SimpleNamespace(vertices=CUBE, faces=np.array([[0, 1, 2], [1, 2, 8]]))),
      "mesh.faces[1]", "out_of_range", "0 to 7"),
     (lambda: pdepth.ConvexPolytope.from_mesh(SimpleNamespace(vertices=CUBE, faces=np.eye(3))), "mesh.faces", "bad_value",

@@ -43,7 +43,7 @@ struct DecompositionSettings {
     std::int64_t steps = 0;
   };
   /// Told every so often; empty: nobody watches.
-  std::function<void(const Progress&)> watch;
+  std::function<void(const Progress&)> watch = {};
 };
 
 struct SolidDecomposition {
