@@ -183,7 +183,10 @@ PolygonFile read_polygon_file(const std::string& path, std::optional<double> fla
     const query::PolygonRings rings = read_json(read_text(file), limits);
     return {checked(rings), "", false, 0, rings.margin};
   } catch (const query::Refusal& refusal) {
-    query::refuse(refusal.code, path + ": " + refusal.message, refusal.where);
+    // The reader of lines says what a line of queries holds.
+    const bool no_object = refusal.message.starts_with("a line must be one JSON object");
+    const char* const right = "the file must be one JSON object, {\"outer\": [[x,y],...]}";
+    query::refuse(refusal.code, path + ": " + (no_object ? right : refusal.message), refusal.where);
   }
 }
 

@@ -146,6 +146,7 @@ struct Mistake {
 TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
   write("part.stl",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n# not the text of an STL\n");
+  write("list.json", "[[0,0],[1,0],[1,1]]\n");
   std::filesystem::create_directory(path() / "folder");
   constexpr Mistake kMistakes[] = {
       {"pdepth deph a b", R"(no subcommand "deph"; did you mean "depth"?)"},
@@ -178,6 +179,7 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
       {"pdepth query --threads many", R"(--threads: "many" is no number)"},
       {"pdepth query --record-above 3 lines.jsonl", "--record-above requires --record"},
       {"pdepth depth a b --direction 1,0,0 --method grid", "--direction and --method do not go together"},
+      {"pdepth polygon list.json list.json", R"(the file must be one JSON object, {"outer": [[x,y],...]})"},
       {"pdepth minimise none.jsonl --predicate true", "none.jsonl: No such file"},
       {"pdepth accuracy --recorder none", "none: no recorder"},
   };
