@@ -103,7 +103,7 @@ def on_nav(nav, config, files):
     if PLAY.exists():
         nav.items.append(Link("Play with two bodies", PLAY.name))
     if DOXYGEN:
-        nav.items.append(Link("Reference of the headers", "api/files.html"))
+        nav.items.append(Link("Reference of the headers", "api/index.html"))
     return nav
 
 
