@@ -25,8 +25,7 @@ struct BulletCompoundSettings {
 struct BulletCompound {
   std::vector<std::unique_ptr<btConvexHullShape>> children;  ///< in the order of the parts
   std::unique_ptr<btCompoundShape> shape;
-  /// Where the shape's origin stands in the parts' frame: a body at x in the parts' frame stands at x - origin in the
-  /// shape's.
+  /// The shape's origin in the parts' frame. A body at x in the parts' frame stands at x - origin in the shape's frame.
   Vec3 origin = Vec3::Zero();
   double volume = 0;                   ///< the sum over the parts
   Vec3 centre_of_mass = Vec3::Zero();  ///< in the parts' frame
