@@ -20,7 +20,9 @@ function(pd_add_door name engine_target)
   set_target_properties(pd_${name} PROPERTIES OUTPUT_NAME pdepth_${name} EXPORT_NAME ${name})
   target_include_directories(pd_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-                                        PRIVATE src)
+                                        # All doors share code, also that which writes a contact record.
+                                        PRIVATE src ${PROJECT_SOURCE_DIR}/engine_glue/doors
+                                                ${PROJECT_SOURCE_DIR}/engine_glue/include)
   target_link_libraries(pd_${name} PUBLIC pd_core ${engine_target})
   pd_compile_options(pd_${name})
   pd_unity_by_folder(pd_${name})

@@ -39,6 +39,7 @@ SHOWN = {
     "engine_glue/README.md": "bullet.md",
     "engine_glue/mujoco/README.md": "mujoco.md",
     "engine_glue/fcl/README.md": "fcl.md",
+    "engine_glue/ode/README.md": "ode.md",
     "demos/audit/README.md": "accuracy.md",
     "demos/python/README.md": "python.md",
     "pd_core/README.md": "papers.md",

@@ -31,7 +31,7 @@ case ${engine} in
 esac
 cmake -S . -B "${build}" -G Ninja --log-level=ERROR "${pd_launcher[@]}" "-DCMAKE_CXX_COMPILER=${compiler}" \
   -DCMAKE_BUILD_TYPE=Release '-DCMAKE_CXX_FLAGS_RELEASE=-O1 -g1' "-DCMAKE_CXX_FLAGS=${coverage} ${sanitizers} -fno-omit-frame-pointer" \
-  -DCMAKE_UNITY_BUILD=ON -DPD_PRECOMPILED_HEADERS=OFF -DPD_FUZZ=ON -DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_RENDER=OFF \
+  -DCMAKE_UNITY_BUILD=ON -DPD_PRECOMPILED_HEADERS=OFF -DPD_FUZZ=ON -DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_RENDER=OFF \
   -DPD_WITH_PYTHON=OFF -DPD_WITH_BENCH=OFF
 cmake --build "${build}" --target "${targets[@]/#/fuzz_}"
 

@@ -17,7 +17,8 @@
 #   6. demos/python stands on the core, the renderer and the demos' libraries (protocol, mesh, audit, support); nobody includes it.
 #   7. engine_glue/src stands in rooms, lowest first in glue_rooms; each includes itself and those named in rooms_under_* below.
 #   8. A door to another engine than Bullet stands beside engine_glue/src in a folder of its own (engine_glue/mujoco): it includes
-#      its own files, its engine, the core's public headers and engine_glue's pd/record. Nobody else includes that engine but tests.
+#      its own files, its engine, the core's public headers, engine_glue's pd/record and engine_glue/doors, which all doors share.
+#      Nobody else includes that engine but tests.
 # With -DGRAPH=<file> it also writes those arrows, their number of includes beside them, for Graphviz.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)  # names of files are relative to it
@@ -62,10 +63,11 @@ set(rooms_under_record shapes pieces pair record)
 set(rooms_under_stack stack)
 
 # Doors beside engine_glue/src, and the headers of their engines.
-set(glue_doors mujoco fcl)
+set(glue_doors mujoco fcl ode)
 set(engine_of_bullet "^(bt[A-Z]|Bullet|LinearMath)")
 set(engine_of_mujoco "^mujoco/")
 set(engine_of_fcl "^fcl/")
+set(engine_of_ode "^ode/")
 
 set_property(GLOBAL PROPERTY broken 0)
 function(report file line reason)

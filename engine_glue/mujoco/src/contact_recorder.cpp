@@ -11,7 +11,7 @@
 
 #include "collision_table.hpp"
 #include "geom_shape.hpp"
-#include "pair_contacts.hpp"
+#include "pair_record.hpp"
 #include "pd/record/record_shape.hpp"
 
 namespace pd {
@@ -19,12 +19,6 @@ namespace pd {
 namespace detail {
 
 namespace {
-
-/// One point of a contact, as the record takes it.
-struct RecordedPoint {
-  Vec3 on_a, on_b;
-  double depth;
-};
 
 pd_record_pose to_record(const mjData& data, int geom) {
   pd_record_pose pose{};
@@ -52,26 +46,14 @@ class RecordedModel {
       return;
     }
     record_.time = static_cast<double>(data.time);
-    const pd_record_pose pose_a = to_record(data, geom1), pose_b = to_record(data, geom2);
-    if (count <= 0) {
-      pd_record_contact(&record_, a->c_str(), &pose_a, b->c_str(), &pose_b, nullptr);
-      return;
-    }
-    std::vector<RecordedPoint> points;  // stay where the report points to
-    int deepest = 0;
+    std::vector<RecordedPoint> points;
     for (int i = 0; i < count; ++i) {
       const CollisionContact& contact = contacts[i];
       const Vec3 normal = vector_of(normal_of(contact)), middle = vector_of(contact.pos);
       const auto half = static_cast<double>(contact.dist) / 2;
-      points.push_back({middle - half * normal, middle + half * normal, -static_cast<double>(contact.dist)});
-      if (contact.dist < contacts[deepest].dist) deepest = i;
+      points.push_back({middle - half * normal, middle + half * normal, -2 * half, -normal});
     }
-    std::vector<pd_record_point> written;
-    for (const RecordedPoint& p : points) written.push_back({p.on_a.data(), p.on_b.data(), p.depth});
-    const Vec3 normal = -vector_of(normal_of(contacts[deepest]));
-    const pd_record_report report{points[static_cast<std::size_t>(deepest)].depth, normal.data(), written.data(),
-                                  written.size()};
-    pd_record_contact(&record_, a->c_str(), &pose_a, b->c_str(), &pose_b, &report);
+    record_pair(record_, {a->c_str(), to_record(data, geom1)}, {b->c_str(), to_record(data, geom2)}, points);
   }
 
   bool close() {

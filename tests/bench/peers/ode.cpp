@@ -5,6 +5,9 @@
 #include <array>
 
 #include "bench/peers/solver.hpp"
+#ifdef PD_BENCH_WITH_ODE_DOOR
+#include "pd/ode/install.hpp"
+#endif
 
 namespace pd::bench {
 
@@ -31,8 +34,16 @@ struct OdeHull {
     }
     geom = dCreateConvex(nullptr, planes.data(), static_cast<unsigned int>(polytope.num_facets()), points.data(),
                          static_cast<unsigned int>(polytope.num_vertices()), polygons.data());
+#ifdef PD_BENCH_WITH_ODE_DOOR
+    ode_convex(geom, points.data(), static_cast<unsigned int>(polytope.num_vertices()));
+#endif
   }
-  ~OdeHull() { dGeomDestroy(geom); }
+  ~OdeHull() {
+#ifdef PD_BENCH_WITH_ODE_DOOR
+    forget_ode_convex(geom);
+#endif
+    dGeomDestroy(geom);
+  }
   OdeHull(const OdeHull&) = delete;
   OdeHull& operator=(const OdeHull&) = delete;
 
@@ -77,17 +88,34 @@ class OdeAttempt final : public Attempt {
 
 class OdeSolver final : public Solver {
  public:
-  OdeSolver() { dInitODE2(0); }
+  /// @param through_door  pdepth's contacts, by its door into ODE
+  explicit OdeSolver(bool through_door) : through_door_(through_door) { dInitODE2(0); }
   ~OdeSolver() override { dCloseODE(); }
-  [[nodiscard]] std::string_view name() const override { return kOde; }
+  [[nodiscard]] std::string_view name() const override { return through_door_ ? kOdeByPdepth : kOde; }
   [[nodiscard]] Precision precision() const override { return Precision::binary64; }
   [[nodiscard]] std::unique_ptr<Attempt> prepare(const Bodies& bodies) override {
+#ifdef PD_BENCH_WITH_ODE_DOOR
+    // A run asks one solver: the table is not changed back and forth.
+    if (through_door_ != installed_) {
+      installed_ = through_door_ && install_ode().has_value();
+      if (!through_door_) uninstall_ode();
+    }
+#endif
     return std::make_unique<OdeAttempt>(bodies);
   }
+
+ private:
+  bool through_door_;
+  static inline bool installed_ = false;  ///< in the table, which belongs to the process
 };
 
 }  // namespace
 
-void add_ode(Solvers& solvers) { solvers.push_back(std::make_unique<OdeSolver>()); }
+void add_ode(Solvers& solvers) {
+  solvers.push_back(std::make_unique<OdeSolver>(false));
+#ifdef PD_BENCH_WITH_ODE_DOOR
+  solvers.push_back(std::make_unique<OdeSolver>(true));
+#endif
+}
 
 }  // namespace pd::bench

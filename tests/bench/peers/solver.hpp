@@ -66,6 +66,7 @@ inline constexpr std::string_view kBulletEpa = "bullet-epa";
 inline constexpr std::string_view kBulletGjk = "bullet-gjk";
 inline constexpr std::string_view kFclDistance = "fcl-distance";
 inline constexpr std::string_view kOde = "ode";
+inline constexpr std::string_view kOdeByPdepth = "ode-pdepth";  ///< through `pd::install_ode`
 
 /// Vertices of the hull in its canonical order.
 [[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);

@@ -70,7 +70,7 @@ void move_origin(scenes::Points& points, Pose& pose) {
 
 std::optional<CorpusPair> corpus_pair(scenes::PointPair pair, const Solver& solver) {
   const Precision precision = solver.precision();
-  if (solver.name() == kOde) {
+  if (solver.name().starts_with(kOde)) {
     move_origin(pair.a, pair.pose_a);
     move_origin(pair.b, pair.pose_b);
   }
@@ -81,7 +81,7 @@ std::optional<CorpusPair> corpus_pair(scenes::PointPair pair, const Solver& solv
   auto b = ConvexPolytope::from_points(pair.b);
   // The families hold sizes that no float holds, and flat bodies, which ODE and FCL do not take as hulls.
   if (!a || !b) return std::nullopt;
-  const bool needs_solids = solver.name() == kOde || solver.name().starts_with("fcl");
+  const bool needs_solids = solver.name().starts_with(kOde) || solver.name().starts_with("fcl");
   if (needs_solids && (a->affine_dimension() < 3 || b->affine_dimension() < 3)) return std::nullopt;
   const Pose pose_a = rounded(pair.pose_a, precision);
   const Pose pose_b = rounded(pair.pose_b, precision);
