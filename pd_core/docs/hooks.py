@@ -94,7 +94,7 @@ def on_files(files, config):
         page = files.get_file_from_path(name)
         if page:
             files.remove(page)
-    for picture in sorted((ROOT / "demos/pictures").glob("*.png")):
+    for picture in sorted(path for ending in ("png", "webp") for path in (ROOT / "demos/pictures").glob(f"*.{ending}")):
         path = picture.relative_to(ROOT).as_posix()
         files.append(File(path, str(ROOT), config["site_dir"], config["use_directory_urls"]))
     return files
@@ -197,6 +197,8 @@ def linked_from(text, folder, page):
             raise PluginError(f"{page}: {target} names nothing (looked for {path})")
         if picture:
             return f"![{words}]({path})"
+        if re.match(r"pd_core/docs/pages/\w+\.md$", path):
+            return f"[{words}]({posixpath.basename(path)}{'#' + anchor if anchor else ''})"
         if path in SHOWN and SHOWN[path] not in left_out():
             return f"[{words}]({SHOWN[path]}{'#' + anchor if anchor else ''})"
         return words if words.strip("`") == path else f"{words} (`{path}`)"

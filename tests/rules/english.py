@@ -1,7 +1,7 @@
 """Counts what makes English hard to read, in documents, public headers and docstrings: `english.py ROOT [--list]`.
 
 Counted are comments that begin with a word that no sentence should begin with, sentences of more than 35 words, and decimals
-without a leading zero. Each count has a limit below. The limits only go down.
+without a leading zero. Each count has a limit below. The limits only go down. A page that readers meet has a limit of words, too.
 """
 import ast
 import re
@@ -10,6 +10,10 @@ import sys
 from pathlib import Path
 
 LIMITS = {"openings": 0, "long sentences": 13, "decimals": 0}
+# A guide is read in one sitting. Other pages of the site are guides.
+PAGES = {"README.md": 1000, "engine_glue/README.md": 1800, "engine_glue/mujoco/README.md": 600, "engine_glue/fcl/README.md": 600,
+         "demos/python/README.md": 1500}
+GUIDES, GUIDE = "pd_core/docs/pages/", 1500
 OPENING = re.compile(r"(Of|As|The same|What|Whether|Where)\b")
 DECIMAL = re.compile(r"(?<![\w.\])}/*-])-?\.\d")
 MARK = re.compile(r"^\s*//[/!]?<?\s?|\s+//[/!]?<\s?")
@@ -97,6 +101,12 @@ def main(root, listed):
             if listed:
                 print(f"{name}:{line}: {kind}: {shown}")
     over = [kind for kind in LIMITS if counts[kind] > LIMITS[kind]]
+    for name in documents(root):
+        limit = PAGES.get(name, GUIDE if name.startswith(GUIDES) else None)
+        length = len((root / name).read_text().split())
+        if limit and length > limit:
+            over.append(name)
+            print(f"{name}: {length} words, at most {limit}")
     for kind, count in counts.items():
         print(f"{kind}: {count}, at most {LIMITS[kind]}")
     print(f"in {words} words of documents, public headers and docstrings")
