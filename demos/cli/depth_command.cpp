@@ -366,9 +366,7 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
 void print_parts(const DepthArguments& arguments, const query::BodyPair& pair, const UnionDepth& result,
                  std::int64_t nanoseconds) {
   const auto print_union = [](std::string_view name, const std::string& word, const query::NamedBody& body) {
-    const std::size_t count = body.parts.size();
-    print_row(name, fmt::format("{}  (union of {} convex part{})", word == "-" ? "standard input" : word, count,
-                                count == 1 ? "" : "s"));
+    print_row(name, fmt::format("{}  (convex parts: {})", word == "-" ? "standard input" : word, body.parts.size()));
   };
   fmt::print("\n");
   print_union("A", arguments.file_a, pair.a);
@@ -388,10 +386,8 @@ void print_parts(const DepthArguments& arguments, const query::BodyPair& pair, c
 
 /// --parts: the groups of files as unions.
 int run_parts(const DepthArguments& arguments) {
-  if (arguments.method != "auto") query::refuse("unsupported", "--method: unions are answered by auto", "");
-  if (!arguments.picture.empty() || !arguments.trace.empty() || !arguments.direction.empty()) {
-    query::refuse("unsupported", "--picture, --trace and --direction are for convex bodies here, and not for --parts",
-                  "");
+  if (arguments.method != "auto" || !(arguments.picture + arguments.trace + arguments.direction).empty()) {
+    query::refuse("unsupported", "--parts takes neither --method nor --picture, --trace and --direction", "");
   }
   const auto [a, b] = bodies_of(arguments);
   const query::BodyPair pair{read_parts_argument(a), read_parts_argument(b), parse_pose(arguments.pose_a, "--pose-a"),

@@ -94,7 +94,7 @@ TEST_F(MeshDoors, GroupsAreAskedAsParts) {
   EXPECT_EQ(refused.at("where"), "a.path");
   expect_words(refused.at("message"), {"part 1 (\"leg\")", "\"as\":\"hull\""});
   const Outcome people = run("depth parts.obj cube.obj --parts --pose-b 1.1,1.1,0");
-  expect_words(people.out, {"parts.obj  (union of 2 convex parts)", "0.1"});
+  expect_words(people.out, {"parts.obj  (convex parts: 2)", "0.1"});
   EXPECT_EQ(Json::parse(run("depth parts.obj box:1,1,1 --parts --json").out).value("a_is", ""), "parts");
   EXPECT_EQ(run("depth parts.obj cube.obj --parts --hull").status, 2);
   EXPECT_EQ(run("depth parts.obj cube.obj --parts --direction 0,0,1").status, 2);
