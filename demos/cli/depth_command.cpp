@@ -20,9 +20,9 @@
 #include "protocol/solid_queries.hpp"
 #include "protocol/union_queries.hpp"
 #include "support/complain.hpp"
+#include "usage.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "difference.hpp"
-#include "usage.hpp"
 #endif
 
 namespace pd::cli {
