@@ -17,9 +17,9 @@
 #include "protocol/pair_reader.hpp"
 #include "protocol/polygon_answer.hpp"
 #include "support/complain.hpp"
+#include "usage.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/polygon_picture.hpp"
-#include "usage.hpp"
 #endif
 
 namespace pd::cli {

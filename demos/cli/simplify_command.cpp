@@ -20,9 +20,9 @@
 #include "protocol/pair_reader.hpp"
 #include "support/complain.hpp"
 #include "support/refusal.hpp"
+#include "usage.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "support/simplify_picture.hpp"
-#include "usage.hpp"
 #endif
 
 namespace pd::cli {
