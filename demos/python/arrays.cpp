@@ -114,7 +114,9 @@ void use_refused(const py::object& exception_class) {
     try {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const Refused& error) {
-      const py::object instance = refused(error.where + ": " + error.message + " (" + error.code + ")");
+      const std::string place = error.where + ": ";
+      const bool placed = error.message.starts_with(place);  // the reader of a file names the file
+      const py::object instance = refused((placed ? "" : place) + error.message + " (" + error.code + ")");
       instance.attr("code") = error.code;
       instance.attr("where") = error.where;
       PyErr_SetObject(refused.ptr(), instance.ptr());

@@ -158,3 +158,9 @@ def test_strided_and_narrow_arrays_mean_the_same_numbers():
     for points in (wide[:, ::2], np.asfortranarray(CUBE), CUBE.astype(np.float32), CUBE.astype(int), CUBE.astype(">f8"),
                    CUBE.tolist()):
         assert np.array_equal(pdepth.ConvexPolytope(points).vertices, CUBE)
+
+
+def test_a_missing_file_is_named_once(tmp_path):
+    with pytest.raises(pdepth.Refused) as refused:
+        pdepth.ConvexPolytope.from_mesh(tmp_path / "none.obj")
+    assert str(refused.value) == f"{tmp_path / 'none.obj'}: there is no such file (unreadable_file)"
