@@ -1,4 +1,4 @@
-// build.mjs MODULES FOLDER: makes the npm package around pdepth.wasm and pdepth-convex.wasm, which lie in the folder MODULES, and prints
+// build.mjs MODULES FOLDER: makes the npm package around pdepth.wasm, pdepth-convex.wasm and pdepth-lines.wasm of the folder MODULES, and prints
 // the sizes in its last line.
 //
 // module.js, shapes.js and queries.js are parts of one text, in this order. It becomes an ES module beside the binary, a classic
@@ -16,7 +16,7 @@ const out = join(resolve(folder), 'package');
 rmSync(out, {recursive: true, force: true});
 mkdirSync(out, {recursive: true});
 
-const [binary, convex] = ['pdepth.wasm', 'pdepth-convex.wasm'].map(name => readFileSync(join(modules, name)));
+const [binary, convex, lines] = ['pdepth.wasm', 'pdepth-convex.wasm', 'pdepth-lines.wasm'].map(name => readFileSync(join(modules, name)));
 const text = ['module.js', 'shapes.js', 'queries.js'].map(name => readFileSync(join(here, name), 'utf8')).join('\n');
 const names = [...text.matchAll(/^export (?:async )?(?:class|function) (\w+)/gm)].map(found => found[1]);
 const gzipped = bytes => gzipSync(bytes, {level: 9});
@@ -24,18 +24,18 @@ const packed = gzipped(binary);
 
 writeFileSync(join(out, 'pdepth.wasm'), binary);
 writeFileSync(join(out, 'pdepth-convex.wasm'), convex);
+writeFileSync(join(out, 'pdepth-lines.wasm'), lines);
 // Each module has a script of its own, so that a program can hold both; their shapes do not mix.
 for (const name of ['pdepth', 'pdepth-convex']) writeFileSync(join(out, `${name}.js`), text);
 const loader = name => `import {start} from './${name}.js';
 export * from './${name}.js';
 
-const address = new URL('${name}.wasm', import.meta.url);
-if (address.protocol === 'file:' && typeof process !== 'undefined' && process.versions?.node) {
-  const {readFile} = await import('node:fs/promises');
-  await start(await readFile(address));
-} else {
-  await start(await fetch(address));
+async function load(name) {
+  const address = new URL(name, import.meta.url);
+  if (address.protocol !== 'file:' || typeof process === 'undefined' || !process.versions?.node) return fetch(address);
+  return (await import('node:fs/promises')).readFile(address);
 }
+await start(await load('${name}.wasm'), () => load('pdepth-lines.wasm'));
 /** Resolves when the library may be used; a module that imports this one need not wait for it. */
 export const ready = Promise.resolve();
 `;
@@ -70,4 +70,5 @@ try {
 const kilobytes = size => `${(size / 1000).toFixed(0)} kB`;
 console.log(`${tarball}: module ${kilobytes(binary.length)}, gzipped ${kilobytes(packed.length)}; ` +
             `for convex bodies ${kilobytes(convex.length)}, gzipped ${kilobytes(gzipped(convex).length)}; ` +
+            `for lines ${kilobytes(lines.length)}, gzipped ${kilobytes(gzipped(lines).length)}; ` +
             `single file gzipped ${kilobytes(gzipped(readFileSync(join(out, 'single.js'))).length)}`);

@@ -37,8 +37,18 @@ export class PdepthError extends Error {
 
 /** Resolves when the library may be used. Modules that import it wait by themselves; scripts write `await pdepth.ready`. */
 export const ready: Promise<void>;
-/** Starts the library from bytes, a compiled module or a response. For "pdepth/core" in hosts that load binaries in a way of their own. */
-export function start(source: BufferSource | WebAssembly.Module | Response): Promise<void>;
+/** What a module is made from. */
+export type ModuleSource = BufferSource | WebAssembly.Module | Response;
+/**
+ * Starts the library from bytes, a compiled module or a response. For "pdepth/core" in hosts that load binaries in a way of their own.
+ * @param lines returns such a source of pdepth-lines.wasm, which the first {@link query} needs
+ */
+export function start(source: ModuleSource, lines?: () => ModuleSource | Promise<ModuleSource>): Promise<void>;
+/**
+ * Answers a line of the protocol, as `pdepth query` does, without files: any of its queries, polygons and mesh-free bodies of 2 to 5 dimensions
+ * among them. The first call loads a module of its own. A line that cannot be answered is answered by an error object.
+ */
+export function query(line: string): Promise<string>;
 /** The version of the library, "0.1.0". */
 export function version(): string;
 

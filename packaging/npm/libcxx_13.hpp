@@ -5,11 +5,15 @@
 #pragma once
 
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <compare>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 /// WebAssembly rounds to nearest and keeps subnormals, so emscripten's `_mm_getcsr` never asks for a change back.
@@ -34,6 +38,21 @@ inline to_chars_result to_chars(char* first, char* last, double value) {
   if (last - first < size) return {last, errc::value_too_large};
   for (int i = 0; i < size; ++i) *first++ = text[static_cast<size_t>(i)];
   return {first, errc()};
+}
+
+/// Reads the longest decimal number. A number that no double is near leaves the value as it is.
+inline from_chars_result from_chars(const char* first, const char* last, double& value) {
+  const char* stop = first;
+  while (stop != last && string_view("0123456789+-.eEinfatyINFATY").find(*stop) != string_view::npos) ++stop;
+  const string text(first, stop);
+  char* end = nullptr;
+  errno = 0;
+  const double read = strtod(text.c_str(), &end);
+  if (end == text.c_str() || text[0] == '+') return {first, errc::invalid_argument};
+  const char* const rest = first + (end - text.c_str());
+  if (errno == ERANGE && (read == 0 || read == HUGE_VAL || read == -HUGE_VAL)) return {rest, errc::result_out_of_range};
+  value = read;
+  return {rest, errc()};
 }
 
 template <class T, size_t N>

@@ -28,6 +28,7 @@ const kUse = Symbol('handle');
 let wasm = null;  // exports of the module
 let at = null;    // places of fields: at.answer.depth
 let context = 0;
+let loadLines = null;
 let bytes, words, doubles, longs;  // views of the memory, which grows
 
 function see() {
@@ -46,23 +47,35 @@ function textAt(pointer) {
   return new TextDecoder().decode(bytes.slice(pointer, end));
 }
 
-/**
- * Starts the library around a compiled or instantiated module; for hosts that load it in a way of their own.
- * @param source  bytes of pdepth.wasm, a WebAssembly.Module, or a Response.
- */
-export async function start(source) {
-  if (wasm) return;
-  const imports = new Proxy({}, {get: () => new Proxy({}, {
-    // The module reads no file and no clock: what its C library could ask of a system is refused, by "function not supported".
-    get: (_, name) => name === 'emscripten_notify_memory_growth' ? () => {} : () => 52,
-    has: () => true,
-  })});
+/** Makes an instance from bytes, a WebAssembly.Module or a Response, and returns its exports. */
+async function instantiated(source) {
   let instance;
+  const given = {
+    emscripten_notify_memory_growth: () => {},
+    // Answers to lines tell how long they took.
+    clock_time_get: (clock, precision, out) => {
+      new DataView(instance.exports.memory.buffer).setBigUint64(out, BigInt(Math.round(1e6 * performance.now())), true);
+      return 0;
+    },
+  };
+  // The modules read no file: what their C library could ask of a system is refused, by "function not supported".
+  const imports = new Proxy({}, {get: () => new Proxy({}, {get: (_, name) => given[name] ?? (() => 52), has: () => true})});
   if (typeof Response !== 'undefined' && source instanceof Response) source = await source.arrayBuffer();
   if (source instanceof WebAssembly.Module) instance = await WebAssembly.instantiate(source, imports);
   else ({instance} = await WebAssembly.instantiate(source, imports));
-  wasm = instance.exports;
-  if (wasm._initialize) wasm._initialize();
+  if (instance.exports._initialize) instance.exports._initialize();
+  return instance.exports;
+}
+
+/**
+ * Starts the library around a compiled or instantiated module; for hosts that load it in a way of their own.
+ * @param source  bytes of pdepth.wasm, a WebAssembly.Module, or a Response.
+ * @param lines  a function that returns such a source of pdepth-lines.wasm, or a promise of it. The first `query` calls it.
+ */
+export async function start(source, lines) {
+  if (lines) loadLines = lines;
+  if (wasm) return;
+  wasm = await instantiated(source);
   at = {};
   see();
   for (let row = wasm.pdepth_web_layout() >> 2; words[row] !== 0; row += 2) {

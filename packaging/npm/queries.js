@@ -213,6 +213,32 @@ export function depthBatch({a, posesA, formA = 'quaternion', b, posesB, formB = 
   });
 }
 
+// ---- The line protocol, in a module of its own
+
+let lineModule = null;  // a promise of its exports
+
+/** Answers a line of the protocol by the command's own reader, without files. The first call loads the module. */
+export async function query(line) {
+  if (typeof line !== 'string') refuse('bad_value', 'must be a line of the protocol', 'line');
+  if (!loadLines) refuse('unsupported', 'no module of the line protocol was given to start()', 'line');
+  lineModule ??= Promise.resolve(loadLines()).then(instantiated);
+  try {
+    const lines = await lineModule, text = new TextEncoder().encode(line);
+    const place = lines.malloc(text.length + 16);
+    if (place === 0) refuse('out_of_memory', `no memory for a line of ${text.length} bytes`, 'line');
+    // The length of the answer stands before the line.
+    new Uint8Array(lines.memory.buffer).set(text, place + 8);
+    const answer = lines.pdepth_web_answer_line(place + 8, text.length, place);
+    const size = new DataView(lines.memory.buffer).getInt32(place, true);
+    lines.free(place);
+    return new TextDecoder().decode(new Uint8Array(lines.memory.buffer, answer, size));
+  } catch (error) {
+    if (error instanceof PdepthError) throw error;
+    lineModule = null;  // an instance that has trapped is not asked again
+    throw new PdepthError('internal', `the module of the line protocol failed: ${error.message}`, 'line');
+  }
+}
+
 /** The version of the library, "0.1.0". */
 export function version() {
   return call(() => {

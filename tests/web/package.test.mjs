@@ -7,7 +7,7 @@ import {pathToFileURL} from 'node:url';
 import {Worker} from 'node:worker_threads';
 import * as pdepth from 'pdepth';
 
-const {Box, Capsule, Compound, Cone, Convex, Halfspaces, HullOfSpheres, Pair, PdepthError, Shape, Sphere} = pdepth;
+const {Box, Capsule, Compound, Cone, Convex, Halfspaces, HullOfSpheres, Pair, PdepthError, Shape, Solid, Sphere} = pdepth;
 const cube = new Box([0.5, 0.5, 0.5]);
 
 function refused(step, code, place) {
@@ -61,6 +61,70 @@ test('shapes, and what they are made of', () => {
   assert.equal(pdepth.depth(tall, null, cube, [0, 0, 1.75]).depth, 0.25);
   assert.equal(new Halfspaces([1, 0, 0, 1, -1, 0, 0, 1, 0, 1, 0, 1, 0, -1, 0, 1, 0, 0, 1, 1, 0, 0, -1, 1]).describe().vertices, 8);
   assert.equal(new HullOfSpheres([[0, 0, 0, 1]]).describe().isConvex, true);
+});
+
+/** The surface of unit cells at whole numbers, as squares. */
+function cellMesh(cells) {
+  const points = [], faces = [], ids = new Map(), has = new Set(cells.map(String));
+  const vertex = at => { if (!ids.has(String(at))) ids.set(String(at), points.push(at) - 1); return ids.get(String(at)); };
+  for (const cell of cells) {
+    for (const axis of [0, 1, 2]) {
+      for (const side of [0, 1]) {
+        if (has.has(String(cell.map((x, k) => k === axis ? x + 2 * side - 1 : x)))) continue;
+        const loop = [[0, 0], [1, 0], [1, 1], [0, 1]].map(([u, v]) => vertex(cell.map((x, k) => x + (k === axis ? side : k === (axis + 1) % 3 ? u : v))));
+        faces.push(side === 1 ? loop : loop.reverse());
+      }
+    }
+  }
+  return {points, faces};
+}
+const ring = cellMesh([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [2, 1, 0], [0, 2, 0], [1, 2, 0], [2, 2, 0]]);
+
+test('solids of meshes', () => {
+  const solid = new Solid(ring.points, ring.faces), peg = new Box([0.25, 0.25, 2]);
+  assert.deepEqual([pdepth.depth(solid, null, peg, [1.5, 1.5, 0]).contact, pdepth.depth(solid, null, peg, [1.5, 1.5, 0]).distance], ['separated', 0.25]);
+  const deep = pdepth.depth(solid, null, peg, [1.125, 1.5, 0]);
+  assert.ok(deep.lower <= 0.125 && deep.upper >= 0.125 && deep.upper - deep.lower < 0.002, JSON.stringify(deep));
+  const stands = pdepth.depth(solid, null, cube, [0.5, 0.5, 1.5]);
+  assert.deepEqual([stands.contact, stands.featureA.kind, stands.featureA.part], ['touching', 'facet', 'mesh']);
+  assert.ok(solid.pointsOf(stands.featureA).length === 4 && solid.pointsOf(stands.featureA).every(v => ring.points[v][2] === 1));
+  const mesh = solid.surface('mesh');
+  assert.deepEqual([mesh.points.length, mesh.corners.length, solid.describe('mesh').facets], [3 * ring.points.length, 6 * ring.faces.length, 2 * ring.faces.length]);
+  assert.ok(solid.describe().parts > 1 && !solid.describe().isConvex);
+  assert.equal(pdepth.depth(solid, null, new Sphere(0.5), [1.5, 1.5, 0.5]).contact, 'touching');  // asked by its parts
+  assert.ok(Math.abs(pdepth.depth(solid.withMargin(0.125), null, peg, [1.5, 1.5, 0]).distance - 0.125) < 1e-12);
+  assert.equal(pdepth.depth(new Compound([{shape: solid, pose: [0, 0, 5]}]), null, cube, [0.5, 0.5, 4.75]).depth, 0.25);
+  assert.equal(pdepth.depthBatch({a: solid, b: [cube, peg], posesB: [[0.5, 0.5, 1.5], [1.5, 1.5, 0]], formB: 'position'}).distance[1], 0.25);
+  const triangles = new Uint32Array(ring.faces.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]));
+  assert.equal(pdepth.depth(new Solid(ring.points, triangles), null, peg, [1.5, 1.5, 0]).distance, 0.25);
+  assert.throws(() => new Solid(ring.points, ring.faces.slice(1)), {code: 'not_closed', message: /open_edge/});
+  const inside = ring.faces.map(loop => [...loop].reverse());
+  assert.throws(() => new Solid(ring.points, inside), {code: 'bad_faces', message: /inside_out/});
+  assert.equal(new Solid(ring.points, inside, {turnFaces: true}).describe('mesh').vertices, ring.points.length);
+  refused(() => new Solid(ring.points, inside, {turn: true}), 'bad_value', 'options.turn');
+  refused(() => new Solid(ring.points.map((p, i) => i === 4 ? [0, NaN, 0] : p), ring.faces), 'non_finite', 'points[4]');
+  refused(() => new Solid(ring.points, [[0, 1, 0.5]]), 'bad_value', 'faces[0]');
+  refused(() => new Solid(ring.points, new Uint16Array(4)), 'bad_value', 'faces');
+  refused(() => pdepth.manifold(solid, null, cube, null), 'unsupported', 'a');
+  refused(() => cube.describe('mesh'), 'out_of_range', 'part');
+  solid.free();
+  refused(() => pdepth.depth(solid, null, cube, null), 'freed', 'a');
+});
+test('lines of the protocol', async () => {
+  const ask = async line => JSON.parse(await pdepth.query(typeof line === 'string' ? line : JSON.stringify(line)));
+  const box = {type: 'box', half_extents: [0.5, 0.5, 0.5]};
+  const line = {id: 7, query: 'depth', a: box, b: box, pose_b: {translation: [0.75, 0, 0]}};
+  const found = await ask(line);
+  assert.deepEqual([found.id, found.class, found.depth, found.translation], [7, 'overlapping', 0.25, [-0.25, 0, 0]]);
+  const square = {outer: [[0, 0], [1, 0], [1, 1], [0, 1]]};
+  assert.equal((await ask({query: 'polygon_depth', p: square, q: square})).depth, 1);
+  assert.equal((await ask({query: 'width', a: box})).width, 1);
+  assert.equal((await ask('{"query":')).error.code, 'bad_json');
+  assert.equal((await ask({query: 'depth', a: {type: 'mesh', path: '/etc/passwd'}, b: box})).error.code, 'unreadable_file');
+  assert.equal((await ask({query: 'depth', a: {type: 'box', half_extents: [1, null, 1]}, b: box})).error.where, 'a.half_extents[1]');
+  assert.equal((await ask('['.repeat(100000))).error.code, 'limit_exceeded');
+  await assert.rejects(pdepth.query(7), {code: 'bad_value', place: 'line'});
+  assert.equal((await ask(line)).depth, 0.25);
 });
 
 test('wrong input is refused by name and place', () => {
@@ -184,6 +248,7 @@ test('the single file, and the module without a loader', async () => {
   const single = await import('pdepth/single');
   assert.equal(single.depth(new single.Box([1, 1, 1]), null, new single.Sphere(1), [1.5, 0, 0]).depth, 0.5);
   assert.equal(typeof globalThis.pdepth.depth, 'function');
+  await assert.rejects(single.query('{}'), {code: 'unsupported', place: 'line'});
   const core = await import(`${pathToFileURL(createRequire(import.meta.url).resolve('pdepth/core'))}?again`);
   assert.throws(() => new core.Sphere(1), {code: 'not_ready'});
 });

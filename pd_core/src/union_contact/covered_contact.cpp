@@ -174,7 +174,9 @@ class SideRule {
     bool looked = own.flat;
     const auto within =
         std::partition_point(facets.begin(), facets.end(), [&](const auto& facet) { return facet.first <= limit; });
-    ContactManifold points = first_free({facets.begin(), within}, foot, looked);
+    ContactManifold points = first_free(
+        std::span<const std::pair<double, int>>(facets).first(static_cast<std::size_t>(within - facets.begin())), foot,
+        looked);
     const ConvexPolytope* const other = side_.other.shape->polytope();
     const bool solids = !own.flat && other != nullptr && other->affine_dimension() == 3;
     if (points.count > 0 || !solids || depth < kSunk * threshold_) return points;
