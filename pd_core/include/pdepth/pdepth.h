@@ -451,7 +451,7 @@ typedef struct pdepth_support_answer {
 } pdepth_support_answer;
 
 /// The point of a body that is farthest along a direction of any length but zero.
-/// Errors: zero_direction, non_finite. Time: hill climbing, a few steps on round bodies.
+/// Errors: zero_direction, non_finite. Time: hill climbing, a few steps on round bodies, at worst every vertex.
 pdepth_status pdepth_support(pdepth_context* context, const pdepth_shape* shape, const pdepth_pose* pose,
                              const double direction[3], pdepth_support_answer* answer);
 
