@@ -3,13 +3,12 @@
 ///
 /// Bullet looks for contacts at the start of a step and then moves; fast bodies end the step deep inside each other, or
 /// past each other, and no contact tells. Here a step is tried, and the motion that it made is searched for first
-/// contacts (`time_of_impact`). Where there is one, the state is restored and advanced to just before it. Bullet then
-/// meets
-/// the pair at distance about 0 and answers with its own impulse. The rest of the step follows the same way.
+/// contacts (`time_of_impact`). If there is one, the state is restored and advanced to just before it. Bullet then
+/// meets the pair at distance about 0 and answers with its own impulse. The rest of the step follows in the same way.
 ///
-/// What is watched: convex shapes, compounds, meshes, heightfields and planes (their triangles that a swept box meets),
-/// kinematic bodies (moved by their share), links of multibodies. What is not: soft bodies, and shapes that
-/// `to_convex_shape` refuses.
+/// Watched are convex shapes, compounds, meshes, heightfields and planes (their triangles that a swept box meets),
+/// kinematic bodies (moved by their share) and links of multibodies. Soft bodies, and shapes that `to_convex_shape`
+/// refuses, are not watched.
 ///
 /// What others see: motion states, tick callbacks and actions (vehicles, character controllers) see accepted states
 /// only. The pre-tick callback is called once for each accepted part of a step, before it, with the time that is left;
@@ -41,10 +40,10 @@ struct RollbackSettings {
   /// The least part of a step, as a share of it: a contact nearer than that is run into, by at most the relative speed
   /// times that part.
   double least_part = 1.0 / 4096;
-  /// Bodies that no contact and no joint touches in a step, or part of one, move by the law of free flight: the
-  /// parabola of the forces on them, and the turning of a body without torque. Bullet's own steps are the first order
-  /// of it (`src/rollback/free_flight.hpp`). A ball dropped from 1 m is where Galilei has it, g h^2 / 2 a step above
-  /// Bullet's, and comes back as high. False: Bullet's own motion throughout.
+  /// True: bodies that no contact and no joint touches in a step, or in a part of it, move by the law of free flight.
+  /// They follow the parabola of the forces on them, and turn as a body without torque does. Bullet's own steps are
+  /// the first order of this motion (`src/rollback/free_flight.hpp`). A ball that is dropped is g h^2 / 2 a step above
+  /// Bullet's ball, for steps of h, and comes back to its height. False: Bullet's own motion throughout.
   bool exact_flight = true;
 };
 

@@ -21,9 +21,12 @@
 /// A box or cylinder whose margin reaches one of its half extents keeps its extents: its margin is taken as a
 /// thousandth less than the least of them.
 ///
-/// Refused as `ErrorCode::unsupported`, with the reason in the message: a multisphere of non-uniform scaling, a
-/// Minkowski sum with a smooth core or more than 65,536 vertex pairs, a cylinder without height, and convex types of
-/// the host's own that are not polyhedral.
+/// Refused as `ErrorCode::unsupported`, with the reason in the message:
+///
+/// - a multisphere that is scaled differently along its axes;
+/// - a Minkowski sum with a smooth core, or with more than 65,536 pairs of vertices;
+/// - a cylinder without height;
+/// - convex types of the host's own that are not polyhedral.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>

@@ -23,8 +23,8 @@ enum class Restored : unsigned char {
 /// In one line, for a log: what differs, and what to do.
 const char* message_of(Restored restored);
 
-/// Holds for the world it was taken of, as long as no body or joint is added or removed; body pointers are kept, not
-/// owned. May be restored any number of times, also after the solver is gone.
+/// Holds for the world that it was taken from, as long as no body or joint is added or removed. Pointers to bodies are
+/// kept, not owned. May be restored any number of times, also after the solver is gone.
 ///
 /// Bit for bit means: the same calls of `stepSimulation(h, 0)` after `restore` give the same transforms, velocities and
 /// contact points. The broadphase's trees and pairs belong to it (of btDbvtBroadphase; other broadphases are updated to
@@ -40,8 +40,7 @@ const char* message_of(Restored restored);
 class BulletSnapshot {
  public:
   /// @param solver  the one installed in the world: its pairs' warm starts are saved with their manifolds; nullptr
-  /// where
-  ///                none is installed.
+  ///                where none is installed.
   BulletSnapshot(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver* solver);
   ~BulletSnapshot();
   BulletSnapshot(BulletSnapshot&&) noexcept;

@@ -9,11 +9,11 @@
 namespace pd {
 
 struct StackSolverSettings {
-  /// Groups of more bodies than this are left to Bullet's sweeps; as it stands, no group is.
+  /// Groups of more bodies than this are left to Bullet's sweeps. By default no group is too large.
   int max_bodies = std::numeric_limits<int>::max();
 };
 
-/// Since construction or `reset_statistics`. A group is the bodies that contacts and joints connect.
+/// Counts since construction or `reset_statistics`. A group is a set of bodies that contacts and joints connect.
 struct StackSolverStatistics {
   long long groups = 0;          ///< groups that were solved
   long long factorisations = 0;  ///< a group of up to 40 bodies at rest takes one

@@ -25,7 +25,7 @@ struct ManifoldBuffers;
 struct ContactPoint {
   Vec3 position_a = Vec3::Zero();  ///< on A's surface
   Vec3 position_b = Vec3::Zero();  ///< on B's surface; position_b - position_a = depth * normal up to rounding
-  double depth = 0;                ///< > 0 inside, < 0 a gap
+  double depth = 0;                ///< > 0 inside, < 0 a gap.
   /// Stays the same number while the same two features meet (vertex of A, vertex of B, or a crossing of two edges), so
   /// that a host can carry impulses from frame to frame. Below 2^53; not ordered.
   std::int64_t feature_id = 0;
@@ -52,10 +52,9 @@ class ManifoldScratch {
 
 /// The depth that the deepest of the four points reports.
 enum class DeepestPoint : std::uint8_t {
-  at_depth,  ///< the bodies' own depth: what the lifted corner misses of it (rounding, merged corners) is added
-  /// The depth of its own corner, like the other points: an engine lets a face rest on the differences between its
-  /// points, which one point corrected alone would falsify (tests/bench/notebook/2026-11-26-worlds.md, "Contact
-  /// points").
+  at_depth,  ///< the bodies' own depth, also where rounding or merged corners put the lifted corner elsewhere.
+  /// The depth of its own corner, like the other points. An engine lets a face rest on the differences between its
+  /// points, and one point that is corrected alone would falsify them.
   as_lifted
 };
 

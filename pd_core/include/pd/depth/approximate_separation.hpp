@@ -54,9 +54,9 @@ struct ApproximateSeparation {
 /// is shot.
 ///
 /// @param delta  in (0, 1].
-/// @return ErrorCode::bad_value ("delta"); limit_exceeded ("delta") where the grid needs more than `max_rays`, known
-/// before the first of them; unsupported for smooth bodies ("") and another shot than portal or hierarchy ("shot");
-/// not_full_dimensional for hierarchies of flat bodies.
+/// @return ErrorCode::bad_value ("delta"). limit_exceeded ("delta") where the grid needs more than `max_rays`, which is
+/// known before the first of them. `unsupported` for smooth bodies (""), and for another shot than portal or
+/// hierarchy ("shot"). `not_full_dimensional` for hierarchies of flat bodies.
 /// Time O(m + n + S / delta), S a shot: about 2.7 / delta of them (geodesic) or 6.2 / delta.
 [[nodiscard]] Expected<ApproximateSeparation> approximate_separation(
     const PosedShape& a, const PosedShape& b, double delta, Scratch& scratch,

@@ -40,9 +40,9 @@ struct ApproximateWidth {
 /// @param points  [n x 3], n >= 1, finite, |coordinate| <= 1e150.
 /// @param delta   in (0, 1].
 /// @return ErrorCode::too_few_points, non_finite, out_of_range ("points[i]"), bad_value ("delta").
-/// Time: `dot_products_per_point` products a point (for delta = 1e-2 about 190 on a sphere, the worst case met, and 75
-/// to 85 on flattened spheres, cubes and needles), and the work on kernels of O(1 / delta) points, which does not
-/// depend on n.
+/// Time: `dot_products_per_point` products a point, and the work on kernels of O(1 / delta) points, which does not
+/// depend on n. Measured for delta = 1e-2: about 190 products on a sphere, the worst case met, and 75 to 85 on
+/// flattened spheres, cubes and needles.
 [[nodiscard]] Expected<ApproximateWidth> approximate_width(std::span<const Vec3> points, double delta,
                                                            Scratch& scratch);
 

@@ -3,10 +3,10 @@
 ///
 /// Let weights u >= 0 with sum 1 give the points mean c and covariance S, and let R^2 = max (p - c)^T S^-1 (p - c).
 /// The ellipsoid {(x - c)^T S^-1 (x - c) <= R^2} holds all points, and the hull of the points holds its image shrunk
-/// by R^2. Along any v the centred points have variance s^2 = v^T S v and extents a, b with a b >= s^2 (Bhatia and
-/// Davis), and a <= R s gives b >= s / R. So ratio = R^2, certified for any weights; the optimal ones have R^2 = d
-/// (Khachiyan's problem). Weights: Khachiyan's coordinate ascent with the away steps of Todd and Yildirim, on a core
-/// set that takes in the farthest points of each pass.
+/// by R^2. Along any v the centred points have variance s^2 = v^T S v. Their extents a, b along v obey a b >= s^2
+/// (Bhatia and Davis). From a <= R s follows b >= s / R. So ratio = R^2, certified for any weights; the optimal ones
+/// have R^2 = d (Khachiyan's problem). Weights: Khachiyan's coordinate ascent with the away steps of Todd and Yildirim,
+/// on a core set that takes in the farthest points of each pass.
 ///
 /// [TY] Todd, Yildirim, "On Khachiyan's algorithm for the computation of minimum-volume enclosing ellipsoids", 2007.
 #pragma once

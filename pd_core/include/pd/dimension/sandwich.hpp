@@ -60,8 +60,8 @@ struct FatteningMap {
 /// Lemmas 8, 9, 10: a map that fattens the Minkowski sum of bodies (or of their affine images) from their boxes
 /// alone, in O(1) for constantly many boxes. One body is the case of Lemma 9.
 ///
-/// The sum of the boxes is a zonotope, h_Z(v) = sum |<g_i, v>| over all half axes g_i. With Lewis weights
-/// w_i = sqrt(g_i^T M^-1 g_i), M = sum g_i g_i^T / w_i (which sum to d), Cauchy and Schwarz give
+/// The sum of the boxes is a zonotope, h_Z(v) = sum |<g_i, v>| over all half axes g_i. The Lewis weights are
+/// w_i = sqrt(g_i^T M^-1 g_i) with M = sum g_i g_i^T / w_i; they sum to d. Cauchy and Schwarz then give
 /// |v|_M <= h_Z(v) <= sqrt(d) |v|_M. This is a sqrt(d)-sandwiching ellipsoid for any number of boxes, and with it the
 /// gamma = 1 / (lambda sqrt(d)) of Lemma 9 (1 / d^2 for lambda = d^(3/2)). The weights are a fixed point to which
 /// iteration converges by a factor 2 a step; `outer_radius` is certified from those reached, within 1e-9.

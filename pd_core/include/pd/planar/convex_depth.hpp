@@ -1,9 +1,10 @@
 /// @file
 /// How deep two convex polygons stick in each other ([D] section 3). P stays, Q moves (the paper's convention).
 ///
-/// Let Q be displaced by y. sigma_d is the least t >= 0 for which Q displaced by y + t d / |d| has no interior point
-/// in common with P. sigma is its minimum over all directions. Both are about R = P + (-Q): where the ray from y along
-/// d leaves it ([D] equation (1)), and how far y is from its boundary (equation (2)).
+/// Let Q be displaced by y. The depth along d, sigma_d, is the least t >= 0 for which Q displaced by y + t d / |d| has
+/// no interior point in common with P. The depth, sigma, is the minimum of sigma_d over all directions. Both are about
+/// R = P + (-Q): where the ray from y along d leaves it ([D] equation (1)), and how far y is from its boundary
+/// (equation (2)).
 #pragma once
 
 #include <cstdint>

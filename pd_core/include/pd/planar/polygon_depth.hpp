@@ -45,7 +45,7 @@ struct PlanarMargins {
 
 struct PolygonDepth {
   PlanarContact contact = PlanarContact::separated;
-  /// The exact depth lies in [lower, upper], neighbouring doubles or one; depth is upper. All 0 unless overlapping.
+  /// lower <= exact depth <= upper, which are neighbouring doubles or equal. `depth` is `upper`. 0 unless overlapping.
   double depth = 0, lower = 0, upper = 0;
   Point2 translation = {0, 0};  ///< of Q, rounded; its length is the depth up to 4 ulp
   /// Unit vector along the translation. When touching it is a direction in which Q leaves P. It is {0, 0} when

@@ -1,9 +1,13 @@
 /// @file
 /// Does a mesh bound a solid? Faults by name and place, and how far the mesh is from its convex hull.
 ///
-/// Faces are loops of corners, counter-clockwise seen from outside. A mesh bounds a solid when it is closed (each edge
-/// has two faces), oriented (the two run along it in opposite directions), manifold (no edge has more faces, and the
-/// faces around a vertex form one ring), does not cross itself, and encloses a positive volume.
+/// Faces are loops of corners, counter-clockwise seen from outside. A mesh bounds a solid when all of these hold:
+///
+/// - closed: each edge has two faces;
+/// - oriented: the two faces run along their edge in opposite directions;
+/// - manifold: no edge has more than two faces, and the faces around a vertex form one ring;
+/// - it does not cross itself;
+/// - it encloses a positive volume.
 ///
 /// Points with equal coordinates are one vertex, whatever their indices: formats that repeat a vertex for each face
 /// keep their neighbourhoods. Topology and crossings are decided exactly, on the stored numbers.

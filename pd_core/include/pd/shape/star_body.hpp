@@ -26,10 +26,10 @@ class StarBody {
   /// The surface is checked exactly, not trusted. Every edge is met by two faces that run it in opposite ways. Every
   /// face has the centre strictly below it (seen from outside its corners turn counter-clockwise). A ray from the
   /// centre leaves through one face only.
-  /// @return ErrorCode::non_finite or out_of_range ("vertices[i]", "center"), too_few_points (fewer than four vertices
-  /// or faces), bad_faces ("faces[i]": an index out of range, a repeated vertex, a face that does not see the centre
-  /// from its inner side), not_closed ("faces[i]"); bad_faces ("faces") when the surface runs round the centre more
-  /// than once.
+  /// @return ErrorCode::non_finite or out_of_range ("vertices[i]", "center"). `too_few_points` for fewer than four
+  /// vertices or faces. `bad_faces` ("faces[i]") for an index out of range, a repeated vertex, or a face that does not
+  /// see the centre from its inner side. `bad_faces` ("faces") for a surface that runs around the centre more than
+  /// once. `not_closed` ("faces[i]").
   static Expected<StarBody> from_faces(std::span<const Vec3> vertices, std::span<const Triangle> faces,
                                        const Vec3& centre);
 

@@ -42,7 +42,7 @@ struct DecompositionSettings {
     std::int64_t open = 0;
     std::int64_t steps = 0;
   };
-  /// Told every so often; empty: nobody watches.
+  /// Called now and then while the work goes on; may be empty.
   std::function<void(const Progress&)> watch = {};
 };
 

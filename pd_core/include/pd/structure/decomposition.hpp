@@ -3,12 +3,14 @@
 ///
 /// A pair of edges (e of B, e' of A) is a facet of P exactly when the arcs of e and e' cross in the overlay of the
 /// normal diagrams of B and -A. F = {(A_1, B_1), ..., (A_u, B_u)} holds those pairs as few complete bipartite graphs:
-///   (C1) A_i (B_i) is a set of edges of A (of B);
-///   (C2) every pair of A_i x B_i is a facet of P;
-///   (C3) every edge-edge facet of P lies in some A_i x B_i;
-///   (C4) the lines of A_i and those of B_i are vertically separated (Lemma 2.3, when the origin lies in P);
-///   (C5) F = F_A + F_B, where F_A has O((m / 2^i) log m) pairs with 2^i <= |A_j| < 2^(i+1), whose |B_j| sum to
-///        O(n log n), for every i, and F_B the same with the roles exchanged.
+///
+/// - (C1) A_i (B_i) is a set of edges of A (of B).
+/// - (C2) Every pair of A_i x B_i is a facet of P.
+/// - (C3) Every edge-edge facet of P lies in some A_i x B_i.
+/// - (C4) The lines of A_i and those of B_i are vertically separated (Lemma 2.3, when the origin lies in P).
+/// - (C5) F = F_A + F_B. For every i, F_A has O((m / 2^i) log m) pairs with 2^i <= |A_j| < 2^(i+1), whose |B_j| sum to
+///   O(n log n). F_B is the same with the roles exchanged.
+///
 /// So sum(|A_i| + |B_i|) = O((m + n) log^2 (m + n)), although sum |A_i| |B_i| may be as large as m n.
 ///
 /// Departures: six charts on the faces of a cube take the place of two hemispheres, so that no arc is a ray. The
