@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "shape/support/polytope_support.hpp"
 #include "solid/part_merging.hpp"
 
 namespace pd::detail {
@@ -30,6 +31,11 @@ double hull_volume(const std::vector<Vec3>& points) {
   if (points.size() < 4) return 0;
   const auto hull = ConvexPolytope::from_points(points);
   return hull && hull->affine_dimension() == 3 ? volume_of(*hull) : 0;
+}
+
+/// The largest height of the hull above a plane, up to rounding.
+double rise_of(const ConvexPolytope& hull, const PlaneSet& planes, Side plane) {
+  return planes.height(plane, hull.vertex(support_vertex(hull, planes.normal(plane), -1)));
 }
 
 }  // namespace
@@ -64,11 +70,7 @@ double CellContents::largest_rise() const {
   const auto hull = ConvexPolytope::from_points(points_);
   if (!hull) return HUGE_VAL;
   double most = 0;
-  for (const PlanePolygon& face : here_.faces) {
-    for (int v = 0; v < hull->num_vertices(); ++v) {
-      most = std::max(most, cells_.planes().height(face.plane, hull->vertex(v)));
-    }
-  }
+  for (const PlanePolygon& face : here_.faces) most = std::max(most, rise_of(*hull, cells_.planes(), face.plane));
   return most;
 }
 
@@ -141,9 +143,7 @@ std::vector<Side> CellContents::planes_of_faces(const Vec3& worst) const {
   for (const PlanePolygon& face : here_.faces) {
     const auto [place, fresh] = known.try_emplace(face.plane.plane(), Candidate{face.plane, 0});
     if (fresh) {
-      for (int v = 0; hull && v < hull->num_vertices(); ++v) {
-        place->second.weight = std::max(place->second.weight, planes.height(face.plane, hull->vertex(v)));
-      }
+      if (hull) place->second.weight = std::max(0.0, rise_of(*hull, planes, face.plane));
       // No corner lies above the plane: it cuts nothing off.
       if (place->second.weight <= kOnPlane) place->second.weight = -1;
     }
@@ -193,13 +193,14 @@ std::vector<Side> CellContents::planes_across_axes(PlaneSet& planes, const Vec3&
   return sides;
 }
 
-std::optional<Side> CellContents::best_cut(PlaneSet& planes, const Vec3& worst) const {
+std::optional<Side> CellContents::best_cut(PlaneSet& planes, const Vec3& worst, std::int64_t& steps) const {
   std::vector<Side> sides = planes_of_faces(worst);
   for (const Side side : planes_across_axes(planes, worst)) sides.push_back(side);
   std::optional<Side> best;
   double least = HUGE_VAL;
   for (const Side side : sides) {
     const Sides parts = sides_of(planes, side);
+    steps += static_cast<std::int64_t>(parts.below.size() + parts.above.size());
     const double below = hull_volume(parts.below), above = hull_volume(parts.above);
     if (below <= 0 && above <= 0) continue;
     // Halves of like size make shorter ways to small ones; cuts through many faces make many pieces.

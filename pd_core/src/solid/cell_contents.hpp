@@ -3,6 +3,7 @@
 /// cut them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -33,7 +34,8 @@ class CellContents {
   /// The plane that leaves the smallest hulls on its two sides: a face's, or one across an axis. Nothing where no plane
   /// parts the corners.
   /// @param worst  a point that is far from the solid
-  [[nodiscard]] std::optional<Side> best_cut(PlaneSet& planes, const Vec3& worst) const;
+  /// @param steps  grows by the work, a microsecond or several each
+  [[nodiscard]] std::optional<Side> best_cut(PlaneSet& planes, const Vec3& worst, std::int64_t& steps) const;
 
  private:
   struct Sides;

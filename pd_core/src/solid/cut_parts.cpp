@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <utility>
 
@@ -34,13 +35,14 @@ class Cutting {
 
  protected:
   void cut() {
-    std::vector<SolidCell> open;
+    // The cells that were made first are cut first, so that work that ends early leaves cells of like size.
+    std::deque<SolidCell> open;
     open.push_back(cells_.whole());
     faces_ = open.back().faces;
     while (!open.empty()) {
       tell(open.size());
-      SolidCell here = std::move(open.back());
-      open.pop_back();
+      SolidCell here = std::move(open.front());
+      open.pop_front();
       const bool must_take = steps() >= settings_.max_steps ||
                              static_cast<std::int64_t>(parts_.size() + open.size()) + 1 >= settings_.max_parts;
       const std::optional<Side> plane = take_or_cut(here, must_take);
@@ -148,7 +150,7 @@ class OuterParts : public Cutting {
       if (!hull || hull->affine_dimension() < 3) outer = outer_of(contents);
       found = reach(outer ? outer->polytope : *hull, {settings_.error * (1 - 0x1p-30), 0, kStepsToCut});
       if (found.upper > settings_.error && !must_take) {
-        if (const auto plane = contents.best_cut(cells_.planes(), found.worst / scale())) return plane;
+        if (const auto plane = contents.best_cut(cells_.planes(), found.worst / scale(), steps_)) return plane;
       }
     }
     if (!outer) outer = outer_of(contents);
@@ -214,13 +216,14 @@ class InnerParts : public Cutting {
       if (!below) break;
       if (std::find(done.begin(), done.end(), face.plane) != done.end()) continue;
       done.push_back(face.plane);
+      steps_ += static_cast<std::int64_t>(below->facets().size());
       below = below->inside(cells_.planes(), face.plane);
     }
     Vec3 worst = points.front();
     std::optional<SolidPart> part;
     if (below) part = part_of(*below, points, worst);
     if (!must_take && !(part && part->error <= settings_.error)) {
-      if (const auto plane = contents.best_cut(cells_.planes(), worst / scale())) return plane;
+      if (const auto plane = contents.best_cut(cells_.planes(), worst / scale(), steps_)) return plane;
     }
     if (part) {
       parts_.push_back(*std::move(part));

@@ -17,6 +17,8 @@ namespace {
 constexpr double kShrink = 0x1p-32;
 /// A piece with a wall nearer to its middle is not shrunk: the shift would be some roundings of 2^-52 long.
 constexpr double kThin = 0x1p-13;
+/// Triangles that are cut by all walls of a piece at most.
+constexpr std::size_t kMostCut = 256;
 
 enum class Place : std::uint8_t { unknown, inside, outside };
 
@@ -99,6 +101,15 @@ class ShrunkPiece {
   [[nodiscard]] bool thick() const { return thick_; }
 
   [[nodiscard]] bool meets(const PosedTriangle& triangle) const {
+    // Most triangles lie above one halfspace as a whole, or below all of them, and need no polygon.
+    bool within = true;
+    for (std::size_t h = 0; h < normals_.size(); ++h) {
+      int above = 0;
+      for (std::size_t k = 0; k < 3; ++k) above += normals_[h].dot(triangle[k].x) - offsets_[h] > 0 ? 1 : 0;
+      if (above == 3) return false;
+      within = within && above == 0;
+    }
+    if (within) return true;
     std::vector<Vec3> polygon = {triangle[0].x, triangle[1].x, triangle[2].x};
     for (std::size_t h = 0; h < normals_.size() && !polygon.empty(); ++h) {
       polygon = clipped(polygon, [&](const Vec3& x) { return normals_[h].dot(x) - offsets_[h]; });
@@ -218,6 +229,13 @@ class ReachSearch {
     }
   }
 
+  /// True if a wall of the box has the whole triangle on its outer side.
+  static bool lies_beside(const PosedTriangle& triangle, const TriangleBox& box) {
+    const Vec3 low = triangle[0].x.cwiseMin(triangle[1].x).cwiseMin(triangle[2].x);
+    const Vec3 high = triangle[0].x.cwiseMax(triangle[1].x).cwiseMax(triangle[2].x);
+    return (low.array() > box.high.array()).any() || (high.array() < box.low.array()).any();
+  }
+
   [[nodiscard]] PosedTriangle corners(std::int32_t triangle) const { return alone_.corners(Body::a, triangle); }
 
   [[nodiscard]] bool is_inside(const Vec3& x) const {
@@ -232,6 +250,10 @@ class ReachSearch {
     ++steps_;
     const Vec3 middle = piece.middle();
     if (piece.place == Place::unknown) {
+      std::erase_if(piece.triangles, [&](std::int32_t t) { return lies_beside(corners(t), piece.box); });
+    }
+    // A piece that many triangles come near is hardly free of them: it is halved first.
+    if (piece.place == Place::unknown && piece.triangles.size() <= kMostCut) {
       const ShrunkPiece shrunk(piece, facets_, middle);
       if (shrunk.thick()) {
         std::erase_if(piece.triangles, [&](std::int32_t t) { return !shrunk.meets(corners(t)); });

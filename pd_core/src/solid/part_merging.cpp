@@ -46,7 +46,7 @@ class Merger {
   }
 
   std::vector<SolidPart> run() {
-    for (std::size_t j = 0; j < parts_.size(); ++j) add_pairs_before(j);
+    for (std::size_t j = 0; j < parts_.size() && rules_.goes_on(); ++j) add_pairs_before(j);
     while (!open_.empty() && rules_.goes_on()) {
       std::pop_heap(open_.begin(), open_.end(), MergingPair::after);
       MergingPair best = std::move(open_.back());
