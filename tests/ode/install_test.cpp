@@ -69,7 +69,8 @@ class OdeInstall : public testing::Test {
 };
 
 TEST_F(OdeInstall, OwnAnswersComeBackBitForBit) {
-  const auto geoms = one_of_each();
+  auto geoms = one_of_each();
+  for (const dGeomID geom : one_of_each()) geoms.push_back(geom);  // pairs of one class, too
   const std::vector<double> own = all_answers(geoms);
   ASSERT_GT(own.size(), 100u);
   const auto installed = install_ode();
@@ -86,6 +87,9 @@ TEST_F(OdeInstall, OwnAnswersComeBackBitForBit) {
   EXPECT_EQ(all_answers(geoms), own);
   uninstall_ode();
   EXPECT_EQ(all_answers(geoms), own);
+  const auto again = install_ode();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(*again, 20);
 }
 
 TEST_F(OdeInstall, OverridesOfOthersStayTheirs) {

@@ -88,7 +88,7 @@ void InstalledOde::put_or_put_back() {
       ours_[i] = stands_in_table(own);
       if (ours_[i]) dSetColliderOverride(own.first, own.second, &collide);
     } else if (ours_[i]) {
-      dSetColliderOverride(own.first, own.second, own.function);
+      put_back(own);
       ours_[i] = false;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 // ODE defines these outside of any namespace and declares them in no public header.
 int dCollideSphereSphere(dGeomID, dGeomID, int, dContactGeom*, int);
@@ -105,7 +106,21 @@ int collide_by_ode(dGeomID first, dGeomID second, int flags, dContactGeom* conta
   const int class1 = dGeomGetClass(first), class2 = dGeomGetClass(second);
   const auto own = std::find_if(own_colliders.begin(), own_colliders.end(),
                                 [&](const OwnCollider& o) { return o.first == class1 && o.second == class2; });
-  return own == own_colliders.end() ? 0 : own->function(first, second, flags, contacts, skip);
+  if (own == own_colliders.end()) return 0;
+  if (class1 != class2) return own->function(first, second, flags, contacts, skip);
+  // ODE calls an override of one class with its geoms exchanged, and exchanges the answer.
+  const int count = own->function(second, first, flags, contacts, skip);
+  for (int i = 0; i < count; ++i) {
+    dContactGeom& contact = contact_at(contacts, skip, i);
+    for (int k = 0; k < 3; ++k) contact.normal[k] = -contact.normal[k];
+    std::swap(contact.g1, contact.g2);
+    std::swap(contact.side1, contact.side2);
+  }
+  return count;
+}
+
+void put_back(const OwnCollider& own) {
+  dSetColliderOverride(own.first, own.second, own.first == own.second ? &collide_by_ode : own.function);
 }
 
 bool stands_in_table(const OwnCollider& own) {

@@ -19,8 +19,12 @@ struct OwnCollider {
 inline constexpr std::size_t kOwnColliders = 20;
 extern const std::array<OwnCollider, kOwnColliders> own_colliders;
 
-/// ODE's own contacts of a pair of these classes, in their order.
+/// ODE's own contacts of a pair of these classes, for a function that was put into the table: in the order in which ODE
+/// calls it.
 int collide_by_ode(dGeomID first, dGeomID second, int flags, dContactGeom* contacts, int skip);
+
+/// Lets ODE answer two classes as before any override, bit for bit.
+void put_back(const OwnCollider& own);
 
 /// True if `dCollide` answers two geoms that overlap as ODE's own collider does.
 [[nodiscard]] bool stands_in_table(const OwnCollider& own);
