@@ -1,22 +1,10 @@
 #include "shape/small_gauss_map.hpp"
 
-#include <algorithm>
-#include <limits>
-
 namespace pd::detail {
-
-namespace {
-
-/// A facet's distance from the centre errs, in units of the radius, by twice the error of its normal (16u) and by two
-/// products (3u each).
-constexpr double kCentreError = 0x1p-46;
-
-}  // namespace
 
 void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) {
   const auto vertex = [&](std::int32_t v) { return Vec3(s.x[v], s.y[v], s.z[v]); };
   out.facets = static_cast<std::uint8_t>(s.num_facets);
-  double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < SmallGaussMap::kFacetSlots; ++i) {
     const int f = i < s.num_facets ? i : 0;
     const Vec3& n = s.facet_normals[f];
@@ -25,9 +13,7 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
     out.nz[i] = n.z();
     const std::int32_t on = s.facet_vertices[s.facet_offsets[f]];
     out.height[i] = n.dot(vertex(on));
-    least = std::min(least, out.height[i] - n.dot(s.centre));
   }
-  out.inner_radius = std::max(0.0, least - kCentreError * s.radius);
   int count = 0;
   for (int h = 0; h < s.num_half_edges; ++h) {
     const HalfEdge& e = s.half_edges[h];

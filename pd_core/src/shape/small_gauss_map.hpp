@@ -26,7 +26,6 @@ struct SmallGaussMap {
   alignas(32) double nx[kFacetSlots], ny[kFacetSlots], nz[kFacetSlots], height[kFacetSlots];
   GaussEdge edge[kMostEdges];
   std::uint8_t facets, edges;
-  double inner_radius;  ///< of a ball round the body's centre that it holds, rounded down
 };
 
 /// What the hull builder lays out for solids of at most `kMostVertices` vertices.

@@ -130,7 +130,7 @@ TEST(Warm, LooksAtAFewFacesWhileBodiesMoveSlowly) {
   }
 }
 
-TEST(Warm, SmallSolidsGoOnFromFacetsThatWereNear) {
+TEST(Warm, SmallSolidsGoOnFromTheirSurface) {
   int frames = 0, warm = 0;
   for (const PairFamily family : {PairFamily::sphere, PairFamily::needle, PairFamily::slivers, PairFamily::clouds,
                                   PairFamily::prism, PairFamily::tilted_roofs, PairFamily::roofs, PairFamily::grid,

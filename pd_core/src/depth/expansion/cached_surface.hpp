@@ -78,41 +78,6 @@ struct WarmFacets {
   int pause = 0;
 };
 
-/// A facet of P for two solids of at most eight vertices, as GaussPiece (facets/gauss_sat_kernels.hpp) has it.
-struct WarmPiece {
-  double distance;               ///< of its plane from the origin, rounded down
-  std::int8_t facet_a, facet_b;  ///< -1: none
-  std::int8_t a[2], b[2];        ///< vertices
-};
-
-/// The facets of P that were near the origin when all were last looked at (facets/remembered_pieces.hpp).
-struct WarmPieces {
-  static constexpr int kMostVertices = 8;
-  static constexpr int kMostPieces = 16;
-
-  std::optional<ConvexPolytope> a, b;  ///< the very shapes
-  // Then: the vertices of -A and of B, turned, by coordinate; t_B - t_A.
-  double posed_a[3][kMostVertices];
-  double posed_b[3][kMostVertices];
-  Vec3 offset = Vec3::Zero();
-  VertexPair base{0, 0};      ///< a vertex of the nearest facet
-  Vec3 inner = Vec3::Zero();  ///< a point that every facet's plane had behind it ...
-  double clearance = 0;       ///< ... by this much at least
-  double beyond = 0;          ///< all facets that are not listed were at least so far
-  double largest = 0;         ///< |coordinate| of P
-  WarmPiece pieces[kMostPieces];
-  int count = 0;
-  int nearest = 0;  ///< of the pieces
-};
-
-/// Pairs of larger bodies do without.
-struct WarmSmallSolids {
-  std::vector<WarmPieces> pieces;  ///< one, as soon as there was something to remember
-  bool known = false;              ///< whether it still says something
-  int pause_length = 0;            ///< frames to go without a look at all facets after one that did not tell
-  int pause = 0;
-};
-
 /// What a WarmCertificate holds.
 struct WarmState {
   WarmFacets facets;  ///< first: bodies at rest read nothing else, and hosts may fetch it beforehand
@@ -128,7 +93,6 @@ struct WarmState {
   // Of bodies apart: the vertices of P around its point closest to the origin.
   VertexPair apart[3];
   int apart_count = 0;
-  WarmSmallSolids small;
   WarmSmoothPoints smooth;
 };
 

@@ -195,7 +195,6 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
   }
   if (beyond > 0) nearest.beyond = beyond - kGaussLowerError * reach;
   nearest.certified = true;
-  out.largest = found.largest;
   out.status = GaussSatStatus::certified;
   return out;
 }

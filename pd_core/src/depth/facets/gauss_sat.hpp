@@ -35,7 +35,6 @@ struct GaussSatDepth {
   /// The nearest facet, if it is certified. If the bodies are separated: the separating direction as the normal, and
   /// the piece across it, which is not known if its facet is -1.
   NearFacets nearest;
-  double largest = 0;  ///< |coordinate| of P; certified depths only
   /// A point of either body, relative to A's translation, if the point below the origin does not lie inside of the
   /// winner alone: faces of both bodies meet in its plane. Boxes that are certified always have it.
   std::optional<FootPoints> foot;

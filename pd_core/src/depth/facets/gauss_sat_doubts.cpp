@@ -34,11 +34,10 @@ PD_INLINE void store_words(Sides<Size>& out, int f, const WideBits& bits) {
 
 /// @param open  the rises within `error`
 template <class Size>
-PD_INLINE bool tell_precisely(Sides<Size>& out, Sides<Size>& open, const KeptEdges<Size>& kept,
+PD_INLINE void tell_precisely(Sides<Size>& out, Sides<Size>& open, const KeptEdges<Size>& kept,
                               const VertexArrays& posed, const Planes<Size>& along, double error, bool backwards) {
   EdgeVectors<Size> edges;
   take_vectors(edges, kept, posed, backwards);
-  WideBits any = {};
   for (int f = 0; f < kFloats * along.blocks(); f += kLanes) {
     Lanes nx, ny, nz;
     load(nx, along.nx + f);
@@ -54,11 +53,9 @@ PD_INLINE bool tell_precisely(Sides<Size>& out, Sides<Size>& open, const KeptEdg
       signs |= bits >> 63 << i;
       small |= within >> 63 << i;
     }
-    any |= small;
     store_words(out, f, signs);
     store_words(open, f, small);
   }
-  return (any[0] | any[1] | any[2] | any[3]) != 0;
 }
 
 /// As `list_crossings` of the kernel, but that a side which is open may be either: the pairs that may cross.
@@ -95,11 +92,10 @@ PD_INLINE bool list_with_open_sides(Crossings<Size>& out, const KernelState<Size
 
 template <class Size>
 PD_INLINE bool list_precisely(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              KernelState<Size>& state, Crossings<Size>& out, bool& open) {
+                              KernelState<Size>& state, Crossings<Size>& out) {
   Sides<Size> open_a, open_b;
-  open = tell_precisely(state.sides_a, open_a, state.kept_a, a.posed, state.planes_b, errors.fine_side_a, true);
-  open =
-      tell_precisely(state.sides_b, open_b, state.kept_b, b.posed, state.planes_a, errors.fine_side_b, false) || open;
+  tell_precisely(state.sides_a, open_a, state.kept_a, a.posed, state.planes_b, errors.fine_side_a, true);
+  tell_precisely(state.sides_b, open_b, state.kept_b, b.posed, state.planes_a, errors.fine_side_b, false);
   return list_with_open_sides(out, state, open_a, open_b);
 }
 
@@ -161,13 +157,13 @@ PD_INLINE void raise_by_all(Lanes& key, const PairVectors& of, const double (&of
 }  // namespace
 
 PD_CLONES bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                                        KernelState<Small>& state, Crossings<Small>& out, bool& open) {
-  return list_precisely(a, b, errors, state, out, open);
+                                        KernelState<Small>& state, Crossings<Small>& out) {
+  return list_precisely(a, b, errors, state, out);
 }
 
 PD_CLONES bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                                        KernelState<Middle>& state, Crossings<Middle>& out, bool& open) {
-  return list_precisely(a, b, errors, state, out, open);
+                                        KernelState<Middle>& state, Crossings<Middle>& out) {
+  return list_precisely(a, b, errors, state, out);
 }
 
 PD_CLONES double bound_thin_pairs(const GaussSatBody& a, const GaussSatBody& b, const double (&offset)[3], double level,

@@ -275,12 +275,11 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     list_near_facets(*near, false, b, state.planes_b, of_a, a.posed, errors.height);
   }
   Crossings<Size> pairs;
-  bool open = false;
   const float side_a = tell_sides(state.sides_a, state.kept_a, of_a, state.planes_b.blocks(), true);
   const float side_b = tell_sides(state.sides_b, state.kept_b, of_b, state.planes_a.blocks(), false);
   const bool listed = side_a > errors.side_a && side_b > errors.side_b
                           ? list_crossings(pairs, state)
-                          : list_in_double_precision(a, b, errors, state, pairs, open);
+                          : list_in_double_precision(a, b, errors, state, pairs);
   if (!listed) return;
   out.largest = largest_coordinate(a.posed, b.posed, offset);
   out.outcome = NearestByGaussMaps::Outcome::found;
@@ -297,10 +296,7 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
       piece_of_edges(out.piece, state.kept_a, state.kept_b, pairs.a[k], pairs.b[k], pairs.sign[k] < 0);
     }
   }
-  if (near != nullptr) {
-    near->complete = near->count < NearGaussPieces::kMost;
-    near->open = open;
-  }
+  if (near != nullptr) near->complete = near->count < NearGaussPieces::kMost;
   if (thin.count == 0) return;
   if (thin.count == ThinPairs::kMost) {
     out.outcome = NearestByGaussMaps::Outcome::full;

@@ -40,8 +40,8 @@ struct GaussPiece {
   [[nodiscard]] bool is_of_edges() const { return facet_a < 0 && facet_b < 0; }
 };
 
-/// The facets of P that are not much farther than the nearest one of either body. The next frames look at them
-/// (remembered_pieces.hpp), and exact numbers tell the nearest of them (gauss_ties.hpp).
+/// The facets of P that are not much farther than the nearest one of either body: exact numbers tell the nearest of
+/// them (gauss_ties.hpp).
 struct NearGaussPieces {
   static constexpr int kMost = 64;
   struct Measured {
@@ -51,7 +51,6 @@ struct NearGaussPieces {
   double band = 0;        ///< asked for: how much farther
   double radius = 0;      ///< all facets of P that are no farther are listed, if `complete`
   bool complete = false;  ///< the list has room for them
-  bool open = false;      ///< a side of an edge near them is open: some of them may be no facets of P
   /// For boxes, bit 3 i + j says that edge i of A and edge j of B are parallel up to rounding. If they are not exactly
   /// parallel, their facets are not listed, and may be as near.
   unsigned parallel = 0;

@@ -111,11 +111,10 @@ struct KernelState {
 };
 
 /// Tells all sides in double precision and lists the pairs that cross or may. False: there are too many.
-/// @param open  whether a side is within its error still
 bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              KernelState<Small>& state, Crossings<Small>& out, bool& open);
+                              KernelState<Small>& state, Crossings<Small>& out);
 bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              KernelState<Middle>& state, Crossings<Middle>& out, bool& open);
+                              KernelState<Middle>& state, Crossings<Middle>& out);
 
 /// Slivers lie above their lowest corner along any vector: bounds them by the one along which that is highest, of the
 /// normals beside their edges, the middles between those, and their own. Drops those that are `level` or farther.

@@ -8,7 +8,6 @@
 #include "depth/distance/closest_of_few.hpp"
 #include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/facets/near_facets.hpp"
-#include "depth/facets/remembered_pieces.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_warm_start.hpp"
@@ -261,16 +260,14 @@ bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
   if (query.boxes() && answer_boxes(query, out)) return true;
   if (!gauss_sat_pays(query.difference)) return false;
-  // The surface has a memory of any pair; what the Gauss maps tell is remembered of small solids, of doubles.
-  const bool remembers = query.warm && has_small_gauss_map(*pair.a) && has_small_gauss_map(*pair.b);
-  if (query.warm && !(remembers && query.doubles_suffice())) return false;
-  if (many_flush_facets(pair, query.difference) || (remembers && pauses_small_solids(query))) return false;
+  // The surface has a memory of the pair.
+  if (query.warm || many_flush_facets(pair, query.difference)) return false;
   const bool tightest = query.bracket == Bracket::tightest;
   if (tightest && apart_between_places(query.with_supports())) return false;
   NearGaussPieces near;
-  near.band = tightest ? kTieBand * query.difference.reach() : remembers ? remembered_band(query.difference) : 0;
-  const GaussSatDepth found = gauss_sat_depth(*pair.pose_a, *pair.pose_b, query.with_supports(), query.width(),
-                                              tightest || remembers ? &near : nullptr);
+  near.band = kTieBand * query.difference.reach();
+  const GaussSatDepth found =
+      gauss_sat_depth(*pair.pose_a, *pair.pose_b, query.with_supports(), query.width(), tightest ? &near : nullptr);
   out.method = Method::overlay;
   out.statistics.facets_visited += found.nearest.facets;
   out.statistics.support_calls += found.nearest.support_calls;
@@ -281,23 +278,7 @@ bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out) {
     near.keep_within(std::sqrt(least) + near.band, kGaussLowerError * query.difference.reach());
     return prove_gauss_maps(query, found, near, out);
   }
-  if (remembers && found.status != GaussSatStatus::separated) save_pieces(query, found, near);
   return answer_from_gauss_maps(query, found, out);
-}
-
-bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out) {
-  if (!remembers_pieces(query)) return false;
-  int looked_at = 0;
-  const NearFacets found =
-      certify_remembered_pieces(query.warm->state().small.pieces[0], *query.pair.pose_a, *query.pair.pose_b,
-                                query.with_supports(), query.width(), looked_at);
-  out.statistics.facets_visited += looked_at;
-  if (!found.certified) return false;
-  out.method = Method::overlay;
-  out.warm = true;
-  ++out.statistics.support_calls;
-  set_answer(query, found, out);
-  return true;
 }
 
 ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out) {

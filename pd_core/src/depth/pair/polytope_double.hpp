@@ -21,9 +21,6 @@ bool answer_few_apart(PolytopeQuery& query, PenetrationDepth& out);
 /// one is proved.
 bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Answers for small solids from the facets that were near in an earlier frame (facets/remembered_pieces.hpp).
-bool answer_from_remembered_pieces(PolytopeQuery& query, PenetrationDepth& out);
-
 /// Grows a polytope inside P, from the pair's warm certificate where it serves, and saves what the next call may start
 /// from. The faces are left in the scratch (`buffers.surface`).
 [[nodiscard]] ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out);

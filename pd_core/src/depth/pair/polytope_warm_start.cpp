@@ -7,7 +7,6 @@
 
 #include "depth/distance/closest_of_few.hpp"
 #include "depth/expansion/cached_surface.hpp"
-#include "depth/facets/remembered_pieces.hpp"
 #include "depth/pair/double_answer.hpp"
 #include "depth/pair/polytope_double.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -97,28 +96,10 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
 }  // namespace
 
 bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out) {
-  return answer_from_remembered_pieces(query, out) || answer_from_cached_faces(query, out) ||
-         answer_apart_from_cached_simplex(query, out);
+  return answer_from_cached_faces(query, out) || answer_apart_from_cached_simplex(query, out);
 }
 
-bool remembers_overlap(const PolytopeQuery& query) {
-  return query.warm && (!query.warm->state().faces.empty() || query.warm->state().small.known);
-}
-
-bool remembers_pieces(const PolytopeQuery& query) {
-  if (!query.warm) return false;
-  const WarmSmallSolids& small = query.warm->state().small;
-  return small.known && small.pieces[0].a->same_storage(*query.pair.a) &&
-         small.pieces[0].b->same_storage(*query.pair.b);
-}
-
-bool pauses_small_solids(PolytopeQuery& query) {
-  if (!query.warm) return false;
-  WarmSmallSolids& small = query.warm->state().small;
-  if (small.pause == 0) return false;
-  --small.pause;
-  return true;
-}
+bool remembers_overlap(const PolytopeQuery& query) { return query.warm && !query.warm->state().faces.empty(); }
 
 bool restore_surface(PolytopeQuery& query) {
   if (!is_of_pair(query.warm->state(), query.pair)) query.warm->clear();
@@ -157,7 +138,6 @@ void save_surface(PolytopeQuery& query, const ExpansionResult& result) {
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.direction = result.normal;
   state.reference.clearance = 0;
-  state.small.known = false;
   state.vertices.clear();
   state.faces.clear();
   state.vertices.reserve(kMaxRememberedVertices);
@@ -182,32 +162,10 @@ void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
   }
 }
 
-void save_pieces(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near) {
-  WarmState& state = bind_to_pair(*query.warm, query.pair);
-  WarmSmallSolids& small = state.small;
-  small.known = false;
-  if (found.status == GaussSatStatus::certified) {
-    state.direction = found.nearest.normal;
-    state.vertices.clear();
-    state.faces.clear();
-    state.reference.clearance = 0;
-    if (small.pieces.empty()) small.pieces.emplace_back();
-    small.known = remember_pieces(found, near, query.difference, small.pieces[0]);
-  }
-  if (small.known) {
-    small.pause_length = 0;
-  } else {
-    // Nothing to start from: the next frames do better with a surface.
-    small.pause_length = std::min(2 * small.pause_length + 1, kLongestPause);
-    small.pause = small.pause_length;
-  }
-}
-
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest) {
   if (!query.warm) return;
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.direction = nearest.normal;
-  state.small.known = false;
   state.apart_count = nearest.count;
   for (int i = 0; i < nearest.count; ++i) state.apart[i] = {nearest.simplex[i].a, nearest.simplex[i].b};
 }

@@ -7,23 +7,17 @@
 
 #include "depth/distance/gjk.hpp"
 #include "depth/expansion/expanding_polytope.hpp"
-#include "depth/facets/gauss_sat.hpp"
 #include "depth/pair/polytope_query.hpp"
 
 namespace pd::detail {
 
-/// Answers from the last frame. Small solids are answered from the facets that were near. A slowly moving pair is
-/// mostly answered from the nearest face of the saved surface, which is still a supporting plane of P
-/// (expansion/cached_surface.hpp). Bodies that were apart are answered from the vertices around their last closest
-/// point.
+/// Answers from the last frame. A slowly moving pair is mostly answered from the nearest face of the saved surface,
+/// which is still a supporting plane of P (expansion/cached_surface.hpp). Bodies that were apart are answered from the
+/// vertices around their last closest point.
 bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out);
 
-/// Whether a surface or a facet has been saved, of whatever pair: the bodies overlapped in the last frame.
+/// Whether a surface has been saved, of whatever pair: the bodies overlapped in the last frame.
 [[nodiscard]] bool remembers_overlap(const PolytopeQuery& query);
-/// Whether facets of P of this very pair have been saved.
-[[nodiscard]] bool remembers_pieces(const PolytopeQuery& query);
-/// Whether all facets of P need not be looked at, since that told nothing lately; counts the frames.
-[[nodiscard]] bool pauses_small_solids(PolytopeQuery& query);
 /// Puts the saved surface at the present poses, into the scratch. False when there is none for this pair.
 [[nodiscard]] bool restore_surface(PolytopeQuery& query);
 /// Whether the restored surface answers as it stands.
@@ -35,8 +29,6 @@ bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out);
 void save_surface(PolytopeQuery& query, const ExpansionResult& result);
 /// The restored surface held as it was: saves how far its planes are now, for `answer_from_cached_faces`.
 void save_reference(PolytopeQuery& query, const ExpansionResult& result);
-/// All facets of P were looked at: saves those near for `answer_from_remembered_pieces`, or a pause.
-void save_pieces(PolytopeQuery& query, const GaussSatDepth& found, NearGaussPieces& near);
 /// The simplex of P that holds its closest point, and the direction from there.
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest);
 
