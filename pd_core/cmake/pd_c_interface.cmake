@@ -10,7 +10,7 @@ set_target_properties(
 target_include_directories(pdepth_c PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}> PRIVATE src)
 target_link_libraries(pdepth_c PRIVATE pd_core_internals Threads::Threads)
-target_link_options(pdepth_c PRIVATE LINKER:--version-script=${pd_c_exports} LINKER:--no-undefined LINKER:--gc-sections
+target_link_options(pdepth_c PRIVATE LINKER:--version-script=${pd_c_exports} ${pd_no_undefined} LINKER:--gc-sections
                                      -static-libstdc++ -static-libgcc)
 pd_compile_options(pdepth_c)
 pd_unity_by_folder(pdepth_c)

@@ -5,6 +5,12 @@ include(CMakePackageConfigHelpers)
 set(PD_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/pdepth)
 set(PD_CMAKE_SOURCE_DIR ${CMAKE_CURRENT_LIST_DIR})
 
+# A shared library names everything that it needs. The exception: Clang puts the runtime of its sanitizers into programs alone.
+set(pd_no_undefined LINKER:--no-undefined)
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
+  set(pd_no_undefined "")
+endif()
+
 # pd_add_library(<target> <sources>...): static, or with BUILD_SHARED_LIBS shared: then its file carries the version under which
 # binaries stay compatible (0.x: the minor one) and exports namespace pd alone, without pd::detail. The archive
 # <target>_internals holds the same objects for tests of internals; without BUILD_SHARED_LIBS it is the library itself.
@@ -20,7 +26,7 @@ function(pd_add_library target)
   set(exports ${PD_CMAKE_SOURCE_DIR}/exports.map)
   set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} DEFINE_SYMBOL ""
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LINK_DEPENDS ${exports})
-  target_link_options(${target} PRIVATE LINKER:--version-script=${exports} LINKER:--no-undefined)
+  target_link_options(${target} PRIVATE LINKER:--version-script=${exports} ${pd_no_undefined})
   add_library(${target}_internals STATIC $<TARGET_OBJECTS:${target}>)
   target_link_libraries(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_LINK_LIBRARIES>)
   target_include_directories(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)

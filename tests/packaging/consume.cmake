@@ -1,6 +1,8 @@
-# Uses pdepth as a stranger would, in one of three ways, and checks what the stranger's programs print.
+# Uses pdepth as a stranger would and checks what the stranger's programs print: an installed copy found by CMake or by pkg-config;
+# the sources within a stranger's project, whose settings they must leave alone (configured only); the same with shared libraries
+# (built, used, installed, moved, their exports looked at, and used again).
 #
-#   cmake -DWAY=package|pkg_config|subproject -DCOMPONENTS=<list> -DPREFIX=<installed copy> -DSOURCE=<source tree>
+#   cmake -DWAY=package|pkg_config|subproject|shared -DCOMPONENTS=<list> -DPREFIX=<installed copy> -DSOURCE=<source tree>
 #         -DWORK=<folder> -DCXX=<compiler> -DLAUNCHER=<launcher or empty> -DBUILD_TYPE=<kind> -DFLAGS=<compiler flags>
 #         -DBULLET_DOUBLE=<bool> -DWARNINGS_AS_ERRORS=<bool> -P consume.cmake
 cmake_minimum_required(VERSION 3.25)
@@ -29,6 +31,22 @@ set(expected_core "depth 0.25 in .(0.25|0.2499999999999999[0-9]*), (0.25|0.25000
 set(expected_engine_glue "depth 0.25, scalar of ${scalar_bytes} bytes")
 set(expected_render "picture 320 x 180, difference 0")
 
+set(shared_settings "")
+if(WAY STREQUAL "shared")
+  set(shared_settings "set(BUILD_SHARED_LIBS ON CACHE BOOL \"\")
+set(PD_INSTALL ON CACHE BOOL \"\")")
+  foreach(option "PD_WITH_BULLET engine_glue" "PD_WITH_RENDER render")
+    separate_arguments(option)
+    list(GET option 0 name)
+    list(GET option 1 component)
+    if(component IN_LIST COMPONENTS)
+      string(APPEND shared_settings "\nset(${name} ON CACHE BOOL \"\")")
+    else()
+      string(APPEND shared_settings "\nset(${name} OFF CACHE BOOL \"\")")
+    endif()
+  endforeach()
+endif()
+
 # A file, since a list does not survive a command line of CMake.
 file(WRITE ${WORK}/settings.cmake "
 set(COMPONENTS \"${COMPONENTS}\" CACHE STRING \"\")
@@ -39,6 +57,7 @@ set(CMAKE_BUILD_TYPE \"${BUILD_TYPE}\" CACHE STRING \"\")
 set(CMAKE_PREFIX_PATH \"${PREFIX}\" CACHE STRING \"\")
 set(PDEPTH_SOURCE \"${SOURCE}\" CACHE STRING \"\")
 set(PD_BULLET_DOUBLE ${BULLET_DOUBLE} CACHE BOOL \"\")
+${shared_settings}
 set(CMAKE_UNITY_BUILD ON CACHE BOOL \"\")
 set(PD_PRECOMPILED_HEADERS ON CACHE BOOL \"\")
 set(PD_WARNINGS_AS_ERRORS ${WARNINGS_AS_ERRORS} CACHE BOOL \"\")
@@ -77,6 +96,23 @@ if(WAY STREQUAL "package")
   endif()
 elseif(WAY STREQUAL "subproject")
   run(${configure} -S ${here}/subproject -B ${WORK}/build)
+  # What his build would run: it links his programs with static libraries, and links nothing else.
+  run(ninja -C ${WORK}/build -t commands)
+  string(REGEX MATCHALL "-o [a-zA-Z_0-9]+ " programs "${output}")
+  foreach(component ${COMPONENTS})
+    string(REPLACE pd_ "" name ${component})
+    if(NOT "-o stranger_${name} " IN_LIST programs)
+      message(FATAL_ERROR "stranger_${name} would not be built: ${programs}")
+    endif()
+    list(REMOVE_ITEM programs "-o stranger_${name} ")
+  endforeach()
+  if(programs OR output MATCHES "\\.so\\.0|googletest|gtest")
+    message(FATAL_ERROR "a stranger's project would build more than its own programs: ${programs}")
+  endif()
+  file(REMOVE_RECURSE ${WORK})
+  return()
+elseif(WAY STREQUAL "shared")
+  run(${configure} -S ${here}/subproject -B ${WORK}/build)
   run(${CMAKE_COMMAND} --build ${WORK}/build)
 elseif(WAY STREQUAL "pkg_config")
   file(MAKE_DIRECTORY ${WORK}/build)
@@ -96,7 +132,7 @@ elseif(WAY STREQUAL "pkg_config")
     run(${CXX} -std=c++20 ${flags} ${cflags} ${here}/stranger_${name}.cpp -o ${WORK}/build/stranger_${name} ${libs})
   endforeach()
 else()
-  message(FATAL_ERROR "WAY is package, pkg_config or subproject")
+  message(FATAL_ERROR "WAY is package, pkg_config, subproject or shared")
 endif()
 
 foreach(component ${COMPONENTS})
@@ -107,4 +143,7 @@ foreach(component ${COMPONENTS})
   endif()
   message("${output}")
 endforeach()
+if(WAY STREQUAL "shared")
+  include(${here}/shared.cmake)
+endif()
 file(REMOVE_RECURSE ${WORK})
