@@ -27,7 +27,7 @@ if [[ ${1-} != files ]]; then
   flags='-msimd128 -msse2 -fgnuc-version=5.99 -fwasm-exceptions -fvisibility=hidden'
   emcmake cmake -S . -B "${work}" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="${flags}" \
     -DCMAKE_CXX_FLAGS_RELEASE='-Os -finline-functions -DNDEBUG' -DCMAKE_UNITY_BUILD=ON -DPD_ISA=baseline -DPD_PRECOMPILED_HEADERS=OFF \
-    -DPD_HARDENED=OFF -DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_RENDER=OFF -DPD_WITH_TESTS=OFF -DPD_WITH_DEMOS=OFF -DPD_WITH_PYTHON=OFF \
+    -DPD_HARDENED=OFF -DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_DART=OFF -DPD_WITH_RENDER=OFF -DPD_WITH_TESTS=OFF -DPD_WITH_DEMOS=OFF -DPD_WITH_PYTHON=OFF \
     -DPD_WITH_RECORDERS=OFF -DPD_INSTALL=OFF -DEigen3_DIR=/usr/share/eigen3/cmake -DBoost_NO_BOOST_CMAKE=ON \
     -DBoost_INCLUDE_DIR="${PWD}/${work}/include" --log-level=WARNING
   cmake --build "${work}" --target pdepth_wasm pdepth_wasm_convex pdepth_wasm_lines -j "${PD_JOBS:-$(nproc)}"

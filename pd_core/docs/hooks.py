@@ -40,6 +40,7 @@ SHOWN = {
     "engine_glue/mujoco/README.md": "mujoco.md",
     "engine_glue/fcl/README.md": "fcl.md",
     "engine_glue/ode/README.md": "ode.md",
+    "engine_glue/dart/README.md": "dart.md",
     "demos/audit/README.md": "accuracy.md",
     "demos/python/README.md": "python.md",
     "pd_core/README.md": "papers.md",

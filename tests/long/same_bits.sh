@@ -12,7 +12,7 @@ source pd_core/cmake/debian_packages.sh
 pd_use_ccache
 
 sample=tests/bench/results/answer_hash_sample.txt
-core_only=(-DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_RENDER=OFF -DPD_WITH_DEMOS=OFF -DPD_WITH_PYTHON=OFF -DPD_PRECOMPILED_HEADERS=OFF
+core_only=(-DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_DART=OFF -DPD_WITH_RENDER=OFF -DPD_WITH_DEMOS=OFF -DPD_WITH_PYTHON=OFF -DPD_PRECOMPILED_HEADERS=OFF
            -DCMAKE_UNITY_BUILD=ON)
 # Another machine's compiler, this one's headers: of what is found here only headers are used.
 aarch64=(-DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64

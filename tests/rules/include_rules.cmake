@@ -63,11 +63,12 @@ set(rooms_under_record shapes pieces pair record)
 set(rooms_under_stack stack)
 
 # Doors beside engine_glue/src, and the headers of their engines.
-set(glue_doors mujoco fcl ode)
+set(glue_doors mujoco fcl ode dart)
 set(engine_of_bullet "^(bt[A-Z]|Bullet|LinearMath)")
 set(engine_of_mujoco "^mujoco/")
 set(engine_of_fcl "^fcl/")
 set(engine_of_ode "^ode/")
+set(engine_of_dart "^dart/")
 
 set_property(GLOBAL PROPERTY broken 0)
 function(report file line reason)
