@@ -40,8 +40,8 @@ constexpr int kFramesPerImpact = 15;
 constexpr double kRollbackDepth = 2e-3;
 
 constexpr std::array<SceneChoice, 2> kRollbackScenes{
-    SceneChoice{"a crystal, a box and a stone meet a wall and each other", true, scenes::fast_throws},
-    SceneChoice{"spinning rods meet a wall of one millimetre", false, scenes::rods_at_a_foil}};
+    SceneChoice{"throws", "a crystal, a box and a stone meet a wall and each other", true, scenes::fast_throws},
+    SceneChoice{"foil", "spinning rods meet a wall of one millimetre", false, scenes::rods_at_a_foil}};
 
 double signed_depth(const MovingShape& a, const MovingShape& b, double time, Scratch& scratch) {
   return -penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch)

@@ -15,6 +15,7 @@
 #include "pd/render/renderer.hpp"
 #include "report/page.hpp"
 #include "report/scene_section.hpp"
+#include "scenes/dropped_worlds.hpp"
 #include "scenes/union_worlds.hpp"
 #include "support/complain.hpp"
 #include "support/demo_output.hpp"
@@ -35,13 +36,16 @@ constexpr double kStackingDepth = 2e-4;
 /// Contacts that brake a body nearer than this to one that is drawn already are not drawn again.
 constexpr double kGhostsApart = 0.4;
 
-constexpr std::array<SceneChoice, 6> kStackingScenes{
-    SceneChoice{"two towers of 2 cm bodies that have to stand", true, scenes::small_towers},
-    SceneChoice{"a tower of 1 cm boxes at 60 steps a second, solved at once", false, scenes::centimetre_tower},
-    SceneChoice{"a pile of small bodies that start inside each other", true, scenes::deep_pile},
-    SceneChoice{"a box slides over a flat mesh: contacts that brake it are drawn", false, scenes::slide_over_mesh},
-    SceneChoice{"a gear that was spun turns another", false, scenes::two_gears},
-    SceneChoice{"a torus of convex pieces slides down a peg", false, scenes::torus_and_peg}};
+constexpr std::array<SceneChoice, 7> kStackingScenes{
+    SceneChoice{"towers", "two towers of 2 cm bodies that have to stand", true, scenes::small_towers},
+    SceneChoice{"tower", "a tower of 1 cm boxes at 60 steps a second, solved at once", false, scenes::centimetre_tower},
+    SceneChoice{"pile", "a pile of small bodies that start inside each other", true, scenes::deep_pile},
+    SceneChoice{"slide", "a box slides over a flat mesh: contacts that brake it are drawn", false,
+                scenes::slide_over_mesh},
+    SceneChoice{"gears", "a gear that was spun turns another", false, scenes::two_gears},
+    SceneChoice{"peg", "a torus of convex pieces slides down a peg", false, scenes::torus_and_peg},
+    SceneChoice{"decomposed", "fifty gears, cut into convex parts with a certified error, fall into a heap", false,
+                scenes::pour_of_gears}};
 /// Every so many steps contacts are recorded for the page's audit: a record of each step would be 100 MB.
 constexpr int kRecordedEvery = 24;
 

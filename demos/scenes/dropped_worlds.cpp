@@ -1,7 +1,9 @@
 #include "scenes/dropped_worlds.hpp"
 
+#include <array>
 #include <cmath>
 
+#include "pd/solid/convex_decomposition.hpp"
 #include "scenes/world_parts.hpp"
 
 namespace pd::scenes {
@@ -68,6 +70,102 @@ ContactScene dropped_column(std::uint64_t perturbation) {
   }
   perturb(scene, perturbation);
   return scene;
+}
+
+namespace {
+
+constexpr double kGearError = 0.01;
+
+/// The surface of a spur gear about the z axis with a bore, closed and counter-clockwise from outside.
+struct GearSurface {
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+GearSurface gear_surface(int teeth, double pitch, double half_width) {
+  // Four corners a tooth, each with one of the bore beside it: two at the root, two at the tip.
+  constexpr double kAngles[] = {-0.32, -0.14, 0.14, 0.32};
+  const double root = 0.86 * pitch, tip = 1.14 * pitch, bore = 0.4 * pitch;
+  GearSurface gear;
+  const int n = 4 * teeth;
+  for (const double z : {-half_width, half_width}) {
+    for (int i = 0; i < n; ++i) {
+      const int k = i % 4;
+      const double angle = 2 * M_PI * (i / 4 + kAngles[k]) / teeth;
+      const Vec3 out(std::cos(angle), std::sin(angle), 0);
+      gear.points.push_back((k == 0 || k == 3 ? root : tip) * out + z * Vec3::UnitZ());
+      gear.points.push_back(bore * out + z * Vec3::UnitZ());
+    }
+  }
+  const auto at = [&](int side, int i, int inner) { return 2 * (side * n + i % n) + inner; };
+  const auto add_quad = [&](int a, int b, int c, int d) {
+    gear.triangles.push_back({a, b, c});
+    gear.triangles.push_back({a, c, d});
+  };
+  for (int i = 0; i < n; ++i) {
+    add_quad(at(1, i, 0), at(1, i + 1, 0), at(1, i + 1, 1), at(1, i, 1));  // above
+    add_quad(at(0, i, 1), at(0, i + 1, 1), at(0, i + 1, 0), at(0, i, 0));  // below
+    add_quad(at(0, i, 0), at(0, i + 1, 0), at(1, i + 1, 0), at(1, i, 0));  // around
+    add_quad(at(1, i, 1), at(1, i + 1, 1), at(0, i + 1, 1), at(0, i, 1));  // in the bore
+  }
+  return gear;
+}
+
+/// The gear as a compound of its convex parts, with its surface for pictures.
+WorldBody decomposed_gear() {
+  const GearSurface gear = gear_surface(10, 0.32, 0.07);
+  std::vector<std::int32_t> offsets{0}, corners;
+  for (const auto& triangle : gear.triangles) {
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+    offsets.push_back(static_cast<std::int32_t>(corners.size()));
+  }
+  const MeshSolid solid = MeshSolid::from_faces({gear.points, offsets, corners}).value();
+  const SolidDecomposition found = decompose(solid, {.error = kGearError}).value();
+  WorldBody body;
+  body.kind = WorldBody::Kind::compound;
+  body.points = gear.points;
+  body.triangles = gear.triangles;
+  body.mass = 700 * found.solid_volume;
+  for (const Compound::Part& each : found.parts.parts()) {
+    const ConvexPolytope& polytope = *each.shape.polytope();
+    WorldBody part;
+    part.position = polytope.centre();
+    for (int v = 0; v < polytope.num_vertices(); ++v) part.points.push_back(polytope.vertex(v) - part.position);
+    body.parts.push_back(std::move(part));
+  }
+  return body;
+}
+
+}  // namespace
+
+World pour_of_gears(std::uint64_t /*seed*/) {
+  World world;
+  const WorldBody gear = decomposed_gear();
+  world.name = "decomposed";
+  world.title = "Fifty gears of " + std::to_string(gear.parts.size()) + " convex parts each, certified within 1 cm";
+  world.steps = 480;
+  world.bodies.push_back(ground_box(20));
+  world.bodies[0].drawn = false;
+  Stream random(31);
+  for (int i = 0; i < 50; ++i) {
+    // No two gears overlap at the start: their diameter is 0.73.
+    const int place = i % 9;
+    WorldBody body = gear;
+    body.position = Vec3(0.78 * (place % 3 - 1), 0.78 * (place / 3 - 1), 0.5 + 0.78 * (i / 9)) +
+                    0.02 * Vec3(random.next(), random.next(), 0);
+    body.orientation = random.orientation();
+    body.colour = i % 3;
+    // Every second gear shows its parts.
+    if (i % 2 == 1) {
+      body.parts_coloured = true;
+      body.triangles.clear();
+      body.points.clear();
+    }
+    world.bodies.push_back(std::move(body));
+  }
+  world.view_lower = Vec3(-1.7, -1.7, 0);
+  world.view_upper = Vec3(1.7, 1.7, 3.4);
+  return world;
 }
 
 }  // namespace pd::scenes

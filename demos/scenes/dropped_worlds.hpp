@@ -13,4 +13,8 @@ namespace pd::scenes {
 /// Ten boxes of two metres that fall 19 m as a column.
 [[nodiscard]] ContactScene dropped_column(std::uint64_t perturbation);
 
+/// Fifty gears with a bore fall into a heap: a solid cut by `decompose` into convex parts that cover it within a
+/// hundredth of a metre. Every second one is drawn by its parts, the others as the solid.
+[[nodiscard]] World pour_of_gears(std::uint64_t seed);
+
 }  // namespace pd::scenes

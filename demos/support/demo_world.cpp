@@ -106,19 +106,29 @@ struct Drawn {
   int body;
   render::MeshRef mesh;
   Pose local;
+  int colour;  ///< class
 };
 
 std::vector<Drawn> drawn_bodies(const scenes::World& world, const std::vector<scenes::ConvexPiece>& pieces) {
   std::vector<Drawn> result;
+  int part = 0, last_body = -1;
   for (const scenes::ConvexPiece& piece : pieces) {
     const scenes::WorldBody& body = world.bodies[static_cast<std::size_t>(piece.body)];
+    part = piece.body == last_body ? part + 1 : 0;
+    last_body = piece.body;
     if (body.drawn && body.triangles.empty()) {
-      result.push_back({piece.body, render::shape_mesh(*piece.shape), piece.local});
+      const int colour = body.parts_coloured ? body.colour + part : body.colour;
+      result.push_back({piece.body, render::shape_mesh(*piece.shape), piece.local, colour});
     }
   }
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const scenes::WorldBody& body = world.bodies[i];
-    if (body.drawn && !body.triangles.empty()) {
+    if (!body.drawn || body.triangles.empty()) continue;
+    if (body.kind == scenes::WorldBody::Kind::compound) {
+      std::vector<std::array<std::int32_t, 3>> triangles;
+      for (const auto& t : body.triangles) triangles.push_back({t[0], t[1], t[2]});
+      result.push_back({static_cast<int>(i), render::triangle_mesh(body.points, triangles), Pose(), body.colour});
+    } else {
       // Triangles of their own corners: what bodies catch on are edges between coplanar ones, which are to be seen.
       std::vector<Vec3> corners;
       std::vector<std::array<std::int32_t, 3>> triangles;
@@ -127,7 +137,7 @@ std::vector<Drawn> drawn_bodies(const scenes::World& world, const std::vector<sc
         triangles.push_back({first, first + 1, first + 2});
         for (const int corner : triangle) corners.push_back(body.points[static_cast<std::size_t>(corner)]);
       }
-      result.push_back({static_cast<int>(i), render::triangle_mesh(corners, triangles), Pose()});
+      result.push_back({static_cast<int>(i), render::triangle_mesh(corners, triangles), Pose(), body.colour});
     }
   }
   return result;
@@ -260,7 +270,7 @@ render::Scene DemoWorld::picture(const Measurement& measurement, double shown_de
     body.mesh = drawn.mesh;
     body.pose =
         Pose::from_trusted_matrix(pose.rotation() * drawn.local.rotation(), pose.apply(drawn.local.translation()));
-    body.colour = render::palette::varied(render::palette::categorical(static_cast<std::size_t>(plan.colour)),
+    body.colour = render::palette::varied(render::palette::categorical(static_cast<std::size_t>(drawn.colour)),
                                           static_cast<std::uint32_t>(drawn.body));
     body.highlight = shown && (drawn.body == measurement.deepest_a || drawn.body == measurement.deepest_b);
     // What stands still is glass: what goes on behind it and inside it is the point of the picture.

@@ -11,12 +11,11 @@ Expected<std::vector<scenes::World>> choose_scenes(const DemoOptions& options, s
   std::vector<scenes::World> chosen;
   std::string names;
   for (const SceneChoice& scene : scenes) {
-    scenes::World world = scene.make(options.seed);
-    names += (names.empty() ? "" : ", ") + world.name;
+    names += (names.empty() ? "" : ", ") + std::string(scene.name);
     if (options.scene == "list") {
-      fmt::print("  {:<12} {}\n", world.name, scene.description);
-    } else if (options.scene.empty() ? scene.shown_unasked : options.scene == world.name) {
-      chosen.push_back(std::move(world));
+      fmt::print("  {:<12} {}\n", scene.name, scene.description);
+    } else if (options.scene.empty() ? scene.shown_unasked : options.scene == scene.name) {
+      chosen.push_back(scene.make(options.seed));
     }
   }
   if (chosen.empty() && options.scene != "list") {

@@ -13,6 +13,7 @@
 namespace pd::demo {
 
 struct SceneChoice {
+  std::string_view name;         ///< of the world
   std::string_view description;  ///< one line, for `--scene list`
   bool shown_unasked;            ///< whether the demo shows it where no scene is named
   scenes::World (*make)(std::uint64_t seed);

@@ -97,6 +97,8 @@ TEST_F(Demos, ScenesAreChosenByName) {
   EXPECT_EQ(run("stacking --scene peg --steps 4"), 0);
   EXPECT_EQ(run("stacking --scene gears --steps 4 --force"), 0);
   EXPECT_EQ(read("stacking.json")[0]["scene"], "gears");
+  EXPECT_EQ(run("stacking --scene decomposed --steps 2 --force"), 0);
+  EXPECT_EQ(read("stacking.json")[0]["bodies"], 50);
 }
 
 TEST_F(Demos, RollbackMeetsAtFirstContactAndReplaysTheSameBits) {
