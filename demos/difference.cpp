@@ -18,6 +18,7 @@
 #include "support/complain.hpp"
 #include "support/demo_output.hpp"
 #include "support/demo_registry.hpp"
+#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 #include "support/search_picture.hpp"
 
@@ -58,7 +59,7 @@ Bodies read_pair(const std::vector<std::string>& files) {
                    files[0],
                    files[1]};
   for (const auto& [shape, file] : {std::pair{&bodies.a, &files[0]}, std::pair{&bodies.b, &files[1]}}) {
-    if (shape->hull_note) fmt::print(stderr, "{}: {}\n", *file, in_words(*shape->hull_note));
+    if (shape->hull_note) fmt::print(stderr, "{}: {}\n", printable(*file), in_words(*shape->hull_note));
   }
   return bodies;
 }
@@ -123,15 +124,15 @@ int answer_and_draw(const Bodies& bodies, const DemoOptions& options, const std:
   }
   const render::Size size{options.width, options.height};
   if (const int code = write_difference_picture(bodies.pair(), answer, picture, size); code != kDemoDone) return code;
-  fmt::print("{} and {}: {}\n", bodies.name_a, bodies.name_b, to_string(answer.contact));
+  fmt::print("{} and {}: {}\n", printable(bodies.name_a), printable(bodies.name_b), to_string(answer.contact));
   fmt::print("depth     {} in [{}, {}]\n", answer.depth, answer.lower, answer.upper);
   fmt::print("distance  {} in [{}, {}]\n", answer.distance, answer.distance_lower, answer.distance_upper);
-  fmt::print("picture   {}\nfigures   {}\n", picture.string(), figures.string());
+  fmt::print("picture   {}\nfigures   {}\n", printable(picture.string()), printable(figures.string()));
   if (options.page != nullptr) add_to_page(bodies, answer, options);
   if (!options.video) return kDemoDone;
   constexpr int kFrames = 120;
   const int code = write_film(bodies, answer, size, options.steps > 0 ? options.steps : kFrames, film);
-  if (code != kDemoFailed) fmt::print("film      {}\n", film.string());
+  if (code != kDemoFailed) fmt::print("film      {}\n", printable(film.string()));
   return code;
 }
 
@@ -157,7 +158,7 @@ int write_search_film(const query::SearchFile& search, const SearchPictures& pic
     progress.show(i + 1);
   }
   if (const auto closed = film.finish(); !closed) return report_failure(closed.error());
-  fmt::print("film      {}\n", file.string());
+  fmt::print("film      {}\n", printable(file.string()));
   return interrupted() ? kDemoInterrupted : kDemoDone;
 }
 
@@ -190,7 +191,7 @@ int draw_search(const query::SearchFile& search, const DemoOptions& options, con
   for (const SearchEnd& end : search.ends) {
     fmt::print("{:<10}{}: {} to {}\n", end.arithmetic, end.outcome, end.lower, end.upper);
   }
-  fmt::print("picture   {}\n", picture.string());
+  fmt::print("picture   {}\n", printable(picture.string()));
   if (options.page != nullptr) {
     options.page->sections.push_back(report::picture(page_file(options, "search_strip.png"), title));
   }

@@ -27,6 +27,7 @@
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
+#include "support/printable.hpp"
 #include "support/scene_choice.hpp"
 
 namespace pd::demo {
@@ -436,7 +437,7 @@ int run_rollback(const DemoOptions& options) {
   }
   print_headline(course);
   if (options.page != nullptr) add_to_page(course, rows, figures, plan.title, options);
-  fmt::print("Pictures, figures and films: {}\n", folder.string());
+  fmt::print("Pictures, figures and films: {}\n", printable(folder.string()));
   return interrupted() ? kDemoInterrupted : kDemoDone;
 }
 

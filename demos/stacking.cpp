@@ -22,6 +22,7 @@
 #include "support/demo_registry.hpp"
 #include "support/demo_world.hpp"
 #include "support/duel.hpp"
+#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 #include "support/scene_choice.hpp"
 
@@ -429,7 +430,7 @@ int run_stacking(const DemoOptions& options) {
       return kDemoInterrupted;
     }
   }
-  fmt::print("Pictures, figures and films: {}\n", folder.string());
+  fmt::print("Pictures, figures and films: {}\n", printable(folder.string()));
   return kDemoDone;
 }
 

@@ -20,6 +20,7 @@
 #include "protocol/line/json_writer.hpp"
 #include "protocol/line/limits.hpp"
 #include "support/complain.hpp"
+#include "support/printable.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::cli {
@@ -178,7 +179,7 @@ std::string queries_in_words(const CheckedMesh& checked) {
 
 void print_report(const CheckedMesh& checked) {
   const SurfaceReport& report = checked.report;
-  fmt::print("\n  {}\n\n  {}\n\n", checked.file, verdict(checked));
+  fmt::print("\n  {}\n\n  {}\n\n", printable(checked.file), verdict(checked));
   const std::int64_t repeated = report.points - report.vertices;
   const std::int64_t left_out = checked.mesh.left_out;
   print_row(

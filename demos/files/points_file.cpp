@@ -101,6 +101,12 @@ void PointsFile::open_npy() {
   std::string header(size, ' ');
   const std::uintmax_t header_offset = kNpyMagic.size() + 2 + length_bytes;
   if (file_.read_at(header_offset, header.data(), size) != size) unreadable(path_, "ends in its header");
+  for (const std::string key : {"descr", "fortran_order", "shape"}) {
+    const std::size_t at = header.find("'" + key + "'");
+    if (at != std::string::npos && header.find("'" + key + "'", at + 1) != std::string::npos) {
+      unreadable(path_, "names " + key + " twice in its header");
+    }
+  }
   const std::string type = header_value(header, "descr");
   if (type != "'<f8'" && type != "'<f4'") unreadable(path_, "must hold little-endian float64 or float32, not " + type);
   single_ = type == "'<f4'";

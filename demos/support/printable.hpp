@@ -8,7 +8,8 @@
 
 namespace pd {
 
-/// The text with control characters, those of Latin-1 and of UTF-8 beyond ASCII too, as \xNN.
+/// The text with control characters, those of Latin-1 and of UTF-8 beyond ASCII too, as \xNN; so are the characters
+/// that end a line in Unicode or turn the order in which letters are shown.
 /// @param kept  control characters that stay, e.g. "\n" where lines are meant
 [[nodiscard]] inline std::string printable(std::string_view text, std::string_view kept = "") {
   std::string out;
@@ -21,6 +22,11 @@ namespace pd {
     bool letter = lead && i + rest < text.size();
     for (std::size_t k = 1; letter && k <= rest; ++k) letter = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
     if (letter && byte == 0xC2) letter = static_cast<unsigned char>(text[i + 1]) >= 0xA0;
+    if (letter && byte == 0xE2) {
+      const std::string_view tail = text.substr(i + 1, 2);
+      // U+2028 to U+202E, U+2066 to U+2069.
+      letter = !(tail >= "\x80\xA8" && tail <= "\x80\xAE") && !(tail >= "\x81\xA6" && tail <= "\x81\xA9");
+    }
     if (letter) {
       out += text.substr(i, rest + 1);
       i += rest;

@@ -6,6 +6,7 @@
 
 #include "report/page.hpp"
 #include "support/demo_output.hpp"
+#include "support/printable.hpp"
 #include "support/report_parts.hpp"
 
 namespace pd::demo {
@@ -25,7 +26,7 @@ int draw_still_pictures(const DemoOptions& options, std::string_view demo, std::
     if (!image) return report_failure(image.error());
     const auto written = render::write_png(*image, folder / fmt::format("{}.png", picture.name));
     if (!written) return report_failure(written.error());
-    fmt::print("picture   {}\n", written->string());
+    fmt::print("picture   {}\n", printable(written->string()));
     if (options.page != nullptr) {
       options.page->sections.push_back(
           report::picture(page_file(options, fmt::format("{}.png", picture.name)), std::string(picture.caption)));

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <vector>
 
+#include "protocol/line/bounded_line.hpp"
 #include "protocol/stream/line_budget.hpp"
 #include "protocol_lines.hpp"
 #include "temporary_folder.hpp"
@@ -151,6 +152,37 @@ TEST(LineBudget, WordsInAnIdAreNoAnswer) {
                     session, budget);
   EXPECT_TRUE(limited.limit_exceeded);
   EXPECT_TRUE(limited.text.starts_with(R"({"id":)" + id + ",\"error\"")) << limited.text;
+}
+
+TEST(LineBudget, AnIdMayHoldNumbersThatNoDoubleHolds) {
+  Session session;
+  const LineBudget budget{.milliseconds = 60'000, .megabytes = 0};
+  for (const std::string id : {"1e999", "-1e-999", R"([1,{"x":[1e400,2]}])", R"({"a":1E+308000})"}) {
+    const std::string line = R"({"query":"hull","id":)" + id + R"( ,"a":)" + kUnitBox + "}";
+    for (const query::LineAnswer& answer : {answer_within(line, session, budget), query::answer_line(line, session)}) {
+      EXPECT_TRUE(answer.text.starts_with(R"({"id":)" + id + ",\"vertices\"")) << answer.text;
+    }
+    const std::string beside = R"({"id":)" + id + R"(,"query":"hull","a":1e999})";
+    const query::LineAnswer refused = query::answer_line(beside, session);
+    EXPECT_TRUE(refused.text.starts_with(R"({"id":)" + id + ",\"error\":{\"code\":\"bad_json\"")) << refused.text;
+  }
+}
+
+/// A process that had no time to read the line leaves it to the parent to find the id, in the line's first megabyte.
+TEST(LineBudget, TheIdIsFoundInALineThatNobodyRead) {
+  EXPECT_EQ(query::id_of_line(R"({"x":[{"id":1}],"y":{"id":2}, "id" : [1e999, "\"id\":"] ,"id":4})"),
+            R"([1e999, "\"id\":"])");
+  EXPECT_EQ(query::id_of_line(R"({"x":{"id":3})"), "null");
+  EXPECT_EQ(query::id_of_line(R"({"x":}, "id":3})"), "null");
+  EXPECT_EQ(query::id_of_line(R"([{"id":3}])"), "null");
+  EXPECT_EQ(query::id_of_line(std::string(200'000, '[')), "null");
+  EXPECT_EQ(query::id_of_line(R"({"x":")" + std::string(2'000'000, ' ') + R"(","id":3})"), "null");
+  Session session;
+  for (int i = 0; i < 20; ++i) {
+    const query::LineAnswer answer = answer_within(R"({"query":"hull","id":"mine","a":)" + std::string(kUnitBox) + "}",
+                                                   session, {.milliseconds = 1, .megabytes = 0});
+    EXPECT_TRUE(answer.text.starts_with(R"({"id":"mine",)")) << answer.text;
+  }
 }
 
 /// The parent holds the line and nothing of what it says: the line's own process meets the limits, while it reads.

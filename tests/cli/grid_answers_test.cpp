@@ -64,6 +64,32 @@ TEST(GridAnswers, Width) {
   EXPECT_LE(reply.at("upper").get<double>(), 1.1 * reply.at("lower").get<double>() * (1 + 1e-12));
 }
 
+/// No frame makes a needle round that is seen from its end; rays along the whole sphere find that end at once.
+TEST(GridAnswers, ANeedleIsSeenFromItsEnd) {
+  for (const char* far : {"1e6", "1e12", "18446744073709551616", "1e100"}) {
+    const std::string needle =
+        R"({"type":"convex","vertices":[[0,0,0],[1,0,0],[)" + std::string(far) + R"(,1,0],[0,0,1]]})";
+    const Json reply =
+        answer(depth_line(kUnitBox, needle, R"("pose_b":{"translation":[0.3,0.2,0.1]},"method":"grid","delta":0.1)"));
+    EXPECT_FALSE(reply.contains("bracket_reached")) << far << " " << reply;
+    EXPECT_LE(reply.at("upper").get<double>(), 1.1 * reply.at("lower").get<double>() * (1 + 1e-12)) << far;
+    EXPECT_LT(reply.at("stats").at("facets_visited").get<int>(), 1200) << far;
+  }
+}
+
+/// Signs that need big numbers are counted: the search ends, and says that it did.
+TEST(GridAnswers, SliversBeyondAnyFrameEndByTheirBudget) {
+  for (const char* vertices : {"[[0,0,0],[1,0,0],[0,1,0],[0,0,5e-324]]", "[[0,0,0],[1,0,0],[0,1,0],[0,0,1e-300]]",
+                               "[[0,0,0],[1,0,0],[0,1,9223372036854775808],[0,0,1]]"}) {
+    const Json reply =
+        answer(R"({"id":1,"query":"width","method":"grid","delta":0.1,"a":{"type":"convex","vertices":)" +
+               std::string(vertices) + "}}");
+    EXPECT_EQ(reply.value("bracket_reached", true), false) << vertices;
+    EXPECT_GE(reply.at("upper").get<double>(), reply.at("lower").get<double>());
+    EXPECT_LT(reply.at("stats").at("exact_signs").get<int>(), 40'000) << vertices;
+  }
+}
+
 TEST(GridAnswers, Hierarchy) {
   for (const char* kind : {R"(,"kind":"inner")", R"(,"kind":"outer")", ""}) {
     const Json reply = answer(R"({"id":1,"query":"hierarchy","a":)" + std::string(kUnitBox) + kind + "}");

@@ -25,6 +25,7 @@ class Events final : public nlohmann::json_sax<Json> {
   bool number_integer(number_integer_t value) override { return add("i" + std::to_string(value)); }
   bool number_unsigned(number_unsigned_t value) override { return add("u" + std::to_string(value)); }
   bool number_float(number_float_t value, const string_t& /*text*/) override { return number_float(value); }
+  static bool takes_any_number() { return false; }
   bool number_float(double value) { return add("d" + std::to_string(std::bit_cast<std::uint64_t>(value))); }
   bool string(string_t& value) override { return add("s" + value); }
   bool binary(binary_t& /*value*/) override { return false; }

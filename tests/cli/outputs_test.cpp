@@ -137,8 +137,13 @@ TEST_F(Outputs, NamesAreShownWithoutControlCharacters) {
   EXPECT_EQ(read("small.obj").find("\nv 9 9 9"), std::string::npos) << read("small.obj");
   EXPECT_TRUE(harmless(read("small.obj")));
   EXPECT_TRUE(harmless(read("out"))) << read("out");
-  EXPECT_EQ(run("depth \"$(printf 'a\\nv 9 9 9\\033[31m\\302\\233.obj')\" cube.obj > out"), 0) << read("err");
-  EXPECT_TRUE(harmless(read("out"))) << read("out");
+  const std::string quoted = "\"$(printf 'a\\nv 9 9 9\\033[31m\\302\\233.obj')\"";
+  for (const std::string& arguments : {"depth " + quoted + " cube.obj", "check " + quoted, "check --json " + quoted,
+                                       "decompose " + quoted + " --error 0.1 -o parts.obj"}) {
+    EXPECT_EQ(run(arguments + " > out"), 0) << arguments << read("err");
+    EXPECT_TRUE(harmless(read("out"))) << arguments << read("out");
+  }
+  EXPECT_TRUE(harmless(read("parts.obj")));
   for (const char* arguments :
        {"depth \"$(printf 'no\\033[2Jsuch')\" cube.obj", "\"$(printf 'de\\033[2Jph')\"",
         "query \"$(printf 'no\\033[2J')\"", "depth cube.obj cube.obj --method \"$(printf 'x\\033[2J')\"",
@@ -204,6 +209,7 @@ TEST(Printable, KeepsLettersAndShowsTheRest) {
             "part \xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80.obj");
   EXPECT_EQ(printable("a\nb\x1b\x7f"), "a\\x0ab\\x1b\\x7f");
   EXPECT_EQ(printable("a\nb\r", "\n"), "a\nb\\x0d");
+  EXPECT_EQ(printable("\xE2\x80\xAE\xE2\x81\xA9\xE2\x80\xA6"), "\\xe2\\x80\\xae\\xe2\\x81\\xa9\xE2\x80\xA6");
   EXPECT_EQ(printable("\xC2\x9B\x9B\xC2\xA0\xFF\xE2\x82"), "\\xc2\\x9b\\x9b\xC2\xA0\\xff\\xe2\\x82");
 }
 

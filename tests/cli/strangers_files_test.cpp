@@ -270,6 +270,10 @@ TEST_F(StrangersPoints, AreRegularFilesWithinTheLimits) {
   const std::string numbers = stored<double>({0, 0, 1, 0, 1, 1, 0, 1});
   EXPECT_EQ(code_of(kernel(write("p.npy", npy("(4, 2)", numbers)), 4)), "");
   EXPECT_EQ(code_of(kernel(write("p.npy", npy("(4, 2)", numbers)), 3)), "limit_exceeded");
+  // Python's last value of a key counts; the file that says two things is refused.
+  const Json twice = kernel(write("p.npy", npy("(2, 2), 'shape': (4, 2)", numbers)));
+  EXPECT_EQ(code_of(twice), "unreadable_file") << twice;
+  EXPECT_NE(twice.dump().find("names shape twice"), std::string::npos) << twice;
 }
 
 TEST_F(StrangersPoints, TablesAndTextAreReadAsTheyStandOrRefused) {

@@ -26,6 +26,9 @@ using IdSeen = std::function<void(std::string_view id_text)>;
 /// `packed_rows` reads; every other list is an array.
 [[nodiscard]] ParsedLine parse_line_within(std::string_view line, std::int64_t max_points, const IdSeen& id_seen = {});
 
+/// The caller's id as it stands in the line's first megabyte, or "null". Keeps nothing of the line in memory.
+[[nodiscard]] std::string_view id_of_line(std::string_view line);
+
 /// A list of rows that the reader has packed. Refers to the value.
 struct PackedRows {
   const std::uint8_t* bytes;

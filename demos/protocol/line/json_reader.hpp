@@ -2,7 +2,7 @@
 /// JSON text (RFC 8259, UTF-8) to events, in one pass that holds no more than one string at a time.
 ///
 /// A number is the double nearest to its digits; an integer within 64 bits stays an integer. A number past the range of
-/// doubles is an error, and one too small for it is zero.
+/// doubles is an error where the handler does not take it, and one too small for it is zero.
 #pragma once
 
 #include <charconv>
@@ -24,8 +24,9 @@ enum class JsonEnd : std::uint8_t {
 
 /// @tparam Handler  has null, boolean(bool), number_integer(int64), number_unsigned(uint64), number_float(double),
 /// string(std::string&), start_object, key(std::string&), member(std::string_view), end_object, start_array and
-/// end_array. Each returns false to stop the reading. `member` gets the text of a member's value as it stands, once
-/// that text is known to be whole; `string` and `key` may move their argument away. Nesting is as deep as the handler
+/// end_array. Each returns false to stop the reading. takes_any_number() says whether a number past the range of
+/// doubles is no error now: it comes as an infinity. `member` gets the text of a member's value as it stands, once that
+/// text is known to be whole; `string` and `key` may move their argument away. Nesting is as deep as the handler
 /// allows.
 template <class Handler>
 class JsonReader {
@@ -227,7 +228,7 @@ class JsonReader {
   bool real(const char* first) {
     double value = 0;
     (void)read_decimal(first, at_, value);
-    if (!std::isfinite(value)) {
+    if (!std::isfinite(value) && !handler_.takes_any_number()) {
       at_ = first;
       return broken("a number is past the range of doubles");
     }

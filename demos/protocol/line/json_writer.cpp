@@ -18,7 +18,20 @@ void append_number(std::string& out, double value) {
 }
 
 void append_string(std::string& out, std::string_view text) {
-  out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string json = nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const auto byte_at = [&](std::size_t k) { return k < json.size() ? static_cast<unsigned char>(json[k]) : 0U; };
+    // DEL, and U+0080 to U+009F: JSON takes them as they stand, and so do terminals.
+    const bool beyond_ascii = byte_at(i) == 0xC2 && byte_at(i + 1) < 0xA0;
+    if (byte_at(i) != 0x7F && !beyond_ascii) {
+      out += json[i];
+      continue;
+    }
+    const unsigned code = byte_at(beyond_ascii ? ++i : i);
+    constexpr const char* kDigits = "0123456789abcdef";
+    out += "\\u00";
+    out += {kDigits[code / 16], kDigits[code % 16]};
+  }
 }
 
 void append_json(std::string& out, const nlohmann::json& value) {
@@ -50,6 +63,9 @@ void append_json(std::string& out, const nlohmann::json& value) {
       out += '}';
       return;
     }
+    case nlohmann::json::value_t::string:
+      append_string(out, value.get_ref<const std::string&>());
+      return;
     default:
       out += value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }

@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "protocol/line/bounded_line.hpp"
 #include "protocol/line/line_source.hpp"
 
 namespace pd::query {
@@ -119,10 +120,11 @@ class Answering {
     return true;
   }
 
-  /// The caller's id, as far as the child has come.
-  [[nodiscard]] std::string_view id_text() const {
+  /// The caller's id, where the child has come so far.
+  [[nodiscard]] std::optional<std::string_view> id_text() const {
     const std::size_t newline = text_.find('\n');
-    return newline == std::string::npos ? std::string_view("null") : std::string_view(text_).substr(0, newline);
+    if (newline == std::string::npos) return std::nullopt;
+    return std::string_view(text_).substr(0, newline);
   }
   /// The answer, where the child has ended well.
   [[nodiscard]] std::optional<LineAnswer> answer() const {
@@ -172,7 +174,7 @@ LineAnswer answer_within(std::string_view line, Session& session, const LineBudg
     if (auto answer = full.answer()) return *std::move(answer);
   }
   if (coarse) return *std::move(coarse);
-  return refuse_line(full.id_text(),
+  return refuse_line(full.id_text().value_or(id_of_line(line)),
                      ended ? "the process of this line ended before its answer"
                            : "not answered within " + std::to_string(budget.milliseconds) + " ms (--max-time)");
 }

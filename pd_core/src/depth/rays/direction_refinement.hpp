@@ -7,8 +7,10 @@
 /// that triangle: a lower bound that is never below the paper's cos(alpha) min Delta(u_i), and exact where the three
 /// rays meet one facet. Directions are laid out in a linear frame (`round_frame`): a thin P is covered as fast as a
 /// round one. The cell with the least bound is cut in four until the least plane distance met so far is
-/// within (1 + delta) of it. Every shot's plane gives an upper bound; where one improves the best, a ray along its
-/// normal follows, so that the projection of the origin on the best plane lies on P itself.
+/// within (1 + delta) of it. A long P with the origin near one of its ends is no rounder in that frame: where the first
+/// rays there do not suffice, a covering in the frame of the input is refined by turns with it. Either bounds pi. Every
+/// shot's plane gives an upper bound; where one improves the best, a ray along its normal follows, so that the
+/// projection of the origin on the best plane lies on P itself.
 ///
 /// Cones of neighbours of unequal size leave gaps of rounding's width along a shared edge. A nearest point v there
 /// costs nothing: a direction w of a cone at an angle e from v has Delta(w) <= |v| / cos(e), and 1 - cos(1e-15) is 0
@@ -35,7 +37,7 @@ inline constexpr double kLeastDelta = 1e-12;
 /// Rays of one search. A covering of the sphere at 2 parts in 10^4 takes as many; a ray takes 5 to 50 microseconds.
 inline constexpr std::int64_t kMaxRays = std::int64_t{1} << 14;
 /// The same for rays whose signs need long numbers, as coordinates of 600 decades do: some two tenths of a second
-/// (PosedPair::exact_work).
+/// (PolytopeShooter::exact_work).
 inline constexpr std::int64_t kMaxExactWork = std::int64_t{1} << 23;
 
 struct DirectionRefinementResult {
@@ -52,35 +54,21 @@ class DirectionRefinement {
   /// @param faces  20, or 10 where P is symmetric about the origin.
   /// @param frame  L of `round_frame`: directions are L v for v that cover the sphere.
   DirectionRefinement(Shooter& shooter, double delta, std::size_t faces, const Mat3& frame = Mat3::Identity())
-      : shooter_(shooter),
-        delta_(std::max(delta, kLeastDelta)),
-        is_framed_(!frame.isIdentity(0)),
-        frame_(frame),
-        dual_(is_framed_ ? Mat3(frame.triangularView<Eigen::Lower>().solve(Mat3::Identity()).transpose()) : frame) {
-    const Icosahedron body = icosahedron();
-    for (const Vec3& v : body.vertices) add_corner(v);
-    for (std::size_t f = 0; f < faces; ++f) push({body.faces[f][0], body.faces[f][1], body.faces[f][2], 0, 0});
+      : shooter_(shooter), delta_(std::max(delta, kLeastDelta)), faces_(faces), coverings_{Covering(frame)} {
+    cover(coverings_.front());
   }
 
   DirectionRefinementResult run() {
-    double finished = std::numeric_limits<double>::infinity();
-    while (!cells_.empty()) {
-      const Cell cell = cells_.top();
-      if (best_.upper <= (1 + delta_) * cell.lower || best_.upper - cell.lower <= shooter_.absolute_error()) break;
+    for (;;) {
+      Covering& covering = next_covering();
+      if (covering.cells.empty()) break;
+      const double lower = covering.cells.top().lower;
+      if (best_.upper <= (1 + delta_) * lower || best_.upper - lower <= shooter_.absolute_error()) break;
       if (is_spent()) break;
-      cells_.pop();
-      if (cell.level == kFinestLevel) {
-        finished = std::min(finished, cell.lower);
-        continue;
-      }
-      const std::int32_t ab = middle(cell.a, cell.b), bc = middle(cell.b, cell.c), ca = middle(cell.c, cell.a);
-      const std::int32_t level = cell.level + 1;
-      push({cell.a, ab, ca, level, 0});
-      push({ab, cell.b, bc, level, 0});
-      push({ca, bc, cell.c, level, 0});
-      push({ab, bc, ca, level, 0});
+      refine(covering);
     }
-    best_.lower = std::min(finished, cells_.empty() ? finished : cells_.top().lower);
+    best_.lower = 0;
+    for (const Covering& covering : coverings_) best_.lower = std::max(best_.lower, covering.lower());
     best_.lower = std::min(best_.lower, best_.upper);
     best_.reached = best_.upper <= (1 + delta_) * best_.lower * (1 + 0x1p-48);
     return best_;
@@ -89,6 +77,8 @@ class DirectionRefinement {
  private:
   /// Cells of 2^-26 radians: nothing between their corners' rays is above rounding.
   static constexpr std::int32_t kFinestLevel = 26;
+  /// Corners of a covering in a frame before there is a second one. Slabs and needles around the origin take a tenth.
+  static constexpr std::size_t kAlone = 512;
 
   struct Cell {
     std::int32_t a, b, c;
@@ -106,15 +96,69 @@ class DirectionRefinement {
     Vec3 direction;  ///< unit
     double lower;
   };
+  /// Directions L v for v that cover the sphere.
+  struct Covering {
+    explicit Covering(const Mat3& l)
+        : is_framed(!l.isIdentity(0)),
+          frame(l),
+          dual(is_framed ? Mat3(l.template triangularView<Eigen::Lower>().solve(Mat3::Identity()).transpose()) : l) {}
+
+    /// Of pi.
+    [[nodiscard]] double lower() const { return cells.empty() ? finished : std::min(finished, cells.top().lower); }
+
+    bool is_framed;
+    Mat3 frame;
+    Mat3 dual;  ///< the inverse of the frame, transposed
+    std::vector<Corner> corners;
+    std::priority_queue<Cell, std::vector<Cell>, Later> cells;
+    std::unordered_map<std::uint64_t, std::int32_t> middles;
+    double finished = std::numeric_limits<double>::infinity();  ///< least bound of the finest cells
+  };
 
   [[nodiscard]] bool is_spent() const { return shooter_.shots() >= kMaxRays || shooter_.exact_work() >= kMaxExactWork; }
 
-  std::int32_t add_corner(const Vec3& round) {
-    const Vec3 direction = is_framed_ ? Vec3((frame_ * round).normalized()) : round;
+  void cover(Covering& covering) {
+    const Icosahedron body = icosahedron();
+    for (const Vec3& v : body.vertices) add_corner(covering, v);
+    for (std::size_t f = 0; f < faces_; ++f) {
+      push(covering, {body.faces[f][0], body.faces[f][1], body.faces[f][2], 0, 0});
+    }
+  }
+
+  Covering& next_covering() {
+    Covering& first = coverings_.front();
+    if (!first.is_framed || first.corners.size() < kAlone) return first;
+    if (coverings_.size() == 1) {
+      coverings_.emplace_back(Mat3::Identity());
+      cover(coverings_.back());
+    }
+    return coverings_.front().corners.size() < coverings_.back().corners.size() ? coverings_.front()
+                                                                                : coverings_.back();
+  }
+
+  /// Cuts the cell with the least bound.
+  void refine(Covering& covering) {
+    const Cell cell = covering.cells.top();
+    covering.cells.pop();
+    if (cell.level == kFinestLevel) {
+      covering.finished = std::min(covering.finished, cell.lower);
+      return;
+    }
+    const std::int32_t ab = middle(covering, cell.a, cell.b), bc = middle(covering, cell.b, cell.c),
+                       ca = middle(covering, cell.c, cell.a);
+    const std::int32_t level = cell.level + 1;
+    push(covering, {cell.a, ab, ca, level, 0});
+    push(covering, {ab, cell.b, bc, level, 0});
+    push(covering, {ca, bc, cell.c, level, 0});
+    push(covering, {ab, bc, ca, level, 0});
+  }
+
+  std::int32_t add_corner(Covering& covering, const Vec3& round) {
+    const Vec3 direction = covering.is_framed ? Vec3((covering.frame * round).normalized()) : round;
     const RayShot shot = shooter_.shoot(direction);
-    corners_.push_back({round, direction, shot.lower});
+    covering.corners.push_back({round, direction, shot.lower});
     improve(shot);
-    return static_cast<std::int32_t>(corners_.size()) - 1;
+    return static_cast<std::int32_t>(covering.corners.size()) - 1;
   }
 
   /// Takes over a lower plane, and follows its normal down to one that holds the origin's projection.
@@ -129,29 +173,30 @@ class DirectionRefinement {
     }
   }
 
-  std::int32_t middle(std::int32_t a, std::int32_t b) {
+  std::int32_t middle(Covering& covering, std::int32_t a, std::int32_t b) {
     const auto [low, high] = std::minmax(a, b);
     const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
-    const auto [place, fresh] = middles_.try_emplace(key, 0);
+    const auto [place, fresh] = covering.middles.try_emplace(key, 0);
     if (fresh) {
-      const Vec3 sum = corners_[static_cast<std::size_t>(low)].round + corners_[static_cast<std::size_t>(high)].round;
-      place->second = add_corner(sum.normalized());
+      const std::vector<Corner>& corners = covering.corners;
+      const Vec3 sum = corners[static_cast<std::size_t>(low)].round + corners[static_cast<std::size_t>(high)].round;
+      place->second = add_corner(covering, sum.normalized());
     }
     return place->second;
   }
 
-  void push(Cell cell) {
-    const auto corner = [&](std::int32_t i) -> const Corner& { return corners_[static_cast<std::size_t>(i)]; };
-    if (is_framed_) {
-      cell.lower = distance_in_frame(corner(cell.a), corner(cell.b), corner(cell.c));
-      cells_.push(cell);
+  void push(Covering& covering, Cell cell) {
+    const auto corner = [&](std::int32_t i) -> const Corner& { return covering.corners[static_cast<std::size_t>(i)]; };
+    if (covering.is_framed) {
+      cell.lower = distance_in_frame(covering.dual, corner(cell.a), corner(cell.b), corner(cell.c));
+      covering.cells.push(cell);
       return;
     }
     // Relative to the longest of the three, so that nothing under- or overflows.
     const double scale = std::max({corner(cell.a).lower, corner(cell.b).lower, corner(cell.c).lower});
     const auto point = [&](std::int32_t i) { return Vec3(corner(i).lower / scale * corner(i).direction); };
     cell.lower = scale * distance_below(point(cell.a), point(cell.b), point(cell.c)) * (1 - 0x1p-50);
-    cells_.push(cell);
+    covering.cells.push(cell);
   }
 
   /// A lower bound of the distance from the origin of a triangle with corners in the unit ball: min <x_i, n> / |n| for
@@ -166,15 +211,15 @@ class DirectionRefinement {
 
   /// The same where lengths of several orders meet: the nearest point and the triangle's normal are found in the frame,
   /// and each product counts with its own rounding.
-  [[nodiscard]] double distance_in_frame(const Corner& a, const Corner& b, const Corner& c) const {
+  static double distance_in_frame(const Mat3& dual, const Corner& a, const Corner& b, const Corner& c) {
     const Corner* const corners[3] = {&a, &b, &c};
     Vec3 round[3];
-    for (int i = 0; i < 3; ++i) round[i] = corners[i]->lower * (dual_.transpose() * corners[i]->direction);
+    for (int i = 0; i < 3; ++i) round[i] = corners[i]->lower * (dual.transpose() * corners[i]->direction);
     const double scale = std::max({round[0].norm(), round[1].norm(), round[2].norm()});
     if (!(scale > 0)) return 0;
     for (Vec3& y : round) y /= scale;
     const auto least_height = [&](const Vec3& of_round) {
-      const Vec3 n = dual_ * of_round;
+      const Vec3 n = dual * of_round;
       const double length = n.stableNorm();
       double least = std::numeric_limits<double>::infinity();
       for (const Corner* corner : corners) {
@@ -209,12 +254,8 @@ class DirectionRefinement {
 
   Shooter& shooter_;
   double delta_;
-  bool is_framed_;
-  Mat3 frame_;
-  Mat3 dual_;  ///< the inverse of the frame, transposed
-  std::vector<Corner> corners_;
-  std::priority_queue<Cell, std::vector<Cell>, Later> cells_;
-  std::unordered_map<std::uint64_t, std::int32_t> middles_;
+  std::size_t faces_;
+  std::vector<Covering> coverings_;  ///< one, or two by turns
   DirectionRefinementResult best_{true, 0, std::numeric_limits<double>::infinity(), Vec3::UnitX()};
 };
 

@@ -22,6 +22,18 @@ std::pair<double, int> root(const Dyadic& x) {
   return {std::sqrt(x.scaled(-e).to_double()), e / 2};
 }
 
+/// Words of 64 bits between the coordinates' leading bits, rounded: sums of their products are as long.
+std::int64_t spread_words(const Dyadic3& v) {
+  int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+  for (const Dyadic* x : {&v.x, &v.y, &v.z}) {
+    if (x->sign() == 0) continue;
+    const int top = x->exponent() + static_cast<int>(msb(boost::multiprecision::abs(x->mantissa())));
+    least = std::min(least, top);
+    most = std::max(most, top);
+  }
+  return least > most ? 0 : (static_cast<std::int64_t>(most) - least + 32) / 64;
+}
+
 }  // namespace
 
 double ratio(const Dyadic& x, const Dyadic& y) {
@@ -35,6 +47,7 @@ double ratio(const Dyadic& x, const Dyadic& y) {
 
 RayShot PolytopeShooter::shoot(const Vec3& direction) {
   ++shots_;
+  const std::int64_t signs = pair_->stages().exact;
   const DirectionSigns ray(*pair_, direction);
   const Portal portal = find_portal(ray, hierarchies_);
   support_calls_ += portal.support_calls;
@@ -46,6 +59,12 @@ RayShot PolytopeShooter::shoot(const Vec3& direction) {
   plane_.normal = cross(to(1), to(2));
   plane_.offset = dot(pair_->exact(PairVector::point(corner[0].a, corner[0].b)), plane_.normal);
   const Dyadic& factor = pair_->homogeneous_factor();
+
+  if (const std::int64_t words = spread_words(plane_.normal); words > 0) {
+    // A sign is the sum of some four products; of short numbers the bookkeeping costs as much as of eight words.
+    const std::int64_t length = std::max<std::int64_t>(words, 8);
+    spread_work_ += 4 * length * length * (pair_->stages().exact - signs);
+  }
 
   RayShot shot;
   const double t = ratio(plane_.offset, dot(ray.exact(), plane_.normal) * factor);

@@ -44,7 +44,8 @@ class PolytopeShooter {
   [[nodiscard]] const Plane& kept() const { return kept_; }
   [[nodiscard]] std::int64_t support_calls() const { return support_calls_; }
   [[nodiscard]] std::int64_t shots() const { return shots_; }
-  [[nodiscard]] std::int64_t exact_work() const { return pair_->exact_work(); }  ///< see there
+  /// PosedPair's own count, and what exact signs of doubles that are many powers of two apart cost besides.
+  [[nodiscard]] std::int64_t exact_work() const { return pair_->exact_work() + spread_work_; }
   /// Brackets narrower than this, times a length, are not to be had.
   [[nodiscard]] double absolute_error() const { return 0; }
 
@@ -56,6 +57,7 @@ class PolytopeShooter {
   std::array<VertexPair, 3> corners_{};
   std::int64_t support_calls_ = 0;
   std::int64_t shots_ = 0;
+  std::int64_t spread_work_ = 0;
 };
 
 /// The point of A whose difference from one of B is where a ray crosses the triangle of three vertices of P, rounded.
