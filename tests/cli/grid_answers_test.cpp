@@ -86,7 +86,7 @@ TEST(GridAnswers, SliversBeyondAnyFrameEndByTheirBudget) {
                std::string(vertices) + "}}");
     EXPECT_EQ(reply.value("bracket_reached", true), false) << vertices;
     EXPECT_GE(reply.at("upper").get<double>(), reply.at("lower").get<double>());
-    EXPECT_LT(reply.at("stats").at("exact_signs").get<int>(), 40'000) << vertices;
+    EXPECT_LT(reply.at("stats").at("exact_signs").get<int>(), 60'000) << vertices;
   }
 }
 
