@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "commands.hpp"
 #include "files/decimal_number.hpp"
@@ -113,10 +114,16 @@ struct Outcome {
   }
 };
 
+/// False for solids of 1e103 or more in size, and of 1e-108 or less: their volumes are no doubles.
+bool has_volumes(const SolidDecomposition& found) {
+  return found.solid_volume > 0 && found.parts_volume > 0 && std::isfinite(found.solid_volume) &&
+         std::isfinite(found.parts_volume);
+}
+
 void print_text(const DecomposeArguments& arguments, const Outcome& outcome) {
   const SolidDecomposition& found = outcome.found;
-  print_row("solid", fmt::format("{}  ({} triangles, volume {:.6g})", arguments.input, outcome.solid.triangles().size(),
-                                 found.solid_volume));
+  const std::string volume = has_volumes(found) ? fmt::format(", volume {:.6g}", found.solid_volume) : "";
+  print_row("solid", fmt::format("{}  ({} triangles{})", arguments.input, outcome.solid.triangles().size(), volume));
   print_row("parts", fmt::format("{}  ({} of at most {} vertices, {})", arguments.output, found.parts.parts().size(),
                                  outcome.most_vertices(), duration_in_words(outcome.nanoseconds)));
   print_row("error",
@@ -124,8 +131,9 @@ void print_text(const DecomposeArguments& arguments, const Outcome& outcome) {
                         found.error_reached ? "" : " (not reached: --max-parts or --max-steps ended the work)"));
   print_row("error_reached", found.error_reached ? "yes" : "no");
   print_row("side", arguments.inside ? "every part lies in the solid" : "the parts cover the solid");
-  print_row("volume",
-            fmt::format("{:.6g} of the solid's, summed over the parts", found.parts_volume / found.solid_volume));
+  print_row("volume", has_volumes(found) ? fmt::format("{:.6g} of the solid's, summed over the parts",
+                                                       found.parts_volume / found.solid_volume)
+                                         : "beyond what a double holds");
 }
 
 void print_json(const DecomposeArguments& arguments, const Outcome& outcome) {
@@ -142,8 +150,10 @@ void print_json(const DecomposeArguments& arguments, const Outcome& outcome) {
   writer.key("error").number(found.error);
   writer.key("error_asked").number(outcome.asked);
   writer.key("error_reached").boolean(found.error_reached);
-  writer.key("solid_volume").number(found.solid_volume);
-  writer.key("parts_volume").number(found.parts_volume);
+  for (const auto& [key, volume] :
+       {std::pair("solid_volume", found.solid_volume), std::pair("parts_volume", found.parts_volume)}) {
+    has_volumes(found) ? writer.key(key).number(volume) : writer.key(key).null();
+  }
   writer.key("stats").begin_object();
   writer.key("steps").integer(found.steps);
   writer.key("nanoseconds").integer(outcome.nanoseconds);

@@ -321,6 +321,22 @@ TEST_F(Program, DecomposeWritesConvexPartsWithACertifiedError) {
   EXPECT_EQ(facts.at("error_reached"), true);
   EXPECT_LE(facts.at("error").get<double>(), 1e-3);
   EXPECT_EQ(facts.at("side"), "outer");
+  // Volumes that no double holds are told as such.
+  for (const char* power : {"e-300", "e150"}) {
+    std::string scaled = read("L.obj");
+    for (const char digit : {'1', '2'}) {
+      for (std::size_t at = 0; (at = scaled.find(std::string(" ") + digit, at)) < scaled.find("\nf"); at += 2) {
+        scaled.insert(at + 2, power);
+      }
+    }
+    write("scaled.obj", scaled);
+    const Outcome found = run("decompose scaled.obj -o scaled_parts.obj");
+    EXPECT_EQ(found.status, 0) << found.err;
+    EXPECT_NE(found.out.find("beyond what a double holds"), std::string::npos) << found.out;
+    const Json same = Json::parse(run("decompose scaled.obj -o scaled_parts.obj --json").out);
+    EXPECT_EQ(same.at("parts"), 2);
+    EXPECT_TRUE(same.at("solid_volume").is_null());
+  }
   ASSERT_EQ(run("decompose L.obj --error 20% -o one.obj").status, 0);
   EXPECT_EQ(group_volumes(read("one.obj")), std::vector<double>{3.5});
   const Outcome early = run("decompose L.obj --error 1e-3 --max-parts 1 -o early.obj");
