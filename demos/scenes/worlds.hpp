@@ -31,7 +31,8 @@ struct WorldBody {
   std::optional<double> friction = {};  ///< of this body; else the world's
   int colour = 0;                       ///< class, for pictures
   bool drawn = true;                    ///< false: the floor, which the studio shows itself
-  /// compound: each part is drawn in a colour of its own. A compound with triangles is drawn as those, without its parts.
+  /// compound: each part is drawn in a colour of its own. A compound with triangles is drawn as those, without its
+  /// parts.
   bool parts_coloured = false;
 };
 
