@@ -30,7 +30,6 @@ TEST(StrictJson, RefusesWhatIsNoJsonObject) {
       {R"({"id":3,"x":nan})", "3"},
       {R"({"id":"k","x":1e999})", "\"k\""},
       {R"({"id":"k","x":-1e309})", "\"k\""},
-      {R"({"id":1e999})", "null"},
       {R"({"id":4,"query":"depth","query":"depth"})", "4"},
       {R"({"query":"depth","query":"depth","id":5})", "5"},
       {R"({"id":4,"id":5})", "null"},

@@ -44,6 +44,14 @@ Moments moments_of(const ConvexPolytope& polytope, const Pose& pose, const Vec3&
   return moments;
 }
 
+/// The vector as Bullet stores it. It passes through memory, since GCC 12 takes two numbers that are converted to float
+/// and back, side by side in one register, for numbers that are not converted at all.
+Vec3 as_stored(const Vec3& v) {
+  const volatile btScalar stored[3] = {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()),
+                                       static_cast<btScalar>(v.z())};
+  return {static_cast<double>(stored[0]), static_cast<double>(stored[1]), static_cast<double>(stored[2])};
+}
+
 std::string name_of(std::size_t part) { return "parts[" + std::to_string(part) + "]"; }
 
 Expected<std::unique_ptr<btConvexHullShape>> child_of(const Compound::Part& part, double margin, double& rounding) {
@@ -51,13 +59,13 @@ Expected<std::unique_ptr<btConvexHullShape>> child_of(const Compound::Part& part
   auto child = std::make_unique<btConvexHullShape>();
   for (int v = 0; v < polytope.num_vertices(); ++v) {
     const Vec3 exact = part.pose.apply(polytope.vertex(v));
-    const btVector3 stored = to_bullet(exact);
-    const double moved = (to_pd(stored) - exact).norm();
+    const Vec3 stored = as_stored(exact);
+    const double moved = (stored - exact).norm();
     if (!std::isfinite(moved)) {
       return Error{ErrorCode::out_of_range, "a vertex lies beyond what Bullet's numbers hold", ""};
     }
     rounding = std::max(rounding, moved);
-    child->addPoint(stored, false);
+    child->addPoint(to_bullet(stored), false);
   }
   child->recalcLocalAabb();
   child->setMargin(static_cast<btScalar>(margin + part.shape.margin()));
@@ -102,7 +110,7 @@ Expected<BulletCompound> compound_of(const Compound& parts, const BulletCompound
   if (!result.centre_of_mass.allFinite() || !result.inertia.allFinite()) {
     return Error{ErrorCode::out_of_range, "the moments are beyond what a double holds", "parts"};
   }
-  if (settings.at_centre_of_mass) result.origin = to_pd(to_bullet(result.centre_of_mass));
+  if (settings.at_centre_of_mass) result.origin = as_stored(result.centre_of_mass);
   result.shape = std::make_unique<btCompoundShape>(true, static_cast<int>(result.children.size()));
   btTransform place = btTransform::getIdentity();
   place.setOrigin(to_bullet(-result.origin));
