@@ -1,5 +1,5 @@
 /// @file
-/// What the command says when it was typed wrongly: what is wrong, and what would be right.
+/// Answers to a command that was typed wrongly: they say what is wrong, and what would be right.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace pd::cli {
 /// A check for options: a number of at least `low` and at most `high`, which help shows as `shown`.
 [[nodiscard]] CLI::Validator number_check(double low, double high, const std::string& shown);
 
-/// The same for limits of the option's own type.
+/// A check for options: a number between two limits of the option's own type, both included.
 template <class Number>
 [[nodiscard]] CLI::Validator number_between(Number low, Number high) {
   const char* const type = std::is_integral_v<Number> ? "INT" : "FLOAT";
@@ -26,6 +26,7 @@ template <class Number>
                       fmt::format("{} in [{}, {}]", type, low, high));
 }
 
+/// Checks for options whose numbers have no upper limit.
 [[nodiscard]] CLI::Validator number_of_zero_or_more();
 [[nodiscard]] CLI::Validator number_above_zero();
 

@@ -47,7 +47,7 @@ struct SolidWish {
 /// faces.
 [[nodiscard]] NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish);
 
-/// The same for a shape {"type":"mesh","as":"parts"}.
+/// Reads a shape {"type":"mesh","as":"parts"}, from its file or its own numbers. @throws Refusal as `parts_of_mesh`
 [[nodiscard]] NamedBody read_mesh_parts(const Node& node, const Limits& limits);
 
 /// The union of the convex parts of a solid.

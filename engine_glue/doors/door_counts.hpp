@@ -26,7 +26,7 @@ class DoorCounts {
   DoorCounts(const DoorCounts&) = delete;
   DoorCounts& operator=(const DoorCounts&) = delete;
 
-  /// What one thread has counted. Written by its thread, read by anyone.
+  /// The counts of one thread. Only that thread writes them; anyone reads them.
   class Thread {
    public:
     explicit Thread(DoorCounts& all) : all_(all) {

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// What the module keeps between lines.
+/// The session that the module keeps between lines.
 pd::query::Session& session() {
   static pd::query::Session kept{.limits = {.files = false}};
   return kept;

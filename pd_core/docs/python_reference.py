@@ -1,4 +1,4 @@
-"""The reference of the Python package as text of a page, from its docstrings and its stub file.
+"""Makes the page of reference of the Python package from its docstrings and its stub file.
 
 `pages(root)` returns the Markdown. Signatures come from `__init__.pyi`, docstrings from the package's sources, and those of
 the types that the compiled module makes from the bindings. A public name without a docstring ends the build.
@@ -19,7 +19,7 @@ GROUPS = (
     ("Answers and errors", ("Depth", "DirectionalDepth", "Derivatives", "Manifold", "Batch", "Warm", "Refused", "ERRORS", "CONTACTS",
                             "FEATURES", "cores")),
 )
-# Names of the stub that are no more than values: what they hold.
+# The values among the names of the stub have no docstring: this text says what they hold.
 VALUES = {
     "ERRORS": "The names of the errors of a batch: `found.error` holds indices into it; 0 means that the row is answered.",
     "CONTACTS": "The classes, in the order of a batch's `contact`: separated, touching, overlapping.",
@@ -69,7 +69,7 @@ def bound(folder):
 
 
 def signatures(folder):
-    """What the stub says of each name: a function's head, or a class with its members."""
+    """Returns for each name what the stub holds: a function's head, or a class with its members."""
     functions, classes = {}, {}
     modules = [("", (folder / "__init__.pyi").read_text()), ("record.", (folder / "record.py").read_text())]
     for prefix, text in modules:

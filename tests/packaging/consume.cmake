@@ -96,7 +96,7 @@ if(WAY STREQUAL "package")
   endif()
 elseif(WAY STREQUAL "subproject")
   run(${configure} -S ${here}/subproject -B ${WORK}/build)
-  # What his build would run: it links his programs with static libraries, and links nothing else.
+  # The commands that his build would run link his programs with static libraries, and link nothing else.
   run(ninja -C ${WORK}/build -t commands)
   string(REGEX MATCHALL "-o [a-zA-Z_0-9]+ " programs "${output}")
   foreach(component ${COMPONENTS})

@@ -200,7 +200,7 @@ constexpr const char* kCornerObj =
     "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
     "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
 
-/// The same prism as glTF: single precision, triangles, a node that moves it by (0.25, 0, 0).
+/// That prism as glTF: single precision, triangles, a node that moves it by (0.25, 0, 0).
 std::string corner_gltf() {
   const std::string make =
       "(() => { const xy = [[0,0],[2,0],[2,1],[1,1],[1,2],[0,2]];"
@@ -245,7 +245,7 @@ TEST_F(PlayPage, MeshesAreSolids) {
   ASSERT_FALSE(is_refused()) << text("refusal");
   expect_native("a dropped glTF");
   const std::string depth = of("document.getElementById('depth').dataset.value");
-  // The same file as GLB.
+  // The file is dropped once more, as GLB.
   of("(() => { const json = " + nlohmann::json(gltf).dump() +
      ", pad = json + ' '.repeat(-json.length & 3), head = new Uint32Array([0x46546c67, 2, 20 + pad.length, pad.length, "
      "0x4e4f534a]), data = new DataTransfer(); data.items.add(new File([head, pad], 'corner.glb'));"

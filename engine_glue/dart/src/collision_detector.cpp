@@ -20,7 +20,7 @@ using dart::collision::Contact;
 using dart::collision::DistanceOption;
 using dart::collision::DistanceResult;
 
-/// What an object covers along x.
+/// The interval of an object along x.
 struct Interval {
   double low, high;
   std::size_t place;  ///< in its list

@@ -28,7 +28,7 @@ Expected<ConvexShape> of_points(const std::vector<Vec3>& points) {
   return ConvexShape(*std::move(hull));
 }
 
-/// What a closed surface encloses, and the sum of its faces' area vectors, which is 0 if the surface is closed.
+/// The volume inside of a surface, and the sum of its faces' area vectors, which is 0 if the surface is closed.
 struct Enclosed {
   double volume = 0;
   Vec3 open = Vec3::Zero();
@@ -42,7 +42,8 @@ struct Enclosed {
   }
 };
 
-/// Parts of a solid by which it may differ from its hull: readers of meshes round the corners to single precision.
+/// A mesh counts as convex if it differs from its hull by no more than this share of the volume: readers of meshes
+/// round the corners to single precision.
 constexpr double kFlatness = 1e-6;
 
 Enclosed enclosed_by(const ConvexPolytope& hull) {

@@ -41,7 +41,7 @@ struct GeomNumbers {
 /// The solid side of a plane; an error if its numbers are not finite or it has no normal.
 [[nodiscard]] Expected<Halfspace3> plane_of(dGeomID geom);
 
-/// The class and sizes of a geom, for messages: box (1 x 2 x 0.5).
+/// The class and sizes of a geom, for messages: "a box of sides 1, 2, 0.5".
 [[nodiscard]] std::string name_of(dGeomID geom);
 
 }  // namespace pd::detail

@@ -1,5 +1,5 @@
 /// @file
-/// What stands in ODE's table: one function for pdepth's answers and for recorders, there while either wants it.
+/// The function in ODE's table: one for pdepth's answers and for recorders, which stands there while either wants it.
 #pragma once
 
 #include <ode/ode.h>

@@ -103,7 +103,7 @@ class DirectionRefinement {
           frame(l),
           dual(is_framed ? Mat3(l.template triangularView<Eigen::Lower>().solve(Mat3::Identity()).transpose()) : l) {}
 
-    /// Of pi.
+    /// A lower bound of pi.
     [[nodiscard]] double lower() const { return cells.empty() ? finished : std::min(finished, cells.top().lower); }
 
     bool is_framed;

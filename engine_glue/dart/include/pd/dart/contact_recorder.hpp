@@ -34,7 +34,8 @@ class DartRecorder {
   /// Asks the group's detector for its contacts and writes a line for each pair that it reports. A pair that the filter
   /// lets through and whose bounding spheres meet, but which was not reported, gets a line that says `null`. DART's
   /// points lie on no surface in particular; the record puts them midway. Pairs of shapes that pdepth does not know are
-  /// counted as unsupported. The option's number of contacts is not heeded.
+  /// counted as unsupported. The option's number of contacts is not heeded. Positions are in the frame of the world.
+  /// Time O(n^2) for n objects, and that of the detector.
   void write(dart::collision::CollisionGroup& group, const dart::collision::CollisionOption& option, double seconds);
 
   /// Closes the file. A second call does nothing and returns the same.
