@@ -1,5 +1,13 @@
 # Doors: pdepth's answers for engines other than Bullet, each in a folder of its own. They stand on the core alone.
 
+# Looks for an engine by pkg-config, where there is one: PkgConfig::<variable>.
+macro(pd_find_engine variable module)
+  find_package(PkgConfig QUIET)
+  if(PKG_CONFIG_FOUND)
+    pkg_check_modules(${variable} QUIET IMPORTED_TARGET GLOBAL ${module})
+  endif()
+endmacro()
+
 # Leaves the folder if the engine's target was not found: with a line if the door's option is AUTO, else with an error.
 macro(pd_door_needs target engine option debian_package)
   if(NOT TARGET ${target})
