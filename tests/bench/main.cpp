@@ -17,6 +17,7 @@
 #include "bench/pairs/curved.hpp"
 #include "bench/pairs/meshes.hpp"
 #include "bench/pairs/pairs.hpp"
+#include "bench/pairs/shuffled.hpp"
 #include "bench/report/bench_report.hpp"
 #ifdef PD_BENCH_WITH_CONTACT
 #include "bench/contact/contact.hpp"
@@ -39,6 +40,8 @@ struct Options {
   std::uint64_t seed = 0;
   bool quick = false;
   bool turned = false;
+  bool from_files = false;
+  int other_megabytes = 4;
   int pairs = 0;
   int frames = 200;
   std::string csv;
@@ -132,7 +135,10 @@ int pairs_command(const Options& o) {
   print_preamble(o);
   PairsSettings settings;
   settings.cells = *cells;
-  for (Cell& cell : settings.cells) cell.turned = o.turned;
+  for (Cell& cell : settings.cells) {
+    cell.turned = o.turned;
+    cell.from_files = o.from_files;
+  }
   settings.seed = o.seed;
   settings.pairs = pairs_of(o);
   return finish(run_pairs(settings, solvers), "Cold single pairs", o, {{std::string(kOurs), {}}});
@@ -215,6 +221,17 @@ int curved_command(const Options& o) {
                 {{std::string(kOurs), {}}, {"pdepth-warm", {}}});
 }
 
+int shuffled_command(const Options& o) {
+  Solvers solvers;
+  add_ours(solvers, false, false);
+  add_peers(solvers);
+  if (!select(solvers, o.solvers)) return 2;
+  print_preamble(o);
+  const int pairs = o.pairs > 0 ? o.pairs : o.quick ? 2'000 : 20'000;
+  const std::vector<ShuffledRow> rows = run_shuffled({pairs, o.other_megabytes, o.seed}, solvers);
+  return o.csv.empty() || write_text(o.csv, to_csv(rows)) ? 0 : 1;
+}
+
 int hash_command(const Options& o) {
   HashOutcome outcome;
   const int code = run_hash(o.hash, &outcome);
@@ -266,6 +283,21 @@ CLI::App* add_pairs(CLI::App& app, Options& o) {
   add_family_options(*command, o);
   add_pair_options(*command, o);
   command->add_flag("--turned", o.turned, "turns cubes, grids and roofs at random as well, both bodies together");
+  command->add_flag("--from-files", o.from_files,
+                    "gives each body a random frame and single-precision points, as in a mesh file");
+  return command;
+}
+
+CLI::App* add_shuffled(CLI::App& app, Options& o) {
+  CLI::App* command = app.add_subcommand("shuffled", "pairs of mixed kinds, each asked once, with cold caches");
+  command->add_option("--seed", o.seed, "repeats a run (default: drawn, and printed)");
+  command->add_option("--solvers", o.solvers, "names of solvers (default: all)")->delimiter(',');
+  command->add_option("--pairs", o.pairs, "default: 20,000, quick 2,000")->check(CLI::Range(1, 1'000'000));
+  command->add_option("--other-megabytes", o.other_megabytes, "of other data, read between two queries")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_flag("--quick", o.quick, "a few seconds");
+  command->add_option("--csv", o.csv, "writes the table to this file");
   return command;
 }
 
@@ -380,6 +412,7 @@ int main(int argc, char** argv) {
   CLI::App* curved = add_curved(app, options);
   CLI::App* coherent = add_coherent(app, options);
   CLI::App* meshes = add_meshes(app, options);
+  CLI::App* shuffled = add_shuffled(app, options);
   CLI::App* compare = add_compare(app, options);
   CLI::App* agarwal = add_agarwal(app, options.agarwal);
   CLI::App* arya = add_arya(app, options.arya);
@@ -425,6 +458,7 @@ int main(int argc, char** argv) {
   if (*curved) return curved_command(options);
   if (*coherent) return coherent_command(options);
   if (*meshes) return meshes_command(options);
+  if (*shuffled) return shuffled_command(options);
   if (*compare) return compare_command(options);
   return pairs_command(options);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenes/agarwal_families.hpp"
+#include "scenes/single_precision.hpp"
 
 namespace pd::bench {
 
@@ -103,6 +104,21 @@ void turn(Draw& draw, const std::array<double, 4>& quaternion) {
   }
 }
 
+/// Moves a body's points into a random frame, rounds them to single precision and moves the pose back. False if they
+/// make no body.
+bool store_as_file(ConvexShape& shape, Pose& pose, scenes::Random& random) {
+  const Mat3 turn = Pose::from_quaternion(random.quaternion(), Vec3::Zero())->rotation();
+  const Vec3 shift = random.point(-1, 1);
+  scenes::Points points = vertices_of(shape);
+  for (Vec3& p : points) p = scenes::to_single(Vec3(turn * p + shift));
+  const auto stored = ConvexPolytope::from_points(points);
+  if (!stored) return false;
+  shape = ConvexShape(*stored);
+  const Mat3 rotation = pose.rotation() * turn.transpose();
+  pose = Pose::from_trusted_matrix(rotation, pose.translation() - rotation * shift);
+  return true;
+}
+
 }  // namespace
 
 std::string_view name_of(const Cell& cell) {
@@ -182,6 +198,16 @@ Expected<std::vector<Cell>> choose_cells(const std::vector<std::string>& familie
 }
 
 std::optional<Draw> draw(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
+  if (cell.from_files) {
+    Cell own = cell;
+    own.from_files = false;
+    std::optional<Draw> d = draw(own, seed, number);
+    scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 31);
+    if (!d || !store_as_file(d->bodies.a, d->pose_a, random) || !store_as_file(d->bodies.b, d->pose_b, random)) {
+      return std::nullopt;
+    }
+    return d;
+  }
   if (cell.turned &&
       (cell.family == PairFamily::cubes || cell.family == PairFamily::roofs || cell.family == PairFamily::grid)) {
     Cell upright = cell;

@@ -28,6 +28,8 @@ struct Cell {
   scenes::DepthClass depth;
   Variant variant = Variant::own;
   bool turned = false;  ///< cubes, grids and roofs: both bodies by one random rotation, which all others have anyway
+  /// Each body's points stand in a random frame and are rounded to single precision, as a mesh file holds them.
+  bool from_files = false;
 };
 
 /// The family's name.

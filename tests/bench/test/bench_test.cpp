@@ -12,8 +12,10 @@
 #include "bench/measure/stopwatch.hpp"
 #include "bench/pairs/judge.hpp"
 #include "bench/pairs/pair_source.hpp"
+#include "bench/pairs/shuffled.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "scenes/single_precision.hpp"
 
 namespace pd::bench {
 namespace {
@@ -83,6 +85,22 @@ TEST(PairSource, VariantsHaveTheirSizesAndTurningKeepsTheDepth) {
   cell.turned = true;
   EXPECT_GT(upright, 0.05);
   EXPECT_NEAR(depth(), upright, 1e-14);
+  cell.from_files = true;
+  EXPECT_NEAR(depth(), upright, 1e-6);
+  const Vec3 stored = draw(cell, 7, 3)->bodies.a.polytope()->vertex(0);
+  EXPECT_EQ(stored, scenes::to_single(stored));
+}
+
+TEST(Shuffled, EverySolverAsksThePairsThatItTakes) {
+  Solvers solvers;
+  add_ours(solvers, false, false);
+  const std::vector<ShuffledRow> rows = run_shuffled({.pairs = 20, .other_megabytes = 1, .seed = 3}, solvers);
+  ASSERT_EQ(rows.size(), solvers.size());
+  EXPECT_EQ(rows[0].solver, kOurs);
+  EXPECT_EQ(rows[0].pairs, 20);
+  EXPECT_GT(rows[0].hot_ns, 0);
+  EXPECT_GT(rows[0].shuffled_ns, rows[0].hot_ns);
+  EXPECT_GT(rows[0].other_data_ns, rows[0].hot_ns);
 }
 
 class Judged : public testing::Test {
