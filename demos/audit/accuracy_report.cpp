@@ -31,7 +31,7 @@ std::string engine_table(const AccuracyTable& table) {
                         row.missed, row.phantom, row.above_small, row.above_large, row.no_answer, row.worst,
                         row.nanoseconds / 1e3, words_of(row).empty() ? "" : "  " + words_of(row));
   }
-  return text;
+  return text + "us: a query's median in a family, geometric mean over the families that the engine takes\n";
 }
 
 std::string cell_text(const AccuracyRow& row) {
@@ -66,7 +66,8 @@ std::string totals_section(const AccuracyTable& table) {
   }
   return "<section id=\"engines\"><h2>Engines</h2>\n" + report::table(rows, true) +
          "<p class=\"quiet\">Errors are the larger of depth error and normal excess, relative to a pair's "
-         "size.</p></section>\n";
+         "size. A query's time is the processor clock's median in a family, each pair asked once; of an engine, "
+         "the geometric mean over the families that it takes.</p></section>\n";
 }
 
 /// Shaded by the share that is wrong; the number says the same.
@@ -102,7 +103,16 @@ std::string families_section(const AccuracyTable& table) {
 AccuracyRow AccuracyTable::total(std::size_t engine) const {
   AccuracyRow sum;
   sum.engine = engines[engine];
-  for (std::size_t f = 0; f < families.size(); ++f) sum.add(at(engine, f));
+  double logarithms = 0;
+  int timed = 0;
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    const AccuracyRow& row = at(engine, f);
+    sum.add(row);
+    if (!(row.nanoseconds > 0)) continue;  // a family that the engine does not take, or a recorder without a clock
+    logarithms += std::log(row.nanoseconds);
+    ++timed;
+  }
+  if (timed > 0) sum.nanoseconds = std::exp(logarithms / timed);
   return sum;
 }
 

@@ -106,11 +106,6 @@ void judge_record(const std::string& file, const AccuracySettings& settings, dou
 }  // namespace
 
 void AccuracyRow::add(const AccuracyRow& other) {
-  nanoseconds =
-      contacts + other.contacts > 0
-          ? (nanoseconds * static_cast<double>(contacts) + other.nanoseconds * static_cast<double>(other.contacts)) /
-                static_cast<double>(contacts + other.contacts)
-          : 0;
   failed = failed || other.failed;
   contacts += other.contacts;
   missed += other.missed;

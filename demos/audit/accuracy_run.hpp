@@ -3,8 +3,9 @@
 ///
 /// A recorder program answers `--list` with the names of its engines, one a line, and
 /// `--engine E --family F --pairs N --vertices V --seed S --out FILE` with a contact record of N pairs of the family at
-/// each of its four depths in FILE, and the mean nanoseconds of a query on its standard output; with `--cases RECORD`
-/// in place of `--family F` with one of the pairs of that record.
+/// each of its four depths in FILE, and the median nanoseconds of a query on its standard output; with `--cases RECORD`
+/// in place of `--family F` with one of the pairs of that record. Ours reads the processor clock of its thread, so that
+/// a busy machine's waiting does not count.
 #pragma once
 
 #include <cstdint>
@@ -47,12 +48,13 @@ struct AccuracyRow {
   std::int64_t no_answer = 0;   ///< numbers that are not finite, pairs that could not be judged, and `aborted`
   std::int64_t aborted = 0;     ///< pairs at which the engine ended on an assertion of its own, as the program says
   double worst = 0;             ///< the largest error, relative to L
-  double nanoseconds = 0;       ///< a query, in the mean
+  double nanoseconds = 0;       ///< a query's median in a family; of an engine, the geometric mean over families
   /// The contact with the largest error, where it was asked for and is above kLargeError.
   std::optional<report::PairFigure> figure;
 
   /// Contacts that a user would call wrong, each once: missed, phantom, above_large or without an answer.
   [[nodiscard]] std::int64_t wrong() const { return missed + phantom + only_large + no_answer; }
+  /// Adds the counts; `nanoseconds` stays.
   void add(const AccuracyRow& other);
 };
 

@@ -15,9 +15,11 @@ namespace pd::audit {
 /// The JSON answer of the protocol's "Contact records", one line without a newline. Quantiles of nothing are null.
 [[nodiscard]] std::string audit_json(const Audit& audit, const std::vector<ConditionOutcome>& conditions);
 
-/// A table for a terminal, of at most 110 columns, and the worst contacts below it. @param record  its name
+/// A table for a terminal, of at most 110 columns, and the worst contacts below it.
+/// @param record  its name
+/// @param drawn  a page draws the worst contacts: the table need not tell how to get one
 [[nodiscard]] std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>& conditions,
-                                      std::string_view record);
+                                      std::string_view record, bool drawn = false);
 
 /// What a recorder rather than an engine seems to have got wrong, a sentence each: more than half of all normals, or of
 /// all depths that are far off, fit with the other sign.

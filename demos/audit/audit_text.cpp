@@ -58,7 +58,8 @@ std::vector<std::string> recorder_hints(const AuditSummary& summary) {
   return hints;
 }
 
-std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>& conditions, std::string_view record) {
+std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>& conditions, std::string_view record,
+                        bool drawn) {
   const AuditSummary& summary = audit.summary;
   std::string text = fmt::format("record    {}  ({}, {})\n", record, audit.header.engine,
                                  audit.header.single_precision ? "float32" : "float64");
@@ -78,8 +79,9 @@ std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>&
         fmt::format("  line {}  contact {}  {} {}  ({}, {})\n", worst.line, query::shortened(worst.contact.id_text, 40),
                     worst.column, short_number(worst.error), kind_of(worst.contact), said(worst));
   }
-  if (!summary.worst().empty())
+  if (!summary.worst().empty() && !drawn) {
     text += "  --report DIR draws them, with the line that asks for each again; --json has it, too\n";
+  }
   for (const std::string& hint : recorder_hints(summary)) text += fmt::format("\nhint: {}\n", hint);
   if (!summary.all_judged()) text += fmt::format("\nnot judged: {}\n", not_judged(summary));
   if (!conditions.empty()) text += "\n";

@@ -131,8 +131,10 @@ int run_audit(AuditArguments arguments) {
     const report::Page page = audit::audit_report(result, outcomes, arguments.input, command_of(arguments));
     if (!report::write_page(arguments.report, page)) return cannot_write(arguments.report + "/report.html");
   }
-  const std::string text = arguments.json ? audit::audit_json(result, outcomes) + "\n"
-                                          : printable(audit::audit_table(result, outcomes, arguments.input), "\n");
+  const std::string text =
+      arguments.json
+          ? audit::audit_json(result, outcomes) + "\n"
+          : printable(audit::audit_table(result, outcomes, arguments.input, !arguments.report.empty()), "\n");
   fmt::print("{}", text);
   // Programs that read the JSON find the page's path where words for people go.
   if (!arguments.report.empty()) {

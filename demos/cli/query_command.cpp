@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "line_input.hpp"
+#include "mesh/mesh_file.hpp"
 #include "progress.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/schema.hpp"
@@ -55,6 +57,27 @@ void print_queries() {
   }
 }
 
+/// True for a file with the ending of a mesh whose text does not begin as JSON does: each of its lines would be an
+/// error.
+bool is_plainly_mesh(const InputFile& input, const std::string& name) {
+  if (!query::is_mesh_name(name)) return false;
+  char begin[256];
+  const ssize_t count = ::pread(input.descriptor(), begin, sizeof(begin), 0);
+  if (count <= 0) return false;  // empty, or a pipe, whose bytes can be read only once
+  const std::string_view text(begin, static_cast<std::size_t>(count));
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] != '{';
+}
+
+int refuse_mesh(const std::string& name) {
+  complain(
+      "{0} is a mesh, and query reads lines of JSON: try `pdepth check {0}` or `pdepth depth {0} box:1,1,1`, or name "
+      "the "
+      "file in a line: {{\"query\":\"width\",\"a\":{{\"type\":\"mesh\",\"path\":{1}}}}}",
+      name, nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  return kBadUsage;
+}
+
 int run_query(QueryArguments arguments) {
   if (arguments.list) print_queries();
   if (arguments.schema) fmt::print("{}", query::kSchema);
@@ -63,6 +86,7 @@ int run_query(QueryArguments arguments) {
   settings.threads = number_of_threads(settings.threads);
   const InputFile input(arguments.input);
   if (!input.good()) return cannot_read(arguments.input, errno);
+  if (is_plainly_mesh(input, arguments.input)) return refuse_mesh(arguments.input);
   if (input.is_also(STDOUT_FILENO)) return refuse_input("standard output", arguments.input);
   if (!settings.record.path.empty() && input.is_also(settings.record.path)) {
     return refuse_input("--record " + settings.record.path, arguments.input);

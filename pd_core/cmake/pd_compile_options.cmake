@@ -68,5 +68,8 @@ function(pd_precompile_headers target)
   # that std::string is a system's and reports sizes inside it (bug 105651 again); a build without precompiled headers has the warnings.
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    # Without the times of headers in it, ccache serves the precompiled header of another build folder.
+    target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
   endif()
 endfunction()

@@ -44,6 +44,8 @@ SHOWN = {
     "demos/audit/README.md": "accuracy.md",
     "demos/python/README.md": "python.md",
     "pd_core/README.md": "papers.md",
+    "pd_core/docs/algorithms.md": "algorithms.md",
+    "pd_core/docs/departures.md": "departures.md",
     "pd_core/docs/one_query.md": "one_query.md",
     "pd_core/docs/search_trace.md": "search_trace.md",
 }

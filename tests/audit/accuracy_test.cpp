@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <pugixml.hpp>
 
-#include "audit/accuracy_run.hpp"
+#include "audit/accuracy_engines.hpp"
+#include "audit/accuracy_report.hpp"
 #include "record_text.hpp"
 
 namespace pd::test {
@@ -42,8 +43,8 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ "$family" = box ] || [ "$family" = sphere ] || kill -9 $$
-cat "$here/$engine" > "$out" && echo 1234 $([ "$family" = sphere ] && echo 3)
+case $family in box|needle|sphere) ;; *) kill -9 $$ ;; esac
+cat "$here/$engine" > "$out" && echo $([ "$family" = needle ] && echo 4936 || echo 1234) $([ "$family" = sphere ] && echo 3)
 )");
     EXPECT_EQ(::chmod(program.c_str(), 0700), 0);
     return program;
@@ -77,6 +78,14 @@ TEST_F(Accuracy, PairsAtWhichAnEngineAborts) {
   EXPECT_EQ(row.contacts, 2 + 3);
   EXPECT_EQ(row.no_answer, 3);
   EXPECT_EQ(row.wrong(), 3);
+}
+
+TEST_F(Accuracy, TimeOfAnEngineIsTheGeometricMeanOverFamilies) {
+  const audit::AccuracyTable table =
+      audit::run_engines({{recorder(), "good"}}, {{"box", ""}, {"prism", ""}, {"needle", ""}}, {}, false);
+  EXPECT_EQ(table.at(0, 2).nanoseconds, 4936);
+  EXPECT_NEAR(table.total(0).nanoseconds, 2468, 1e-9) << "the family whose run failed has no time";
+  EXPECT_EQ(table.total(0).contacts, 4);
 }
 
 TEST_F(Accuracy, ProgramsThatFail) {

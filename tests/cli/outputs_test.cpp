@@ -158,7 +158,10 @@ TEST_F(Outputs, PagesHoldTheLicenceOfTheCodeInThem) {
   for (const char* words : {"three.js authors", "Permission is hereby granted", "WITHOUT WARRANTY OF ANY KIND"}) {
     EXPECT_NE(read("out").find(words), std::string::npos) << words;
   }
+  ASSERT_EQ(run("audit record.jsonl > out"), 0) << read("err");
+  EXPECT_NE(read("out").find("--report DIR"), std::string::npos) << read("out");
   ASSERT_EQ(run("audit record.jsonl --report page > out"), 0) << read("err");
+  EXPECT_EQ(read("out").find("--report DIR"), std::string::npos) << "the page is there";
   const std::string page = read("page/report.html");
   ASSERT_NE(page.find("THREE="), std::string::npos) << "the page turns a pair";
   const std::size_t code = page.find("var THREE=");
@@ -229,6 +232,9 @@ TEST_F(Outputs, NewcomersAreHelped) {
   EXPECT_EQ(run("help dance > out"), 2);
   EXPECT_EQ(run("audit cube.obj > out"), 2);
   EXPECT_NE(read("err").find("no record"), std::string::npos) << read("err");
+  EXPECT_EQ(run("query cube.obj > out"), 2);
+  EXPECT_NE(read("err").find("is a mesh"), std::string::npos) << read("err");
+  EXPECT_EQ(read("out"), "") << "one sentence, and no answer for each line of the mesh";
   EXPECT_EQ(run("simplify cube.obj -o small.stl > out"), 2);
   EXPECT_NE(read("err").find(".obj"), std::string::npos) << read("err");
 }

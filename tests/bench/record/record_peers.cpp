@@ -5,8 +5,9 @@
 ///   record_peers --engine fcl-contact --family prism --pairs 25 --out prism.jsonl
 ///   record_peers --engine fcl-contact --cases contacts.jsonl --out fcl.jsonl         (the pairs of a record)
 ///
-/// Prints the nanoseconds of a query and how many pairs have no line, because the engine ended on an assertion of its
-/// own or crashed: the work is done by a child, and after such an end by another one that leaves that pair out.
+/// Prints the median nanoseconds of a query, by the processor clock of its thread, and how many pairs have no line,
+/// because the engine ended on an assertion of its own or crashed: the work is done by a child, and after such an end
+/// by another one that leaves that pair out.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +26,9 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "bench/measure/processor_time.hpp"
 #include "bench/peers/solver.hpp"
 #include "pd/record/pd_record.h"
 #include "scenes/shape_families.hpp"
@@ -110,6 +112,24 @@ struct NamedPair {
   std::string id_b;
 };
 
+/// The middle of some numbers; 0 of none.
+double median(std::vector<double> numbers) {
+  if (numbers.empty()) return 0;
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+/// Seconds that two readings of the clock with nothing in between are apart.
+double clock_seconds() {
+  std::vector<double> seconds;
+  for (int i = 0; i < 101; ++i) {
+    const double start = processor_seconds();
+    seconds.push_back(processor_seconds() - start);
+  }
+  return median(seconds);
+}
+
 /// The pairs at which the engine ended, and the one that it works on, in memory that outlives the child.
 struct Progress {
   std::set<int> ended_at;
@@ -132,10 +152,9 @@ class Recording {
     if (progress_.ended_at.contains(*progress_.current)) return;
     const auto attempt = solver_.prepare(pair->bodies);
     attempt->stand(pair->pose_a, pair->pose_b);
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     attempt->run();
-    nanoseconds_ += std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
-    ++asked_;
+    seconds_.push_back(processor_seconds() - start);
     if (written_.insert(named.id_a).second) write_shape(file_, named.id_a, pair->bodies.a);
     if (written_.insert(named.id_b).second) write_shape(file_, named.id_b, pair->bodies.b);
     write_answer(named, *pair, attempt->answer());
@@ -147,7 +166,8 @@ class Recording {
       std::fprintf(stderr, "record_peers: %s cannot be written\n", name.c_str());
       return 1;
     }
-    std::printf("%.0f %zu\n", asked_ > 0 ? nanoseconds_ / asked_ : 0, progress_.ended_at.size());
+    const double nanoseconds = 1e9 * (median(seconds_) - clock_seconds());
+    std::printf("%.0f %zu\n", seconds_.empty() ? 0 : std::max(1.0, nanoseconds), progress_.ended_at.size());
     return 0;
   }
 
@@ -167,8 +187,7 @@ class Recording {
   int number_ = 0;  ///< of pairs that the engine takes
   pd_record file_{};
   std::set<std::string> written_;
-  double nanoseconds_ = 0;
-  int asked_ = 0;
+  std::vector<double> seconds_;  ///< of each query
 };
 
 int record_family(const RecordOptions& options, Solver& solver, const Progress& progress, scenes::PairFamily family) {
