@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What takes too long for CI: blind mutations of the kept fuzz inputs, and pairs against the exact oracles, random ones and ones
-# of small whole numbers, on the release build. Ends with the first law that breaks; the input that broke it stands in the folder
+# of small whole numbers, and pairs of all kinds of shapes by laws, on the release build. Ends with the first law that breaks; the input that broke it stands in the folder
 # of the findings.
 #
 #   tests/long/run.sh [SECONDS_PER_TARGET [BUILD_FOLDER [ORACLE_PAIRS [GRID_PAIRS]]]]        600 build/release 180000 6000000
@@ -14,6 +14,7 @@ seconds=${1:-600}
 build=${2:-build/release}
 oracle_pairs=${3:-$((seconds * 300))}
 grid_pairs=${4:-$((seconds * 10000))}
+member_pairs=${5:-100000}
 findings=$build/fuzz_findings
 mkdir -p "$findings"
 
@@ -36,5 +37,9 @@ mkdir -p "$findings"
   if [[ -x $build/grid_pairs ]]; then
     printf 'grid_pairs: %s pairs\n' "$grid_pairs"
     (cd "$findings" && "../grid_pairs" --pairs "$grid_pairs" --seed 2 --threads "$(nproc)" | tee grid_pairs.txt | tail -3)
+  fi
+  if [[ -x $build/member_pairs ]]; then
+    printf 'member_pairs: '
+    "$build/member_pairs" --pairs "$member_pairs" --seed 2 --threads "$(nproc)"
   fi
 } | tee tests/long/last_run.txt

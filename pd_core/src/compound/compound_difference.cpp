@@ -42,15 +42,9 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
     return Error{ErrorCode::unsupported, "a Minkowski difference is built for polytopes without a margin", ""};
   }
   const int exponent = pair->scale_exponent();
-  auto built = detail::PartDifferences::build(pair->a, pair->boxes_a, pair->b, pair->boxes_b, exponent, HUGE_VAL,
-                                              std::min(max_facets, max_work));
-  if (!built) return max_facets <= max_work ? too_many(max_facets) : too_much_work(max_work);
-  detail::PartDifferences differences = std::move(built).value();
+  detail::PartDifferences differences =
+      detail::PartDifferences::find(pair->a, pair->boxes_a, pair->b, pair->boxes_b, exponent, HUGE_VAL, max_facets);
   UnionDifference result;
-  for (const detail::PartDifference& piece : differences.pieces()) {
-    ++result.work.pairs;
-    result.work.facets += static_cast<std::int64_t>(piece.facets.size());
-  }
   detail::UnionBoundary boundary(differences);
   std::vector<Vec3> corners;
   const auto add = [&](const detail::UnionBoundary::BoundaryPoint& where) {
@@ -70,9 +64,13 @@ Expected<UnionDifference> minkowski_difference(const PosedCompound& a, const Pos
     return true;
   };
   const bool complete = boundary.visit_all(add, max_work);
+  for (const detail::PartDifference& piece : differences.pieces()) {
+    if (!piece.planes.empty()) ++result.work.pairs;
+  }
+  result.work.facets = differences.num_facets();
   result.work.polygons = boundary.counts().polygons;
   result.work.cuts = boundary.counts().cuts;
-  if (result.work.polygons + result.work.cuts > max_work) return too_much_work(max_work);
+  if (boundary.counts().work() > max_work) return too_much_work(max_work);
   if (!complete) return too_many(max_facets);
 
   result.vertices = corners;

@@ -44,12 +44,13 @@ Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const 
     out.contact = *contact;
   }
   if (out.contact != ContactClass::overlapping) return out;
-  if (auto refused = answer.build(HUGE_VAL)) return *std::move(refused);
+  answer.find(HUGE_VAL);
 
   const int exponent = std::ilogb(direction.cwiseAbs().maxCoeff());
   const Dyadic3 given = detail::to_dyadic(direction);
   const Dyadic3 exact{given.x.scaled(-exponent), given.y.scaled(-exponent), given.z.scaled(-exponent)};
   const auto hit = answer.boundary().along(detail::scaled(direction, -exponent), exact);
+  if (auto refused = answer.refused()) return *std::move(refused);
   answer.count();
   // A ray from inside a bounded set leaves it.
   const Dyadic numerator = hit->t.numerator.scaled(pair->scale_exponent());
@@ -85,9 +86,10 @@ Expected<ContactClass> point_in_difference(const PosedCompound& a, const PosedCo
   UnionStatistics work;
   const UnionSettings settings;
   FacetsAnswer answer(*pair, settings, work);
-  if (auto refused = answer.build(point.norm() * (1 + 0x1p-40))) return *std::move(refused);
+  answer.find(point.norm() * (1 + 0x1p-40));
   bool held = false;
   const auto where = answer.boundary().at(detail::scaled(point, -pair->scale_exponent()), held);
+  if (auto refused = answer.refused()) return *std::move(refused);
   return held && !where ? ContactClass::overlapping : ContactClass::touching;
 }
 

@@ -59,14 +59,11 @@ Vec3 scaled(const Vec3& v, int exponent) {
   return {std::ldexp(v.x(), exponent), std::ldexp(v.y(), exponent), std::ldexp(v.z(), exponent)};
 }
 
-std::optional<Error> FacetsAnswer::build(double reach) {
+void FacetsAnswer::find(double reach) {
   const int exponent = pair_.scale_exponent();
-  auto built = PartDifferences::build(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
-                                      std::ldexp(reach, -exponent), settings_.max_facets);
-  if (!built) return too_many_facets();
-  differences_.emplace(*std::move(built));
+  differences_.emplace(PartDifferences::find(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
+                                             std::ldexp(reach, -exponent), settings_.max_facets));
   boundary_.emplace(*differences_);
-  return std::nullopt;
 }
 
 Error FacetsAnswer::too_many_facets() const {
@@ -78,10 +75,8 @@ Error FacetsAnswer::too_many_facets() const {
 
 std::optional<Error> FacetsAnswer::solve_overlapping(double known_lower, double reach, UnionMemory* memory,
                                                      UnionDepth& out) {
+  find(reach);
   const int exponent = pair_.scale_exponent();
-  differences_.emplace(PartDifferences::find(pair_.a, pair_.boxes_a, pair_.b, pair_.boxes_b, exponent,
-                                             std::ldexp(reach, -exponent), settings_.max_facets));
-  boundary_.emplace(*differences_);
   const auto nearest = boundary_->nearest(std::ldexp(known_lower, -exponent), std::ldexp(reach, -exponent), memory);
   if (!nearest) return too_many_facets();
   set_overlapping(*nearest, out);
@@ -91,9 +86,10 @@ std::optional<Error> FacetsAnswer::solve_overlapping(double known_lower, double 
 }
 
 Expected<ContactClass> FacetsAnswer::class_of_touching(std::optional<Where>& where) {
-  if (auto refused = build(0)) return *std::move(refused);
+  find(0);
   bool held = false;
   where = boundary_->at(Vec3::Zero(), held);
+  if (differences_->limit_exceeded()) return too_many_facets();
   count();
   return held && !where ? ContactClass::overlapping : ContactClass::touching;
 }

@@ -27,16 +27,20 @@ class FacetsAnswer {
   FacetsAnswer(const UnionPair& pair, const UnionSettings& settings, UnionStatistics& work)
       : pair_(pair), settings_(settings), work_(work) {}
 
-  /// Builds the P_ij that come within `reach` of the origin. @return limit_exceeded.
-  [[nodiscard]] std::optional<Error> build(double reach);
+  /// Finds the P_ij that come within `reach` of the origin; searches make those that they need.
+  void find(double reach);
 
-  /// Class of a union whose pairs touch at best: a placement on walls of zero width is inside. Builds.
+  /// Class of a union whose pairs touch at best: a placement on walls of zero width is inside. Finds the P_ij there.
   /// @param where  the boundary point that the origin is, if it is one.
   [[nodiscard]] Expected<ContactClass> class_of_touching(std::optional<Where>& where);
 
   [[nodiscard]] UnionBoundary& boundary() { return *boundary_; }
+  /// Whether the P_ij that were made have more than `max_facets` facets, and the answer is lost: limit_exceeded.
+  [[nodiscard]] std::optional<Error> refused() const {
+    return differences_->limit_exceeded() ? std::optional(too_many_facets()) : std::nullopt;
+  }
 
-  /// Adds what was done; called once for each build.
+  /// Adds what was done; called once for each set of P_ij.
   void count();
 
   [[nodiscard]] const PartDifference& piece(const Where& where) const { return differences_->pieces()[where.piece]; }

@@ -23,6 +23,10 @@ constexpr std::size_t kMaxTriedTogether = 12;
 /// Times that the polytopes in and around the parts are refined: the first suffice in most cases, and each takes two
 /// exact answers.
 constexpr int kMostBounds = 8;
+/// After so many, small parts are looked at along all directions, too.
+constexpr int kCoarseBounds = 3;
+/// A round that leaves more than this share of the bracket open was of little use.
+constexpr double kStalled = 0.75;
 /// Of exact searches for those: cells looked at and polygons cut, each some microseconds.
 constexpr std::int64_t kMostBoundWork = 20'000;
 /// Pairs that the octree may ask: each takes 5 to 50 microseconds.
@@ -121,11 +125,24 @@ class Octree {
   /// like the parts where they were nearest, until the bounds meet.
   /// @return the better lower bound; a better placement is taken over.
   double bound_by_polytopes(double known_lower) {
-    std::vector<PartBounds> of_a(pair_.a.begin(), pair_.a.end()), of_b(pair_.b.begin(), pair_.b.end());
+    // Small parts begin with few directions, since those that matter are added below. The depth is guessed from the
+    // placement known so far.
+    double gap = 4 * settings_.delta * upper_;
+    std::vector<PartBounds> of_a, of_b;
+    const auto sample = [&] {
+      of_a.clear();
+      of_b.clear();
+      for (const PosedShape& part : pair_.a) of_a.emplace_back(part, gap);
+      for (const PosedShape& part : pair_.b) of_b.emplace_back(part, gap);
+    };
+    sample();
     UnionSettings exactly;
     exactly.max_facets = settings_.max_facets;
     std::int64_t work = 0;
+    double last_open = HUGE_VAL;
+    std::vector<Vec3> looked;
     const auto look_along = [&](const Vec3& unit) {
+      looked.push_back(unit);
       for (PartBounds& part : of_a) part.look_along(-unit);
       for (PartBounds& part : of_b) part.look_along(unit);
     };
@@ -144,9 +161,24 @@ class Octree {
       accept(outer->translation);
       try_placement(inner->translation, all_pairs());
       if (upper_ <= (1 + settings_.delta) * known_lower) break;
+      if (round == kCoarseBounds) {
+        gap = 0;
+        sample();
+        for (const Vec3& unit : std::exchange(looked, {})) look_along(unit);
+      }
+      // Refining that has stopped to help is left to the octree.
+      const double open = upper_ - known_lower;
+      if (round > kCoarseBounds && open > kStalled * last_open) break;
+      last_open = open;
       for (const UnionDepth* bound : {&*inner, &*outer}) {
         look_along(bound->normal);
         look_along(bound->translation.normalized());
+        // In a notch between several P_ij the facets of all of them hold the answer back.
+        for (std::int32_t p = 0; p < static_cast<std::int32_t>(pairs_.size()); ++p) {
+          double slack = 0;
+          const PenetrationDepth answer = moved_answer(p, bound->translation, slack);
+          if (std::abs(answer.signed_distance()) <= 2 * open) look_along(answer.normal);
+        }
       }
     }
     if (translation_.norm() > known_lower) slide(all_pairs());

@@ -1,5 +1,6 @@
 #include "compound/part_bounds.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,11 +29,20 @@ std::vector<Eigen::Vector2d> circle(std::size_t count) {
   }
   return points;
 }
-constexpr std::size_t kRim = 16;
 
-std::vector<Vec3> sphere() {
-  constexpr double kFortyTwo = 0.07;  // the relative error that 42 directions leave
-  return direction_grid(GridKind::geodesic, kFortyTwo)->directions;
+/// Points of a circle of the radius, of which so many leave a gap of at most `gap` between the polygons inside and
+/// around it: 16 at most.
+std::size_t rim_count(double radius, double gap) {
+  constexpr double kGapOfFour = 0.71, kGapOfEight = 0.16;  // of a circle of radius 1: 1 / cos(x) - cos(x)
+  return kGapOfFour * radius <= gap ? 4 : kGapOfEight * radius <= gap ? 8 : 16;
+}
+
+/// Unit vectors: 12, if they leave a gap of at most `gap` between the polytopes inside and around a ball of the radius,
+/// else 42.
+std::vector<Vec3> sphere(double radius, double gap) {
+  constexpr double kGapOfTwelve = 0.47;               // of a ball of radius 1
+  constexpr double kTwelve = 0.27, kFortyTwo = 0.07;  // the relative errors that so many directions leave
+  return direction_grid(GridKind::geodesic, kGapOfTwelve * radius <= gap ? kTwelve : kFortyTwo)->directions;
 }
 
 Vec3 around(int axis, const Eigen::Vector2d& across, double along) {
@@ -45,8 +55,9 @@ Vec3 around(int axis, const Eigen::Vector2d& across, double along) {
 
 }  // namespace
 
-PartBounds::PartBounds(const PosedShape& part)
+PartBounds::PartBounds(const PosedShape& part, double gap)
     : part_(part),
+      gap_(gap),
       exact_(part.shape->polytope() != nullptr && part.shape->margin() == 0),
       rotation_(part.shape->polytope() != nullptr ? part.pose.rotation() : part.pose.nearest_rotation()),
       size_(2 * core_radius(part.shape->core()) + part.shape->margin()) {
@@ -56,12 +67,19 @@ PartBounds::PartBounds(const PosedShape& part)
 
 void PartBounds::look_along(const Vec3& unit) {
   if (exact_) return;
+  // Facets that are nearly parallel would meet in long numbers, and tell nothing new.
+  constexpr double kNearlyParallel = 1 - 1e-8;
+  const auto parallel = [&](const Halfspace3& plane) { return plane.normal.dot(unit) > kNearlyParallel; };
+  if (std::none_of(planes_.begin(), planes_.end(), parallel)) add_direction(unit);
+}
+
+void PartBounds::add_direction(const Vec3& unit) {
   const Vec3 local = support_point(part_.shape->core(), rotation_.transpose() * unit);
   add_point(local, unit);
   planes_.push_back({unit, unit.dot(points_.back()) + kAir * size_});
 }
 
-void PartBounds::look_along_local(const Vec3& direction) { look_along((rotation_ * direction).normalized()); }
+void PartBounds::look_along_local(const Vec3& direction) { add_direction((rotation_ * direction).normalized()); }
 
 void PartBounds::add_point(const Vec3& local_core, const Vec3& unit) {
   points_.push_back(rotation_ * local_core + part_.shape->margin() * unit);
@@ -73,23 +91,25 @@ void PartBounds::sample(const ConvexPolytope& core) {
     const Vec3 unit = planes_.back().normal;
     for (const std::int32_t v : core.facet_vertices(f)) add_point(core.vertex(v), unit);
   }
-  for (const Vec3& direction : sphere()) look_along_local(direction);
+  for (const Vec3& direction : sphere(part_.shape->margin(), gap_)) look_along_local(direction);
 }
 
 void PartBounds::sample(const Ellipsoid& core) {
   const double least = core.radii.minCoeff();
-  for (const Vec3& direction : sphere()) look_along_local(direction.cwiseQuotient(core.radii / least));
+  const double most = core.radii.maxCoeff() + part_.shape->margin();
+  for (const Vec3& direction : sphere(most, gap_)) look_along_local(direction.cwiseQuotient(core.radii / least));
 }
 
 void PartBounds::sample(const Cylinder& core) {
+  const auto rim = circle(rim_count(core.radius + part_.shape->margin(), gap_));
   for (const double side : {-1.0, 1.0}) {
     look_along_local(side * Vec3::Unit(core.axis));
     const Vec3 unit = planes_.back().normal;
-    for (const auto& across : circle(kRim)) {
+    for (const auto& across : rim) {
       add_point(around(core.axis, core.radius * across, side * core.half_height), unit);
     }
   }
-  for (const auto& across : circle(kRim)) {
+  for (const auto& across : rim) {
     look_along_local(around(core.axis, across, 0));
     const Vec3 unit = planes_.back().normal;
     for (const double side : {-1.0, 1.0}) {
@@ -99,20 +119,23 @@ void PartBounds::sample(const Cylinder& core) {
 }
 
 void PartBounds::sample(const Cone& core) {
+  const auto rim = circle(rim_count(core.radius + part_.shape->margin(), gap_));
   look_along_local(-Vec3::Unit(core.axis));
   const Vec3 down = planes_.back().normal;
-  for (const auto& across : circle(kRim)) {
-    const Vec3 rim = around(core.axis, core.radius * across, -core.half_height);
-    add_point(rim, down);
+  for (const auto& across : rim) {
+    const Vec3 base = around(core.axis, core.radius * across, -core.half_height);
+    add_point(base, down);
     look_along_local(around(core.axis, 2 * core.half_height * across, core.radius));
     const Vec3 unit = planes_.back().normal;
-    add_point(rim, unit);
+    add_point(base, unit);
     add_point(core.half_height * Vec3::Unit(core.axis), unit);
   }
 }
 
-void PartBounds::sample(const SphereHull& /*supports tell all*/) {
-  for (const Vec3& direction : sphere()) look_along_local(direction);
+void PartBounds::sample(const SphereHull& core) {
+  double most = 0;
+  for (const Sphere& s : core.spheres()) most = std::max(most, s.radius);
+  for (const Vec3& direction : sphere(most + part_.shape->margin(), gap_)) look_along_local(direction);
 }
 
 std::optional<Compound::Part> PartBounds::inner() const {

@@ -14,11 +14,12 @@ namespace pd::detail {
 
 class PartBounds {
  public:
-  /// Refers to the part's shape. Looks along some forty directions: those that suit the core, its flat faces among
-  /// them.
-  explicit PartBounds(const PosedShape& part);
+  /// Refers to the part's shape. Looks along directions that suit the core, its flat faces among them: some forty, or
+  /// fewer if these leave a gap of about `gap` or less between the two polytopes.
+  PartBounds(const PosedShape& part, double gap);
 
-  /// Adds the point that is farthest along a unit vector (world axes), and the plane across it.
+  /// Adds the point that is farthest along a unit vector (world axes), and the plane across it, unless one is nearly
+  /// parallel to it.
   void look_along(const Vec3& unit);
 
   /// A polytope that lies in the part, and one that holds it, both in the world; nothing where rounding leaves no such
@@ -27,6 +28,7 @@ class PartBounds {
   [[nodiscard]] std::optional<Compound::Part> outer() const;
 
  private:
+  void add_direction(const Vec3& unit);
   void look_along_local(const Vec3& direction);
   void add_point(const Vec3& local_core, const Vec3& unit);
   void sample(const ConvexPolytope& core);
@@ -36,6 +38,7 @@ class PartBounds {
   void sample(const SphereHull& core);
 
   PosedShape part_;
+  double gap_;
   bool exact_;
   Mat3 rotation_;             ///< of the core
   double size_;               ///< of the part: distances from its translation are no larger

@@ -7,10 +7,26 @@
 
 namespace pd::detail {
 
+namespace {
+
+/// False is certain.
+bool boxes_meet(const Box& x, const Box& y, double slack) {
+  return (x.low - y.high).maxCoeff() <= slack && (y.low - x.high).maxCoeff() <= slack;
+}
+
+}  // namespace
+
 UnionBoundary::UnionBoundary(PartDifferences& differences) : differences_(differences), planes_(differences.planes()) {
   for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
   all_.resize(boxes_.size());
   std::iota(all_.begin(), all_.end(), 0);
+  large_first_ = all_;
+  const auto volume = [&](std::int32_t k) {
+    const Box& box = boxes_[static_cast<std::size_t>(k)];
+    return (box.high - box.low).prod();
+  };
+  std::stable_sort(large_first_.begin(), large_first_.end(),
+                   [&](std::int32_t x, std::int32_t y) { return volume(x) > volume(y); });
 }
 
 UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
@@ -20,7 +36,9 @@ UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
 }
 
 bool UnionBoundary::subtract(const PlanePolygon& polygon, std::size_t own, std::size_t k, bool once) {
-  const std::vector<RoughPlane>& rough = differences_.exactly(k).planes;
+  const PartDifference& piece = differences_.exactly(k);
+  if (piece.flat) return false;
+  const std::vector<RoughPlane>& rough = piece.planes;
   const double rounding = 2 * polygon.error + 0x1p-48 * differences_.extent();
   rest_.clear();
   PlanePolygon left = polygon;
@@ -107,6 +125,54 @@ bool UnionBoundary::contained_in_recent(const PlanePolygon& polygon) {
   return false;
 }
 
+void UnionBoundary::rough_corners(std::size_t k, std::size_t f, std::vector<Vec3>& corners) const {
+  const MinkowskiDifference& built = *differences_.pieces()[k].built;
+  const MinkowskiDifference::Facet& facet = built.facets[f];
+  const double scale = differences_.scale();
+  corners.clear();
+  for (std::int32_t i = facet.first; i < facet.first + facet.count; ++i) {
+    const std::int32_t corner = built.corners[static_cast<std::size_t>(i)];
+    corners.push_back(built.vertices[static_cast<std::size_t>(corner)].position * scale);
+  }
+}
+
+bool UnionBoundary::surely_holds(std::size_t k, const std::vector<Vec3>& points) {
+  const double rounding = 0x1p-42 * differences_.extent();
+  const PartDifference& piece = differences_.roughly(k);
+  return !piece.flat && std::all_of(piece.planes.begin(), piece.planes.end(), [&](const RoughPlane& plane) {
+    const double limit = plane.offset - plane.slack - rounding;
+    return std::all_of(points.begin(), points.end(), [&](const Vec3& x) { return plane.normal.dot(x) < limit; });
+  });
+}
+
+bool UnionBoundary::surely_covered(std::size_t own, const std::vector<Vec3>& corners,
+                                   std::span<const std::int32_t> near) {
+  for (std::size_t i = 0; i < recent_.size(); ++i) {
+    if (recent_[i] == own || !surely_holds(recent_[i], corners)) continue;
+    std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
+                recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    return true;
+  }
+  const double rounding = 0x1p-42 * differences_.extent();
+  Box box{corners[0], corners[0]};
+  for (const Vec3& x : corners) {
+    box.low = box.low.cwiseMin(x);
+    box.high = box.high.cwiseMax(x);
+  }
+  meeting_.clear();
+  for (const std::int32_t which : near) {
+    const auto k = static_cast<std::size_t>(which);
+    if (k == own || !boxes_meet(box, boxes_[k], rounding)) continue;
+    const bool inside = (boxes_[k].low - box.low).maxCoeff() < 0 && (box.high - boxes_[k].high).maxCoeff() < 0;
+    if (inside && surely_holds(k, corners)) {
+      mark_recent(k);
+      return true;
+    }
+    meeting_.push_back(which);
+  }
+  return false;
+}
+
 void UnionBoundary::mark_recent(std::size_t k) {
   if (std::find(recent_.begin(), recent_.end(), k) != recent_.end()) return;
   if (recent_.size() == kRecent) recent_.pop_back();
@@ -116,18 +182,27 @@ void UnionBoundary::mark_recent(std::size_t k) {
 std::optional<UnionBoundary::BoundaryPoint> UnionBoundary::at(const Vec3& x, bool& held) {
   const std::vector<PartDifference>& pieces = differences_.pieces();
   std::vector<std::size_t> holding;  // the closed P_k that hold x: all that matter near it
+  const double rounding = 0x1p-48 * differences_.extent();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const auto& facets = pieces[k].facets;
-    if (std::all_of(facets.begin(), facets.end(),
-                    [&](const DifferenceFacet& f) { return planes_.sign_at_point(f.polygon.plane, x) <= 0; })) {
-      holding.push_back(k);
+    if ((boxes_[k].low - x).maxCoeff() > 0 || (x - boxes_[k].high).maxCoeff() > 0) continue;
+    const auto& planes = differences_.roughly(k).planes;
+    if (pieces[k].flat) continue;
+    bool holds = std::none_of(planes.begin(), planes.end(),
+                              [&](const RoughPlane& p) { return p.normal.dot(x) - p.offset > p.slack + rounding; });
+    for (std::size_t f = 0; f < planes.size() && holds; ++f) {
+      if (planes[f].normal.dot(x) - planes[f].offset < -planes[f].slack - rounding) continue;
+      holds = planes_.sign_at_point(differences_.side(k, f), x) <= 0;
     }
+    if (holds) holding.push_back(k);
   }
   held = !holding.empty();
   for (const std::size_t own : holding) {
-    for (std::size_t f = 0; f < pieces[own].facets.size(); ++f) {
+    const auto& own_planes = pieces[own].planes;
+    for (std::size_t f = 0; f < own_planes.size(); ++f) {
+      // Most facets of a closed P_k that holds x do not.
+      if (own_planes[f].normal.dot(x) - own_planes[f].offset < -own_planes[f].slack - rounding) continue;
       std::vector<PlanePolygon> polygons;
-      if (contains_point(planes_, pieces[own].facets[f].polygon, x)) polygons.push_back(pieces[own].facets[f].polygon);
+      if (contains_point(planes_, differences_.polygon(own, f), x)) polygons.push_back(differences_.polygon(own, f));
       for (const std::size_t k : holding) {
         if (k == own) continue;
         std::vector<PlanePolygon> next;
@@ -150,16 +225,30 @@ std::optional<UnionBoundary::BoundaryPoint> UnionBoundary::at(const Vec3& x, boo
 }
 
 bool UnionBoundary::visit_all(const Visitor& visitor, std::int64_t max_work) {
-  const std::vector<PartDifference>& pieces = differences_.pieces();
   std::vector<Cell> open;
-  for (std::size_t own_piece = 0; own_piece < pieces.size(); ++own_piece) {
-    for (std::size_t f = 0; f < pieces[own_piece].facets.size(); ++f) {
-      open.push_back({{own_piece, f, pieces[own_piece].facets[f].polygon, Vec3::Zero()}, own(own_piece)});
+  std::vector<Vec3> corners;
+  std::vector<std::int32_t> near;
+  const double rounding = 0x1p-42 * differences_.extent();
+  for (std::size_t own_piece = 0; own_piece < boxes_.size(); ++own_piece) {
+    const std::size_t num_facets = differences_.roughly(own_piece).planes.size();
+    near.clear();
+    for (const std::int32_t k : large_first_) {
+      if (boxes_meet(boxes_[static_cast<std::size_t>(k)], boxes_[own_piece], rounding)) near.push_back(k);
+    }
+    for (std::size_t f = 0; f < num_facets; ++f) {
+      if (differences_.limit_exceeded() || counts_.work() > max_work) return false;
+      // Most facets lie deep inside: they need no exact polygon.
+      rough_corners(own_piece, f, corners);
+      if (surely_covered(own_piece, corners, near)) {
+        ++counts_.passed;
+        continue;
+      }
+      open.push_back({{own_piece, f, differences_.polygon(own_piece, f), Vec3::Zero()}, own(own_piece)});
       while (!open.empty()) {
         Cell cell = std::move(open.back());
         open.pop_back();
         ++counts_.polygons;
-        if (counts_.polygons + counts_.cuts > max_work) return false;
+        if (counts_.work() > max_work) return false;
         if (contained_in_recent(cell.where.polygon)) continue;
         if (split_one(cell, open)) continue;
         if (!visitor(cell.where)) return false;
@@ -188,15 +277,14 @@ bool UnionBoundary::split_one(Cell& cell, std::vector<Cell>& open) {
     high = high.cwiseMax(x);
   }
   middle /= static_cast<double>(polygon.corners.size());
-  for (std::ptrdiff_t k = covering(middle, cell.clipped, 0, all_); k >= 0;
-       k = covering(middle, cell.clipped, 0, all_)) {
+  for (std::ptrdiff_t k = covering(middle, cell.clipped, 0, meeting_); k >= 0;
+       k = covering(middle, cell.clipped, 0, meeting_)) {
     mark_recent(static_cast<std::size_t>(k));
     if (split_by(static_cast<std::size_t>(k))) return true;
   }
-  const double slack = 2 * polygon.error;
-  for (std::size_t k = 0; k < boxes_.size(); ++k) {
-    if (has(cell.clipped, k)) continue;
-    if ((boxes_[k].low - high).maxCoeff() > slack || (low - boxes_[k].high).maxCoeff() > slack) continue;
+  for (const std::int32_t which : meeting_) {
+    const auto k = static_cast<std::size_t>(which);
+    if (has(cell.clipped, k) || !boxes_meet({low, high}, boxes_[k], 2 * polygon.error)) continue;
     if (split_by(k)) return true;
   }
   return false;

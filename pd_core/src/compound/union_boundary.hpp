@@ -26,8 +26,7 @@ class UnionMemory;
 
 class UnionBoundary {
  public:
-  /// Refers to the differences. `nearest`, `outside_all` and `free_placement` make those that they need; the other
-  /// searches require all to be made exactly.
+  /// Refers to the differences. Searches make those that they need; `free_piece_near` requires all to be made exactly.
   explicit UnionBoundary(PartDifferences& differences);
 
   /// A point of the union's boundary, and the facet that it lies on.
@@ -63,8 +62,8 @@ class UnionBoundary {
   /// @param direction  `exact` rounded; its largest |coordinate| in [1, 2).
   [[nodiscard]] std::optional<Hit> along(const Vec3& direction, const Dyadic3& exact);
 
-  /// Every piece of the boundary once, in the order of P_k and facets. Returns false when the visitor stops it, and
-  /// when more polygons and cuts than `max_work` were counted.
+  /// Every piece of the boundary once, in the order of P_k and facets. Returns false when the visitor stops it, when
+  /// the limit of facets was exceeded, and when `Counts::work` is beyond `max_work`.
   using Visitor = std::function<bool(const BoundaryPoint&)>;
   bool visit_all(const Visitor& visitor, std::int64_t max_work);
 
@@ -81,6 +80,10 @@ class UnionBoundary {
     std::int64_t polygons = 0;  ///< clipped from the queue
     std::int64_t cuts = 0;      ///< P_k subtracted from a polygon
     std::int64_t cells = 0;     ///< cubes looked at
+    std::int64_t passed = 0;    ///< facets that one P_k covers for certain, in doubles
+
+    /// The unit is the time of a polygon that is looked at.
+    [[nodiscard]] std::int64_t work() const { return polygons + cuts + passed / 16; }
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
@@ -102,8 +105,16 @@ class UnionBoundary {
   [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const ClippedSet& clipped, double tolerance,
                                         std::span<const std::int32_t> among);
 
-  /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
+  /// Cuts one P_k of `meeting_` away that covers some of the cell and adds what is left to `open`; false when none
+  /// does.
   bool split_one(Cell& cell, std::vector<Cell>& open);
+  /// Sets `corners` to those of a facet in doubles (inside lengths). Requires P_k to be made roughly.
+  void rough_corners(std::size_t k, std::size_t f, std::vector<Vec3>& corners) const;
+  /// Whether P_k holds all of these points in its interior, for certain. They may be rough corners or lie between such.
+  [[nodiscard]] bool surely_holds(std::size_t k, const std::vector<Vec3>& points);
+  /// Whether another P_k holds a facet in its interior, for certain. If none does, `meeting_` is set to those of
+  /// `near` that may meet the facet.
+  bool surely_covered(std::size_t own, const std::vector<Vec3>& corners, std::span<const std::int32_t> near);
   /// Whether a P_k that covered something recently contains all of a polygon in its interior, for certain.
   bool contained_in_recent(const PlanePolygon& polygon);
   /// Puts a P_k that covered something in front of those asked first.
@@ -112,8 +123,10 @@ class UnionBoundary {
 
   PartDifferences& differences_;
   const PlaneSet& planes_;
-  std::vector<Box> boxes_;         ///< of the P_k
-  std::vector<std::int32_t> all_;  ///< 0, 1, ...
+  std::vector<Box> boxes_;                 ///< of the P_k
+  std::vector<std::int32_t> all_;          ///< 0, 1, ...
+  std::vector<std::int32_t> large_first_;  ///< the P_k by the size of their boxes
+  std::vector<std::int32_t> meeting_;      ///< a facet
   std::vector<std::size_t> recent_;
   std::vector<PlanePolygon> rest_;
   Counts counts_;

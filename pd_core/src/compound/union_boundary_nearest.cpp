@@ -91,7 +91,7 @@ class UnionBoundary::NearestSearch {
         if (!crosses(piece.planes[f], cell) || !near(*piece.built, f, cell)) continue;
         // Of most that do, near the answer, nothing there is nearer than the best point so far.
         const double key = distance_within(piece.planes[f], cell, scale_);
-        if (key >= best_key_ || !clip_roughly(*piece.built, f, cell) || covered_roughly(k)) continue;
+        if (key >= best_key_ || !clip_roughly(k, f, cell) || covered_roughly(k)) continue;
         push({std::max(known_lower_, key), order_++, {{k, f, {}, Vec3::Zero()}, {}}});
       }
     }
@@ -135,15 +135,9 @@ class UnionBoundary::NearestSearch {
 
   /// Fills `part_` with the corners of the part of a facet in the cube, in doubles. The cube is taken a little larger
   /// than it is, by more than the doubles may be wrong, so that no point is lost. Returns false if the part is empty.
-  bool clip_roughly(const MinkowskiDifference& built, std::size_t f, const CoverCell& cell) {
-    const MinkowskiDifference::Facet& facet = built.facets[f];
-    const double scale = boundary_.differences_.scale();
+  bool clip_roughly(std::size_t k, std::size_t f, const CoverCell& cell) {
     const double half = cell.half + 0x1p-43 * scale_;
-    part_.clear();
-    for (std::int32_t i = facet.first; i < facet.first + facet.count; ++i) {
-      const std::int32_t corner = built.corners[static_cast<std::size_t>(i)];
-      part_.push_back(built.vertices[static_cast<std::size_t>(corner)].position * scale);
-    }
+    boundary_.rough_corners(k, f, part_);
     for (int wall = 0; wall < 6 && !part_.empty(); ++wall) {
       const int axis = wall / 2;
       const double sign = wall % 2 == 0 ? 1 : -1;
@@ -162,16 +156,9 @@ class UnionBoundary::NearestSearch {
 
   /// True if another P_k holds the part of a facet in `part_` in its interior, for certain.
   bool covered_roughly(std::size_t own) {
-    const double rounding = 0x1p-42 * scale_;
-    const auto covers = [&](std::int32_t k) {
-      if (static_cast<std::size_t>(k) == own) return false;
-      const auto& planes = boundary_.differences_.pieces()[static_cast<std::size_t>(k)].planes;
-      return std::all_of(planes.begin(), planes.end(), [&](const RoughPlane& plane) {
-        const double limit = plane.offset - plane.slack - rounding;
-        return std::all_of(part_.begin(), part_.end(), [&](const Vec3& x) { return plane.normal.dot(x) < limit; });
-      });
-    };
-    const auto found = std::find_if(among_.begin(), among_.end(), covers);
+    const auto found = std::find_if(among_.begin(), among_.end(), [&](std::int32_t k) {
+      return static_cast<std::size_t>(k) != own && boundary_.surely_holds(static_cast<std::size_t>(k), part_);
+    });
     if (found == among_.end()) return false;
     // What covers one facet covers its neighbours.
     std::rotate(among_.begin(), found, found + 1);

@@ -22,7 +22,7 @@ class RayMeeting {
   [[nodiscard]] const Dyadic3& exact() const { return exact_; }
 
   [[nodiscard]] std::optional<RayParameter> least(const PlanePolygon& polygon) const {
-    if (!near(polygon)) return std::nullopt;
+    if (!near(polygon.corners, 4 * polygon.error)) return std::nullopt;
     const Dyadic slope = dot(planes_.exact_normal(polygon.plane), exact_);
     const Dyadic offset = planes_.exact_offset(polygon.plane);
     if (slope.sign() != 0) {
@@ -54,15 +54,15 @@ class RayMeeting {
     return from;
   }
 
- private:
   /// False only when the ray misses the polygon for certain.
-  [[nodiscard]] bool near(const PlanePolygon& polygon) const {
-    Vec3 low = polygon.corners[0], high = low;
-    for (const Vec3& x : polygon.corners) {
+  /// @param error  of a coordinate of a corner
+  [[nodiscard]] bool near(const std::vector<Vec3>& corners, double error) const {
+    Vec3 low = corners[0], high = low;
+    for (const Vec3& x : corners) {
       low = low.cwiseMin(x);
       high = high.cwiseMax(x);
     }
-    const double slack = 4 * polygon.error + 0x1p-44 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    const double slack = error + 0x1p-44 * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
     double from = 0, to = HUGE_VAL;
     for (int i = 0; i < 3; ++i) {
       const double a = low[i] - slack, b = high[i] + slack;
@@ -79,6 +79,7 @@ class RayMeeting {
     return from <= to;
   }
 
+ private:
   const PlaneSet& planes_;
   Dyadic3 exact_;
   Vec3 unit_;
@@ -102,20 +103,27 @@ std::optional<UnionBoundary::Hit> UnionBoundary::along(const Vec3& direction, co
   const auto wait = [&](Cell cell) {
     if (auto t = ray.least(cell.where.polygon)) queue.push({*std::move(t), order++, std::move(cell)});
   };
-  const std::vector<PartDifference>& pieces = differences_.pieces();
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    for (std::size_t f = 0; f < pieces[k].facets.size(); ++f) {
-      wait({{k, f, pieces[k].facets[f].polygon, Vec3::Zero()}, own(k)});
+  // Most facets lie aside of the ray, and need no exact polygon.
+  std::vector<Vec3> corners;
+  for (std::size_t k = 0; k < boxes_.size() && !differences_.limit_exceeded(); ++k) {
+    const std::size_t num_facets = differences_.roughly(k).planes.size();
+    for (std::size_t f = 0; f < num_facets; ++f) {
+      rough_corners(k, f, corners);
+      if (!ray.near(corners, 0x1p-43 * differences_.extent())) continue;
+      wait({{k, f, differences_.polygon(k, f), Vec3::Zero()}, own(k)});
     }
   }
-  const auto holds = [&](const PartDifference& piece, const RayParameter& t, const Vec3& x) {
-    const double slack = 0x1p-40 * (differences_.extent() + x.cwiseAbs().maxCoeff());
-    for (const DifferenceFacet& f : piece.facets) {
-      const double height = planes_.height(f.polygon.plane, x);
-      if (height > slack) return false;
-      if (height > -slack && planes_.sign_on_ray(f.polygon.plane, ray.exact(), t) > 0) return false;
+  if (differences_.limit_exceeded()) return std::nullopt;
+  const auto holds = [&](std::size_t k, const RayParameter& t, const Vec3& x) {
+    const double rounding = 0x1p-40 * (differences_.extent() + x.cwiseAbs().maxCoeff());
+    const auto& planes = differences_.roughly(k).planes;
+    for (std::size_t f = 0; f < planes.size(); ++f) {
+      const double height = planes[f].normal.dot(x) - planes[f].offset;
+      if (height > planes[f].slack + rounding) return false;
+      if (height < -planes[f].slack - rounding) continue;
+      if (planes_.sign_on_ray(differences_.side(k, f), ray.exact(), t) > 0) return false;
     }
-    return true;
+    return !planes.empty();
   };
   while (!queue.empty()) {
     Waiting top = queue.top();
@@ -124,8 +132,8 @@ std::optional<UnionBoundary::Hit> UnionBoundary::along(const Vec3& direction, co
     const double t = quotient(top.t.numerator, top.t.denominator);
     const Vec3 x = t * direction;
     bool again = false;
-    for (std::size_t k = 0; k < pieces.size() && !again; ++k) {
-      if (has(top.cell.clipped, k) || !holds(pieces[k], top.t, x)) continue;
+    for (std::size_t k = 0; k < boxes_.size() && !again; ++k) {
+      if (has(top.cell.clipped, k) || !holds(k, top.t, x)) continue;
       top.cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
       if (!subtract(top.cell.where.polygon, top.cell.where.piece, k, false)) continue;
       again = true;
