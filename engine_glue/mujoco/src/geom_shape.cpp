@@ -5,7 +5,7 @@
 #include <mutex>
 #include <span>
 
-#include "pd/contact/time_of_impact.hpp"
+#include "kept_bodies.hpp"
 
 namespace pd::detail {
 
@@ -13,13 +13,6 @@ namespace {
 
 constexpr std::array<const char*, 8> kTypeNames = {"plane",     "hfield",   "sphere", "capsule",
                                                    "ellipsoid", "cylinder", "box",    "mesh"};
-
-/// The core answers half-spaces for bodies of these sizes, in the unit of the model.
-constexpr double kLeastSize = 1e-100;
-constexpr double kLargestSize = 1e100;
-
-/// The core answers half-spaces for coordinates up to this; MuJoCo itself resets a simulation at 1e10.
-constexpr double kFarthest = 1e100;
 
 /// The number of entries of `geom_size` that a type reads.
 int numbers_read(int type) {
@@ -80,41 +73,29 @@ GeomSource source_of(const mjModel& model, int geom) {
   return source;
 }
 
-Expected<ConvexShape> shape_of_any_size(const GeomSource& source) {
-  const double x = source.size[0], y = source.size[1], z = source.size[2];
-  switch (source.type) {
+BodyKind kind_of(int type) {
+  switch (type) {
     case mjGEOM_SPHERE:
-      return ConvexShape::sphere(x);
+      return BodyKind::sphere;
     case mjGEOM_CAPSULE:
-      return ConvexShape::capsule(x, y, 2);
+      return BodyKind::capsule;
     case mjGEOM_CYLINDER:
-      return ConvexShape::cylinder(x, y, 2);
+      return BodyKind::cylinder;
     case mjGEOM_ELLIPSOID:
-      return ConvexShape::ellipsoid({x, y, z});
+      return BodyKind::ellipsoid;
+    case mjGEOM_BOX:
+      return BodyKind::box;
     default:
-      break;
+      return BodyKind::hull;
   }
-  const auto polytope = [&] {
-    if (source.type == mjGEOM_BOX) return ConvexPolytope::box({x, y, z});
-    std::vector<Vec3> points;
-    for (std::size_t i = 0; i + 2 < source.vertices.size(); i += 3) {
-      points.emplace_back(source.vertices[i], source.vertices[i + 1], source.vertices[i + 2]);
-    }
-    return ConvexPolytope::from_points(points);
-  }();
-  if (!polytope) return polytope.error();
-  return ConvexShape(*polytope);
 }
 
 Expected<ConvexShape> shape_of(const GeomSource& source) {
-  auto shape = shape_of_any_size(source);
+  const std::vector<double> points(source.vertices.begin(), source.vertices.end());
+  auto shape = make_body({kind_of(source.type), source.size, points});
+  if (shape) return shape;
   const std::string size = source.type == mjGEOM_MESH ? "mesh_vert" : "geom_size";
-  if (!shape) return Error{shape.error().code, shape.error().message, size + " (" + shape.error().where + ")"};
-  const double radius = bounding_radius(*shape);
-  if (!(radius >= kLeastSize && radius <= kLargestSize)) {
-    return Error{ErrorCode::out_of_range, "a body's size lies between 1e-100 and 1e100", size};
-  }
-  return shape;
+  return Error{shape.error().code, shape.error().message, size + " (" + shape.error().where + ")"};
 }
 
 std::uint64_t fingerprint(const GeomSource& source) {
@@ -148,10 +129,7 @@ Expected<Pose> geom_pose(const mjData& data, int geom) {
   for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = static_cast<double>(matrix[i]);
   const Vec3 translation(static_cast<double>(position[0]), static_cast<double>(position[1]),
                          static_cast<double>(position[2]));
-  if (translation.cwiseAbs().maxCoeff() > kFarthest) {
-    return Error{ErrorCode::out_of_range, "a coordinate is larger than 1e100", "geom_xpos"};
-  }
-  return Pose::from_matrix(rotation, translation);
+  return checked_pose(rotation, translation);
 }
 
 bool made_from(const GeomShape& shape, const mjModel& model, int geom) {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "stack/block_products.hpp"
+
 namespace pd::detail {
 
 void BlockCholesky::set_pattern(int num_bodies, const std::vector<std::pair<int, int>>& pairs) {
@@ -85,11 +87,34 @@ void BlockCholesky::place_products() {
 
 void BlockCholesky::factorise(const std::vector<Block>& own, const std::vector<Block>& shared) {
   if (!std::exchange(products_are_placed_, true)) place_products();
+  is_new_.assign(order_.size(), true);
+  reset_columns(own, shared);
+  eliminate();
+}
+
+void BlockCholesky::factorise(const std::vector<Block>& own, const std::vector<Block>& shared,
+                              const std::vector<bool>& changed_bodies) {
+  is_new_.assign(order_.size(), false);
   for (std::size_t rank = 0; rank < order_.size(); ++rank) {
-    diagonal_[rank] = own[static_cast<std::size_t>(order_[rank])];
+    if (changed_bodies[static_cast<std::size_t>(order_[rank])]) is_new_[rank] = true;
+    const auto first = static_cast<std::size_t>(column_start_[rank]);
+    const bool has_heir = first < static_cast<std::size_t>(column_start_[rank + 1]);
+    if (is_new_[rank] && has_heir) is_new_[static_cast<std::size_t>(row_[first])] = true;
   }
-  std::fill(below_.begin(), below_.end(), Block::Zero());
+  reset_columns(own, shared);
+  eliminate();
+}
+
+void BlockCholesky::reset_columns(const std::vector<Block>& own, const std::vector<Block>& shared) {
+  for (std::size_t rank = 0; rank < order_.size(); ++rank) {
+    if (!is_new_[rank]) continue;
+    diagonal_[rank] = own[static_cast<std::size_t>(order_[rank])];
+    std::fill(below_.begin() + column_start_[rank], below_.begin() + column_start_[rank + 1], Block::Zero());
+  }
   for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+    const auto [a, b] = pairs_[pair];
+    const int column = std::min(rank_[static_cast<std::size_t>(a)], rank_[static_cast<std::size_t>(b)]);
+    if (!is_new_[static_cast<std::size_t>(column)]) continue;
     Block& block = below_[static_cast<std::size_t>(place_of_pair_[pair])];
     if (pair_is_turned_[pair]) {
       block = shared[pair].transpose();
@@ -97,21 +122,26 @@ void BlockCholesky::factorise(const std::vector<Block>& own, const std::vector<B
       block = shared[pair];
     }
   }
+}
+
+void BlockCholesky::eliminate() {
   std::size_t product = 0;
   for (std::size_t column = 0; column < order_.size(); ++column) {
     const auto begin = static_cast<std::size_t>(column_start_[column]);
     const auto end = static_cast<std::size_t>(column_start_[column + 1]);
-    diagonal_[column] = Eigen::LLT<Block>(diagonal_[column]).matrixL();
-    const auto factor = diagonal_[column].transpose().triangularView<Eigen::Upper>();
-    for (std::size_t p = begin; p < end; ++p) {
-      factor.solveInPlace<Eigen::OnTheRight>(below_[p]);
+    if (is_new_[column]) {
+      diagonal_[column] = Eigen::LLT<Block>(diagonal_[column]).matrixL();
+      for (std::size_t p = begin; p < end; ++p) divide_by_transpose(below_[p], diagonal_[column]);
     }
     for (std::size_t p = begin; p < end; ++p) {
-      const int across = -1 - product_place_[product++];
-      diagonal_[static_cast<std::size_t>(across)].noalias() -= below_[p] * below_[p].transpose();
+      const auto across = static_cast<std::size_t>(-1 - product_place_[product++]);
+      if (!is_new_[across]) {
+        product += end - p - 1;
+        continue;
+      }
+      subtract_square(diagonal_[across], below_[p]);
       for (std::size_t q = p + 1; q < end; ++q) {
-        const auto place = static_cast<std::size_t>(product_place_[product++]);
-        below_[place].noalias() -= below_[q] * below_[p].transpose();
+        subtract_product(below_[static_cast<std::size_t>(product_place_[product++])], below_[q], below_[p]);
       }
     }
   }

@@ -25,9 +25,13 @@ class BlockCholesky {
   /// Products of blocks that a factorisation takes; less than the bodies only where these form trees.
   [[nodiscard]] long long products() const { return products_; }
 
-  /// @param own     the diagonal's blocks, by body
+  /// @param own     the diagonal's blocks, by body; their lower triangles are read
   /// @param shared  by pair, rows of b and columns of a
   void factorise(const std::vector<Block>& own, const std::vector<Block>& shared);
+  /// Factorises again where only blocks of some bodies, and of pairs of two of those, differ from the last call's. The
+  /// result is the same bits. A column is computed anew if one of those bodies is in it or is eliminated below it.
+  void factorise(const std::vector<Block>& own, const std::vector<Block>& shared,
+                 const std::vector<bool>& changed_bodies);
 
   /// Solves in place, six numbers a body.
   void solve(Eigen::VectorXd& x) const;
@@ -36,6 +40,9 @@ class BlockCholesky {
   void choose_order();
   void find_columns();
   void place_products();
+  /// Sets the columns that are computed anew to their blocks before elimination.
+  void reset_columns(const std::vector<Block>& own, const std::vector<Block>& shared);
+  void eliminate();
 
   int num_bodies_ = 0;
   long long products_ = 0;
@@ -46,6 +53,7 @@ class BlockCholesky {
   std::vector<int> column_start_;     ///< of each rank in `row_`; one more at the end
   std::vector<int> row_;              ///< ranks below the diagonal, ascending in each column
   std::vector<int> place_of_pair_;    ///< in `row_`
+  std::vector<bool> is_new_;          ///< columns that are computed anew, by rank
   std::vector<bool> pair_is_turned_;  ///< whether a pair's block stands transposed there
   std::vector<int>
       product_place_;            ///< where each product of two blocks of a column goes: in `row_`; -1 - rank: diagonal

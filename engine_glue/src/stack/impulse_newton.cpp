@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stack/block_products.hpp"
+
 namespace pd::detail {
 
 ImpulseNewton::Outcome ImpulseNewton::solve(const Limits& limits) {
@@ -20,6 +22,7 @@ ImpulseNewton::Outcome ImpulseNewton::solve(const Limits& limits) {
   impulses_.clear();
   for (const Row& row : rows) impulses_.push_back(row.impulse);
   reached_ = impulses_;
+  assembled_.clear();
   begin_round();
   guess_holds();
   int rounds = 0;
@@ -160,23 +163,41 @@ bool ImpulseNewton::classify(double negligible) {
 }
 
 void ImpulseNewton::factorise() {
-  own_ = masses;
-  shared_.assign(pairs_.size(), Matrix6::Zero());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (holds_[i] != Hold::within) continue;
-    const Row& row = rows[i];
-    const double stiffness = 1 / row.softness;
-    for (int side = 0; side < 2; ++side) {
-      if (row.body[side] < 0) continue;
-      const Vector6& jacobian = row.jacobian[side];
-      own_[static_cast<std::size_t>(row.body[side])].noalias() += (stiffness * jacobian) * jacobian.transpose();
-    }
-    if (block_of_row_[i] < 0) continue;
-    const int high = row.body[0] < row.body[1] ? 1 : 0;
-    shared_[static_cast<std::size_t>(block_of_row_[i])].noalias() +=
-        (stiffness * row.jacobian[high]) * row.jacobian[1 - high].transpose();
+  const bool first = assembled_.empty();
+  if (first) {
+    own_ = masses;
+    shared_.assign(pairs_.size(), Matrix6::Zero());
+    assembled_.assign(rows.size(), Hold::at_lower);
   }
-  factor_.factorise(own_, shared_);
+  // From one factorisation to the next a few rows come to their bounds or leave them.
+  changed_.assign(masses.size(), false);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool is_in = assembled_[i] == Hold::within;
+    if (is_in == (holds_[i] == Hold::within)) continue;
+    assemble(i, is_in ? -1 : 1);
+    for (const int body : rows[i].body) {
+      if (body >= 0) changed_[static_cast<std::size_t>(body)] = true;
+    }
+  }
+  assembled_ = holds_;
+  if (first) {
+    factor_.factorise(own_, shared_);
+  } else {
+    factor_.factorise(own_, shared_, changed_);
+  }
+}
+
+void ImpulseNewton::assemble(std::size_t i, double share) {
+  const Row& row = rows[i];
+  const double stiffness = share / row.softness;
+  for (int side = 0; side < 2; ++side) {
+    if (row.body[side] < 0) continue;
+    add_square(own_[static_cast<std::size_t>(row.body[side])], row.jacobian[side], stiffness);
+  }
+  if (block_of_row_[i] < 0) return;
+  const int high = row.body[0] < row.body[1] ? 1 : 0;
+  Matrix6& block = shared_[static_cast<std::size_t>(block_of_row_[i])];
+  for (int k = 0; k < 6; ++k) block.col(k) += (stiffness * row.jacobian[1 - high][k]) * row.jacobian[high];
 }
 
 /// `aim_`: the velocities if all rows stay within or at their bounds as they are.

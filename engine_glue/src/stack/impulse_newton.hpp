@@ -20,6 +20,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -83,14 +84,19 @@ class ImpulseNewton {
   enum class Hold : unsigned char { within, at_lower, at_upper };
   static constexpr int kMostSteps = 32;
   static constexpr int kMostRounds = 3;
-  static constexpr double kMuch = 0.1;         ///< of the sum of the impulses
-  static constexpr double kNegligible = 1e-5;  ///< of the same
+  /// Share of the sum of the impulses that a last round may change. Walls whose rounds end at 0.1 never come to rest:
+  /// what is left of a step moves their bricks, and the next step has other rows at their bounds.
+  static constexpr double kMuch = 1e-3;
+  /// Share of the sum that may be amiss at the end of a round. With 1e-5 a wall takes as many factorisations again.
+  static constexpr double kNegligible = 1e-8;
 
   void find_pattern();
   void begin_round();
   void guess_holds();
   bool classify(double negligible);
   void factorise();
+  /// Adds a row to what is factorised, or takes it out again (a negative share of one).
+  void assemble(std::size_t row, double share);
   void solve_held();
   [[nodiscard]] double share_of_step();
   void move(double share);
@@ -100,10 +106,12 @@ class ImpulseNewton {
   std::vector<std::pair<int, int>> pairs_;  ///< (lower, higher) body of each block off the diagonal, ascending
   std::vector<int> block_of_row_;           ///< into `pairs_`, -1: one body only
   std::vector<Hold> holds_, next_holds_;    ///< as factorised; as they are
+  std::vector<bool> changed_;               ///< bodies whose blocks differ from what was factorised last
   std::vector<bool> carried_;               ///< bodies that some row pushed before
   std::vector<double> impulses_, reached_;  ///< of rows: at `x_`; at the end of the last round
   std::vector<double> targets_;             ///< r + d lambda'
   std::vector<Matrix6> own_, shared_;       ///< what is factorised: bodies' blocks, and those of `pairs_`
+  std::vector<Hold> assembled_;             ///< as `own_` and `shared_` have it; empty: they are of other rows
   double amiss_ = 0;  ///< share of the impulses that the last `classify` found on another side of their bounds
   BlockCholesky factor_;
   Eigen::VectorXd x_, aim_, step_;

@@ -2,7 +2,10 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <span>
 
 #include "stack/body_inertia.hpp"
 #include "stack/impulse_newton.hpp"
@@ -42,6 +45,16 @@ constexpr double kAmissAtFirst = 0.1;
 /// Columns whose load takes this many times the sweeps that are made are solved also while contacts come and go: ten
 /// boxes that land as a column fall otherwise. Ten sweeps spare columns of six and more.
 constexpr double kHighColumn = 1.2;
+
+/// Share of the speed that a step of their weight gives to the bodies of a group. Sweeps that change less in each row of
+/// a group that is solved mend nothing.
+constexpr btScalar kNegligibleShare = btScalar(1e-3);
+
+btScalar negligible_speed(const SolverBodies& bodies, std::span<const int> group) {
+  btScalar weight = 0;
+  for (const int body : group) weight = std::max(weight, bodies[body].m_externalForceImpulse.length2());
+  return kNegligibleShare * std::sqrt(weight);
+}
 
 }  // namespace
 
@@ -83,12 +96,15 @@ btScalar StackSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bodi
                                                         btPersistentManifold** manifolds, int num_manifolds,
                                                         btTypedConstraint** constraints, int num_constraints,
                                                         const btContactSolverInfo& info, btIDebugDraw* drawer) {
-  begin_at_solution(info);
+  const btScalar tolerance = begin_at_solution(info);
+  // Bullet ends its sweeps after one that changes no row's speed by more than the square root of this.
+  btContactSolverInfo sweeps = info;
+  sweeps.m_leastSquaresResidualThreshold = std::max(info.m_leastSquaresResidualThreshold, tolerance * tolerance);
   return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyIterations(
-      bodies, num_bodies, manifolds, num_manifolds, constraints, num_constraints, info, drawer);
+      bodies, num_bodies, manifolds, num_manifolds, constraints, num_constraints, sweeps, drawer);
 }
 
-void StackSolver::begin_at_solution(const btContactSolverInfo& info) {
+btScalar StackSolver::begin_at_solution(const btContactSolverInfo& info) {
   const SolverRows rows{m_tmpSolverNonContactConstraintPool, m_tmpSolverContactConstraintPool,
                         m_tmpSolverContactFrictionConstraintPool};
   // Contacts begin with a share of what they carried.
@@ -96,6 +112,7 @@ void StackSolver::begin_at_solution(const btContactSolverInfo& info) {
   state_->groups.find(m_tmpSolverBodyPool, rows);
   state_->place.assign(static_cast<std::size_t>(m_tmpSolverBodyPool.size()), -1);
   state_->row_place.resize(static_cast<std::size_t>(rows.size()));
+  btScalar tolerance = BT_LARGE_FLOAT;
   for (const RowGroups::Group& group : state_->groups.groups()) {
     if (group.num_rows == 0) continue;
     const double sweeps = state_->groups.sweeps_of_load(m_tmpSolverBodyPool, rows, group);
@@ -105,6 +122,7 @@ void StackSolver::begin_at_solution(const btContactSolverInfo& info) {
     if (group.num_bodies > settings_.max_bodies || (suits_sweeps && group.joint_rows == 0) ||
         state_->waiting.wait_a_step(m_tmpSolverBodyPool, state_->groups.bodies(group))) {
       ++statistics_.left;
+      tolerance = 0;
       continue;
     }
     ImpulseNewton& newton = state_->newton();
@@ -116,6 +134,8 @@ void StackSolver::begin_at_solution(const btContactSolverInfo& info) {
                                                          .spares_trees = sweeps > kHighColumn * info.m_numIterations});
     state_->waiting.note(m_tmpSolverBodyPool, state_->groups.bodies(group), outcome.settled);
     statistics_.factorisations += outcome.factorisations;
+    tolerance =
+        outcome.settled ? std::min(tolerance, negligible_speed(m_tmpSolverBodyPool, state_->groups.bodies(group))) : 0;
     if (outcome.given_up) {
       ++statistics_.left;
       continue;
@@ -127,6 +147,7 @@ void StackSolver::begin_at_solution(const btContactSolverInfo& info) {
       ++statistics_.unsettled;
     }
   }
+  return tolerance < BT_LARGE_FLOAT ? tolerance : 0;
 }
 
 void StackSolver::State::read_bodies(const SolverBodies& bodies, const RowGroups::Group& group, ImpulseNewton& newton) {

@@ -78,7 +78,8 @@ class StackSolver : public btSequentialImpulseConstraintSolver {
 
  private:
   struct State;
-  void begin_at_solution(const btContactSolverInfo& info);
+  /// @return the speed up to which all groups are solved; 0 if a group is left to the sweeps
+  btScalar begin_at_solution(const btContactSolverInfo& info);
 
   StackSolverSettings settings_;
   StackSolverStatistics statistics_;
