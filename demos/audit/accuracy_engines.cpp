@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> installed_recorders() {
   std::vector<std::string> found;
-  for (const char* name : {"record_peers", "record_peers_double"}) {
+  for (const char* name : {"record_peers", "record_peers_double", "record_dart"}) {
     if (std::string program = companion_program(name); !program.empty()) found.push_back(std::move(program));
   }
   return found;

@@ -30,7 +30,8 @@ namespace {
 constexpr const char* kAccuracyFooter =
     R"(A recorder answers --list with its engines, and --engine E --family F --pairs N --vertices V --seed S --out FILE
 with a contact record in FILE. Built beside this command where the packages are: record_peers (ours, Bullet in single
-precision, libccd, FCL, ODE) and record_peers_double (Bullet in double precision).
+precision, libccd, FCL, ODE, MuJoCo), record_peers_double (Bullet in double precision) and record_dart (DART's
+detectors). Rows that end on -pdepth are pdepth's contacts through its door into that engine.
 
 --cases and --meshes take the place of the families, unless --families names some; the pairs of a record are asked as
 they stand there, whatever its engine reported.

@@ -89,7 +89,7 @@ function(pd_install_package)
     endif()
   endif()
   # Programs that the command starts: it looks beside itself and in ../libexec/pdepth.
-  foreach(program pdepth-pictures record_peers record_peers_double)
+  foreach(program pdepth-pictures record_peers record_peers_double record_dart)
     if(TARGET ${program})
       install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/pdepth COMPONENT ${program} OPTIONAL)
     endif()

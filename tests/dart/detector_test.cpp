@@ -1,7 +1,6 @@
 /// @file
 /// pdepth's collision detector in DART: what DART promises of any detector, pair by pair and group by group, exact
 /// numbers, and worlds that come to rest.
-#include <assimp/scene.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +19,6 @@
 #include <dart/dynamics/CylinderShape.hpp>
 #include <dart/dynamics/EllipsoidShape.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
-#include <dart/dynamics/MeshShape.hpp>
 #include <dart/dynamics/MultiSphereConvexHullShape.hpp>
 #include <dart/dynamics/PlaneShape.hpp>
 #include <dart/dynamics/PyramidShape.hpp>
@@ -36,6 +34,7 @@
 #include <string>
 #include <vector>
 
+#include "dart/dart_mesh.hpp"
 #include "pd/dart/collision_detector.hpp"
 #include "pd/dart/contact_recorder.hpp"
 #include "pd/depth/penetration_depth.hpp"
@@ -156,30 +155,6 @@ TEST(DartDetector, Distances) {
   EXPECT_FALSE(result.found()) << "no pair";
 }
 
-/// A mesh of the hull's facets, as a reader of files would give it.
-ShapePtr mesh_of(const ConvexPolytope& hull, int left_out) {
-  auto* scene = new aiScene;
-  auto* mesh = new aiMesh;
-  scene->mNumMeshes = 1;
-  scene->mMeshes = new aiMesh* [1] { mesh };
-  scene->mRootNode = new aiNode;
-  mesh->mNumVertices = static_cast<unsigned int>(hull.num_vertices());
-  mesh->mVertices = new aiVector3D[mesh->mNumVertices];
-  for (int v = 0; v < hull.num_vertices(); ++v) {
-    const Vec3 p = hull.vertex(v);
-    mesh->mVertices[v] = aiVector3D(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()));
-  }
-  mesh->mNumFaces = static_cast<unsigned int>(hull.num_facets() - left_out);
-  mesh->mFaces = new aiFace[mesh->mNumFaces];
-  for (unsigned int f = 0; f < mesh->mNumFaces; ++f) {
-    const auto around = hull.facet_vertices(static_cast<int>(f));
-    mesh->mFaces[f].mNumIndices = static_cast<unsigned int>(around.size());
-    mesh->mFaces[f].mIndices = new unsigned int[around.size()];
-    for (std::size_t c = 0; c < around.size(); ++c) mesh->mFaces[f].mIndices[c] = static_cast<unsigned int>(around[c]);
-  }
-  return std::make_shared<MeshShape>(Vec3(1, 1, 1), scene);
-}
-
 ConvexPolytope stone() {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -209,7 +184,7 @@ std::vector<Solid> solids() {
            *ConvexPolytope::from_points(std::vector<Vec3>{
                {-0.4, -0.3, -0.45}, {0.4, -0.3, -0.45}, {-0.4, 0.3, -0.45}, {0.4, 0.3, -0.45}, {0, 0, 0.45}})},
           {std::make_shared<MultiSphereConvexHullShape>(spheres), *ConvexShape::hull_of_spheres(same)},
-          {mesh_of(stone(), 0), stone()}};
+          {test::dart_mesh(stone()), stone()}};
 }
 
 TEST(DartDetector, EveryPairOfShapesIsExact) {
@@ -262,7 +237,7 @@ TEST(DartDetector, OthersAreLeftToFclAndNamedOnce) {
   options.user = &lines;
   auto detector = DartDetector::create(options);
   auto ball = frame_of(std::make_shared<SphereShape>(0.5));
-  auto open = frame_of(mesh_of(stone(), 1), {0.8, 0, 0});
+  auto open = frame_of(test::dart_mesh(stone(), 1), {0.8, 0, 0});
   open->setName("stone");
   auto group = detector->createCollisionGroup(ball.get(), open.get());
   CollisionResult result;

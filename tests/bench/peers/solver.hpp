@@ -67,6 +67,8 @@ inline constexpr std::string_view kBulletGjk = "bullet-gjk";
 inline constexpr std::string_view kFclDistance = "fcl-distance";
 inline constexpr std::string_view kOde = "ode";
 inline constexpr std::string_view kOdeByPdepth = "ode-pdepth";  ///< through `pd::install_ode`
+inline constexpr std::string_view kMujoco = "mujoco";
+inline constexpr std::string_view kMujocoByPdepth = "mujoco-pdepth";  ///< through `pd::install_mujoco`
 
 /// Vertices of the hull in its canonical order.
 [[nodiscard]] scenes::Points vertices_of(const ConvexShape& shape);
@@ -118,8 +120,11 @@ void add_mujoco(Solvers& solvers);
 void add_mujoco_apart(Solvers& solvers);
 void add_box3d(Solvers& solvers);
 void add_box3d_apart(Solvers& solvers);
-/// Bodies must be solids round the origin of their frames.
+/// Bodies of these three must be solids around the origin of their frames.
 void add_ode(Solvers& solvers);
+void add_mujoco_library(Solvers& solvers);
+/// Each detector that DART's factory knows, with pdepth's.
+void add_dart(Solvers& solvers);
 [[nodiscard]] std::string bullet_note();
 [[nodiscard]] std::string fcl_note();
 [[nodiscard]] std::string jolt_note();

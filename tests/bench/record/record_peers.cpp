@@ -72,7 +72,10 @@ void move_origin(scenes::Points& points, Pose& pose) {
 
 std::optional<CorpusPair> corpus_pair(scenes::PointPair pair, const Solver& solver) {
   const Precision precision = solver.precision();
-  if (solver.name().starts_with(kOde)) {
+  // Engines of whole worlds want the origin inside of a body.
+  const bool of_worlds =
+      solver.name().starts_with(kOde) || solver.name().starts_with(kMujoco) || solver.name().starts_with("dart");
+  if (of_worlds) {
     move_origin(pair.a, pair.pose_a);
     move_origin(pair.b, pair.pose_b);
   }
@@ -81,14 +84,16 @@ std::optional<CorpusPair> corpus_pair(scenes::PointPair pair, const Solver& solv
   }
   auto a = ConvexPolytope::from_points(pair.a);
   auto b = ConvexPolytope::from_points(pair.b);
-  // The families hold sizes that no float holds, and flat bodies, which ODE and FCL do not take as hulls.
+  // The families hold sizes that no float holds, and flat bodies, which these engines and FCL do not take as hulls.
   if (!a || !b) return std::nullopt;
-  const bool needs_solids = solver.name().starts_with(kOde) || solver.name().starts_with("fcl");
+  const bool needs_solids = of_worlds || solver.name().starts_with("fcl");
   if (needs_solids && (a->affine_dimension() < 3 || b->affine_dimension() < 3)) return std::nullopt;
   const Pose pose_a = rounded(pair.pose_a, precision);
   const Pose pose_b = rounded(pair.pose_b, precision);
   if (!pose_a.translation().allFinite() || !pose_b.translation().allFinite()) return std::nullopt;
-  return CorpusPair{{std::move(a).value(), std::move(b).value()}, pose_a, pose_b};
+  CorpusPair taken{{std::move(a).value(), std::move(b).value()}, pose_a, pose_b};
+  if (!solver.takes(taken.bodies)) return std::nullopt;
+  return taken;
 }
 
 void write_shape(pd_record& record, const std::string& id, const ConvexShape& shape) {
@@ -308,6 +313,12 @@ int run(const RecordOptions& options, bool list) {
   add_peers(solvers);
 #ifdef PD_BENCH_WITH_ODE
   add_ode(solvers);
+#endif
+#ifdef PD_BENCH_WITH_MUJOCO_LIBRARY
+  add_mujoco_library(solvers);
+#endif
+#ifdef PD_BENCH_WITH_DART
+  add_dart(solvers);
 #endif
   for (const auto& solver : solvers) {
     if (list) {
