@@ -66,23 +66,82 @@ TEST(SolidDepth, StarsWithinTheirBracket) {
   EXPECT_GT(overlapping, 5);
 }
 
-/// Stars of many faces have too many parts: the bracket is wide, says so, and holds what the tetrahedra give.
+Pose turned(const Eigen::Vector4d& wxyz, const Vec3& translation) {
+  const Eigen::Vector4d unit = wxyz.normalized();
+  return *Pose::from_quaternion({unit[0], unit[1], unit[2], unit[3]}, translation);
+}
+
+/// A is moved by a little less than the lower end in many directions, and by the translation that is told.
+void expect_bracket_holds(const MeshSolid& a, const MeshSolid& b, const Pose& pose, const SolidDepth& found) {
+  EXPECT_LE(found.translation.norm(), found.upper * (1 + 1e-15));
+  EXPECT_NE(classify({&a, moved(found.translation)}, {&b, pose}), ContactClass::overlapping);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 unit = i == 0 ? Vec3(found.translation.normalized())
+                             : Vec3(normal(random), normal(random), normal(random)).normalized();
+    EXPECT_EQ(classify({&a, moved(0.9999 * found.lower * unit)}, {&b, pose}), ContactClass::overlapping) << i;
+  }
+}
+
+/// Stars of many faces have too many parts. With too few points, the bracket is wide, says so, and holds.
 TEST(SolidDepth, WideBracketsAreSaidAndHold) {
   std::mt19937_64 random(77);
   Scratch scratch;
   const StarBody star = random_star(random, 2, Vec3::Zero());
   const MeshSolid solid = solid_of(mesh_of(star));
   const Pose pose = *Pose::from_quaternion({0.36, 0.48, -0.64, 0.48}, {0.7, 0.5, 0.25});
-  const SolidDepth found = *penetration_depth({&solid, Pose()}, {&solid, pose}, scratch);
-  ASSERT_EQ(found.contact, ContactClass::overlapping);
-  EXPECT_FALSE(found.exact);
-  EXPECT_EQ(found.bracket_reached, found.upper <= 1.01 * found.lower);
-  EXPECT_LE(found.translation.norm(), found.upper * (1 + 1e-15));
-  EXPECT_NE(classify({&solid, moved(found.translation)}, {&solid, pose}), ContactClass::overlapping);
-  // A vertex of either that lies in the other stays there for a shorter way than the lower end.
-  for (const Vec3& way : {Vec3(found.translation.normalized()), Vec3::UnitX().eval(), Vec3::UnitZ().eval()}) {
-    EXPECT_EQ(classify({&solid, moved(0.999 * found.lower * way)}, {&solid, pose}), ContactClass::overlapping);
+  for (const std::int64_t points : {0, 3000, 500'000}) {
+    const SolidDepth found = *penetration_depth({&solid, Pose()}, {&solid, pose}, scratch, {.max_points = points});
+    ASSERT_EQ(found.contact, ContactClass::overlapping);
+    EXPECT_FALSE(found.exact);
+    EXPECT_EQ(found.bracket_reached, points == 500'000) << "[" << found.lower << ", " << found.upper << "]";
+    EXPECT_EQ(found.bracket_reached, found.upper <= 1.01 * found.lower);
+    EXPECT_LE(found.work.points, points + 2000);
+    expect_bracket_holds(solid, solid, pose, found);
   }
+  EXPECT_EQ(penetration_depth({&solid, Pose()}, {&solid, pose}, scratch, {.max_points = -1}).error().where,
+            "max_points");
+}
+
+/// The same bodies as cells of a grid, whose depth is known, and as meshes of some thousand triangles, which are not
+/// cut into convex parts.
+TEST(SolidDepth, FineGridsReachTheBracket) {
+  constexpr int kFine = 16;
+  std::mt19937_64 random(12);
+  Scratch scratch;
+  const auto fine = [](const Cells& cells) {
+    Cells out;
+    for (const auto& [x, y, z] : cells) {
+      for (int i = 0; i < kFine * kFine * kFine; ++i) {
+        out.insert({kFine * x + i % kFine, kFine * y + i / kFine % kFine, kFine * z + i / kFine / kFine});
+      }
+    }
+    Mesh mesh = mesh_of(out);
+    for (Vec3& p : mesh.points) p /= kFine;
+    return solid_of(mesh);
+  };
+  int overlapping = 0;
+  for (int pair = 0; pair < 6; ++pair) {
+    const Cells cells_a = random_cells(random, 3 + pair % 3), cells_b = random_cells(random, 4);
+    const MeshSolid a = fine(cells_a), b = fine(cells_b);
+    const Compound boxes_a = boxes_of(cells_a), boxes_b = boxes_of(cells_b);
+    const auto step = [&] { return 0.25 * static_cast<double>(static_cast<int>(random() % 5) - 2) + 0.1; };
+    const Pose pose = turned({1, 0.05 * pair, -0.1, 0.2 * (pair % 2)}, {step(), step(), step()});
+    const UnionDepth known = *penetration_depth({&boxes_a, Pose()}, {&boxes_b, pose}, scratch);
+    if (known.contact != ContactClass::overlapping) continue;
+    ++overlapping;
+    ASSERT_GT(a.triangles().size(), 2000U);
+    const SolidDepth found = *penetration_depth({&a, Pose()}, {&b, pose}, scratch, {.delta = 0.02});
+    ASSERT_EQ(found.contact, ContactClass::overlapping) << pair;
+    EXPECT_FALSE(found.exact);
+    EXPECT_LE(found.lower, known.upper * (1 + 1e-12)) << pair;
+    EXPECT_GE(found.upper, known.lower * (1 - 1e-12)) << pair;
+    EXPECT_TRUE(found.bracket_reached) << pair << ": [" << found.lower << ", " << found.upper << "], depth "
+                                       << known.upper << ", " << found.work.points << " points";
+    expect_bracket_holds(a, b, pose, found);
+  }
+  EXPECT_GE(overlapping, 3);
 }
 
 /// True if a part holds a point, up to rounding.

@@ -16,8 +16,8 @@ struct OverlapQuestion {
 
 /// Requires overlapping solids. Fills class, bracket, translation, normal and witnesses.
 ///
-/// The hulls give a first translation. The solids' convex parts narrow the bracket, first exact ones, then coarser ones
-/// where those are too many. Vertices that lie deep in the other solid raise what is left of it from below.
+/// The hulls give a first translation. Where the solids have few convex parts, these give the depth; else a cover of
+/// the translations about zero (translation_cover.hpp) narrows the bracket.
 void set_depth(const OverlapQuestion& question, Scratch& scratch, SolidDepth& out);
 
 }  // namespace pd::detail

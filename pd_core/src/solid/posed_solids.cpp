@@ -117,6 +117,13 @@ TriangleBox PosedSolids::box(Body body, const TriangleNode& node) const {
   return {centre - half, centre + half};
 }
 
+Vec3 PosedSolids::in_own_frame(Body body, const Vec3& x) const {
+  const Placing& p = placing(body);
+  const Vec3 own = p.rotation.inverse() * (x - p.offset);
+  return {std::ldexp(own.x(), scale_exponent_), std::ldexp(own.y(), scale_exponent_),
+          std::ldexp(own.z(), scale_exponent_)};
+}
+
 Vec3 PosedSolids::outside(const Vec3& x) const {
   Vec3 out;
   for (int k = 0; k < 3; ++k) out[k] = std::ldexp(x[k], scale_exponent_) + (pose(Body::a).translation()[k] + way_[k]);

@@ -55,6 +55,8 @@ class PosedSolids {
   [[nodiscard]] PosedTriangle corners(Body body, std::int32_t triangle) const;
   /// The box of a node of the solid's tree, rounded outwards.
   [[nodiscard]] TriangleBox box(Body body, const TriangleNode& node) const;
+  /// The point in the body's own coordinates (outside lengths). It is that of a point within error() of this one.
+  [[nodiscard]] Vec3 in_own_frame(Body body, const Vec3& x) const;
   /// The point in the world, rounded.
   [[nodiscard]] Vec3 outside(const Vec3& x) const;
 

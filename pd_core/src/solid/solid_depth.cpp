@@ -60,6 +60,7 @@ Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedSolid& b,
   if (!(settings.delta > 0 && settings.delta <= 1)) {
     return Error{ErrorCode::bad_value, "delta must lie in (0, 1]", "delta"};
   }
+  if (settings.max_points < 0) return Error{ErrorCode::bad_value, "max_points must not be negative", "max_points"};
   const PosedSolids solids(*a.solid, a.pose, *b.solid, b.pose);
   const SolidContact found = contact_of(solids);
   SolidDepth out;

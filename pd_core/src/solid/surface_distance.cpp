@@ -11,14 +11,13 @@ namespace {
 
 class NearestPoint {
  public:
-  NearestPoint(const PosedSolids& solids, Body body, const Vec3& x, double enough)
-      : solids_(solids), body_(body), x_(x), enough_(enough) {}
+  NearestPoint(const PosedSolids& solids, Body body, const Vec3& x, double at_most)
+      : solids_(solids), body_(body), x_(x), squared_(at_most * at_most) {}
 
-  void search() { visit(0, gap(0)); }
-  [[nodiscard]] std::int32_t triangle() const { return triangle_; }
-  /// At most the distance.
-  [[nodiscard]] double distance() const {
-    return std::max(0.0, std::sqrt(squared_) * (1 - 0x1p-48) - 8 * solids_.error());
+  NearestTriangle search() {
+    visit(0, gap(0));
+    nearest_.distance = std::max(0.0, std::sqrt(squared_) * (1 - 0x1p-48) - 8 * solids_.error());
+    return nearest_;
   }
 
  private:
@@ -31,14 +30,10 @@ class NearestPoint {
   }
 
   void visit(std::int32_t at, double least) {
-    if (least >= squared_ || squared_ < enough_ * enough_) return;
+    if (least >= squared_) return;
     const TriangleNode& here = node(at);
     if (here.is_leaf()) {
-      for (std::int32_t t = here.first; t < here.last; ++t) {
-        const double before = squared_;
-        test(t);
-        if (squared_ < before) triangle_ = t;
-      }
+      for (std::int32_t t = here.first; t < here.last; ++t) test(t);
       return;
     }
     const double left = gap(here.left), right = gap(here.right);
@@ -57,43 +52,46 @@ class NearestPoint {
     const Vec3 n = u.cross(v);
     const double area = n.squaredNorm();
     const double r = w.cross(v).dot(n), s = u.cross(w).dot(n);
-    double squared = HUGE_VAL;
+    double squared = HUGE_VAL, of_edges = HUGE_VAL;
+    Vec3 to_foot = Vec3::Zero();
+    const auto take = [&](const Vec3& there, double length) {
+      if (!(length < squared)) return;
+      squared = length;
+      to_foot = there;
+    };
     if (area > 0 && r > 0 && s > 0 && r + s < area) {
       const double height = n.dot(w);
-      squared = height * height / area;
+      take((-height / area) * n, height * height / area);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 edge = t[(k + 1) % 3].x - t[k].x, from = x_ - t[k].x;
       const double along = std::clamp(from.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-      squared = std::min(squared, (from - along * edge).squaredNorm());
+      const Vec3 there = along * edge - from;
+      of_edges = std::min(of_edges, there.squaredNorm());
+      take(there, there.squaredNorm());
     }
-    // The normal of a sliver, and with it the foot, is as uncertain as its area.
+    // The normal of a sliver, and with it the foot, is as uncertain as its area; but its points are near its edges.
     const double off =
         area > 0 ? 128 * kUnitRoundoff * std::sqrt(u.squaredNorm() * v.squaredNorm() / area) * w.norm() : HUGE_VAL;
-    const double distance = std::max(0.0, std::sqrt(squared) - off);
-    squared_ = std::min(squared_, distance * distance);
+    const double height = std::sqrt(area / std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
+    const double distance = std::max({0.0, std::sqrt(squared) - off, std::sqrt(of_edges) - height});
+    if (!(distance * distance < squared_)) return;
+    squared_ = distance * distance;
+    nearest_.triangle = triangle;
+    nearest_.foot = x_ + to_foot;
   }
 
   const PosedSolids& solids_;
   Body body_;
   const Vec3& x_;
-  double enough_;
-  double squared_ = HUGE_VAL;
-  std::int32_t triangle_ = 0;
+  double squared_;
+  NearestTriangle nearest_;
 };
 
 }  // namespace
 
-double distance_to_surface(const PosedSolids& solids, Body body, const Vec3& x, double enough) {
-  NearestPoint nearest(solids, body, x, enough);
-  nearest.search();
-  return nearest.distance();
-}
-
-NearestTriangle nearest_triangle(const PosedSolids& solids, Body body, const Vec3& x) {
-  NearestPoint nearest(solids, body, x, 0);
-  nearest.search();
-  return {nearest.triangle(), nearest.distance()};
+NearestTriangle nearest_triangle(const PosedSolids& solids, Body body, const Vec3& x, double at_most) {
+  return NearestPoint(solids, body, x, at_most).search();
 }
 
 double reach_to_triangle(const PosedTriangle& triangle, const Vec3& x) {
