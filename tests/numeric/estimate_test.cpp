@@ -62,4 +62,25 @@ TEST(Estimate, ExactZerosNeedNoBigNumbers) {
   EXPECT_FALSE((Estimate(1.0) + Estimate(0x1p-60) - Estimate(1.0)).is_zero());
 }
 
+/// Some are short, some have one bit too many, and sizes reach beyond those whose products are exact.
+TEST(Estimate, ProductsWithoutAnErrorAreExact) {
+  std::mt19937_64 bits(5);
+  int exact = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto some = [&] {
+      const int kept = 22 + static_cast<int>(bits() % 5);
+      const double whole = static_cast<double>((bits() >> (64 - kept)) | 1U);
+      return std::ldexp(bits() % 2 ? whole : -whole, static_cast<int>(bits() % 1400) - 700);
+    };
+    const double a = some(), b = some();
+    const Estimate product = Estimate(a) * Estimate(b);
+    if (product.error != 0) continue;
+    ++exact;
+    ASSERT_EQ(Rational(product.value), Rational(a) * Rational(b)) << a << " * " << b;
+  }
+  EXPECT_GT(exact, 1000);
+  EXPECT_EQ((Estimate(0x1.fffffep0) * Estimate(0x1.fffffep0)).error, 0);
+  EXPECT_GT((Estimate(0x1.ffffffp0) * Estimate(0x1.ffffffp0)).error, 0);
+}
+
 }  // namespace
