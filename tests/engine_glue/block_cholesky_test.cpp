@@ -51,6 +51,51 @@ TEST(BlockCholesky, SolvesAsTheDenseMatrixDoes) {
   }
 }
 
+/// Where a few bodies change, only the columns that they reach are computed anew.
+TEST(BlockCholesky, ChangesLeaveTheBitsOfAFactorisationOfTheWhole) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const auto block = [&] { return Block(Block::NullaryExpr([&] { return normal(random); })); };
+  const auto definite = [&] {
+    const Block factor = block();
+    return Block(factor * factor.transpose() + 400 * Block::Identity());
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    const int bodies = 2 + static_cast<int>(random() % 20);
+    std::vector<std::pair<int, int>> pairs;
+    for (int a = 0; a < bodies; ++a) {
+      for (int b = a + 1; b < bodies; ++b) {
+        if (b == a + 1 || random() % static_cast<unsigned>(bodies) == 0) pairs.emplace_back(a, b);
+      }
+    }
+    std::vector<Block> own, shared;
+    for (int i = 0; i < bodies; ++i) own.push_back(definite());
+    for (std::size_t i = 0; i < pairs.size(); ++i) shared.push_back(block());
+    BlockCholesky changed, whole;
+    changed.set_pattern(bodies, pairs);
+    changed.factorise(own, shared);
+    whole.set_pattern(bodies, pairs);
+    for (unsigned one_in = 1; one_in <= 16; one_in *= 2) {
+      std::vector<bool> is_changed;
+      for (int i = 0; i < bodies; ++i) {
+        is_changed.push_back(random() % one_in == 0);
+        if (is_changed.back()) own[static_cast<std::size_t>(i)] = definite();
+      }
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const auto [a, b] = pairs[i];
+        if (is_changed[static_cast<std::size_t>(a)] && is_changed[static_cast<std::size_t>(b)]) shared[i] = block();
+      }
+      changed.factorise(own, shared, is_changed);
+      whole.factorise(own, shared);
+      Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(6 * bodies, [&] { return normal(random); });
+      Eigen::VectorXd y = x;
+      changed.solve(x);
+      whole.solve(y);
+      EXPECT_EQ(x, y) << trial << ", one body in " << one_in;
+    }
+  }
+}
+
 /// Least degree looked for among all bodies takes minutes at this size.
 TEST(BlockCholesky, SolvesAPileOfFiveThousandBodies) {
   constexpr int kSide = 70;

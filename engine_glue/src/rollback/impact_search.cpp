@@ -98,6 +98,8 @@ void ImpactSearch::add_pieces(btCollisionObject* object, const btCollisionShape*
 }
 
 void ImpactSearch::mark_start() {
+  surroundings_.clear();
+  starts_.clear();
   for (Body& body : bodies_) body.start = body.object->getWorldTransform();
 }
 
@@ -226,7 +228,9 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
                        travel(a, pa, moving_a) + travel(b, pb, moving_b);
   const double centres = (moving_a.start.pose.translation() - moving_b.start.pose.translation()).norm();
   if (centres > reach + pa.radius + pb.radius + settings.gap) return;
-  const PenetrationDepth before = penetration_depth(moving_a.start, moving_b.start, scratch_, quick_);
+  const auto [known, is_new] = starts_.try_emplace(place_of(pa, pb));
+  if (is_new) known->second = penetration_depth(moving_a.start, moving_b.start, scratch_, quick_);
+  const PenetrationDepth& before = known->second;
   const double start = before.signed_distance();
   if (start > reach + settings.gap) return;
   TimeOfImpactSettings impact;
@@ -243,9 +247,13 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
   if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
 }
 
-double ImpactSearch::allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings) {
+std::size_t ImpactSearch::place_of(const Piece& a, const Piece& b) const {
   const auto place = [&](const Piece& piece) { return static_cast<std::size_t>(&piece - pieces_.data()); };
-  const double first = first_depths_.emplace(place(a) * pieces_.size() + place(b), depth).first->second;
+  return place(a) * pieces_.size() + place(b);
+}
+
+double ImpactSearch::allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings) {
+  const double first = first_depths_.emplace(place_of(a, b), depth).first->second;
   return depth + std::max(settings.slop - std::max(depth - first, 0.0), kLeastSlop * settings.slop);
 }
 
@@ -308,10 +316,24 @@ Level ImpactSearch::level_of(const StillTriangle& triangle, const Vec3& towards)
   return {normal, level + triangle.margin};
 }
 
-void ImpactSearch::read_surface(const Approach& pair, StaysApart& along) {
+std::vector<ImpactSearch::Surface>& ImpactSearch::surface_of(const Approach& pair, StaysApart& along) {
   btVector3 lower;
   btVector3 upper;
   swept_box(pair.a, pair.convex, pair.b, pair.concave, lower, upper);
+  const auto [known, is_new] = surroundings_.try_emplace(place_of(pair.convex, pair.concave));
+  Surroundings& around = known->second;
+  bool is_known = !is_new && pair.depth.beyond <= around.beyond;
+  for (int i = 0; i < 3; ++i) is_known = is_known && lower[i] >= around.lower[i] && upper[i] <= around.upper[i];
+  if (!is_known) {
+    around.lower = lower;
+    around.upper = upper;
+    around.beyond = pair.depth.beyond;
+    read_surface(pair, along, around);
+  }
+  return around.surface;
+}
+
+void ImpactSearch::read_surface(const Approach& pair, StaysApart& along, Surroundings& around) {
   const Pose surface = to_pd(pair.b.start * pair.concave.local);
   const Pose& start = pair.moving.start.pose;
   const Whereabouts near{surface.rotation().transpose() * (start.translation() - surface.translation()),
@@ -319,8 +341,8 @@ void ImpactSearch::read_surface(const Approach& pair, StaysApart& along) {
   const btConcaveShape& concave = *pair.concave.concave;
   const double margin = margin_of_triangles(concave);
   const double margins = margin + pair.moving.start.shape->margin();
-  surface_.clear();
-  for (const TriangleCorners& local : corners_in_box(concave, lower, upper, &near)) {
+  around.surface.clear();
+  for (const TriangleCorners& local : corners_in_box(concave, around.lower, around.upper, &near)) {
     StillTriangle world{local.corners, margin};
     for (Vec3& corner : world.corners) corner = surface.apply(corner);
     Surface triangle{local, level_of(world, start.translation()), world, 0, HUGE_VAL, nullptr, std::nullopt};
@@ -339,9 +361,9 @@ void ImpactSearch::read_surface(const Approach& pair, StaysApart& along) {
       const double reach = distance_from(point, world.corners) - margins;
       if (!std::isnan(reach)) triangle.reach = reach;
     }
-    surface_.push_back(std::move(triangle));
+    around.surface.push_back(std::move(triangle));
   }
-  std::stable_sort(surface_.begin(), surface_.end(),
+  std::stable_sort(around.surface.begin(), around.surface.end(),
                    [](const Surface& x, const Surface& y) { return x.reach < y.reach; });
 }
 
@@ -371,10 +393,10 @@ double ImpactSearch::ask_start(const Approach& pair, Surface& triangle) {
   return triangle.shape != nullptr ? triangle.start->signed_distance() : HUGE_VAL;
 }
 
-bool ImpactSearch::is_in_contact(const Approach& pair, double in_contact) {
+bool ImpactSearch::is_in_contact(const Approach& pair, std::vector<Surface>& surface, double in_contact) {
   // The triangles are sorted by their reach.
-  if (!surface_.empty() && surface_.front().reach <= in_contact) return true;
-  return std::any_of(surface_.begin(), surface_.end(), [&](Surface& triangle) {
+  if (!surface.empty() && surface.front().reach <= in_contact) return true;
+  return std::any_of(surface.begin(), surface.end(), [&](Surface& triangle) {
     return triangle.bound <= in_contact && ask_start(pair, triangle) <= in_contact;
   });
 }
@@ -391,10 +413,10 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   Approach pair{a, pa, b, pb, moving_a, quick_};
   pair.depth.beyond = std::max(way + settings.gap, settings.in_contact);
   StaysApart along(moving_a, duration_);
-  read_surface(pair, along);
+  std::vector<Surface>& surface = surface_of(pair, along);
   // A body that touches one triangle is in contact with the surface: on its way along it, it meets the next triangles
   // at their edges, no deeper than it lies on this one. So one depth is allowed for all.
-  const bool in_contact = is_in_contact(pair, settings.in_contact);
+  const bool in_contact = is_in_contact(pair, surface, settings.in_contact);
   const bool still = b.travel == 0;
   const auto proved = [&](const Surface& triangle, double least) {
     return triangle.bound > pair.depth.beyond ||
@@ -404,10 +426,10 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   // Pairs in contact may sink by this at the least, whatever they have sunk.
   const double least = in_contact ? -0.9 * kLeastSlop * settings.slop : settings.gap;
   unproved_.clear();
-  for (std::size_t i = 0; i < surface_.size(); ++i) {
-    if (proved(surface_[i], least)) continue;
-    ask_start(pair, surface_[i]);
-    if (surface_[i].shape != nullptr) unproved_.push_back(i);
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    if (proved(surface[i], least)) continue;
+    ask_start(pair, surface[i]);
+    if (surface[i].shape != nullptr) unproved_.push_back(i);
   }
   if (unproved_.empty()) return;
   TimeOfImpactSettings impact;
@@ -416,13 +438,13 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   impact.depth = quick_;
   double depth = 0;
   if (in_contact) {
-    for (Surface& triangle : surface_) {
+    for (Surface& triangle : surface) {
       if (triangle.bound <= settings.in_contact) depth = std::max(depth, -ask_start(pair, triangle));
     }
     impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
   }
   for (const std::size_t i : unproved_) {
-    const Surface& triangle = surface_[i];
+    const Surface& triangle = surface[i];
     if (triangle.start->signed_distance() > way + settings.gap) continue;
     if (impact.allowed_depth > 0 && proved(triangle, -0.9 * impact.allowed_depth)) continue;
     const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);

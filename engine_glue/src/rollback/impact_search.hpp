@@ -51,7 +51,8 @@ class ImpactSearch {
 
   /// Reads the world's bodies, and forgets their pieces: the host may have changed shapes since.
   void begin_frame();
-  /// The present poses are where the motion begins.
+  /// The present poses are where the motion begins. What is asked of them is kept until the next call: all trials of a
+  /// part begin there.
   void mark_start();
 
   struct Settings {
@@ -125,15 +126,25 @@ class ImpactSearch {
     const MovingShape& moving;  ///< the convex piece
     DepthSettings depth;        ///< tells distances within which the triangles may be met
   };
-  /// Fills `surface_` with the triangles that the convex piece may come to, the nearest first.
-  void read_surface(const Approach& pair, StaysApart& along);
+  /// The triangles of a concave piece that a convex one may come to, the nearest first, and how far they are where the
+  /// motion begins.
+  struct Surroundings {
+    btVector3 lower{0, 0, 0}, upper{0, 0, 0};  ///< the box that they were read from
+    double beyond = 0;                         ///< up to which their distances are told
+    std::vector<Surface> surface;
+  };
+  /// Returns those of a pair, and more: a shorter trial takes what a longer one read.
+  std::vector<Surface>& surface_of(const Approach& pair, StaysApart& along);
+  void read_surface(const Approach& pair, StaysApart& along, Surroundings& around);
   /// Returns the convex body of a triangle; null if a corner is not finite. Time O(log n) for a known triangle.
   const std::shared_ptr<const ConvexShape>& shape_of(const TriangleCorners& triangle, double margin);
   /// Returns the signed distance of the convex piece and a triangle where the motion begins; HUGE_VAL if a corner is
   /// not finite. Asks the core once.
   double ask_start(const Approach& pair, Surface& triangle);
   /// True if the convex piece is in contact with a triangle where the motion begins.
-  [[nodiscard]] bool is_in_contact(const Approach& pair, double in_contact);
+  [[nodiscard]] bool is_in_contact(const Approach& pair, std::vector<Surface>& surface, double in_contact);
+  /// Names a pair of pieces within the frame.
+  [[nodiscard]] std::size_t place_of(const Piece& a, const Piece& b) const;
   /// The box of a convex piece's motion in the frame of a concave one.
   void swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
                  btVector3& upper) const;
@@ -146,11 +157,12 @@ class ImpactSearch {
   std::vector<Piece> pieces_;
   std::vector<Body> bodies_;
   std::vector<int> order_;
-  std::vector<Surface> surface_;
+  std::unordered_map<std::size_t, Surroundings> surroundings_;  ///< of pairs with a concave piece, by `place_of`
+  std::unordered_map<std::size_t, PenetrationDepth> starts_;    ///< of convex pairs where the motion begins
   /// The convex bodies of triangles by their corners and margin, so that none of them can be stale.
   std::map<std::array<double, 10>, std::shared_ptr<const ConvexShape>> triangles_;
-  std::vector<std::size_t> unproved_;  ///< of these, those that the body may meet
-  /// How deep pairs were when they were first found in contact in this frame; by the places of their pieces.
+  std::vector<std::size_t> unproved_;  ///< triangles of a surface that the body may meet
+  /// How deep pairs were when they were first found in contact in this frame; by `place_of`.
   std::unordered_map<std::size_t, double> first_depths_;
   Scratch scratch_;
 };

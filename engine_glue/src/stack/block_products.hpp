@@ -10,7 +10,8 @@ namespace pd::detail {
 using Block6 = Eigen::Matrix<double, 6, 6>;
 using Column6 = Eigen::Matrix<double, 6, 1>;
 
-/// Calls visit(column, the part of it from its diagonal on, or from the row before) for the columns of a lower triangle.
+/// Calls visit(column, the part of it from its diagonal on, or from the row before) for the columns of a lower
+/// triangle.
 template <class Visit>
 void visit_lower(Block6& c, const Visit& visit) {
   for (int j = 0; j < 2; ++j) visit(j, c.col(j).tail<6>());

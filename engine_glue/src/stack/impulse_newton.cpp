@@ -228,29 +228,37 @@ double ImpulseNewton::share_of_step() {
   }
   turns_.clear();
   for (const Row& row : rows) turns_.push_back(speed(row, step_));
+  struct Slope {
+    double value;
+    double rise;  ///< of the value with the share, to the right of where it bends
+  };
   const auto slope = [&](double share) {
-    double sum = inertia_start + share * inertia_rise;
+    Slope sum{inertia_start + share * inertia_rise, inertia_rise};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double impulse = (targets_[i] - speeds_[i] - share * turns_[i]) / rows[i].softness;
-      sum -= turns_[i] * std::clamp(impulse, rows[i].lower, rows[i].upper);
+      sum.value -= turns_[i] * std::clamp(impulse, rows[i].lower, rows[i].upper);
+      if (impulse > rows[i].lower && impulse < rows[i].upper) sum.rise += turns_[i] * turns_[i] / rows[i].softness;
     }
     return sum;
   };
-  const double start = slope(0);
-  const double end = slope(1);
+  const double start = slope(0).value;
+  Slope at_share = slope(1);
   double size = std::abs(inertia_start);
   for (std::size_t i = 0; i < rows.size(); ++i) size += std::abs(turns_[i] * impulses_[i]);
   // Nothing to gain, but for rounding; or all of the way is downhill.
   constexpr double kRounding = 1e-12;
-  if (start >= -kRounding * size || end <= -1e-9 * start) return 1;
-  // It is piecewise linear in the share: by halves, of the exponent first.
-  double low = 0, high = 1;
-  while (high > 1e-30 && slope(0.0625 * high) >= 0) high *= 0.0625;
-  for (int i = 0; i < 30; ++i) {
-    const double middle = 0.5 * (low + high);
-    (slope(middle) < 0 ? low : high) = middle;
+  constexpr double kLevel = 1e-9;
+  if (start >= -kRounding * size || at_share.value <= -kLevel * start) return 1;
+  // The slope is piecewise linear in the share and does not fall: Newton's method finds its piece. Where that leaves
+  // the bounds, the exponent is halved until the root is bracketed, then the bracket.
+  double low = 0, high = 1, share = 1;
+  for (int i = 0; i < kMostLooks && std::abs(at_share.value) > -kLevel * start && high - low > kLevel * high; ++i) {
+    const double newton = share - at_share.value / at_share.rise;
+    share = newton > low && newton < high ? newton : low > 0 ? 0.5 * (low + high) : 0.0625 * high;
+    at_share = slope(share);
+    (at_share.value < 0 ? low : high) = share;
   }
-  return high;
+  return share;
 }
 
 /// To the point at that share of the way from `x_` to `aim_`. What a row's speed is there is known better from the two

@@ -84,11 +84,11 @@ class ImpulseNewton {
   enum class Hold : unsigned char { within, at_lower, at_upper };
   static constexpr int kMostSteps = 32;
   static constexpr int kMostRounds = 3;
-  /// Share of the sum of the impulses that a last round may change. Walls whose rounds end at 0.1 never come to rest:
-  /// what is left of a step moves their bricks, and the next step has other rows at their bounds.
-  static constexpr double kMuch = 1e-3;
-  /// Share of the sum that may be amiss at the end of a round. With 1e-5 a wall takes as many factorisations again.
-  static constexpr double kNegligible = 1e-8;
+  static constexpr int kMostLooks = 60;  ///< along one step
+  static constexpr double kMuch = 0.1;   ///< of the sum of the impulses
+  /// Share of the same that may be amiss at the end of a round. With 1e-5 a wall drifts at least four times as far:
+  /// what is left of a step moves its bricks. With 1e-8 it takes as many factorisations and more.
+  static constexpr double kNegligible = 1e-7;
 
   void find_pattern();
   void begin_round();

@@ -46,8 +46,8 @@ constexpr double kAmissAtFirst = 0.1;
 /// boxes that land as a column fall otherwise. Ten sweeps spare columns of six and more.
 constexpr double kHighColumn = 1.2;
 
-/// Share of the speed that a step of their weight gives to the bodies of a group. Sweeps that change less in each row of
-/// a group that is solved mend nothing.
+/// Share of the speed that a step of their weight gives to the bodies of a group. Sweeps that change less in each row
+/// of a group that is solved mend nothing.
 constexpr btScalar kNegligibleShare = btScalar(1e-3);
 
 btScalar negligible_speed(const SolverBodies& bodies, std::span<const int> group) {
