@@ -88,6 +88,21 @@ TEST(Patches, TheChoiceLastsFromStepToStep) {
   EXPECT_LE(changes(true), 1);
 }
 
+TEST(Patches, ChosenAgainTheyAreTheSame) {
+  NoisyRings rings;
+  Patches patches;
+  std::vector<LastPatch> last;
+  for (int step = 0; step < 20; ++step) {
+    patches.clear();
+    rings.add_to(patches);
+    patches.choose(8, kThreshold, last);
+    const auto first = pieces_of(patches);
+    patches.choose(8, kThreshold, last);
+    EXPECT_EQ(pieces_of(patches), first) << step;
+    last = as_last(patches);
+  }
+}
+
 TEST(Patches, TheDeepestIsAlwaysThere) {
   NoisyRings rings;
   Patches patches;

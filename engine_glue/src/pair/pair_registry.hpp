@@ -64,7 +64,25 @@ struct HeavyLoad {
 
 class ManifoldOwner;
 
-struct PairMemory {
+/// What the search for the points of a pair with a mesh or compound remembers.
+struct UnionMemory {
+  std::vector<PieceMemory> pieces;                   ///< sorted by number
+  std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
+  StandingStill standing;                            ///< of a body on a mesh
+  SheetMemory sheet;                                 ///< the same
+  int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
+  int union_refusals = 0;         ///< in a row
+  Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
+
+  /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
+  [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
+    const auto place = static_cast<std::size_t>(child + 1);
+    if (place >= children[body].size()) children[body].resize(place + 1);
+    return children[body][place].shape;
+  }
+};
+
+struct PairMemory : UnionMemory {
   int patch = -1;  ///< the manifold's number among those of a pair with a mesh or compound; -1: of a single pair
   ManifoldOwner* owner = nullptr;  ///< of a manifold with a number
   WarmCertificate warm;
@@ -73,23 +91,9 @@ struct PairMemory {
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
   std::array<RememberedPoint, 4> points;
   int num_points = 0;
-  btScalar seconds = 0;                              ///< of the step that the points' impulses belong to
-  std::vector<PieceMemory> pieces;                   ///< sorted by number
-  std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
-  StandingStill standing;                            ///< of a body on a mesh
-  SheetMemory sheet;                                 ///< the same
-  int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
-  int union_refusals = 0;         ///< in a row
-  Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
+  btScalar seconds = 0;  ///< of the step that the points' impulses belong to
   HeavyLoad load;
   FlightMemory flight;  ///< of two boxes
-
-  /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
-  [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
-    const auto place = static_cast<std::size_t>(child + 1);
-    if (place >= children[body].size()) children[body].resize(place + 1);
-    return children[body][place].shape;
-  }
 
   /// Nothing that an answer could depend on: shapes that are held spare look-ups only.
   [[nodiscard]] bool is_blank() const {

@@ -106,6 +106,12 @@ class SolverCore {
   /// A number that no step of any world had before.
   [[nodiscard]] std::uint64_t next_stamp() { return 1 + stamps_.fetch_add(1, std::memory_order_relaxed); }
 
+  /// Steps of one world that begin at one state, of which all but the last are taken back (RollbackStepper), have one
+  /// number; 0: a step like any other. The first of them is the longest.
+  void begin_trials() { trials_.store(next_stamp(), std::memory_order_relaxed); }
+  void end_trials() { trials_.store(0, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t trials() const { return trials_.load(std::memory_order_relaxed); }
+
   /// Solvers may serve any number of worlds one after another, whose end Bullet tells nobody: they share this many
   /// places. Worlds that step at the same time should not share one.
   static constexpr std::size_t kWorlds = 256;
@@ -137,6 +143,7 @@ class SolverCore {
 
   btGjkEpaPenetrationDepthSolver epa_;
   std::atomic<std::uint64_t> stamps_{0};
+  std::atomic<std::uint64_t> trials_{0};
   std::atomic<std::uint64_t> warned_{0};  ///< a bit for each Bullet type
   std::atomic<bool> closed_{false};
   std::mutex mutex_;

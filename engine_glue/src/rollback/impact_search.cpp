@@ -427,9 +427,7 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   const double least = in_contact ? -0.9 * kLeastSlop * settings.slop : settings.gap;
   unproved_.clear();
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    if (proved(surface[i], least)) continue;
-    ask_start(pair, surface[i]);
-    if (surface[i].shape != nullptr) unproved_.push_back(i);
+    if (!proved(surface[i], least)) unproved_.push_back(i);
   }
   if (unproved_.empty()) return;
   TimeOfImpactSettings impact;
@@ -439,14 +437,14 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   double depth = 0;
   if (in_contact) {
     for (Surface& triangle : surface) {
-      if (triangle.bound <= settings.in_contact) depth = std::max(depth, -ask_start(pair, triangle));
+      if (-triangle.bound > depth) depth = std::max(depth, -ask_start(pair, triangle));
     }
     impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
   }
   for (const std::size_t i : unproved_) {
-    const Surface& triangle = surface[i];
-    if (triangle.start->signed_distance() > way + settings.gap) continue;
+    Surface& triangle = surface[i];
     if (impact.allowed_depth > 0 && proved(triangle, -0.9 * impact.allowed_depth)) continue;
+    if (ask_start(pair, triangle) > way + settings.gap) continue;
     const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
     impact.at_start = &*triangle.start;
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "rollback/impact_search.hpp"
 #include "rollback/substep.hpp"
@@ -304,6 +305,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     detail::WorldStep::pre_tick(world, static_cast<btScalar>(remaining));
     follow_objects();
     save();
+    solver.core().begin_trials();
     parts.begin_part();
     search.mark_start();
     try_part(done, remaining, report);
@@ -328,6 +330,7 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     accept(done, part, report);
     done += part;
   }
+  solver.core().end_trials();
   for (int i = known; i < report.contacts.size(); ++i) report.contacts[i].time += elapsed;
 }
 

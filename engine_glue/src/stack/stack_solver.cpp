@@ -48,7 +48,7 @@ constexpr double kHighColumn = 1.2;
 
 /// Share of the speed that a step of their weight gives to the bodies of a group. Sweeps that change less in each row
 /// of a group that is solved mend nothing.
-constexpr btScalar kNegligibleShare = btScalar(1e-3);
+constexpr btScalar kNegligibleShare = btScalar(1e-4);
 
 btScalar negligible_speed(const SolverBodies& bodies, std::span<const int> group) {
   btScalar weight = 0;

@@ -26,7 +26,43 @@ struct UnionAlgorithm::State {
   Patches patches;
   BulletsStandIn bullets;
   bool used = false;
+
+  /// Fills `patches`. Trials that begin at one state take what the first one found: it is the longest, so that no point
+  /// is missing. @return false: Bullet's own algorithm has to answer
+  bool find(const UnionQuestion& question);
+
+ private:
+  /// What was found last.
+  struct Found {
+    std::uint64_t trials = 0;  ///< `SolverCore::trials`
+    btScalar threshold = 0;
+    btTransform pose_a, pose_b;
+    UnionMemory memory;  ///< as it was left
+  } found_;
 };
+
+bool UnionAlgorithm::State::find(const UnionQuestion& question) {
+  SolverCore& core = world.core();
+  const std::uint64_t trials = core.trials();
+  const btTransform& pose_a = question.a.getWorldTransform();
+  const btTransform& pose_b = question.b.getWorldTransform();
+  UnionMemory& memory = manifolds.memory();
+  if (trials != 0 && trials == found_.trials && question.threshold == found_.threshold && pose_a == found_.pose_a &&
+      pose_b == found_.pose_b) {
+    memory = found_.memory;
+    return true;
+  }
+  patches.clear();
+  found_.trials = 0;
+  if (!contacts->find(question, core, manifolds.memory(), patches)) return false;
+  if (trials == 0) return true;
+  found_.trials = trials;
+  found_.threshold = question.threshold;
+  found_.pose_a = pose_a;
+  found_.pose_b = pose_b;
+  found_.memory = memory;
+  return true;
+}
 
 bool UnionAlgorithm::Kind::takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
                                  const btCollisionObjectWrapper& b) {
@@ -59,8 +95,7 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     const std::uint64_t stamp = std::exchange(s.used, true) ? s.world.stamp() : core.next_stamp();
     const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
     const UnionQuestion question{one, other, time_of(info), threshold, stamp, *result};
-    s.patches.clear();
-    if (s.contacts->find(question, core, s.manifolds.memory(), s.patches)) {
+    if (s.find(question)) {
       s.bullets.release();
       s.contacts->replace(question, s.patches, s.manifolds);
       return;

@@ -77,9 +77,11 @@ void Patches::sort_by_depth() {
 }
 
 void Patches::choose(int most, double breaking_threshold, std::span<const LastPatch> last) {
+  patches_.clear();
   go_on(last);
   sort_by_depth();
   for (Point& point : points_) {
+    point.lasting = false;
     double nearest = -2;
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       const double cosine = patches_[i].normal.dot(point.normal);

@@ -100,8 +100,9 @@ class RollbackStepper {
   /// Parts of a step add no energy of their own: Bullet's corrections, warm starts and gaps are taken per unit of
   /// time (`src/rollback/substep.hpp`). Where friction with restitution would add energy, as Bullet's law of
   /// impact allows, the impact has so much less restitution that it does not (`src/rollback/impact_energy.hpp`). Time:
-  /// Bullet's own for each simulation step. A snapshot a part. A collision query or more for each pair whose swept
-  /// boxes meet and that moves by more than the slop (in steps that are cut: 2.25 gaps).
+  /// Bullet's own for each simulation step; pairs with a mesh or compound are asked once a part. A snapshot a part. A
+  /// collision query or more for each pair whose swept boxes meet and that moves by more than the slop (in steps that
+  /// are cut: 2.25 gaps).
   RollbackReport step(btScalar step);
 
   /// Advances like `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most

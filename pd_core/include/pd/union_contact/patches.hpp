@@ -60,7 +60,7 @@ class Patches {
   /// In a valley that is less steep than a patch is wide, two points of a corner push, each to its side. One of them
   /// alone moves the body until the other one is the deeper, and back in the next step. So a point that touches within
   /// the breaking threshold of a chosen point, along a normal more than three degrees off, gets a patch of its own.
-  /// Time O(p (q + log p)) in p points and q patches.
+  /// Time O(p (q + log p)) in p points and q patches. Chosen again with the same `last`, the patches are the same.
   /// @param last  of the last step, at most `most`
   void choose(int most, double breaking_threshold, std::span<const LastPatch> last);
 
