@@ -65,7 +65,7 @@ struct HeavyLoad {
 class ManifoldOwner;
 
 /// What the search for the points of a pair with a mesh or compound remembers.
-struct UnionMemory {
+struct UnionPairMemory {
   std::vector<PieceMemory> pieces;                   ///< sorted by number
   std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
   StandingStill standing;                            ///< of a body on a mesh
@@ -82,7 +82,7 @@ struct UnionMemory {
   }
 };
 
-struct PairMemory : UnionMemory {
+struct PairMemory : UnionPairMemory {
   int patch = -1;  ///< the manifold's number among those of a pair with a mesh or compound; -1: of a single pair
   ManifoldOwner* owner = nullptr;  ///< of a manifold with a number
   WarmCertificate warm;

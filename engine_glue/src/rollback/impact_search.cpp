@@ -1,6 +1,7 @@
 #include "rollback/impact_search.hpp"
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
@@ -30,8 +31,6 @@ constexpr double kNotIn = 0.02;
 /// first quarter, so that pairs that sink steadily are not cut there.
 constexpr int kLooks = 8;
 constexpr int kFirstLook = 2;
-/// The largest number of triangles that are kept as convex bodies.
-constexpr std::size_t kMostTriangles = 4096;
 /// To 1/2000 of the motion; trials do the rest.
 constexpr int kHalvings = 8;
 
@@ -367,18 +366,12 @@ void ImpactSearch::read_surface(const Approach& pair, StaysApart& along, Surroun
                    [](const Surface& x, const Surface& y) { return x.reach < y.reach; });
 }
 
-const std::shared_ptr<const ConvexShape>& ImpactSearch::shape_of(const TriangleCorners& triangle, double margin) {
-  std::array<double, 10> key;
-  for (std::size_t i = 0; i < 9; ++i) key[i] = triangle.corners[i / 3][static_cast<int>(i % 3)];
-  key[9] = margin;
-  static const std::shared_ptr<const ConvexShape> kNone;
-  if (!std::all_of(key.begin(), key.end(), [](double x) { return std::isfinite(x); })) return kNone;
-  auto found = triangles_.find(key);
-  if (found == triangles_.end()) {
-    if (triangles_.size() >= kMostTriangles) triangles_.clear();
-    found = triangles_.emplace(key, to_shape(triangle, margin)).first;
-  }
-  return found->second;
+std::shared_ptr<const ConvexShape> ImpactSearch::shape_of(const TriangleCorners& corners, double margin) {
+  btTriangleShape triangle(to_bullet(corners.corners[0]), to_bullet(corners.corners[1]), to_bullet(corners.corners[2]));
+  triangle.setMargin(static_cast<btScalar>(margin));
+  std::shared_ptr<CachedShape> found;
+  triangles_.find(triangle, found, [&](const btTriangleShape& made) { return solver_.cache().find(made, 0); });
+  return found->body;
 }
 
 double ImpactSearch::ask_start(const Approach& pair, Surface& triangle) {

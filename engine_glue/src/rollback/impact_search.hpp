@@ -6,8 +6,6 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
-#include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -18,6 +16,7 @@
 #include "pd/depth/scratch.hpp"
 #include "rollback/stays_apart.hpp"
 #include "shapes/cached_shape.hpp"
+#include "shapes/triangle_cache.hpp"
 #include "shapes/triangles_in_box.hpp"
 
 namespace pd::detail {
@@ -136,8 +135,8 @@ class ImpactSearch {
   /// Returns those of a pair, and more: a shorter trial takes what a longer one read.
   std::vector<Surface>& surface_of(const Approach& pair, StaysApart& along);
   void read_surface(const Approach& pair, StaysApart& along, Surroundings& around);
-  /// Returns the convex body of a triangle; null if a corner is not finite. Time O(log n) for a known triangle.
-  const std::shared_ptr<const ConvexShape>& shape_of(const TriangleCorners& triangle, double margin);
+  /// Returns the convex body of a triangle; null if a corner is not finite.
+  [[nodiscard]] std::shared_ptr<const ConvexShape> shape_of(const TriangleCorners& triangle, double margin);
   /// Returns the signed distance of the convex piece and a triangle where the motion begins; HUGE_VAL if a corner is
   /// not finite. Asks the core once.
   double ask_start(const Approach& pair, Surface& triangle);
@@ -159,8 +158,7 @@ class ImpactSearch {
   std::vector<int> order_;
   std::unordered_map<std::size_t, Surroundings> surroundings_;  ///< of pairs with a concave piece, by `place_of`
   std::unordered_map<std::size_t, PenetrationDepth> starts_;    ///< of convex pairs where the motion begins
-  /// The convex bodies of triangles by their corners and margin, so that none of them can be stale.
-  std::map<std::array<double, 10>, std::shared_ptr<const ConvexShape>> triangles_;
+  TriangleCache triangles_;
   std::vector<std::size_t> unproved_;  ///< triangles of a surface that the body may meet
   /// How deep pairs were when they were first found in contact in this frame; by `place_of`.
   std::unordered_map<std::size_t, double> first_depths_;

@@ -131,6 +131,7 @@ struct RollbackStepper::State {
   }
 
   void accept(double from, double length, RollbackReport& report) {
+    solver.core().end_trials();
     parts.accept(from, length);
     ++report.parts;
     detail::WorldStep::post_tick(world, static_cast<btScalar>(length));
@@ -330,7 +331,6 @@ void RollbackStepper::State::frame(btScalar step, double elapsed, RollbackReport
     accept(done, part, report);
     done += part;
   }
-  solver.core().end_trials();
   for (int i = known; i < report.contacts.size(); ++i) report.contacts[i].time += elapsed;
 }
 

@@ -37,7 +37,7 @@ struct UnionAlgorithm::State {
     std::uint64_t trials = 0;  ///< `SolverCore::trials`
     btScalar threshold = 0;
     btTransform pose_a, pose_b;
-    UnionMemory memory;  ///< as it was left
+    UnionPairMemory memory;  ///< as it was left
   } found_;
 };
 
@@ -46,7 +46,7 @@ bool UnionAlgorithm::State::find(const UnionQuestion& question) {
   const std::uint64_t trials = core.trials();
   const btTransform& pose_a = question.a.getWorldTransform();
   const btTransform& pose_b = question.b.getWorldTransform();
-  UnionMemory& memory = manifolds.memory();
+  UnionPairMemory& memory = manifolds.memory();
   if (trials != 0 && trials == found_.trials && question.threshold == found_.threshold && pose_a == found_.pose_a &&
       pose_b == found_.pose_b) {
     memory = found_.memory;
