@@ -70,11 +70,11 @@ bool is_plainly_mesh(const InputFile& input, const std::string& name) {
 }
 
 int refuse_mesh(const std::string& name) {
+  const std::string text = nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   complain(
-      "{0} is a mesh, and query reads lines of JSON: try `pdepth check {0}` or `pdepth depth {0} box:1,1,1`, or name "
-      "the "
-      "file in a line: {{\"query\":\"width\",\"a\":{{\"type\":\"mesh\",\"path\":{1}}}}}",
-      name, nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+      "{0} is a mesh, and query reads lines of JSON: try `pdepth check {0}` or `pdepth depth {0} box:1,1,1`, or "
+      "name the file in a line: {{\"query\":\"width\",\"a\":{{\"type\":\"mesh\",\"path\":{1}}}}}",
+      name, text);
   return kBadUsage;
 }
 

@@ -58,6 +58,8 @@ API = re.compile(r"\{\{ api ([^#}]+?)(?: # ([\w./]+))? \}\}")
 DIRECTIVE = re.compile(r"^\{\{ (include|opening|code) ([^#}]+?)(?: # ([^}]+?))? \}\}$", re.M)
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```.*?^```$)", re.M | re.S)
+CELL = re.compile(r"<td\b.*?</td>", re.S)
+CODE = re.compile(r"<code>[^<]*</code>")
 
 
 def left_out():
@@ -123,7 +125,13 @@ def on_post_page(output, page, config):
     before = '<script src="assets/javascripts/bundle'
     if output.count(before) != 1:
         raise PluginError(f"{page.file.src_path}: the theme starts its script otherwise, so that searching from the disk would fail")
-    return output.replace(before, '<script src="search/offline.js"></script>' + before)
+    output = output.replace(before, '<script src="search/offline.js"></script>' + before)
+    return CELL.sub(lambda cell: CODE.sub(breakable, cell[0]), output)
+
+
+def breakable(code):
+    """A name in a narrow column of a table: broken behind a slash or an underscore, not within a word."""
+    return re.sub(r"(?<=[^</])([/_])(?=\w)", r"\1<wbr>", code[0])
 
 
 def write_offline_search(site):
