@@ -9,7 +9,9 @@
 # The last line is `N passed, N failed`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source pd_core/cmake/debian_packages.sh
 source packaging/bare_system.sh
+pd_require_packages mmdebstrap lintian dpkg-dev
 out=${PWD}/build/debian
 shopt -s nullglob
 trees=("${out}"/pdepth-*/)

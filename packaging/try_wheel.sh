@@ -5,9 +5,12 @@
 #   packaging/try_wheel.sh [WHEEL]     without a WHEEL one is built from the tree, into build/wheel
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source pd_core/cmake/debian_packages.sh
 source packaging/bare_system.sh
+pd_require_packages mmdebstrap
 wheel=${1-}
 if [[ -z ${wheel} ]]; then
+  pd_require_packages "${pd_build_packages[@]}" python3-dev pybind11-dev python3-numpy python3-setuptools python3-wheel python3-build
   rm -rf build/wheel
   /usr/bin/python3 -m build --no-isolation --wheel --outdir build/wheel .
   wheel=$(echo build/wheel/pdepth-*.whl)

@@ -8,7 +8,12 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source pd_core/cmake/debian_packages.sh
 
-printf '== packages\n'
+# heading WORDS: what begins now, and when, so that a log tells what takes long.
+heading() {
+  printf '== %s (at %d s)\n' "$1" "${SECONDS}"
+}
+
+heading packages
 pd_require_packages "${pd_build_packages[@]}" "${pd_demo_packages[@]}" "${pd_test_packages[@]}"
 pd_use_ccache
 
@@ -27,7 +32,7 @@ run_preset() {
     shift
   done
   shift
-  printf '== %s: build\n' "${preset}"
+  heading "${preset}: build"
   if ! { cmake --preset "${preset}" --log-level=WARNING "${pd_launcher[@]}" "$@" &&
          cmake --build --preset "${preset}" "${targets[@]}"; }; then
     printf '%s: the build failed\n' "${preset}" >&2
@@ -35,7 +40,7 @@ run_preset() {
     failures_by_name+=("${preset}: build")
     return
   fi
-  printf '== %s: test\n' "${preset}"
+  heading "${preset}: test"
   local folder=${PWD}/build/${preset} status=0
   local report=${folder}/tests.xml failures=${folder}/Testing/Temporary/LastTestsFailed.log
   rm -f "${report}" "${failures}"
@@ -68,7 +73,7 @@ count_in() {
 
 # The Python package that the release build staged: every test of pytest counts as one.
 run_python() {
-  printf '== Python: test\n'
+  heading 'Python: test'
   local report=${PWD}/build/release/pytest.xml status=0
   rm -f "${report}"
   if [[ ! -d build/release/python ]]; then
