@@ -11,13 +11,14 @@ import argparse
 import json
 import os
 import pathlib
+import random
 import resource
 import subprocess
 import sys
 import tempfile
 
-from strangers_parts import (BOX, ROWS, SMALL, Place, Run, at, bracket, code_of, comb, crashed, jagged, off_ellipsoid, refused, row,
-                             sphere_points, star, torus)
+from strangers_parts import (BOX, ROWS, SMALL, Place, Run, at, bracket, code_of, comb, crashed, jagged, off_ellipsoid, random_union,
+                             refused, row, sphere_points, star, torus)
 
 # ---- A: a service with its limits on --------------------------------------------------------------------------------
 
@@ -126,6 +127,23 @@ for radius in (0.01, 0.003, 7e-5):
     def _(place, radius=radius):
         run = place.ask({"id": 1, "query": "depth", "a": {"type": "sphere", "radius": radius}, "b": star(4, 5)})
         return (run, *bracket(run, 1e-2))
+
+
+for first in range(0, 300, 100):
+    @row(f"C2 the slowest of 100 pairs of unions with curved parts, from {first}", SMALL)
+    def _(place, first=first):
+        runs, faults, unreached = [], [], 0
+        for seed in range(first, first + 100):
+            source = random.Random(seed)
+            run = place.ask({"id": seed, "query": "depth", "a": random_union(source), "b": random_union(source),
+                             "pose_b": at(*(source.uniform(-0.7, 0.7) for _ in range(3)))})
+            fault, said = bracket(run, 1e-2)
+            runs.append((run.seconds, seed, run))
+            faults += [f"{seed}: {fault}"] * bool(fault)
+            unreached += "unreached" in said
+        seconds, seed, slowest = max(runs)
+        mean = sum(r[0] for r in runs) / len(runs)
+        return slowest, "; ".join(faults), f"pair {seed}, mean {mean:.3f} s, {unreached} unreached"
 
 
 @row("C3 a coin of 2^-12 in a star of 6", SMALL)

@@ -154,6 +154,26 @@ def jagged(corners, seed):
     return {"outer": ring}
 
 
+def random_union(source):
+    """One to three parts, of which the first is curved or swept, some of them thin."""
+    size = lambda: 2.0 ** source.uniform(-1, 1)
+    kinds = ({"type": "ellipsoid", "radii": [size(), size(), size() * source.choice((1, 2.0 ** -8, 2.0 ** -16))]},
+             {"type": "cylinder", "radius": size(), "half_height": source.choice((size(), 2.0 ** -12)), "axis": "z"},
+             {"type": "cone", "radius": size(), "half_height": size(), "axis": "z"},
+             {"type": "capsule", "radius": size() / 4, "half_height": size(), "axis": "x"},
+             {"type": "sphere", "radius": size()},
+             {"type": "box", "half_extents": [size(), size(), size()], "margin": 0.1},
+             {"type": "box", "half_extents": [size(), size(), size() / 64]})
+    parts = []
+    for k in range(source.randint(1, 3)):
+        turn = [source.gauss(0, 1) for _ in range(4)]
+        length = math.sqrt(sum(x * x for x in turn))
+        parts.append({"shape": kinds[source.randrange(6 if k == 0 else 7)],
+                      "pose": {"translation": [source.uniform(-1, 1) for _ in range(3)],
+                               "quaternion_wxyz": [x / length for x in turn]}})
+    return {"type": "compound", "parts": parts}
+
+
 # ---- judges ---------------------------------------------------------------------------------------------------------
 
 

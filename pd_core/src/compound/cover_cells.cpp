@@ -47,6 +47,30 @@ double distance_within(const RoughPlane& plane, const CoverCell& cell, double ex
   return std::max(plain, std::sqrt(best) * (1 - 0x1p-50));
 }
 
+CoverPlace cover_place(PartDifferences& differences, std::size_t k, const Vec3& centre, double half) {
+  const PartDifference& known = differences.pieces()[k];
+  const Eigen::Array3d low = centre.array() - half, high = centre.array() + half;
+  const double rounding = 0x1p-48 * differences.extent();
+  if ((known.low.array() - high).maxCoeff() > rounding || (low - known.high.array()).maxCoeff() > rounding) {
+    return CoverPlace::apart;
+  }
+  // Only a P_k whose box holds the cube can hold it; others are not worth making before the cube is small beside them.
+  const bool box_holds = (known.low.array() <= low).all() && (known.high.array() >= high).all();
+  if (!box_holds && known.made == PartDifference::Made::nothing && 4 * half > (known.high - known.low).minCoeff()) {
+    return CoverPlace::meets;
+  }
+  const PartDifference& piece = differences.roughly(k);
+  if (piece.flat) return CoverPlace::apart;
+  CoverPlace result = CoverPlace::holds;
+  for (const RoughPlane& plane : piece.planes) {
+    const double height = plane.normal.dot(centre) - plane.offset;
+    const double reach = half * plane.normal.lpNorm<1>() + rounding;
+    if (height - reach > plane.slack) return CoverPlace::apart;
+    if (!(height + reach < -plane.slack)) result = CoverPlace::meets;
+  }
+  return result;
+}
+
 CoverCells::CoverCells(PartDifferences& differences, double reach, double known_lower, UnionMemory* memory)
     : differences_(differences), known_lower_(known_lower), memory_(memory) {
   std::vector<std::int32_t> all(differences.pieces().size());
@@ -71,34 +95,9 @@ void CoverCells::add(CoverCell cell) {
   std::push_heap(queue_.begin(), queue_.end(), later);
 }
 
-CoverCells::Place CoverCells::place(const CoverCell& cell, std::size_t k) {
-  const PartDifference& known = differences_.pieces()[k];
-  const Eigen::Array3d low = cell.centre.array() - cell.half, high = cell.centre.array() + cell.half;
-  const double rounding = 0x1p-48 * differences_.extent();
-  if ((known.low.array() - high).maxCoeff() > rounding || (low - known.high.array()).maxCoeff() > rounding) {
-    return Place::apart;
-  }
-  // Only a P_k whose box holds the cube can hold it; others are not worth making before the cube is small beside them.
-  const bool box_holds = (known.low.array() <= low).all() && (known.high.array() >= high).all();
-  if (!box_holds && known.made == PartDifference::Made::nothing &&
-      4 * cell.half > (known.high - known.low).minCoeff()) {
-    return Place::meets;
-  }
-  const PartDifference& piece = differences_.roughly(k);
-  if (piece.flat) return Place::apart;
-  Place result = Place::holds;
-  for (const RoughPlane& plane : piece.planes) {
-    const double height = plane.normal.dot(cell.centre) - plane.offset;
-    const double reach = cell.half * plane.normal.lpNorm<1>() + rounding;
-    if (height - reach > plane.slack) return Place::apart;
-    if (!(height + reach < -plane.slack)) result = Place::meets;
-  }
-  return result;
-}
-
 bool CoverCells::covered(const CoverCell& cell) {
   const std::int32_t last = memory_ != nullptr ? memory_->holder(cell.known) : -1;
-  if (last >= 0 && place(cell, static_cast<std::size_t>(last)) == Place::holds) {
+  if (last >= 0 && place(cell, static_cast<std::size_t>(last)) == CoverPlace::holds) {
     memory_->held(cell.record, differences_.pieces()[static_cast<std::size_t>(last)]);
     return true;
   }
@@ -108,16 +107,16 @@ bool CoverCells::covered(const CoverCell& cell) {
   };
   for (std::size_t i = 0; i < recent_.size(); ++i) {
     const std::int32_t k = recent_[i];
-    if (place(cell, static_cast<std::size_t>(k)) != Place::holds) continue;
+    if (place(cell, static_cast<std::size_t>(k)) != CoverPlace::holds) continue;
     std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
                 recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     return holds(k);
   }
   meeting_.clear();
   for (const std::int32_t k : *cell.pieces) {
-    const Place where = place(cell, static_cast<std::size_t>(k));
-    if (where == Place::meets) meeting_.push_back(k);
-    if (where != Place::holds) continue;
+    const CoverPlace where = place(cell, static_cast<std::size_t>(k));
+    if (where == CoverPlace::meets) meeting_.push_back(k);
+    if (where != CoverPlace::holds) continue;
     if (recent_.size() == kRecent) recent_.pop_back();
     recent_.insert(recent_.begin(), k);
     return holds(k);

@@ -38,6 +38,11 @@ struct CoverCell {
 /// @param extent  of the differences.
 [[nodiscard]] double distance_within(const RoughPlane& plane, const CoverCell& cell, double extent);
 
+/// Where a cube of translations lies: in the interior of a P_k or apart from it, for certain, or else neither.
+enum class CoverPlace : std::uint8_t { holds, meets, apart };
+/// Makes the P_k unless its box tells enough.
+[[nodiscard]] CoverPlace cover_place(PartDifferences& differences, std::size_t k, const Vec3& centre, double half);
+
 class CoverCells {
  public:
   /// Refers to the differences, and makes those it needs. The first cube holds the ball of radius `reach` about the
@@ -73,8 +78,9 @@ class CoverCells {
   /// The same for a cube that the last search halved, by boxes alone: it was not held.
   void find_meeting(const CoverCell& cell);
   void halve(const CoverCell& cell);
-  enum class Place : std::uint8_t { holds, meets, apart };
-  Place place(const CoverCell& cell, std::size_t k);
+  CoverPlace place(const CoverCell& cell, std::size_t k) {
+    return cover_place(differences_, k, cell.centre, cell.half);
+  }
   void add(CoverCell cell);
 
   PartDifferences& differences_;

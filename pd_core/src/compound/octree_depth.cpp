@@ -149,22 +149,28 @@ class Octree {
     for (int round = 0; round < kMostBounds && work <= kMostBoundWork; ++round) {
       const std::optional<UnionDepth> inner = depth_between(of_a, of_b, &PartBounds::inner, exactly);
       const std::optional<UnionDepth> outer = depth_between(of_a, of_b, &PartBounds::outer, exactly);
+      bool overlap = true;
       for (const std::optional<UnionDepth>& bound : {inner, outer}) {
-        if (!bound || bound->contact != ContactClass::overlapping) return known_lower;
+        overlap = overlap && bound && bound->contact == ContactClass::overlapping;
+        if (!bound) continue;
         work += bound->work.cells + bound->work.polygons + bound->work.cuts;
         out_.work.cells += bound->work.cells;
         out_.work.facets += bound->work.facets;
         out_.work.polygons += bound->work.polygons;
         out_.work.cuts += bound->work.cuts;
       }
-      known_lower = std::max(known_lower, inner->lower);
-      accept(outer->translation);
-      try_placement(inner->translation, all_pairs());
-      if (upper_ <= (1 + settings_.delta) * known_lower) break;
-      if (round == kCoarseBounds) {
+      if (!overlap && gap == 0) return known_lower;
+      if (overlap) {
+        known_lower = std::max(known_lower, inner->lower);
+        accept(outer->translation);
+        try_placement(inner->translation, all_pairs());
+        if (upper_ <= (1 + settings_.delta) * known_lower) break;
+      }
+      if (!overlap || round == kCoarseBounds) {
         gap = 0;
         sample();
         for (const Vec3& unit : std::exchange(looked, {})) look_along(unit);
+        if (!overlap) continue;
       }
       // Refining that has stopped to help is left to the octree.
       const double open = upper_ - known_lower;

@@ -2,31 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace pd::detail {
 
-namespace {
-
-/// False is certain.
-bool boxes_meet(const Box& x, const Box& y, double slack) {
-  return (x.low - y.high).maxCoeff() <= slack && (y.low - x.high).maxCoeff() <= slack;
-}
-
-}  // namespace
-
 UnionBoundary::UnionBoundary(PartDifferences& differences) : differences_(differences), planes_(differences.planes()) {
   for (const PartDifference& piece : differences.pieces()) boxes_.push_back({piece.low, piece.high});
-  all_.resize(boxes_.size());
-  std::iota(all_.begin(), all_.end(), 0);
-  large_first_ = all_;
-  const auto volume = [&](std::int32_t k) {
-    const Box& box = boxes_[static_cast<std::size_t>(k)];
-    return (box.high - box.low).prod();
-  };
-  std::stable_sort(large_first_.begin(), large_first_.end(),
-                   [&](std::int32_t x, std::int32_t y) { return volume(x) > volume(y); });
 }
 
 UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
@@ -145,34 +126,6 @@ bool UnionBoundary::surely_holds(std::size_t k, const std::vector<Vec3>& points)
   });
 }
 
-bool UnionBoundary::surely_covered(std::size_t own, const std::vector<Vec3>& corners,
-                                   std::span<const std::int32_t> near) {
-  for (std::size_t i = 0; i < recent_.size(); ++i) {
-    if (recent_[i] == own || !surely_holds(recent_[i], corners)) continue;
-    std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
-                recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-    return true;
-  }
-  const double rounding = 0x1p-42 * differences_.extent();
-  Box box{corners[0], corners[0]};
-  for (const Vec3& x : corners) {
-    box.low = box.low.cwiseMin(x);
-    box.high = box.high.cwiseMax(x);
-  }
-  meeting_.clear();
-  for (const std::int32_t which : near) {
-    const auto k = static_cast<std::size_t>(which);
-    if (k == own || !boxes_meet(box, boxes_[k], rounding)) continue;
-    const bool inside = (boxes_[k].low - box.low).maxCoeff() < 0 && (box.high - boxes_[k].high).maxCoeff() < 0;
-    if (inside && surely_holds(k, corners)) {
-      mark_recent(k);
-      return true;
-    }
-    meeting_.push_back(which);
-  }
-  return false;
-}
-
 void UnionBoundary::mark_recent(std::size_t k) {
   if (std::find(recent_.begin(), recent_.end(), k) != recent_.end()) return;
   if (recent_.size() == kRecent) recent_.pop_back();
@@ -222,72 +175,6 @@ std::optional<UnionBoundary::BoundaryPoint> UnionBoundary::at(const Vec3& x, boo
     }
   }
   return std::nullopt;
-}
-
-bool UnionBoundary::visit_all(const Visitor& visitor, std::int64_t max_work) {
-  std::vector<Cell> open;
-  std::vector<Vec3> corners;
-  std::vector<std::int32_t> near;
-  const double rounding = 0x1p-42 * differences_.extent();
-  for (std::size_t own_piece = 0; own_piece < boxes_.size(); ++own_piece) {
-    const std::size_t num_facets = differences_.roughly(own_piece).planes.size();
-    near.clear();
-    for (const std::int32_t k : large_first_) {
-      if (boxes_meet(boxes_[static_cast<std::size_t>(k)], boxes_[own_piece], rounding)) near.push_back(k);
-    }
-    for (std::size_t f = 0; f < num_facets; ++f) {
-      if (differences_.limit_exceeded() || counts_.work() > max_work) return false;
-      // Most facets lie deep inside: they need no exact polygon.
-      rough_corners(own_piece, f, corners);
-      if (surely_covered(own_piece, corners, near)) {
-        ++counts_.passed;
-        continue;
-      }
-      open.push_back({{own_piece, f, differences_.polygon(own_piece, f), Vec3::Zero()}, own(own_piece)});
-      while (!open.empty()) {
-        Cell cell = std::move(open.back());
-        open.pop_back();
-        ++counts_.polygons;
-        if (counts_.work() > max_work) return false;
-        if (contained_in_recent(cell.where.polygon)) continue;
-        if (split_one(cell, open)) continue;
-        if (!visitor(cell.where)) return false;
-      }
-    }
-  }
-  return true;
-}
-
-bool UnionBoundary::split_one(Cell& cell, std::vector<Cell>& open) {
-  const PlanePolygon& polygon = cell.where.polygon;
-  const auto split_by = [&](std::size_t k) {
-    cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
-    if (!subtract(polygon, cell.where.piece, k, true)) return false;
-    for (PlanePolygon& part : rest_) {
-      open.push_back({{cell.where.piece, cell.where.facet, std::move(part), Vec3::Zero()}, cell.clipped});
-    }
-    return true;
-  };
-  // The one that holds the middle best covers most of it.
-  Vec3 middle = Vec3::Zero();
-  Vec3 low = polygon.corners[0], high = low;
-  for (const Vec3& x : polygon.corners) {
-    middle += x;
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  middle /= static_cast<double>(polygon.corners.size());
-  for (std::ptrdiff_t k = covering(middle, cell.clipped, 0, meeting_); k >= 0;
-       k = covering(middle, cell.clipped, 0, meeting_)) {
-    mark_recent(static_cast<std::size_t>(k));
-    if (split_by(static_cast<std::size_t>(k))) return true;
-  }
-  for (const std::int32_t which : meeting_) {
-    const auto k = static_cast<std::size_t>(which);
-    if (has(cell.clipped, k) || !boxes_meet({low, high}, boxes_[k], 2 * polygon.error)) continue;
-    if (split_by(k)) return true;
-  }
-  return false;
 }
 
 bool UnionBoundary::free_piece_near(const Vec3& low, const Vec3& high, const std::vector<std::size_t>& among) {

@@ -80,10 +80,11 @@ class UnionBoundary {
     std::int64_t polygons = 0;  ///< clipped from the queue
     std::int64_t cuts = 0;      ///< P_k subtracted from a polygon
     std::int64_t cells = 0;     ///< cubes looked at
-    std::int64_t passed = 0;    ///< facets that one P_k covers for certain, in doubles
+    std::int64_t passed = 0;    ///< facets that are covered for certain, in doubles
+    std::int64_t tests = 0;     ///< P_k held against cubes and polygons, in doubles
 
     /// The unit is the time of a polygon that is looked at.
-    [[nodiscard]] std::int64_t work() const { return polygons + cuts + passed / 16; }
+    [[nodiscard]] std::int64_t work() const { return polygons + cuts + passed / 16 + tests / 512; }
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
@@ -105,16 +106,20 @@ class UnionBoundary {
   [[nodiscard]] std::ptrdiff_t covering(const Vec3& x, const ClippedSet& clipped, double tolerance,
                                         std::span<const std::int32_t> among);
 
-  /// Cuts one P_k of `meeting_` away that covers some of the cell and adds what is left to `open`; false when none
-  /// does.
-  bool split_one(Cell& cell, std::vector<Cell>& open);
+  /// A part of a facet that is still to be cut, and the P_k that may cover some of it.
+  struct OpenCell {
+    Cell cell;
+    std::vector<std::int32_t> near;
+  };
+  /// Takes the P_k out of `near` that lie apart from a flat polygon, for certain. False when one P_k holds it.
+  /// @param error  of a coordinate of a corner
+  [[nodiscard]] bool narrow(const std::vector<Vec3>& corners, double error, std::vector<std::int32_t>& near);
+  /// Cuts one P_k away that covers some of the cell and adds what is left to `open`; false when none does.
+  bool split_one(OpenCell& cell, std::vector<OpenCell>& open);
   /// Sets `corners` to those of a facet in doubles (inside lengths). Requires P_k to be made roughly.
   void rough_corners(std::size_t k, std::size_t f, std::vector<Vec3>& corners) const;
   /// Whether P_k holds all of these points in its interior, for certain. They may be rough corners or lie between such.
   [[nodiscard]] bool surely_holds(std::size_t k, const std::vector<Vec3>& points);
-  /// Whether another P_k holds a facet in its interior, for certain. If none does, `meeting_` is set to those of
-  /// `near` that may meet the facet.
-  bool surely_covered(std::size_t own, const std::vector<Vec3>& corners, std::span<const std::int32_t> near);
   /// Whether a P_k that covered something recently contains all of a polygon in its interior, for certain.
   bool contained_in_recent(const PlanePolygon& polygon);
   /// Puts a P_k that covered something in front of those asked first.
@@ -123,10 +128,7 @@ class UnionBoundary {
 
   PartDifferences& differences_;
   const PlaneSet& planes_;
-  std::vector<Box> boxes_;                 ///< of the P_k
-  std::vector<std::int32_t> all_;          ///< 0, 1, ...
-  std::vector<std::int32_t> large_first_;  ///< the P_k by the size of their boxes
-  std::vector<std::int32_t> meeting_;      ///< a facet
+  std::vector<Box> boxes_;  ///< of the P_k
   std::vector<std::size_t> recent_;
   std::vector<PlanePolygon> rest_;
   Counts counts_;

@@ -97,14 +97,14 @@ struct UnionDirectionalDepth {
 };
 
 /// The least t >= 0 for which A moved by t d/|d| is free of B: the first uncovered t along the ray (non-convex sigma_d,
-/// [D]). Exact on polytopes without margins.
+/// [D]). Exact on polytopes without margins. Budget: `max_facets`.
 /// @return as `penetration_depth`; zero_direction or non_finite ("direction"); unsupported for other shapes.
 [[nodiscard]] Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const PosedCompound& b,
                                                                 const Vec3& direction, Scratch& scratch,
                                                                 const UnionSettings& settings = {});
 
 /// The place of a point in P, as the class of the bodies after A was moved by it. Exact on polytopes without margins.
-/// @return ErrorCode::non_finite or out_of_range ("point").
+/// @return ErrorCode::non_finite or out_of_range ("point"). Budget: 2^20 facets of P_ij, then limit_exceeded.
 [[nodiscard]] Expected<ContactClass> point_in_difference(const PosedCompound& a, const PosedCompound& b,
                                                          const Vec3& point, Scratch& scratch);
 

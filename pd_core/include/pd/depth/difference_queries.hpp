@@ -28,7 +28,7 @@ struct DifferenceSupport {
                                                                 const Vec3& direction);
 
 /// The place of a point: `overlapping` inside P, `touching` on its boundary (anywhere in a flat P), `separated`
-/// outside. The class is as exact as that of `penetration_depth`, for every finite point.
+/// outside. The class is as exact as that of `penetration_depth`, for every finite point. Time: as for that class.
 /// @return ErrorCode::non_finite or out_of_range ("point").
 [[nodiscard]] Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
                                                          Scratch& scratch);

@@ -69,7 +69,7 @@ struct DirectionalDepth {
 /// at most 1e-9 wide relative to the depth in all that was measured where the bodies overlap by much more than
 /// rounding.
 ///
-/// @param direction  any finite length but zero.
+/// @param direction  any finite length but zero. Time: O(log) supports as measured, without a budget.
 /// @param hierarchies  for DirectionalMethod::hierarchy: those of the two bodies' polytopes, or nullptr (they are built
 /// for this ray, in linear time).
 /// @param certificate  where a portal starts and what it leaves, or nullptr; for DirectionalMethod::portal and solids.

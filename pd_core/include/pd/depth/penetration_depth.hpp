@@ -22,7 +22,7 @@ class WarmCertificate;
 ///
 /// Class: exact for (rounded) polytopes on the stored numbers and poses; for smooth bodies `touching` covers
 /// |signed distance| <= 1e-12 L. Depth: exact for (rounded) polytopes (bracket as `settings.bracket` says), certified
-/// (1 + delta) for smooth bodies (`settings.delta`, 1e-6 when 0).
+/// (1 + delta) for smooth bodies (`settings.delta`, 1e-6 when 0), or to what the budget leaves (`bracket_reached`).
 ///
 /// Deterministic: the same bits for every run, thread count, order of input vertices and instruction set. Swapping A
 /// and B negates translation and normal (except for equal point sets, where the least direction is not unique).
@@ -30,7 +30,7 @@ class WarmCertificate;
 /// @param scratch  buffers, one per thread; nothing is allocated once they have grown.
 /// @param warm     the memory of this pair, or nullptr: the next answer starts from the last surface.
 /// Requires a method that supports the two shapes (`supports`), delta in [0, 1].
-/// Time: measured near-linear at worst, logarithmic for shallow contacts (pd_core/README.md); never gives up.
+/// Time: measured near-linear at worst, logarithmic for shallow contacts. Budget: 16,384 supports for smooth bodies.
 [[nodiscard]] PenetrationDepth penetration_depth(const PosedShape& a, const PosedShape& b, Scratch& scratch,
                                                  const DepthSettings& settings = {}, WarmCertificate* warm = nullptr);
 

@@ -334,9 +334,11 @@ void BoundaryBuilder::build_explicit(std::int64_t max_comparisons) {
   for (const ConvexPart& part : r_.parts_) {
     for (const auto& chain : r_.chains_) r_.sums_.emplace_back(part, *chain);
   }
+  find_different_sums();
   add_edge_candidates();
   std::vector<Box2> boxes;
-  for (const ConvexSum& sum : r_.sums_) {
+  for (const std::int32_t i : different_) {
+    const ConvexSum& sum = r_.sums_[at(i)];
     Box2 box;
     for (int t = 0; t < sum.size(); ++t) box.add(RoughSums::rounded(sum.vertex(t)));
     boxes.push_back(box.widened());
@@ -388,8 +390,9 @@ void BoundaryBuilder::cut_edge_candidate(const Candidate& candidate, const SumSe
   const Point2 middle = {0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])};
   search.tree.visit([&](const Box2& b) { return !whole && b.meets(box); },
                     [&](const Box2& b) { return b.middle_distance_squared(middle); },
-                    [&](std::int32_t sum) {
-                      if (!search.boxes[at(sum)].meets(box)) return;
+                    [&](std::int32_t place) {
+                      if (!search.boxes[at(place)].meets(box)) return;
+                      const std::int32_t sum = different_[at(place)];
                       if (std::find(tried.begin(), tried.end(), sum) == tried.end()) look_at(sum);
                     });
   if (whole || rough_union_.whole(needed_)) {
@@ -407,6 +410,30 @@ void BoundaryBuilder::cut_edge_candidate(const Candidate& candidate, const SumSe
     comparisons_ += kExactComparison;
   }
   keep(candidate, cover);
+}
+
+/// Lists the sums without those that equal an earlier sum. On a lattice most do: the teeth of two combs that are k
+/// teeth apart all make one sum. The edges of a sum that is left out coincide with those of the earlier sum, which
+/// would cover them.
+void BoundaryBuilder::find_different_sums() {
+  std::map<std::array<double, 7>, std::int32_t> first;  // by the number of edges and three rounded corners
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(r_.sums_.size()); ++i) {
+    const ConvexSum& sum = r_.sums_[at(i)];
+    std::array<double, 7> key{static_cast<double>(sum.size())};
+    for (int k = 0; k < 3; ++k) {
+      const Point2 corner = RoughSums::rounded(sum.vertex(k * sum.size() / 3));
+      key[at(2 * k + 1)] = corner[0];
+      key[at(2 * k + 2)] = corner[1];
+    }
+    const auto [found, inserted] = first.try_emplace(key, i);
+    const auto equals = [&](const ConvexSum& other) {
+      for (int t = 0; t < sum.size(); ++t) {
+        if (!same(sum.vertex(t), other.vertex(t))) return false;
+      }
+      return true;
+    };
+    if (inserted || !equals(r_.sums_[at(found->second)])) different_.push_back(i);
+  }
 }
 
 /// What may lie on the boundary: an edge of one polygon displaced by a convex vertex of the other one, if no edge at
@@ -429,7 +456,7 @@ void BoundaryBuilder::add_edge_candidates() {
                 static_cast<std::uint64_t>(edge_of_p))
         .second;
   };
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(r_.sums_.size()); ++i) {
+  for (const std::int32_t i : different_) {
     const ConvexSum& sum = r_.sums_[at(i)];
     const auto& q_vertex = r_.chain_vertices_[at(i) % r_.chains_.size()];
     for (int t = 0; t < sum.size(); ++t) {

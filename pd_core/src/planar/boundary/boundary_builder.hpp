@@ -31,8 +31,9 @@ class BoundaryBuilder {
   };
   [[nodiscard]] ChainRange arc_at(const NegatedChain& chain, int vertex) const;
   void add_arc_candidates(int vertex);
+  void find_different_sums();
   void add_edge_candidates();
-  /// All sums, to be searched for those near a candidate.
+  /// The sums of `different_`, to be searched for those near a candidate.
   struct SumSearch {
     const std::vector<Box2>& boxes;
     const BoxTree& tree;
@@ -61,7 +62,8 @@ class BoundaryBuilder {
   std::vector<NearSum> near_;            ///< of candidates of which something is left
   RoughUnion rough_union_;
   std::int64_t comparisons_ = 0;
-  std::vector<std::int32_t> needed_;  ///< sums that are cut from the candidate at hand exactly
+  std::vector<std::int32_t> different_;  ///< sums of which no earlier sum is the same set
+  std::vector<std::int32_t> needed_;     ///< sums that are cut from the candidate at hand exactly
   Box2 q_box_;
 
   /// Where Q lies while it slides along a candidate: within an interval along each of three directions.

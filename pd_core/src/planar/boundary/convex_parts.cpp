@@ -46,13 +46,13 @@ class Joiner {
     return t;
   }
 
-  /// Joins two parts over the edge of the first one that starts at vertex a, if both ends stay strictly convex.
+  /// Joins two parts over the edge of the first one that starts at vertex a, unless an end becomes reflex.
   void join_over(std::int32_t first, std::int32_t second, std::int32_t a) {
     auto &one = parts_[at(first)], &other = parts_[at(second)];
     std::rotate(one.begin(), std::find(one.begin(), one.end(), a) + 1, one.end());  // b ... a
     const std::int32_t b = one.front();
     std::rotate(other.begin(), std::find(other.begin(), other.end(), b) + 1, other.end());  // a ... b
-    if (turn(one[one.size() - 2], a, other[1]) <= 0 || turn(other[other.size() - 2], b, one[1]) <= 0) return;
+    if (turn(one[one.size() - 2], a, other[1]) < 0 || turn(other[other.size() - 2], b, one[1]) < 0) return;
     one.insert(one.end(), other.begin() + 1, other.end() - 1);
     other.clear();
     part_of_[at(second)] = first;

@@ -14,7 +14,7 @@ namespace pd::detail {
 [[nodiscard]] std::vector<ConvexPart> triangles_inside(const Triangulation& triangulation,
                                                        const std::vector<Point2>& points);
 
-/// The triangles inside, joined. No part has three collinear corners unless it is a single flat triangle.
+/// The triangles inside, joined. Corners of a part may lie inside one of its sides. A flat triangle stays alone.
 [[nodiscard]] std::vector<ConvexPart> convex_parts(const Triangulation& triangulation,
                                                    const std::vector<Point2>& points);
 

@@ -51,8 +51,13 @@ ConvexSum::ConvexSum(const ConvexPart& part, const NegatedChain& chain) : part_(
   int fused = 0;
   for (int a = 0; a < part.size(); ++a) {
     const PlaneDirection d = part.edge(a);
-    const int before = chain.edges_before(d);
-    const bool parallel = before < chain.size() && compare_angles(chain.edge(before), d) == 0;
+    int before = chain.edges_before(d);
+    bool parallel = before < chain.size() && compare_angles(chain.edge(before), d) == 0;
+    if (parallel && a > 0 && compare_angles(part.edge(a - 1), d) == 0) {
+      // The first edge of a straight side took the chain's edge, and this one follows.
+      parallel = false;
+      ++before;
+    }
     place_.push_back({before + a - fused, fused, parallel});
     fused += parallel ? 1 : 0;
   }
@@ -127,18 +132,24 @@ bool ConvexSum::contains(const SumPoint& x) const {
 std::optional<ConvexSum::Cover> ConvexSum::cover_of_line(const Span& e) const {
   const auto wrap = [&](int t) { return t >= size_ ? t - size_ : t; };
   const int right = wrap(edges_before(e.d)), left = wrap(edges_before(e.d.reversed()));
+  // The end of the straight side that begins with an edge.
+  const auto end_of_side = [&](int first) {
+    int t = wrap(first + 1);
+    while (compare_angles(direction(t), direction(first)) == 0) t = wrap(t + 1);
+    return t;
+  };
   Cover r{Cover::Kind::inside, {}, {}, -1};
   const int right_side = side_of(e.s, e.d, vertex(right)), left_side = side_of(e.s, e.d, vertex(left));
   if (right_side >= 0) {
     if (right_side > 0 || compare_angles(direction(right), e.d) != 0) return std::nullopt;
     r = {Cover::Kind::same_edge,
          {Place::Kind::point, vertex(right), {}},
-         {Place::Kind::point, vertex(wrap(right + 1)), {}},
+         {Place::Kind::point, vertex(end_of_side(right)), {}},
          right};
   } else if (left_side <= 0) {
     if (left_side < 0 || compare_angles(direction(left), e.d.reversed()) != 0) return std::nullopt;
     r = {Cover::Kind::opposite_edge,
-         {Place::Kind::point, vertex(wrap(left + 1)), {}},
+         {Place::Kind::point, vertex(end_of_side(left)), {}},
          {Place::Kind::point, vertex(left), {}},
          left};
   } else {

@@ -1,7 +1,8 @@
 /// @file
 /// A convolved triangle T + (-B) in implicit form ([D] section 4.1, step 2): the three places where T's edges go
 /// between those of -B, in slope order. Any vertex or edge in constant time, all in O(1) space; parallel edges are one
-/// edge. T may be any convex part of P: its k places take O(k) space, and a search among them O(log k) time.
+/// edge. T may be any convex part of P: its k places take O(k) space, and a search among them O(log k) time. Corners of
+/// T and B may lie inside a side: then several consecutive edges of the sum have one direction.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace pd::detail {
 /// -B for a convex polygon B: its edges by their angle in (-90, 270] degrees.
 class NegatedChain {
  public:
-  /// `points`: B counter-clockwise, no three collinear. A single point has no edges.
+  /// `points`: B counter-clockwise. A single point has no edges.
   explicit NegatedChain(std::vector<Point2> points);
 
   [[nodiscard]] int size() const { return size_; }
@@ -40,7 +41,7 @@ class NegatedChain {
   int first_;
 };
 
-/// A convex part of P: indices of its corners, counter-clockwise, no three collinear.
+/// A convex part of P: indices of its corners, counter-clockwise. Some may lie inside a side.
 class ConvexPart {
  public:
   ConvexPart(const std::vector<Point2>& points, std::vector<std::int32_t> corners)
@@ -109,7 +110,7 @@ class ConvexSum {
   struct Cover {
     enum class Kind { inside, same_edge, opposite_edge } kind;
     Place from, to;
-    int edge;  ///< the edge on the span's line, for the last two kinds
+    int edge;  ///< the first edge on the span's line, for the last two kinds
   };
   /// Empty where the part has no length. A span along an edge counts as such, of positive length only.
   [[nodiscard]] std::optional<Cover> cover(const Span& e) const;

@@ -31,6 +31,7 @@ class RoughSums {
     for (const ConvexSum& sum : sums) {
       first_.push_back(corners_.size());
       for (int t = 0; t < sum.size(); ++t) {
+        if (compare_angles(sum.direction(t == 0 ? sum.size() - 1 : t - 1), sum.direction(t)) == 0) continue;
         const SumPoint x = sum.vertex(t);
         for (std::size_t k = 0; k < 2; ++k) size = std::max({size, std::abs(x.p[k]), std::abs(x.q[k])});
         corners_.push_back(rounded(x));
