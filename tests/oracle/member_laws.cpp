@@ -71,7 +71,20 @@ struct SignedBracket {
   }
 };
 
-/// Of an answer the numbers that powers of two scale.
+struct Allowance {
+  double witness, manifold;
+};
+
+/// The tightest bracket settles its witnesses. Those of the others are as near as the points of a manifold and the
+/// bracket's width, which leaves the normal open by its root.
+Allowance allowance(const PenetrationDepth& r, Bracket bracket, double size) {
+  if (bracket == Bracket::tightest) return {kWitnessOff, kManifoldOff};
+  const double width = (r.upper - r.lower + r.distance_upper - r.distance_lower) / size;
+  return {kManifoldOff + 2 * width, kManifoldOff + std::sqrt(2 * width)};
+}
+
+/// Of an answer the numbers that powers of two scale: of the depth first.
+constexpr std::size_t kNumbersOfDepth = 15;
 std::vector<double> lengths_of(const PenetrationDepth& r, const ContactManifold& m) {
   std::vector<double> all{r.depth, r.lower, r.upper, r.distance, r.distance_lower, r.distance_upper};
   const auto add = [&](const Vec3& v) { all.insert(all.end(), v.begin(), v.end()); };
@@ -106,8 +119,10 @@ MemberJudge::Answer MemberJudge::ask(const PosedShape& a, const PosedShape& b, c
   return {depth, contact_manifold(a, b, depth, gap, manifolds_)};
 }
 
-void MemberJudge::check_members(const PosedShape& a, const PosedShape& b, const Answer& answer, double size) {
+void MemberJudge::check_members(const PosedShape& a, const PosedShape& b, const Answer& answer, Bracket bracket,
+                                double size) {
   const PenetrationDepth& r = answer.depth;
+  const Allowance allowed = allowance(r, bracket, size);
   const bool finite = std::isfinite(r.upper) && std::isfinite(r.distance_upper) && r.witness_a.allFinite() &&
                       r.witness_b.allFinite() && r.translation.allFinite();
   if (!finite || std::abs(r.normal.norm() - 1) > 1e-14)
@@ -118,22 +133,25 @@ void MemberJudge::check_members(const PosedShape& a, const PosedShape& b, const 
   }
   const auto off = [](const PosedShape& body, const Vec3& x) { return static_cast<double>(distance_outside(body, x)); };
   const double witness = std::max(off(a, r.witness_a), off(b, r.witness_b)) / size;
-  counts_.worst_witness = std::max(counts_.worst_witness, witness);
-  if (!(witness <= kWitnessOff))
+  const bool settled = bracket == Bracket::tightest;
+  if (settled) counts_.worst_witness = std::max(counts_.worst_witness, witness);
+  if (!(witness <= allowed.witness)) {
     broken(MemberLaw::witnesses, "a witness is " + number(witness) + " of the size off its body");
+  }
   const double apart = (r.witness_b - r.witness_a - r.translation).norm() / size;
-  if (r.contact == ContactClass::overlapping && !(apart <= kWitnessOff)) {
+  if (r.contact == ContactClass::overlapping && !(apart <= allowed.witness)) {
     broken(MemberLaw::witnesses, "witnesses and translation differ by " + number(apart) + " of the size");
   }
   for (int i = 0; i < answer.manifold.count; ++i) {
     const ContactPoint& p = answer.manifold.points[static_cast<std::size_t>(i)];
     ++counts_.manifold_points;
     const double point = std::max(off(a, p.position_a), off(b, p.position_b)) / size;
-    counts_.worst_manifold = std::max(counts_.worst_manifold, point);
-    if (!(point <= kManifoldOff))
+    if (settled) counts_.worst_manifold = std::max(counts_.worst_manifold, point);
+    if (!(point <= allowed.manifold)) {
       broken(MemberLaw::manifold, "a point is " + number(point) + " of the size off its body");
+    }
     const double aside = (p.position_b - p.position_a - p.depth * answer.manifold.normal).norm() / size;
-    if (!(aside <= kManifoldOff)) {
+    if (!(aside <= allowed.manifold)) {
       broken(MemberLaw::manifold, "two points and their depth differ by " + number(aside) + " of the size");
     }
   }
@@ -145,7 +163,7 @@ std::vector<BrokenLaw> MemberJudge::judge(const PosedShape& a, const PosedShape&
   const double size = size_of_difference(a, b);
   const Answer plain = ask(a, b, settings);
   ++counts_.classes[static_cast<std::size_t>(plain.depth.contact)];
-  check_members(a, b, plain, size);
+  check_members(a, b, plain, settings.bracket, size);
 
   const PenetrationDepth swapped = penetration_depth(b, a, scratch_, settings);
   if (swapped.contact != plain.depth.contact || swapped.lower != plain.depth.lower ||
@@ -159,15 +177,18 @@ std::vector<BrokenLaw> MemberJudge::judge(const PosedShape& a, const PosedShape&
   const ConvexShape scaled_a = times_power(*a.shape, power), scaled_b = times_power(*b.shape, power);
   DepthSettings scaled_settings = settings;
   scaled_settings.contact_tolerance = std::ldexp(settings.contact_tolerance, power);
-  const Answer scaled =
-      ask({&scaled_a, with_translation(a.pose, times_power(a.pose.translation(), power))},
-          {&scaled_b, with_translation(b.pose, times_power(b.pose.translation(), power))}, scaled_settings);
+  const PosedShape posed_scaled_a{&scaled_a, with_translation(a.pose, times_power(a.pose.translation(), power))};
+  const PosedShape posed_scaled_b{&scaled_b, with_translation(b.pose, times_power(b.pose.translation(), power))};
+  const Answer scaled = ask(posed_scaled_a, posed_scaled_b, scaled_settings);
   std::vector<double> wanted = lengths_of(plain.depth, plain.manifold);
   for (double& x : wanted) x = std::ldexp(x, power);
-  if (wanted != lengths_of(scaled.depth, scaled.manifold) || plain.depth.contact != scaled.depth.contact ||
-      plain.depth.normal != scaled.depth.normal) {
-    broken(MemberLaw::powers, "2^" + std::to_string(power) + " changes bits");
-  }
+  const std::vector<double> got = lengths_of(scaled.depth, scaled.manifold);
+  bool same = plain.depth.contact == scaled.depth.contact && plain.depth.normal == scaled.depth.normal;
+  // Beyond 2^100 a manifold is found at another place and size, where corners that tie may be others.
+  const bool points_too = std::abs(power) <= 100;
+  same = same && (points_too ? wanted == got : std::equal(got.begin(), got.begin() + kNumbersOfDepth, wanted.begin()));
+  if (!same) broken(MemberLaw::powers, "2^" + std::to_string(power) + " changes bits");
+  check_members(posed_scaled_a, posed_scaled_b, scaled, settings.bracket, std::ldexp(size, power));
 
   // A motion rounds the poses: the bodies that are asked for stand a few ulp away from where they would.
   if (a.pose.is_quaternion() && b.pose.is_quaternion()) {
@@ -180,12 +201,12 @@ std::vector<BrokenLaw> MemberJudge::judge(const PosedShape& a, const PosedShape&
     const PosedShape moved_a{a.shape, moved(a.pose)}, moved_b{b.shape, moved(b.pose)};
     const Answer after = ask(moved_a, moved_b, settings);
     const double reach = size + moved_a.pose.translation().norm() + moved_b.pose.translation().norm();
-    check_members(moved_a, moved_b, after, reach);
+    check_members(moved_a, moved_b, after, settings.bracket, reach);
     const SignedBracket x(plain.depth), y(after.depth);
     const double gap = std::max(x.low - y.high, y.low - x.high) / reach;
     counts_.widest_motion = std::max(counts_.widest_motion, gap);
-    const double allowed = curved(*a.shape) || curved(*b.shape) ? 4e-12 : 1e-14;
-    if (!(gap <= allowed)) broken(MemberLaw::motions, "depths differ by " + number(gap) + " of the size");
+    const double apart = curved(*a.shape) || curved(*b.shape) ? 4e-12 : 1e-14;
+    if (!(gap <= apart)) broken(MemberLaw::motions, "depths differ by " + number(gap) + " of the size");
   }
   return broken_;
 }

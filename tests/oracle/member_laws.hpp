@@ -21,7 +21,7 @@ enum class MemberLaw : std::uint8_t {
   witnesses,  ///< points of both bodies, the translation apart
   manifold,   ///< its points are points of both bodies, and lie apart along the normal by their depth
   swap,       ///< the same numbers, the opposite way
-  powers,     ///< the same bits, scaled
+  powers,     ///< the same bits, scaled; of points of manifolds by up to 2^100
   motions,    ///< brackets of one number
 };
 inline constexpr std::size_t kMemberLaws = 6;
@@ -33,7 +33,8 @@ struct BrokenLaw {
 };
 
 /// How far points may lie off their bodies, as a share of `size_of_difference`: witnesses, and the other points of a
-/// manifold, which are found across a normal that leaves open what the bracket does.
+/// manifold, which are found across a normal that leaves open what the bracket does. Brackets other than the tightest
+/// add their own width.
 inline constexpr double kWitnessOff = 1e-9;
 inline constexpr double kManifoldOff = 1e-7;
 
@@ -41,7 +42,7 @@ inline constexpr double kManifoldOff = 1e-7;
 struct MemberCounts {
   std::array<std::int64_t, 3> classes{};  ///< separated, touching, overlapping
   std::int64_t manifold_points = 0;
-  double worst_witness = 0;  ///< as shares of the size
+  double worst_witness = 0;  ///< with the tightest bracket, as shares of the size
   double worst_manifold = 0;
   double widest_motion = 0;  ///< the gap between brackets before and after a motion
 };
@@ -61,7 +62,7 @@ class MemberJudge {
     ContactManifold manifold;
   };
   Answer ask(const PosedShape& a, const PosedShape& b, const DepthSettings& settings);
-  void check_members(const PosedShape& a, const PosedShape& b, const Answer& answer, double size);
+  void check_members(const PosedShape& a, const PosedShape& b, const Answer& answer, Bracket bracket, double size);
 
   void broken(MemberLaw law, const std::string& what);
 

@@ -64,7 +64,7 @@ std::optional<BulletPairAnswer> BulletPenetrationDepthSolver::query(const btConv
 ContactManifold BulletPenetrationDepthSolver::manifold(const BulletPairAnswer& answer, double breaking_threshold) {
   auto buffers = core_->buffers.lease();
   return contact_manifold({answer.shape_a.get(), answer.pose_a}, {answer.shape_b.get(), answer.pose_b}, answer.depth,
-                          breaking_threshold, buffers->manifold);
+                          breaking_threshold, buffers->manifold, DeepestPoint::at_depth);
 }
 
 bool BulletPenetrationDepthSolver::calcPenDepth(btSimplexSolverInterface& simplex_solver, const btConvexShape* a,

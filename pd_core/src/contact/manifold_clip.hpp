@@ -84,6 +84,9 @@ struct ClipBuffers {
 
 /// The intersection of two faces across n: a polygon, a segment as a loop of two, or nothing where a face is a single
 /// point (the witnesses are the contact then), or the faces miss each other.
-void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame, ClipBuffers& buffers);
+/// @param most_aside  how far the corners of two segments' intersection may lie beside B's segment, as a share of both
+/// lengths
+void intersect_faces(const SupportingFace& a, const SupportingFace& b, const ContactFrame& frame, double most_aside,
+                     ClipBuffers& buffers);
 
 }  // namespace pd::detail

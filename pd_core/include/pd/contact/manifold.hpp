@@ -52,7 +52,12 @@ class ManifoldScratch {
 
 /// The depth that the deepest of the four points reports.
 enum class DeepestPoint : std::uint8_t {
-  at_depth,  ///< the bodies' own depth, also where rounding or merged corners put the lifted corner elsewhere.
+  /// The bodies' own depth, and every point lies on both bodies: up to 1e-8 of the lengths at hand, and as near as the
+  /// answer's bracket is wide.
+  on_bodies,
+  /// The bodies' own depth, for engines: two edges within 3 degrees of each other share a stretch, and the deepest
+  /// corner counts as the witness where it misses the depth by the noise of a resting contact.
+  at_depth,
   /// The depth of its own corner, like the other points. An engine lets a face rest on the differences between its
   /// points, and one point that is corrected alone would falsify them.
   as_lifted
@@ -64,9 +69,9 @@ enum class DeepestPoint : std::uint8_t {
 /// @param breaking_threshold  >= 0: pairs of points with a wider gap are left out; no points when the bodies are
 /// further apart than that. In the unit of the input. Four points of a larger intersection are kept: the deepest, the
 /// farthest from it, and those that span the largest area. Time O(k m) in the vertices of the two faces.
-/// @param deepest  at_depth for those who judge, as_lifted for engines.
+/// @param deepest  on_bodies for those who judge, at_depth and as_lifted for engines.
 [[nodiscard]] ContactManifold contact_manifold(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,
                                                double breaking_threshold, ManifoldScratch& scratch,
-                                               DeepestPoint deepest = DeepestPoint::at_depth);
+                                               DeepestPoint deepest = DeepestPoint::on_bodies);
 
 }  // namespace pd
