@@ -129,7 +129,7 @@ class FclPairs {
     return true;
   }
   [[nodiscard]] const PenetrationDepth& answer() const { return answer_; }
-  ContactManifold manifold() { return contact_manifold(a_, b_, answer_, 0, manifold_); }
+  ContactManifold manifold() { return contact_manifold(a_, b_, answer_, 0, manifold_, DeepestPoint::at_depth); }
 
   std::int64_t answered_ = 0;
   std::int64_t left_ = 0;

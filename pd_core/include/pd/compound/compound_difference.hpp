@@ -39,8 +39,8 @@ struct UnionDifference {
   UnionStatistics work;
 };
 
-/// The budget of a union's difference: polygons looked at and cut, some 20 microseconds each; 512 tests in doubles count
-/// as one. Two stars of 26 vertices take 45,000, of 53 vertices 240,000.
+/// The budget of a union's difference: polygons looked at and cut, some 20 microseconds each. 512 tests in doubles are
+/// one such unit. Two stars of 26 vertices take 45,000, of 53 vertices 240,000.
 inline constexpr std::int64_t kDifferenceWork = std::int64_t{1} << 18;
 
 /// Builds the boundary of int P for unions of polytopes without margins.
