@@ -9,7 +9,6 @@
 
 #include "pd/depth/derivatives.hpp"
 #include "pd/depth/directional_depth.hpp"
-#include "pd/depth/warm_certificate.hpp"
 #include "python/rows.hpp"
 
 namespace pd::python {
@@ -159,14 +158,16 @@ struct DepthColumns {
   }
 };
 
-void answer_row(const Pairs& pairs, std::int64_t i, const QuerySettings& settings, Workspace& space,
-                WarmCertificate* warm, DepthColumns& columns) {
+using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+void answer_row(const Pairs& pairs, std::int64_t i, const QuerySettings& settings, Workspace& space, PairMemory* memory,
+                DepthColumns& columns) {
   const Expected<Pose> pose_a = pairs.pose_a(i), pose_b = pairs.pose_b(i);
   if (!pose_a || !pose_b) {
     columns.error.numbers[i] = code_of(pose_a ? pose_b.error() : pose_a.error());
     return;
   }
-  const Expected<UnionDepth> answer = ask(pairs.body_a(i), *pose_a, pairs.body_b(i), *pose_b, settings, space, warm);
+  const Expected<UnionDepth> answer = ask(pairs.body_a(i), *pose_a, pairs.body_b(i), *pose_b, settings, space, memory);
   if (answer) {
     columns.put(i, *answer);
   } else {
@@ -174,21 +175,26 @@ void answer_row(const Pairs& pairs, std::int64_t i, const QuerySettings& setting
   }
 }
 
-/// @param chains  0: every row alone, cold. Else rows i, i + chains, i + 2 chains, ... are frames of one pair, each
-/// started from the last: the same bits for any number of threads.
+/// @param starts  empty: every row alone, cold. Else the first rows of stretches, ascending from 0. The rows of a
+/// stretch are frames of one pair, each started from the last: the same bits for any number of threads.
 py::dict depth_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handle poses_a, py::handle poses_b,
-                    std::int64_t count, const QuerySettings& settings, std::int64_t chains, int threads) {
+                    std::int64_t count, const QuerySettings& settings, const Indices& starts, int threads) {
   const Pairs pairs = read_pairs(std::move(a), std::move(b), poses_a, poses_b, count);
+  const std::int64_t stretches = starts.size();
+  const auto start = [&, first = starts.data()](std::int64_t s) { return s < stretches ? first[s] : count; };
+  for (std::int64_t s = 0; s < stretches; ++s) {
+    if (start(s) < 0 || start(s) > start(s + 1)) refuse("out_of_range", "rows in ascending order", "starts");
+  }
   DepthColumns columns(count);
   {
     const py::gil_scoped_release unlocked;
-    if (chains == 0) {
+    if (stretches == 0) {
       for_each_row(count, threads,
                    [&](std::int64_t i, Workspace& space) { answer_row(pairs, i, settings, space, nullptr, columns); });
     } else {
-      for_each_row(chains, threads, [&](std::int64_t chain, Workspace& space) {
-        WarmCertificate warm;
-        for (std::int64_t i = chain; i < count; i += chains) answer_row(pairs, i, settings, space, &warm, columns);
+      for_each_row(stretches, threads, [&](std::int64_t s, Workspace& space) {
+        PairMemory memory;
+        for (std::int64_t i = start(s); i < start(s + 1); ++i) answer_row(pairs, i, settings, space, &memory, columns);
       });
     }
   }

@@ -7,7 +7,6 @@
 
 #include "pd/depth/derivatives.hpp"
 #include "pd/depth/directional_depth.hpp"
-#include "pd/depth/warm_certificate.hpp"
 
 namespace pd::python {
 
@@ -64,12 +63,12 @@ Expected<UnionDepth> ask_convex(const ConvexShape& a, const Pose& pose_a, const 
 
 /// A pair whose memory the caller keeps: `Warm` of Python.
 PairAnswer ask_pair(const py::object& a, const py::object& b, py::handle pose_a, py::handle pose_b,
-                    const QuerySettings& settings, WarmCertificate* warm) {
+                    const QuerySettings& settings, PairMemory* memory) {
   const Body &body_a = body_of(a), &body_b = body_of(b);
   const Pose first = read_pose(pose_a, "pose_a"), second = read_pose(pose_b, "pose_b");
   Expected<UnionDepth> answer = [&] {
     const py::gil_scoped_release unlocked;
-    return ask(body_a, first, body_b, second, settings, workspace(), warm);
+    return ask(body_a, first, body_b, second, settings, workspace(), memory);
   }();
   return {value_of(std::move(answer), "pair"), a, b};
 }
@@ -277,6 +276,11 @@ void bind_answer(py::module_& module) {
 
 }  // namespace
 
+void PairMemory::clear() {
+  convex.clear();
+  unions.clear();
+}
+
 Workspace& workspace() {
   thread_local Workspace space;
   return space;
@@ -318,15 +322,17 @@ QuerySettings read_settings(const std::string& method, py::handle delta, const s
 }
 
 Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
-                         const QuerySettings& settings, Workspace& space, WarmCertificate* warm) {
+                         const QuerySettings& settings, Workspace& space, PairMemory* memory) {
   if (a.convex() != nullptr && b.convex() != nullptr) {
-    return ask_convex(*a.convex(), pose_a, *b.convex(), pose_b, settings, space, warm);
+    return ask_convex(*a.convex(), pose_a, *b.convex(), pose_b, settings, space,
+                      memory == nullptr ? nullptr : &memory->convex);
   }
   if (settings.depth.method != Method::automatic) {
     return Error{ErrorCode::unsupported, "unions of parts are answered by the method 'auto'", "method"};
   }
   const Compound whole_a = a.compound(), whole_b = b.compound();
-  return penetration_depth({&whole_a, pose_a}, {&whole_b, pose_b}, space.scratch, {.delta = settings.union_delta});
+  return penetration_depth({&whole_a, pose_a}, {&whole_b, pose_b}, space.scratch, {.delta = settings.union_delta},
+                           memory == nullptr ? nullptr : &memory->unions);
 }
 
 py::dict contact_fields(const Vec3& normal, const std::vector<ContactPoint>& points) {
@@ -357,14 +363,13 @@ void bind_pair_queries(py::module_& module) {
   require_made(settings);
   module.def("settings", &read_settings);
   module.attr("DEFAULTS") = QuerySettings();
-  py::class_<WarmCertificate> warm(
-      module, "Warm",
-      "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
-      "trusted; a warm answer has the same proof as a cold one. Not for two threads at once.");
+  py::class_<PairMemory> warm(module, "Warm",
+                              "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
+                              "trusted; a warm answer has the same proof as a cold one. Not for two threads at once.");
   require_made(warm);
   warm.def(py::init<>())
-      .def("clear", &WarmCertificate::clear, "Forgets everything.")
-      .def_property_readonly("nbytes", &WarmCertificate::memory_bytes, "Bytes held.");
+      .def("clear", &PairMemory::clear, "Forgets everything.")
+      .def_property_readonly("nbytes", &PairMemory::bytes, "Bytes held.");
   module.def("ask", &ask_pair);
   module.def("ask_plain", &ask_plain);
   module.def("directional", &directional_pair);

@@ -2,13 +2,16 @@
 /// One pair asked: the settings that Python names, the workspace of a thread, and the answer as an object.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "pd/compound/compound_depth.hpp"
+#include "pd/compound/warm_union.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
+#include "pd/depth/warm_certificate.hpp"
 #include "python/body.hpp"
 #include "python/pose_argument.hpp"
 
@@ -23,6 +26,16 @@ struct Workspace {
 /// The calling thread's own.
 [[nodiscard]] Workspace& workspace();
 
+/// The memory of one pair between frames: Python's `Warm`.
+class PairMemory {
+ public:
+  void clear();
+  [[nodiscard]] std::size_t bytes() const { return convex.memory_bytes() + unions.memory_bytes(); }
+
+  WarmCertificate convex;
+  WarmUnion unions;
+};
+
 struct QuerySettings {
   DepthSettings depth;
   double union_delta = 1e-2;
@@ -35,10 +48,10 @@ struct QuerySettings {
                                           py::handle beyond);
 
 /// Depth, or distance, of any two bodies. Holds no lock and may be called from any thread.
+/// @param memory  of the same two bodies; null: the pair is answered cold.
 /// @return unsupported where the method does not answer for these bodies; as `penetration_depth` of unions.
 [[nodiscard]] Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
-                                       const QuerySettings& settings, Workspace& space,
-                                       WarmCertificate* warm = nullptr);
+                                       const QuerySettings& settings, Workspace& space, PairMemory* memory = nullptr);
 
 /// Makes the fields that Python shows of contact points: their normal, and an array for each property.
 [[nodiscard]] py::dict contact_fields(const Vec3& normal, const std::vector<ContactPoint>& points);

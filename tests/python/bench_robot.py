@@ -55,6 +55,13 @@ def main(count, folder=None):
         told = " ".join(options) or "all"
         print(f"{told:>20} {taken:.3f} s, {1e6 * taken / count / len(robot.pairs):.2f} us a pair and joint vector, "
               f"{(found.signed_distance < 0).mean():.3f} overlap")
+    # Straight ways between joint vectors, 50 steps each.
+    ways = np.random.default_rng(2).uniform(*robot.limits.T, (max(count // 50, 1) + 1, robot.dof))
+    path = np.concatenate([np.linspace(begin, end, 50, endpoint=False) for begin, end in zip(ways, ways[1:])])
+    for options in ({}, {"warm": True}, {"nearest": True}, {"nearest": True, "warm": True}):
+        taken, found = seconds(lambda: robot.distances(path, threads=1, **options))
+        print(f"a path, {' '.join(options) or 'all'}: {taken:.3f} s, "
+              f"{1e6 * taken / len(path) / len(robot.pairs):.2f} us a pair and joint vector")
     if folder:
         lines = [f"{kind} {' '.join(map(str, sizes))}" for kind, sizes, _ in SHAPES]
         pairs = [f"pair {robot.links.index(a)} {robot.links.index(b)}" for a, b in robot.pairs]

@@ -182,6 +182,20 @@ def test_warm_rows_are_the_cold_ones_up_to_their_brackets(poses):
     assert [each.depth for each in alone] == warm.depth[:, 0].tolist() and memory.nbytes > 0
 
 
+def test_the_memory_of_a_pair_of_unions():
+    cross = pdepth.Compound([pdepth.Box([2, 0.5, 0.5]), pdepth.Box([0.5, 2, 0.5])])
+    memory = pdepth.Warm()
+    path = [pdepth.Pose(translation=[0.9 + 0.01 * i, 0.1, 0.2]) for i in range(20)]
+    cold = [pdepth.depth(cross, cross, pose) for pose in path]
+    warm = [pdepth.depth(cross, cross, pose, warm=memory) for pose in path]
+    assert all(one.contact == "overlapping" for one in cold) and memory.nbytes > 0
+    assert all(a.lower <= b.upper and b.lower <= a.upper for a, b in zip(cold, warm))
+    batch = pdepth.depth(cross, cross, path, warm=True)
+    assert batch.depth.tolist() == [one.depth for one in warm]
+    memory.clear()
+    assert pdepth.depth(cross, cross, path[0], warm=memory).depth == warm[0].depth
+
+
 def test_directional_depths(poses):
     matrices = poses(30, 1.0)
     directions = np.random.default_rng(3).normal(size=(30, 3))

@@ -183,6 +183,29 @@ def test_the_nearest_pair_is_that_of_all_and_threads_change_no_bit(read, monkeyp
     assert robot.distances(np.zeros((0, 4))).signed_distance.shape == (0, len(robot.pairs))
 
 
+def test_a_warm_path_has_the_answers_of_the_cold_one_on_any_number_of_threads(read, monkeypatch):
+    robot = read(ARM)
+    begin, end = vectors(robot, 2)
+    path = np.stack([np.linspace(begin, end, 150), np.linspace(end, begin, 150)])  # two paths of 150 steps
+    seen = []
+    ask = pdepth._core.depth_rows
+    monkeypatch.setattr(pdepth._core, "depth_rows", lambda *given: seen.append(given[6].tolist()) or ask(*given))
+    cold, warm = robot.distances(path), robot.distances(path, warm=True)
+    pairs = len(robot.pairs)
+    assert seen == [[]] * pairs + [[0, 64, 128, 150, 214, 278]] * pairs
+    assert warm.signed_distance.shape == (2, 150, pairs)
+    assert (warm.lower <= cold.upper).all() and (cold.lower <= warm.upper).all()
+    assert np.abs(warm.signed_distance - cold.signed_distance).max() < 1e-5
+    one = robot.distances(path, warm=True, threads=1)
+    for name in warm:
+        assert np.array_equal(warm[name], one[name]), name
+    nearest, best = robot.distances(path, nearest=True, warm=True), cold.signed_distance.min(axis=-1)
+    assert np.abs(nearest.signed_distance - best).max() < 1e-5
+    monkeypatch.setattr(pdepth._robot, "_AT_ONCE", 100)  # pieces are stretches of their own
+    pieces = robot.distances(path, warm=True)
+    assert (pieces.lower <= cold.upper).all() and (cold.lower <= pieces.upper).all()
+
+
 def test_adjacent_links_and_those_of_an_srdf_are_left_out(read, tmp_path):
     robot = read(ARM)
     everything = {frozenset(pair) for pair in robot.pairs}
@@ -390,6 +413,7 @@ def test_each_connected_part_of_a_mesh_may_be_convex_and_links_may_differ(read, 
     (lambda robot: robot.distances(np.zeros(4), pairs=[], nearest=True), "bad_value", "pairs"),
     (lambda robot: robot.distances(np.zeros(4), threads=0), "bad_value", "threads"),
     (lambda robot: robot.distances(np.zeros(4), bracket="loose"), "bad_value", "bracket"),
+    (lambda robot: robot.distances(np.zeros((2, 4)), warm="yes"), "bad_value", "warm"),
     (lambda robot: robot.shape("fist"), "bad_value", "link"),
 ])
 def test_bad_questions_are_refused_by_name(read, ask, code, where):

@@ -155,6 +155,10 @@ def _settings(method, delta, bracket, beyond):
     return _core.settings(method, delta, bracket, beyond)
 
 
+#: No stretches: every row of a batch is answered alone.
+COLD = np.empty(0, dtype=np.int64)
+
+
 def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket="tightest", beyond=None, warm=None, axis=0,
           threads=None):
     """Penetration depth of two bodies with a proof, or their distance when they are apart.
@@ -172,7 +176,7 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
     beyond: a distance from which on you need no distance. A pair that is farther apart may be answered as 'separated' with
     distance_lower > beyond, certified, a wide distance_upper, and witnesses that are not the closest points. Anything
     nearer is answered as ever. Unions take no notice.
-    warm: for one pair a Warm. For a batch, True makes the rows along `axis` frames of one pair, each started from the last;
+    warm: for one pair a Warm, of convex bodies or unions. For a batch, True makes the rows along `axis` frames of one pair, each started from the last;
     other dimensions are pairs of their own.
     axis: a leading dimension of the poses, for warm=True.
     threads: cores that answer a batch, all by default. The interpreter's lock is released, and the bits are the same for
@@ -195,14 +199,14 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
     if not isinstance(axis, int) or not -len(lead) <= axis < len(lead):
         raise refused(f"axis: {axis!r} is none of the {len(lead)} leading dimensions (out_of_range)")
     axis %= len(lead)
-    chains, order = 0, None
+    starts, order = COLD, None
     if warm and count:
-        chains = count // lead[axis]
-        order = None if axis == 0 else np.moveaxis(np.arange(count).reshape(lead), axis, 0).ravel()
-    if order is not None:  # frames first; rows that all share one body or pose stay as they are
+        starts = np.arange(0, count, lead[axis])
+        order = None if axis == len(lead) - 1 else np.moveaxis(np.arange(count).reshape(lead), axis, -1).ravel()
+    if order is not None:  # the frames of a pair in a row; what all rows share, a body or a pose, stays as it is
         bodies_a, bodies_b = ([each[i] for i in order] if len(each) > 1 else each for each in (bodies_a, bodies_b))
         poses_a, poses_b = (each[order] if len(each) > 1 else each for each in (poses_a, poses_b))
-    fields = _core.depth_rows(bodies_a, bodies_b, poses_a, poses_b, count, settings, chains, _threads(threads))
+    fields = _core.depth_rows(bodies_a, bodies_b, poses_a, poses_b, count, settings, starts, _threads(threads))
     if order is not None:
         back = np.argsort(order)
         fields = {name: column[back] for name, column in fields.items()}

@@ -9,7 +9,7 @@ from ._errors import refused
 from ._picture_call import picture
 from ._queries import _threads
 from ._robot_bodies import body_of, one_shape
-from ._robot_distances import How, Question, RobotDistances, refuse_rows
+from ._robot_distances import How, Question, RobotDistances, refuse_rows, stretches
 from ._robot_model import allowed_pairs
 from ._robot_motion import QUIET
 from ._robot_tree import Tree
@@ -109,7 +109,7 @@ class Robot:
             frames, _ = self._tree.frames(q)
         return np.moveaxis(frames, 0, 1).reshape((*lead, len(self.links), 4, 4))
 
-    def distances(self, q, *, pairs=None, nearest=False, derivatives=False, bracket="certified", threads=None):
+    def distances(self, q, *, pairs=None, nearest=False, derivatives=False, bracket="certified", warm=False, threads=None):
         """Signed distances of pairs of links for joint vectors [..., dof]: positive apart, minus the depth where they overlap.
 
         Answers RobotDistances [..., pairs]. In a batch, a joint vector that is not finite is its rows' error.
@@ -122,6 +122,9 @@ class Robot:
         Links of several shapes are never proved unique.
         bracket: "certified" (as narrow as rounding for polytopes and capsules, 1e-6 of the depth for curved bodies), or
         "tightest" or "contact" as in depth. Derivatives have the tightest.
+        warm: True takes the joint vectors along the last leading dimension for a path, on which each pair starts from its
+        last answer. Answers are as certified as without, but their last bits may differ. Every 64th joint vector of a path
+        starts cold, so that all cores have work. Derivatives of convex links start cold, too.
         threads: cores that answer, all by default. The bits are the same for any number.
 
         Raises Refused: 'bad_value' for a wrong number of coordinates, an unknown link, or a link without a shape.
@@ -132,15 +135,19 @@ class Robot:
             _require_finite(q, lead)
         if nearest and not asked:
             raise refused("pairs: there are none, so that none is nearest (bad_value)")
-        pieces = [self._answer(q[begin:begin + _AT_ONCE], asked, (nearest, derivatives), How(bracket, threads))
+        if warm not in (True, False):
+            raise refused(f"warm: must be True or False, not {warm!r} (bad_value)")
+        how = How(bracket, threads, stretches(len(q), *lead[-1:]) if warm else None)
+        pieces = [self._answer(slice(begin, begin + _AT_ONCE), q, asked, (nearest, derivatives), how)
                   for begin in range(0, max(len(q), 1), _AT_ONCE)]
         columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
         own = 1 if nearest else 2  # dimensions of a column that are rows of the batch
         flat = {name: column.reshape((-1, *column.shape[own:])) for name, column in columns.items()}
         return RobotDistances(flat, lead if nearest else (*lead, len(asked)))
 
-    def _answer(self, q, asked, wish, how):
+    def _answer(self, rows, q, asked, wish, how):
         nearest, derivatives = wish
+        q, how = q[rows], how.of(rows)
         bad = ~np.isfinite(q).all(axis=1)
         with np.errstate(**QUIET):
             question = Question(self._tree, self._bodies, np.where(bad[:, None], 0.0, q), asked, how)

@@ -7,12 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _core
-from ._queries import Batch
+from ._queries import COLD, Batch
 from ._robot_bodies import ball_of
 from ._robot_motion import compose, cross, dot, turned
 
 _NON_FINITE = _core.ERRORS.index("non_finite")
 _SEPARATED = 0
+#: Joint vectors of a path that one thread answers in a row, each started from the last. The first of them starts cold.
+STRETCH = 64
 
 #: Columns of an answer: their shapes and kinds. by_q has as many numbers as q.
 _COLUMNS = {"error": ((), np.uint8), "signed_distance": ((), float), "lower": ((), float), "upper": ((), float),
@@ -35,13 +37,22 @@ class RobotDistances(Batch):
 class How(NamedTuple):
     bracket: str
     threads: int
+    stretches: np.ndarray | None  #: the stretch of a path to which each joint vector belongs; None: all are asked alone
+
+    def of(self, rows):
+        return self if self.stretches is None else self._replace(stretches=self.stretches[rows])
+
+
+def stretches(count, steps=1):
+    """Numbers of stretches of paths of so many steps each."""
+    return np.cumsum(np.arange(count) % steps % STRETCH == 0)
 
 
 class Question:
     """All of a call: joint vectors [n, dof], pairs of links by index, and how they are answered."""
 
     def __init__(self, tree, bodies, q, pairs, how):
-        self._tree, self._bodies, self._q, self._pairs, self._threads = tree, bodies, q, pairs, how.threads
+        self._tree, self._bodies, self._q, self._pairs, self._how = tree, bodies, q, pairs, how
         self._settings = _core.settings("auto", None, how.bracket, None)
         self._links, self._before = tree.frames(q)
         self._places = {}
@@ -105,6 +116,12 @@ class Question:
             floors.append(np.sqrt(dot(apart, apart)) - balls[a][1] - balls[b][1] - slack)
         return np.array(floors)
 
+    def _starts(self, rows):
+        """Places among these rows at which stretches begin."""
+        if self._how.stretches is None:
+            return COLD
+        return np.flatnonzero(np.diff(self._how.stretches[rows], prepend=0))
+
     def _ask(self, k, rows, derivatives):
         """Columns of the rows of a pair."""
         a, b = self._pairs[k]
@@ -112,9 +129,10 @@ class Question:
         poses_a, poses_b = self._places[a][rows], self._places[b][rows]
         proved = derivatives and shape_a.is_convex and shape_b.is_convex
         if proved:
-            found = _core.derivative_rows([shape_a], [shape_b], poses_a, poses_b, len(poses_a), self._threads)
+            found = _core.derivative_rows([shape_a], [shape_b], poses_a, poses_b, len(poses_a), self._how.threads)
         else:
-            found = _core.depth_rows([shape_a], [shape_b], poses_a, poses_b, len(poses_a), self._settings, 0, self._threads)
+            found = _core.depth_rows([shape_a], [shape_b], poses_a, poses_b, len(poses_a), self._settings,
+                                     self._starts(rows), self._how.threads)
         apart = found["contact"] == _SEPARATED
         columns = {name: found[name] for name in ("error", "normal", "witness_a", "witness_b")}
         columns["signed_distance"] = np.where(apart, found["distance"], 0.0 - found["depth"])
