@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Debian 12 packages of the committed tree, into build/debian: libpdepth-core0.1, libpdepth0, libpdepth-dev, libpdepth-bullet-dev,
-# pdepth, pdepth-pictures, pdepth-recorders, python3-pdepth and pdepth-doc. The top level of the tree has no folder debian:
-# packaging/debian is laid out as dpkg wants it in a copy.
+# libpdepth-mujoco-dev, libpdepth-ode-dev, libpdepth-fcl-dev, pdepth, pdepth-pictures, pdepth-recorders, python3-pdepth and
+# pdepth-doc. The top level of the tree has no folder debian: packaging/debian is laid out as dpkg wants it in a copy.
 #
 #   packaging/debian.sh [--binary-arch]      --binary-arch leaves out pdepth-doc, which needs doxygen and mkdocs
 #

@@ -12,7 +12,7 @@ from pathlib import Path
 LIMITS = {"openings": 0, "long sentences": 0, "decimals": 0}
 # A guide is read in one sitting. Other pages of the site are guides.
 PAGES = {"README.md": 1000, "engine_glue/README.md": 1800, "engine_glue/mujoco/README.md": 600, "engine_glue/fcl/README.md": 600,
-         "engine_glue/ode/README.md": 600,
+         "engine_glue/ode/README.md": 600, "engine_glue/dart/README.md": 600,
          "demos/python/README.md": 1500}
 GUIDES, GUIDE = "pd_core/docs/pages/", 1500
 OPENING = re.compile(r"(Of|As|The same|What|Whether|Where)\b")

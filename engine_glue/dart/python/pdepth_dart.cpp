@@ -68,8 +68,9 @@ PYBIND11_MODULE(pdepth_dart, module) {
   module.def("detector", &detector, py::arg("delta") = 0.0,
              "A collision detector with exact contacts, for world.getConstraintSolver().setCollisionDetector(...).\n\n"
              "delta: the relative error for cylinders, cones and ellipsoids; 0 stands for 1e-6.");
-  module.def("report", &report, py::arg("detector"),
-             "Pairs answered, contact points, and pairs left to DART's FCL detector by reason, with the first of each.");
+  module.def(
+      "report", &report, py::arg("detector"),
+      "Pairs answered, contact points, and pairs left to DART's FCL detector by reason, with the first of each.");
   py::class_<Recorder>(module, "Recorder", "Writes the contacts of any detector of DART for `pdepth audit`.")
       .def(py::init<const std::string&>(), py::arg("path"), "Raises OSError for a file that cannot be made.")
       .def("write", &Recorder::write, py::arg("group"), py::arg("option"), py::arg("seconds"),

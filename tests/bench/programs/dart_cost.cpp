@@ -1,7 +1,7 @@
 /// @file
 /// DART's steps with its detectors and with pdepth's, on the same worlds: processor time of a step, points, and how
 /// much the bodies still move at the end. With --record every detector is asked about the same states, those of the
-/// world that pdepth's contacts drive, and its answers are written for `pdepth audit`.
+/// world that pdepth's contacts drive: processor time of a query, and the answers in records for `pdepth audit`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -183,28 +183,60 @@ Run run(const Scene& scene, const CollisionDetectorPtr& detector, int steps) {
 /// False for DART's own detector where there is more than boxes.
 bool knows(const Contender& contender, const Scene& scene) { return scene.for_darts_own || contender.name != "dart"; }
 
-/// Asks all detectors about every tenth state of a world that pdepth's contacts drive.
-bool record(const Scene& scene, const std::vector<Contender>& asked, int steps, const std::string& start_of_path) {
+/// A detector that is asked about a world that others drive.
+class Witness {
+ public:
+  Witness(const Contender& contender, const WorldPtr& world, const std::string& path)
+      : name_(contender.name), group_(contender.create()->createCollisionGroup()), recorder_(path.c_str()) {
+    for (std::size_t i = 0; i < world->getNumSkeletons(); ++i) group_->addShapeFramesOf(world->getSkeleton(i).get());
+  }
+  void ask(const dart::collision::CollisionOption& option) {
+    dart::collision::CollisionResult result;
+    const double start = processor_seconds();
+    group_->collide(option, &result);
+    seconds_ += processor_seconds() - start;
+    points_ += static_cast<double>(result.getNumContacts());
+    ++queries_;
+  }
+  void record(const dart::collision::CollisionOption& option, double seconds) {
+    recorder_.write(*group_, option, seconds);
+  }
+  void print(const std::string& world) const {
+    std::printf("| %s | %s | %.0f | %.1f |\n", world.c_str(), name_.c_str(), 1e6 * seconds_ / queries_,
+                points_ / queries_);
+  }
+  bool close() { return recorder_.close(); }
+
+ private:
+  std::string name_;
+  std::unique_ptr<dart::collision::CollisionGroup> group_;
+  DartRecorder recorder_;
+  double seconds_ = 0, points_ = 0;
+  int queries_ = 0;
+};
+
+/// Asks all detectors about every state of a world that pdepth's contacts drive, and records every tenth.
+bool ask_about_same_states(const Scene& scene, const std::vector<Contender>& asked, int steps,
+                           const std::string& start_of_path) {
   const WorldPtr world = world_of(scene, DartDetector::create());
-  std::vector<std::unique_ptr<dart::collision::CollisionGroup>> groups;
-  std::vector<std::unique_ptr<DartRecorder>> recorders;
-  for (std::size_t c = 0; c < asked.size(); ++c) {
-    if (!knows(asked[c], scene)) continue;
-    groups.push_back(asked[c].create()->createCollisionGroup());
-    for (std::size_t i = 0; i < world->getNumSkeletons(); ++i) {
-      groups.back()->addShapeFramesOf(world->getSkeleton(i).get());
-    }
-    recorders.push_back(std::make_unique<DartRecorder>((start_of_path + asked[c].file + ".jsonl").c_str()));
+  std::vector<std::unique_ptr<Witness>> witnesses;
+  for (const Contender& contender : asked) {
+    if (!knows(contender, scene)) continue;
+    witnesses.push_back(std::make_unique<Witness>(contender, world, start_of_path + contender.file + ".jsonl"));
   }
   const auto option = world->getConstraintSolver()->getCollisionOption();
   for (int step = 0; step < steps; ++step) {
     world->step();
-    for (std::size_t g = 0; step % 10 == 9 && g < groups.size(); ++g) {
-      recorders[g]->write(*groups[g], option, world->getTime());
+    for (const auto& witness : witnesses) {
+      witness->ask(option);
+      if (step % 10 == 9) witness->record(option, world->getTime());
     }
   }
   bool good = true;
-  for (const auto& recorder : recorders) good = recorder->close() && good;
+  for (const auto& witness : witnesses) {
+    witness->print(scene.name);
+    good = witness->close() && good;
+  }
   return good;
 }
 
@@ -215,19 +247,22 @@ int main(int argc, char** argv) {
   int steps = 400;
   std::string folder;
   app.add_option("--steps", steps, "steps of 2 ms")->check(CLI::PositiveNumber);
-  app.add_option("--record", folder, "folder for records, world by detector, in place of times");
+  app.add_option("--record", folder, "folder for records, world by detector; times of queries in place of steps");
   CLI11_PARSE(app, argc, argv);
   const auto asked = contenders();
   int number = 0;
-  if (folder.empty()) {
-    std::printf("DART, %d steps; microseconds of processor time a step\n", steps);
+  std::printf("DART, %d steps; microseconds of processor time\n", steps);
+  if (!folder.empty()) {
+    std::printf("| world | contacts of | query | points |\n");
+    std::printf("|---|---|---:|---:|\n");
+  } else {
     std::printf("| world | contacts of | step | points | fastest at the end | highest body |\n");
     std::printf("|---|---|---:|---:|---:|---:|\n");
   }
   for (const Scene& scene : scenes()) {
     if (!folder.empty()) {
       const std::string path = folder + "/world" + std::to_string(number++) + "_";
-      if (!record(scene, asked, steps, path)) {
+      if (!ask_about_same_states(scene, asked, steps, path)) {
         std::fprintf(stderr, "%s*.jsonl are incomplete\n", path.c_str());
         return 1;
       }

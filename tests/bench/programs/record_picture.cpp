@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "audit/audit_stream.hpp"
@@ -41,8 +42,8 @@ class Drawing {
     add_body(*contact.a, contact.pose_a);
     add_body(*contact.b, contact.pose_b);
     const double depth_error = std::abs(judgement.depth_error.value_or(0));
-    const bool wrong = judgement.missed || judgement.phantom || depth_error > kWrong ||
-                       judgement.normal_excess.value_or(0) > kWrong;
+    const bool wrong =
+        judgement.missed || judgement.phantom || depth_error > kWrong || judgement.normal_excess.value_or(0) > kWrong;
     if (!contact.report || !contact.report->normal) return;
     for (const auto& point : contact.report->points) {
       if (!point.position_a || !point.position_b) continue;
@@ -58,11 +59,12 @@ class Drawing {
     scene_.ground.height = std::isfinite(ground_) ? ground_ : box.lower.z();
     scene_.ground.scale_bar = false;
     scene_.focus = box;
-    auto renderer = render::Renderer::create();
-    if (!renderer) return complain(renderer.error().message);
+    auto created = render::Renderer::create();
+    if (!created) return complain(created.error().message);
+    render::Renderer renderer = std::move(created).value();
     const render::Size size{view_.width, view_.height};
     const auto camera = render::frame_box(box, size, {view_.azimuth, view_.elevation}, kInsets);
-    const auto image = renderer->draw(scene_, camera, size);
+    const auto image = renderer.draw(scene_, camera, size);
     if (!image) return complain(image.error().message);
     const auto written = render::write_png(*image, path);
     return written.has_value() || complain(written.error().message);
