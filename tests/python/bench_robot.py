@@ -18,11 +18,24 @@ AXES = ["0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1"]
 NAMES = {"box": ("size",), "cylinder": ("radius", "length"), "capsule": ("radius", "length"), "sphere": ("radius",)}
 
 
-def urdf():
+def write_hulls(folder):
+    """Meshes of 200 vertices, one for each link."""
+    for i in range(len(SHAPES)):
+        points = np.random.default_rng(i).normal(size=(200, 3))
+        points *= [0.07, 0.06, 0.16] / np.linalg.norm(points, axis=1)[:, None]
+        points += [0, 0, 0.16]
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
+        lines += ["f " + " ".join(str(corner + 1) for corner in facet) for facet in pdepth.ConvexPolytope(points).facets]
+        (folder / f"l{i}.obj").write_text("\n".join(lines))
+
+
+def urdf(hulls=False):
     text = '<robot name="arm">'
     for i, (kind, sizes, place) in enumerate(SHAPES):
         values = [" ".join(map(str, sizes))] if kind == "box" else list(map(str, sizes))
         told = " ".join(f'{name}="{value}"' for name, value in zip(NAMES[kind], values))
+        if hulls:
+            kind, told, place = "mesh", f'filename="l{i}.obj"', (0, 0, 0)
         text += (f'<link name="l{i}"><collision><origin xyz="{" ".join(map(str, place))}"/><geometry><{kind} {told}/></geometry>'
                  "</collision></link>")
     for i, axis in enumerate(AXES):
@@ -41,11 +54,24 @@ def seconds(ask):
     return best, found
 
 
+def time_path(robot, count):
+    """Straight ways between joint vectors, 50 steps each."""
+    ways = np.random.default_rng(2).uniform(*robot.limits.T, (max(count // 50, 1) + 1, robot.dof))
+    path = np.concatenate([np.linspace(begin, end, 50, endpoint=False) for begin, end in zip(ways, ways[1:])])
+    for options in ({}, {"warm": True}, {"nearest": True}, {"nearest": True, "warm": True}):
+        taken, found = seconds(lambda: robot.distances(path, threads=1, **options))
+        print(f"a path, {' '.join(options) or 'all'}: {taken:.3f} s, "
+              f"{1e6 * taken / len(path) / len(robot.pairs):.2f} us a pair and joint vector")
+
+
 def main(count, folder=None):
     with tempfile.TemporaryDirectory() as place:
         file = pathlib.Path(place) / "arm.urdf"
         file.write_text(urdf())
         robot = pdepth.Robot.from_urdf(file)
+        write_hulls(pathlib.Path(place))
+        file.write_text(urdf(hulls=True))
+        of_hulls = pdepth.Robot.from_urdf(file)
     q = np.random.default_rng(1).uniform(*robot.limits.T, (count, robot.dof))
     print(robot, f"{count} joint vectors")
     taken, poses = seconds(lambda: robot.poses(q))
@@ -55,13 +81,9 @@ def main(count, folder=None):
         told = " ".join(options) or "all"
         print(f"{told:>20} {taken:.3f} s, {1e6 * taken / count / len(robot.pairs):.2f} us a pair and joint vector, "
               f"{(found.signed_distance < 0).mean():.3f} overlap")
-    # Straight ways between joint vectors, 50 steps each.
-    ways = np.random.default_rng(2).uniform(*robot.limits.T, (max(count // 50, 1) + 1, robot.dof))
-    path = np.concatenate([np.linspace(begin, end, 50, endpoint=False) for begin, end in zip(ways, ways[1:])])
-    for options in ({}, {"warm": True}, {"nearest": True}, {"nearest": True, "warm": True}):
-        taken, found = seconds(lambda: robot.distances(path, threads=1, **options))
-        print(f"a path, {' '.join(options) or 'all'}: {taken:.3f} s, "
-              f"{1e6 * taken / len(path) / len(robot.pairs):.2f} us a pair and joint vector")
+    time_path(robot, count)
+    print("with links of 200 vertices:")
+    time_path(of_hulls, count)
     if folder:
         lines = [f"{kind} {' '.join(map(str, sizes))}" for kind, sizes, _ in SHAPES]
         pairs = [f"pair {robot.links.index(a)} {robot.links.index(b)}" for a, b in robot.pairs]

@@ -1,6 +1,7 @@
 /// @file
-/// One state of a contact record as a picture: its bodies, each once, and the contact points that the engine reported,
-/// red where the audit calls the pair missed, phantom or wrong by more than 1e-3 of its size.
+/// One state of a contact record as a picture: its bodies, each once, and the contact points that the engine reported.
+/// Points are red if the audit calls their pair a phantom or wrong by more than 1e-3 of its size; bodies are red if the
+/// engine missed that they meet by more than 1e-6.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +24,8 @@ using namespace pd;
 namespace palette = render::palette;
 
 constexpr render::Insets kInsets{.left = 0.04, .right = 0.04, .top = 0.05, .bottom = 0.05};
-constexpr double kWrong = 1e-3;
+/// Relative to a pair's size.
+constexpr double kWrong = 1e-3, kMissed = 1e-6;
 
 struct View {
   int width = 640;
@@ -39,11 +40,15 @@ class Drawing {
   explicit Drawing(const View& view) : view_(view) {}
 
   void add(const audit::RecordedContact& contact, const audit::Judgement& judgement) {
-    add_body(*contact.a, contact.pose_a);
-    add_body(*contact.b, contact.pose_b);
+    for (const auto& [shape, pose] : {std::pair{contact.a, contact.pose_a}, std::pair{contact.b, contact.pose_b}}) {
+      const Parts parts = parts_of(*shape, pose);
+      for (std::size_t i = parts.begin; judgement.missed && i < parts.end; ++i) {
+        scene_.bodies[i].colour = palette::kDepth;
+        scene_.bodies[i].opacity = 0.8F;
+      }
+    }
     const double depth_error = std::abs(judgement.depth_error.value_or(0));
-    const bool wrong =
-        judgement.missed || judgement.phantom || depth_error > kWrong || judgement.normal_excess.value_or(0) > kWrong;
+    const bool wrong = judgement.phantom || depth_error > kWrong || judgement.normal_excess.value_or(0) > kWrong;
     if (!contact.report || !contact.report->normal) return;
     for (const auto& point : contact.report->points) {
       if (!point.position_a || !point.position_b) continue;
@@ -78,33 +83,40 @@ class Drawing {
     return false;
   }
 
-  void add_body(const audit::RecordedShape& shape, const Pose& pose) {
+  /// The places of a body's parts in the scene; none for what is not drawn.
+  struct Parts {
+    std::size_t begin = 0, end = 0;
+  };
+
+  Parts parts_of(const audit::RecordedShape& shape, const Pose& pose) {
     if (shape.halfspace) {
       const Vec3 up = pose.rotation() * shape.halfspace->normal;
       if (up.z() > 0.999) ground_ = pose.translation().z() + shape.halfspace->offset;
-      return;
+      return {};
     }
-    if (shape.extent > view_.widest) return;
+    if (shape.extent > view_.widest) return {};
     const Vec3& at = pose.translation();
-    const std::vector<double> key{static_cast<double>(shape.line), at.x(), at.y(), at.z()};
-    if (!seen_.insert(key).second) return;
-    const auto parts = shape.body->posed(pose);
-    if (!parts) return;
-    const auto number = static_cast<std::uint32_t>(scene_.bodies.size());
-    for (const PosedShape& part : *parts) {
+    const auto [place, is_new] = seen_.try_emplace({static_cast<double>(shape.line), at.x(), at.y(), at.z()}, Parts{});
+    if (!is_new) return place->second;
+    const auto posed = shape.body->posed(pose);
+    if (!posed) return {};
+    place->second = {scene_.bodies.size(), scene_.bodies.size() + posed->size()};
+    const auto number = static_cast<std::uint32_t>(seen_.size());
+    for (const PosedShape& part : *posed) {
       render::MeshRef& mesh = meshes_[part.shape];
       if (!mesh) mesh = render::shape_mesh(*part.shape);
       scene_.bodies.push_back({.mesh = mesh,
                                .pose = part.pose,
                                .colour = palette::varied(palette::categorical(number % 6), number),
-                               .opacity = 0.5f});
+                               .opacity = 0.5F});
     }
+    return place->second;
   }
 
   View view_;
   render::Scene scene_;
   double ground_ = std::nan("");
-  std::set<std::vector<double>> seen_;  ///< a shape's line and place
+  std::map<std::vector<double>, Parts> seen_;  ///< by a shape's line and place
   std::map<const ConvexShape*, render::MeshRef> meshes_;
 };
 
@@ -126,8 +138,8 @@ int main(int argc, char** argv) {
   audit::Audit audit;
   Drawing drawing(view);
   audit::audit_record(
-      input, {}, [&](const auto& contact, const auto& judgement, std::int64_t) { drawing.add(contact, judgement); },
-      audit);
+      input, {.tolerance = kMissed},
+      [&](const auto& contact, const auto& judgement, std::int64_t) { drawing.add(contact, judgement); }, audit);
   ::close(input);
   if (audit.end != audit::Audit::End::read || drawing.bodies() == 0) {
     std::fprintf(stderr, "%s holds no state that can be drawn\n", record.c_str());
