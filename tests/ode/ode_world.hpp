@@ -111,8 +111,15 @@ class OdeWorld {
   }
 
   void step(double seconds) {
+    collide();
+    solve(seconds);
+  }
+  /// The halves of a step: contact joints, and the bodies' motion.
+  void collide() {
     contacts_ = 0;
     dSpaceCollide(space_, this, &near);
+  }
+  void solve(double seconds) {
     dWorldQuickStep(world_, static_cast<dReal>(seconds));
     dJointGroupEmpty(joints_);
   }

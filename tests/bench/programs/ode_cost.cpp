@@ -104,6 +104,7 @@ std::vector<Scene> scenes() {
 
 struct Run {
   double microseconds = 0;   ///< of a step
+  double collision = 0;      ///< of these, until the contact joints are there
   double points = 0;         ///< of a step, in the mean
   double speed = 0;          ///< the fastest body at the end
   Vec3 last = Vec3::Zero();  ///< the position of the first body at the end
@@ -121,7 +122,9 @@ Run run(const Scene& scene, int steps, const std::string& record) {
   for (int step = 0; step < steps; ++step) {
     if (recorder) recorder->set_time(0.005 * step);
     const double start = processor_seconds();
-    world.step(0.005);
+    world.collide();
+    result.collision += 1e6 * (processor_seconds() - start) / steps;
+    world.solve(0.005);
     result.microseconds += 1e6 * (processor_seconds() - start) / steps;
     result.points += static_cast<double>(world.contacts_of_step()) / steps;
   }
@@ -137,24 +140,32 @@ Run run(const Scene& scene, int steps, const std::string& record) {
 int main(int argc, char** argv) {
   CLI::App app("ODE's steps with its own contacts and with pdepth's");
   int steps = 1000;
-  std::string folder;
+  int only = -1;
+  std::string folder, only_who;
+  OdeOptions options;
   app.add_option("--steps", steps, "steps of 5 ms");
+  app.add_option("--world", only, "only this world, by its number from 0");
+  app.add_option("--contacts-of", only_who, "ODE or pdepth alone")->check(CLI::IsMember({"ODE", "pdepth"}));
+  app.add_flag("--remember", options.remember_pairs, "pdepth begins each pair at its last answer");
   app.add_option("--record", folder, "folder for records of both, for `pdepth audit`");
   CLI11_PARSE(app, argc, argv);
   const test::OdeLibrary library;
   std::printf("%d steps; microseconds of processor time a step\n", steps);
-  std::printf("| world | contacts of | step | points | fastest at the end | highest body | first body at x |\n");
-  std::printf("|---|---|---:|---:|---:|---:|---:|\n");
+  std::printf(
+      "| world | contacts of | step | of it collision | points | fastest at the end | highest body | first body at x "
+      "|\n");
+  std::printf("|---|---|---:|---:|---:|---:|---:|---:|\n");
   int number = 0;
   for (const Scene& scene : scenes()) {
     for (const bool ours : {false, true}) {
-      // The points of convex geoms are told in both runs, so that both can be recorded.
-      if (ours && !install_ode()) return 1;
       const std::string who = ours ? "pdepth" : "ODE";
+      if ((only >= 0 && only != number) || (!only_who.empty() && only_who != who)) continue;
+      // The points of convex geoms are told in both runs, so that both can be recorded.
+      if (ours && !install_ode(options)) return 1;
       const Run found = run(scene, steps, folder.empty() ? "" : folder + "/" + who + std::to_string(number) + ".jsonl");
       uninstall_ode();
-      std::printf("| %s | %s | %.0f | %.1f | %.1e | %.3f | %.3f |\n", scene.name.c_str(), who.c_str(),
-                  found.microseconds, found.points, found.speed, found.highest, found.last.x());
+      std::printf("| %s | %s | %.0f | %.0f | %.1f | %.1e | %.3f | %.3f |\n", scene.name.c_str(), who.c_str(),
+                  found.microseconds, found.collision, found.points, found.speed, found.highest, found.last.x());
       std::fflush(stdout);
     }
     ++number;
