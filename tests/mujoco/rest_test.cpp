@@ -22,6 +22,9 @@ class MujocoWorlds : public testing::Test {
   double run(const std::string& bodies, int steps) {
     model_ = test::mujoco_model("<size nconmax='300' njmax='1500'/><option><flag energy='enable'/></option>" + bodies);
     data_ = test::mujoco_data(model_);
+    return run_loaded(steps);
+  }
+  double run_loaded(int steps) {
     double gained = 0, before = 0;
     for (int step = 0; step < steps; ++step) {
       mj_step(model_.get(), data_.get());
@@ -79,6 +82,16 @@ TEST_F(MujocoWorlds, RoundBodiesComeToRest) {
   for (int i = 0; i < 12; ++i) EXPECT_LT(std::abs(data_->qvel[i]), 1e-3);
   EXPECT_NEAR(data_->qpos[7 + 2], 0.3, 0.01);
   EXPECT_NEAR(data_->qpos[14 + 2], 0.1, 0.01);
+}
+
+TEST_F(MujocoWorlds, AHumanoidFallsAndLies) {
+  model_ = test::mujoco_model(test::falling_humanoid());
+  data_ = test::mujoco_data(model_);
+  const double gained = run_loaded(10 * kStepsOfASecond);
+  EXPECT_LT(data_->qpos[2], 0.3) << "the pelvis lies";
+  EXPECT_LT(fastest(), 0.05);
+  for (int i = 0; i < data_->ncon; ++i) EXPECT_GT(data_->contact[i].dist, -0.01) << "nothing is inside of another";
+  EXPECT_LT(gained, 0.5);
 }
 
 TEST_F(MujocoWorlds, TwoFingersHoldABox) {

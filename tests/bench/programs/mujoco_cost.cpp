@@ -88,6 +88,7 @@ std::vector<Scene> scenes() {
                "friction='1 .01 .001'/></body></worldbody><actuator><motor joint='f1 0 0'/><motor joint='f-1 0 0'/>"
                "</actuator>",
            20},
+          {"humanoid that falls", test::falling_humanoid()},
           heap("heap of 48 boxes", "", {"type='box' size='.08 .07 .06'"}),
           heap("heap of 48 hulls of 24", stones, meshes),
           heap("heap of 48 round bodies", "",
@@ -100,6 +101,7 @@ struct Run {
   double collision = 0;     ///< of them, mj_collision
   double points = 0;        ///< of a step, in the mean
   double speed = 0;         ///< the fastest coordinate at the end
+  double gained = 0;        ///< the largest energy that came from nowhere in a step, in joules; without motors
 };
 
 Run run(const Scene& scene, int steps, const std::string& record) {
@@ -109,11 +111,16 @@ Run run(const Scene& scene, int steps, const std::string& record) {
   std::unique_ptr<MujocoRecorder> recorder;
   if (!record.empty()) recorder = std::make_unique<MujocoRecorder>(model.get(), record.c_str());
   Run result;
+  model->opt.enableflags |= mjENBL_ENERGY;
+  double before_step = HUGE_VAL;
   for (int step = 0; step < steps; ++step) {
     const double start = processor_seconds();
     mj_step(model.get(), data.get());
     result.microseconds += 1e6 * (processor_seconds() - start);
     result.points += data->ncon;
+    const double energy = data->energy[0] + data->energy[1];
+    if (model->nu == 0) result.gained = std::max(result.gained, energy - before_step);
+    before_step = energy;
     if (recorder == nullptr && step % 10 == 0) {
       const double before = processor_seconds();
       mj_collision(model.get(), data.get());
@@ -139,8 +146,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   std::printf("MuJoCo %s, %d steps; microseconds of processor time a step\n", mj_versionString(), steps);
   std::printf(
-      "| world | contacts of | step | of it collision | points | fastest at the end "
-      "|\n|---|---|---:|---:|---:|---:|\n");
+      "| world | contacts of | step | of it collision | points | fastest at the end | energy gained "
+      "|\n|---|---|---:|---:|---:|---:|---:|\n");
   int number = 0;
   for (const Scene& scene : scenes()) {
     for (const bool ours : {false, true}) {
@@ -149,8 +156,8 @@ int main(int argc, char** argv) {
       const std::string record = folder.empty() ? "" : folder + "/" + who + std::to_string(number) + ".jsonl";
       const Run found = run(scene, steps, record);
       uninstall_mujoco();
-      std::printf("| %s | %s | %.1f | %.1f | %.1f | %.1e |\n", scene.name.c_str(), who.c_str(), found.microseconds,
-                  found.collision, found.points, found.speed);
+      std::printf("| %s | %s | %.1f | %.1f | %.1f | %.1e | %.1e |\n", scene.name.c_str(), who.c_str(),
+                  found.microseconds, found.collision, found.points, found.speed, found.gained);
       std::fflush(stdout);
     }
     ++number;
