@@ -129,6 +129,26 @@ TEST(DartDetector, LimitsFiltersAndPairsWithoutNumbers) {
   EXPECT_FALSE(detector->collide(foreign.get(), {}, &result)) << "a group of another detector";
 }
 
+TEST(DartDetector, ARowAlongAnyAxisMeetsItsNeighbours) {
+  for (int axis = 0; axis < 3; ++axis) {
+    auto detector = DartDetector::create();
+    auto even = detector->createCollisionGroup(), odd = detector->createCollisionGroup();
+    auto all = detector->createCollisionGroup();
+    std::vector<SimpleFramePtr> frames;
+    for (int i = 0; i < 6; ++i) {
+      frames.push_back(frame_of(std::make_shared<BoxShape>(Vec3(1, 1, 1)), 0.9 * i * Vec3::Unit(axis)));
+      all->addShapeFrame(frames.back().get());
+      (i % 2 == 0 ? even : odd)->addShapeFrame(frames.back().get());
+    }
+    CollisionResult result;
+    EXPECT_TRUE(all->collide(CollisionOption(), &result));
+    EXPECT_EQ(result.getNumContacts(), 20u) << "five pairs of neighbours, four points each, axis " << axis;
+    EXPECT_TRUE(even->collide(odd.get(), {}, &result));
+    EXPECT_EQ(result.getNumContacts(), 20u) << axis;
+    EXPECT_FALSE(odd->collide(CollisionOption(), &result)) << axis;
+  }
+}
+
 TEST(DartDetector, Distances) {
   auto detector = DartDetector::create();
   auto a = frame_of(std::make_shared<SphereShape>(0.5)),

@@ -20,7 +20,7 @@ using dart::collision::Contact;
 using dart::collision::DistanceOption;
 using dart::collision::DistanceResult;
 
-/// The interval of an object along x.
+/// The interval of an object along an axis.
 struct Interval {
   double low, high;
   std::size_t place;  ///< in its list
@@ -28,12 +28,33 @@ struct Interval {
   bool of_second_group;
 };
 
-std::vector<Interval> intervals_of(const std::vector<DartObject*>& objects, bool of_second_group) {
+/// The axis along which the centres of bounded objects are spread most. Equal spreads: the first axis.
+class WidestAxis {
+ public:
+  void add(const std::vector<DartObject*>& objects) {
+    for (const DartObject* object : objects) {
+      if (object->refusal() || object->body().ground) continue;
+      low_ = low_.cwiseMin(object->pose().translation());
+      high_ = high_.cwiseMax(object->pose().translation());
+    }
+  }
+  [[nodiscard]] Eigen::Index axis() const {
+    Eigen::Index widest = 0;
+    (high_ - low_).maxCoeff(&widest);
+    return widest;
+  }
+
+ private:
+  Vec3 low_ = Vec3::Constant(std::numeric_limits<double>::max());
+  Vec3 high_ = -low_;
+};
+
+std::vector<Interval> intervals_of(const std::vector<DartObject*>& objects, bool of_second_group, Eigen::Index axis) {
   std::vector<Interval> intervals;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const DartObject& object = *objects[i];
     const bool unbounded = object.refusal().has_value();
-    const double x = unbounded ? 0 : object.pose().translation().x();
+    const double x = unbounded ? 0 : object.pose().translation()[axis];
     const double reach = unbounded ? std::numeric_limits<double>::infinity() : object.body().radius;
     intervals.push_back({x - reach, x + reach, i, objects[i], of_second_group});
   }
@@ -179,8 +200,11 @@ bool DartDetector::collide(dart::collision::CollisionGroup* group, const dart::c
   if (result != nullptr) result->clear();
   auto* asked = detail::group_of(*this, group);
   if (asked == nullptr || option.maxNumContacts == 0) return false;
+  const auto& objects = asked->refreshed();
+  detail::WidestAxis widest;
+  widest.add(objects);
   detail::Collector collector(*queries_, option, result);
-  detail::visit_near_pairs(detail::intervals_of(asked->refreshed(), false), false,
+  detail::visit_near_pairs(detail::intervals_of(objects, false, widest.axis()), false,
                            [&](auto& a, auto& b) { return collector.take(a, b); });
   return collector.found();
 }
@@ -191,8 +215,12 @@ bool DartDetector::collide(dart::collision::CollisionGroup* group1, dart::collis
   auto* first = detail::group_of(*this, group1);
   auto* second = detail::group_of(*this, group2);
   if (first == nullptr || second == nullptr || option.maxNumContacts == 0) return false;
-  auto all = detail::intervals_of(first->refreshed(), false);
-  const auto others = detail::intervals_of(second->refreshed(), true);
+  const auto &objects = first->refreshed(), &of_second = second->refreshed();
+  detail::WidestAxis widest;
+  widest.add(objects);
+  widest.add(of_second);
+  auto all = detail::intervals_of(objects, false, widest.axis());
+  const auto others = detail::intervals_of(of_second, true, widest.axis());
   all.insert(all.end(), others.begin(), others.end());
   detail::Collector collector(*queries_, option, result);
   detail::visit_near_pairs(std::move(all), true, [&](auto& a, auto& b) { return collector.take(a, b); });

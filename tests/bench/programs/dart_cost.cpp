@@ -77,6 +77,7 @@ struct Scene {
   std::string name;
   std::function<void(const WorldPtr&)> build;
   bool for_darts_own = false;  ///< boxes alone
+  bool slow = false;           ///< asked for by --world alone
 };
 
 using MakeShape = std::function<ShapePtr(int)>;
@@ -114,10 +115,19 @@ std::vector<Scene> scenes() {
           heap("heap of 18 boxes", true, [](int) { return std::make_shared<BoxShape>(Vec3(0.16, 0.14, 0.12)); }),
           heap("heap of 18 meshes of 24", false, [](int i) { return stone(static_cast<unsigned>(i % 6)); }),
           // DART's other detectors know no capsules.
-          heap("heap of 18 round bodies", false, [](int i) -> ShapePtr {
-            if (i % 2 == 0) return std::make_shared<CylinderShape>(0.07, 0.12);
-            return std::make_shared<SphereShape>(0.08);
-          })};
+          heap("heap of 18 round bodies", false,
+               [](int i) -> ShapePtr {
+                 if (i % 2 == 0) return std::make_shared<CylinderShape>(0.07, 0.12);
+                 return std::make_shared<SphereShape>(0.08);
+               }),
+          {"row of 1,000 boxes along y",
+           [](const WorldPtr& world) {
+             for (int i = 0; i < 1000; ++i) {
+               add_body(world, std::make_shared<BoxShape>(Vec3(0.003, 0.003, 0.003)), {0, 0.0039 * (i - 500), 0.0015},
+                        Mat3::Identity());
+             }
+           },
+           true, true}};
 }
 
 struct Contender {
@@ -224,7 +234,8 @@ bool ask_about_same_states(const Scene& scene, const std::vector<Contender>& ask
     if (!knows(contender, scene)) continue;
     witnesses.push_back(std::make_unique<Witness>(contender, world, start_of_path + contender.file + ".jsonl"));
   }
-  const auto option = world->getConstraintSolver()->getCollisionOption();
+  auto option = world->getConstraintSolver()->getCollisionOption();
+  option.maxNumContacts = 100'000;  // all
   for (int step = 0; step < steps; ++step) {
     world->step();
     for (const auto& witness : witnesses) {
@@ -244,9 +255,10 @@ bool ask_about_same_states(const Scene& scene, const std::vector<Contender>& ask
 
 int main(int argc, char** argv) {
   CLI::App app("DART's steps with its detectors and with pdepth's");
-  int steps = 400;
+  int steps = 400, only = -1;
   std::string folder;
   app.add_option("--steps", steps, "steps of 2 ms")->check(CLI::PositiveNumber);
+  app.add_option("--world", only, "only this world, by its number from 0");
   app.add_option("--record", folder, "folder for records, world by detector; times of queries in place of steps");
   CLI11_PARSE(app, argc, argv);
   const auto asked = contenders();
@@ -260,8 +272,10 @@ int main(int argc, char** argv) {
     std::printf("|---|---|---:|---:|---:|---:|\n");
   }
   for (const Scene& scene : scenes()) {
+    const int world = number++;
+    if (only >= 0 ? only != world : scene.slow) continue;
     if (!folder.empty()) {
-      const std::string path = folder + "/world" + std::to_string(number++) + "_";
+      const std::string path = folder + "/world" + std::to_string(world) + "_";
       if (!ask_about_same_states(scene, asked, steps, path)) {
         std::fprintf(stderr, "%s*.jsonl are incomplete\n", path.c_str());
         return 1;

@@ -73,7 +73,7 @@ class DartDetector final : public dart::collision::CollisionDetector {
   /// Up to four points of each pair that overlaps or touches, the deepest first, until the option's number of contacts
   /// is reached. Without a result it stops at the first pair. Filters are asked first. Objects that two groups share
   /// are not asked against themselves. Time O(n log n + k) for n objects of which k pairs have spheres that meet along
-  /// x, and that of the pairs.
+  /// the axis of the widest spread, and that of the pairs.
   bool collide(dart::collision::CollisionGroup* group, const dart::collision::CollisionOption& option,
                dart::collision::CollisionResult* result) override;
   bool collide(dart::collision::CollisionGroup* group1, dart::collision::CollisionGroup* group2,
