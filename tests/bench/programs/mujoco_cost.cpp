@@ -100,6 +100,7 @@ struct Run {
   double microseconds = 0;  ///< of a step
   double collision = 0;     ///< of them, mj_collision
   double points = 0;        ///< of a step, in the mean
+  double rounds = 0;        ///< of MuJoCo's solver, in the mean
   double speed = 0;         ///< the fastest coordinate at the end
   double gained = 0;        ///< the largest energy that came from nowhere in a step, in joules; without motors
 };
@@ -118,6 +119,7 @@ Run run(const Scene& scene, int steps, const std::string& record) {
     mj_step(model.get(), data.get());
     result.microseconds += 1e6 * (processor_seconds() - start);
     result.points += data->ncon;
+    result.rounds += data->solver_iter;
     const double energy = data->energy[0] + data->energy[1];
     if (model->nu == 0) result.gained = std::max(result.gained, energy - before_step);
     before_step = energy;
@@ -132,6 +134,7 @@ Run run(const Scene& scene, int steps, const std::string& record) {
   result.microseconds /= steps;
   result.collision /= steps;
   result.points /= steps;
+  result.rounds /= steps;
   return result;
 }
 
@@ -146,8 +149,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   std::printf("MuJoCo %s, %d steps; microseconds of processor time a step\n", mj_versionString(), steps);
   std::printf(
-      "| world | contacts of | step | of it collision | points | fastest at the end | energy gained "
-      "|\n|---|---|---:|---:|---:|---:|---:|\n");
+      "| world | contacts of | step | of it collision | points | rounds | fastest at the end | energy gained "
+      "|\n|---|---|---:|---:|---:|---:|---:|---:|\n");
   int number = 0;
   for (const Scene& scene : scenes()) {
     for (const bool ours : {false, true}) {
@@ -156,8 +159,8 @@ int main(int argc, char** argv) {
       const std::string record = folder.empty() ? "" : folder + "/" + who + std::to_string(number) + ".jsonl";
       const Run found = run(scene, steps, record);
       uninstall_mujoco();
-      std::printf("| %s | %s | %.1f | %.1f | %.1f | %.1e | %.1e |\n", scene.name.c_str(), who.c_str(),
-                  found.microseconds, found.collision, found.points, found.speed, found.gained);
+      std::printf("| %s | %s | %.1f | %.1f | %.1f | %.1f | %.1e | %.1e |\n", scene.name.c_str(), who.c_str(),
+                  found.microseconds, found.collision, found.points, found.rounds, found.speed, found.gained);
       std::fflush(stdout);
     }
     ++number;
