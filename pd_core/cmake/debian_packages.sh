@@ -19,8 +19,8 @@ pd_test_packages=(
 # packaging/debian.sh and packaging/try_debian.sh need these beside them: the tools that make and check packages, and the peers
 # whose answers pdepth-recorders records.
 pd_package_packages=(
-  dpkg-dev fakeroot debhelper dh-python lintian mmdebstrap git doxygen mkdocs mkdocs-material libccd-dev libfcl-dev libode-dev
-  libmujoco-dev python3-dev pybind11-dev python3-numpy
+  dpkg-dev fakeroot debhelper dh-python lintian mmdebstrap git doxygen mkdocs mkdocs-material libccd-dev libfcl-dev libmujoco-dev libode-dev
+  python3-dev pybind11-dev python3-numpy
 )
 
 # Prints those of the named packages that are not installed.
