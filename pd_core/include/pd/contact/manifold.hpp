@@ -55,8 +55,8 @@ enum class DeepestPoint : std::uint8_t {
   /// The bodies' own depth, and every point lies on both bodies: up to 1e-8 of the lengths at hand, and as near as the
   /// answer's bracket is wide.
   on_bodies,
-  /// The bodies' own depth, for engines: two edges within 3 degrees of each other share a stretch, and the deepest
-  /// corner counts as the witness where it misses the depth by the noise of a resting contact.
+  /// The bodies' own depth, for engines. Two edges within 3 degrees of each other share a stretch. The deepest corner
+  /// counts as the witness where it misses the depth by the noise of a resting contact.
   at_depth,
   /// The depth of its own corner, like the other points. An engine lets a face rest on the differences between its
   /// points, and one point that is corrected alone would falsify them.

@@ -26,8 +26,8 @@ struct PosedSolid {
 struct SolidSettings {
   /// The bracket of the depth closes to upper <= (1 + delta) lower; in (0, 1].
   double delta = 1e-2;
-  /// The budget of solids that have too many convex parts: points whose distances from both surfaces are asked, some 5 to
-  /// 15 microseconds each. Where they do not suffice, the bracket is as wide as it is by then.
+  /// The budget of solids that have too many convex parts: points whose distances from both surfaces are asked, some 5
+  /// to 15 microseconds each. Where they do not suffice, the bracket is as wide as it is by then.
   std::int64_t max_points = 500'000;
 };
 
@@ -56,8 +56,8 @@ struct SolidDepth : PenetrationDepth {
 /// other relative to the distance (`bracket_reached` is false where they are not).
 /// Overlapping: lower <= depth <= upper, and the stored translation separates exactly. `bracket_reached` is false where
 /// upper > (1 + delta) lower.
-/// Time: O(n log n) for n triangles where the solids are apart or touch, and a budget where they overlap: that of the
-/// unions of up to 1,024 pairs of convex parts, or that of the settings.
+/// Time: O(n log n) for n triangles where the solids are apart or touch. Where they overlap, a budget: unions of up to
+/// 1,024 pairs of convex parts, or the points of the settings.
 /// @return bad_value ("delta", "max_points").
 [[nodiscard]] Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedSolid& b, Scratch& scratch,
                                                      const SolidSettings& settings = {});
