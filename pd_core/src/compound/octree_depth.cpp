@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "compound/facets_answer.hpp"
 #include "compound/part_bounds.hpp"
 #include "compound/union_boundary.hpp"
 #include "numeric/root_sum.hpp"
@@ -136,9 +137,9 @@ class Octree {
       for (const PosedShape& part : pair_.b) of_b.emplace_back(part, gap);
     };
     sample();
-    UnionSettings exactly;
-    exactly.max_facets = settings_.max_facets;
     std::int64_t work = 0;
+    double outer_reach = HUGE_VAL;
+    const double air = 0x1p-40 * pair_.size;  // corners of the polytopes are rounded
     double last_open = HUGE_VAL;
     std::vector<Vec3> looked;
     const auto look_along = [&](const Vec3& unit) {
@@ -147,11 +148,14 @@ class Octree {
       for (PartBounds& part : of_b) part.look_along(unit);
     };
     for (int round = 0; round < kMostBounds && work <= kMostBoundWork; ++round) {
-      const std::optional<UnionDepth> inner = depth_between(of_a, of_b, &PartBounds::inner, exactly);
-      const std::optional<UnionDepth> outer = depth_between(of_a, of_b, &PartBounds::outer, exactly);
-      bool overlap = true;
+      // A placement that is free for the parts is free for what lies in them, and the unions around the parts are no
+      // less deep than the parts. They shrink by every direction.
+      const std::optional<UnionDepth> inner = depth_between(of_a, of_b, &PartBounds::inner, 0, upper_ + air);
+      if (inner) known_lower = std::max(known_lower, inner->lower);
+      const std::optional<UnionDepth> outer =
+          inner ? depth_between(of_a, of_b, &PartBounds::outer, known_lower, outer_reach) : std::nullopt;
+      const bool overlap = inner && outer;
       for (const std::optional<UnionDepth>& bound : {inner, outer}) {
-        overlap = overlap && bound && bound->contact == ContactClass::overlapping;
         if (!bound) continue;
         work += bound->work.cells + bound->work.polygons + bound->work.cuts;
         out_.work.cells += bound->work.cells;
@@ -161,13 +165,14 @@ class Octree {
       }
       if (!overlap && gap == 0) return known_lower;
       if (overlap) {
-        known_lower = std::max(known_lower, inner->lower);
+        outer_reach = outer->upper + air;
         accept(outer->translation);
         try_placement(inner->translation, all_pairs());
         if (upper_ <= (1 + settings_.delta) * known_lower) break;
       }
       if (!overlap || round == kCoarseBounds) {
         gap = 0;
+        outer_reach = HUGE_VAL;
         sample();
         for (const Vec3& unit : std::exchange(looked, {})) look_along(unit);
         if (!overlap) continue;
@@ -191,10 +196,12 @@ class Octree {
     return known_lower;
   }
 
-  /// Of the polytopes in the parts, or of those around them.
+  /// Of the polytopes in the parts, or of those around them. Nothing unless the interiors of both unions meet.
+  /// @param known_lower  the depth is no less
+  /// @param reach        a placement at this distance is free
   std::optional<UnionDepth> depth_between(const std::vector<PartBounds>& of_a, const std::vector<PartBounds>& of_b,
                                           std::optional<Compound::Part> (PartBounds::*polytope)() const,
-                                          const UnionSettings& exactly) {
+                                          double known_lower, double reach) {
     std::optional<Compound> bodies[2];
     for (const auto& [body, parts] : {std::pair{&bodies[0], &of_a}, std::pair{&bodies[1], &of_b}}) {
       std::vector<Compound::Part> polytopes;
@@ -205,9 +212,19 @@ class Octree {
       }
       body->emplace(*Compound::from_parts(std::move(polytopes)));
     }
-    auto answer = penetration_depth({&*bodies[0], Pose()}, {&*bodies[1], Pose()}, scratch_, exactly);
-    if (!answer) return std::nullopt;
-    return *std::move(answer);
+    const Expected<UnionPair> pair = UnionPair::pose({&*bodies[0], Pose()}, {&*bodies[1], Pose()});
+    if (!pair) return std::nullopt;
+    UnionDepth out;
+    const PairsResult pairs = classify_pairs(*pair, scratch_, settings_.delta, nullptr, out.work);
+    if (pairs.contact != ContactClass::overlapping) return std::nullopt;
+    UnionSettings exactly;
+    exactly.max_facets = settings_.max_facets;
+    FacetsAnswer answer(*pair, exactly, out.work);
+    if (answer.solve_overlapping(std::max(known_lower, pairs.nearest.lower), std::min(reach, pair->box_exit()), nullptr,
+                                 out)) {
+      return std::nullopt;
+    }
+    return out;
   }
 
   void build_differences(double reach) {
