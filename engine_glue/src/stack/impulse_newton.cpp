@@ -36,7 +36,7 @@ ImpulseNewton::Outcome ImpulseNewton::solve(const Limits& limits) {
     // What is held where may be guessed right at once; only after that is there a point to search from.
     const double share = step == 0 ? 1 : share_of_step();
     move(share);
-    factor_fits = !classify(share == 1 ? kNegligible : 0);
+    factor_fits = !classify(share == 1 ? limits.amiss_at_end : 0);
     if (step == 0 && !is_spared && amiss_ > limits.amiss_at_first) {
       outcome.given_up = true;
       return outcome;

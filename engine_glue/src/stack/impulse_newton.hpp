@@ -62,8 +62,8 @@ class ImpulseNewton {
     bool given_up = false;  ///< by one of `Limits`; impulses are as they were
   };
 
-  /// Ends a solution that does not pay. The limits are counts and shares, never times, so that the answer is the same
-  /// on every machine.
+  /// Ends a solution that is good enough, or does not pay. The limits are counts and shares, never times, so that the
+  /// answer is the same on every machine.
   struct Limits {
     /// Most products of blocks that a factorisation may take.
     long long products = std::numeric_limits<long long>::max();
@@ -71,6 +71,8 @@ class ImpulseNewton {
     /// its first step. It is near 1 where contacts come and go, and then more factorisations follow than pay.
     double amiss_at_first = std::numeric_limits<double>::infinity();
     bool spares_trees = false;  ///< `amiss_at_first` does not bind where the bodies form trees
+    /// Share of the impulses that may be amiss at the end of a round.
+    double amiss_at_end = 1e-5;
   };
 
   std::vector<Matrix6> masses;  ///< positive definite
@@ -86,9 +88,6 @@ class ImpulseNewton {
   static constexpr int kMostRounds = 3;
   static constexpr int kMostLooks = 60;  ///< along one step
   static constexpr double kMuch = 0.1;   ///< of the sum of the impulses
-  /// Share of the same that may be amiss at the end of a round. With 1e-5 a wall drifts at least four times as far:
-  /// what is left of a step moves its bricks. With 1e-8 it takes as many factorisations and more.
-  static constexpr double kNegligible = 1e-7;
 
   void find_pattern();
   void begin_round();

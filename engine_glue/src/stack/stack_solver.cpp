@@ -42,6 +42,9 @@ constexpr double kMovingShare = 0.2;
 constexpr long long kProductsOfRow = 4;
 /// `ImpulseNewton::Limits::amiss_at_first`.
 constexpr double kAmissAtFirst = 0.1;
+/// `ImpulseNewton::Limits::amiss_at_end`. With 1e-5 a wall drifts at least four times as far: what is left of a step
+/// moves its bricks. With 1e-8 it takes as many factorisations and more.
+constexpr double kAmissAtEnd = 1e-7;
 /// Columns whose load takes this many times the sweeps that are made are solved also while contacts come and go: ten
 /// boxes that land as a column fall otherwise. Ten sweeps spare columns of six and more.
 constexpr double kHighColumn = 1.2;
@@ -131,7 +134,8 @@ btScalar StackSolver::begin_at_solution(const btContactSolverInfo& info) {
     state_->read_rows(rows, group, warm_share, newton);
     const ImpulseNewton::Outcome outcome = newton.solve({.products = kProductsOfRow * group.num_rows,
                                                          .amiss_at_first = kAmissAtFirst,
-                                                         .spares_trees = sweeps > kHighColumn * info.m_numIterations});
+                                                         .spares_trees = sweeps > kHighColumn * info.m_numIterations,
+                                                         .amiss_at_end = kAmissAtEnd});
     state_->waiting.note(m_tmpSolverBodyPool, state_->groups.bodies(group), outcome.settled);
     statistics_.factorisations += outcome.factorisations;
     tolerance =
