@@ -89,6 +89,8 @@ class PartDifferences {
   /// The halfspace {x : orientation * x[axis] <= orientation * at} (inside lengths).
   Side across_axis(int axis, int orientation, double at);
 
+  [[nodiscard]] PosedParts parts_a() const { return a_; }
+  [[nodiscard]] PosedParts parts_b() const { return b_; }
   [[nodiscard]] const PlaneSet& planes() const { return planes_; }
   [[nodiscard]] const std::vector<PartDifference>& pieces() const { return pieces_; }
   /// At least |coordinate| of every point of theirs.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compound/buried_faces.hpp"
 #include "compound/cover_cells.hpp"
 #include "compound/cover_cubes.hpp"
 #include "compound/union_boundary.hpp"
@@ -64,6 +65,7 @@ bool UnionBoundary::narrow(const std::vector<Vec3>& corners, double error, std::
 
 bool UnionBoundary::visit_all(const Visitor& visitor, std::int64_t max_work) {
   CoverCubes cubes(differences_);
+  const BuriedFaces buried_a(differences_.parts_a()), buried_b(differences_.parts_b());
   std::vector<OpenCell> open;
   std::vector<Vec3> corners;
   std::vector<std::int32_t> near;
@@ -73,6 +75,12 @@ bool UnionBoundary::visit_all(const Visitor& visitor, std::int64_t max_work) {
     for (std::size_t f = 0; f < num_facets; ++f) {
       if (differences_.limit_exceeded() || counts_.work() > max_work) return false;
       // Most facets lie deep inside: they need no exact polygon.
+      const PartDifference& piece = differences_.pieces()[own_piece];
+      const MinkowskiDifference::Facet& made_of = piece.built->facets[f];
+      if (buried_a.holds(piece.part_a, made_of.on_a) || buried_b.holds(piece.part_b, made_of.on_b)) {
+        ++counts_.passed;
+        continue;
+      }
       rough_corners(own_piece, f, corners);
       const std::int64_t tests = cubes.num_tests();
       const bool covered = cubes.covers(own_piece, differences_.pieces()[own_piece].planes[f], corners, near);
