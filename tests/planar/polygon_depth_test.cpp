@@ -294,4 +294,15 @@ TEST(PolygonDepth, CombsKeepTheirSlots) {
   EXPECT_EQ(r.statistics().loops, 1);
 }
 
+/// The spine of a comb is one part, with corners inside its side, and of equal sums of teeth one is looked at.
+TEST(PolygonDepth, CombsOf512CornersTakeFewComparisons) {
+  const Polygon comb = pd::scenes::comb_polygon(512);
+  const auto r = PolygonDifference::of(comb, comb, PolygonMethod::automatic, 1 << 21);
+  ASSERT_TRUE(r.has_value());
+  EXPECT_EQ(r->depth({0, 0}).depth, 11);
+  EXPECT_EQ(r->depth({2, 10.5}).depth, 0.5);
+  EXPECT_EQ(r->depth({1, 10.5}).depth, 0.5);
+  EXPECT_EQ(r->contact({255, 3}), PlanarContact::touching);
+}
+
 }  // namespace
