@@ -39,9 +39,9 @@ struct UnionDifference {
   UnionStatistics work;
 };
 
-/// The budget of a union's difference: polygons looked at and cut, some 20 microseconds each. 512 tests in doubles are
-/// one such unit. Two stars of 26 vertices take 45,000, of 53 vertices 240,000.
-inline constexpr std::int64_t kDifferenceWork = std::int64_t{1} << 18;
+/// The budget of a union's difference: polygons looked at and cut, some 25 microseconds each. 512 tests in doubles are
+/// one such unit. Two stars of 26 vertices take 23,000, of 53 vertices 121,000.
+inline constexpr std::int64_t kDifferenceWork = std::int64_t{1} << 17;
 
 /// Builds the boundary of int P for unions of polytopes without margins.
 /// @param max_facets  of the P_ij, and of the boundary.

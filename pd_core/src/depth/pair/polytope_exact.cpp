@@ -283,9 +283,9 @@ bool answer_by_closest_point(PolytopeQuery& query, PenetrationDepth& out) {
       start[count] = {nearest.simplex[count].a, nearest.simplex[count].b};
     }
     sort_simplex(std::span(start).first(count));
-  } else {
-    start[count++] = any_vertex(query, surface);
   }
+  // Squares of very small numbers vanish, and doubles may know no simplex at all.
+  if (count == 0) start[count++] = any_vertex(query, surface);
   const PosedPair& posed = query.exact();
   const Margins& margins = query.pair.margins;
   if (in_doubles) {
