@@ -138,6 +138,7 @@ class TranslationCover {
     std::vector<Spot> spots;
     for (const Vec3& x : cube.points) spots.push_back(spot_at(x, cube.middle));
     double radius = climb(spots, cube, cube.half);
+    if (radius > cube.radius()) return;
     // A small ball: A leaves B near here, or the points of the cube around this one are of little use, since the bodies
     // meet elsewhere, too.
     const bool is_shallow = radius < step_beyond(cube);
