@@ -114,7 +114,7 @@ TEST_F(Program, DepthForPrograms) {
   EXPECT_EQ(answer.at("class"), "overlapping");
   EXPECT_EQ(answer.at("depth"), 0.5);
   EXPECT_EQ(answer.at("translation"), Json({0.0, 0.0, 0.5}));
-  EXPECT_EQ(answer.at("feature").at("a"), Json({0}));
+  EXPECT_EQ(answer.at("feature").at("a"), Json::array({0}));
 }
 
 TEST_F(Program, PolygonForPeopleAndPrograms) {

@@ -81,7 +81,8 @@ TEST(DirectionTable, FindsTheFarthestVertexUpToSinglePrecision) {
 
 TEST(DirectionTable, ListsHoldTheFarthestVertexOfEveryDirectionOfTheirCell) {
   Random random(33);
-  for (const auto& [name, p] : shapes()) {
+  for (const NamedPolytope& shape : shapes()) {
+    const ConvexPolytope& p = shape.polytope;
     if (p.num_vertices() <= 48) continue;
     const ConvexPolytope::Storage& s = p.storage();
     for (int i = 0; i < 300; ++i) {
@@ -97,7 +98,7 @@ TEST(DirectionTable, ListsHoldTheFarthestVertexOfEveryDirectionOfTheirCell) {
       look_at(cell);
       for (std::int32_t b = s.table_more[cell]; b < s.table_more[cell + 1]; ++b) look_at(b);
       // A direction within rounding of a cell's border may be looked up next door.
-      EXPECT_LE(highest(p, d) - listed, 0x1p-22 * p.radius()) << name;
+      EXPECT_LE(highest(p, d) - listed, 0x1p-22 * p.radius()) << shape.name;
     }
   }
 }
