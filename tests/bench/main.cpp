@@ -224,7 +224,7 @@ int curved_command(const Options& o) {
 int shuffled_command(const Options& o) {
   Solvers solvers;
   add_ours(solvers, false, false);
-  add_peers(solvers);
+  add_peers_curved(solvers);
   if (!select(solvers, o.solvers)) return 2;
   print_preamble(o);
   const int pairs = o.pairs > 0 ? o.pairs : o.quick ? 2'000 : 20'000;

@@ -94,6 +94,7 @@ TEST(PairSource, VariantsHaveTheirSizesAndTurningKeepsTheDepth) {
 TEST(Shuffled, EverySolverAsksThePairsThatItTakes) {
   Solvers solvers;
   add_ours(solvers, false, false);
+  add_peers_curved(solvers);
   const std::vector<ShuffledRow> rows = run_shuffled({.pairs = 20, .other_megabytes = 1, .seed = 3}, solvers);
   ASSERT_EQ(rows.size(), solvers.size());
   EXPECT_EQ(rows[0].solver, kOurs);
@@ -101,6 +102,7 @@ TEST(Shuffled, EverySolverAsksThePairsThatItTakes) {
   EXPECT_GT(rows[0].hot_ns, 0);
   EXPECT_GT(rows[0].shuffled_ns, rows[0].hot_ns);
   EXPECT_GT(rows[0].other_data_ns, rows[0].hot_ns);
+  for (const ShuffledRow& row : rows) EXPECT_GT(row.pairs, 0) << row.solver;
 }
 
 class Judged : public testing::Test {
