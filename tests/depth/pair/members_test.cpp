@@ -68,13 +68,11 @@ TEST(Members, BodiesThatTouch) {
 
 TEST(Members, BodiesAtOnePlace) {
   Judge judge;
-  for (std::uint64_t seed = 11; seed <= 12; ++seed) {
-    for_all_pairs(seed, [&](const MemberKind& a, const MemberKind& b, Random& random) {
-      judge.expect_members({&a.shape, Pose()}, {&b.shape, Pose()}, a.name + " in " + b.name);
-      const Pose turned = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-      judge.expect_members({&a.shape, turned}, {&b.shape, turned}, a.name + " in " + b.name + ", turned");
-    });
-  }
+  for_all_pairs(11, [&](const MemberKind& a, const MemberKind& b, Random& random) {
+    judge.expect_members({&a.shape, Pose()}, {&b.shape, Pose()}, a.name + " in " + b.name);
+    const Pose turned = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+    judge.expect_members({&a.shape, turned}, {&b.shape, turned}, a.name + " in " + b.name + ", turned");
+  });
   EXPECT_GT(judge.overlapping(), judge.pairs() * 3 / 4);
 }
 
