@@ -103,6 +103,7 @@ double RootSum::round_up(double down) const { return compare(Dyadic(down)) == 0 
 
 DoubleDouble to_double_double(const Dyadic& value) {
   const double high = value.to_double();
+  if (!std::isfinite(high)) return {high, 0};
   const double low = (value - Dyadic(high)).to_double();
   return quick_two_sum(high, low);
 }
