@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kMostExactPairs = 1024;
 constexpr std::int64_t kMostRoundedPairs = 160;
 /// Cutting a solid takes the square of its triangles.
-constexpr std::size_t kMostTriangles = 500;
+constexpr std::size_t kMostTriangles = 2000;
 
 void take(const PenetrationDepth& from, SolidDepth& out) {
   static_cast<PenetrationDepth&>(out) = from;
@@ -40,7 +40,7 @@ class Bracketing {
 
   void run() {
     set_by_hulls();
-    if (reached() || (narrow_by_parts() && reached())) return;
+    if (reached() || (narrow_by_parts() && (out_.exact || reached()))) return;
     if (narrow_by_cover({a_, b_, solids_, settings_}, out_)) set_witnesses();
   }
 

@@ -1,7 +1,6 @@
 #include "solid/translation_cover.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <queue>
@@ -113,6 +112,7 @@ class TranslationCover {
   bool run() {
     queue_.push({0, 0, Vec3::Zero(), std::ldexp(1.0, std::ilogb(upper()) + 1), 0, {}});
     while (!queue_.empty() && queue_.top().near * factor_ < upper() && has_points_left()) {
+      if (queue_.top().level == kMostLevels) break;
       const Cube cube = queue_.top();
       queue_.pop();
       look_at(cube);
@@ -129,6 +129,9 @@ class TranslationCover {
   static constexpr double kUseful = 0.1;
   static constexpr int kMany = 10, kFew = 4;  ///< fresh points along the longest side of where the bodies may meet
   static constexpr std::size_t kMostVertices = 200;
+  /// A cube that is still in doubt after so many halvings has a size of 1e-12 of the first: no ball ends at a wall of
+  /// no width, and much smaller cubes would not be told from each other.
+  static constexpr int kMostLevels = 40;
 
   [[nodiscard]] double outside(double length) const { return std::ldexp(length, solids_.scale_exponent()); }
   [[nodiscard]] double upper() const { return std::ldexp(out_.upper, -solids_.scale_exponent()); }
