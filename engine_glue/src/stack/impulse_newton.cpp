@@ -164,22 +164,27 @@ bool ImpulseNewton::classify(double negligible) {
 
 void ImpulseNewton::factorise() {
   const bool first = assembled_.empty();
-  if (first) {
-    own_ = masses;
-    shared_.assign(pairs_.size(), Matrix6::Zero());
-    assembled_.assign(rows.size(), Hold::at_lower);
-  }
-  // From one factorisation to the next a few rows come to their bounds or leave them.
-  changed_.assign(masses.size(), false);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool is_in = assembled_[i] == Hold::within;
-    if (is_in == (holds_[i] == Hold::within)) continue;
-    assemble(i, is_in ? -1 : 1);
+  // From one factorisation to the next a few rows come to their bounds or leave them. Only the blocks of their bodies
+  // are summed anew, in the order of rows: a stiff row that is taken out of a sum leaves its rounding there.
+  changed_.assign(masses.size(), first);
+  for (std::size_t i = 0; i < assembled_.size(); ++i) {
+    if ((assembled_[i] == Hold::within) == (holds_[i] == Hold::within)) continue;
     for (const int body : rows[i].body) {
       if (body >= 0) changed_[static_cast<std::size_t>(body)] = true;
     }
   }
   assembled_ = holds_;
+  own_.resize(masses.size());
+  for (std::size_t body = 0; body < masses.size(); ++body) {
+    if (changed_[body]) own_[body] = masses[body];
+  }
+  shared_.resize(pairs_.size());
+  for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+    if (has_changed(pairs_[pair])) shared_[pair] = Matrix6::Zero();
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (holds_[i] == Hold::within) assemble(i);
+  }
   if (first) {
     factor_.factorise(own_, shared_);
   } else {
@@ -187,17 +192,22 @@ void ImpulseNewton::factorise() {
   }
 }
 
-void ImpulseNewton::assemble(std::size_t i, double share) {
+bool ImpulseNewton::has_changed(const std::pair<int, int>& pair) const {
+  return changed_[static_cast<std::size_t>(pair.first)] && changed_[static_cast<std::size_t>(pair.second)];
+}
+
+void ImpulseNewton::assemble(std::size_t i) {
   const Row& row = rows[i];
-  const double stiffness = share / row.softness;
+  const double stiffness = 1 / row.softness;
   for (int side = 0; side < 2; ++side) {
-    if (row.body[side] < 0) continue;
+    if (row.body[side] < 0 || !changed_[static_cast<std::size_t>(row.body[side])]) continue;
     add_square(own_[static_cast<std::size_t>(row.body[side])], row.jacobian[side], stiffness);
   }
   if (block_of_row_[i] < 0) return;
+  const auto pair = static_cast<std::size_t>(block_of_row_[i]);
+  if (!has_changed(pairs_[pair])) return;
   const int high = row.body[0] < row.body[1] ? 1 : 0;
-  Matrix6& block = shared_[static_cast<std::size_t>(block_of_row_[i])];
-  for (int k = 0; k < 6; ++k) block.col(k) += (stiffness * row.jacobian[1 - high][k]) * row.jacobian[high];
+  for (int k = 0; k < 6; ++k) shared_[pair].col(k) += (stiffness * row.jacobian[1 - high][k]) * row.jacobian[high];
 }
 
 /// `aim_`: the velocities if all rows stay within or at their bounds as they are.

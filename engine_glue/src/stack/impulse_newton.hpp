@@ -94,8 +94,9 @@ class ImpulseNewton {
   void guess_holds();
   bool classify(double negligible);
   void factorise();
-  /// Adds a row to what is factorised, or takes it out again (a negative share of one).
-  void assemble(std::size_t row, double share);
+  /// Adds a row to the blocks of bodies of `changed_`, and to those of two such bodies.
+  void assemble(std::size_t row);
+  [[nodiscard]] bool has_changed(const std::pair<int, int>& pair) const;
   void solve_held();
   [[nodiscard]] double share_of_step();
   void move(double share);
