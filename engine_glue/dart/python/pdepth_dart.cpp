@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <array>
+#include <cstdint>
 #include <dart/collision/CollisionDetector.hpp>
 #include <memory>
 #include <string>

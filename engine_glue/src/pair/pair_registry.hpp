@@ -64,7 +64,7 @@ struct HeavyLoad {
 
 class ManifoldOwner;
 
-/// What the search for the points of a pair with a mesh or compound remembers.
+/// Holds what the search for the points of a pair with a mesh or compound remembers.
 struct UnionPairMemory {
   std::vector<PieceMemory> pieces;                   ///< sorted by number
   std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1

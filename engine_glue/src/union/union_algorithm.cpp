@@ -32,7 +32,7 @@ struct UnionAlgorithm::State {
   bool find(const UnionQuestion& question);
 
  private:
-  /// What was found last.
+  /// Keeps what was found last.
   struct Found {
     std::uint64_t trials = 0;  ///< `SolverCore::trials`
     btScalar threshold = 0;

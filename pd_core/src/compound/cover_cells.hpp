@@ -38,7 +38,7 @@ struct CoverCell {
 /// @param extent  of the differences.
 [[nodiscard]] double distance_within(const RoughPlane& plane, const CoverCell& cell, double extent);
 
-/// Where a cube of translations lies: in the interior of a P_k or apart from it, for certain, or else neither.
+/// A cube of translations lies in the interior of a P_k or apart from it, for certain, or else is in doubt (`meets`).
 enum class CoverPlace : std::uint8_t { holds, meets, apart };
 /// Makes the P_k unless its box tells enough.
 [[nodiscard]] CoverPlace cover_place(PartDifferences& differences, std::size_t k, const Vec3& centre, double half);

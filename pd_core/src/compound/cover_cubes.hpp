@@ -20,7 +20,7 @@ class CoverCubes {
   /// Refers to the differences, and makes those that it needs.
   explicit CoverCubes(PartDifferences& differences);
 
-  /// Whether cubes that the P_k hold cover a facet of P_own, for certain. If they do not, `near` is set to P_k that
+  /// True if cubes that the P_k hold cover a facet of P_own, for certain. If they do not, `near` is set to P_k that
   /// cover what all P_k but P_own cover of the facet, each once.
   /// @param corners  of the facet, in doubles: off by 2^-43 of the extent at most
   bool covers(std::size_t own, const RoughPlane& plane, const std::vector<Vec3>& corners,
@@ -51,7 +51,7 @@ class CoverCubes {
     Vec3 low;
     Vec3 high;
   };
-  /// Whether all cubes that the facet passes through below a cube are held, for certain.
+  /// True if all cubes that the facet passes through below a cube are held, for certain.
   bool held(std::size_t cube, const FacetBox& facet);
   void gather(std::size_t cube, const FacetBox& facet, std::vector<std::int32_t>& near);
   void look_at(std::size_t cube);

@@ -35,7 +35,7 @@ class FacetsAnswer {
   [[nodiscard]] Expected<ContactClass> class_of_touching(std::optional<Where>& where);
 
   [[nodiscard]] UnionBoundary& boundary() { return *boundary_; }
-  /// Whether the P_ij that were made have more than `max_facets` facets, and the answer is lost: limit_exceeded.
+  /// Returns limit_exceeded if the P_ij that were made have more than `max_facets` facets: the answer is lost.
   [[nodiscard]] std::optional<Error> refused() const {
     return differences_->limit_exceeded() ? std::optional(too_many_facets()) : std::nullopt;
   }

@@ -196,7 +196,8 @@ class Octree {
     return known_lower;
   }
 
-  /// Of the polytopes in the parts, or of those around them. Nothing unless the interiors of both unions meet.
+  /// Returns the depth of the polytopes in the parts, or of those around them; nothing unless the interiors of both
+  /// unions meet.
   /// @param known_lower  the depth is no less
   /// @param reach        a placement at this distance is free
   std::optional<UnionDepth> depth_between(const std::vector<PartBounds>& of_a, const std::vector<PartBounds>& of_b,

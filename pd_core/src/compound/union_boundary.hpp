@@ -118,7 +118,7 @@ class UnionBoundary {
   bool split_one(OpenCell& cell, std::vector<OpenCell>& open);
   /// Sets `corners` to those of a facet in doubles (inside lengths). Requires P_k to be made roughly.
   void rough_corners(std::size_t k, std::size_t f, std::vector<Vec3>& corners) const;
-  /// Whether P_k holds all of these points in its interior, for certain. They may be rough corners or lie between such.
+  /// True if P_k holds all of these points in its interior, for certain. They may be rough corners or lie between such.
   [[nodiscard]] bool surely_holds(std::size_t k, const std::vector<Vec3>& points);
   /// Whether a P_k that covered something recently contains all of a polygon in its interior, for certain.
   bool contained_in_recent(const PlanePolygon& polygon);

@@ -18,7 +18,7 @@ bool boxes_meet(const Box& x, const Box& y, double slack) {
   return (x.low - y.high).maxCoeff() <= slack && (y.low - x.high).maxCoeff() <= slack;
 }
 
-/// Where a flat polygon lies: in the interior of a P_k or apart from it, for certain, or else neither.
+/// Tells whether a flat polygon lies in the interior of a P_k or apart from it, for certain.
 /// @param box    of the corners
 /// @param error  of a coordinate of a corner
 CoverPlace place(const PartDifference& piece, const std::vector<Vec3>& corners, const Box& box, double error) {
