@@ -171,7 +171,8 @@ int run_decompose(const DecomposeArguments& arguments) {
   const query::SolidWish wish{.always = true,
                               .turn_faces = arguments.turn_faces,
                               .hull_words = "`pdepth simplify`",
-                              .turn_words = "--turn-faces"};
+                              .turn_words = "--turn-faces",
+                              .parts_words = ""};
   const auto solid = query::body_of_mesh(std::move(mesh), arguments.input, wish).solid;
   DecompositionSettings settings;
   settings.error = read_error(arguments.error, diagonal_of(*solid));

@@ -1,5 +1,6 @@
 /// @file
-/// The groups of a mesh file (`o` and `g` of an OBJ, the meshes that a glTF's scene shows), each as a mesh of its own.
+/// The parts of a mesh file, each as a mesh of its own: its groups (`o` and `g` of an OBJ, the meshes that a glTF's
+/// scene shows), and the connected surfaces of a group.
 #pragma once
 
 #include <string>
@@ -18,5 +19,11 @@ struct MeshGroup {
 
 /// The groups that have faces. A mesh without groups is one.
 [[nodiscard]] std::vector<MeshGroup> groups_of(const MeshPoints& mesh);
+
+/// The connected surfaces of a group, "part 2 (\"lid\"), surface 0" and so on.
+[[nodiscard]] std::vector<MeshGroup> surfaces_of(const MeshGroup& group);
+
+/// True if a mesh has several groups or several connected surfaces.
+[[nodiscard]] bool has_parts(const MeshPoints& mesh);
 
 }  // namespace pd::query

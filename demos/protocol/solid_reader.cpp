@@ -39,9 +39,16 @@ MeshFinding as_in_file(MeshFinding finding, const MeshPoints& mesh) {
 [[noreturn]] void refuse_fault(const std::string& path, const MeshFinding& finding, const MeshPoints& mesh,
                                const SolidWish& wish) {
   const bool inside_out = finding.fault == MeshFault::inside_out;
-  const std::string way_out = inside_out ? "ask for the mesh turned (" + wish.turn_words + ")" : "mend the mesh";
+  const auto hull = ConvexPolytope::from_points(mesh.points);
+  const bool flat = hull && hull->affine_dimension() < 3;
+  std::string way_out = inside_out ? "ask for the mesh turned (" + wish.turn_words + ")" : "mend the mesh";
+  const bool several = finding.fault == MeshFault::self_crossing || finding.fault == MeshFault::not_manifold;
+  if (several && !flat && !wish.parts_words.empty() && has_parts(mesh)) {
+    way_out += ", ask for the union of its parts (" + wish.parts_words + ")";
+  }
   refuse(to_string(finding.fault),
-         path + ": " + in_words(as_in_file(finding, mesh)) + lines_of(finding, mesh.faces) + "; " + way_out +
+         path + ": " + in_words(as_in_file(finding, mesh)) + lines_of(finding, mesh.faces) +
+             (flat ? "; all points lie in one plane, so that no volume is there" : "") + "; " + way_out +
              ", or ask for the convex hull of its vertices (" + wish.hull_words + "). `pdepth check` names every fault",
          "");
 }
@@ -55,11 +62,11 @@ MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish&
   };
   if (mesh.faces.size() == 0 && !wish.always) return hull(MeshAs::found);
   // Crossings are the dearest part, and a convex mesh has none.
-  const auto quick = check_mesh(view, {.crossings = false});
+  const auto quick = check_mesh(view, {.crossings = false, .extent = wish.extent});
   if (!quick) return hull(MeshAs::found);  // the hull's factory refuses the points by name
   if (quick->convex && !wish.always) return hull(MeshAs::convex);
   if (const auto fault = fault_of_solid(*quick, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
-  const auto report = check_mesh(view);
+  const auto report = check_mesh(view, {.extent = wish.extent});
   if (!report) refuse(to_string(report.error().code), name + ": " + report.error().message, report.error().where);
   if (const auto fault = fault_of_solid(*report, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
   auto solid = MeshSolid::from_checked(view, *report, {.turn_faces = wish.turn_faces});
@@ -185,22 +192,65 @@ NamedBody union_of(std::vector<NamedShape> shapes) {
   return {*std::move(compound), std::move(shapes)};
 }
 
+/// The largest extent along an axis.
+double extent_of(const MeshPoints& mesh) {
+  Vec3 low = mesh.points.front(), high = low;
+  for (const Vec3& p : mesh.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return (high - low).maxCoeff();
+}
+
+bool bounds_solid(const MeshPoints& mesh, const SolidWish& wish) {
+  const MeshView view{mesh.points, mesh.faces.offsets, mesh.faces.corners};
+  const auto report = check_mesh(view, {.extent = wish.extent});
+  return report && MeshSolid::from_checked(view, *report, {.turn_faces = wish.turn_faces}).has_value();
+}
+
+/// The group, or its surfaces where it bounds no solid as a whole.
+/// @throws Refusal inside_out where some of the surfaces show their insides and some do not: a surface that crosses
+/// others may be a cavity, whose faces must not be turned.
+std::vector<MeshGroup> bodies_of(const MeshGroup& group, const std::string& name, const SolidWish& wish) {
+  std::vector<MeshGroup> surfaces = surfaces_of(group);
+  if (surfaces.size() < 2 || bounds_solid(group.mesh, wish)) return {group};
+  std::size_t inside_out = 0;
+  for (const MeshGroup& surface : surfaces) {
+    const MeshFaces& faces = surface.mesh.faces;
+    const auto report = check_mesh({surface.mesh.points, faces.offsets, faces.corners}, {.crossings = false});
+    if (report && report->relative_volume < 0) ++inside_out;
+  }
+  if (inside_out == 0 || (inside_out == surfaces.size() && wish.turn_faces)) return surfaces;
+  refuse("inside_out",
+         name + ": " + group.name + ": " + std::to_string(inside_out) + " of its " + std::to_string(surfaces.size()) +
+             " connected surfaces show their insides, and the surfaces cross or touch, so that cavities cannot be " +
+             "told from parts; let all of them show their outsides (" + wish.turn_words +
+             " turns a mesh whose surfaces all show their insides), or ask for the convex hull of its vertices (" +
+             wish.hull_words + ")",
+         "");
+}
+
 }  // namespace
 
 NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish) {
-  std::vector<MeshGroup> groups = groups_of(mesh);
+  const std::vector<MeshGroup> groups = groups_of(mesh);
   if (groups.empty()) refuse("bad_faces", name + ": the file holds points and no faces, and so no parts", "");
   const std::string way_out =
       "; `pdepth decompose` writes convex parts with a stated error, and " + wish.hull_words + " asks for the hull";
   std::vector<NamedShape> shapes;
-  for (MeshGroup& group : groups) {
-    const std::string full_name = name + ": " + group.name;
-    const MeshBody body = body_of_mesh(std::move(group.mesh), full_name, wish);
-    if (body.hull) {
-      shapes.push_back(*body.hull);
-      continue;
+  for (const MeshGroup& group : groups) {
+    SolidWish part_wish = wish;
+    part_wish.parts_words.clear();
+    part_wish.extent = extent_of(mesh);
+    for (MeshGroup& part : bodies_of(group, name, part_wish)) {
+      const std::string full_name = name + ": " + part.name;
+      const MeshBody body = body_of_mesh(std::move(part.mesh), full_name, part_wish);
+      if (body.hull) {
+        shapes.push_back(*body.hull);
+        continue;
+      }
+      for (NamedShape& shape : exact_parts(*body.solid, full_name + ": ", way_out)) shapes.push_back(std::move(shape));
     }
-    for (NamedShape& shape : exact_parts(*body.solid, full_name + ": ", way_out)) shapes.push_back(std::move(shape));
   }
   return union_of(std::move(shapes));
 }

@@ -21,6 +21,10 @@ struct SolidWish {
   std::string hull_words = "\"as\":\"hull\"";
   /// Words by which one asks for a mesh turned.
   std::string turn_words = "\"turn_faces\":true";
+  /// Words by which one asks for the union of a mesh's parts; none where that cannot be asked.
+  std::string parts_words = "\"as\":\"parts\"";
+  /// The largest extent of the file, where the mesh is a part of it; 0: the mesh's own.
+  double extent = 0;
 };
 
 /// The body of a mesh: its solid, or the hull where the mesh is convex or has no faces.
@@ -42,7 +46,7 @@ struct SolidWish {
 [[nodiscard]] bool is_mesh_of_parts(const Node& node);
 
 /// The union of the groups of a mesh file, each of which is convex or a solid with parts as `parts_of_solid` takes
-/// them.
+/// them. A group that bounds no solid as a whole, since its surfaces cross or touch, is the union of those surfaces.
 /// @throws Refusal as `body_of_mesh` and `parts_of_solid`, with the part that is at fault; bad_faces for a file without
 /// faces.
 [[nodiscard]] NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish);

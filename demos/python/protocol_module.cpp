@@ -104,7 +104,7 @@ py::list solid_parts(const std::string& path, py::handle scale, double tolerance
     query::MeshBody body;
     {
       const py::gil_scoped_release unlocked;
-      body = query::body_of_mesh(std::move(mesh), path, {.hull_words = "meshes=\"hull\""});
+      body = query::body_of_mesh(std::move(mesh), path, {.hull_words = "meshes=\"hull\"", .parts_words = ""});
       if (body.solid) {
         auto cut = SolidParts::from_solid(*body.solid, {.tolerance = tolerance});
         if (!cut) query::refuse(to_string(cut.error().code), cut.error().message, "");

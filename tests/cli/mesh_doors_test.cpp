@@ -103,6 +103,52 @@ TEST_F(MeshDoors, GroupsAreAskedAsParts) {
   EXPECT_TRUE(answer(depth_line(mesh(cloud_, parts), mesh(cube_), "")).contains("error")) << "no faces, no parts";
 }
 
+/// Surfaces that cross, touch along an edge or abut, in a file without groups, are parts as well.
+TEST_F(MeshDoors, SurfacesThatCrossAreParts) {
+  const std::string parts = R"(,"as":"parts")", pose = R"("pose_b":{"translation":[1.1,1.1,0]})";
+  const std::string foot = box_obj({0, 0, 0, 2, 1, 1}, 0);
+  for (const std::array<double, 6>& leg : {std::array<double, 6>{0, 0.5, 0, 1, 2, 1}, {0, 1, 0, 1, 2, 1}}) {
+    const std::string file = write("surfaces.obj", foot + box_obj(leg, 8));
+    const Json refused = answer(depth_line(mesh(file), mesh(cube_), pose)).at("error");
+    expect_words(refused.at("message"), {"\"as\":\"parts\"", "\"as\":\"hull\""});
+    expect_words(run("depth surfaces.obj cube.obj").err, {"union of its parts (--parts)"});
+    expect_words(run("check surfaces.obj").out, {"`pdepth depth --parts`"});
+    EXPECT_NEAR(answer(depth_line(mesh(file, parts), mesh(cube_), pose)).at("distance").get<double>(), 0.1, 1e-15);
+  }
+  const std::string edge = write("edge.obj", foot + box_obj({-1, 1, 0, 0, 2, 1}, 8));
+  EXPECT_EQ(answer(depth_line(mesh(edge), mesh(cube_), "")).at("error").at("code"), "not_manifold");
+  EXPECT_NEAR(answer(depth_line(mesh(edge, parts), mesh(cube_), R"("pose_b":{"translation":[0.25,1.5,0]})"))
+                  .at("distance")
+                  .get<double>(),
+              0.25, 1e-15);
+  // A surface that shows its inside and crosses another may be a cavity; nobody fills it.
+  const std::string turned = "f 9 10 12 11\nf 13 15 16 14\nf 9 13 14 10\nf 11 12 16 15\nf 9 11 15 13\nf 10 14 16 12\n";
+  const std::string leg = box_obj({0, 0.5, 0, 1, 2, 1}, 8);
+  const std::string mixed = write("mixed.obj", foot + leg.substr(0, leg.find('f')) + turned);
+  for (const char* const turn : {"", R"(,"turn_faces":true)"}) {
+    const Json refused = answer(depth_line(mesh(mixed, parts + turn), mesh(cube_), pose)).at("error");
+    EXPECT_EQ(refused.at("code"), "inside_out");
+    expect_words(refused.at("message"), {"part 0: 1 of its 2 connected surfaces"});
+  }
+  // A flat part is named as flat.
+  const std::string flat = write("flat.obj", foot + "o flat\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 9 10 11\nf 10 9 11\n");
+  expect_words(answer(depth_line(mesh(flat, parts), mesh(cube_), pose)).at("error").at("message"),
+               {"part 1 (\"flat\")", "all points lie in one plane"});
+}
+
+/// Six decimals of a file of a metre round a part of a centimetre by more than 1e-5 of the part.
+TEST_F(MeshDoors, PartsAreConvexToThePrecisionOfTheirFile) {
+  const std::string part =
+      "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nv 0 0 0.01\nv 0.003333 0.003333 0.003332\n"
+      "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 5\nf 3 4 5\nf 4 2 5\n";
+  write("part.obj", part);
+  expect_words(run("check part.obj").out, {"not convex"});
+  const std::string file = write("fine.obj", "o small\n" + part + "o large\n" + box_obj({1, 0, 0, 2, 1, 1}, 5));
+  const Outcome people = run("depth fine.obj sphere:0.5 --parts --pose-b 0,0,-0.75");
+  EXPECT_EQ(people.status, 0) << people.err;
+  expect_words(people.out, {"(convex parts: 2)"});
+}
+
 /// A glTF shows one mesh at two places: each showing is a part.
 TEST_F(MeshDoors, MeshesOfAGltfAreParts) {
   std::string bytes;

@@ -261,6 +261,29 @@ TEST(MeshCheck, RefusesWhatIsNoMesh) {
   EXPECT_FALSE(cloud.check().solid());
 }
 
+TEST(MeshCheck, SolidsThatTouchHaveSurfacesOfTheirOwn) {
+  Mesh mesh = box(0, 1);
+  mesh.append(prism({{1, 1}, {2, 1}, {2, 2}, {1, 2}}, 0, 1));  // along an edge
+  mesh.append(box(-1, 0));                                     // in a vertex
+  mesh.face({0, 0, 1});                                        // no face at all
+  const auto surfaces_of = [](const Mesh& m) { return connected_surfaces({m.points, m.offsets, m.corners}); };
+  std::vector<std::int32_t> expected(19, 0);
+  std::fill(expected.begin() + 6, expected.begin() + 12, 1);
+  std::fill(expected.begin() + 12, expected.begin() + 18, 2);
+  expected.back() = -1;
+  EXPECT_EQ(surfaces_of(mesh), expected);
+  EXPECT_EQ(surfaces_of(soup(mesh)), expected) << "points with equal coordinates are one";
+  EXPECT_LT(mesh.check().shells, 3) << "the check counts faces with a common edge as one";
+  // A face in the mesh's own size is bent, in that of a larger mesh it is not.
+  Mesh bent;
+  bent.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.3333, 0.3333, 0.3333}};
+  for (const auto& face : {std::array{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 4}, {2, 3, 4}, {3, 1, 4}}) {
+    bent.face({face[0], face[1], face[2]});
+  }
+  EXPECT_FALSE(bent.check().convex);
+  EXPECT_TRUE(check_mesh({bent.points, bent.offsets, bent.corners}, {.extent = 100})->convex);
+}
+
 TEST(MeshCheck, TrianglesCrossWhereTheirBodiesAreNotSeparated) {
   std::mt19937_64 random(42);
   Scratch scratch;

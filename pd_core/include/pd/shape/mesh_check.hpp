@@ -86,6 +86,7 @@ inline constexpr std::size_t kShownFindings = 5;
 
 struct MeshCheckSettings {
   bool crossings = true;  ///< search self_crossing, the dearest part
+  double extent = 0;      ///< what kMeshPrecision is a share of, for a part of a larger mesh; 0: the mesh's own size
 };
 
 /// A mesh as indices over points: face f is corners[offsets[f]] to corners[offsets[f + 1] - 1].
@@ -103,5 +104,13 @@ struct MeshView {
 /// Time O(n log n) for n corners without crossings. Their search visits pairs of faces whose boxes meet, up to 64 n +
 /// 10^6 of them.
 [[nodiscard]] Expected<SurfaceReport> check_mesh(const MeshView& mesh, const MeshCheckSettings& settings = {});
+
+/// The connected surface of each face, numbered from 0 in the order of their first faces; -1 for a face of fewer than
+/// three different points.
+///
+/// Two faces are connected where an edge is theirs alone, so that solids which touch in an edge or a vertex have
+/// surfaces of their own; `SurfaceReport::shells` counts those as one.
+/// @param mesh  one that `check_mesh` accepts. Time O(n log n) for n corners.
+[[nodiscard]] std::vector<std::int32_t> connected_surfaces(const MeshView& mesh);
 
 }  // namespace pd

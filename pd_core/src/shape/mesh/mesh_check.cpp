@@ -52,6 +52,19 @@ struct FacePlane {
   [[nodiscard]] double height(const Vec3& p) const { return normal.dot(p - centre); }
 };
 
+/// The set of each face, numbered from 0 in the order of their first faces; -1 for an empty loop.
+std::vector<std::int32_t> numbered(const WeldedMesh& mesh, DisjointSets& faces) {
+  std::vector<std::int32_t> of_face(static_cast<std::size_t>(mesh.num_faces()), -1), of_root = of_face;
+  std::int32_t sets = 0;
+  for (std::int32_t f = 0; f < mesh.num_faces(); ++f) {
+    if (mesh.face(f).empty()) continue;
+    std::int32_t& set = of_root[static_cast<std::size_t>(faces.find(f))];
+    if (set < 0) set = sets++;
+    of_face[static_cast<std::size_t>(f)] = set;
+  }
+  return of_face;
+}
+
 class MeshChecker {
  public:
   explicit MeshChecker(const MeshView& mesh) : mesh_(detail::weld(mesh)) {
@@ -67,12 +80,12 @@ class MeshChecker {
   }
 
   SurfaceReport check(const MeshCheckSettings& settings) {
+    precision_ = kMeshPrecision * (settings.extent > 0 ? settings.extent : report_.size);
     find_planes();
     check_edges();
     if (report_.closed() && report_.oriented()) check_shells();
     report_.convex = report_.closed() && report_.oriented() && report_.manifold() && report_.shells == 1 &&
-                     report_.relative_volume != 0 &&
-                     deepest_bend_[report_.relative_volume < 0 ? 1 : 0] <= kMeshPrecision * report_.size;
+                     report_.relative_volume != 0 && deepest_bend_[report_.relative_volume < 0 ? 1 : 0] <= precision_;
     if (settings.crossings) check_crossings();
     std::stable_sort(report_.findings.begin(), report_.findings.end(),
                      [](const MeshFinding& a, const MeshFinding& b) { return a.fault < b.fault; });
@@ -108,8 +121,7 @@ class MeshChecker {
       double off = 0;
       for (const std::int32_t v : loop)
         off = std::max(off, std::abs(plane.height(mesh_.points[static_cast<std::size_t>(v)])));
-      if (loop.size() > 3 && off > kMeshPrecision * report_.size)
-        add({.fault = MeshFault::not_planar, .faces = {f, -1}});
+      if (loop.size() > 3 && off > precision_) add({.fault = MeshFault::not_planar, .faces = {f, -1}});
     }
   }
   [[nodiscard]] Vec3 scaled(std::int32_t from, std::int32_t to) const {
@@ -142,7 +154,8 @@ class MeshChecker {
         deepest_bend_[side] = std::max(deepest_bend_[side], bend(c, d, side == 0 ? 1 : -1));
     }
     check_fans(fans, faulty);
-    number_shells(faces);
+    shell_of_ = numbered(mesh_, faces);
+    for (const std::int32_t shell : shell_of_) report_.shells = std::max<std::int64_t>(report_.shells, shell + 1);
   }
 
   /// How far two faces bend towards each other at their common edge: the height of one above the other's plane, by
@@ -170,16 +183,6 @@ class MeshChecker {
       if (fans.find(c) == fans.find(first[v])) continue;
       told[v] = 1;
       add({.fault = MeshFault::not_manifold, .edge = {mesh_.vertex(c), -1}, .faces = {face_of(first[v]), face_of(c)}});
-    }
-  }
-
-  void number_shells(DisjointSets& faces) {
-    shell_of_.resize(planes_.size(), -1);
-    for (std::int32_t f = 0; f < mesh_.num_faces(); ++f) {
-      if (mesh_.face(f).empty()) continue;
-      std::int32_t& shell = shell_of_[static_cast<std::size_t>(faces.find(f))];
-      if (shell < 0) shell = static_cast<std::int32_t>(report_.shells++);
-      shell_of_[static_cast<std::size_t>(f)] = shell;
     }
   }
 
@@ -249,6 +252,7 @@ class MeshChecker {
 
   WeldedMesh mesh_;
   SurfaceReport report_;
+  double precision_ = 0;
   std::vector<FacePlane> planes_;
   std::vector<std::int32_t> shell_of_;
   std::array<double, 2> deepest_bend_{};  ///< inwards, for faces that show their outside and for those that do not
@@ -265,6 +269,18 @@ std::string_view to_string(MeshFault fault) {
 Expected<SurfaceReport> check_mesh(const MeshView& mesh, const MeshCheckSettings& settings) {
   if (auto error = bad_input(mesh)) return *std::move(error);
   return MeshChecker(mesh).check(settings);
+}
+
+std::vector<std::int32_t> connected_surfaces(const MeshView& mesh) {
+  const WeldedMesh welded = detail::weld(mesh);
+  const std::vector<EdgeUse> uses = detail::sorted_edges(welded);
+  const auto face_of = [&](const EdgeUse& use) { return welded.face_of[static_cast<std::size_t>(use.corner)]; };
+  DisjointSets faces(static_cast<std::size_t>(welded.num_faces()));
+  for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
+    for (end = i; end < uses.size() && uses[end].same_edge(uses[i]);) ++end;
+    if (end - i == 2) faces.unite(face_of(uses[i]), face_of(uses[i + 1]));
+  }
+  return numbered(welded, faces);
 }
 
 }  // namespace pd
