@@ -119,7 +119,7 @@ Points shadow_polytope(int facets, double thickness) {
   return points;
 }
 
-Pose turned(Random& random) { return *Pose::from_quaternion(random.quaternion(), Vec3::Zero()); }
+Pose turned(Random& random) { return random.pose(Vec3::Zero()); }
 
 /// Unit balls about the origins of their frames: B comes down on the line on which the two extreme points meet at first
 /// and the centres at last, at overlap 2.

@@ -166,7 +166,7 @@ ContactScene compounds(std::uint64_t perturbation) {
     body.parts.push_back(box(Vec3(0.5, 0.12, 0.12), Vec3(0, 0, 0)));
     body.parts.push_back(box(Vec3(0.12, 0.12, 0.3), Vec3(tee ? 0.0 : 0.38, 0, 0.42)));
     body.mass = 20;
-    body.position = Vec3(0.4 * random.next(), 0.4 * random.next(), 1 + 1.8 * i);
+    body.position = Vec3(0, 0, 1 + 1.8 * i) + 0.4 * random.level_vector();
     body.orientation = random.orientation();
     scene.world.bodies.push_back(body);
   }
@@ -471,8 +471,8 @@ ContactScene pour(int count, bool heightfield, std::uint64_t perturbation) {
   Stream random(23);
   for (int i = 0; i < count; ++i) {
     const int place = i % 16;
-    const Vec3 at(0.95 * (place % 4 - 1.5) + 0.05 * random.next(), 0.95 * (place / 4 - 1.5) + 0.05 * random.next(),
-                  3 + 0.9 * (i / 16));
+    const Vec3 at =
+        Vec3(0.95 * (place % 4 - 1.5), 0.95 * (place / 4 - 1.5), 3 + 0.9 * (i / 16)) + 0.05 * random.level_vector();
     WorldBody body = i % 5 == 0   ? box(Vec3(0.25, 0.3, 0.2), at)
                      : i % 5 == 1 ? cylinder(0.25, 0.25, at)
                      : i % 5 == 2 ? capsule(0.16, 0.2, at, 60)

@@ -65,7 +65,7 @@ ContactScene dropped_column(std::uint64_t perturbation) {
   scene.world.bodies.push_back(ground_box(50));
   Stream random(5);
   for (int i = 0; i < 10; ++i) {
-    const Vec3 aside(1e-4 * random.next(), 1e-4 * random.next(), 0);
+    const Vec3 aside = 1e-4 * random.level_vector();
     scene.world.bodies.push_back(box(Vec3::Constant(1), Vec3(0, 0, 20 + 2 * i) + aside));
   }
   perturb(scene, perturbation);
@@ -151,8 +151,8 @@ World pour_of_gears(std::uint64_t /*seed*/) {
     // No two gears overlap at the start: their diameter is 0.73.
     const int place = i % 9;
     WorldBody body = gear;
-    body.position = Vec3(0.78 * (place % 3 - 1), 0.78 * (place / 3 - 1), 0.5 + 0.78 * (i / 9)) +
-                    0.02 * Vec3(random.next(), random.next(), 0);
+    body.position =
+        Vec3(0.78 * (place % 3 - 1), 0.78 * (place / 3 - 1), 0.5 + 0.78 * (i / 9)) + 0.02 * random.level_vector();
     body.orientation = random.orientation();
     body.colour = i % 3;
     // Every second gear shows its parts.

@@ -30,7 +30,7 @@ PartList cross() {
 PartList dumbbell(int n, Random& random) {
   PartList parts;
   for (const double x : {-1.5, 1.5}) {
-    parts.push_back({sphere_hull(n, random), *Pose::from_quaternion(random.quaternion(), {x, 0, 0})});
+    parts.push_back({sphere_hull(n, random), random.pose({x, 0, 0})});
   }
   parts.push_back(placed_box({1.5, 0.25, 0.25}, {0, 0, 0}));
   return parts;
@@ -60,7 +60,7 @@ PartList rubble(int parts, int n, Random& random) {
   for (int k = 0; k < parts; ++k) {
     const double distance = random.uniform(0, 2);
     const Vec3 place = random.direction() * distance;
-    list.push_back({sphere_hull(n, random), *Pose::from_quaternion(random.quaternion(), place)});
+    list.push_back({sphere_hull(n, random), random.pose(place)});
   }
   return list;
 }

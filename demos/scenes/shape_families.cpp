@@ -43,6 +43,11 @@ Vec3 Random::direction() {
   }
 }
 
+Vec3 Random::vector(double shortest, double longest) {
+  const Vec3 unit = direction();
+  return uniform(shortest, longest) * unit;
+}
+
 std::array<double, 4> Random::quaternion() {
   for (;;) {
     const double w = uniform(-1, 1);
@@ -55,6 +60,8 @@ std::array<double, 4> Random::quaternion() {
     return {w / length, x / length, y / length, z / length};
   }
 }
+
+Pose Random::pose(const Vec3& translation) { return *Pose::from_quaternion(quaternion(), translation); }
 
 // Reduced to an eighth of a turn, where Taylor's series to x^19 and x^18 ends below 1e-19.
 Turn turn(double fraction) {
@@ -191,7 +198,8 @@ Points cloud(int n, Random& random) {
     if (kind == 1) {
       points.push_back(Vec3(pick()));  // a duplicate
     } else if (kind == 2) {
-      points.push_back(0.5 * (pick() + pick()));  // often exactly on an edge
+      const Vec3 end = pick();
+      points.push_back(0.5 * (end + pick()));  // often exactly on an edge
     } else if (kind == 3) {
       Vec3 p = random.direction();
       p[random.integer(0, 2)] = random.integer(0, 1) != 0 ? 0.75 : -0.75;  // coplanar with many

@@ -4,7 +4,8 @@
 ///
 /// Everything is a function of its parameters and a seed. No distribution of the standard library and no transcendental
 /// function is used (their bits differ between libraries): only +, -, *, /, sqrt, which are correctly rounded
-/// everywhere. No two arguments of one call draw from a generator: compilers differ in which they evaluate first.
+/// everywhere. No two operands and no two arguments in parentheses draw from a generator: compilers differ in which
+/// they evaluate first. What stands in braces is evaluated in its order.
 #pragma once
 
 #include <array>
@@ -33,8 +34,12 @@ class Random {
   Vec3 integer_point(int low, int high);
   /// On the unit sphere.
   Vec3 direction();
+  /// A direction, and then its length in [shortest, longest].
+  Vec3 vector(double shortest, double longest);
   /// A random rotation, unit up to rounding.
   std::array<double, 4> quaternion();
+  /// A random rotation with this translation.
+  Pose pose(const Vec3& translation);
 
  private:
   std::uint64_t state_;

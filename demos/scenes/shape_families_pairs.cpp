@@ -10,9 +10,7 @@ namespace {
 
 Vec3 rotate(const Pose& pose, const Vec3& p) { return pose.rotation() * p; }
 
-Pose quaternion_pose(Random& random, const Vec3& translation) {
-  return *Pose::from_quaternion(random.quaternion(), translation);
-}
+Pose quaternion_pose(Random& random, const Vec3& translation) { return random.pose(translation); }
 
 Pose matrix_pose(const Mat3& rotation, const Vec3& translation) { return *Pose::from_matrix(rotation, translation); }
 

@@ -64,9 +64,8 @@ ContactScene torus_pour(std::uint64_t perturbation) {
   Stream random(31);
   for (int i = 0; i < 50; ++i) {
     const int place = i % 4;
-    WorldBody body = torus(
-        12, 0.3, 0.1,
-        Vec3(place % 2 - 0.5 + 0.05 * random.next(), place / 2 - 0.5 + 0.05 * random.next(), 0.9 + 0.95 * (i / 4)));
+    WorldBody body = torus(12, 0.3, 0.1,
+                           Vec3(place % 2 - 0.5, place / 2 - 0.5, 0.9 + 0.95 * (i / 4)) + 0.05 * random.level_vector());
     body.orientation = random.orientation();
     scene.world.bodies.push_back(body);
   }

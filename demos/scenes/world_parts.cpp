@@ -17,6 +17,11 @@ Vec3 Stream::vector() {
   return {x, y, next()};
 }
 
+Vec3 Stream::level_vector() {
+  const double y = next();
+  return {next(), y, 0};
+}
+
 Vec3 Stream::direction() {
   for (;;) {
     const Vec3 v = vector();
@@ -26,7 +31,10 @@ Vec3 Stream::direction() {
   }
 }
 
-Eigen::Quaterniond Stream::orientation() { return Eigen::Quaterniond(Eigen::AngleAxisd(M_PI * next(), direction())); }
+Eigen::Quaterniond Stream::orientation() {
+  const Vec3 axis = direction();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(M_PI * next(), axis));
+}
 
 WorldBody ground_box(double extent) {
   WorldBody body = box(Vec3(extent, extent, 0.25 * extent), Vec3(0, 0, -0.25 * extent));

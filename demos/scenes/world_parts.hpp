@@ -15,6 +15,8 @@ class Stream {
   /// In [-1, 1).
   double next();
   Vec3 vector();
+  /// (x, y, 0), y drawn first.
+  Vec3 level_vector();
   Vec3 direction();
   Eigen::Quaterniond orientation();
 

@@ -50,13 +50,12 @@ World small_towers(std::uint64_t seed) {
   world.bodies.push_back(floor_below(1));
   const double h = 0.01;
   for (int i = 0; i < 10; ++i) {
-    WorldBody body =
-        box_hull(Vec3(h, h, h), Vec3(-0.03 + 4e-4 * random.next(), 4e-4 * random.next(), h + 2 * h * i), 0);
+    WorldBody body = box_hull(Vec3(h, h, h), Vec3(-0.03, 0, h + 2 * h * i) + 4e-4 * random.level_vector(), 0);
     body.orientation = Eigen::AngleAxisd(0.15 * random.next(), Vec3::UnitZ());
     world.bodies.push_back(body);
   }
   for (int i = 0; i < 8; ++i) {
-    WorldBody body = cylinder(h, h, Vec3(0.03 + 4e-4 * random.next(), 4e-4 * random.next(), h + 2 * h * i));
+    WorldBody body = cylinder(h, h, Vec3(0.03, 0, h + 2 * h * i) + 4e-4 * random.level_vector());
     body.orientation = Eigen::AngleAxisd(M_PI * random.next(), Vec3::UnitZ());
     world.bodies.push_back(body);
   }
@@ -78,7 +77,7 @@ World centimetre_tower(std::uint64_t seed) {
   world.bodies.push_back(floor_below(1));
   const double h = 0.005;
   for (int i = 0; i < 20; ++i) {
-    WorldBody body = box_hull(Vec3(h, h, h), Vec3(2e-4 * random.next(), 2e-4 * random.next(), h + 2 * h * i), i % 3);
+    WorldBody body = box_hull(Vec3(h, h, h), Vec3(0, 0, h + 2 * h * i) + 2e-4 * random.level_vector(), i % 3);
     body.orientation = Eigen::AngleAxisd(0.15 * random.next(), Vec3::UnitZ());
     world.bodies.push_back(body);
   }
@@ -172,8 +171,9 @@ World rods_at_a_foil(std::uint64_t seed) {
     // Across its way, along it, and turning from one to the other.
     WorldBody rod = box_hull(Vec3(0.02, 0.02, 0.3), Vec3(-1.3 - 0.07 * i, 0.55 * (i - 1), 0.75 + 0.2 * i), i);
     rod.orientation = Eigen::AngleAxisd(0.5 * M_PI * i + 0.1 * random.next(), Vec3::UnitY());
-    rod.linear_velocity = Vec3(30 + 5 * random.next(), 0.3 * random.next(), 1);
-    rod.angular_velocity = Vec3(2 * random.next(), i == 1 ? 0.5 : 16, 2 * random.next());
+    rod.linear_velocity = Vec3(30, 0, 1) + random.level_vector().cwiseProduct(Vec3(5, 0.3, 0));
+    const double spin_z = 2 * random.next();
+    rod.angular_velocity = Vec3(2 * random.next(), i == 1 ? 0.5 : 16, spin_z);
     world.bodies.push_back(rod);
   }
   world.view_lower = Vec3(-1.7, -0.9, 0);

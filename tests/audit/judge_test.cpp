@@ -235,9 +235,9 @@ TEST(Judge, SurfaceDistanceAgreesWithTheDepthOfAPoint) {
                                            {Vec3(0, 0, 0), Vec3(1, 2, 3)}};
   for (const scenes::Points& points : bodies) {
     const audit::RecordedShape body = recorded(points);
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), 3 * random.direction());
+    const Pose pose = random.pose(3 * random.direction());
     for (int i = 0; i < 40; ++i) {
-      const Vec3 at = pose.apply(random.uniform(0, 1.5) * random.direction());
+      const Vec3 at = pose.apply(random.vector(0, 1.5));
       const audit::RecordedContact contact{"1", &point, &body, *Pose::from_matrix(Mat3::Identity(), at), pose, {}};
       const double expected = std::abs(audit::body_depth(contact, 0.1, scratch)->signed_distance());
       EXPECT_NEAR(audit::surface_distance(body, pose, at, 1e-9, scratch), expected, 4e-15);
@@ -251,8 +251,8 @@ TEST(Judge, ScaleIsTheLargestCoordinateOfTheDifference) {
   for (int i = 0; i < 20; ++i) {
     const audit::RecordedShape a = recorded(scenes::sphere_hull(12, random));
     const audit::RecordedShape b = recorded(scenes::needle(9, random));
-    const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.direction());
-    const Pose pose_b = *Pose::from_quaternion(random.quaternion(), random.direction());
+    const Pose pose_a = random.pose(random.direction());
+    const Pose pose_b = random.pose(random.direction());
     double most = 0;
     for (int k = 0; k < 6; ++k) {
       const Vec3 axis = (k < 3 ? 1.0 : -1.0) * Vec3::Unit(k % 3);

@@ -315,7 +315,7 @@ Twin compound_twin(const Context& context, Random& random) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 h = random.point(0.2, 0.6), place = random.point(-0.6, 0.6);
     parts.push_back(box_twin(context, {h.x(), h.y(), h.z()}));
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), place);
+    const Pose pose = random.pose(place);
     of_cpp.push_back({parts.back().whole, pose});
     of_c.push_back({parts.back().shape.get(), pose_of(pose)});
   }
@@ -354,9 +354,9 @@ void ask_curved(BothDoors& doors, std::int64_t i, Random& random) {
   const Twin a = curved_twin(doors.context(), random);
   const Twin b = curved_twin(doors.context(), random);
   const Vec3 place_a = 0.5 * random.direction();
-  const Pose pose_a = *Pose::from_quaternion(random.quaternion(), place_a);
-  const Vec3 place = random.uniform(0, 1.5) * random.direction();
-  doors.pair(a, pose_a, b, *Pose::from_quaternion(random.quaternion(), place));
+  const Pose pose_a = random.pose(place_a);
+  const Vec3 place = random.vector(0, 1.5);
+  doors.pair(a, pose_a, b, random.pose(place));
   doors.depth({.delta = 1e-3});
   doors.depth({.bracket = Bracket::contact, .contact_tolerance = 1e-6});
   doors.manifold(0.02);
@@ -381,7 +381,7 @@ TEST(CAnswers, AreThoseOfCppBitForBit) {
       const Twin a = compound_twin(doors.context(), random);
       const Twin b = compound_twin(doors.context(), random);
       const Vec3 place = random.point(-0.5, 0.5);
-      const Pose pose_a = *Pose::from_quaternion(random.quaternion(), place);
+      const Pose pose_a = random.pose(place);
       doors.pair(a, pose_a, b, Pose());
       doors.compound();
     }

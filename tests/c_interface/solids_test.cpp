@@ -106,7 +106,7 @@ TEST_F(CSolids, AnswersAreThoseOfCpp) {
     const Shape body = solid(context_, mesh);
     const MeshSolid twin = *MeshSolid::from_faces(mesh.view());
     std::uniform_real_distribution<double> number(-1, 1);
-    const Vec3 shift = Vec3(number(random), number(random), number(random)) * (1 + i % 4);
+    const Vec3 shift = Vec3{number(random), number(random), number(random)} * (1 + i % 4);
     const double half = number(random);
     const Pose pose = *Pose::from_quaternion({std::cos(half), 0, 0, std::sin(half)}, shift);
     const pdepth_answer solids = depth(body.get(), body.get(), pose);

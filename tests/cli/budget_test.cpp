@@ -12,6 +12,7 @@
 #include <sstream>
 #include <vector>
 
+#include "bench/measure/sanitized.hpp"
 #include "protocol/line/bounded_line.hpp"
 #include "protocol/stream/line_budget.hpp"
 #include "protocol_lines.hpp"
@@ -201,7 +202,7 @@ TEST(LineBudget, TheIdIsKnownBeforeTheLineIsRead) {
 }
 
 TEST(LineBudget, MemoryEndsTheLineAndNoOther) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PD_SANITIZED)
   GTEST_SKIP() << "a sanitizer's shadow takes address space without bound";
 #endif
   Session session;
@@ -311,7 +312,7 @@ std::size_t most_memory(const std::string& input, std::vector<const char*> argum
 }
 
 TEST_F(ProgramWithFiles, ALineTakesAFewTimesItsOwnMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PD_SANITIZED)
   GTEST_SKIP() << "a sanitizer's shadow and quarantine take memory of their own";
 #endif
   constexpr std::size_t kSize = 57'000'000;

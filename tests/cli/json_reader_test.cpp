@@ -189,7 +189,8 @@ TEST(JsonReader, SpoiltLinesHaveTheSameVerdict) {
 TEST(JsonReader, DoublesAreTheNearest) {
   std::mt19937_64 random(17);
   for (int i = 0; i < 50'000; ++i) {
-    std::string text = std::to_string(random() % 1000) + "." + std::to_string(random());
+    std::string text = std::to_string(random() % 1000) + ".";
+    text += std::to_string(random());
     if (i % 2 == 0) text += "e" + std::to_string(static_cast<int>(random() % 640) - 320);
     expect_the_same(text);
     if (HasFailure()) return;

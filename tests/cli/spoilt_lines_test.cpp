@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/measure/sanitized.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/stream/line_budget.hpp"
 #include "protocol_lines.hpp"
@@ -127,7 +128,7 @@ TEST(SpoiltLines, AreAnsweredInFullAndCoarsely) {
 
 /// A sample in processes of their own: each line costs one, and a second one where half of its time is over.
 TEST(SpoiltLines, AreAnsweredWithinABudget) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PD_SANITIZED)
   const query::LineBudget budget{.milliseconds = 20'000, .megabytes = 0};
 #else
   const query::LineBudget budget{.milliseconds = 20'000, .megabytes = 1'000};

@@ -163,7 +163,8 @@ void expect_no_nearer(const UnionDepth& answer, const PosedCompound& a, const Po
   Scratch scratch;
   const auto parts_a = *a.body->posed(a.pose), parts_b = *b.body->posed(b.pose);
   for (int k = 0; k < samples; ++k) {
-    const Vec3 t = random.direction() * (answer.lower * (1 - 1e-9) * std::cbrt(random.uniform(0.2, 1)));
+    const double reach = answer.lower * (1 - 1e-9) * std::cbrt(random.uniform(0.2, 1));
+    const Vec3 t = reach * random.direction();
     bool held = false;
     for (const PosedShape& x : parts_a) {
       for (const PosedShape& y : parts_b) {
@@ -179,8 +180,11 @@ TEST(UnionOfParts, IntegerBoxesAreCountedExactly) {
   Scratch scratch;
   int overlapping = 0, touching = 0, walls = 0;
   for (int k = 0; k < 300; ++k) {
-    const auto boxes_a = random_boxes(random.integer(1, 4), random.integer(1, 3), random);
-    const auto boxes_b = random_boxes(random.integer(1, 4), random.integer(1, 3), random);
+    const auto boxes = [&] {
+      const int most = random.integer(1, 3);
+      return random_boxes(random.integer(1, 4), most, random);
+    };
+    const auto boxes_a = boxes(), boxes_b = boxes();
     const Compound a = compound_of_cells(boxes_a), b = compound_of_cells(boxes_b);
     const CellOracle oracle(boxes_a, boxes_b);
     const PosedCompound posed_a{&a, Pose()}, posed_b{&b, Pose()};
@@ -295,7 +299,7 @@ TEST(UnionOfParts, FamiliesAgainstTheExactOracle) {
   bodies.push_back(scenes::rubble(4, 8, random));
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Compound a = compound_of(bodies[i]), b = compound_of(bodies[(i + 2) % bodies.size()]);
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), random.direction() * 0.7);
+    const Pose pose = random.pose(random.direction() * 0.7);
     const PosedCompound posed_a{&a, pose}, posed_b{&b, Pose()};
     const UnionDepth answer = *penetration_depth(posed_a, posed_b, scratch);
     expect_sound(answer, posed_a, posed_b);

@@ -102,8 +102,8 @@ TEST(UnionDifference, NearestPointIsTheDepth) {
   int overlapping = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (int turned = 0; turned < 2; ++turned) {
-      const Pose pose = *Pose::from_quaternion(turned == 0 ? std::array<double, 4>{1, 0, 0, 0} : random.quaternion(),
-                                               random.direction() * 0.5);
+      const Vec3 place = 0.5 * random.direction();
+      const Pose pose = turned == 0 ? *Pose::from_matrix(Mat3::Identity(), place) : random.pose(place);
       const Compound& other = bodies[i == 0 ? 1 : 0];
       const PosedCompound a{&bodies[i], pose}, b{&other, Pose()};
       const UnionDepth answer = *penetration_depth(a, b, scratch);
@@ -123,7 +123,7 @@ TEST(UnionDifference, StarsGiveAStarAndItsEnvelopeTheDepth) {
   Scratch scratch;
   const Compound a = compound_of(scenes::spiked_star(1)), b = compound_of(scenes::rough_ball(0, 0.4, random));
   const Vec3 offset(0.75, 0.125, -0.25);
-  const Pose pose = *Pose::from_quaternion(random.quaternion(), offset);
+  const Pose pose = random.pose(offset);
   const PosedCompound posed_a{&a, pose}, posed_b{&b, Pose()};
   const UnionDifference built = *minkowski_difference(posed_a, posed_b);
   // Star-shaped about c_B - c_A: every facet is seen from there from its inner side, and each ray leaves once.
@@ -151,7 +151,7 @@ TEST(UnionDifference, DeepRoughBallsAreAnsweredByTheirBoundaryAndFewCuts) {
     const Compound a = compound_of(scenes::rough_ball(0, 0.3, random)),
                    b = compound_of(scenes::rough_ball(0, 0.3, random)),
                    large = compound_of(scenes::rough_ball(1, 0.3, random));
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.3, 0.1, 0.2});
+    const Pose pose = random.pose({0.3, 0.1, 0.2});
     Scratch scratch;
     const UnionDepth answer = *penetration_depth(PosedCompound{&a, pose}, PosedCompound{&b, Pose()}, scratch);
     const UnionDifference built = *minkowski_difference({&a, pose}, {&b, Pose()});

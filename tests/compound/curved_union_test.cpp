@@ -94,7 +94,7 @@ TEST(CurvedUnion, SmallBodiesInAStar) {
     const Compound ball(*ConvexShape::sphere(radius));
     const Compound coin(*ConvexShape::cylinder(0.5, radius / 16, 2));
     for (int k = 0; k < kPlacesInAStar; ++k) {
-      const Pose place = *Pose::from_quaternion(random.quaternion(), random.uniform(0, 0.4) * random.direction());
+      const Pose place = random.pose(random.vector(0, 0.4));
       EXPECT_TRUE(expect_kept({&ball, place}, {&star, Pose()}, 4).bracket_reached);
       expect_kept({&coin, place}, {&star, Pose()}, 4);
     }
@@ -121,12 +121,11 @@ TEST(CurvedUnion, WitnessesOfAllKinds) {
   for (int k = 0; k < 36; k += kStepOverKinds) {
     SCOPED_TRACE(k);
     const auto part = [&](int i) {
-      return Compound::Part{kinds[static_cast<std::size_t>(i)],
-                            *Pose::from_quaternion(random.quaternion(), 0.7 * random.direction())};
+      return Compound::Part{kinds[static_cast<std::size_t>(i)], random.pose(0.7 * random.direction())};
     };
     const Compound a = *Compound::from_parts({part(k % 6), part((k + 1) % 6)});
     const Compound b = *Compound::from_parts({part(k / 6), {*ConvexPolytope::box({0.5, 0.4, 0.8}), at({0.3, 0, 0})}});
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), random.uniform(0, 1.5) * random.direction());
+    const Pose pose = random.pose(random.vector(0, 1.5));
     reached += expect_kept({&a, pose}, {&b, Pose()}, 4).bracket_reached ? 1 : 0;
     ++asked;
   }

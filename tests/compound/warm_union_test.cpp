@@ -61,7 +61,7 @@ TEST(WarmUnion, CoherentFramesAreAnsweredAsColdOnes) {
   for (const Case& c : cases(random)) {
     for (const double step : {1e-3, 1e-2, 0.1}) {
       WarmUnion memory;
-      Pose pose = *Pose::from_quaternion(random.quaternion(), c.offset);
+      Pose pose = random.pose(c.offset);
       for (int frame = 0; frame < 12; ++frame) {
         SCOPED_TRACE(testing::Message() << c.name << ", step " << step << ", frame " << frame);
         const PosedCompound a{&c.a, pose}, b{&c.b, Pose()};
@@ -93,7 +93,7 @@ TEST(WarmUnion, BodiesNamedInEitherOrder) {
   const Compound ball = compound_of(scenes::rough_ball(0, 0.3, random));
   for (const Case& c : {Case{"copies", ball, ball, {0.4, 0.1, 0.2}}, cases(random)[1]}) {
     WarmUnion memory;
-    Pose pose_a = *Pose::from_quaternion(random.quaternion(), c.offset), pose_b;
+    Pose pose_a = random.pose(c.offset), pose_b;
     for (int frame = 0; frame < 20; ++frame) {
       SCOPED_TRACE(testing::Message() << c.name << ", frame " << frame);
       PosedCompound a{&c.a, pose_a}, b{&c.b, pose_b};
@@ -114,7 +114,7 @@ TEST(WarmUnion, JumpsAndOtherBodiesCostOnlyTime) {
     const Case& c = all[static_cast<std::size_t>(random.integer(0, static_cast<int>(all.size()) - 1))];
     const double far = random.uniform(0, 3);
     SCOPED_TRACE(testing::Message() << c.name << ", frame " << frame);
-    const PosedCompound a{&c.a, *Pose::from_quaternion(random.quaternion(), far * random.direction())};
+    const PosedCompound a{&c.a, random.pose(far * random.direction())};
     const PosedCompound b{&c.b, Pose()};
     expect_same(*penetration_depth(a, b, scratch, {}, &memory), *penetration_depth(a, b, scratch));
   }
@@ -125,7 +125,7 @@ TEST(WarmUnion, ARefusedOrCurvedQueryLeavesItOfUse) {
   Scratch scratch;
   const Compound ball = compound_of(scenes::rough_ball(0, 0.3, random));
   const Compound curved(*ConvexShape::cylinder(0.5, 1, 2));
-  const PosedCompound a{&ball, *Pose::from_quaternion(random.quaternion(), {0.4, 0.1, 0.2})}, b{&ball, Pose()};
+  const PosedCompound a{&ball, random.pose({0.4, 0.1, 0.2})}, b{&ball, Pose()};
   WarmUnion memory;
   const UnionDepth cold = *penetration_depth(a, b, scratch, {}, &memory);
   UnionSettings few;
@@ -142,7 +142,7 @@ TEST(WarmUnion, CopiesAndForgets) {
   scenes::Random random(45);
   Scratch scratch;
   const Compound ball = compound_of(scenes::rough_ball(0, 0.3, random));
-  const PosedCompound a{&ball, *Pose::from_quaternion(random.quaternion(), {0.4, 0.1, 0.2})}, b{&ball, Pose()};
+  const PosedCompound a{&ball, random.pose({0.4, 0.1, 0.2})}, b{&ball, Pose()};
   WarmUnion memory;
   EXPECT_EQ(memory.memory_bytes(), sizeof(memory));
   const UnionDepth cold = *penetration_depth(a, b, scratch, {}, &memory);

@@ -60,23 +60,29 @@ Mat3 single(const Mat3& rotation) { return rotation.cast<float>().cast<double>()
 Boxes draw(bool resting, std::mt19937_64& random) {
   std::uniform_real_distribution<double> extent(0.1, 1), share(-1, 1);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
-  const Vec3 half_a(extent(random), extent(random), extent(random));
-  const Vec3 half_b(extent(random), extent(random), extent(random));
+  const auto vector = [&](auto& distribution) {
+    const double z = distribution(random), y = distribution(random);
+    return Vec3(distribution(random), y, z);
+  };
+  /// A turn about a random axis, which is drawn before the angle.
+  const auto turned = [&](double scale, auto& distribution) {
+    const Vec3 axis = vector(normal).normalized();
+    return Mat3(Eigen::AngleAxisd(scale * distribution(random), axis).matrix());
+  };
+  const Vec3 half_a = vector(extent), half_b = vector(extent);
   if (!resting) {
-    const Mat3 of_a = Eigen::AngleAxisd(3 * share(random), vector().normalized()).matrix();
-    const Mat3 of_b = Eigen::AngleAxisd(3 * share(random), vector().normalized()).matrix();
-    const Vec3 way = vector().normalized();
+    const Mat3 of_a = turned(3, share), of_b = turned(3, share);
+    const Vec3 way = vector(normal).normalized();
     const double reach =
         (of_a.transpose() * way).cwiseAbs().dot(half_a) + (of_b.transpose() * way).cwiseAbs().dot(half_b);
-    const Vec3 at = vector();
+    const Vec3 at = vector(normal);
     return {half_a, half_b, Pose::from_trusted_matrix(single(of_a), at),
             Pose::from_trusted_matrix(single(of_b), at + (reach * (0.8 + 0.1 * share(random))) * way)};
   }
-  const auto noise = [&] { return Mat3(Eigen::AngleAxisd(1e-7 * normal(random), vector().normalized()).matrix()); };
+  const auto noise = [&] { return turned(1e-7, normal); };
   const Mat3 turn = Eigen::AngleAxisd(share(random), Vec3::UnitY()).matrix();
-  const Vec3 over(half_b.x() * share(random), half_a.y() + half_b.y() + 1e-3 * share(random),
-                  half_b.z() * share(random));
+  const Vec3 over =
+      Vec3(0, half_a.y() + half_b.y(), 0) + vector(share).cwiseProduct(Vec3(half_b.x(), 1e-3, half_b.z()));
   return {half_a, half_b, Pose::from_trusted_matrix(single(noise() * turn), over),
           Pose::from_trusted_matrix(single(noise()), Vec3::Zero())};
 }
@@ -265,14 +271,15 @@ TEST(BoxContact, DepthIsThatOfTheGeneralQuery) {
 TEST(BoxContact, BracketsHoldForPosesOfDoublePrecision) {
   std::mt19937_64 random(71);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
   int with_points = 0, apart = 0;
   for (int i = 0; i < 3000; ++i) {
     Boxes boxes = draw(i % 2 == 0, random);
     // Products of such columns round; edges of both boxes are parallel but for 1e-9 or 1e-13, or stand anyhow.
     const double noise = i % 3 == 0 ? 1e-9 : i % 3 == 1 ? 1e-13 : 1e-2;
     for (Pose* pose : {&boxes.pose_a, &boxes.pose_b}) {
-      const Mat3 turn = Eigen::AngleAxisd(noise * normal(random), vector().normalized()).matrix();
+      const double angle = noise * normal(random);
+      const Vec3 axis{normal(random), normal(random), normal(random)};
+      const Mat3 turn = Eigen::AngleAxisd(angle, axis.normalized()).matrix();
       *pose = Pose::from_trusted_matrix(turn * pose->rotation(), pose->translation());
     }
     const BoxContact found = boxes.contact();

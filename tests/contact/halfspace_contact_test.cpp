@@ -26,7 +26,7 @@ std::vector<Vec3> round_points(int count, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i)
-    points.push_back(0.4 * Vec3(normal(random), normal(random), normal(random)).normalized());
+    points.push_back(0.4 * Vec3{normal(random), normal(random), normal(random)}.normalized());
   return points;
 }
 
@@ -47,7 +47,7 @@ std::vector<ConvexShape> bodies(std::mt19937_64& random) {
 
 Pose turned(std::mt19937_64& random, const Vec3& at) {
   std::normal_distribution<double> normal;
-  Eigen::Quaterniond turn(normal(random), normal(random), normal(random), normal(random));
+  Eigen::Quaterniond turn{normal(random), normal(random), normal(random), normal(random)};
   return Pose::from_trusted_matrix(turn.normalized().toRotationMatrix(), at);
 }
 

@@ -131,13 +131,13 @@ TEST(TimeOfImpact, SupportsStayWithinTheCurvatureBound) {
                                 ConvexShape(ConvexPolytope::box(Vec3(0.3, 0.1, 0.5)).value())};
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
   pd::Scratch scratch;
   double closest = 0;
   for (int i = 0; i < 60; ++i) {
     MovingShape body{{&shapes[i % 3], at(0, 0, 0)}, {vector(), vector()}};
     // The axis of the cylinder nearly keeps its direction in half of the cases.
-    if (i % 2 == 0) body.motion.angular_velocity = Vec3(0.01 * normal(random), 0.01 * normal(random), 2);
+    if (i % 2 == 0) body.motion.angular_velocity = Vec3{0.01 * normal(random), 0.01 * normal(random), 2};
     if (i % 4 >= 2) body.arm = 0.3 * vector();
     const Vec3 n = vector().normalized();
     const double h = 0.1;
@@ -155,7 +155,7 @@ TEST(TimeOfImpact, SupportsStayWithinTheCurvatureBound) {
 TEST(TimeOfImpact, AgainstSmallSteps) {
   std::mt19937 random(23);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
   pd::Scratch scratch;
   int hits = 0;
   for (int i = 0; i < 30; ++i) {

@@ -180,7 +180,7 @@ ConvexPolytope stone() {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int i = 0; i < 12; ++i) {
-    const Vec3 p = 0.5 * Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 p = 0.5 * Vec3{normal(random), normal(random), normal(random)}.normalized();
     points.push_back(p.cast<float>().cast<double>());
   }
   return *ConvexPolytope::from_points(points);
@@ -223,8 +223,8 @@ TEST(DartDetector, EveryPairOfShapesIsExact) {
         for (int side = 0; side < 2; ++side) {
           Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
           place.linear() =
-              Eigen::Quaterniond(normal(random), normal(random), normal(random), 1).normalized().toRotationMatrix();
-          place.translation() = 0.4 * Vec3(normal(random), normal(random), normal(random));
+              Eigen::Quaterniond{normal(random), normal(random), normal(random), 1}.normalized().toRotationMatrix();
+          place.translation() = 0.4 * Vec3{normal(random), normal(random), normal(random)};
           (side == 0 ? a : b)->setTransform(place);
           poses[side] = *Pose::from_matrix(place.linear(), place.translation());
         }

@@ -38,7 +38,7 @@ TEST(ApproximateWidth, GridKeepsItsFactor) {
   scenes::Random random(51);
   for (const Body& body : bodies()) {
     const ConvexShape shape(*ConvexPolytope::from_points(body.points));
-    const PosedShape posed{&shape, *Pose::from_quaternion(random.quaternion(), random.direction())};
+    const PosedShape posed{&shape, random.pose(random.direction())};
     const Width exact = width(posed, scratch);
     for (const double delta : {1.0, 0.1, 1e-2, 1e-4, 1e-6}) {
       const Width grid = width(posed, scratch, Method::grid, delta);

@@ -39,14 +39,14 @@ struct Bodies {
 std::vector<Vec3> sphere_points(int n, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) points.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
+  for (int i = 0; i < n; ++i) points.push_back(Vec3{normal(random), normal(random), normal(random)}.normalized());
   return points;
 }
 
 std::vector<Vec3> grid_points(std::mt19937_64& random, int n) {
   std::uniform_int_distribution<int> coordinate(-2, 2);
   std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) points.push_back(Vec3(coordinate(random), coordinate(random), coordinate(random)));
+  for (int i = 0; i < n; ++i) points.push_back(Vec3{coordinate(random), coordinate(random), coordinate(random)});
   return points;
 }
 
@@ -55,7 +55,7 @@ Pose random_pose(std::mt19937_64& random, double spread) {
   std::array<double, 4> q{normal(random), normal(random), normal(random), normal(random)};
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (double& c : q) c /= length;
-  return *Pose::from_quaternion(q, spread * Vec3(normal(random), normal(random), normal(random)));
+  return *Pose::from_quaternion(q, spread * Vec3{normal(random), normal(random), normal(random)});
 }
 
 /// @param facet  also the facet's: a ray through an edge of P leaves through either facet.
@@ -115,9 +115,9 @@ TEST(DirectionalDepth, RandomSolids) {
   const int rounds = cases(200);
   for (int round = 0; round < rounds && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
-    const Bodies bodies(sphere_points(4 + round % 40, random), random_pose(random, 0.4),
-                        sphere_points(4 + (3 * round) % 40, random), random_pose(random, 0.4));
-    check(bodies, Vec3(normal(random), normal(random), normal(random)), scratch, overlapping);
+    const Bodies bodies{sphere_points(4 + round % 40, random), random_pose(random, 0.4),
+                        sphere_points(4 + (3 * round) % 40, random), random_pose(random, 0.4)};
+    check(bodies, Vec3{normal(random), normal(random), normal(random)}, scratch, overlapping);
   }
   EXPECT_GT(overlapping, 2 * rounds / 5);
 }
@@ -133,10 +133,10 @@ TEST(DirectionalDepth, WarmAnswersAreTheColdOnes) {
   for (int round = 0; round < rounds && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
     const bool grid = round % 4 == 3;
-    const Bodies bodies(grid ? grid_points(random, 30) : sphere_points(40 + round % 400, random),
+    const Bodies bodies{grid ? grid_points(random, 30) : sphere_points(40 + round % 400, random),
                         grid ? Pose() : random_pose(random, 0.2),
                         grid ? grid_points(random, 30) : sphere_points(60 + round % 200, random),
-                        grid ? Pose() : random_pose(random, 0.2));
+                        grid ? Pose() : random_pose(random, 0.2)};
     if (round % 5 == 4) {
       certificate.triangles = static_cast<std::int32_t>(random() % 27);
       for (auto& triangle : certificate.vertices) {
@@ -144,9 +144,9 @@ TEST(DirectionalDepth, WarmAnswersAreTheColdOnes) {
         if (random() % 50 == 0) triangle[3] = -1;
       }
     }
-    Vec3 d(normal(random), normal(random), normal(random));
+    Vec3 d{normal(random), normal(random), normal(random)};
     for (int turn = 0; turn < 6; ++turn) {
-      if (grid && turn % 2 == 0) d = Vec3(double(random() % 5) - 2, double(random() % 5) - 2, 1);
+      if (grid && turn % 2 == 0) d = Vec3{double(random() % 5) - 2, double(random() % 5) - 2, 1};
       const auto plain = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch);
       const auto again = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch, DirectionalMethod::portal,
                                            nullptr, &certificate);
@@ -156,7 +156,7 @@ TEST(DirectionalDepth, WarmAnswersAreTheColdOnes) {
         warm += again->statistics.support_calls;
         cold += plain->statistics.support_calls;
       }
-      d += (turn == 3 ? 1.0 : 0.01) * Vec3(normal(random), normal(random), normal(random));
+      d += (turn == 3 ? 1.0 : 0.01) * Vec3{normal(random), normal(random), normal(random)};
     }
   }
   EXPECT_LT(2 * warm, cold);
@@ -171,8 +171,8 @@ TEST(DirectionalDepth, GridBodiesAlongGridDirections) {
   const int rounds = cases(500);
   for (int round = 0; round < rounds && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
-    const Bodies bodies(grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose());
-    Vec3 direction(coordinate(random), coordinate(random), coordinate(random));
+    const Bodies bodies{grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose()};
+    Vec3 direction{coordinate(random), coordinate(random), coordinate(random)};
     if (direction.isZero(0)) direction = Vec3::UnitZ();
     check(bodies, direction, scratch, overlapping, false);
   }
@@ -275,8 +275,8 @@ TEST(DirectionalDepth, SupportsGrowSlowly) {
   std::normal_distribution<double> normal;
   Scratch scratch;
   for (const int n : {8, 128, 2048}) {
-    const Bodies bodies(sphere_points(n, random), random_pose(random, 0), sphere_points(n, random),
-                        random_pose(random, 0.1));
+    const Bodies bodies{sphere_points(n, random), random_pose(random, 0), sphere_points(n, random),
+                        random_pose(random, 0.1)};
     const PenetrationDepth alone = [&] {
       DepthSettings roughly;
       roughly.delta = 1;
@@ -284,7 +284,7 @@ TEST(DirectionalDepth, SupportsGrowSlowly) {
     }();
     std::int64_t most = 0;
     for (int ray = 0; ray < 100; ++ray) {
-      const Vec3 d(normal(random), normal(random), normal(random));
+      const Vec3 d{normal(random), normal(random), normal(random)};
       const auto found = directional_depth(bodies.posed_a(), bodies.posed_b(), d, scratch);
       most = std::max(most, found->statistics.support_calls - alone.statistics.support_calls);
     }
@@ -325,8 +325,8 @@ TEST(DifferenceQueries, SupportsAreExactAndLowest) {
   std::mt19937_64 random(24);
   std::uniform_int_distribution<int> coordinate(-3, 3);
   for (int round = 0; round < 300 && !HasFailure(); ++round) {
-    const Bodies bodies(grid_points(random, 1 + round % 12), Pose(), grid_points(random, 1 + round % 9), Pose());
-    Vec3 d(coordinate(random), coordinate(random), coordinate(random));
+    const Bodies bodies{grid_points(random, 1 + round % 12), Pose(), grid_points(random, 1 + round % 9), Pose()};
+    Vec3 d{coordinate(random), coordinate(random), coordinate(random)};
     if (d.isZero(0)) d = Vec3::UnitX();
     const auto support = support_of_difference(bodies.posed_a(), bodies.posed_b(), d);
     const ConvexPolytope& a = *bodies.a.polytope();
@@ -355,8 +355,8 @@ TEST(DifferenceQueries, PointClassesAreExact) {
     // A translation whose sum with the point is no double, on half of the rounds.
     const Vec3 far = round % 2 ? Vec3(1e9 + 0.1, -3e7 + 0.3, 1e-9) : Vec3(Vec3::Zero());
     const Pose pose = *Pose::from_matrix(Mat3::Identity(), far);
-    const Bodies bodies(grid_points(random, 1 + round % 9), pose, grid_points(random, 1 + round % 7), pose);
-    const Vec3 x(coordinate(random), coordinate(random), coordinate(random));
+    const Bodies bodies{grid_points(random, 1 + round % 9), pose, grid_points(random, 1 + round % 7), pose};
+    const Vec3 x{coordinate(random), coordinate(random), coordinate(random)};
     const auto found = point_in_difference(bodies.posed_a(), bodies.posed_b(), x, scratch);
     const oracle::Body body_a(bodies.points_a), body_b(bodies.points_b);
     const oracle::ExactPair exact(body_a, bodies.pose_a, body_b, bodies.pose_b, x);
@@ -388,9 +388,9 @@ TEST(DifferenceQueries, LinesAgreeWithPointClasses) {
   int crossed = 0, missed = 0;
   for (int round = 0; round < 600 && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
-    const Bodies bodies(grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose());
-    const Vec3 x(coordinate(random), coordinate(random), coordinate(random));
-    Vec3 d(coordinate(random), coordinate(random), coordinate(random));
+    const Bodies bodies{grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose()};
+    const Vec3 x{coordinate(random), coordinate(random), coordinate(random)};
+    Vec3 d{coordinate(random), coordinate(random), coordinate(random)};
     if (d.isZero(0)) d = Vec3::UnitX();
     const LineCrossing line = *line_in_difference(bodies.posed_a(), bodies.posed_b(), x, d);
     const Vec3 unit = d.normalized();

@@ -103,7 +103,7 @@ ConvexPolytope grid_body(std::mt19937_64& random, int constant) {
   std::vector<Vec3> points;
   const int n = 1 + static_cast<int>(random() % 9);
   for (int i = 0; i < n; ++i) {
-    Vec3 p(coordinate(random), coordinate(random), coordinate(random));
+    Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
     if (constant < 3) p[constant] = 1;
     points.push_back(p);
   }
@@ -145,8 +145,8 @@ TEST(MinkowskiDifference, RandomPosedBodies) {
   std::normal_distribution<double> normal;
   for (int round = 0; round < 60 && !HasFailure(); ++round) {
     std::vector<Vec3> pa, pb;
-    for (int i = 0; i < 4 + round % 20; ++i) pa.push_back(Vec3(normal(random), normal(random), normal(random)));
-    for (int i = 0; i < 4 + round % 30; ++i) pb.push_back(Vec3(normal(random), normal(random), normal(random)));
+    for (int i = 0; i < 4 + round % 20; ++i) pa.push_back(Vec3{normal(random), normal(random), normal(random)});
+    for (int i = 0; i < 4 + round % 30; ++i) pb.push_back(Vec3{normal(random), normal(random), normal(random)});
     const ConvexPolytope a = *ConvexPolytope::from_points(pa);
     const ConvexPolytope b = *ConvexPolytope::from_points(pb);
     const Pose pose = *Pose::from_quaternion({0.5, 0.5, -0.5, 0.5}, Vec3(normal(random), 1, 2));

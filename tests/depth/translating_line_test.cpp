@@ -129,8 +129,8 @@ TEST(TranslatingLine, TheLineCrossesPBetweenItsTimesOnly) {
     const int n = 4 + round % 60;
     const ConvexShape a(*ConvexPolytope::from_points(scenes::sphere_hull(n, random)));
     const ConvexShape b(*ConvexPolytope::from_points(scenes::sphere_hull(64 - round % 60, random)));
-    const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), 3 * random.direction())};
-    const PosedShape posed_b{&b, *Pose::from_quaternion(random.quaternion(), Vec3(1, 2, 3))};
+    const PosedShape posed_a{&a, random.pose(3 * random.direction())};
+    const PosedShape posed_b{&b, random.pose(Vec3(1, 2, 3))};
     const Vec3 point = 6 * random.direction(), direction = random.direction();
     const Vec3 centre = posed_b.pose.translation() - posed_a.pose.translation();
     const Vec3 motion = 100 * (centre - point + 3 * random.direction());
@@ -166,8 +166,8 @@ TEST(TranslatingLine, SupportsGrowLikeALogarithm) {
     const ConvexShape a(*ConvexPolytope::from_points(scenes::sphere_hull(n, random)));
     std::int64_t most = 0;
     for (int k = 0; k < 50; ++k) {
-      const auto line = translating_line_in_difference({&a, Pose()}, {&a, Pose()}, 3 * random.direction(),
-                                                       random.direction(), random.direction());
+      const Vec3 point = 3 * random.direction(), direction = random.direction(), motion = random.direction();
+      const auto line = translating_line_in_difference({&a, Pose()}, {&a, Pose()}, point, direction, motion);
       ASSERT_TRUE(line.has_value());
       most = std::max(most, line->support_calls);
     }

@@ -17,7 +17,7 @@ namespace {
 std::vector<Vec3> sphere_points(int n, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) points.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
+  for (int i = 0; i < n; ++i) points.push_back(Vec3{normal(random), normal(random), normal(random)}.normalized());
   return points;
 }
 
@@ -26,7 +26,7 @@ Pose random_pose(std::mt19937_64& random) {
   std::array<double, 4> q{normal(random), normal(random), normal(random), normal(random)};
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (double& c : q) c /= length;
-  return *Pose::from_quaternion(q, Vec3(normal(random), normal(random), normal(random)));
+  return *Pose::from_quaternion(q, Vec3{normal(random), normal(random), normal(random)});
 }
 
 double extent(const std::vector<Vec3>& points, const Pose& pose, const Vec3& n) {
@@ -54,7 +54,7 @@ TEST(Width, EnginesAgreeAndTheNormalAttainsIt) {
     EXPECT_NEAR(extent(points, pose, overlay.normal), overlay.width, 1e-14);
     EXPECT_NEAR(overlay.normal.norm(), 1, 1e-15);
     for (int i = 0; i < 200; ++i) {
-      const Vec3 n = Vec3(normal(random), normal(random), normal(random)).normalized();
+      const Vec3 n = Vec3{normal(random), normal(random), normal(random)}.normalized();
       EXPECT_GE(extent(points, pose, n), overlay.lower - 1e-14);
     }
   }

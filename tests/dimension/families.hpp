@@ -68,7 +68,8 @@ std::vector<Vector<D>> family_points(int family, int n, Random& random) {
   };
   const auto fill = [&](double power) {
     for (int i = 0; i < n; ++i) {
-      points.push_back(random_direction<D>(random) * std::pow(std::abs(uniform(random)), power));
+      const double radius = std::pow(std::abs(uniform(random)), power);
+      points.push_back(random_direction<D>(random) * radius);
     }
   };
   if (family == 2) corners(1);

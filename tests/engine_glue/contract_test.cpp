@@ -249,11 +249,11 @@ TEST(Fallback, IsBulletsOwnUnlessAnotherIsGiven) {
 
 btTransform random_pose(std::mt19937& random, double reach) {
   std::normal_distribution<double> normal;
-  btQuaternion q(static_cast<btScalar>(normal(random)), static_cast<btScalar>(normal(random)),
-                 static_cast<btScalar>(normal(random)), static_cast<btScalar>(normal(random)));
+  btQuaternion q{static_cast<btScalar>(normal(random)), static_cast<btScalar>(normal(random)),
+                 static_cast<btScalar>(normal(random)), static_cast<btScalar>(normal(random))};
   q.normalize();
   std::uniform_real_distribution<double> uniform(-reach, reach);
-  return btTransform(q, pd::to_bullet(pd::Vec3(uniform(random), uniform(random), uniform(random))));
+  return btTransform(q, pd::to_bullet(pd::Vec3{uniform(random), uniform(random), uniform(random)}));
 }
 
 TEST(SmallBodies, FiveMillimetreBoxesAreAnsweredAtTheirOwnScale) {
@@ -305,12 +305,12 @@ TEST(Threads, SameBitsFromEveryThread) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 30; ++i) {
-    hull.addPoint(pd::to_bullet(pd::Vec3(normal(random), normal(random), normal(random)).normalized()));
+    hull.addPoint(pd::to_bullet(pd::Vec3{normal(random), normal(random), normal(random)}.normalized()));
   }
   const btCylinderShape cylinder(btVector3(1, 1, 1));
   std::vector<std::pair<btTransform, btTransform>> poses;
   for (int i = 0; i < 60; ++i) {
-    poses.emplace_back(random_pose(random, 0.6), random_pose(random, 0.6));
+    poses.push_back({random_pose(random, 0.6), random_pose(random, 0.6)});
   }
   pd::BulletPenetrationDepthSolver solver;
   const auto run = [&](std::vector<pd::Vec3>& out) {

@@ -25,7 +25,7 @@ bool stands(unsigned start, bool recommended) {
   std::uniform_real_distribution<double> aside(-1e-4, 1e-4);
   std::array<btRigidBody*, 10> column{};
   for (std::size_t i = 0; i < column.size(); ++i) {
-    const btVector3 place(btScalar(aside(random)), btScalar(20 + 2 * static_cast<double>(i)), btScalar(aside(random)));
+    const btVector3 place{btScalar(aside(random)), btScalar(20 + 2 * static_cast<double>(i)), btScalar(aside(random))};
     column[i] = world.body(cube, 1, place);
     column[i]->setActivationState(DISABLE_DEACTIVATION);
   }

@@ -31,9 +31,10 @@ TEST(FreeRotation, KeepsEnergyAndMomentum) {
   };
   for (int i = 0; i < 200; ++i) {
     // Of a solid body: no moment is above the sum of the others.
-    const Vec3 squares(moment(random), moment(random), moment(random));
+    const Vec3 squares{moment(random), moment(random), moment(random)};
     const Vec3 inertia(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y());
-    const Eigen::AngleAxisd turn(3 * normal(random), vector().normalized());
+    const Vec3 axis = vector().normalized();
+    const Eigen::AngleAxisd turn(3 * normal(random), axis);
     detail::Rotation rotation{turn.toRotationMatrix(), 10 * vector()};
     const double before = energy(rotation, inertia);
     const Vec3 whole = momentum(rotation, inertia);

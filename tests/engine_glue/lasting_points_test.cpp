@@ -101,8 +101,8 @@ void compare(int points, bool pieces, unsigned seed, int& lasting) {
   for (int step = 0; step < 20000; ++step) {
     const double jump = random() % 50 == 0 ? 0.1 : random() % 10 == 0 ? 5e-3 : 1e-4;
     for (btTransform* pose : {&pose_a, &pose_b}) {
-      pose->getOrigin() += btVector3(within(jump), within(jump), within(jump));
-      pose->setRotation(pose->getRotation() * btQuaternion(within(jump), within(jump), within(jump), 1).normalized());
+      pose->getOrigin() += btVector3{within(jump), within(jump), within(jump)};
+      pose->setRotation(pose->getRotation() * btQuaternion{within(jump), within(jump), within(jump), 1}.normalized());
     }
     FreshPoints fresh;
     fresh.count = random() % 40 == 0 ? static_cast<int>(random() % 5) : points;

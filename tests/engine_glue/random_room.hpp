@@ -110,7 +110,8 @@ class RandomRoom {
     const double kind = uniform(0, 4);
     const auto size = [&] { return static_cast<btScalar>(uniform(0.1, 0.35)); };
     if (kind < 1) {
-      auto* box = scene_.shape<btBoxShape>(btVector3(size(), size(), size()));
+      const btScalar z = size(), y = size();
+      auto* box = scene_.shape<btBoxShape>(btVector3(size(), y, z));
       box->setMargin(0);
       return box;
     }
@@ -138,7 +139,8 @@ class RandomRoom {
       body = scene_.body(box, 1, btVector3(0, static_cast<btScalar>(-kHalf + 0.3 + 0.6 * i), 0));
     } else {
       const btVector3 at(btScalar(i % 3 * 1.5 - 1.5), btScalar(i / 3 * 1.3 - 0.6), btScalar(uniform(1.0, 1.6)));
-      body = scene_.body(random_shape(), static_cast<btScalar>(uniform(0.3, 3)), at);
+      const auto mass = static_cast<btScalar>(uniform(0.3, 3));
+      body = scene_.body(random_shape(), mass, at);
       body->setLinearVelocity(vector(12));
       body->setAngularVelocity(vector(5));
     }

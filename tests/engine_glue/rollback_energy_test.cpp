@@ -87,7 +87,7 @@ TEST_F(RollbackEnergy, BallsOfRestitutionOneKeepTheirs) {
   auto* ball = scene.shape<btSphereShape>(btScalar(0.2));
   for (int i = 0; i < 8; ++i) {
     const btVector3 at(btScalar(i % 2 - 0.5), btScalar(i / 2 % 2 - 0.5), btScalar(i / 4 - 0.5));
-    free_body(ball, at, 15 * btVector3(n(), n(), n()), 1);
+    free_body(ball, at, 15 * btVector3{n(), n(), n()}, 1);
   }
   const double before = kinetic_energy(scene);
   RollbackStepper stepper(scene.world(), solver);
@@ -122,9 +122,9 @@ TEST_F(RollbackEnergy, ThrownCompoundsGainNone) {
   const auto n = [&] { return static_cast<btScalar>(normal(random)); };
   for (int i = 0; i < 6; ++i) {
     const btVector3 at(btScalar(i % 3 - 1), btScalar(i / 3 - 0.5), 0);
-    btRigidBody* body = free_body(cross, at, 12 * btVector3(n(), n(), n()), btScalar(0.3));
+    btRigidBody* body = free_body(cross, at, 12 * btVector3{n(), n(), n()}, btScalar(0.3));
     body->setFriction(btScalar(0.5));
-    body->setAngularVelocity(4 * btVector3(n(), n(), n()));
+    body->setAngularVelocity(4 * btVector3{n(), n(), n()});
   }
   const double start = total_energy(scene, 9.81);
   const double reference = kinetic_energy(scene) + 6 * 9.81 * 4;

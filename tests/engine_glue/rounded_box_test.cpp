@@ -41,19 +41,30 @@ constexpr int kKinds = 10;
 /// @param child  keeps what the body is made of
 std::unique_ptr<btConvexShape> random_body(scenes::Random& random, int kind, std::unique_ptr<btConvexShape>& child) {
   const auto size = [&] { return static_cast<btScalar>(random.uniform(0.2, 0.6)); };
+  struct Axial {
+    btScalar radius;
+    btScalar height;
+  };
+  const auto axial = [&] { return Axial{size(), size()}; };
   switch (kind) {
     case 0:
       return std::make_unique<btSphereShape>(size());
-    case 1:
-      return std::make_unique<btCapsuleShape>(size(), size());
-    case 2:
-      return std::make_unique<btCapsuleShapeX>(size(), size());
+    case 1: {
+      const Axial sizes = axial();
+      return std::make_unique<btCapsuleShape>(sizes.radius, sizes.height);
+    }
+    case 2: {
+      const Axial sizes = axial();
+      return std::make_unique<btCapsuleShapeX>(sizes.radius, sizes.height);
+    }
     case 3:
-      return std::make_unique<btBoxShape>(btVector3(size(), size(), size()));
+      return std::make_unique<btBoxShape>(btVector3{size(), size(), size()});
     case 4:
       return std::make_unique<btCylinderShapeZ>(btVector3(btScalar(0.3), btScalar(0.3), size()));
-    case 5:
-      return std::make_unique<btConeShape>(size(), size());
+    case 5: {
+      const Axial sizes = axial();
+      return std::make_unique<btConeShape>(sizes.radius, sizes.height);
+    }
     case 6: {
       const std::array<btVector3, 2> centres{random_vector(random, 0.5), random_vector(random, 0.5)};
       const std::array<btScalar, 2> radii{size(), size()};
@@ -61,7 +72,7 @@ std::unique_ptr<btConvexShape> random_body(scenes::Random& random, int kind, std
     }
     case 7: {
       auto hull = random_hull(random);
-      hull->setLocalScaling(btVector3(size(), size(), size()) * btScalar(2));
+      hull->setLocalScaling(btVector3{size(), size(), size()} * btScalar(2));
       return hull;
     }
     case 8: {
@@ -70,9 +81,11 @@ std::unique_ptr<btConvexShape> random_body(scenes::Random& random, int kind, std
       child = std::move(hull);
       return scaled;
     }
-    default:
-      return std::make_unique<btBU_Simplex1to4>(random_vector(random, 0.6), random_vector(random, 0.6),
-                                                random_vector(random, 0.6), random_vector(random, 0.6));
+    default: {
+      const std::array<btVector3, 4> corners{random_vector(random, 0.6), random_vector(random, 0.6),
+                                             random_vector(random, 0.6), random_vector(random, 0.6)};
+      return std::make_unique<btBU_Simplex1to4>(corners[0], corners[1], corners[2], corners[3]);
+    }
   }
 }
 

@@ -45,7 +45,7 @@ void expect_same_support(const btConvexShape& shape) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 300; ++i) {
-    pd::Vec3 d(normal(random), normal(random), normal(random));
+    pd::Vec3 d{normal(random), normal(random), normal(random)};
     if (i < 6) {
       d = (i % 2 ? 1 : -1) * pd::Vec3::Unit(i / 2);
     }
@@ -62,7 +62,7 @@ std::vector<btVector3> some_points() {
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<btVector3> points;
   for (int i = 0; i < 20; ++i) {
-    points.push_back(pd::to_bullet(pd::Vec3(uniform(random), uniform(random), uniform(random))));
+    points.push_back(pd::to_bullet(pd::Vec3{uniform(random), uniform(random), uniform(random)}));
   }
   return points;
 }

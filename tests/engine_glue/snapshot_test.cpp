@@ -60,11 +60,11 @@ void fill(BulletWorld& scene, unsigned seed) {
   auto* capsule = scene.shape<btCapsuleShape>(btScalar(0.2), btScalar(0.6));
   btCollisionShape* kinds[] = {box, hull, cylinder, capsule};
   for (int i = 0; i < 15; ++i) {
-    btQuaternion turn(u(), u(), u(), u());
+    btQuaternion turn{u(), u(), u(), u()};
     turn.normalize();
-    btRigidBody* body = scene.body(kinds[i % 4], 1, btTransform(turn, btVector3(u(), btScalar(1 + 0.45 * i), u())));
-    body->setLinearVelocity(btVector3(u(), -2, u()));
-    body->setAngularVelocity(btVector3(3 * u(), 3 * u(), 3 * u()));
+    btRigidBody* body = scene.body(kinds[i % 4], 1, btTransform(turn, btVector3{u(), btScalar(1 + 0.45 * i), u()}));
+    body->setLinearVelocity(btVector3{u(), -2, u()});
+    body->setAngularVelocity(btVector3{3 * u(), 3 * u(), 3 * u()});
   }
 }
 

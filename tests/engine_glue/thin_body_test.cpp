@@ -78,7 +78,7 @@ TEST(ThinBody, DoesNotFallThroughAMesh) {
         std::mt19937 random(start);
         std::uniform_real_distribution<double> share(-1, 1);
         const auto next = [&] { return btScalar(share(random)); };
-        btQuaternion turn(next(), next(), next(), next());
+        btQuaternion turn{next(), next(), next(), next()};
         turn.normalize();
         OverASheet scene(sheet);
         const btRigidBody* const body = scene.plate(turn, drop);

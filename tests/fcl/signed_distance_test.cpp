@@ -35,10 +35,10 @@ Geometry convex_box(double x, double y, double z) {
 class FclDoor : public testing::Test {
  protected:
   fcl::Transform3d somewhere(double reach) {
-    fcl::Quaterniond q(normal_(random_), normal_(random_), normal_(random_), normal_(random_));
+    fcl::Quaterniond q{normal_(random_), normal_(random_), normal_(random_), normal_(random_)};
     fcl::Transform3d t = fcl::Transform3d::Identity();
     t.linear() = q.normalized().toRotationMatrix();
-    t.translation() = reach * fcl::Vector3d(normal_(random_), normal_(random_), normal_(random_));
+    t.translation() = reach * fcl::Vector3d{normal_(random_), normal_(random_), normal_(random_)};
     return t;
   }
   std::mt19937 random_{17};

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The same bits from other compilers, optimisation levels, instruction sets and, emulated, from another machine: builds the
-# core and `answer_hash` once a row and compares its answers with the stored sample. GCC's -O3 and Clang 14's -O0 are CI's.
+# core and `answer_hash` once a row and compares its answers with the stored sample. GCC's -O3 and Clang 14's -O1 with sanitizers are CI's.
 #
 #   tests/long/same_bits.sh [ROW...]      all rows, about half an hour on two cores
 #
@@ -46,6 +46,7 @@ mkdir -p build/bits
   printf 'date %s, commit %s, answers: %s\n' "$(date -u +%F)" "$(git rev-parse --short HEAD)" "${sample}"
   row gcc-o2 g++ -O2 ''
   row gcc-o3-baseline g++ -O3 '' -DPD_ISA=baseline
+  row clang-14-o0 clang++-14 -O0 ''
   row clang-14-o3 clang++-14 -O3 ''
   row clang-19-o3 clang++-19 -O3 ''
   row clang-19-o2 clang++-19 -O2 ''

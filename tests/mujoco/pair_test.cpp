@@ -30,7 +30,7 @@ std::string mesh_asset() {
   std::normal_distribution<double> normal;
   std::string text = "<mesh name='stone' vertex='";
   for (int i = 0; i < 12; ++i) {
-    const Vec3 p = 0.5 * Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 p = 0.5 * Vec3{normal(random), normal(random), normal(random)}.normalized();
     text += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + " ";
   }
   return text + "'/>";

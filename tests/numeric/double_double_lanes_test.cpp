@@ -10,7 +10,10 @@ namespace {
 
 class Numbers {
  public:
-  double one() { return std::ldexp(fraction_(bits_), exponent_(bits_)); }
+  double one() {
+    const double fraction = fraction_(bits_);
+    return std::ldexp(fraction, exponent_(bits_));
+  }
   DoubleDouble two() {
     const double high = one();
     return quick_two_sum(high, 0x1p-53 * fraction_(bits_) * high);

@@ -69,8 +69,9 @@ TEST(Estimate, ProductsWithoutAnErrorAreExact) {
   for (int i = 0; i < 20'000; ++i) {
     const auto some = [&] {
       const int kept = 22 + static_cast<int>(bits() % 5);
-      const double whole = static_cast<double>((bits() >> (64 - kept)) | 1U);
-      return std::ldexp(bits() % 2 ? whole : -whole, static_cast<int>(bits() % 1400) - 700);
+      const double size = static_cast<double>((bits() >> (64 - kept)) | 1U);
+      const double whole = bits() % 2 ? size : -size;
+      return std::ldexp(whole, static_cast<int>(bits() % 1400) - 700);
     };
     const double a = some(), b = some();
     const Estimate product = Estimate(a) * Estimate(b);

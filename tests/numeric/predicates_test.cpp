@@ -112,13 +112,15 @@ TEST(Predicates, AgreeWithRationalsNearDegeneracy) {
   PredicateStages stages;
   for (int round = 0; round < 20000; ++round) {
     // Four points of a plane with small integer directions, scaled, shifted, and each coordinate nudged by a few ulp.
-    const double scale = std::ldexp(1.0 + 0.1 * small(random), exponent(random));
-    const Vec3 u(small(random), small(random), small(random));
-    const Vec3 v(small(random), small(random), small(random));
-    const Vec3 shift(0.1 * small(random), 0.3 * small(random), 0.7 * small(random));
+    const double about_one = 1.0 + 0.1 * small(random);
+    const double scale = std::ldexp(about_one, exponent(random));
+    const Vec3 u{small(random), small(random), small(random)};
+    const Vec3 v{small(random), small(random), small(random)};
+    const Vec3 shift{0.1 * small(random), 0.3 * small(random), 0.7 * small(random)};
     Vec3 p[4];
     for (Vec3& q : p) {
-      q = (shift + small(random) * u + small(random) * v) * scale;
+      const double along_u = small(random), along_v = small(random);
+      q = (shift + along_u * u + along_v * v) * scale;
       for (int i = 0; i < 3; ++i) q[i] = nudge(q[i]);
     }
     ASSERT_EQ(orient3d(p[0], p[1], p[2], p[3], &stages), rational_orient3d(p[0], p[1], p[2], p[3]));
@@ -138,7 +140,10 @@ TEST(Predicates, AgreeWithRationalsAtAnyMagnitude) {
   for (int round = 0; round < 500; ++round) {
     Vec3 p[4];
     for (Vec3& q : p) {
-      for (int i = 0; i < 3; ++i) q[i] = std::ldexp(fraction(random), exponent(random));
+      for (int i = 0; i < 3; ++i) {
+        const double part = fraction(random);
+        q[i] = std::ldexp(part, exponent(random));
+      }
     }
     ASSERT_EQ(orient3d(p[0], p[1], p[2], p[3], &stages), rational_orient3d(p[0], p[1], p[2], p[3]));
     ASSERT_EQ(orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]}, &stages),
@@ -161,9 +166,10 @@ TEST(Predicates, PermutationsTurnTheSign) {
 /// Four points that are coplanar but for rounding.
 std::array<Vec3, 4> nearly_coplanar(std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto point = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto point = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
   const Vec3 a = point(), b = point(), c = point();
-  return {a, b, c, a + uniform(random) * (b - a) + uniform(random) * (c - a)};
+  const double along_b = uniform(random), along_c = uniform(random);
+  return {a, b, c, a + along_b * (b - a) + along_c * (c - a)};
 }
 
 TEST(Predicates, CyclesKeepTheSign) {

@@ -46,7 +46,7 @@ class OdeInstall : public testing::Test {
     for (int trial = 0; trial < 4; ++trial) {
       for (const dGeomID geom : geoms) {
         if (dGeomGetClass(geom) == dPlaneClass) continue;
-        const Vec3 at = 0.3 * Vec3(normal(random), normal(random), normal(random));
+        const Vec3 at = 0.3 * Vec3{normal(random), normal(random), normal(random)};
         test::place(geom, at, Eigen::Quaterniond(normal(random), 1, 0.4, 0.2).normalized().toRotationMatrix());
       }
       for (const dGeomID first : geoms) {

@@ -27,7 +27,7 @@ const std::vector<Vec3>& stone() {
     std::normal_distribution<double> normal;
     std::vector<Vec3> made;
     for (int i = 0; i < 12; ++i)
-      made.push_back(0.5 * Vec3(normal(random), normal(random), normal(random)).normalized());
+      made.push_back(0.5 * Vec3{normal(random), normal(random), normal(random)}.normalized());
     return made;
   }();
   return points;
@@ -80,8 +80,8 @@ class OdePairs : public testing::TestWithParam<std::pair<int, int>> {
   /// A pose 0.4 units around the origin; a plane stays.
   Pose place(dGeomID geom, int kind) {
     if (kind == kPlane) return Pose();
-    const Vec3 at = 0.4 * Vec3(normal_(random_), normal_(random_), normal_(random_));
-    const Eigen::Quaterniond turn(normal_(random_), normal_(random_), normal_(random_), normal_(random_));
+    const Vec3 at = 0.4 * Vec3{normal_(random_), normal_(random_), normal_(random_)};
+    const Eigen::Quaterniond turn{normal_(random_), normal_(random_), normal_(random_), normal_(random_)};
     test::place(geom, at, turn.normalized().toRotationMatrix());
     return *Pose::from_matrix(turn.normalized().toRotationMatrix(), at);
   }

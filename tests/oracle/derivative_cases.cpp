@@ -24,14 +24,19 @@ double uniform(Random& random, double low, double high) {
 
 Vec3 direction(Random& random) {
   std::normal_distribution<double> normal;
-  return Vec3(normal(random), normal(random), normal(random)).normalized();
+  const double z = normal(random), y = normal(random);
+  return Vec3(normal(random), y, z).normalized();
+}
+
+Vec3 vector(Random& random, double shortest, double longest) {
+  const Vec3 unit = direction(random);
+  return uniform(random, shortest, longest) * unit;
 }
 
 Mat3 rotation(Random& random) {
   std::normal_distribution<double> normal;
-  return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
-      .normalized()
-      .toRotationMatrix();
+  const double z = normal(random), y = normal(random), x = normal(random);
+  return Eigen::Quaterniond(normal(random), x, y, z).normalized().toRotationMatrix();
 }
 
 ConvexShape hull(Random& random) {
@@ -51,7 +56,8 @@ ConvexShape polytope(Random& random) {
 ConvexShape round_body(Random& random) {
   const int axis = static_cast<int>(random() % 3);
   if (random() % 2 == 0) return *ConvexShape::sphere(uniform(random, .3, 1));
-  return *ConvexShape::capsule(uniform(random, .2, .6), uniform(random, .2, .8), axis);
+  const double half_length = uniform(random, .2, .8);
+  return *ConvexShape::capsule(uniform(random, .2, .6), half_length, axis);
 }
 
 ConvexShape curved(Random& random) {
@@ -146,8 +152,8 @@ PosedPairCase derivative_case(DerivativeFamily family, std::uint64_t seed, std::
   ConvexShape a = body(family, random, true), b = body(family, random, false);
   if (random() % 2 == 0) std::swap(a, b);
   // Both bodies reach between .2 and 1.3 from their origins: from deep to well apart.
-  const Vec3 offset = uniform(random, .1, 2.2) * direction(random);
-  const Vec3 place = uniform(random, 0, 1) * direction(random);
+  const Vec3 offset = vector(random, .1, 2.2);
+  const Vec3 place = vector(random, 0, 1);
   return {name(family), std::move(a), std::move(b), *Pose::from_matrix(rotation(random), place),
           *Pose::from_matrix(rotation(random), place + offset)};
 }
@@ -243,8 +249,10 @@ Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axi
 
 /// A box of half extents 1 as B, and a smaller body near its face z = 1 that reaches `low` below its origin.
 Arrangement over_face(const char* kind, ConvexShape a, const Mat3& turn, double low, Random& random, bool unique) {
-  const double signed_depth = uniform(random, .02, .2) * (random() % 2 == 0 ? 1 : -1);
-  const Vec3 offset(uniform(random, -.2, .2), uniform(random, -.2, .2), 1 + low - signed_depth);
+  const double size = uniform(random, .02, .2);
+  const double signed_depth = random() % 2 == 0 ? size : -size;
+  const double y = uniform(random, -.2, .2);
+  const Vec3 offset(uniform(random, -.2, .2), y, 1 + low - signed_depth);
   return {kind, std::move(a), box({1, 1, 1}), turn, offset, true, unique};
 }
 
@@ -336,7 +344,7 @@ TieCase tie_case(std::uint64_t seed, std::uint64_t index) {
   // Turned as a whole, so that rounding blurs every tie; one in four stays as built, exact.
   const bool turned = random() % 4 != 0;
   const Mat3 whole = turned ? rotation(random) : Mat3::Identity();
-  const Vec3 place = turned ? Vec3(uniform(random, 0, 2) * direction(random)) : Vec3::Zero();
+  const Vec3 place = turned ? vector(random, 0, 2) : Vec3(0, 0, 0);
   const Pose pose_b = *Pose::from_matrix(whole, place);
   const Pose pose_a = *Pose::from_matrix(whole * built.turn_a, place + whole * built.offset_a);
   return {{built.kind, std::move(built.a), std::move(built.b), pose_a, pose_b},

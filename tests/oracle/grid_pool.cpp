@@ -14,7 +14,10 @@ Int3 random_point(int units, Random& random) {
   return {random.integer(0, units), random.integer(0, units), random.integer(0, units)};
 }
 
-Int3 random_vector(int units, Random& random) { return random_point(units, random) - random_point(units, random); }
+Int3 random_vector(int units, Random& random) {
+  const Int3 from = random_point(units, random);
+  return random_point(units, random) - from;
+}
 
 bool on_grid(const Int3& p, int units) {
   const auto ok = [&](std::int32_t c) { return c >= 0 && c <= units; };
@@ -28,7 +31,8 @@ std::vector<Int3> lattice_points(int count, int units, const Int3& origin, const
                                  Random& random) {
   std::vector<Int3> points{origin};
   for (int tries = 0; tries < 200 && static_cast<int>(points.size()) < count; ++tries) {
-    const Int3 p = origin + times(random.integer(-units, units), u) + times(random.integer(-units, units), v);
+    const Int3 along_v = times(random.integer(-units, units), v);
+    const Int3 p = origin + times(random.integer(-units, units), u) + along_v;
     if (on_grid(p, units)) points.push_back(p);
   }
   return points;
@@ -76,10 +80,12 @@ std::vector<Int3> hull(int units, Random& random) {
     if (how == 0) {
       points.push_back(any());
     } else if (how <= 2) {
-      const Int3 sum = any() + any();
+      const Int3 end = any();
+      const Int3 sum = end + any();
       points.push_back({sum.x / 2, sum.y / 2, sum.z / 2});
     } else if (how == 3) {
-      const Int3 p = any() + any() - any();  // a corner of a parallelogram
+      const Int3 opposite = any(), next = any();
+      const Int3 p = next + any() - opposite;  // a corner of a parallelogram
       if (on_grid(p, units)) points.push_back(p);
     } else {
       points.push_back(random_point(units, random));
@@ -90,14 +96,20 @@ std::vector<Int3> hull(int units, Random& random) {
 
 std::vector<Int3> points_of(Kind kind, int units, Random& random) {
   switch (kind) {
-    case Kind::point:
-      return std::vector<Int3>(static_cast<std::size_t>(random.integer(1, 3)), random_point(units, random));
-    case Kind::segment:
-      return lattice_points(random.integer(2, 5), units, random_point(units, random), short_vector(random), Int3{},
-                            random);
-    case Kind::polygon:
-      return lattice_points(random.integer(3, kMostPoints), units, random_point(units, random), short_vector(random),
-                            short_vector(random), random);
+    case Kind::point: {
+      const Int3 point = random_point(units, random);
+      return std::vector<Int3>(static_cast<std::size_t>(random.integer(1, 3)), point);
+    }
+    case Kind::segment: {
+      const Int3 along = short_vector(random);
+      const Int3 origin = random_point(units, random);
+      return lattice_points(random.integer(2, 5), units, origin, along, Int3{}, random);
+    }
+    case Kind::polygon: {
+      const Int3 v = short_vector(random), u = short_vector(random);
+      const Int3 origin = random_point(units, random);
+      return lattice_points(random.integer(3, kMostPoints), units, origin, u, v, random);
+    }
     case Kind::tetrahedron:
       return {random_point(units, random), random_point(units, random), random_point(units, random),
               random_point(units, random)};

@@ -41,7 +41,7 @@ enum class Placement { touching, at_one_place, in_one_line, anywhere };
 void place(Placement how, MemberPair& pair, Random& random) {
   const bool turned = random.integer(0, 3) != 0;
   const auto upright = [](const Vec3& t) { return *Pose::from_quaternion({1, 0, 0, 0}, t); };
-  const auto pose = [&](const Vec3& t) { return turned ? *Pose::from_quaternion(random.quaternion(), t) : upright(t); };
+  const auto pose = [&](const Vec3& t) { return turned ? random.pose(t) : upright(t); };
   switch (how) {
     case Placement::touching: {
       pair.pose_a = pose(Vec3::Zero());

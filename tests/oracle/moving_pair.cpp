@@ -18,7 +18,14 @@ class Dice {
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   Vec3 vector() { return {normal_(random_), normal_(random_), normal_(random_)}; }
   Vec3 unit() { return vector().normalized(); }
-  Mat3 rotation() { return Eigen::AngleAxisd(uniform(0, 3), unit()).toRotationMatrix(); }
+  Vec3 vector(double shortest, double longest) {
+    const Vec3 direction = unit();
+    return uniform(shortest, longest) * direction;
+  }
+  Mat3 rotation() {
+    const Vec3 axis = unit();
+    return Eigen::AngleAxisd(uniform(0, 3), axis).toRotationMatrix();
+  }
   ConvexShape hull(double size) {
     std::vector<Vec3> points(static_cast<std::size_t>(uniform(4, 12)));
     for (Vec3& p : points) p = size * vector();
@@ -31,8 +38,16 @@ class Dice {
   std::normal_distribution<double> normal_;
 };
 
-MovingShape moving(const ConvexShape& shape, const Mat3& rotation, const Vec3& at, const Vec3& v, const Vec3& w) {
-  return {{&shape, Pose::from_trusted_matrix(rotation, at)}, {v, w}};
+/// Drawn in this order.
+struct Thrown {
+  Vec3 w = Vec3::Zero();
+  Vec3 v = Vec3::Zero();
+  Vec3 at = Vec3::Zero();
+  Mat3 rotation = Mat3::Identity();
+};
+
+MovingShape moving(const ConvexShape& shape, const Thrown& thrown) {
+  return {{&shape, Pose::from_trusted_matrix(thrown.rotation, thrown.at)}, {thrown.v, thrown.w}};
 }
 
 }  // namespace
@@ -47,39 +62,53 @@ MovingCase moving_case(std::uint64_t seed, std::uint64_t index) {
   switch (index % 5) {
     case 0: {
       pair.family = "hulls thrown at each other";
-      hold(dice.hull(0.5), dice.hull(0.5));
+      ConvexShape b = dice.hull(0.5);
+      hold(dice.hull(0.5), std::move(b));
       const Vec3 from = 5 * dice.unit();
-      pair.a = moving(*pair.shape_a, dice.rotation(), from, -7 * from.normalized() + dice.vector(), 3 * dice.vector());
-      pair.b = moving(*pair.shape_b, dice.rotation(), Vec3::Zero(), dice.vector(), 3 * dice.vector());
+      pair.a = moving(*pair.shape_a, {.w = 3 * dice.vector(),
+                                      .v = -7 * from.normalized() + dice.vector(),
+                                      .at = from,
+                                      .rotation = dice.rotation()});
+      pair.b = moving(*pair.shape_b, {.w = 3 * dice.vector(), .v = dice.vector(), .rotation = dice.rotation()});
       break;
     }
     case 1: {
       pair.family = "a spinning rod beside a thin wall";
       const double half = dice.uniform(0.5, 2);
       hold(dice.box(Vec3(half, 0.02, 0.02)), dice.box(Vec3(5, 0.0005, 5)));
-      pair.a = moving(*pair.shape_a, dice.rotation(), Vec3(0, half * dice.uniform(0.3, 1.1), 0), 0.3 * dice.vector(),
-                      dice.uniform(1, 20) * dice.unit());
-      pair.b = moving(*pair.shape_b, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+      pair.a = moving(*pair.shape_a, {.w = dice.vector(1, 20),
+                                      .v = 0.3 * dice.vector(),
+                                      .at = Vec3(0, half * dice.uniform(0.3, 1.1), 0),
+                                      .rotation = dice.rotation()});
+      pair.b = moving(*pair.shape_b, {});
       break;
     }
     case 2: {
       pair.family = "a fast small body and a thin wall";
       hold(dice.hull(0.02), dice.box(Vec3(0.0005, 3, 3)));
-      pair.a =
-          moving(*pair.shape_a, dice.rotation(), Vec3(dice.uniform(2, 10), dice.uniform(-2, 2), dice.uniform(-2, 2)),
-                 Vec3(-dice.uniform(20, 1000), 0, 0) + 5 * dice.vector(), 20 * dice.vector());
-      pair.b = moving(*pair.shape_b, dice.rotation(), Vec3::Zero(), Vec3::Zero(), 0.1 * dice.vector());
+      Thrown body{.w = 20 * dice.vector(), .v = 5 * dice.vector()};
+      body.v.x() -= dice.uniform(20, 1000);
+      body.at.z() = dice.uniform(-2, 2);
+      body.at.y() = dice.uniform(-2, 2);
+      body.at.x() = dice.uniform(2, 10);
+      body.rotation = dice.rotation();
+      pair.a = moving(*pair.shape_a, body);
+      pair.b = moving(*pair.shape_b, {.w = 0.1 * dice.vector(), .rotation = dice.rotation()});
       break;
     }
     case 3: {
       pair.family = "grazing passes";
       // A corner of the spinning box comes as near to the wall as its way allows: heights around its largest reach.
-      const Vec3 half(dice.uniform(0.2, 1), dice.uniform(0.2, 1), dice.uniform(0.2, 1));
+      const double half_z = dice.uniform(0.2, 1), half_y = dice.uniform(0.2, 1);
+      const Vec3 half(dice.uniform(0.2, 1), half_y, half_z);
       hold(dice.box(half), dice.box(Vec3(10, 1, 10)));
-      const double nearly = 1 + dice.uniform(-1, 1) * std::pow(10, -dice.uniform(1, 7));
-      pair.a = moving(*pair.shape_a, dice.rotation(), Vec3(0, 1 + half.head<2>().norm() * nearly, 0),
-                      Vec3(dice.uniform(-2, 2), 0, 0), Vec3(0, 0, dice.uniform(2, 12)));
-      pair.b = moving(*pair.shape_b, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+      const double share = dice.uniform(-1, 1);
+      const double nearly = 1 + share * std::pow(10, -dice.uniform(1, 7));
+      pair.a = moving(*pair.shape_a, {.w = Vec3(0, 0, dice.uniform(2, 12)),
+                                      .v = Vec3(dice.uniform(-2, 2), 0, 0),
+                                      .at = Vec3(0, 1 + half.head<2>().norm() * nearly, 0),
+                                      .rotation = dice.rotation()});
+      pair.b = moving(*pair.shape_b, {});
       // Turned about z only, so that the corner's reach is the half of the diagonal.
       pair.a.start.pose = Pose::from_trusted_matrix(
           Eigen::AngleAxisd(dice.uniform(0, 6), Vec3::UnitZ()).toRotationMatrix(), pair.a.start.pose.translation());
@@ -87,10 +116,13 @@ MovingCase moving_case(std::uint64_t seed, std::uint64_t index) {
     }
     default: {
       pair.family = "parts that turn about a far point";
-      hold(dice.hull(0.3), dice.hull(0.3));
-      pair.a = moving(*pair.shape_a, dice.rotation(), 3 * dice.unit(), 2 * dice.vector(), 3 * dice.vector());
+      ConvexShape b = dice.hull(0.3);
+      hold(dice.hull(0.3), std::move(b));
+      pair.a =
+          moving(*pair.shape_a,
+                 {.w = 3 * dice.vector(), .v = 2 * dice.vector(), .at = 3 * dice.unit(), .rotation = dice.rotation()});
       pair.a.arm = 2 * dice.vector();
-      pair.b = moving(*pair.shape_b, dice.rotation(), Vec3::Zero(), Vec3::Zero(), 2 * dice.vector());
+      pair.b = moving(*pair.shape_b, {.w = 2 * dice.vector(), .rotation = dice.rotation()});
       pair.b.arm = dice.vector();
     }
   }

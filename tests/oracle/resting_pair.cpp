@@ -31,9 +31,13 @@ Points core(Random& random, int kind) {
 /// Upright, tipped a little, or anyhow.
 Pose orientation(Random& random) {
   const int kind = random.integer(0, 3);
-  if (kind == 3) return *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+  if (kind == 3) return random.pose(Vec3::Zero());
   const auto [sine, cosine] = scenes::turn(random.uniform());
-  const double tip = kind == 0 ? 0 : std::ldexp(random.uniform(-1, 1), -random.integer(1, 22));
+  double tip = 0;
+  if (kind != 0) {
+    const int halvings = random.integer(1, 22);
+    tip = std::ldexp(random.uniform(-1, 1), -halvings);
+  }
   const double half = 0.5 * tip;
   const double norm = std::sqrt(1 + half * half);
   // A turn about y, then a small one about an axis across it.
@@ -60,12 +64,16 @@ RestingPair make_resting_pair(std::uint64_t seed, Scratch& scratch) {
   RestingPair pair;
   pair.cores.a = core(random, random.integer(0, 7) % 4);
   static constexpr double kFloors[] = {1, 20, 200};
-  pair.cores.b = random.integer(0, 1) == 0
-                     ? core(random, random.integer(0, 1))
-                     : scenes::box(Vec3(kFloors[random.integer(0, 2)], 1, kFloors[random.integer(0, 2)]));
+  if (random.integer(0, 1) == 0) {
+    pair.cores.b = core(random, random.integer(0, 1));
+  } else {
+    const double half_z = kFloors[random.integer(0, 2)];
+    pair.cores.b = scenes::box(Vec3(kFloors[random.integer(0, 2)], 1, half_z));
+  }
   pair.margin_a = single(random.uniform(0.001, 0.08), round);
   pair.margin_b = random.integer(0, 3) == 0 ? 0 : single(random.uniform(0.001, 0.08), round);
-  const Vec3 start(random.uniform(-0.7, 0.7), random.uniform(0.5, 2), random.uniform(-0.7, 0.7));
+  const double z = random.uniform(-0.7, 0.7), y = random.uniform(0.5, 2);
+  const Vec3 start(random.uniform(-0.7, 0.7), y, z);
   pair.cores.pose_a = moved(orientation(random), start, round);
   pair.cores.pose_b = random.integer(0, 1) == 0 ? Pose() : orientation(random);
   for (Vec3& p : pair.cores.a) p = Vec3(single(p.x(), round), single(p.y(), round), single(p.z(), round));
@@ -92,7 +100,8 @@ RestingPair make_resting_pair(std::uint64_t seed, Scratch& scratch) {
     pair.cores.pose_a = moved(pair.cores.pose_a, to_contact(last), round);
   }
   if (random.integer(0, 3) > 0) {
-    const double shift = std::pow(10, random.uniform(-20, -6)) * (random.integer(0, 1) == 0 ? 1 : -1);
+    const double size = std::pow(10, random.uniform(-20, -6));
+    const double shift = random.integer(0, 1) == 0 ? size : -size;
     pair.cores.pose_a = moved(pair.cores.pose_a, shift * last.normal, false);
   }
   return pair;

@@ -20,7 +20,7 @@ Pose translated(const Vec3& t) { return *Pose::from_matrix(Mat3::Identity(), t);
 
 TEST(Compound, UnderTheIdentityPartsStandAsGiven) {
   scenes::Random random(2);
-  const Pose turned = *Pose::from_quaternion(random.quaternion(), {0.1, 0.2, 0.3});
+  const Pose turned = random.pose({0.1, 0.2, 0.3});
   const Compound compound = *Compound::from_parts({{box({1, 1, 1}), turned}, {box({1, 2, 1}), translated({3, 0, 0})}});
   const std::vector<PosedShape> parts = *compound.posed(Pose());
   ASSERT_EQ(parts.size(), 2u);
@@ -38,7 +38,7 @@ TEST(Compound, AStackOfBoxesStaysOneWhenItIsTurned) {
     list.push_back({*ConvexPolytope::from_points(part.points), part.pose});
   }
   const Compound stack = *Compound::from_parts(list);
-  const Pose turned = *Pose::from_quaternion(random.quaternion(), {0.3, 0.7, -0.9});
+  const Pose turned = random.pose({0.3, 0.7, -0.9});
   const std::vector<PosedShape> parts = *stack.posed(turned);
   for (const PosedShape& part : parts) {
     EXPECT_EQ(part.pose, turned);  // one exact pose for all: faces that were common stay common
@@ -48,8 +48,8 @@ TEST(Compound, AStackOfBoxesStaysOneWhenItIsTurned) {
 TEST(Compound, ComposedPosesAreTheProductRoundedOnce) {
   scenes::Random random(4);
   for (int k = 0; k < 50; ++k) {
-    const Pose outer = *Pose::from_quaternion(random.quaternion(), random.direction());
-    const Pose inner = *Pose::from_quaternion(random.quaternion(), random.direction());
+    const Pose outer = random.pose(random.direction());
+    const Pose inner = random.pose(random.direction());
     const Pose both = *composed(outer, inner);
     const Vec3 x = random.direction();
     EXPECT_LT((both.apply(x) - outer.apply(inner.apply(x))).norm(), 2e-15);

@@ -51,7 +51,10 @@ double highest(const ConvexPolytope& p, const Vec3& d) {
 /// All kinds of directions: any, along an axis, on the borders of sides and cells, and normals of facets.
 std::vector<Vec3> directions(const ConvexPolytope& p, Random& random) {
   std::vector<Vec3> all;
-  for (int i = 0; i < 200; ++i) all.push_back(random.direction() * std::exp2(random.integer(-90, 90)));
+  for (int i = 0; i < 200; ++i) {
+    const double length = std::exp2(random.integer(-90, 90));
+    all.push_back(length * random.direction());
+  }
   for (int axis = 0; axis < 3; ++axis) all.insert(all.end(), {Vec3::Unit(axis), -Vec3::Unit(axis)});
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 0.0, 1.0}) {

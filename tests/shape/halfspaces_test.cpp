@@ -87,7 +87,7 @@ TEST(Halfspaces, TheFacetsOfAHullGiveItsVerticesBack) {
   std::uniform_int_distribution<int> whole(-8, 8);
   for (int round = 0; round < 60; ++round) {
     std::vector<Vec3> points;
-    for (int i = 0; i < 4 + round; ++i) points.emplace_back(whole(random), whole(random), whole(random));
+    for (int i = 0; i < 4 + round; ++i) points.push_back({whole(random), whole(random), whole(random)});
     const auto hull = pd::ConvexPolytope::from_points(points);
     if (!hull || hull->affine_dimension() < 3) continue;
     Planes planes;
@@ -110,7 +110,7 @@ TEST(Halfspaces, RandomPlanesEncloseAndAreReached) {
   for (const int n : {24, 100, 300}) {
     Planes planes;
     for (int i = 0; i < n; ++i) {
-      planes.push_back({Vec3(normal(random), normal(random), normal(random)), 0});
+      planes.push_back({Vec3{normal(random), normal(random), normal(random)}, 0});
       planes.back().offset = planes.back().normal.norm() + planes.back().normal.x() * 5;  // about (5, 0, 0)
     }
     const auto body = polytope_of_halfspaces(planes);

@@ -292,7 +292,7 @@ TEST(MeshCheck, TrianglesCrossWhereTheirBodiesAreNotSeparated) {
     const auto coordinate = [&] { return static_cast<double>(random() % 5); };
     std::vector<Vec3> points;
     const bool flat = i % 4 == 0;
-    for (int k = 0; k < 6; ++k) points.emplace_back(coordinate(), coordinate(), flat ? 0 : coordinate());
+    for (int k = 0; k < 6; ++k) points.push_back({coordinate(), coordinate(), flat ? 0 : coordinate()});
     std::vector<Vec3> first(points.begin(), points.begin() + 3), second(points.begin() + 3, points.end());
     const auto a = ConvexPolytope::from_points(first), b = ConvexPolytope::from_points(second);
     if (a->affine_dimension() != 2 || b->affine_dimension() != 2) continue;
@@ -317,7 +317,7 @@ TEST(MeshCheck, TrianglesWithACommonVertexCrossWhereTheyMeetElsewhere) {
   for (int i = 0; i < 8000; ++i) {
     const auto coordinate = [&] { return static_cast<double>(random() % 4); };
     std::vector<Vec3> points;
-    for (int k = 0; k < 5; ++k) points.emplace_back(coordinate(), coordinate(), i % 4 == 0 ? 0 : coordinate());
+    for (int k = 0; k < 5; ++k) points.push_back({coordinate(), coordinate(), i % 4 == 0 ? 0 : coordinate()});
     // The part of the first triangle beyond 2^-20 of its way from the common vertex.
     const auto near = [&](std::size_t k) -> Vec3 { return points[0] + 0x1p-20 * (points[k] - points[0]); };
     const auto a = ConvexPolytope::from_points(std::vector<Vec3>{near(1), near(2), points[1], points[2]});

@@ -30,15 +30,17 @@ Pose quaternion(double w, double x, double y, double z, const Vec3& t) {
 
 PairVector any_vector(std::mt19937_64& bits) {
   const auto vertex = [&] { return static_cast<int>(bits() % 8); };
-  switch (bits() % 4) {
+  const auto kind = bits() % 4;
+  const std::array<int, 4> of{vertex(), vertex(), vertex(), vertex()};
+  switch (kind) {
     case 0:
-      return PairVector::point(vertex(), vertex());
+      return PairVector::point(of[0], of[1]);
     case 1:
-      return PairVector::edge_a(vertex(), vertex());
+      return PairVector::edge_a(of[0], of[1]);
     case 2:
-      return PairVector::edge_b(vertex(), vertex());
+      return PairVector::edge_b(of[0], of[1]);
     default:
-      return PairVector::difference(vertex(), vertex(), vertex(), vertex());
+      return PairVector::difference(of[0], of[1], of[2], of[3]);
   }
 }
 

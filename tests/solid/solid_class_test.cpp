@@ -16,7 +16,7 @@ Pose moved(const Vec3& translation) { return *Pose::from_matrix(Mat3::Identity()
 Pose random_pose(std::mt19937_64& random, double reach) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> place(-reach, reach);
-  Eigen::Vector4d q(normal(random), normal(random), normal(random), normal(random));
+  Eigen::Vector4d q{normal(random), normal(random), normal(random), normal(random)};
   q.normalize();
   return *Pose::from_quaternion({q[0], q[1], q[2], q[3]}, {place(random), place(random), place(random)});
 }

@@ -79,7 +79,7 @@ void expect_bracket_holds(const MeshSolid& a, const MeshSolid& b, const Pose& po
   std::normal_distribution<double> normal;
   for (int i = 0; i < 40; ++i) {
     const Vec3 unit = i == 0 ? Vec3(found.translation.normalized())
-                             : Vec3(normal(random), normal(random), normal(random)).normalized();
+                             : Vec3{normal(random), normal(random), normal(random)}.normalized();
     EXPECT_EQ(classify({&a, moved(0.9999 * found.lower * unit)}, {&b, pose}), ContactClass::overlapping) << i;
   }
 }

@@ -26,7 +26,7 @@ ConvexPolytope hull(const std::vector<Vec3>& points) {
 std::vector<Vec3> sphere_points(int n, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) points.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
+  for (int i = 0; i < n; ++i) points.push_back(Vec3{normal(random), normal(random), normal(random)}.normalized());
   return points;
 }
 
@@ -35,7 +35,7 @@ Pose random_pose(std::mt19937_64& random) {
   std::array<double, 4> q{normal(random), normal(random), normal(random), normal(random)};
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (double& c : q) c /= length;
-  return *Pose::from_quaternion(q, 0.3 * Vec3(normal(random), normal(random), normal(random)));
+  return *Pose::from_quaternion(q, 0.3 * Vec3{normal(random), normal(random), normal(random)});
 }
 
 std::vector<OverlayPiece> pieces_of(const PosedPair& pair, OverlayBuffers& buffers) {
@@ -287,7 +287,7 @@ ConvexPolytope grid_body(std::mt19937_64& random, int dimension) {
     const int n = dimension + 1 + static_cast<int>(random() % 6);
     const int turned = static_cast<int>(random() % 3);
     for (int i = 0; i < n; ++i) {
-      Vec3 p(coordinate(random), coordinate(random), coordinate(random));
+      Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
       for (int k = dimension; k < 3; ++k) p[(k + turned) % 3] = 1;
       points.push_back(p);
     }

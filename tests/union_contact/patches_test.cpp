@@ -27,7 +27,7 @@ class NoisyRings {
       const Vec3 across = manifold.normal.unitOrthogonal();
       const Vec3 place = std::cos(angle) * across + std::sin(angle) * manifold.normal.cross(across);
       const auto off = [&] { return 1e-3 * noise(random_); };
-      manifold.points[0] = {Vec3::Zero(), place + Vec3(off(), off(), off()), 0.01 + 1e-3 * off(), i};
+      manifold.points[0] = {Vec3::Zero(), place + Vec3{off(), off(), off()}, 0.01 + 1e-3 * off(), i};
       manifold.count = 1;
       patches.add(manifold, i, i, 0);
     }
@@ -181,7 +181,7 @@ TEST(Patches, OfManyPointsTheSameOnesRepeatEachOther) {
   for (int trial = 0; trial < 100; ++trial) {
     Patches few, many;
     for (int i = 0; i < 8; ++i) {
-      const Vec3 at(place(random), 0, place(random));
+      const Vec3 at{place(random), 0, place(random)};
       const double depth = 1e-4 * (8 - i);
       add_point(few, Vec3::UnitY(), at, depth, i);
       add_point(many, Vec3::UnitY(), at, depth, i);

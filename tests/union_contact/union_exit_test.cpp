@@ -38,7 +38,8 @@ class RandomUnions {
     for (int i = 0; i < count; ++i) {
       std::vector<Vec3> points;
       for (int k = 0; k < 9; ++k) points.push_back(0.5 * vector());
-      const Mat3 turned = Eigen::AngleAxisd(3 * number(), vector().normalized()).toRotationMatrix();
+      const Vec3 axis = vector().normalized();
+      const Mat3 turned = Eigen::AngleAxisd(3 * number(), axis).toRotationMatrix();
       parts.push_back({ConvexShape(*ConvexPolytope::from_points(points)), at(place + 0.5 * vector(), turned)});
     }
     return parts;

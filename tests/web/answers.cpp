@@ -201,9 +201,9 @@ void ask_curved(Questions& questions, Random& random) {
   const Shape a = questions.curved(random);
   const Shape b = questions.curved(random);
   const Vec3 place_a = 0.5 * random.direction();
-  const pd::Pose pose_a = *pd::Pose::from_quaternion(random.quaternion(), place_a);
-  const Vec3 place_b = random.uniform(0, 1.5) * random.direction();
-  questions.pair(a.get(), pose_a, b.get(), *pd::Pose::from_quaternion(random.quaternion(), place_b));
+  const pd::Pose pose_a = random.pose(place_a);
+  const Vec3 place_b = random.vector(0, 1.5);
+  questions.pair(a.get(), pose_a, b.get(), random.pose(place_b));
   pdepth_settings settings{};
   settings.delta = 1e-3;
   questions.ask(settings);

@@ -64,7 +64,7 @@ void measure_stars(const AgarwalSettings& settings, ClaimTable& table) {
   int wrong = 0;
   for (int k = 2; k <= (settings.quick ? 4 : 8); ++k) {
     const Compound a = star(k), b = star(k);
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.5, 0.1, 0.2});
+    const Pose pose = random.pose({0.5, 0.1, 0.2});
     const double mn = 64.0 * k * k;
     Expected<UnionDifference> built = Error{};
     Expected<UnionDepth> answer = Error{};

@@ -307,7 +307,8 @@ void calls(const AryaSettings& settings, ClaimTable& table, int cases, dimension
     std::int64_t count = 0;
     for (int k = 0; k < cases; ++k) {
       AffineMap<D> map;
-      map.translation = (1.6 + 0.4 * uniform(random)) * direction<D>(random);
+      const auto unit = direction<D>(random);
+      map.translation = (1.6 + 0.4 * uniform(random)) * unit;
       const std::array<ComposedBody<D>, 2> pair = {*ComposedBody<D>::of(a), *ComposedBody<D>::of(a, map)};
       count += dimension::approximate_intersection<D>(pair, epsilon, search)->support_calls;
     }

@@ -92,7 +92,7 @@ Vec3 worst_direction(scenes::Random& random, const Ask& steps_of) {
 Counted worst_of(const Prepared& p, const Prepared& q, scenes::Random& random) {
   const ConvexShape a(p.body), b(q.body);
   const DirectionalHierarchies hierarchies{&p.inner, &q.inner};
-  const Pose turned = *Pose::from_quaternion(random.quaternion(), Vec3(0.001, 0.002, -0.001));
+  const Pose turned = random.pose(Vec3(0.001, 0.002, -0.001));
   const PosedShape posed_a{&a, turned}, posed_b{&b, Pose()};
   Scratch scratch;
   Counted counted;
@@ -181,7 +181,7 @@ void measure_twins(const std::string& name, const std::vector<Prepared>& all, in
       for (const auto& level : twin.outer(i).levels()) count += level.vertices + level.facets;
       double most_steps = 0;
       (void)worst_direction(random, [&](const Vec3& d) {
-        const Vec3 point = p.body.centre() + random.uniform() * p.body.radius() * random.direction();
+        const Vec3 point = p.body.centre() + random.vector(0, p.body.radius());
         const LevelCrossing found = crossing_of_level(twin, i, point, d).value();
         repairs += found.repairs;
         ++lines;
@@ -193,7 +193,7 @@ void measure_twins(const std::string& name, const std::vector<Prepared>& all, in
       if (i == 0) worst_finest = most_steps;
     }
     for (int k = 0; k < 50; ++k) {
-      const Vec3 point = p.body.centre() + 0.5 * random.uniform() * p.body.radius() * random.direction();
+      const Vec3 point = p.body.centre() + random.vector(0, 0.5 * p.body.radius());
       const Vec3 d = random.direction();
       const LevelCrossing outer = crossing_of_level(twin, 0, point, d).value();
       const ConvexPolytope small = ConvexPolytope::from_points({&point, 1}).value();

@@ -187,7 +187,7 @@ class Hasher {
   void curved(std::int64_t i, Random& random) {
     const auto pose = [&](double reach) {
       const Vec3 translation = reach * random.direction();
-      return *Pose::from_quaternion(random.quaternion(), translation);
+      return random.pose(translation);
     };
     const Pair pair{curved_shape(random), curved_shape(random), pose(0.5), pose(random.uniform(0, 1.5))};
     ask("curved, delta 1e-2", pair, {.delta = 1e-2});

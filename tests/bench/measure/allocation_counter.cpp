@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "bench/measure/sanitized.hpp"
+
 namespace {
 std::atomic<std::int64_t> count = 0;
 void note() { count.fetch_add(1, std::memory_order_relaxed); }
@@ -14,16 +16,7 @@ namespace pd::bench {
 std::int64_t allocations() { return count.load(std::memory_order_relaxed); }
 }  // namespace pd::bench
 
-// The sanitizers stand in front of malloc themselves.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PD_BENCH_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PD_BENCH_SANITIZED 1
-#endif
-#endif
-
-#if defined(__GLIBC__) && !defined(PD_BENCH_SANITIZED)
+#if defined(__GLIBC__) && !defined(PD_SANITIZED)
 
 // glibc's `operator new` calls malloc, so that this counts both.
 extern "C" {

@@ -48,9 +48,7 @@ bool holds(const std::vector<int>& values, int value) {
 Draw aligned_cubes(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   const DepthClass depth = cell.depth;
   scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 17);
-  const auto extents = [&] {
-    return Vec3(random.integer(1, 8) / 8.0, random.integer(1, 8) / 8.0, random.integer(1, 8) / 8.0);
-  };
+  const auto extents = [&] { return Vec3(random.integer_point(1, 8) / 8.0); };
   const Vec3 a = extents();
   const Vec3 b = extents();
   Vec3 offset = Vec3::Zero();
@@ -77,11 +75,12 @@ Draw aligned_cubes(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
 /// A lies on B, anywhere on its upper face but for its rim.
 Draw boxes_at_rest(const Cell& cell, std::uint64_t seed, std::uint64_t number) {
   scenes::Random random(seed * 0x9E3779B97F4A7C15ULL + number * 0xD1B54A32D192ED03ULL + 29);
-  const auto extents = [&] { return Vec3(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1)); };
+  const auto extents = [&] { return random.point(0.1, 1); };
   const Vec3 a = extents();
   const Vec3 b = extents();
   const double sunk = cell.depth == DepthClass::shallow ? 1e-6 : cell.depth == DepthClass::mid ? 1e-4 : 1e-2;
-  const Vec3 place(random.uniform(-0.9, 0.9) * b.x(), random.uniform(-0.9, 0.9) * b.y(), a.z() + b.z() - sunk);
+  const double y = random.uniform(-0.9, 0.9) * b.y();
+  const Vec3 place(random.uniform(-0.9, 0.9) * b.x(), y, a.z() + b.z() - sunk);
   const double t = random.uniform(-1, 1), length = std::hypot(1, t);
   return {{ConvexShape(*ConvexPolytope::box(a)), ConvexShape(*ConvexPolytope::box(b))},
           *Pose::from_quaternion({1 / length, 0, 0, t / length}, place),
@@ -157,8 +156,8 @@ Extent extent_of(const scenes::Points& points) {
 }
 
 Draw placed(const Bodies& bodies, double size, DepthClass depth, scenes::Random& random) {
-  const Pose a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-  const Pose b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+  const Pose a = random.pose(Vec3::Zero());
+  const Pose b = random.pose(Vec3::Zero());
   const Vec3 d = random.direction();
   Vec3 t;
   if (depth == DepthClass::deep) {

@@ -57,7 +57,7 @@ ConvexShape body(Random& random) {
 /// Places B along a random direction from A, deeper by 1 or 10 % of a half size than where they first touch.
 Draw mixed_pair(Random& random, Scratch& scratch) {
   ConvexShape a = body(random);
-  Draw d{{std::move(a), body(random)}, *Pose::from_quaternion(random.quaternion(), Vec3::Zero()), Pose()};
+  Draw d{{std::move(a), body(random)}, random.pose(Vec3::Zero()), Pose()};
   const auto turn = random.quaternion();
   const Vec3 direction = random.direction();
   const auto at = [&](double way) { return *Pose::from_quaternion(turn, way * direction); };

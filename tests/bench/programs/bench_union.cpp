@@ -58,7 +58,7 @@ void measure_stars(int largest, std::uint64_t seed) {
   for (int k = 2; 64 * k * k <= largest; ++k) {
     const Compound a = compound_of(scenes::star_prism(k, 0.5, random)),
                    b = compound_of(scenes::star_prism(k, 0.5, random));
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.5, 0.1, 0.2});
+    const Pose pose = random.pose({0.5, 0.1, 0.2});
     double begin = processor_ms();
     const auto built = pd::minkowski_difference({&a, pose}, {&b, Pose()});
     const double built_ms = processor_ms() - begin;
@@ -93,7 +93,7 @@ void measure_balls(int levels, std::uint64_t seed) {
     scenes::Random random(seed);
     const Compound a = compound_of(scenes::rough_ball(total / 2, 0.3, random)),
                    b = compound_of(scenes::rough_ball((total + 1) / 2, 0.3, random));
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.3, 0.1, 0.2});
+    const Pose pose = random.pose({0.3, 0.1, 0.2});
     pd::Scratch scratch;
     const double begin = processor_ms();
     const auto answer = pd::penetration_depth(pd::PosedCompound{&a, pose}, pd::PosedCompound{&b, Pose()}, scratch);
@@ -117,7 +117,7 @@ void measure_bracket(std::uint64_t seed) {
                                                                 {"stack", compound_of(scenes::stack(6, 0.3))}};
   std::printf("octree against 1 / delta\n%10s %10s %10s %10s %12s\n", "body", "1/delta", "cells", "ms", "gap");
   for (const auto& [name, body] : bodies) {
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.2, 0.1, 0.15});
+    const Pose pose = random.pose({0.2, 0.1, 0.15});
     std::vector<double> inverse, cells;
     for (double delta = 0.25; delta > 0.002; delta /= 2) {
       pd::Scratch scratch;
@@ -163,7 +163,7 @@ void measure_coherent(int frames, std::uint64_t seed) {
   std::printf("coherent frames: turned by .004 rad, moved by .0011 a frame\n%14s %9s %12s %12s %10s %10s %10s %8s\n",
               "bodies", "depth", "cold facets", "warm facets", "cold ms", "warm ms", "warm/cold", "bytes");
   for (const Row& row : rows) {
-    const Pose start = *Pose::from_quaternion(random.quaternion(), row.offset);
+    const Pose start = random.pose(row.offset);
     pd::Scratch scratch;
     pd::WarmUnion memory;
     double cold_ms = 0, warm_ms = 0, cold_facets = 0, warm_facets = 0, depth = 0;

@@ -40,7 +40,8 @@ btCollisionShape* hull_of_100(pd::test::BulletWorld& world) {
   auto* hull = world.shape<btConvexHullShape>();
   Random random;
   for (int i = 0; i < 100; ++i) {
-    const btVector3 way(random.next(), random.next(), random.next());
+    const btScalar z = random.next(), y = random.next();
+    const btVector3 way(random.next(), y, z);
     hull->addPoint(btScalar(.3) * way.normalized(), false);
   }
   hull->recalcLocalAabb();
@@ -119,8 +120,10 @@ void add_world(const std::string& kind, const std::string& ground, bool ours, co
   for (int i = 0; i < question.layers * kSide * kSide; ++i) {
     const auto across = [&](int place) { return 1.2F * (static_cast<btScalar>(place) - 2.5F) + .1F * random.next(); };
     const auto above = static_cast<btScalar>(i / (kSide * kSide));
-    const btVector3 at(across(i % kSide), 3 + above + .3F * random.next(), across(i / kSide % kSide));
-    btQuaternion turn(random.next(), random.next(), random.next(), random.next());
+    const btScalar z = across(i / kSide % kSide), y = 3 + above + .3F * random.next();
+    const btVector3 at(across(i % kSide), y, z);
+    const btScalar turn_w = random.next(), turn_z = random.next(), turn_y = random.next();
+    btQuaternion turn(random.next(), turn_y, turn_z, turn_w);
     if (only >= 0 && i != only) continue;
     btRigidBody* body =
         world.moving(shape_of(kind, world.bullet), btTransform(turn.normalized(), at), btVector3(0, 0, 0));

@@ -219,7 +219,11 @@ class Climb {
 
  private:
   double uniform() { return static_cast<double>(bits_() >> 11) * 0x1p-53; }
-  double number() { return std::ldexp(uniform() + 1, static_cast<int>(bits_() % 7) - 3) * (bits_() % 2 ? 1 : -1); }
+  double number() {
+    const int exponent = static_cast<int>(bits_() % 7) - 3;
+    const double size = std::ldexp(uniform() + 1, exponent);
+    return bits_() % 2 ? size : -size;
+  }
   Numbers start() {
     Numbers x(static_cast<std::size_t>(bound_.numbers));
     for (double& value : x) value = number();

@@ -87,9 +87,9 @@ void measure(const Options& options, int kind, double spread) {
     const ConvexShape b = small_body(kind, spread, random);
     // A quarter in the very middle, a quarter near it, the others anywhere inside.
     const double apart = i % 4 == 0 ? 0 : i % 4 == 1 ? random.uniform(0, 0.3) : random.uniform(0.3, 0.95);
-    const pd::PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
+    const pd::PosedShape posed_a{&a, random.pose(Vec3::Zero())};
     const Vec3 centre = apart * random.direction();
-    const pd::PosedShape posed_b{&b, *Pose::from_quaternion(random.quaternion(), centre)};
+    const pd::PosedShape posed_b{&b, random.pose(centre)};
     pd::PenetrationDepth answer;
     times.push_back(time_of(posed_a, posed_b, {.delta = options.delta}, scratch, answer));
     supports += static_cast<double>(answer.statistics.support_calls);

@@ -67,7 +67,7 @@ ShapePtr stone(unsigned seed) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int i = 0; i < 24; ++i) {
-    const Vec3 p = 0.09 * Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 p = 0.09 * Vec3{normal(random), normal(random), normal(random)}.normalized();
     points.push_back(p.cast<float>().cast<double>());
   }
   return test::dart_mesh(*ConvexPolytope::from_points(points));

@@ -396,8 +396,8 @@ int main(int argc, char** argv) {
     if (argc != 2 || std::strcmp(argv[1], c.name) != 0) continue;
     pd::scenes::Random random(c.seed);
     const pd::ConvexShape a = curved_body(c.cone, random), b = ground_body(c.cone, random);
-    const pd::PosedShape posed_a{&a, *pd::Pose::from_quaternion(random.quaternion(), pd::Vec3::Zero())};
-    const pd::PosedShape posed_b{&b, *pd::Pose::from_quaternion(random.quaternion(), 1.4 * random.direction())};
+    const pd::PosedShape posed_a{&a, random.pose(pd::Vec3::Zero())};
+    const pd::PosedShape posed_b{&b, random.pose(1.4 * random.direction())};
     pd::Scratch scratch;
     pd::PenetrationDepth answer = pd::penetration_depth(posed_a, posed_b, scratch, kHotPath);
     pdepth_counted_call(&posed_a, &posed_b, &scratch, nullptr, &answer, &kHotPath);

@@ -35,7 +35,7 @@ std::vector<Vec3> stone(std::mt19937& random, int vertices, double size) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int i = 0; i < vertices; ++i) {
-    points.push_back(size * Vec3(normal(random), normal(random), normal(random)).normalized());
+    points.push_back(size * Vec3{normal(random), normal(random), normal(random)}.normalized());
   }
   return points;
 }

@@ -91,13 +91,19 @@ std::size_t any_of(const pd::scenes::Points& points, Random& random) {
 /// 1, .1, ... 1e-15
 double small(Random& random) { return std::pow(10.0, -random.integer(0, 15)); }
 
+/// A direction, of such a length.
+Vec3 small_vector(Random& random) {
+  const Vec3 unit = random.direction();
+  return small(random) * unit;
+}
+
 void change_points(pd::scenes::Points& points, Random& random) {
   const std::size_t i = any_of(points, random);
   const std::size_t j = any_of(points, random);
   const std::size_t k = any_of(points, random);
   switch (random.integer(0, 5)) {
     case 0:
-      points[i] += points[j].norm() * small(random) * random.direction();
+      points[i] += points[j].norm() * small_vector(random);
       break;
     case 1:
       points[i] = points[j] + small(random) * (points[k] - points[j]);
@@ -108,19 +114,20 @@ void change_points(pd::scenes::Points& points, Random& random) {
     case 3:
       points[i] = points[j] + points[k] - points[i];
       break;
-    case 4:
-      points[i] *= 1 + small(random) * random.uniform(-1, 1);
+    case 4: {
+      const double most = small(random);
+      points[i] *= 1 + random.uniform(-most, most);
       break;
+    }
     default:
-      for (Vec3& p : points) p += p.norm() * small(random) * 0.1 * random.direction();
+      for (Vec3& p : points) p += 0.1 * p.norm() * small_vector(random);
   }
 }
 
 pd::Pose changed(const pd::Pose& pose, double size, Random& random) {
   switch (random.integer(0, 3)) {
     case 0:
-      return pd::Pose::from_trusted_matrix(pose.rotation(),
-                                           pose.translation() + size * small(random) * random.direction());
+      return pd::Pose::from_trusted_matrix(pose.rotation(), pose.translation() + size * small_vector(random));
     case 1: {
       const Vec3 axis = random.direction();
       const double turn = small(random);

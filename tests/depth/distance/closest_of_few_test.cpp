@@ -56,7 +56,7 @@ class FewVerticesApart : public ::testing::TestWithParam<Kind> {
   }
   Mat3 rotation() {
     if (GetParam() == Kind::flush_boxes) return Mat3::Identity();
-    return Eigen::Quaterniond(normal_(random_), normal_(random_), normal_(random_), normal_(random_))
+    return Eigen::Quaterniond{normal_(random_), normal_(random_), normal_(random_), normal_(random_)}
         .normalized()
         .matrix();
   }
@@ -80,8 +80,8 @@ class FewVerticesApart : public ::testing::TestWithParam<Kind> {
     return bodies;
   }
   DifferenceVertex any_vertex(const PolytopeDifference& difference) {
-    return difference.vertex(static_cast<int>(random_() % static_cast<unsigned>(difference.a().num_vertices())),
-                             static_cast<int>(random_() % static_cast<unsigned>(difference.b().num_vertices())));
+    const int of_b = static_cast<int>(random_() % static_cast<unsigned>(difference.b().num_vertices()));
+    return difference.vertex(static_cast<int>(random_() % static_cast<unsigned>(difference.a().num_vertices())), of_b);
   }
 
  private:

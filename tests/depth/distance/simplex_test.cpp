@@ -15,7 +15,7 @@ namespace {
 std::vector<Vec3> corners(int count, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
-  for (int i = 0; i < count; ++i) points.emplace_back(normal(random), normal(random), 2 + normal(random));
+  for (int i = 0; i < count; ++i) points.push_back({normal(random), normal(random), 2 + normal(random)});
   return points;
 }
 

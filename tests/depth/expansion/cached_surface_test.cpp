@@ -42,7 +42,7 @@ TEST(RememberedSurface, LeavesOnlyFarFacesAlone) {
   Scratch scratch;
   std::mt19937_64 random(17);
   std::normal_distribution<double> normal;
-  const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
+  const auto direction = [&] { return Vec3{normal(random), normal(random), normal(random)}.normalized(); };
   int looks = 0;
   int refused = 0;
   int left_alone = 0;
@@ -64,9 +64,10 @@ TEST(RememberedSurface, LeavesOnlyFarFacesAlone) {
         for (int trial = 0; trial < 300; ++trial) {
           const double size = std::pow(10.0, -4 + 3.5 * trial / 300);
           const auto moved = [&](const Pose& pose) {
-            const Mat3 turn = Eigen::AngleAxisd(size * normal(random), direction()).toRotationMatrix();
-            return Pose::from_trusted_matrix(turn * pose.rotation(),
-                                             pose.translation() + 0.3 * size * normal(random) * direction());
+            const double angle = size * normal(random);
+            const Mat3 turn = Eigen::AngleAxisd(angle, direction()).toRotationMatrix();
+            const double way = 0.3 * size * normal(random);
+            return Pose::from_trusted_matrix(turn * pose.rotation(), pose.translation() + way * direction());
           };
           const Pose pose_a = moved(points.pose_a), pose_b = moved(points.pose_b);
           const PolytopeDifference difference(*state.reference.a, swapped ? pose_b : pose_a, *state.reference.b,

@@ -18,7 +18,7 @@ using Cached = std::pair<std::vector<VertexPair>, std::vector<CachedFace>>;
 
 Vec3 random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  return Vec3(normal(random), normal(random), normal(random)).normalized();
+  return Vec3{normal(random), normal(random), normal(random)}.normalized();
 }
 
 /// The hull of points on a sphere round the origin; a vertex' id is its point's index.

@@ -114,7 +114,7 @@ TEST(SearchObserver, SeesExactArithmeticWhereDoublesCannotTell) {
 TEST(SearchObserver, SeesTheExactHullWhereASmoothSearchLosesItsConvexity) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
-  const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
+  const auto direction = [&] { return Vec3{normal(random), normal(random), normal(random)}.normalized(); };
   // A prism of more facets than are looked at one by one.
   std::vector<Vec3> corners;
   for (int k = 0; k < 140; ++k) {
@@ -127,7 +127,8 @@ TEST(SearchObserver, SeesTheExactHullWhereASmoothSearchLosesItsConvexity) {
   for (int trial = 0; trial < 240; ++trial) {
     // Ruled bodies a hair inside each other, from 1e-9 down to 1e-12.
     const double deep = std::pow(10.0, -9 - trial % 4);
-    const Mat3 turned = Eigen::AngleAxisd(3 * normal(random), direction()).toRotationMatrix();
+    const double angle = 3 * normal(random);
+    const Mat3 turned = Eigen::AngleAxisd(angle, direction()).toRotationMatrix();
     const PosedShape a{&prism, Pose()};
     PosedShape b{&cone, Pose::from_trusted_matrix(turned, 4 * direction())};
     Scratch scratch;

@@ -20,7 +20,7 @@ namespace {
 
 Vec3 random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  return Vec3(normal(random), normal(random), normal(random)).normalized();
+  return Vec3{normal(random), normal(random), normal(random)}.normalized();
 }
 
 /// A tetrahedron around the origin, then points on the sphere, inserted where they are seen.

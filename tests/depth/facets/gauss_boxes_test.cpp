@@ -30,14 +30,14 @@ struct Boxes {
 Boxes draw(Turn turn, std::mt19937_64& random) {
   std::uniform_real_distribution<double> extent(0.1, 1);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
   const auto rotation = [&] {
     return Mat3(
-        Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized().matrix());
+        Eigen::Quaterniond{normal(random), normal(random), normal(random), normal(random)}.normalized().matrix());
   };
   const bool aligned = turn == Turn::none;
   const auto half = [&] {
-    return aligned ? Vec3(0.5, 0.5, 0.5) : Vec3(extent(random), extent(random), extent(random));
+    return aligned ? Vec3(0.5, 0.5, 0.5) : Vec3{extent(random), extent(random), extent(random)};
   };
   const Vec3 half_a = half(), half_b = half();
   Mat3 of_a = aligned ? Mat3(Mat3::Identity()) : rotation();
@@ -49,8 +49,8 @@ Boxes draw(Turn turn, std::mt19937_64& random) {
   // B lies on A, face on face, wherever: corners on faces, or edges that cross alone.
   if (rests) {
     const double depth = extent(random) * (single ? half_a.z() + half_b.z() : 1e-3);
-    apart = of_a * Vec3(1.2 * half_a.x() * (2 * extent(random) - 1), 1.2 * half_a.y() * (2 * extent(random) - 1),
-                        half_a.z() + half_b.z() - depth);
+    apart = of_a * Vec3{1.2 * half_a.x() * (2 * extent(random) - 1), 1.2 * half_a.y() * (2 * extent(random) - 1),
+                        half_a.z() + half_b.z() - depth};
   }
   if (single) {
     of_a = of_a.cast<float>().cast<double>().eval();
@@ -141,7 +141,7 @@ TEST(BoxNearFacets, NoFacetLeftOutIsNearer) {
   for (int i = 0; i < 4000; ++i) {
     SCOPED_TRACE(i);
     Boxes boxes = draw(Turn::shared, random);
-    const Vec3 axis = Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 axis = Vec3{normal(random), normal(random), normal(random)}.normalized();
     const Mat3 turn = Eigen::AngleAxisd(std::pow(10, power(random)), axis).matrix();
     const Mat3 of_a = boxes.pose_a.rotation(), of_b = of_a * turn;
     Long3 generators[6];
@@ -197,7 +197,7 @@ TEST(BoxNearFacets, NoFacetLeftOutIsNearer) {
 TEST(AlignedBoxes, TheirDepthIsExact) {
   std::mt19937_64 random(10);
   std::uniform_int_distribution<int> eighths(1, 8), place(-9, 9), order(0, 5), side(0, 1);
-  const auto half = [&]() -> Vec3 { return Vec3(eighths(random), eighths(random), eighths(random)) / 8; };
+  const auto half = [&]() -> Vec3 { return Vec3{eighths(random), eighths(random), eighths(random)} / 8; };
   const auto turn = [&] {
     Mat3 m = Mat3::Zero();
     int axes[3] = {0, 1, 2};
@@ -213,7 +213,7 @@ TEST(AlignedBoxes, TheirDepthIsExact) {
     const Vec3 half_a = half(), half_b = half();
     const ConvexShape a(*ConvexPolytope::box(half_a)), b(*ConvexPolytope::box(half_b));
     const Pose pose_a = *Pose::from_matrix(turn(), Vec3::Zero());
-    const Pose pose_b = *Pose::from_matrix(turn(), Vec3(place(random), place(random), place(random)) / 8);
+    const Pose pose_b = *Pose::from_matrix(turn(), Vec3{place(random), place(random), place(random)} / 8);
     const Vec3 reach = (pose_a.rotation() * half_a).cwiseAbs() + (pose_b.rotation() * half_b).cwiseAbs();
     const Vec3 sides[2] = {reach + pose_b.translation(), reach - pose_b.translation()};
     const double least = std::min(sides[0].minCoeff(), sides[1].minCoeff());

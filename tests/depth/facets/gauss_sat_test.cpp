@@ -41,7 +41,7 @@ class SolidsOfFewFacets : public ::testing::TestWithParam<Kind> {
  protected:
   Vec3 vector() { return {normal_(random_), normal_(random_), normal_(random_)}; }
   Mat3 rotation() {
-    return Eigen::Quaterniond(normal_(random_), normal_(random_), normal_(random_), normal_(random_))
+    return Eigen::Quaterniond{normal_(random_), normal_(random_), normal_(random_), normal_(random_)}
         .normalized()
         .matrix();
   }
@@ -365,7 +365,7 @@ TEST(SolidsOfFewFacetsAligned, BoxesOfRoundedPointsNeedNoSurface) {
     const double angle = i % 2 == 0 ? 0 : 1e-7;
     const Mat3 upright = Eigen::AngleAxisd(angle, Vec3(0.6, 0.8, 0)).toRotationMatrix();
     const double sunk = i % 3 == 0 ? 0.01 : i % 3 == 1 ? 0.1 : 0.6;
-    const Vec3 at(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), half_a.z() + half_b.z() - sunk);
+    const Vec3 at{random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), half_a.z() + half_b.z() - sunk};
     const PosedShape first{&a, *Pose::from_matrix(upright * turn_a.transpose(), at)};
     const PosedShape second{&b, *Pose::from_matrix(turn_b.transpose(), Vec3::Zero())};
     const PenetrationDepth fast = penetration_depth(first, second, scratch, {.bracket = Bracket::certified});

@@ -18,7 +18,7 @@ namespace {
 std::vector<Vec3> random_points(int n, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) points.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
+  for (int i = 0; i < n; ++i) points.push_back(Vec3{normal(random), normal(random), normal(random)}.normalized());
   return points;
 }
 
@@ -27,7 +27,7 @@ Pose random_pose(std::mt19937_64& random, double spread) {
   std::array<double, 4> q{normal(random), normal(random), normal(random), normal(random)};
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (double& c : q) c /= length;
-  return *Pose::from_quaternion(q, spread * Vec3(normal(random), normal(random), normal(random)));
+  return *Pose::from_quaternion(q, spread * Vec3{normal(random), normal(random), normal(random)});
 }
 
 /// Grid points with some coordinates constant: bodies of every dimension, nearly every pair degenerate.
@@ -37,7 +37,7 @@ std::vector<Vec3> grid_points(std::mt19937_64& random) {
   const int n = 1 + static_cast<int>(random() % 9);
   const int constant = static_cast<int>(random() % 5);
   for (int i = 0; i < n; ++i) {
-    Vec3 p(coordinate(random), coordinate(random), coordinate(random));
+    Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
     if (constant < 3) p[constant] = 1;
     points.push_back(0.5 * p);
   }
@@ -100,8 +100,10 @@ TEST(OverlayDepth, RandomPosedSolidsMatchTheOracle) {
   Tally tally;
   for (int round = 0; round < 1500 && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
-    compare_with_oracle(random_points(4 + round % 30, random), random_pose(random, 0.5),
-                        random_points(4 + (7 * round) % 40, random), random_pose(random, 0.5), buffers, tally);
+    const std::vector<Vec3> a = random_points(4 + round % 30, random);
+    const std::vector<Vec3> b = random_points(4 + (7 * round) % 40, random);
+    const Pose pose_a = random_pose(random, 0.5), pose_b = random_pose(random, 0.5);
+    compare_with_oracle(a, pose_a, b, pose_b, buffers, tally);
   }
   EXPECT_GT(tally.separated, 20);
   EXPECT_GT(tally.overlapping, 500);
@@ -114,8 +116,10 @@ TEST(OverlayDepth, GridBodiesOfEveryDimensionMatchTheOracle) {
   Tally tally;
   for (int round = 0; round < 6000 && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
-    const Pose pose_a = *Pose::from_matrix(Mat3::Identity(), 0.5 * Vec3(shift(random), shift(random), shift(random)));
-    compare_with_oracle(grid_points(random), pose_a, grid_points(random), Pose(), buffers, tally);
+    const Pose pose_a = *Pose::from_matrix(
+        Mat3::Identity(), 0.5 * Eigen::Vector3i{shift(random), shift(random), shift(random)}.cast<double>());
+    const std::vector<Vec3> a = grid_points(random), b = grid_points(random);
+    compare_with_oracle(a, pose_a, b, Pose(), buffers, tally);
   }
   EXPECT_GT(tally.separated, 300);
   EXPECT_GT(tally.touching, 300);
@@ -132,7 +136,7 @@ TEST(OverlayDepth, OneRotationOfBothBodiesKeepsTiesExact) {
     SCOPED_TRACE(round);
     const Pose pose = random_pose(random, 1);
     std::vector<Vec3> b = grid_points(random);
-    const Vec3 move = 0.5 * Vec3(shift(random), shift(random), shift(random));
+    const Vec3 move = 0.5 * Eigen::Vector3i{shift(random), shift(random), shift(random)}.cast<double>();
     for (Vec3& p : b) p += move;
     compare_with_oracle(grid_points(random), pose, b, pose, buffers, tally);
   }
@@ -161,7 +165,8 @@ TEST(OverlayDepth, ScalesFarFromOne) {
       std::vector<Vec3> a = random_points(12, random), b = random_points(12, random);
       for (Vec3& p : a) p *= scale;
       for (Vec3& p : b) p *= scale;
-      compare_with_oracle(a, random_pose(random, 0.3 * scale), b, random_pose(random, 0.3 * scale), buffers, tally);
+      const Pose pose_a = random_pose(random, 0.3 * scale), pose_b = random_pose(random, 0.3 * scale);
+      compare_with_oracle(a, pose_a, b, pose_b, buffers, tally);
     }
   }
   EXPECT_GT(tally.overlapping, 50);

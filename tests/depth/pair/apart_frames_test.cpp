@@ -47,8 +47,8 @@ Frames ask(const std::function<scenes::Points(Random&)>& body, double gap, bool 
   for (int pair = 0; pair < 40; ++pair) {
     const ConvexShape a(*ConvexPolytope::from_points(body(random))), b(*ConvexPolytope::from_points(body(random)));
     const Vec3 way = random.direction();
-    const Pose start_a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-    const Pose start_b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+    const Pose start_a = random.pose(Vec3::Zero());
+    const Pose start_b = random.pose(Vec3::Zero());
     WarmCertificate memory;
     for (int frame = 0; frame < 6; ++frame) {
       const auto [sine, cosine] = scenes::turn(0.005 * frame);
@@ -103,7 +103,7 @@ TEST(ApartFrames, BeyondGoesOnWhereTheLastPlaneNoLongerTells) {
   }
   const Frames boxes = ask(
       [](Random& random) {
-        const Vec3 half(random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1));
+        const Vec3 half = random.point(0.3, 1);
         scenes::Points points;
         for (int i = 0; i < 8; ++i) {
           points.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z());

@@ -59,9 +59,9 @@ TEST(BallInRevolution, OnTheAxisAndOffIt) {
     // Where the body is at least a quarter as wide as at its widest.
     Vec3 inside = (i % 4 == 0 ? 0 : i % 4 == 1 ? 1e-9 : 0.24 * radius) * random.direction();
     inside[i % 3] = i % 8 == 0 ? 0 : random.uniform(-0.9, 0.4) * half;
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), {0.1, 0.2, 0.3});
+    const Pose pose = random.pose({0.1, 0.2, 0.3});
     const PosedShape a{&outer, pose};
-    const PosedShape b{&ball, *Pose::from_quaternion(random.quaternion(), pose.apply(inside))};
+    const PosedShape b{&ball, random.pose(pose.apply(inside))};
     if (i % 7 < 3) {
       expect_right(a, b, random);
     } else {

@@ -78,9 +78,8 @@ TEST(Beyond, EarlyAnswersAreCertifiedAndNearOnesTheFullQuery) {
     const Pair pair = pair_of(i % 7, random);
     // Of a world's size, too.
     const Vec3 place = i % 3 == 0 ? Vec3(1e6, -2e6, 3e6) : Vec3(0.1, 0.2, 0.3);
-    const PosedShape a{&pair.a, *Pose::from_quaternion(random.quaternion(), place)};
-    const PosedShape b{
-        &pair.b, *Pose::from_quaternion(random.quaternion(), place + random.uniform(0.2, 4) * random.direction())};
+    const PosedShape a{&pair.a, random.pose(place)};
+    const PosedShape b{&pair.b, random.pose(place + random.vector(0.2, 4))};
     SCOPED_TRACE(i);
     const PenetrationDepth full = penetration_depth(a, b, scratch, kCertified);
     const double distance = full.distance_lower;
@@ -123,7 +122,7 @@ TEST(Beyond, BallsHoldBodiesOfMatricesThatStretch) {
     const auto pose = [&](const Vec3& at) {
       return Pose::from_trusted_matrix(stretch * Pose::from_quaternion(random.quaternion(), at)->rotation(), at);
     };
-    const Vec3 way = random.uniform(2.9, 3.2) * random.direction();
+    const Vec3 way = random.vector(2.9, 3.2);
     const PosedShape a{&pair.a, pose(Vec3::Zero())}, b{&pair.b, pose(way)};
     const PenetrationDepth answer = penetration_depth(a, b, scratch, beyond(1));
     const PenetrationDepth full = penetration_depth(a, b, scratch, kCertified);

@@ -158,7 +158,7 @@ TEST(ContactBracket, FlushBoxes) {
           const ConvexShape lower = hull(scenes::box(sizes[3 - k]), margin);
           const auto pose = [&](double yaw, const Vec3& at) {
             const Mat3 level{{std::cos(yaw), 0, std::sin(yaw)}, {0, 1, 0}, {-std::sin(yaw), 0, std::cos(yaw)}};
-            const Vec3 tip(noise * random.uniform(-1, 1), noise * random.uniform(-1, 1), noise * random.uniform(-1, 1));
+            const Vec3 tip{noise * random.uniform(-1, 1), noise * random.uniform(-1, 1), noise * random.uniform(-1, 1)};
             Mat3 tipped = level;
             for (int c = 0; c < 3; ++c) tipped.col(c) += tip.cross(level.col(c));
             return Pose::from_trusted_matrix(single(tipped), at.cast<float>().cast<double>());
@@ -185,7 +185,7 @@ TEST(ContactBracket, PointsAndSegments) {
   Scratch scratch;
   scenes::Random random(21);
   int at_once = 0, asked = 0;
-  const auto vector = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+  const auto vector = [&] { return random.point(-1, 1); };
   for (int i = 0; i < 300; ++i) {
     const Vec3 along = vector();
     const double turn = i % 5 == 0 ? 0 : std::ldexp(1.0, -(i % 50));
@@ -195,7 +195,8 @@ TEST(ContactBracket, PointsAndSegments) {
     const Vec3 other = along + turn * vector();
     const std::vector<Vec3> second = i % 7 == 0 ? std::vector<Vec3>{vector()} : std::vector<Vec3>{-other, other};
     const ConvexShape a = hull(first, margin), b = hull(second, margin);
-    const Vec3 beside = gap * along.cross(vector()).normalized() + (i % 11 == 0 ? 2.5 : 0.2) * random.uniform() * along;
+    const double shift = (i % 11 == 0 ? 2.5 : 0.2) * random.uniform();
+    const Vec3 beside = gap * along.cross(vector()).normalized() + shift * along;
     const PosedShape posed_a{&a, *Pose::from_matrix(Mat3::Identity(), {3, 1, 2})};
     const PosedShape posed_b{&b, *Pose::from_matrix(Mat3::Identity(), Vec3(3, 1, 2) + beside)};
     const std::string name = "pair " + std::to_string(i);
@@ -220,13 +221,14 @@ TEST(ContactBracket, PointsAndSegmentsOnBoxes) {
   scenes::Random random(22);
   const ConvexShape boxes[] = {hull(scenes::box({0.5, 0.4, 0.3})), hull(scenes::box({100, 1, 100}), 0.04)};
   for (int i = 0; i < 300; ++i) {
-    const auto vector = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    const auto vector = [&] { return random.point(-1, 1); };
     const double margin = i % 3 == 0 ? 0 : 0.1;
     const std::vector<Vec3> core =
         i % 2 == 0 ? std::vector<Vec3>{0.1 * vector()} : std::vector<Vec3>{0.3 * vector(), 0.3 * vector()};
     const ConvexShape body = hull(core, margin);
     const ConvexShape& box = boxes[i % 5 == 0];
-    const Vec3 spot = (1 + (i % 7 == 0 ? 1e-7 : 0.5 * random.uniform())) * vector().cwiseProduct(Vec3(1, 0.9, 0.8));
+    const Vec3 way = vector().cwiseProduct(Vec3(1, 0.9, 0.8));
+    const Vec3 spot = (1 + (i % 7 == 0 ? 1e-7 : 0.5 * random.uniform())) * way;
     const Vec3 tip = 1e-6 * vector();
     Mat3 turned{{0.8, 0, 0.6}, {0, 1, 0}, {-0.6, 0, 0.8}};
     for (int c = 0; c < 3; ++c) turned.col(c) += tip.cross(Vec3(turned.col(c)));
@@ -321,9 +323,8 @@ TEST(ContactBracket, CurvedBodiesDeepInEachOther) {
     const ConvexShape& a = shapes[i % 5];
     const ConvexShape& b = shapes[(i / 5) % 5];
     if (a.polytope() && b.polytope()) continue;
-    const Pose pose_a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-    const Pose pose_b = *Pose::from_quaternion(
-        random.quaternion(), {random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
+    const Pose pose_a = random.pose(Vec3::Zero());
+    const Pose pose_b = random.pose({random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
     const PenetrationDepth answer = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch, contact(0x1p-30));
     const PenetrationDepth fine = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
     const oracle::SignedInterval own = oracle::signed_distance(answer), truth = oracle::signed_distance(fine);

@@ -72,8 +72,8 @@ TEST(Grid, SmoothAndSweptBodies) {
   for (const ConvexShape& a : shapes) {
     for (const ConvexShape& b : shapes) {
       for (const double delta : {0.5, 1e-2, 1e-3}) {
-        const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), 0.8 * random.direction())};
-        const PosedShape posed_b{&b, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
+        const PosedShape posed_a{&a, random.pose(0.8 * random.direction())};
+        const PosedShape posed_b{&b, random.pose(Vec3::Zero())};
         const PenetrationDepth grid =
             penetration_depth(posed_a, posed_b, scratch, {.method = Method::grid, .delta = delta});
         const PenetrationDepth fine = penetration_depth(posed_a, posed_b, scratch, {.delta = 1e-5});

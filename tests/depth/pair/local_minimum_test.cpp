@@ -21,14 +21,29 @@ using scenes::Random;
 /// Cores without margins, thin ones among them.
 ConvexShape random_core(int kind, Random& random) {
   const auto size = [&] { return random.integer(0, 3) == 0 ? random.uniform(0.02, 0.2) : random.uniform(0.4, 1.2); };
+  struct Axial {
+    int axis;
+    double half_height;
+    double radius;
+  };
+  const auto axial = [&] { return Axial{random.integer(0, 2), size(), size()}; };
   switch (kind) {
-    case 0:
-      return *ConvexShape::cylinder(size(), size(), random.integer(0, 2));
-    case 1:
-      return *ConvexShape::cone(size(), size(), random.integer(0, 2));
-    case 2:
-      return *ConvexShape::hull_of_spheres(std::vector<Sphere>{
-          {size() * random.direction(), size()}, {size() * random.direction(), size()}, {Vec3::Zero(), 0.0}});
+    case 0: {
+      const Axial sizes = axial();
+      return *ConvexShape::cylinder(sizes.radius, sizes.half_height, sizes.axis);
+    }
+    case 1: {
+      const Axial sizes = axial();
+      return *ConvexShape::cone(sizes.radius, sizes.half_height, sizes.axis);
+    }
+    case 2: {
+      const auto centre = [&] {
+        const Vec3 unit = random.direction();
+        return Vec3(size() * unit);
+      };
+      return *ConvexShape::hull_of_spheres(
+          std::vector<Sphere>{{centre(), size()}, {centre(), size()}, {Vec3::Zero(), 0.0}});
+    }
     default:
       return *ConvexPolytope::box({size(), size(), size()});
   }
@@ -48,8 +63,8 @@ TEST(LocalMinimum, NoHeightInTheConeIsLess) {
   double widest = 0;
   for (int i = 0; i < 4000; ++i) {
     const ConvexShape a = random_core(i % 4, random), b = random_core(random.integer(0, 3), random);
-    const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
-    const PosedShape posed_b{&b, *Pose::from_quaternion(random.quaternion(), 0.8 * random.direction())};
+    const PosedShape posed_a{&a, random.pose(Vec3::Zero())};
+    const PosedShape posed_b{&b, random.pose(0.8 * random.direction())};
     std::vector<PointPair> points;
     const SmoothDifference difference(posed_a, posed_b, points);
     // The least one, or one that may be found from anywhere.
@@ -116,11 +131,12 @@ TEST(LocalMinimum, SparesSearchesTheirHalving) {
   std::int64_t supports = 0, most = 0;
   int overlapping = 0;
   for (int i = 0; i < 400; ++i) {
-    const ConvexShape cylinder = *ConvexShape::cylinder(random.uniform(0.5, 1), random.uniform(0.5, 1), 2);
+    const double half_height = random.uniform(0.5, 1);
+    const ConvexShape cylinder = *ConvexShape::cylinder(random.uniform(0.5, 1), half_height, 2);
     const ConvexShape box =
         *ConvexPolytope::box({random.uniform(0.5, 1), random.uniform(0.5, 1), random.uniform(0.5, 1)});
-    const Pose a = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
-    const Pose b = *Pose::from_quaternion(random.quaternion(), 1.4 * random.direction());
+    const Pose a = random.pose(Vec3::Zero());
+    const Pose b = random.pose(1.4 * random.direction());
     const PenetrationDepth answer =
         penetration_depth({&cylinder, a}, {&box, b}, scratch, {.bracket = Bracket::certified});
     if (answer.contact != ContactClass::overlapping) continue;

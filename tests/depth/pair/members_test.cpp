@@ -57,7 +57,7 @@ TEST(Members, BodiesThatTouch) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for_all_pairs(seed, [&](const MemberKind& a, const MemberKind& b, Random& random) {
       const Vec3 n = seed == 1 ? Vec3(Vec3::Unit(random.integer(0, 2))) : random.direction();
-      const Pose pose_a = seed == 3 ? *Pose::from_quaternion(random.quaternion(), Vec3::Zero()) : Pose();
+      const Pose pose_a = seed == 3 ? random.pose(Vec3::Zero()) : Pose();
       const double height = static_cast<double>(oracle::difference_support({&a.shape, pose_a}, {&b.shape, Pose()}, n));
       const Pose pose_b = *Pose::from_quaternion({1, 0, 0, 0}, -height * n);
       judge.expect_members({&a.shape, pose_a}, {&b.shape, pose_b}, a.name + " touches " + b.name);
@@ -70,7 +70,7 @@ TEST(Members, BodiesAtOnePlace) {
   Judge judge;
   for_all_pairs(11, [&](const MemberKind& a, const MemberKind& b, Random& random) {
     judge.expect_members({&a.shape, Pose()}, {&b.shape, Pose()}, a.name + " in " + b.name);
-    const Pose turned = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+    const Pose turned = random.pose(Vec3::Zero());
     judge.expect_members({&a.shape, turned}, {&b.shape, turned}, a.name + " in " + b.name + ", turned");
   });
   EXPECT_GT(judge.overlapping(), judge.pairs() * 3 / 4);
@@ -80,7 +80,8 @@ TEST(Members, BodiesInOneLine) {
   Judge judge;
   for (std::uint64_t seed = 21; seed <= 22; ++seed) {
     for_all_pairs(seed, [&](const MemberKind& a, const MemberKind& b, Random& random) {
-      const Vec3 along = random.uniform(0.05, 1.5) * Vec3::Unit(random.integer(0, 2));
+      const int axis = random.integer(0, 2);
+      const Vec3 along = random.uniform(0.05, 1.5) * Vec3::Unit(axis);
       judge.expect_members({&a.shape, Pose()}, {&b.shape, *Pose::from_quaternion({1, 0, 0, 0}, along)},
                            a.name + " aligned with " + b.name);
     });
@@ -92,9 +93,8 @@ TEST(Members, BodiesAnywhere) {
   Judge judge;
   for (std::uint64_t seed = 31; seed <= 33; ++seed) {
     for_all_pairs(seed, [&](const MemberKind& a, const MemberKind& b, Random& random) {
-      const Pose pose_a = *Pose::from_quaternion(random.quaternion(), 3 * random.direction());
-      const Pose pose_b =
-          *Pose::from_quaternion(random.quaternion(), pose_a.translation() + random.uniform(0, 2) * random.direction());
+      const Pose pose_a = random.pose(3 * random.direction());
+      const Pose pose_b = random.pose(pose_a.translation() + random.vector(0, 2));
       judge.expect_members({&a.shape, pose_a}, {&b.shape, pose_b}, a.name + " and " + b.name);
     });
   }

@@ -43,9 +43,8 @@ TEST(NearBall, PointInEllipsoidIsNearestToItsFoot) {
   Random random(5);
   for (int i = 0; i < 400; ++i) {
     const double spread = std::pow(10.0, -(i % 8));
-    const Vec3 radii(1 + spread * random.uniform(0, 1), 1 + spread * random.uniform(0, 1),
-                     1 + spread * random.uniform(0, 1));
-    Vec3 point = random.uniform(0, 0.95) * random.direction();
+    const Vec3 radii = Vec3::Ones() + spread * random.point(0, 1);
+    Vec3 point = random.vector(0, 0.95);
     if (i % 5 == 1) point[i % 3] = 0;
     if (i % 5 == 2) point = Vec3::Zero();
     if (i % 5 == 3) point = Vec3::Unit(i % 3) * random.uniform(0, 0.9);
@@ -62,14 +61,13 @@ TEST(NearBall, PointInEllipsoidIsNearestToItsFoot) {
 
 ConvexShape small_body(int kind, double spread, Random& random) {
   const Vec3 origin = Vec3::Zero();
-  const auto radius = [&] { return 0.1 * (1 + spread * random.uniform(0, 1)); };
   switch (kind) {
     case 0:
       return *ConvexPolytope::from_points({&origin, 1});
     case 1:
       return *ConvexShape::sphere(0.1);
     case 2:
-      return *ConvexShape::ellipsoid(Vec3(radius(), radius(), radius()));
+      return *ConvexShape::ellipsoid(0.1 * (Vec3::Ones() + spread * random.point(0, 1)));
     case 3:
       return *ConvexPolytope::box({0.1, 0.12, 0.14});
     case 4:
@@ -87,13 +85,12 @@ TEST(NearBall, SmallBodiesInsideAreAnsweredInFewSupports) {
   for (const double spread : {0.0, 1e-9, 1e-7, 1e-5, 1e-3, 1e-2, 1e-1}) {
     for (int i = 0; i < 120; ++i) {
       const int kind = i % 6;
-      const auto radius = [&] { return 1 + spread * random.uniform(0, 1); };
-      const ConvexShape a = *ConvexShape::ellipsoid(Vec3(radius(), radius(), radius()));
+      const ConvexShape a = *ConvexShape::ellipsoid(Vec3::Ones() + spread * random.point(0, 1));
       const ConvexShape b = small_body(kind, spread, random);
       const Vec3 centre(0.1, 0.2, 0.3);
       const double apart = i % 4 == 0 ? 0 : i % 4 == 1 ? random.uniform(0, 0.3) : random.uniform(0.3, 1);
-      const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), centre)};
-      const PosedShape posed_b{&b, *Pose::from_quaternion(random.quaternion(), centre + apart * random.direction())};
+      const PosedShape posed_a{&a, random.pose(centre)};
+      const PosedShape posed_b{&b, random.pose(centre + apart * random.direction())};
       SCOPED_TRACE(::testing::Message() << "spread " << spread << ", pair " << i);
       // Either order, so that both sides of the difference have been the near-ball.
       const PenetrationDepth d = i % 2 == 0 ? penetration_depth(posed_a, posed_b, scratch, {.delta = 1e-6})

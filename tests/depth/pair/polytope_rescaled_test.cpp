@@ -63,7 +63,7 @@ TEST(PolytopeRescaled, TheTableOfDirectionsOfManyVerticesComesAlong) {
   const ConvexShape plain(body), scaled{ConvexPolytope(storage)};
   Scratch scratch;
   for (int i = 0; i < 20; ++i) {
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), 1.9 * random.direction());
+    const Pose pose = random.pose(1.9 * random.direction());
     const PenetrationDepth p = penetration_depth({&plain, Pose()}, {&plain, pose}, scratch);
     const PenetrationDepth q = penetration_depth({&scaled, Pose()}, {&scaled, pose}, scratch);
     EXPECT_EQ(p.lower, q.lower);

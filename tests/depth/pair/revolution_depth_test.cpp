@@ -40,7 +40,7 @@ ConvexShape random_polytope(Random& random) {
     return *ConvexPolytope::box({random_size(random), random_size(random), random_size(random)});
   }
   scenes::Points points = scenes::sphere_hull(random.integer(4, 40), random);
-  const Vec3 sizes(random_size(random), random_size(random), random_size(random));
+  const Vec3 sizes{random_size(random), random_size(random), random_size(random)};
   for (Vec3& p : points) p = p.cwiseProduct(sizes);
   return *ConvexPolytope::from_points(points);
 }
@@ -109,9 +109,8 @@ TEST(RevolutionDepth, IsThatOfASweepOfDirections) {
   Questions questions;
   for (int i = 0; i < 1500; ++i) {
     const ConvexShape round = random_revolution(random), polytope = random_polytope(random);
-    const PosedShape posed_round{&round, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
-    const PosedShape posed_polytope{
-        &polytope, *Pose::from_quaternion(random.quaternion(), random.uniform(0, 1.5) * random.direction())};
+    const PosedShape posed_round{&round, random.pose(Vec3::Zero())};
+    const PosedShape posed_polytope{&polytope, random.pose(random.vector(0, 1.5))};
     if (questions.ask(posed_round, posed_polytope)) {
       ASSERT_FALSE(HasFatalFailure());
     } else {

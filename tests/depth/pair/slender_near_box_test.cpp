@@ -27,9 +27,9 @@ Counted ask(bool segment, bool single, bool swapped) {
     if (segment) core.push_back({0, 0, half});
     const double x = random.uniform(0.2, 1), y = random.uniform(0.2, 1);
     const scenes::Points box = scenes::box({x, y, random.uniform(0.2, 1)});
-    const Vec3 far = random.uniform(0.4, 2) * random.direction();
-    Pose core_pose = *Pose::from_quaternion(random.quaternion(), far);
-    Pose box_pose = *Pose::from_quaternion(random.quaternion(), 0.1 * random.direction());
+    const Vec3 far = random.vector(0.4, 2);
+    Pose core_pose = random.pose(far);
+    Pose box_pose = random.pose(0.1 * random.direction());
     if (single) {
       core_pose = scenes::to_single(core_pose);
       box_pose = scenes::to_single(box_pose);

@@ -14,26 +14,40 @@ namespace {
 
 ConvexShape random_shape(int kind, scenes::Random& random) {
   const auto size = [&] { return random.uniform(0.3, 1.5); };
+  struct Axial {
+    int axis;
+    double half_height;
+    double radius;
+  };
+  const auto axial = [&] { return Axial{random.integer(0, 2), size(), size()}; };
   switch (kind) {
     case 0:
-      return *ConvexShape::ellipsoid(Vec3(size(), size(), size()));
-    case 1:
-      return *ConvexShape::cylinder(size(), size(), random.integer(0, 2));
-    case 2:
-      return *ConvexShape::cone(size(), size(), random.integer(0, 2));
-    case 3:
-      return *ConvexShape::capsule(size(), size(), random.integer(0, 2));
+      return *ConvexShape::ellipsoid(random.point(0.3, 1.5));
+    case 1: {
+      const Axial sizes = axial();
+      return *ConvexShape::cylinder(sizes.radius, sizes.half_height, sizes.axis);
+    }
+    case 2: {
+      const Axial sizes = axial();
+      return *ConvexShape::cone(sizes.radius, sizes.half_height, sizes.axis);
+    }
+    case 3: {
+      const Axial sizes = axial();
+      return *ConvexShape::capsule(sizes.radius, sizes.half_height, sizes.axis);
+    }
     case 4:
       return *ConvexShape::sphere(size());
-    case 5:
-      return *ConvexShape::cylinder(size(), size(), 2)->with_margin(0.1);
+    case 5: {
+      const double half_height = size();
+      return *ConvexShape::cylinder(size(), half_height, 2)->with_margin(0.1);
+    }
     case 6: {
       std::vector<Sphere> spheres(static_cast<std::size_t>(random.integer(2, 6)));
-      for (Sphere& s : spheres) s = {size() * random.direction(), random.uniform(0, 0.8)};
+      for (Sphere& s : spheres) s = {random.vector(0.3, 1.5), random.uniform(0, 0.8)};
       return *ConvexShape::hull_of_spheres(spheres);
     }
     default:
-      return ConvexShape(*ConvexPolytope::box(Vec3(size(), size(), size())));
+      return ConvexShape(*ConvexPolytope::box(random.point(0.3, 1.5)));
   }
 }
 
@@ -51,8 +65,8 @@ TEST(Smooth, NormalsBesideHugeMarginsAreUnitVectors) {
         std::vector<Vec3> corners;
         for (int i = 0; i < 4; ++i) corners.push_back(3 * random.direction());
         const ConvexShape b = *ConvexShape(*ConvexPolytope::from_points(corners)).with_margin(margin);
-        const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.uniform(0, 3) * random.direction());
-        const Pose pose_b = *Pose::from_quaternion(random.quaternion(), Vec3::Zero());
+        const Pose pose_a = random.pose(random.vector(0, 3));
+        const Pose pose_b = random.pose(Vec3::Zero());
         SCOPED_TRACE("kind " + std::to_string(kind) + ", try " + std::to_string(k));
         const PenetrationDepth r = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
         ASSERT_EQ(r.contact, ContactClass::overlapping);
@@ -75,10 +89,9 @@ TEST(Smooth, BracketsAgreeWithTheSweep) {
       for (int k = 0; k < 4; ++k) {
         const ConvexShape a = random_shape(kind_a, random);
         const ConvexShape b = random_shape(kind_b, random);
-        const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.direction());
+        const Pose pose_a = random.pose(random.direction());
         const double reach = k == 0 ? 0.01 : k == 3 ? 3.2 : 1.2;
-        const Pose pose_b =
-            *Pose::from_quaternion(random.quaternion(), pose_a.translation() + reach * random.direction());
+        const Pose pose_b = random.pose(pose_a.translation() + reach * random.direction());
         SCOPED_TRACE("kinds " + std::to_string(kind_a) + ", " + std::to_string(kind_b) + ", try " + std::to_string(k));
         const oracle::Sweep sweep = oracle::sweep_directions({&a, pose_a}, {&b, pose_b}, 400, 4);
         const auto least = static_cast<double>(sweep.least);
@@ -137,9 +150,8 @@ TEST(Smooth, WitnessesLieOnTheirBodies) {
   double worst = 0;
   for (int i = 0; i < 1500; ++i) {
     const ConvexShape a = random_shape(kSearched[i % 4], random), b = random_shape(random.integer(0, 7), random);
-    const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
-    const PosedShape posed_b{
-        &b, *Pose::from_quaternion(random.quaternion(), random.uniform(0.1, 1.2) * random.direction())};
+    const PosedShape posed_a{&a, random.pose(Vec3::Zero())};
+    const PosedShape posed_b{&b, random.pose(random.vector(0.1, 1.2))};
     DepthSettings settings;
     settings.delta = 1e-6;
     const PenetrationDepth answer = penetration_depth(posed_a, posed_b, scratch, settings);
@@ -158,9 +170,8 @@ TEST(Smooth, ContactBracketsHoldTheDepth) {
   int judged = 0;
   for (int i = 0; i < 6000; ++i) {
     const ConvexShape a = random_shape(kSearched[i % 4], random), b = random_shape(random.integer(0, 7), random);
-    const PosedShape posed_a{&a, *Pose::from_quaternion(random.quaternion(), Vec3::Zero())};
-    const PosedShape posed_b{
-        &b, *Pose::from_quaternion(random.quaternion(), random.uniform(0.1, 1.2) * random.direction())};
+    const PosedShape posed_a{&a, random.pose(Vec3::Zero())};
+    const PosedShape posed_b{&b, random.pose(random.vector(0.1, 1.2))};
     DepthSettings settings;
     settings.bracket = Bracket::contact;
     settings.contact_tolerance = 4e-9;
@@ -187,12 +198,12 @@ TEST(Smooth, NearContactIsAnsweredInBoundedWork) {
         const ConvexShape a = random_shape(kind_a, random);
         const ConvexShape b = random_shape(kind_b, random);
         if (a.polytope() != nullptr && b.polytope() != nullptr) continue;
-        const Pose pose_a = *Pose::from_quaternion(random.quaternion(), random.direction());
+        const Pose pose_a = random.pose(random.direction());
         const bool parallel = k % 3 == 2;
         const Pose pose_b =
             parallel ? *Pose::from_quaternion(pose_a.quaternion_wxyz(),
                                               pose_a.translation() + Vec3(kind_a == kind_b ? 0.1 : 0.0, 0, 0.3))
-                     : *Pose::from_quaternion(random.quaternion(), pose_a.translation() + 0.6 * random.direction());
+                     : random.pose(pose_a.translation() + 0.6 * random.direction());
         const PenetrationDepth first = penetration_depth({&a, pose_a}, {&b, pose_b}, scratch);
         if (first.contact != ContactClass::overlapping) continue;
         for (int step = 0; step < 24; ++step) {

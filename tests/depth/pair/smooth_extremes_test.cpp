@@ -68,10 +68,10 @@ TEST(SmoothExtremes, ABracketTooWideIsSaid) {
 TEST(SmoothExtremes, PowersOfTwoChangeNoBit) {
   scenes::Random random(3);
   for (int i = 0; i < 12; ++i) {
-    const Vec3 radii(random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1));
+    const Vec3 radii = random.point(0.3, 1);
     const double radius = random.uniform(0.2, 1), height = random.uniform(0.2, 1);
     const auto quaternion = random.quaternion();
-    const Vec3 offset = random.uniform(0.2, 2.5) * random.direction();
+    const Vec3 offset = random.vector(0.2, 2.5);
     PenetrationDepth base;
     for (const int k : {0, -890, -500, -101, -100, -99, 60, 100, 101, 400, 890}) {
       const double s = std::ldexp(1, k);

@@ -99,7 +99,7 @@ TEST(SphereHull, NearlyEqualRadiiAreNearlyARoundedPolytope) {
     }
     const ConvexShape rounded = *ConvexShape(*ConvexPolytope::from_points(centres)).with_margin(0.25);
     const ConvexShape hull = hull_of(spheres), b = other_body(i, random);
-    const Pose pose = *Pose::from_quaternion(random.quaternion(), random.uniform(0, 2.5) * random.direction());
+    const Pose pose = random.pose(random.vector(0, 2.5));
     const auto like = oracle::signed_distance(penetration_depth({&rounded, Pose()}, {&b, pose}, scratch));
     const auto own = oracle::signed_distance(penetration_depth({&hull, Pose()}, {&b, pose}, scratch));
     EXPECT_LE(own.lower, like.upper + 1e-12) << i;
@@ -115,7 +115,7 @@ TEST(SphereHull, Laws) {
     std::vector<Sphere> spheres = some_spheres(random);
     const ConvexShape a = hull_of(spheres), b = other_body(i, random);
     const auto turn_a = random.quaternion(), turn_b = random.quaternion();
-    const Vec3 offset = random.uniform(0, 3) * random.direction();
+    const Vec3 offset = random.vector(0, 3);
     const PosedShape posed_a{&a, *Pose::from_quaternion(turn_a, Vec3::Zero())};
     const PosedShape posed_b{&b, *Pose::from_quaternion(turn_b, offset)};
     SCOPED_TRACE(i);
@@ -182,7 +182,7 @@ TEST(SphereHull, AboutContact) {
   for (int i = 0; i < 60; ++i) {
     const ConvexShape a = hull_of(some_spheres(random)), b = other_body(i, random);
     const auto turn = random.quaternion();
-    const Pose pose_b = *Pose::from_quaternion(random.quaternion(), 0.5 * random.direction());
+    const Pose pose_b = random.pose(0.5 * random.direction());
     const PenetrationDepth first =
         penetration_depth({&a, *Pose::from_quaternion(turn, Vec3::Zero())}, {&b, pose_b}, scratch, {.delta = 1e-12});
     if (first.contact != ContactClass::overlapping) continue;

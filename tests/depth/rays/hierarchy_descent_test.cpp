@@ -34,7 +34,10 @@ TEST(HierarchyDescent, EqualsThePortalSearchOnEveryFamily) {
         const DirectionalHierarchies hierarchies{&hierarchy_a, &hierarchy_b};
         for (int ray = 0; ray < 4; ++ray) {
           Vec3 d = random.direction();
-          if (ray == 3) d = Vec3(random.integer(-1, 1), random.integer(-1, 1), 1);
+          if (ray == 3) {
+            d = random.integer_point(-1, 1);
+            d.z() = 1;
+          }
           const PosedShape posed_a{&a, pair.pose_a}, posed_b{&b, pair.pose_b};
           const auto found =
               directional_depth(posed_a, posed_b, d, scratch, DirectionalMethod::hierarchy, &hierarchies);
@@ -97,7 +100,7 @@ TEST(HierarchyDescent, SmallBodiesAgainstEveryLevel) {
       const ConvexShape coarse(hull(left));
       for (const int vertices : {1, 2, 5}) {
         for (int i = 0; i < 10; ++i) {
-          const Vec3 at = 0.5 * random.uniform() * random.direction();
+          const Vec3 at = random.vector(0, 0.5);
           scenes::Points small;
           for (int k = 0; k < vertices; ++k) small.push_back(at + 0.2 * random.direction());
           const ConvexShape shape(hull(small));

@@ -138,7 +138,7 @@ void expect_bracket(double lower, double upper, const Quotient& q, const Whole3&
 scenes::Points whole_points(int n, int range, scenes::Random& random) {
   scenes::Points points;
   for (int i = 0; i < n; ++i) {
-    points.push_back(Vec3(random.integer(-range, range), random.integer(-range, range), random.integer(-range, range)));
+    points.push_back(random.integer_point(-range, range));
   }
   return points;
 }
@@ -170,9 +170,10 @@ TEST(LevelQueries, PointsSegmentsAndSmallBodiesAtEveryLevelAgainstWholeNumbers) 
           SCOPED_TRACE(testing::Message() << range << " " << n << " level " << i << " move " << k);
           const int size = k % 4 == 3 ? random.integer(3, 9) : (k % 4 == 2 ? 1 : 2);
           scenes::Points small = whole_points(size, std::max(1, range / 2), random);
-          const Vec3 away(random.integer(-range, range), random.integer(-range, range), 0);
+          const Vec3 away =
+              Eigen::Vector3i{random.integer(-range, range), random.integer(-range, range), 0}.cast<double>();
           for (Vec3& p : small) p += away;
-          Vec3 d(random.integer(-range, range), random.integer(-range, range), random.integer(-range, range));
+          Vec3 d = random.integer_point(-range, range);
           if (d.isZero(0)) d.x() = 1;
           const ConvexPolytope moved = *ConvexPolytope::from_points(small);
           const LevelCrossing found = *crossing_of_level(hierarchy, i, moved, d);

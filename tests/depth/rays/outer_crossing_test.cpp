@@ -106,8 +106,8 @@ TEST(OuterCrossing, LinesThroughEveryLevelAgainstAScan) {
         for (int i = 0; i < lines; ++i) {
           // Points near the body and far from it, most of whose lines miss.
           const double reach = (i % 3 == 0 ? 3.0 : 0.8) * body.radius();
-          const Vec3 point = reach * random.uniform() * random.direction();
-          judge(twin, level, point, random.uniform(0.1, 4) * random.direction(), tally);
+          const Vec3 point = random.vector(0, reach);
+          judge(twin, level, point, random.vector(0.1, 4), tally);
         }
       }
     }
@@ -151,7 +151,7 @@ TEST(OuterCrossing, TheInnerDescentSaysTheSame) {
     const TwinHierarchy twin = *TwinHierarchy::build(body);
     for (int level = 0; level < twin.num_levels(); ++level) {
       for (int i = 0; i < 20; ++i) {
-        const Vec3 point = 0.7 * random.uniform() * body.radius() * random.direction(), d = random.direction();
+        const Vec3 point = random.vector(0, 0.7 * body.radius()), d = random.direction();
         const LevelCrossing outer = *crossing_of_level(twin, level, point, d);
         const LevelCrossing inner = *crossing_of_level(twin.inner(), level, hull({point}), d);
         // The inner descent says when the moved point meets the level: the same times.
@@ -177,7 +177,7 @@ TEST(OuterCrossing, StepsAreLogarithmic) {
     const TwinHierarchy twin = *TwinHierarchy::build(body);
     std::int64_t most = 0;
     for (int i = 0; i < 200; ++i) {
-      const Vec3 point = random.uniform() * random.direction();
+      const Vec3 point = random.vector(0, 1);
       most = std::max(most, crossing_of_level(twin, 0, point, random.direction())->steps);
     }
     EXPECT_LT(static_cast<double>(most), 40 * std::log2(std::abs(n))) << n;
